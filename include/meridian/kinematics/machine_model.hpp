@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/lai.hpp"
+
+namespace meridian {
+
+/// What a joint may do. Units: mm or rad, and s.
+struct JointLimits {
+  double travel_min = 0, travel_max = 0;  ///< ignored where `is_endless`
+  double velocity = 0, acceleration = 0, jerk = 0;
+  double fault_acceleration = 0, fault_jerk = 0;  ///< FaultStop
+  double following_error = 0;  ///< largest |setpoint - feedback| before FaultStop
+};
+
+struct JointSpec {
+  std::string name;  ///< column of a recording is name_mm or name_rad
+  bool is_rotary = false;
+  bool is_endless = false;
+  double home = 0;
+  JointLimits limits;
+};
+
+/// Deviation that smoothing and pole easing may use together, measured from the programmed path.
+struct Tolerances {
+  double tip_mm = 0.01;
+  double axis_rad = 0.0017453292519943296;
+};
+
+/// Everything that is known about a machine before it moves: built and checked once by
+/// config::load_machine, immutable after. Rotation of the workpiece frame is orthonormal.
+struct MachineModel {
+  std::string name;
+  std::string version;
+  LaiKinematics kinematics;
+  int joint_count = 5;
+  std::array<JointSpec, kMaxJoints> joints;
+  double tool_length_mm = 0;  ///< tool in the spindle when the service starts
+  Eigen::Matrix3d frame_rotation =
+      Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics
+  Vector3 frame_origin_mm = Vector3::Zero();
+  Tolerances tolerances;
+  double clearance_mm = 50;  ///< retract of an approach along the tool axis
+  double approach_feed_mm_per_s = 10;
+  double max_feed_mm_per_s = 0;  ///< programmed feeds above it are limited and reported
+  std::int64_t cycle_ns = 1'000'000;
+  bool default_unit_mm = false;  ///< unitless CL files are taken as millimetre
+  bool default_unit_inch = false;
+  double starve_auto_resume_s = 2.0;
+  int bridge_cycles = 3;  ///< lost periods that the drives bridge
+};
+
+}  // namespace meridian

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/joints.hpp"
+#include "meridian/path/cl_block.hpp"
+
+namespace meridian {
+
+enum class PathKind : std::uint8_t {
+  kLine,   ///< tip straight, tool axis on the great circle
+  kArc,    ///< tip on an arc or helix, tool axis on the great circle
+  kJoint,  ///< every joint linear in s (approach, joint-space rapid)
+  kTurn    ///< on the pole: tip and axis fixed, the free rotary joint turns from `free_begin` to
+           ///< `free_end`
+};
+
+/// What the operator sees the machine do on a piece; the `kind` column of a recording.
+enum class MotionKind : std::uint8_t { kApproach, kCut, kRapid, kPoleTurn };
+
+/// A stretch of path as a function of the path length s in [0, length]: where, not when.
+/// s is sqrt(tip length² + (50 mm/rad · axis turn)²), so that a pure rotation advances too. Frame:
+/// W. Units: mm, rad. Trivially copyable: travels from the planner to the cycle in a ring.
+struct PathPiece {
+  std::uint64_t index = 0;     ///< counts all pieces of an epoch from 0; TimePiece refers to it
+  std::uint64_t sequence = 0;  ///< CL block that it belongs to
+  std::uint32_t line = 0;      ///< its source line
+  PathKind kind = PathKind::kLine;
+  MotionKind motion = MotionKind::kCut;
+  std::uint8_t branch = 0;      ///< solution of the inverse kinematics that is followed
+  double length = 0;            ///< range of s
+  double tool_length_mm = 0;    ///< gauge line to tip
+  Array3 tip_begin{};           ///< kLine, kTurn
+  Array3 tip_delta{};           ///< kLine: end - begin; kArc: rise along the normal
+  Array3 axis_begin{0, 0, 1};   ///< tool axis at s = 0
+  Array3 axis_normal{1, 0, 0};  ///< unit vector in the great circle's plane, normal to axis_begin
+  double axis_turn = 0;  ///< angle of the great circle, rad: axis(s) = cos(φ) begin + sin(φ)
+                         ///< normal, φ = turn·s/length
+  Array3 arc_centre{};   ///< kArc: tip(s) = centre + cos(ψ) x + sin(ψ) y + rise·s/length, ψ =
+                         ///< sweep·s/length
+  Array3 arc_x{};        ///< centre to the arc's begin, radius long
+  Array3 arc_y{};        ///< normal × arc_x
+  double arc_sweep = 0;
+  double free_begin = 0, free_end = 0;  ///< kTurn
+  JointVector
+      joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve
+  JointVector joints_end{};  ///< joints at s = length, windings included
+};
+static_assert(std::is_trivially_copyable_v<PathPiece>);
+
+/// Length that a turn of the tool axis by one radian counts for in the path length s.
+inline constexpr double kAxisLength_mm_per_rad = 50.0;
+
+}  // namespace meridian

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "meridian/kinematics/joints.hpp"
+#include "meridian/path/path_piece.hpp"
+#include "meridian/rt/state.hpp"
+
+/// What enters and leaves the cycle. Everything here is trivially copyable and of fixed size.
+/// Units: mm, rad, s.
+namespace meridian {
+
+/// Flags of a setpoint, as sent to the drives.
+enum SetpointFlag : std::uint16_t {
+  kSetpointEnabled = 1,    ///< drives follow this setpoint
+  kSetpointMoving = 2,     ///< commanded velocity is not zero
+  kSetpointFaultStop = 4,  ///< part of a FaultStop
+};
+
+/// What one cycle commands to the drives.
+struct Setpoint {
+  std::uint64_t cycle =
+      0;  ///< counts periods since the cycle thread started; lost periods leave gaps
+  std::int64_t due_ns = 0;  ///< scheduled wake-up of that period on the machine's clock
+  JointVector position{};   ///< drive coordinates in drive order
+  JointVector velocity{};   ///< their time derivative
+  std::uint32_t line = 0;   ///< source line being cut
+  std::uint16_t epoch = 0;
+  std::uint16_t flags = 0;  ///< SetpointFlag
+};
+
+/// One executed cycle as the recording of record keeps it.
+struct CycleRecord {
+  Setpoint setpoint;
+  JointVector joints{};        ///< machine order, before the actuator stage
+  std::uint64_t sequence = 0;  ///< CL block
+  double plan_time_s = 0;      ///< time on the plan, from the start of the program
+  double rate = 1;             ///< d(plan time)/dt in force, 0 at rest after a hold
+  State state = State::kOff;
+  MotionKind motion = MotionKind::kApproach;
+  std::int32_t lateness_ns = 0;     ///< actual wake-up minus due
+  std::int32_t computation_ns = 0;  ///< time that the cycle before this one took
+};
+
+/// The newest feedback of the drives, as the cycle sees it.
+struct Feedback {
+  std::int64_t arrival_ns = 0;        ///< receiver's own clock; 0: never
+  std::uint64_t cycle_seen = 0;       ///< newest setpoint cycle that the drives took
+  JointVector position{};             ///< drive coordinates, machine order after conversion
+  std::uint32_t joint_mask = 0;       ///< joints that report
+  std::uint32_t enabled_mask = 0;     ///< drives in operation enabled
+  std::uint32_t fault_mask = 0;       ///< drives in fault
+  std::uint32_t referenced_mask = 0;  ///< joints with a valid reference
+  bool emergency_stop = false;
+};
+
+/// An operator's word on its way to the cycle. `request` comes back in the reply event.
+struct Command {
+  std::uint64_t request = 0;
+  Verb verb = Verb::kHold;
+  double argument = 0;
+};
+
+enum class EventCode : std::uint16_t {
+  kStateChanged,   ///< a: new state, b: old state
+  kAccepted,       ///< a: request, b: verb
+  kRefused,        ///< a: request, b: verb, x: Refusal
+  kBlockStarted,   ///< a: sequence, b: line
+  kBlockDone,      ///< a: sequence, b: line
+  kActionDue,      ///< a: sequence of the block whose action is to be published, b: line
+  kProgramEnd,     ///< a: last sequence
+  kEpochAdvanced,  ///< a: new epoch; queues of the old one are void
+  kPeriodsLost,    ///< a: how many
+  kAlarm,          ///< a: Alarm, b: joint or 0, x: measured value, line of the block in `line`
+};
+
+/// Why the cycle took the machine to FaultStop, or refused to send a setpoint.
+enum class Alarm : std::uint8_t {
+  kNone,
+  kNotFinite,    ///< guard: a setpoint was not a finite number
+  kTravel,       ///< guard: a setpoint left travel
+  kStep,         ///< guard: a setpoint stepped farther than the joint's velocity allows
+  kUnreachable,  ///< the inverse kinematics found no solution
+  kDriveFault,
+  kFeedbackLost,
+  kFollowingError,
+  kEmergencyStop,
+  kPeriodsLost,  ///< more periods lost than drives can bridge
+  kEnableTimeout,
+  kActionFailed,  ///< an action was refused or timed out (Held, not FaultStop)
+};
+
+/// Why a verb was refused.
+enum class Refusal : std::uint8_t {
+  kNone,
+  kWrongState,
+  kNotReferenced,
+  kNoProgram,
+  kNoFeedback,
+  kOutOfRange,
+  kStale,
+  kFaultPresent,
+};
+
+/// Leaves the cycle as numbers and becomes words in service/telemetry.
+struct Event {
+  EventCode code{};
+  std::uint64_t cycle = 0;
+  std::uint64_t a = 0, b = 0;
+  double x = 0;
+  std::uint32_t line = 0;
+  std::uint16_t epoch = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<Setpoint> && std::is_trivially_copyable_v<CycleRecord> &&
+              std::is_trivially_copyable_v<Feedback> && std::is_trivially_copyable_v<Command> &&
+              std::is_trivially_copyable_v<Event>);
+
+}  // namespace meridian

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace meridian {
+
+/// What the machine is doing (docs/operating.md has the table verb × state).
+enum class State : std::uint8_t {
+  kOff,
+  kEnabling,
+  kReady,
+  kLoaded,
+  kApproaching,
+  kRunning,
+  kHolding,
+  kHeld,
+  kStarving,
+  kStarved,
+  kAborting,
+  kDisabling,
+  kFaultStop,
+  kFault
+};
+inline constexpr int kStateCount = 14;
+
+/// What an operator asks for.
+enum class Verb : std::uint8_t {
+  kEnable,
+  kDisable,
+  kStart,
+  kHold,
+  kResume,
+  kAbort,
+  kReset,
+  kFeedOverride,   ///< argument: factor, 0 to 1.5
+  kRapidOverride,  ///< argument: factor, 0 to 1
+};
+inline constexpr int kVerbCount = 9;
+
+}  // namespace meridian
