@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/heap_watch.hpp"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+
+#include "support/watch_slot.hpp"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define MERIDIAN_HEAP_WATCHED 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define MERIDIAN_HEAP_WATCHED 0
+#endif
+#endif
+#ifndef MERIDIAN_HEAP_WATCHED
+#define MERIDIAN_HEAP_WATCHED 1
+#endif
+
+namespace meridian::watch {
+
+bool is_heap_watched() noexcept { return MERIDIAN_HEAP_WATCHED != 0; }
+
+HeapCalls heap_calls() noexcept {
+  const Slot& slot = slot_of_this_thread();
+  return {slot.allocations.load(std::memory_order_relaxed),
+          slot.frees.load(std::memory_order_relaxed)};
+}
+
+}  // namespace meridian::watch
+
+#if MERIDIAN_HEAP_WATCHED
+
+// glibc's own entry points behind the public names; they need no look-up, so counting works from
+// the first allocation of the process on.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* block, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void __libc_free(void* block);
+}
+
+namespace {
+void count_allocation() noexcept {
+  meridian::watch::count(meridian::watch::slot_of_this_thread().allocations);
+}
+}  // namespace
+
+extern "C" {
+
+void* malloc(std::size_t size) noexcept {
+  count_allocation();
+  return __libc_malloc(size);
+}
+
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  count_allocation();
+  return __libc_calloc(count, size);
+}
+
+void* realloc(void* block, std::size_t size) noexcept {
+  count_allocation();
+  return __libc_realloc(block, size);
+}
+
+void* reallocarray(void* block, std::size_t count, std::size_t size) noexcept {
+  std::size_t bytes = 0;
+  if (__builtin_mul_overflow(count, size, &bytes)) {
+    errno = ENOMEM;
+    return nullptr;
+  }
+  return realloc(block, bytes);
+}
+
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  count_allocation();
+  return __libc_memalign(alignment, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return memalign(alignment, size);
+}
+
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
+  if (alignment % sizeof(void*) != 0 || (alignment & (alignment - 1)) != 0 || alignment == 0) {
+    return EINVAL;
+  }
+  void* const got = memalign(alignment, size);
+  if (got == nullptr) {
+    return ENOMEM;
+  }
+  *block = got;
+  return 0;
+}
+
+void* valloc(std::size_t size) noexcept {
+  return memalign(static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), size);
+}
+
+void free(void* block) noexcept {
+  if (block == nullptr) {
+    return;
+  }
+  meridian::watch::count(meridian::watch::slot_of_this_thread().frees);
+  __libc_free(block);
+}
+
+}  // extern "C"
+
+#endif  // MERIDIAN_HEAP_WATCHED
