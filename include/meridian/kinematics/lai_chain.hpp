@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "meridian/geometry/jet.hpp"
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/lai.hpp"
+
+/// The machine of Lai et al. in the frame of its kinematics, C axis through the origin. Joint order
+/// b3, b2, b4, theta1, theta2; `length` is tilt axis to tool tip, l = l5 + lt. Units: mm, rad.
+/// Source: docs/kinematics.md, chapter 2. RT: cycle.
+namespace meridian::lai {
+
+enum Joint { kB3, kB2, kB4, kTheta1, kTheta2, kJointCount };
+
+/// Forward kinematics, eq. 2.2.
+template <class S>
+[[nodiscard]] inline Pose<S> forward(const LaiKinematics& constants, double length,
+                                     const Joints<S>& q) noexcept {
+  const auto [s1, c1] = sin_cos(q[kTheta1]);
+  const auto [s2, c2] = sin_cos(q[kTheta2]);
+  const S u = q[kB3] - length * s2;
+  const S v = q[kB2] - constants.e_mm;
+  return {{c1 * u - s1 * v, s1 * u + c1 * v, constants.h_mm - q[kB4] - length * c2},
+          {c1 * s2, s1 * s2, c2}};
+}
+
+/// The linear joints that put the tip on `tip` for any rotary position whatever, eq. 2.5.
+template <class S>
+inline void place_tip(const LaiKinematics& constants, double length, const Vec3<S>& tip,
+                      const SinCos<S>& theta1, const SinCos<S>& theta2, Joints<S>& q) noexcept {
+  q[kB3] = tip[0] * theta1.cos + tip[1] * theta1.sin + length * theta2.sin;
+  q[kB2] = tip[1] * theta1.cos - tip[0] * theta1.sin + constants.e_mm;
+  q[kB4] = constants.h_mm - tip[2] - length * theta2.cos;
+}
+
+/// Inverse kinematics off the pole, eq. 2.3 to 2.5: branch +1 tilts into [0, π], branch -1 into
+/// [-π, 0]. `radius` is hypot(Kx, Ky) > 0; sines and cosines come from the axis itself, without a
+/// call. The axis need not be exactly unit. Windings are the caller's.
+template <class S>
+[[nodiscard]] inline Joints<S> solve(const LaiKinematics& constants, double length,
+                                     const Pose<S>& pose, double branch_sign,
+                                     const S& radius) noexcept {
+  using std::atan2;
+  const S x = branch_sign * pose.axis[0];
+  const S y = branch_sign * pose.axis[1];
+  const S r = branch_sign * radius;
+  const S per_radius = 1.0 / radius;
+  const S per_norm = 1.0 / hypot(radius, pose.axis[2]);
+  Joints<S> q{};
+  q[kTheta1] = atan2(y, x);
+  q[kTheta2] = atan2(r, pose.axis[2]);
+  place_tip(constants, length, pose.tip, SinCos<S>{y * per_radius, x * per_radius},
+            SinCos<S>{r * per_norm, pose.axis[2] * per_norm}, q);
+  return q;
+}
+
+/// Inverse kinematics with theta1 given, eq. 2.6: the tip is exact, the axis is the one nearest to
+/// the wanted axis that this theta1 allows. theta2 lies in [-π, π].
+template <class S>
+[[nodiscard]] inline Joints<S> solve_held(const LaiKinematics& constants, double length,
+                                          const Pose<S>& pose, const S& theta1) noexcept {
+  using std::atan2;
+  const SinCos<S> turn = sin_cos(theta1);
+  const S along = pose.axis[0] * turn.cos + pose.axis[1] * turn.sin;
+  const S per_norm = 1.0 / hypot(along, pose.axis[2]);
+  Joints<S> q{};
+  q[kTheta1] = theta1;
+  q[kTheta2] = atan2(along, pose.axis[2]);
+  place_tip(constants, length, pose.tip, turn, SinCos<S>{along * per_norm, pose.axis[2] * per_norm},
+            q);
+  return q;
+}
+
+/// Jacobian of (Px, Py, Pz, Kx, Ky, Kz) by the joints, eq. 2.7.
+[[nodiscard]] inline Eigen::Matrix<double, 6, 5> jacobian(const LaiKinematics& constants,
+                                                          double length,
+                                                          const JointVector& q) noexcept {
+  const auto [s1, c1] = sin_cos(q[kTheta1]);
+  const auto [s2, c2] = sin_cos(q[kTheta2]);
+  const double u = q[kB3] - length * s2;
+  const double v = q[kB2] - constants.e_mm;
+  Eigen::Matrix<double, 6, 5> j;
+  // clang-format off
+  j << c1, -s1,  0, -u * s1 - v * c1, -length * c1 * c2,
+       s1,  c1,  0,  u * c1 - v * s1, -length * s1 * c2,
+        0,   0, -1,                0,       length * s2,
+        0,   0,  0,         -s1 * s2,           c1 * c2,
+        0,   0,  0,          c1 * s2,           s1 * c2,
+        0,   0,  0,                0,               -s2;
+  // clang-format on
+  return j;
+}
+
+/// sqrt(det JᵀJ) = |sin theta2|, eq. 2.8: zero on the pole and nowhere else inside the tilt's
+/// travel.
+[[nodiscard]] inline double measure(const JointVector& q) noexcept {
+  return std::abs(std::sin(q[kTheta2]));
+}
+
+}  // namespace meridian::lai
