@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+namespace meridian {
+
+/// Why a block cannot be run: the same words from the judge of single blocks at the intake and from
+/// the planner, who judges the joint path between them.
+enum class RejectCode : std::uint8_t {
+  kNone,
+  kNotFinite,      ///< a number is NaN or infinite; `value`: its place in the block, see the text
+  kKind,           ///< kind, feed meaning or action is none that this version knows
+  kAxisNotUnit,    ///< `value`: length of the tool axis
+  kFeed,           ///< feed is not positive or absurd; `value`: feed, mm/min or 1/min
+  kArc,            ///< the arc does not lead from the block before to this one's end; `value`: mm
+  kValue,          ///< dwell, spindle speed or tool number out of range; `value`: it
+  kUnknownTool,    ///< `value`: tool number
+  kNoActionPeer,   ///< nobody there to do actions
+  kUnreachable,    ///< no joints put the tool there
+  kTravel,         ///< `joint` leaves travel at the block; `value`: joint position
+  kTravelBetween,  ///< `joint` leaves travel between the block before and this one
+  kBranch,         ///< no way from the block before on any branch and winding
+  kApproach        ///< no way from where the machine stands to the block
+};
+
+/// The verdict on one block. Units: mm, rad. Trivially copyable: crosses rings.
+struct BlockReject {
+  std::uint64_t sequence = 0;
+  std::uint32_t line = 0;
+  RejectCode code = RejectCode::kNone;
+  std::int32_t joint = -1;  ///< machine order; -1: none
+  double value = 0;         ///< see RejectCode
+};
+static_assert(std::is_trivially_copyable_v<BlockReject>);
+
+}  // namespace meridian
