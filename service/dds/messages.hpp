@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "meridian/rt/cycle_data.hpp"
+
+/// What travels on the topics, in the words of the core. Rooms use these; the generated wire types
+/// stop at service/dds/convert.hpp. Units: as the names say, else house units (mm, rad, s).
+namespace meridian::dds {
+
+inline constexpr std::size_t kBatchBlocks = 32;
+
+/// `cl_batch`: up to kBatchBlocks consecutive blocks. `crc` is batch_crc() of the rest as the
+/// sender computed it; whoever judges a batch computes it again.
+struct Batch {
+  std::uint64_t session = 0;
+  std::uint64_t first_sequence = 0;
+  std::uint32_t count = 0;
+  bool is_end = false;  ///< no block follows this batch
+  std::uint32_t crc = 0;
+  std::array<ClBlock, kBatchBlocks> blocks{};
+};
+
+/// Returns the CRC-32C over session, first sequence, count, end mark and the used blocks (at most
+/// kBatchBlocks), little-endian in the field order of idl/cl.idl.
+[[nodiscard]] std::uint32_t batch_crc(const Batch& batch) noexcept;
+
+enum class SessionRequestKind : std::uint8_t { kOpen, kClose };
+
+enum SessionPolicy : std::uint32_t {
+  kPolicyContainsActions = 1,  ///< the program has auxiliary, tool or stop blocks
+};
+
+/// `cl_session`: a station asks for the machine, or gives it back.
+struct SessionRequest {
+  std::uint64_t session = 0;  ///< drawn at random by the station, never 0
+  SessionRequestKind request = SessionRequestKind::kOpen;
+  std::string station{};
+  std::string program{};
+  std::uint64_t block_count = 0;  ///< 0: not known
+  double tip_tolerance_mm = 0;    ///< 0: the machine's
+  double axis_tolerance_rad = 0;  ///< 0: the machine's
+  std::uint32_t policies = 0;     ///< SessionPolicy, or-ed
+};
+
+/// What the service thinks of a session. Everything from kRefusedStation on ends it.
+enum class Verdict : std::uint8_t {
+  kNone,            ///< nothing received yet
+  kGood,            ///< everything up to next_sequence is in
+  kComplete,        ///< the end mark is in
+  kGap,             ///< blocks from next_sequence on are missing or were corrupted: send again
+  kRan,             ///< the machine executed the program to its end
+  kRefusedStation,  ///< another station holds the machine
+  kRefusedProgram,  ///< the program as a whole cannot run here (no action peer, state)
+  kRefusedBlock,    ///< verdict_sequence names the block, text the reason
+  kBeyondCredit,    ///< the station sent past its credits
+  kClosed,          ///< the station closed the session
+  kAborted,         ///< the operator aborted, or a fault ended the program
+};
+
+/// `cl_credit`: how far a session has come. Repeated until the session ends.
+struct Credit {
+  std::uint64_t session = 0;
+  std::uint64_t service_id = 0;
+  std::uint64_t next_sequence = 0;  ///< the first block that the service has not got
+  std::uint32_t credits = 0;        ///< blocks from next_sequence on that may be sent
+  Verdict verdict = Verdict::kNone;
+  std::uint64_t verdict_sequence = 0;
+  std::uint32_t verdict_line = 0;
+  std::int32_t verdict_joint = -1;
+  double verdict_value = 0;
+  std::string text{};
+};
+
+/// `command`: an operator's request. `request` and `operator_id` come back in the reply.
+struct CommandRequest {
+  std::uint64_t request = 0;
+  std::uint64_t operator_id = 0;
+  std::string operator_name{};
+  Verb verb = Verb::kHold;
+  std::uint16_t epoch_seen = 0;
+  std::uint64_t status_seen = 0;
+  std::uint64_t service_id_seen = 0;  ///< 0: any
+  double argument = 0;
+};
+
+/// `reply`
+struct Reply {
+  std::uint64_t request = 0;
+  std::uint64_t operator_id = 0;
+  std::uint64_t service_id = 0;
+  Verb verb = Verb::kHold;
+  bool is_accepted = false;
+  Refusal refusal = Refusal::kNone;
+  State state = State::kOff;
+  std::uint16_t epoch = 0;
+  std::string text{};
+};
+
+/// `jog`
+struct Jog {
+  std::uint64_t operator_id = 0;
+  std::uint64_t sample = 0;
+  std::uint16_t epoch_seen = 0;
+  std::uint8_t joint = 0;
+  double velocity = 0;
+  std::int64_t dead_man_ns = 0;
+};
+
+/// `setpoint`: position and velocity in drive coordinates, drive order.
+struct SetpointSample {
+  Setpoint setpoint;
+  std::int32_t sent_minus_due_ns = 0;
+};
+
+/// `drive_command`, one instance per drive
+struct DriveCommand {
+  std::uint16_t drive = 0;
+  std::uint16_t controlword = 0;
+  std::uint8_t mode = 8;  ///< CiA 402: cyclic synchronous position
+  std::uint16_t epoch = 0;
+  std::uint64_t service_id = 0;
+  std::uint64_t sample = 0;
+};
+
+/// `feedback`, one instance per drive group
+struct DriveFeedback {
+  std::uint32_t drive_group = 0;
+  std::uint32_t joint_mask = 0;
+  std::uint64_t sample = 0;
+  std::uint64_t cycle_seen = 0;
+  JointVector position{};
+  std::array<std::uint16_t, kMaxJoints> statusword{};
+  std::array<std::uint16_t, kMaxJoints> error{};
+  std::uint32_t referenced_mask = 0;
+  bool is_emergency_stop = false;
+};
+
+/// `action`: what the path waits for at rest.
+struct Action {
+  std::uint64_t id = 0;
+  std::uint64_t service_id = 0;
+  std::uint64_t sequence = 0;
+  std::uint32_t line = 0;
+  ActionKind kind = ActionKind::kNone;
+  double value = 0;
+  std::string text{};
+};
+
+/// `action_done`
+struct ActionDone {
+  std::uint64_t id = 0;
+  std::uint64_t service_id = 0;
+  bool is_done = false;
+  std::string text{};
+};
+
+enum class RealtimeMode : std::uint8_t {
+  kBestEffort,  ///< rights were missing or not asked for: timing is hoped for
+  kEnforced     ///< FIFO priorities, pinned, memory locked
+};
+
+/// `status`
+struct Status {
+  std::uint64_t service_id = 0;
+  std::uint64_t status_sequence = 0;
+  std::int64_t time_ns = 0;
+  std::uint64_t cycle = 0;
+  State state = State::kOff;
+  RealtimeMode realtime_mode = RealtimeMode::kBestEffort;
+  bool is_secured = false;
+  bool is_auxiliary_ignored = false;
+  Alarm alarm = Alarm::kNone;
+  std::uint8_t alarm_joint = 0;
+  std::uint16_t epoch = 0;
+  std::uint32_t alarm_line = 0;
+  double alarm_value = 0;
+  std::uint64_t session = 0;
+  std::string station{};
+  std::string program{};
+  std::uint64_t block_count = 0;
+  std::uint64_t block = 0;
+  std::uint32_t line = 0;
+  MotionKind motion = MotionKind::kApproach;
+  std::uint8_t branch = 0;
+  bool is_at_pole = false;
+  std::int32_t limiting_joint = -1;
+  double feed_programmed_mm_per_min = 0;
+  double feed_achieved_mm_per_min = 0;
+  double feed_override = 1;
+  double rapid_override = 1;
+  double rate = 1;
+  double plan_time_s = 0;
+  JointVector joints{};
+  std::uint32_t drives_enabled_mask = 0;
+  std::uint32_t drives_fault_mask = 0;
+  std::uint64_t blocks_received = 0;
+  std::uint64_t blocks_done = 0;
+  std::uint32_t blocks_queued = 0;
+  std::uint32_t pieces_queued = 0;
+  double planned_s = 0;
+  double stop_time_s = 0;
+  double stop_distance_mm = 0;
+  std::uint64_t cycles_run = 0;
+  std::uint64_t periods_lost = 0;
+  std::uint64_t starvations = 0;
+  std::uint64_t batches_dropped = 0;
+  std::uint64_t batches_lost = 0;
+  std::uint64_t setpoints_overrun = 0;
+  std::uint64_t records_overrun = 0;
+  std::uint64_t events_overrun = 0;
+  std::string message{};
+};
+
+/// One joint of `machine`; the limits are those of MachineModel.
+struct JointInfo {
+  std::string name{};
+  bool is_rotary = false;
+  bool is_endless = false;
+  std::uint16_t drive = 0;
+  JointLimits limits;
+  double home = 0;
+};
+
+/// `machine`: who serves which machine. It is also the service's claim on the machine.
+struct MachineInfo {
+  std::uint64_t service_id = 0;
+  std::int64_t started_ns = 0;  ///< system clock, since 1970
+  std::string name{};
+  std::string file_version{};
+  std::string service_version{};
+  std::string host{};
+  std::uint32_t pid = 0;
+  std::string kinematics{};
+  std::string clock = "monotonic";
+  std::int64_t cycle_ns = 0;
+  std::uint32_t bridge_cycles = 0;
+  std::uint32_t joint_count = 0;
+  std::array<JointInfo, kMaxJoints> joints{};
+  double max_feed_mm_per_min = 0;
+  double tip_tolerance_mm = 0;
+  double axis_tolerance_rad = 0;
+  double tool_length_mm = 0;
+};
+
+inline constexpr std::size_t kHistogramBuckets = 64;
+inline constexpr std::size_t kMaxHistograms = 6;
+
+/// Bucket i counts values up to 256 ns · 2^((i + 1) / 4); the last has no upper edge.
+struct HistogramSnapshot {
+  std::string name{};
+  std::uint64_t count = 0;
+  std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
+  std::array<std::uint64_t, kHistogramBuckets> buckets{};
+};
+
+/// `latency`
+struct Latency {
+  std::uint64_t service_id = 0;
+  std::int64_t time_ns = 0;
+  std::vector<HistogramSnapshot> histograms{};  ///< at most kMaxHistograms
+};
+
+}  // namespace meridian::dds

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/dds/participant.hpp"
+
+#include <dds/dds.h>
+
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#include "dds_transport.hpp"
+
+namespace meridian::dds {
+namespace {
+
+struct Domain {
+  dds_entity_t handle = 0;
+  int users = 0;
+};
+
+/// Domains that this process configured itself, by id; Cyclone deletes participants with them.
+std::mutex domains_mutex;
+std::map<std::uint32_t, Domain>& domains() {
+  static std::map<std::uint32_t, Domain> all;
+  return all;
+}
+
+[[noreturn]] void fail(const std::string& what, dds_return_t code, const char* remedy) {
+  throw DdsError(what + ": " + dds_strretcode(-code) + "; " + remedy);
+}
+
+void hold_domain(const ParticipantOptions& options) {
+  if (const char* uri = std::getenv("CYCLONEDDS_URI"); uri != nullptr && *uri != '\0') return;
+  const std::lock_guard lock(domains_mutex);
+  Domain& domain = domains()[options.domain];
+  if (domain.users == 0) {
+    const char* xml =
+        options.transport == Transport::kLoopbackRealtime ? kLoopbackRealtimeXml : kLoopbackXml;
+    domain.handle = dds_create_domain(options.domain, xml);
+    if (domain.handle < 0) {
+      const dds_return_t code = domain.handle;
+      domains().erase(options.domain);
+      fail("DDS domain " + std::to_string(options.domain) + " cannot be set up", code,
+           "choose a --domain from 0 to 230, or set CYCLONEDDS_URI");
+    }
+  }
+  ++domain.users;
+}
+
+void release_domain(std::uint32_t id) {
+  const std::lock_guard lock(domains_mutex);
+  const auto found = domains().find(id);
+  if (found == domains().end() || --found->second.users > 0) return;
+  dds_delete(found->second.handle);
+  domains().erase(found);
+}
+
+}  // namespace
+
+Participant::Participant(const ParticipantOptions& options)
+    : domain_(static_cast<std::int32_t>(options.domain)) {
+  hold_domain(options);
+  participant_ = dds_create_participant(options.domain, nullptr, nullptr);
+  if (participant_ < 0) {
+    release_domain(options.domain);
+    fail("no place in DDS domain " + std::to_string(options.domain), participant_,
+         "is the loopback interface up, and are real-time rights there if CYCLONEDDS_URI asks for "
+         "real-time threads?");
+  }
+  dds_qos_t* qos = dds_create_qos();
+  const char* partition = options.machine.c_str();
+  dds_qset_partition(qos, 1, &partition);
+  publisher_ = dds_create_publisher(participant_, qos, nullptr);
+  subscriber_ = dds_create_subscriber(participant_, qos, nullptr);
+  dds_delete_qos(qos);
+  if (publisher_ < 0 || subscriber_ < 0) {
+    dds_delete(participant_);
+    release_domain(options.domain);
+    fail("DDS partition '" + options.machine + "' cannot be joined",
+         publisher_ < 0 ? publisher_ : subscriber_, "give the machine a plain name");
+  }
+}
+
+Participant::~Participant() {
+  dds_delete(participant_);
+  release_domain(static_cast<std::uint32_t>(domain_));
+}
+
+}  // namespace meridian::dds

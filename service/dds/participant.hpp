@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace meridian::dds {
+
+/// DDS could not do at start-up what was asked; the message says what and how to mend it.
+class DdsError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How Cyclone is configured where the environment variable CYCLONEDDS_URI does not say.
+enum class Transport : std::uint8_t {
+  kLoopback,         ///< deploy/cyclonedds-loopback.xml: this host only
+  kLoopbackRealtime  ///< deploy/cyclonedds-loopback-rt.xml: and receive threads of real-time class
+};
+
+struct ParticipantOptions {
+  std::uint32_t domain = 0;
+  std::string machine;  ///< name of the machine: the DDS partition
+  Transport transport = Transport::kLoopback;
+};
+
+/// One process's place in a DDS domain, in the partition of one machine. Threads of Cyclone inherit
+/// the affinity of the thread that creates it. The first participant of a domain in a process
+/// settles the transport. Readers and writers must go before it.
+class Participant {
+ public:
+  /// Throws DdsError.
+  explicit Participant(const ParticipantOptions& options);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  [[nodiscard]] std::int32_t handle() const noexcept { return participant_; }
+  [[nodiscard]] std::int32_t publisher() const noexcept { return publisher_; }
+  [[nodiscard]] std::int32_t subscriber() const noexcept { return subscriber_; }
+
+ private:
+  std::int32_t domain_ = 0, participant_ = 0, publisher_ = 0, subscriber_ = 0;
+};
+
+}  // namespace meridian::dds

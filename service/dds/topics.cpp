@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <dds/dds.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "service/dds/convert.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/writer.hpp"
+
+namespace meridian::dds {
+namespace {
+
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
+/// No false alarm by host stalls of 5 ms; receivers judge freshness by sequence and their own
+/// clock.
+constexpr dds_duration_t kCyclicDeadline = DDS_MSECS(20);
+constexpr dds_duration_t kSetpointLease = DDS_MSECS(100);
+
+/// The quality of service of the topics, by group (docs/topics.md).
+enum class Quality : std::uint8_t {
+  kStream,    ///< reliable, keep all: every sample matters
+  kLatest,    ///< reliable, transient local, keep last 1: late joiners get the newest
+  kSnapshot,  ///< reliable, keep last 1
+  kCyclic,    ///< best effort, keep last 1, deadline
+  kSetpoint,  ///< as kCyclic, with manual liveliness
+  kJog        ///< best effort, keep last 1
+};
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+/// Readers never have resource limits: one that filled up would stop every topic of its process.
+Qos make_qos(Quality quality) {
+  Qos qos(dds_create_qos());
+  const bool is_reliable =
+      quality == Quality::kStream || quality == Quality::kLatest || quality == Quality::kSnapshot;
+  dds_qset_reliability(qos.get(),
+                       is_reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       kMaxBlocking);
+  if (quality == Quality::kStream) {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+  } else {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  }
+  if (quality == Quality::kLatest) {
+    dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  if (quality == Quality::kCyclic || quality == Quality::kSetpoint) {
+    dds_qset_deadline(qos.get(), kCyclicDeadline);
+  }
+  if (quality == Quality::kSetpoint) {
+    dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC, kSetpointLease);
+  }
+  return qos;
+}
+
+template <class Message>
+struct Topic;
+
+#define MERIDIAN_TOPIC(MESSAGE, WIRE, NAME, QUALITY)             \
+  template <>                                                    \
+  struct Topic<MESSAGE> {                                        \
+    using Wire = meridian_wire_##WIRE;                           \
+    static constexpr const char* kName = "meridian/" NAME;       \
+    static constexpr Quality kQuality = Quality::QUALITY;        \
+    static const dds_topic_descriptor_t* descriptor() noexcept { \
+      return &meridian_wire_##WIRE##_desc;                       \
+    }                                                            \
+  }
+
+MERIDIAN_TOPIC(Batch, ClBatch, "cl_batch", kStream);
+MERIDIAN_TOPIC(SessionRequest, ClSession, "cl_session", kStream);
+MERIDIAN_TOPIC(Credit, ClCredit, "cl_credit", kLatest);
+MERIDIAN_TOPIC(CommandRequest, Command, "command", kStream);
+MERIDIAN_TOPIC(Reply, Reply, "reply", kStream);
+MERIDIAN_TOPIC(Jog, Jog, "jog", kJog);
+MERIDIAN_TOPIC(SetpointSample, Setpoint, "setpoint", kSetpoint);
+MERIDIAN_TOPIC(DriveCommand, DriveCommand, "drive_command", kLatest);
+MERIDIAN_TOPIC(DriveFeedback, Feedback, "feedback", kCyclic);
+MERIDIAN_TOPIC(Action, Action, "action", kStream);
+MERIDIAN_TOPIC(ActionDone, ActionDone, "action_done", kStream);
+MERIDIAN_TOPIC(Status, Status, "status", kLatest);
+MERIDIAN_TOPIC(MachineInfo, Machine, "machine", kLatest);
+MERIDIAN_TOPIC(Latency, Latency, "latency", kSnapshot);
+
+#undef MERIDIAN_TOPIC
+
+/// Creates the topic with an endpoint on it by `make`; both live until the participant goes.
+template <class Message, class Make>
+dds_entity_t make_endpoint(Participant& participant, dds_entity_t& topic, Make make) {
+  using T = Topic<Message>;
+  topic = dds_create_topic(participant.handle(), T::descriptor(), T::kName, nullptr, nullptr);
+  const Qos qos = make_qos(T::kQuality);
+  const dds_entity_t endpoint = topic < 0 ? topic : make(topic, qos.get());
+  if (endpoint < 0) {
+    throw DdsError(std::string("DDS topic ") + T::kName +
+                   " cannot be used: " + dds_strretcode(-endpoint));
+  }
+  return endpoint;
+}
+
+}  // namespace
+
+template <class Message>
+struct Reader<Message>::Impl {
+  dds_entity_t topic = 0, reader = 0;
+  typename Topic<Message>::Wire wire{};
+  std::function<void(Reader&)> on_data;
+  Reader* owner = nullptr;
+
+  static void call(dds_entity_t, void* self) {
+    auto* impl = static_cast<Impl*>(self);
+    impl->on_data(*impl->owner);
+  }
+};
+
+template <class Message>
+Reader<Message>::Reader(Participant& participant, std::function<void(Reader&)> on_data)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->on_data = std::move(on_data);
+  impl_->owner = this;
+  impl_->reader =
+      make_endpoint<Message>(participant, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
+        return dds_create_reader(participant.subscriber(), topic, qos, nullptr);
+      });
+  if (impl_->on_data) {
+    dds_listener_t* listener = dds_create_listener(impl_.get());
+    dds_lset_data_available(listener, &Impl::call);
+    (void)dds_set_listener(impl_->reader, listener);
+    dds_delete_listener(listener);
+  }
+}
+
+template <class Message>
+Reader<Message>::~Reader() {
+  dds_delete(impl_->reader);
+  dds_delete(impl_->topic);
+}
+
+template <class Message>
+bool Reader<Message>::take(Message& message, SampleInfo& info) noexcept {
+  void* sample = &impl_->wire;
+  dds_sample_info_t wire_info;
+  if (dds_take(impl_->reader, &sample, &wire_info, 1, 1) != 1) return false;
+  info.is_valid = wire_info.valid_data;
+  info.is_alive = wire_info.instance_state == DDS_IST_ALIVE;
+  info.source = wire_info.publication_handle;
+  info.sent_ns = wire_info.source_timestamp;
+  from_wire(impl_->wire, message);
+  return true;
+}
+
+template <class Message>
+bool Reader<Message>::take(Message& message) noexcept {
+  SampleInfo info;
+  while (take(message, info)) {
+    if (info.is_valid) return true;
+  }
+  return false;
+}
+
+template <class Message>
+int Reader<Message>::matched_writers() const noexcept {
+  return std::max(0, dds_get_matched_publications(impl_->reader, nullptr, 0));
+}
+
+template <class Message>
+bool Reader<Message>::has_source(std::uint64_t source) const noexcept {
+  std::array<dds_instance_handle_t, 64> writers{};
+  const auto count = dds_get_matched_publications(impl_->reader, writers.data(), writers.size());
+  const auto end = writers.begin() + std::clamp<int>(count, 0, static_cast<int>(writers.size()));
+  return std::find(writers.begin(), end, source) != end;
+}
+
+template <class Message>
+std::int32_t Reader<Message>::handle() const noexcept {
+  return impl_->reader;
+}
+
+template <class Message>
+struct Writer<Message>::Impl {
+  dds_entity_t topic = 0, writer = 0;
+  typename Topic<Message>::Wire wire{};
+};
+
+template <class Message>
+Writer<Message>::Writer(Participant& participant) : impl_(std::make_unique<Impl>()) {
+  impl_->writer =
+      make_endpoint<Message>(participant, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
+        return dds_create_writer(participant.publisher(), topic, qos, nullptr);
+      });
+}
+
+template <class Message>
+Writer<Message>::~Writer() {
+  dds_delete(impl_->writer);
+  dds_delete(impl_->topic);
+}
+
+template <class Message>
+void Writer<Message>::register_instance(const Message& message) noexcept {
+  to_wire(message, impl_->wire);
+  dds_instance_handle_t handle = 0;
+  (void)dds_register_instance(impl_->writer, &handle, &impl_->wire);
+}
+
+template <class Message>
+bool Writer<Message>::write(const Message& message) noexcept {
+  to_wire(message, impl_->wire);
+  return dds_write(impl_->writer, &impl_->wire) == DDS_RETCODE_OK;
+}
+
+template <class Message>
+void Writer<Message>::dispose(const Message& message) noexcept {
+  to_wire(message, impl_->wire);
+  (void)dds_dispose(impl_->writer, &impl_->wire);
+  (void)dds_unregister_instance(impl_->writer, &impl_->wire);
+}
+
+template <class Message>
+int Writer<Message>::matched_readers() const noexcept {
+  return std::max(0, dds_get_matched_subscriptions(impl_->writer, nullptr, 0));
+}
+
+#define MERIDIAN_INSTANTIATE(MESSAGE) \
+  template class Reader<MESSAGE>;     \
+  template class Writer<MESSAGE>
+
+MERIDIAN_INSTANTIATE(Batch);
+MERIDIAN_INSTANTIATE(SessionRequest);
+MERIDIAN_INSTANTIATE(Credit);
+MERIDIAN_INSTANTIATE(CommandRequest);
+MERIDIAN_INSTANTIATE(Reply);
+MERIDIAN_INSTANTIATE(Jog);
+MERIDIAN_INSTANTIATE(SetpointSample);
+MERIDIAN_INSTANTIATE(DriveCommand);
+MERIDIAN_INSTANTIATE(DriveFeedback);
+MERIDIAN_INSTANTIATE(Action);
+MERIDIAN_INSTANTIATE(ActionDone);
+MERIDIAN_INSTANTIATE(Status);
+MERIDIAN_INSTANTIATE(MachineInfo);
+MERIDIAN_INSTANTIATE(Latency);
+
+}  // namespace meridian::dds

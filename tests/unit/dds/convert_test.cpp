@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/dds/convert.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+namespace meridian::dds {
+namespace {
+
+constexpr unsigned kSeed = 20240817;
+
+/// Fills every byte of a wire struct, so that a field that is not converted shows.
+template <class Wire>
+Wire noise(unsigned seed) {
+  std::mt19937 engine(seed);
+  Wire wire{};
+  auto* bytes = reinterpret_cast<unsigned char*>(&wire);
+  for (std::size_t i = 0; i < sizeof wire; ++i) {
+    // Small printable values: valid bools are mended below, doubles stay finite, texts have no end.
+    bytes[i] = static_cast<unsigned char>('A' + engine() % 26);
+  }
+  return wire;
+}
+
+template <class Message, class Wire>
+Wire there_and_back(const Wire& wire) {
+  Message message;
+  from_wire(wire, message);
+  Wire back;
+  std::memset(&back, 0, sizeof back);
+  to_wire(message, back);
+  return back;
+}
+
+TEST(Convert, CarriesEveryFieldOfASetpoint) {
+  const auto wire = noise<meridian_wire_Setpoint>(kSeed);
+  const auto back = there_and_back<SetpointSample>(wire);
+  EXPECT_EQ(std::memcmp(&wire, &back, 124), 0);
+}
+
+TEST(Convert, CarriesEveryFieldOfABatch) {
+  auto wire = noise<meridian_wire_ClBatch>(kSeed);
+  wire.is_end = 1;
+  for (auto& block : wire.blocks) block.is_arc = 1;
+  const auto back = there_and_back<Batch>(wire);
+  EXPECT_EQ(back.session, wire.session);
+  EXPECT_EQ(back.first_sequence, wire.first_sequence);
+  EXPECT_EQ(back.count, wire.count);
+  EXPECT_EQ(back.is_end, 1);
+  EXPECT_EQ(back.crc32c, wire.crc32c);
+  EXPECT_EQ(std::memcmp(wire.blocks, back.blocks, sizeof wire.blocks), 0);
+}
+
+TEST(Convert, CarriesEveryFieldOfFeedbackAndDriveCommand) {
+  auto feedback = noise<meridian_wire_Feedback>(kSeed);
+  feedback.is_emergency_stop = 1;
+  const auto back = there_and_back<DriveFeedback>(feedback);
+  EXPECT_EQ(std::memcmp(&feedback, &back, offsetof(meridian_wire_Feedback, is_emergency_stop) + 1),
+            0);
+  const auto command = noise<meridian_wire_DriveCommand>(kSeed);
+  const auto command_back = there_and_back<DriveCommand>(command);
+  EXPECT_EQ(command.drive, command_back.drive);
+  EXPECT_EQ(command.controlword, command_back.controlword);
+  EXPECT_EQ(command.mode, command_back.mode);
+  EXPECT_EQ(command.epoch, command_back.epoch);
+  EXPECT_EQ(command.service_id, command_back.service_id);
+  EXPECT_EQ(command.sample, command_back.sample);
+}
+
+/// How many bytes of a noisy wire struct do not come back: those of flags (made 0 or 1), of text
+/// ends and of padding. A field that is not carried adds its own.
+template <class Message, class Wire>
+int lost_bytes() {
+  const auto wire = noise<Wire>(kSeed);
+  const auto back = there_and_back<Message>(wire);
+  const auto* before = reinterpret_cast<const unsigned char*>(&wire);
+  const auto* after = reinterpret_cast<const unsigned char*>(&back);
+  int lost = 0;
+  for (std::size_t i = 0; i < sizeof wire; ++i) lost += before[i] != after[i] ? 1 : 0;
+  return lost;
+}
+
+TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
+  EXPECT_EQ((lost_bytes<SessionRequest, meridian_wire_ClSession>()), 13);  // 11 padding, 2 texts
+  EXPECT_EQ((lost_bytes<Credit, meridian_wire_ClCredit>()), 4);            // 3 padding, 1 text
+  EXPECT_EQ((lost_bytes<CommandRequest, meridian_wire_Command>()), 6);     // 5 padding, 1 text
+  EXPECT_EQ((lost_bytes<Reply, meridian_wire_Reply>()), 4);            // 2 padding, 1 flag, 1 text
+  EXPECT_EQ((lost_bytes<Jog, meridian_wire_Jog>()), 5);                // 5 padding
+  EXPECT_EQ((lost_bytes<Action, meridian_wire_Action>()), 4);          // 3 padding, 1 text
+  EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
+  EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 15);  // 9 padding, 3 flags, 3 texts
+  EXPECT_EQ((lost_bytes<MachineInfo, meridian_wire_Machine>()),
+            56);  // 4 padding, 4 clamped count, 6 texts; per joint 4 padding, 2 flags, 1 text
+}
+
+TEST(Convert, CutsLongTextsAndEndsEndlessOnes) {
+  Credit credit;
+  credit.text = std::string(1000, 'x');
+  meridian_wire_ClCredit wire;
+  to_wire(credit, wire);
+  EXPECT_EQ(std::strlen(wire.text), 191U);
+  Credit back;
+  std::memset(wire.text, 'y', sizeof wire.text);
+  from_wire(wire, back);
+  EXPECT_EQ(back.text, std::string(sizeof wire.text, 'y'));
+}
+
+TEST(Convert, KeepsLatencySnapshotsAndTheirNumberInBounds) {
+  Latency latency;
+  latency.histograms.resize(kMaxHistograms + 3);
+  latency.histograms[1].name = "wake-up lateness";
+  latency.histograms[1].buckets[63] = 17;
+  meridian_wire_Latency wire;
+  to_wire(latency, wire);
+  wire.count = 1000;
+  Latency back;
+  from_wire(wire, back);
+  ASSERT_EQ(back.histograms.size(), kMaxHistograms);
+  EXPECT_EQ(back.histograms[1].name, "wake-up lateness");
+  EXPECT_EQ(back.histograms[1].buckets[63], 17U);
+}
+
+}  // namespace
+}  // namespace meridian::dds

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/waitset.hpp"
+#include "service/dds/writer.hpp"
+#include "support/private_domain.hpp"
+
+namespace meridian::dds {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+template <class Condition>
+bool eventually(Condition condition) {
+  const auto end = Clock::now() + milliseconds(5000);
+  while (Clock::now() < end) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  return false;
+}
+
+TEST(Exchange, DeliversEverySampleOfAStreamInOrder) {
+  const support::PrivateDomain domain;
+  Participant sender({.domain = domain.id(), .machine = "m"});
+  Participant receiver({.domain = domain.id(), .machine = "m"});
+  Writer<Batch> writer(sender);
+  Reader<Batch> reader(receiver);
+  Waitset waitset(receiver);
+  waitset.attach(reader);
+  ASSERT_TRUE(eventually([&] { return writer.matched_readers() == 1; }));
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    Batch batch;
+    batch.first_sequence = i;
+    ASSERT_TRUE(writer.write(batch));
+  }
+  Batch batch;
+  for (std::uint64_t i = 0; i < 50;) {
+    if (!reader.take(batch)) {
+      waitset.wait(milliseconds(1000));
+      continue;
+    }
+    EXPECT_EQ(batch.first_sequence, i++);
+  }
+}
+
+TEST(Exchange, GivesALateJoinerTheNewestOfEveryInstance) {
+  const support::PrivateDomain domain;
+  Participant participant({.domain = domain.id(), .machine = "m"});
+  Writer<DriveCommand> writer(participant);
+  for (std::uint16_t word = 6; word < 16; ++word) {
+    for (std::uint16_t drive = 0; drive < 5; ++drive) {
+      ASSERT_TRUE(writer.write({.drive = drive, .controlword = word}));
+    }
+  }
+  Participant late({.domain = domain.id(), .machine = "m"});
+  Reader<DriveCommand> reader(late);
+  int seen = 0;
+  DriveCommand command;
+  EXPECT_TRUE(eventually([&] {
+    while (reader.take(command)) {
+      EXPECT_EQ(command.controlword, 15);
+      ++seen;
+    }
+    return seen == 5;
+  }));
+}
+
+TEST(Exchange, KeepsMachinesOfOneDomainApart) {
+  const support::PrivateDomain domain;
+  Participant lathe({.domain = domain.id(), .machine = "lathe"});
+  Participant mill({.domain = domain.id(), .machine = "mill"});
+  Participant mill_too({.domain = domain.id(), .machine = "mill"});
+  Writer<Status> writer(mill);
+  Reader<Status> other(lathe);
+  Reader<Status> same(mill_too);
+  ASSERT_TRUE(eventually([&] { return writer.matched_readers() == 1; }));
+  ASSERT_TRUE(writer.write({.status_sequence = 3}));
+  Status status;
+  EXPECT_TRUE(eventually([&] { return same.take(status); }));
+  EXPECT_FALSE(other.take(status));
+}
+
+TEST(Exchange, TellsThatAWriterHasGone) {
+  const support::PrivateDomain domain;
+  Participant here({.domain = domain.id(), .machine = "m"});
+  Reader<MachineInfo> reader(here);
+  MachineInfo machine;
+  SampleInfo info;
+  {
+    Participant there({.domain = domain.id(), .machine = "m"});
+    Writer<MachineInfo> writer(there);
+    ASSERT_TRUE(writer.write({.service_id = 9, .name = "lai"}));
+    ASSERT_TRUE(eventually([&] { return reader.take(machine, info); }));
+    EXPECT_EQ(machine.name, "lai");
+    EXPECT_TRUE(reader.has_source(info.source));
+  }
+  EXPECT_TRUE(eventually([&] { return !reader.has_source(info.source); }));
+}
+
+TEST(Exchange, CallsTheListenerForCyclicSamples) {
+  const support::PrivateDomain domain;
+  Participant participant({.domain = domain.id(), .machine = "m"});
+  std::atomic<std::uint64_t> newest{0};
+  Reader<DriveFeedback> reader(participant, [&](Reader<DriveFeedback>& from) {
+    DriveFeedback feedback;
+    while (from.take(feedback)) newest = feedback.sample;
+  });
+  Writer<DriveFeedback> writer(participant);
+  ASSERT_TRUE(eventually([&] { return writer.matched_readers() == 1; }));
+  ASSERT_TRUE(writer.write({.sample = 1}));
+  ASSERT_TRUE(writer.write({.sample = 2}));
+  EXPECT_TRUE(eventually([&] { return newest == 2; }));
+}
+
+TEST(Exchange, WakesAWaitingThreadAtOnce) {
+  const support::PrivateDomain domain;
+  Participant participant({.domain = domain.id(), .machine = "m"});
+  Waitset waitset(participant);
+  waitset.wake();
+  const auto start = Clock::now();
+  waitset.wait(milliseconds(4000));
+  EXPECT_LT(Clock::now() - start, milliseconds(2000));
+}
+
+}  // namespace
+}  // namespace meridian::dds
