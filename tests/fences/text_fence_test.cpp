@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fences/text_fence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+namespace meridian::fences {
+namespace {
+
+std::vector<TextRule> project_rules() {
+  return read_text_rules(read_file(MERIDIAN_SOURCE_DIR, "tests/fences/forbidden_text.txt"));
+}
+
+std::vector<SourceFile> project_files(const std::vector<std::string>& endings) {
+  std::vector<SourceFile> files;
+  for (const char* const folder : {"include", "service", "idl", "tests", "deploy", "docs"}) {
+    for (SourceFile& file : read_tree(MERIDIAN_SOURCE_DIR, folder, endings)) {
+      if (!file.path.starts_with("tests/fences/")) {
+        files.push_back(std::move(file));
+      }
+    }
+  }
+  return files;
+}
+
+TEST(TextFence, HoldsForTheProject) {
+  auto files = project_files({".hpp", ".cpp", ".h", ".c", ".idl", ".txt", ".md", ".toml", ".xml",
+                              ".py", ".cmake", "/build", "/demo", "/test"});
+  files.push_back(read_file(MERIDIAN_SOURCE_DIR, "CMakeLists.txt"));
+  EXPECT_GT(files.size(), 30U) << "the fence saw hardly any file";
+  EXPECT_EQ(to_text(find_forbidden_text(files, project_rules())), "");
+}
+
+TEST(TextFence, EverySourceStartsWithItsLicenceLine) {
+  EXPECT_EQ(to_text(find_missing_heads(project_files({".hpp", ".cpp", ".h", ".c"}))), "");
+}
+
+struct BadLine {
+  const char* path;
+  const char* text;
+};
+void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.text; }
+
+class TextFenceCatches : public testing::TestWithParam<BadLine> {};
+
+TEST_P(TextFenceCatches, TheBadLine) {
+  const auto findings =
+      find_forbidden_text({{GetParam().path, {"fine", GetParam().text, "fine"}}}, project_rules());
+  ASSERT_EQ(findings.size(), 1U) << GetParam().text;
+  EXPECT_EQ(findings.front().line, 2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Samples, TextFenceCatches,
+    testing::Values(BadLine{"docs/a.md", "see /home/somebody/meridian"},
+                    BadLine{"service/cl/a.cpp", "// TODO later"},
+                    BadLine{"include/meridian/rt/a.hpp", "auto t = steady_clock::now();"},
+                    BadLine{"service/core/planner/a.cpp", "throw 1;"},
+                    BadLine{"include/meridian/rt/a.hpp", "std::vector<double> v;"},
+                    BadLine{"service/cl/a.cpp", "return parsed.value();"},
+                    BadLine{"service/cl/a.cpp", "double r = d * std::numbers::pi / 180;"},
+                    BadLine{"service/core/CMakeLists.txt", "add_compile_options(-march=native)"},
+                    BadLine{"CMakeLists.txt", "include(FetchContent)"}));
+
+TEST(TextFence, CatchesAMissingLicenceLineAndPragma) {
+  EXPECT_EQ(find_missing_heads({{"a.hpp", {"int a;"}}}).size(), 2U);
+  EXPECT_EQ(
+      find_missing_heads({{"a.hpp", {"// SPDX-License-Identifier: Apache-2.0", "#pragma once"}}})
+          .size(),
+      0U);
+}
+
+}  // namespace
+}  // namespace meridian::fences
