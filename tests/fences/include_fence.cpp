@@ -100,8 +100,7 @@ std::string target_of_include(const std::string& written) {
     }
   }
   if (written.front() == '"') {
-    // idlc writes C headers; nothing else of ours ends in .h.
-    return name.ends_with(".h") ? "idl" : "";
+    return first_folder(name).empty() ? "generated" : "";
   }
   return name.ends_with(".h") ? "posix" : standard_part(name);
 }

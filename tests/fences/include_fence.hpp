@@ -23,7 +23,8 @@ using AllowedIncludes = std::map<std::string, std::set<std::string>>;
 [[nodiscard]] std::string room_of_file(const std::string& path);
 
 /// Where an include line leads, `written` with its quotes or brackets: a room as above, "idl" for
-/// generated wire types, a library ("eigen", "spdlog", ...), or a part of the standard library
+/// generated wire types, "generated" for a header that CMake fills in, a library ("eigen",
+/// "spdlog", ...), or a part of the standard library
 /// ("std", "std.io", "std.threads", "posix"). Empty: nobody knows it.
 [[nodiscard]] std::string target_of_include(const std::string& written);
 

@@ -53,7 +53,8 @@ TEST(IncludeFence, CatchesAnArrowUpwards) {
 TEST(IncludeFence, CatchesTheWorldInTheCore) {
   for (const char* const include :
        {"<dds/dds.h>", "<spdlog/spdlog.h>", "<toml++/toml.h>", "<thread>", "<fstream>",
-        "<unistd.h>", "\"setpoint.h\"", "\"service/dds/writer.hpp\"", "\"../units.hpp\""}) {
+        "<unistd.h>", "<idl/drives.h>", "\"generated.hpp\"", "\"service/dds/writer.hpp\"",
+        "\"../units.hpp\""}) {
     EXPECT_EQ(
         findings_of("service/core/geometry/a.cpp", std::string("  #  include ") + include).size(),
         1U)
