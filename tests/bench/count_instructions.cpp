@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// count_instructions WORKLOAD N: runs a workload N times. The instruction gates count two such
+/// runs under callgrind and take the difference, so that start-up does not count.
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "bench/ik_workload.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: count_instructions WORKLOAD N\n");
+    return 2;
+  }
+  const std::string_view workload = argv[1];
+  const int count = std::atoi(argv[2]);
+  std::uint64_t checksum = 0;
+  if (workload == "inverse_kinematics") {
+    checksum = meridian::bench::run_inverse_kinematics(count);
+  } else {
+    std::fprintf(stderr, "no workload %s\n", argv[1]);
+    return 2;
+  }
+  std::printf("%016llx\n", static_cast<unsigned long long>(checksum));
+  return 0;
+}
