@@ -31,6 +31,11 @@ struct PathPiece {
   PathKind kind = PathKind::kLine;
   MotionKind motion = MotionKind::kCut;
   std::uint8_t branch = 0;      ///< solution of the inverse kinematics that is followed
+  bool is_free_driven = false;  ///< the free rotary joint runs evenly from `free_begin` to
+                                ///< `free_end` and the tilt follows it; kTurn always does
+  bool is_azimuthal = false;    ///< beside the pole: not the turn of the axis but its azimuth about
+                                ///< the pole grows evenly with s, see below
+  std::uint16_t epoch = 0;      ///< as in TimePiece
   double length = 0;            ///< range of s
   double tool_length_mm = 0;    ///< gauge line to tip
   Array3 tip_begin{};           ///< kLine, kTurn
@@ -44,7 +49,13 @@ struct PathPiece {
   Array3 arc_x{};        ///< centre to the arc's begin, radius long
   Array3 arc_y{};        ///< normal × arc_x
   double arc_sweep = 0;
-  double free_begin = 0, free_end = 0;  ///< kTurn
+  double free_begin = 0, free_end = 0;  ///< is_free_driven
+  /// is_azimuthal: tip and axis stand at fraction x(s) of their way instead of s/length. With
+  /// azimuth α = begin + (end - begin)·s/length, counted from the point of the great circle that is
+  /// nearest to the pole, and o = sine of that distance: x = (atan2(o sin α, cos α) - from)/turn.
+  double azimuth_begin = 0, azimuth_end = 0;
+  double pole_offset = 0;   ///< o
+  double azimuth_from = 0;  ///< atan2(o sin, cos) at azimuth_begin
   JointVector
       joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve
   JointVector joints_end{};  ///< joints at s = length, windings included

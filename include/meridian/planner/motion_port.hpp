@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "meridian/path/path_piece.hpp"
+#include "meridian/planner/time_piece.hpp"
+#include "meridian/rt/spsc_ring.hpp"
+
+/// The motion port: how planned motion gets from the planner thread to the cycle.
+///
+///     planner ─ MotionWriter ─▶ [paths: where] ─▶ MotionReader ─ cycle
+///                             ─▶ [times: when ] ─▶
+///                             ◀─ tail entered ──
+///
+/// Windows are published whole. Path pieces are shown before the time pieces that refer to them, so
+/// a time piece that the cycle sees always has its path. Every published plan ends at rest: either
+/// the window has pieces marked `is_tail` that bring it to rest, or its last piece ends at rest.
+namespace meridian {
+
+struct MotionPort {
+  SpscRing<PathPiece, 4096> paths;
+  SpscRing<TimePiece, 16384> times;
+  /// Epoch and window whose tail the cycle entered last, packed by MotionReader; 0: none yet.
+  std::atomic<std::uint64_t> tail_entered{0};
+};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+/// Names a window of an epoch.
+struct WindowName {
+  std::uint16_t epoch = 0;
+  std::uint32_t window = 0;
+};
+
+/// The planner's end of the port. One thread.
+class MotionWriter {
+ public:
+  explicit MotionWriter(MotionPort& port) noexcept : port_(port) {}
+
+  /// Whether that many pieces would fit now.
+  [[nodiscard]] bool has_room(std::size_t paths, std::size_t times) noexcept {
+    return port_.paths.count_free_places() >= paths && port_.times.count_free_places() >= times;
+  }
+
+  /// Adds a piece to the window being written; the cycle does not see it yet. False if full.
+  [[nodiscard]] bool stage(const PathPiece& piece) noexcept { return port_.paths.stage(piece); }
+  [[nodiscard]] bool stage(const TimePiece& piece) noexcept { return port_.times.stage(piece); }
+
+  /// Forgets what was staged.
+  void discard() noexcept {
+    port_.paths.discard_staged();
+    port_.times.discard_staged();
+  }
+
+  /// Shows the staged window to the cycle.
+  void publish() noexcept {
+    port_.paths.publish();
+    port_.times.publish();
+  }
+
+  /// The newest window whose tail the cycle entered: it will take up only a window that starts from
+  /// rest there.
+  [[nodiscard]] std::optional<WindowName> tail_entered() const noexcept {
+    const std::uint64_t packed = port_.tail_entered.load(std::memory_order_acquire);
+    if (packed == 0) return std::nullopt;
+    return WindowName{static_cast<std::uint16_t>(packed >> 32U),
+                      static_cast<std::uint32_t>(packed & 0xffffffffU)};
+  }
+
+ private:
+  MotionPort& port_;
+};
+
+/// The cycle's end of the port: the piece in force and the rules that say which one follows.
+///
+/// * A tail is skipped if a piece of the next window that is not from rest is there when the cycle
+///   comes to the tail. Once entered, a tail is run to its end, and later pieces are dropped until
+///   a window that starts from rest.
+/// * Pieces of another epoch than the one set are dropped.
+///
+/// RT: cycle; bounded by kMostDrops per call. Proof: tests/unit/planner/motion_port_test.cpp.
+class MotionReader {
+ public:
+  /// A call drops at most this many pieces and goes on at the next call: an emptied queue never
+  /// costs a cycle its deadline.
+  static constexpr int kMostDrops = 128;
+
+  explicit MotionReader(MotionPort& port) noexcept : port_(port) {}
+
+  /// The time piece in force, nullptr if there is none. Valid until advance() or set_epoch().
+  [[nodiscard]] const TimePiece* piece() const noexcept { return piece_; }
+
+  /// Where a kMove piece in force runs; otherwise nullptr.
+  [[nodiscard]] const PathPiece* path() const noexcept { return path_; }
+
+  /// Puts the piece in force behind and goes to the one that follows; with none in force, takes the
+  /// first that may run. Returns piece(): nullptr means that nothing is there (yet).
+  const TimePiece* advance() noexcept {
+    if (piece_ != nullptr) {
+      last_ = {piece_->epoch, piece_->window};
+      port_.times.drop(1);
+      piece_ = nullptr;
+      path_ = nullptr;
+    }
+    for (int drops = 0; drops < kMostDrops;) {
+      const TimePiece* next = port_.times.peek(0);
+      if (next == nullptr) return nullptr;
+      if (!may_run(*next)) {
+        port_.times.drop(1);
+        ++drops;
+        continue;
+      }
+      if (next->kind == TimeKind::kMove && !find_path(*next, drops)) return nullptr;
+      take(*next);
+      return piece_;
+    }
+    return nullptr;
+  }
+
+  /// The time piece `i` places behind the one in force (1: the next), whatever the rules say about
+  /// it; nullptr if it is not there.
+  [[nodiscard]] const TimePiece* look_ahead(std::size_t i) noexcept {
+    return port_.times.peek(piece_ != nullptr ? i : i - 1);
+  }
+
+  /// Only at rest: from now on pieces of `epoch` alone are taken; what the port holds of another is
+  /// dropped as advance() comes to it.
+  void set_epoch(std::uint16_t epoch) noexcept {
+    if (epoch == epoch_) return;
+    epoch_ = epoch;
+    is_past_tail_ = false;
+    if (piece_ != nullptr) port_.times.drop(1);
+    piece_ = nullptr;
+    path_ = nullptr;
+  }
+  [[nodiscard]] std::uint16_t epoch() const noexcept { return epoch_; }
+
+ private:
+  /// Whether `next` is what follows; else it is dropped.
+  [[nodiscard]] bool may_run(const TimePiece& next) noexcept {
+    if (next.epoch != epoch_) return false;
+    if (next.is_tail) {
+      if (is_past_tail_) return next.window == last_.window;
+      return !continues_past(next);
+    }
+    return !is_past_tail_ || next.is_from_rest;
+  }
+
+  /// Whether the window behind the tail that starts with `tail` is there and goes on in motion.
+  [[nodiscard]] bool continues_past(const TimePiece& tail) noexcept {
+    for (std::size_t i = 1;; ++i) {
+      const TimePiece* later = port_.times.peek(i);
+      if (later == nullptr || later->epoch != epoch_) return false;
+      if (later->window != tail.window) return !later->is_from_rest;
+    }
+  }
+
+  /// Brings the path that `next` refers to to the front of its ring.
+  [[nodiscard]] bool find_path(const TimePiece& next, int& drops) noexcept {
+    for (; drops < kMostDrops; ++drops) {
+      const PathPiece* path = port_.paths.peek(0);
+      if (path == nullptr) return false;
+      if (path->epoch == next.epoch && path->index == next.path_index) {
+        path_ = path;
+        return true;
+      }
+      port_.paths.drop(1);
+    }
+    return false;
+  }
+
+  void take(const TimePiece& next) noexcept {
+    piece_ = &next;
+    if (next.is_tail && !is_past_tail_) {
+      is_past_tail_ = true;
+      port_.tail_entered.store(
+          (std::uint64_t{1} << 63U) | (std::uint64_t{next.epoch} << 32U) | next.window,
+          std::memory_order_release);
+    } else if (!next.is_tail) {
+      is_past_tail_ = false;
+    }
+    last_ = {next.epoch, next.window};
+  }
+
+  MotionPort& port_;
+  const TimePiece* piece_ = nullptr;
+  const PathPiece* path_ = nullptr;
+  WindowName last_;
+  std::uint16_t epoch_ = 0;
+  bool is_past_tail_ = false;  ///< a tail was entered: only a window from rest may follow
+};
+
+}  // namespace meridian

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/planner/motion_port.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+namespace meridian {
+namespace {
+
+/// Writes windows of an epoch; `sequence` names each piece.
+struct Script {
+  std::unique_ptr<MotionPort> port = std::make_unique<MotionPort>();
+  MotionWriter writer{*port};
+  MotionReader reader{*port};
+  std::uint64_t paths = 0;
+  std::uint16_t epoch = 0;
+
+  void move(std::uint32_t window, std::uint64_t name, bool is_from_rest, bool is_tail = false) {
+    PathPiece path;
+    path.index = paths;
+    path.epoch = epoch;
+    path.sequence = name;
+    TimePiece time;
+    time.window = window;
+    time.epoch = epoch;
+    time.sequence = name;
+    time.path_index = paths++;
+    time.is_from_rest = is_from_rest;
+    time.is_tail = is_tail;
+    ASSERT_TRUE(writer.stage(path) && writer.stage(time));
+  }
+
+  /// Everything that the cycle would run now, by name.
+  std::vector<std::uint64_t> run() {
+    std::vector<std::uint64_t> names;
+    while (reader.advance() != nullptr) {
+      EXPECT_EQ(reader.path()->sequence, reader.piece()->sequence);
+      names.push_back(reader.piece()->sequence);
+    }
+    return names;
+  }
+};
+
+using Names = std::vector<std::uint64_t>;
+
+TEST(MotionPort, ShowsAWindowOnlyWhenItIsPublished) {
+  Script script;
+  script.move(0, 10, true);
+  EXPECT_EQ(script.run(), Names{});
+  script.writer.publish();
+  EXPECT_EQ(script.run(), Names{10});
+}
+
+TEST(MotionPort, ForgetsADiscardedWindow) {
+  Script script;
+  script.move(0, 10, true);
+  script.writer.discard();
+  script.paths = 0;
+  script.move(0, 11, true);
+  script.writer.publish();
+  EXPECT_EQ(script.run(), Names{11});
+}
+
+TEST(MotionPort, SkipsTheTailWhereTheNextWindowContinues) {
+  Script script;
+  script.move(0, 10, true);
+  script.move(0, 11, true, true);
+  script.move(0, 12, true, true);
+  script.move(1, 20, false);
+  script.writer.publish();
+  EXPECT_EQ(script.run(), (Names{10, 20}));
+  EXPECT_FALSE(script.writer.tail_entered().has_value());
+}
+
+TEST(MotionPort, RunsTheTailWhereTheNextWindowStartsFromRest) {
+  Script script;
+  script.move(0, 10, true);
+  script.move(0, 11, true, true);
+  script.move(1, 20, true);
+  script.writer.publish();
+  EXPECT_EQ(script.run(), (Names{10, 11, 20}));
+}
+
+TEST(MotionPort, OnceInATailTakesOnlyAWindowFromRest) {
+  Script script;
+  script.move(0, 10, true);
+  script.move(0, 11, true, true);
+  script.move(0, 12, true, true);
+  script.writer.publish();
+  ASSERT_EQ(script.reader.advance()->sequence, 10U);
+  ASSERT_EQ(script.reader.advance()->sequence, 11U);
+  EXPECT_EQ(script.writer.tail_entered()->window, 0U);
+  script.move(1, 20, false);
+  script.move(1, 21, false, true);
+  script.move(2, 30, false);
+  script.move(3, 40, true);
+  script.move(4, 50, false);
+  script.writer.publish();
+  EXPECT_EQ(script.run(), (Names{12, 40, 50}));
+}
+
+TEST(MotionPort, DropsWhatBelongsToAnotherEpoch) {
+  Script script;
+  for (std::uint64_t n = 0; n < 600; ++n) {
+    script.move(static_cast<std::uint32_t>(n), n, true);
+  }
+  script.writer.publish();
+  ASSERT_EQ(script.reader.advance()->sequence, 0U);
+  script.reader.set_epoch(1);
+  EXPECT_EQ(script.reader.piece(), nullptr);
+  script.epoch = 1;
+  script.paths = 0;
+  script.move(0, 1000, true);
+  script.writer.publish();
+  int calls = 0;
+  while (script.reader.advance() == nullptr && calls < 1000) ++calls;
+  ASSERT_NE(script.reader.piece(), nullptr);
+  EXPECT_EQ(script.reader.piece()->sequence, 1000U);
+  EXPECT_EQ(script.reader.path()->sequence, 1000U);
+  EXPECT_LE(calls, 2 * 600 / MotionReader::kMostDrops + 2);
+}
+
+TEST(MotionPort, SaysWhenAWindowWouldNotFit) {
+  Script script;
+  EXPECT_TRUE(script.writer.has_room(4096, 16384));
+  EXPECT_FALSE(script.writer.has_room(4097, 1));
+  script.move(0, 10, true);
+  EXPECT_FALSE(script.writer.has_room(4096, 1));
+}
+
+}  // namespace
+}  // namespace meridian
