@@ -73,6 +73,7 @@ enum class EventCode : std::uint16_t {
   kProgramEnd,     ///< a: last sequence
   kEpochAdvanced,  ///< a: new epoch; queues of the old one are void
   kPeriodsLost,    ///< a: how many
+  kStopped,        ///< hold, abort or FaultStop came to rest; a: stopping time ns, x: distance mm
   kAlarm,          ///< a: Alarm, b: joint or 0, x: measured value, line of the block in `line`
 };
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/state.hpp"
+
+/// What each verb does in each state: this table is what the cycle executes, what the tests check
+/// and what docs/operating.md prints (tests/unit/rt/state_table_test.cpp holds them equal).
+namespace meridian {
+
+enum class Effect : std::uint8_t {
+  kRefused,  ///< nothing happens; `refusal` says why
+  kAlready,  ///< accepted, nothing to do
+  kGo,       ///< accepted, the machine goes to state `next`
+  kSet       ///< accepted, a value is set
+};
+
+struct VerbEffect {
+  Effect effect = Effect::kRefused;
+  State next = State::kOff;  ///< kGo only
+  Refusal refusal = Refusal::kNone;
+};
+
+namespace state_table {
+
+inline constexpr VerbEffect kSame{Effect::kAlready, State::kOff, Refusal::kNone};
+inline constexpr VerbEffect kValue{Effect::kSet, State::kOff, Refusal::kNone};
+inline constexpr VerbEffect kNo{Effect::kRefused, State::kOff, Refusal::kWrongState};
+inline constexpr VerbEffect kEmpty{Effect::kRefused, State::kOff, Refusal::kNoProgram};
+inline constexpr VerbEffect kBroken{Effect::kRefused, State::kOff, Refusal::kFaultPresent};
+[[nodiscard]] constexpr VerbEffect go(State next) { return {Effect::kGo, next, Refusal::kNone}; }
+
+using Row = std::array<VerbEffect, kVerbCount>;
+
+inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisabling),
+                            kRun = go(State::kRunning), kAbo = go(State::kAborting),
+                            kHol = go(State::kHolding);
+
+// clang-format off
+/// One row per state in the order of State, one column per verb in the order of Verb. Conditions
+/// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
+/// checked after it, in rt/commands.hpp, and can only refuse more.
+inline constexpr std::array<Row, kStateCount> kTable{{
+    //            enable   disable  start                    hold              resume  abort    reset            overrides
+    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
+    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kSame,   kSame,           kValue, kValue},
+    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue},
+    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue},
+    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue},
+    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue},
+    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue},
+    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue},
+    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue},
+    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue},
+    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
+    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue},
+    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue},
+}};
+// clang-format on
+
+}  // namespace state_table
+
+/// Returns what `verb` does in `state`. RT: cycle.
+[[nodiscard]] constexpr VerbEffect effect_of(State state, Verb verb) noexcept {
+  return state_table::kTable[static_cast<std::size_t>(state)][static_cast<std::size_t>(verb)];
+}
+
+[[nodiscard]] constexpr const char* name_of(State state) noexcept {
+  constexpr std::array<const char*, kStateCount> kNames{
+      "Off",  "Enabling", "Ready",   "Loaded",   "Approaching", "Running",   "Holding",
+      "Held", "Starving", "Starved", "Aborting", "Disabling",   "FaultStop", "Fault"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+[[nodiscard]] constexpr const char* name_of(Verb verb) noexcept {
+  constexpr std::array<const char*, kVerbCount> kNames{"enable", "disable",       "start",
+                                                       "hold",   "resume",        "abort",
+                                                       "reset",  "feed_override", "rapid_override"};
+  return kNames[static_cast<std::size_t>(verb)];
+}
+
+[[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
+  constexpr std::array<const char*, 8> kNames{"none",       "wrong state",  "not referenced",
+                                              "no program", "no feedback",  "out of range",
+                                              "stale",      "fault present"};
+  return kNames[static_cast<std::size_t>(refusal)];
+}
+
+/// True where drives follow setpoints that are not just their own feedback.
+[[nodiscard]] constexpr bool is_enabled(State state) noexcept {
+  return state != State::kOff && state != State::kDisabling && state != State::kFault;
+}
+
+/// True where the program's motion is executed or brought to rest.
+[[nodiscard]] constexpr bool is_on_path(State state) noexcept {
+  switch (state) {
+    case State::kApproaching:
+    case State::kRunning:
+    case State::kHolding:
+    case State::kStarving:
+    case State::kAborting:
+    case State::kFaultStop:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace meridian

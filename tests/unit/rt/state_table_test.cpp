@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/rt/state_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "unit/rt/state_table_text.hpp"
+
+namespace meridian {
+namespace {
+
+const std::string kDocument = std::string(MERIDIAN_SOURCE_DIR) + "/docs/operating.md";
+const std::string kBegin = "<!-- table: begin -->\n", kEnd = "<!-- table: end -->";
+
+std::string read(const std::string& file) {
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+/// Run with MERIDIAN_REGENERATE=1 to write the table into the document.
+TEST(StateTable, IsTheTableOfTheDocument) {
+  std::string text = read(kDocument);
+  const std::size_t begin = text.find(kBegin), end = text.find(kEnd);
+  ASSERT_NE(begin, std::string::npos);
+  ASSERT_NE(end, std::string::npos);
+  const std::size_t first = begin + kBegin.size();
+  if (std::getenv("MERIDIAN_REGENERATE") != nullptr) {
+    text.replace(first, end - first, testing::state_table_text());
+    std::ofstream(kDocument) << text;
+    GTEST_SKIP() << "written";
+  }
+  EXPECT_EQ(text.substr(first, end - first), testing::state_table_text());
+}
+
+TEST(StateTable, StartsMotionFromLoadedAndFromNowhereElse) {
+  for (int s = 0; s < kStateCount; ++s) {
+    const auto state = static_cast<State>(s);
+    const bool goes = effect_of(state, Verb::kStart).effect == Effect::kGo;
+    EXPECT_EQ(goes, state == State::kLoaded) << name_of(state);
+  }
+}
+
+TEST(StateTable, NeverRefusesHoldOrAbortInMotion) {
+  for (int s = 0; s < kStateCount; ++s) {
+    const auto state = static_cast<State>(s);
+    if (!is_on_path(state)) continue;
+    EXPECT_NE(effect_of(state, Verb::kHold).effect, Effect::kRefused) << name_of(state);
+    EXPECT_NE(effect_of(state, Verb::kAbort).effect, Effect::kRefused) << name_of(state);
+  }
+}
+
+TEST(StateTable, LeavesFaultOnlyByReset) {
+  for (int v = 0; v < kVerbCount; ++v) {
+    const auto verb = static_cast<Verb>(v);
+    const VerbEffect effect = effect_of(State::kFault, verb);
+    EXPECT_EQ(effect.effect == Effect::kGo, verb == Verb::kReset) << name_of(verb);
+  }
+  EXPECT_EQ(effect_of(State::kFault, Verb::kReset).next, State::kOff);
+}
+
+TEST(StateTable, SaysWhyWhereItRefuses) {
+  for (int s = 0; s < kStateCount; ++s) {
+    for (int v = 0; v < kVerbCount; ++v) {
+      const VerbEffect cell = effect_of(static_cast<State>(s), static_cast<Verb>(v));
+      EXPECT_EQ(cell.effect == Effect::kRefused, cell.refusal != Refusal::kNone);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meridian
