@@ -95,10 +95,9 @@ TEST(WatchReport, CountsAProgramThatWasNotBuiltForIt) {
   EXPECT_EQ(busy->contended_locks, 0U);
   EXPECT_GE(busy->minor_faults, 1U);
   EXPECT_LE(busy->voluntary_switches, 2U);
-  EXPECT_EQ(
-      idle->allocations + idle->frees + idle->locks + idle->minor_faults + idle->voluntary_switches,
-      0U)
+  EXPECT_EQ(idle->allocations + idle->frees + idle->locks + idle->minor_faults, 0U)
       << to_text(change);
+  EXPECT_LE(idle->voluntary_switches, 1U);  // it may fall asleep after the first report
 }
 
 TEST(WatchReport, SaysSoWhenNobodyAnswers) {
