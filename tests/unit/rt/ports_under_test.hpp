@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -88,6 +89,18 @@ Trial try_latest(Port& port, std::chrono::milliseconds time, bool until_fault) {
   return trial;
 }
 
+/// Copies in two halves and lets others run between: what a scheduler may do at any time, done
+/// often enough that a trial on a loaded machine sees it.
+template <class T>
+void copy_slowly(T& to, const T& from) {
+  constexpr std::size_t kHalf = sizeof(T) / 2;
+  const auto* source = reinterpret_cast<const unsigned char*>(&from);
+  auto* target = reinterpret_cast<unsigned char*>(&to);
+  std::copy(source, source + kHalf, target);
+  std::this_thread::yield();
+  std::copy(source + kHalf, source + sizeof(T), target + kHalf);
+}
+
 /// SpscRing with the stores of the producer in the order that a relaxed store would allow: the
 /// counter first, the slot after.
 template <class T, std::size_t N>
@@ -97,7 +110,7 @@ class RingThatPublishesTooEarly {
     const std::size_t n = written_.load();
     if (n - read_.load() == N) return false;
     written_.store(n + 1);
-    slots_[n & (N - 1)] = item;
+    copy_slowly(slots_[n & (N - 1)], item);
     return true;
   }
   bool try_pop(T& item) {
@@ -128,7 +141,7 @@ class RingThatFreesTooEarly {
     const std::size_t n = read_.load();
     if (written_.load() == n) return false;
     read_.store(n + 1);
-    item = slots_[n & (N - 1)];
+    copy_slowly(item, slots_[n & (N - 1)]);
     return true;
   }
 
@@ -147,7 +160,7 @@ class LatestValueWithTwoSlots {
     front_.store(back);
   }
   bool load(T& value) {
-    value = slots_[front_.load()];
+    copy_slowly(value, slots_[front_.load()]);
     const bool is_new = value.words.front() != seen_;
     seen_ = value.words.front();
     return is_new;
