@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/stream/intake_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace meridian::stream {
+
+namespace {
+
+using dds::Verdict;
+
+std::string number(std::uint64_t value) { return std::to_string(value); }
+
+std::string in_hex(std::uint64_t value) {
+  char buffer[17];
+  std::snprintf(buffer, sizeof buffer, "%llx", static_cast<unsigned long long>(value));
+  return buffer;
+}
+
+bool is_tolerance(double value) { return std::isfinite(value) && value >= 0; }
+
+/// Whether the tolerances of `request` are none, or tighter than the machine's.
+bool has_sane_tolerances(const dds::SessionRequest& request) {
+  return is_tolerance(request.tip_tolerance_mm) && is_tolerance(request.axis_tolerance_rad);
+}
+
+}  // namespace
+
+IntakeJudge::IntakeJudge(const MachineModel& model, const ToolLengths& tools,
+                         std::uint64_t service_id)
+    : model_(model), service_id_(service_id), judge_(model, tools) {}
+
+dds::Credit IntakeJudge::on_request(const dds::SessionRequest& request, const Surroundings& around,
+                                    double tool_length_mm) {
+  return request.request == dds::SessionRequestKind::kOpen ? open(request, around, tool_length_mm)
+                                                           : close(request, around);
+}
+
+dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surroundings& around,
+                              double tool_length_mm) {
+  if (request.session != 0 && request.session == session_) {
+    is_lost_ = false;
+    return credit(around);
+  }
+  const auto refused = [&](Verdict verdict, std::string text) {
+    ++counters_.sessions_refused;
+    return stranger(request.session, verdict, std::move(text));
+  };
+  if (session_ != 0) {
+    return refused(Verdict::kRefusedStation,
+                   "machine " + model_.name + " is held by station " + request_.station +
+                       " with program " + request_.program +
+                       (is_lost_ ? ", which is gone; abort to free the machine"
+                                 : "; wait for its end or abort it"));
+  }
+  if (request.session == 0 || find_ended(request.session) != nullptr) {
+    return refused(Verdict::kRefusedProgram,
+                   "session " + in_hex(request.session) + " is over; open a new one");
+  }
+  if (!has_sane_tolerances(request)) {
+    return refused(Verdict::kRefusedProgram,
+                   "tolerances of the program are negative or no numbers");
+  }
+  if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
+      !around.actions.is_ignored) {
+    return refused(Verdict::kRefusedProgram,
+                   "the program has tool, spindle, coolant or stop words and nobody answers "
+                   "actions; start the action peer or set auxiliary = \"ignore\"");
+  }
+  session_ = request.session;
+  request_ = request;
+  next_ = granted_end_ = published_end_ = 0;
+  is_complete_ = is_refused_ = is_lost_ = has_end_block_ = false;
+  judge_.begin(tool_length_mm);
+  newest_ = {};
+  newest_.verdict = Verdict::kGood;
+  newest_.text = message_ = "station " + request.station + " opened " + request.program;
+  return credit(around);
+}
+
+dds::Credit IntakeJudge::close(const dds::SessionRequest& request, const Surroundings& around) {
+  if (request.session != session_ || session_ == 0) {
+    if (const dds::Credit* last = find_ended(request.session)) return *last;
+    return stranger(request.session, Verdict::kClosed,
+                    "session " + in_hex(request.session) + " is not open here");
+  }
+  if (is_complete_) return credit(around);
+  if (next_ == 0) {
+    return end_session(is_refused_ ? newest_.verdict : Verdict::kClosed,
+                       is_refused_ ? newest_.text : "closed before the first block", around);
+  }
+  if (is_refused_) return credit(around);
+  is_lost_ = is_refused_ = true;
+  newest_.verdict = Verdict::kClosed;
+  newest_.text = message_ = "station " + request_.station + " closed before the end: the machine " +
+                            "runs the " + number(next_) + " blocks that it has and stops";
+  return credit(around);
+}
+
+std::optional<dds::Credit> IntakeJudge::on_batch(const dds::Batch& batch,
+                                                 const Surroundings& around, Accepted& accepted) {
+  accepted.count = 0;
+  const bool is_intact = batch.count <= dds::kBatchBlocks && dds::batch_crc(batch) == batch.crc;
+  if (session_ == 0 || batch.session != session_) {
+    ++(is_intact ? counters_.batches_stale : counters_.batches_corrupted);
+    if (!is_intact || batch.session == 0) return std::nullopt;
+    if (const dds::Credit* last = find_ended(batch.session)) return *last;
+    return stranger(
+        batch.session, Verdict::kClosed,
+        "session " + in_hex(batch.session) + " is not open here: its blocks were dropped");
+  }
+  if (is_refused_) {
+    ++counters_.batches_stale;
+    return std::nullopt;
+  }
+  if (!is_intact) {
+    ++counters_.batches_corrupted;
+    if (is_complete_) return std::nullopt;
+    newest_.verdict = Verdict::kGap;
+    newest_.verdict_sequence = next_;
+    newest_.text = "a batch was corrupted: send again from block " + number(next_);
+    return credit(around);
+  }
+  static_cast<void>(credit(around));  // places that came free count for this batch too
+  if (batch.first_sequence > granted_end_ || batch.count > granted_end_ - batch.first_sequence) {
+    return refuse(Verdict::kBeyondCredit,
+                  "station sent blocks up to " + number(batch.first_sequence + batch.count) +
+                      " and had credit up to " + number(granted_end_) + ": session refused",
+                  around);
+  }
+  if (batch.first_sequence > next_) {
+    ++counters_.batches_gap;
+    newest_.verdict = Verdict::kGap;
+    newest_.verdict_sequence = next_;
+    newest_.text = "blocks " + number(next_) + " to " + number(batch.first_sequence - 1) +
+                   " are missing: send again";
+    return credit(around);
+  }
+  const std::uint64_t batch_end = batch.first_sequence + batch.count;
+  if (is_complete_ || batch_end < next_ || (batch_end == next_ && !batch.is_end)) {
+    ++counters_.batches_duplicate;
+    return is_complete_ ? std::optional(credit(around)) : std::nullopt;
+  }
+  dds::Credit refusal;
+  if (!take_blocks(batch, around, accepted, refusal)) return refusal;
+  const bool was_gap = newest_.verdict == Verdict::kGap;
+  newest_.verdict = Verdict::kGood;
+  newest_.text.clear();
+  if (!batch.is_end) return was_gap ? std::optional(credit(around)) : std::nullopt;
+  if (next_ == 0) {
+    return end_session(Verdict::kRefusedProgram, "the program has no block", around);
+  }
+  if (!has_end_block_) append_end(accepted);
+  is_complete_ = true;
+  newest_.verdict = Verdict::kComplete;
+  newest_.verdict_sequence = next_ - 1;
+  newest_.text = message_ = "program " + request_.program + " is in: " + number(next_) + " blocks";
+  return credit(around);
+}
+
+/// Judges the new blocks of a batch that follows on; false with the refusal where one is bad.
+bool IntakeJudge::take_blocks(const dds::Batch& batch, const Surroundings& around,
+                              Accepted& accepted, dds::Credit& refusal) {
+  for (std::uint64_t i = next_ - batch.first_sequence; i < batch.count; ++i) {
+    ClBlock block = batch.blocks[i];
+    BlockReject verdict{next_, block.line, RejectCode::kKind, -1, 0};
+    if (block.sequence == next_ && !has_end_block_) verdict = judge_.judge(block, around.actions);
+    if (verdict.code != RejectCode::kNone) {
+      refusal = refuse(verdict, around);
+      return false;
+    }
+    has_end_block_ = block.kind == BlockKind::kEnd;
+    accepted.blocks[accepted.count++] = block;
+    ++next_;
+    ++counters_.blocks_accepted;
+  }
+  return true;
+}
+
+/// A program whose file does not say its end ends where the end mark says so.
+void IntakeJudge::append_end(Accepted& accepted) {
+  ClBlock end;
+  end.sequence = next_;
+  end.line = accepted.count > 0 ? accepted.blocks[accepted.count - 1].line : 0;
+  end.kind = BlockKind::kEnd;
+  accepted.blocks[accepted.count++] = end;
+  has_end_block_ = true;
+}
+
+std::optional<dds::Credit> IntakeJudge::on_planner_reject(const BlockReject& reject,
+                                                          const Surroundings& around) {
+  if (session_ == 0 || newest_.verdict == Verdict::kRefusedBlock) return std::nullopt;
+  return refuse(reject, around);
+}
+
+std::optional<dds::Credit> IntakeJudge::on_program_end(const Surroundings& around) {
+  if (session_ == 0) return std::nullopt;
+  return end_session(Verdict::kRan, "program " + request_.program + " ran to its end", around);
+}
+
+std::optional<dds::Credit> IntakeJudge::on_queues_emptied(const std::string& reason,
+                                                          const Surroundings& around) {
+  if (session_ == 0) return std::nullopt;
+  if (is_refused_) return end_session(newest_.verdict, newest_.text, around);
+  return end_session(Verdict::kAborted, reason, around);
+}
+
+void IntakeJudge::on_station_lost(std::uint64_t session) {
+  if (session_ == 0 || session != session_) return;
+  is_lost_ = true;
+  message_ = "station " + request_.station + " is gone";
+  if (next_ == 0) static_cast<void>(end_session(Verdict::kClosed, message_, {}));
+}
+
+std::optional<dds::Credit> IntakeJudge::due_credit(const Surroundings& around) {
+  if (session_ == 0) return std::nullopt;
+  const std::int64_t published_ns = published_ns_;
+  const std::uint64_t published_end = published_end_;
+  dds::Credit now = credit(around);
+  if (granted_end_ >= published_end + kCreditStep ||
+      around.now_ns - published_ns >= kCreditRepeat_ns) {
+    return now;
+  }
+  published_ns_ = published_ns;
+  published_end_ = published_end;
+  return std::nullopt;
+}
+
+dds::Credit IntakeJudge::refuse(const BlockReject& reject, const Surroundings& around) {
+  newest_.verdict_sequence = reject.sequence;
+  newest_.verdict_line = reject.line;
+  newest_.verdict_joint = reject.joint;
+  newest_.verdict_value = reject.value;
+  return refuse(Verdict::kRefusedBlock, describe(reject, model_), around);
+}
+
+dds::Credit IntakeJudge::refuse(dds::Verdict verdict, std::string text,
+                                const Surroundings& around) {
+  ++counters_.sessions_refused;
+  if (next_ == 0) return end_session(verdict, std::move(text), around);
+  is_refused_ = true;
+  newest_.verdict = verdict;
+  newest_.text = message_ = std::move(text);
+  return credit(around);
+}
+
+/// The answer to somebody who does not hold the machine.
+dds::Credit IntakeJudge::stranger(std::uint64_t session, dds::Verdict verdict, std::string text) {
+  dds::Credit answer;
+  answer.session = session;
+  answer.service_id = service_id_;
+  answer.verdict = verdict;
+  answer.text = message_ = std::move(text);
+  return answer;
+}
+
+dds::Credit IntakeJudge::end_session(dds::Verdict verdict, std::string text,
+                                     const Surroundings& around) {
+  newest_.verdict = verdict;
+  newest_.text = message_ = std::move(text);
+  is_refused_ = true;
+  dds::Credit last = credit(around);
+  ended_[ended_at_++ % ended_.size()] = last;
+  session_ = 0;
+  return last;
+}
+
+const dds::Credit* IntakeJudge::find_ended(std::uint64_t session) const noexcept {
+  const auto* last =
+      std::find_if(ended_.begin(), ended_.end(),
+                   [session](const dds::Credit& credit) { return credit.session == session; });
+  return session == 0 || last == ended_.end() ? nullptr : last;
+}
+
+dds::Credit IntakeJudge::credit(const Surroundings& around) {
+  const bool may_send = !is_refused_ && !is_complete_;
+  // One place is kept for the end that append_end() may add.
+  if (may_send && around.free_places > 1) {
+    granted_end_ = std::max(granted_end_, next_ + around.free_places - 1);
+  }
+  newest_.session = session_;
+  newest_.service_id = service_id_;
+  newest_.next_sequence = next_;
+  newest_.credits = may_send ? static_cast<std::uint32_t>(granted_end_ - next_) : 0;
+  published_ns_ = around.now_ns;
+  published_end_ = granted_end_;
+  return newest_;
+}
+
+}  // namespace meridian::stream

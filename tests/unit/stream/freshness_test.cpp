@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/stream/freshness.hpp"
+
+#include <gtest/gtest.h>
+
+namespace meridian::stream {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::uint64_t kService = 77;
+
+class Freshness : public testing::Test {
+ protected:
+  Freshness() {
+    for (std::uint64_t i = 1; i <= 1000; ++i) {
+      times_.published(i, static_cast<std::int64_t>(i) * 10 * kMillisecond);
+    }
+  }
+  /// Verdict at 10 s, right after status 1000.
+  Refusal at_10_s(Verb verb, std::uint64_t status_seen, std::uint16_t epoch_seen = 3,
+                  std::uint64_t service_seen = kService) {
+    dds::CommandRequest request;
+    request.verb = verb;
+    request.status_seen = status_seen;
+    request.epoch_seen = epoch_seen;
+    request.service_id_seen = service_seen;
+    return judge_freshness(request, kService, 3, times_, 10'000 * kMillisecond);
+  }
+  StatusTimes times_;
+};
+
+TEST_F(Freshness, AcceptsAStatusOf500Milliseconds) {
+  EXPECT_EQ(at_10_s(Verb::kStart, 1000), Refusal::kNone);
+  EXPECT_EQ(at_10_s(Verb::kStart, 950), Refusal::kNone);
+}
+
+TEST_F(Freshness, RefusesAnOlderStatus) {
+  EXPECT_EQ(at_10_s(Verb::kStart, 949), Refusal::kStale);
+  EXPECT_EQ(at_10_s(Verb::kResume, 1), Refusal::kStale);
+}
+
+TEST_F(Freshness, RefusesAStatusThatWasNeverPublished) {
+  EXPECT_EQ(at_10_s(Verb::kStart, 1001), Refusal::kStale);
+  EXPECT_EQ(at_10_s(Verb::kStart, 0), Refusal::kStale);
+  EXPECT_EQ(at_10_s(Verb::kStart, ~std::uint64_t{0}), Refusal::kStale);
+}
+
+TEST_F(Freshness, RefusesAnOldEpochAndAnotherService) {
+  EXPECT_EQ(at_10_s(Verb::kStart, 1000, 2), Refusal::kStale);
+  EXPECT_EQ(at_10_s(Verb::kStart, 1000, 3, kService + 1), Refusal::kStale);
+}
+
+TEST_F(Freshness, VerbsThatOnlyStopAreNeverStale) {
+  for (const Verb verb : {Verb::kHold, Verb::kAbort, Verb::kDisable, Verb::kReset}) {
+    EXPECT_EQ(at_10_s(verb, 0, 0, 0), Refusal::kNone);
+  }
+}
+
+TEST_F(Freshness, VerbsThatMoveOrSpeedUpAreJudged) {
+  for (const Verb verb :
+       {Verb::kEnable, Verb::kStart, Verb::kResume, Verb::kFeedOverride, Verb::kRapidOverride}) {
+    EXPECT_EQ(at_10_s(verb, 1), Refusal::kStale);
+  }
+}
+
+}  // namespace
+}  // namespace meridian::stream
