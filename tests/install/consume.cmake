@@ -1,0 +1,43 @@
+# cmake -D BUILD= -D CONSUMER= -D WORK= -D VERSION= -D COMPILER= -P consume.cmake
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "failed (${result}): ${ARGN}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+
+# No file of the package may point back to where it was built.
+file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.hpp)
+foreach(text ${texts})
+  file(READ ${text} content)
+  string(FIND "${content}" "${BUILD}" at)
+  if(NOT at EQUAL -1)
+    message(FATAL_ERROR "${text} names the build folder")
+  endif()
+endforeach()
+
+run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+  -D CMAKE_CXX_COMPILER=${COMPILER} -D WANTED_VERSION=${VERSION})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/consumer)
+message(STATUS "${output}")
+
+# A package of another minor version is not what was asked for.
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/other -G Ninja
+  -D CMAKE_PREFIX_PATH=${WORK}/prefix -D WANTED_VERSION=99.0
+  RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
+if(result EQUAL 0)
+  message(FATAL_ERROR "version 99.0 was found though ${VERSION} is installed")
+endif()
+
+# The programs run from where they were installed.
+foreach(program meridian meridiand)
+  if(EXISTS ${WORK}/prefix/bin/${program})
+    run(${WORK}/prefix/bin/${program} --version)
+    message(STATUS "${program}: ${output}")
+  endif()
+endforeach()
