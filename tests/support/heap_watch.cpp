@@ -37,6 +37,7 @@ HeapCalls heap_calls() noexcept {
 
 // glibc's own entry points behind the public names; they need no look-up, so counting works from
 // the first allocation of the process on.
+// NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -44,6 +45,7 @@ void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* block);
 }
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace {
 void count_allocation() noexcept {
