@@ -12,4 +12,17 @@ struct LaiKinematics {
   double h_mm = 0;      ///< l3 + a2 - b1
 };
 
+/// Constants of the Denavit-Hartenberg table, named as in the paper; signs as in the corrected
+/// table, docs/kinematics.md, table 2.1. Unit: mm.
+struct LaiTable {
+  double b1 = 0, a2 = 0, a3 = 0, l3 = 0, l4 = 0, b5 = 0, l5 = 0;
+};
+
+/// Returns what of the table can be told from outside, eq. 2.1. Proof: tests/golden.
+[[nodiscard]] constexpr LaiKinematics lai_from_table(const LaiTable& table) noexcept {
+  return {.pivot_mm = table.l5,
+          .e_mm = table.a3 + table.b5 + table.l4,
+          .h_mm = table.l3 + table.a2 - table.b1};
+}
+
 }  // namespace meridian

@@ -28,6 +28,11 @@ struct JointSpec {
   JointLimits limits;
 };
 
+/// What the planner does where the path runs into the pole of the free rotary joint.
+enum class PolePolicy : std::uint8_t {
+  kTurn  ///< stop on the pole and turn the free joint alone, tip and axis fixed
+};
+
 /// Deviation that smoothing and pole easing may use together, measured from the programmed path.
 struct Tolerances {
   double tip_mm = 0.01;
@@ -47,6 +52,7 @@ struct MachineModel {
       Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics
   Vector3 frame_origin_mm = Vector3::Zero();
   Tolerances tolerances;
+  PolePolicy pole_policy = PolePolicy::kTurn;
   double clearance_mm = 50;  ///< retract of an approach along the tool axis
   double approach_feed_mm_per_s = 10;
   double max_feed_mm_per_s = 0;  ///< programmed feeds above it are limited and reported

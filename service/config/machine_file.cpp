@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/config/machine_file.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "meridian/units.hpp"
+#include "service/config/section.hpp"
+
+namespace meridian::config {
+namespace {
+
+constexpr Range kLength_mm{-1e5, 1e5};
+
+void read_machine(Section machine, MachineModel& model) {
+  model.name = machine.text("name", "name the machine; the DDS partition takes the name");
+  model.version = machine.text_or("version", "");
+  model.cycle_ns =
+      static_cast<std::int64_t>(std::llround(1e3 * machine.number("cycle_us", {125, 4000})));
+  switch (machine.choice_or("default_unit", 0, {"none", "mm", "inch"})) {
+    case 1:
+      model.default_unit_mm = true;
+      break;
+    case 2:
+      model.default_unit_inch = true;
+      break;
+    default:
+      break;
+  }
+  model.max_feed_mm_per_s =
+      units::per_s_from_per_min(machine.number("max_feed_mm_per_min", {1e-3, 1e6}));
+  model.approach_feed_mm_per_s =
+      units::per_s_from_per_min(machine.number("approach_feed_mm_per_min", {1e-3, 1e6}));
+  model.clearance_mm = machine.number("clearance_mm", {0, 1e4});
+  model.starve_auto_resume_s = machine.number_or("starve_auto_resume_s", 2.0, {0, 3600});
+  model.bridge_cycles = machine.integer_or("bridge_cycles", 3, 0, 1000);
+  model.tool_length_mm = machine.number("tool_length_mm", {0, 1e4});
+  machine.finish();
+}
+
+void read_lai(Section table, MachineModel& model) {
+  (void)table.choice("family", {"lai"});  // one family so far
+  model.kinematics = lai_from_table({.b1 = table.number("b1_mm", kLength_mm),
+                                     .a2 = table.number("a2_mm", kLength_mm),
+                                     .a3 = table.number("a3_mm", kLength_mm),
+                                     .l3 = table.number("l3_mm", kLength_mm),
+                                     .l4 = table.number("l4_mm", kLength_mm),
+                                     .b5 = table.number("b5_mm", kLength_mm),
+                                     .l5 = table.number("l5_mm", {0, 1e5})});
+  table.finish();
+}
+
+/// The keys of a joint, in mm or in deg.
+struct JointKeys {
+  std::string travel, velocity, acceleration, jerk, fault_acceleration, fault_jerk, following_error,
+      home;
+
+  explicit JointKeys(const std::string& unit)
+      : travel("travel_" + unit),
+        velocity("velocity_" + unit + "_per_s"),
+        acceleration("acceleration_" + unit + "_per_s2"),
+        jerk("jerk_" + unit + "_per_s3"),
+        fault_acceleration("fault_" + acceleration),
+        fault_jerk("fault_" + jerk),
+        following_error("following_error_" + unit),
+        home("home_" + unit) {}
+};
+
+void read_travel(Section& section, const JointKeys& keys, double unit, JointSpec& joint) {
+  joint.is_endless = joint.is_rotary && section.truth_or("endless", false);
+  if (joint.is_endless) {
+    if (section.has(keys.travel)) {
+      section.refuse(keys.travel, "either " + keys.travel + " or endless = true",
+                     "remove one of the two");
+    }
+    return;
+  }
+  // Within 1e5 deg and 1e5 mm a double resolves 2e-11 of the unit.
+  const auto [low, high] =
+      section.pair(keys.travel, {-1e5, 1e5},
+                   joint.is_rotary ? "give [minimum, maximum], or write endless = true" : "");
+  if (!(low < high)) section.refuse(keys.travel, "minimum below maximum", "swap the two numbers");
+  joint.limits.travel_min = low * unit;
+  joint.limits.travel_max = high * unit;
+}
+
+void read_joint(Section section, JointSpec& joint) {
+  const JointKeys keys(joint.is_rotary ? "deg" : "mm");
+  const double unit = joint.is_rotary ? units::kDegree_rad : 1.0;
+  constexpr Range kRate{1e-3, 1e9};
+  JointLimits& limits = joint.limits;
+
+  read_travel(section, keys, unit, joint);
+  limits.velocity = section.number(keys.velocity, kRate) * unit;
+  limits.acceleration = section.number(keys.acceleration, kRate) * unit;
+  limits.jerk = section.number(keys.jerk, kRate) * unit;
+  limits.fault_acceleration = section.number(keys.fault_acceleration, kRate) * unit;
+  limits.fault_jerk = section.number(keys.fault_jerk, kRate) * unit;
+  limits.following_error = section.number(keys.following_error, {1e-6, 1e4}) * unit;
+  joint.home = section.number(keys.home, {-1e5, 1e5}) * unit;
+
+  if (limits.fault_acceleration < limits.acceleration) {
+    section.refuse(keys.fault_acceleration, "at least " + keys.acceleration,
+                   "a FaultStop may not be softer than a stop");
+  }
+  if (limits.fault_jerk < limits.jerk) {
+    section.refuse(keys.fault_jerk, "at least " + keys.jerk,
+                   "a FaultStop may not be softer than a stop");
+  }
+  if (!joint.is_endless && (joint.home < limits.travel_min || joint.home > limits.travel_max)) {
+    section.refuse(keys.home, "inside " + keys.travel, "move home into travel");
+  }
+  section.finish();
+}
+
+void read_joints(Section joints, MachineModel& model) {
+  constexpr std::array kNames = {"b3", "b2", "b4", "theta1", "theta2"};
+  model.joint_count = static_cast<int>(kNames.size());
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    model.joints[i].name = kNames[i];
+    model.joints[i].is_rotary = i >= 3;
+    read_joint(joints.section(kNames[i]), model.joints[i]);
+  }
+  joints.finish();
+}
+
+void read_tolerances(Section section, MachineModel& model) {
+  model.tolerances.tip_mm = section.number("tip_mm", {1e-6, 10});
+  model.tolerances.axis_rad = units::rad_from_deg(section.number("axis_deg", {1e-6, 10}));
+  section.finish();
+}
+
+void read_frame(Section section, MachineModel& model) {
+  const auto origin = section.triple_or("origin_mm", {0, 0, 0}, kLength_mm);
+  const auto [a, b, c] = section.triple_or("rotation_deg", {0, 0, 0}, {-360, 360});
+  place_workpiece(model, {rotation_from_deg(a, b, c), to_vector(origin)});
+  section.finish();
+}
+
+}  // namespace
+
+MachineModel load_machine(const std::filesystem::path& path) {
+  const toml::table table = parse_file(path);
+  Section file(path.string(), table);
+  MachineModel model;
+  read_machine(file.section("machine"), model);
+  read_lai(file.section("kinematics"), model);
+  read_joints(file.section("joints"), model);
+  read_tolerances(file.section("tolerances"), model);
+  Section pole = file.section("pole");
+  model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"turn"}));
+  pole.finish();
+  read_frame(file.section_or("frame"), model);
+  file.finish();
+  return model;
+}
+
+}  // namespace meridian::config

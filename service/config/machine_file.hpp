@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "service/config/config_error.hpp"
+
+namespace meridian::config {
+
+/// Reads a machine file (docs/machine-files.md) and checks everything in it. A file that is wrong
+/// in any way, unknown keys included, throws ConfigError; what is returned needs no further check.
+/// Proof: tests/unit/config/machine_file_test.cpp.
+[[nodiscard]] MachineModel load_machine(const std::filesystem::path& path);
+
+/// Reads a tool table: [[tool]] with number, length_mm and radius_mm. Throws ConfigError.
+/// Proof: tests/unit/config/tool_file_test.cpp.
+[[nodiscard]] ToolTable load_tools(const std::filesystem::path& path);
+
+/// Where the workpiece lies in the frame of the kinematics. rotation = Rz(c) Ry(b) Rx(a).
+struct Frame {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Vector3 origin_mm = Vector3::Zero();
+};
+
+/// Reads `x,y,z` or `x,y,z,a,b,c` (mm and deg), the argument of --frame. Throws ConfigError whose
+/// file is `--frame`. Proof: tests/unit/config/frame_test.cpp.
+[[nodiscard]] Frame parse_frame(std::string_view text);
+
+/// Puts the workpiece of `model` at `frame`.
+void place_workpiece(MachineModel& model, const Frame& frame);
+
+/// Returns the rotation Rz(c) Ry(b) Rx(a) of angles in degrees; multiples of 90° are exact.
+[[nodiscard]] Eigen::Matrix3d rotation_from_deg(double a_deg, double b_deg, double c_deg);
+
+}  // namespace meridian::config

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/config/config_error.hpp"
+
+namespace meridian::config {
+
+/// How much of the kernel's real time is asked for.
+enum class RealtimeMode : std::uint8_t {
+  kEnforce,    ///< without FIFO priority and locked memory start-up fails
+  kBestEffort  ///< what is missing is done without, and told
+};
+
+/// What happens to auxiliary, tool and stop blocks.
+enum class AuxiliaryPolicy : std::uint8_t {
+  kWait,   ///< publish the action, rest until it is done; without an action peer the program is
+           ///< refused
+  kIgnore  ///< pass them over; the status shows it
+};
+
+/// Threads of the service, DESIGN section "Threads". Priorities are FIFO.
+struct RealtimeConfig {
+  RealtimeMode mode = RealtimeMode::kEnforce;
+  int cpu = -1;  ///< of cycle and publisher; -1: the last that the service may use
+  int cycle_priority = 80;
+  int publisher_priority = 70;
+  int commands_priority = 60;
+  int planner_priority = 40;
+  bool lock_memory = true;
+  bool hold_dma_latency = true;
+};
+
+/// Everything about the service that is not about the machine.
+struct ServiceConfig {
+  std::filesystem::path machine;    ///< machine file
+  std::filesystem::path tools;      ///< tool table; empty: no tools, tool blocks are refused
+  std::filesystem::path recording;  ///< recording of record; empty: none
+  std::filesystem::path log;        ///< log file; empty: standard error
+
+  RealtimeConfig realtime;
+
+  int dds_domain = 0;
+  std::string dds_partition;  ///< empty: the name of the machine
+
+  AuxiliaryPolicy auxiliary = AuxiliaryPolicy::kWait;
+  bool optional_stop = false;  ///< optional stops stop
+  double action_timeout_s = 60;
+  double enable_timeout_s = 5;
+  double feedback_timeout_s = 0.1;  ///< older feedback counts as lost
+  double command_stale_s = 0.5;     ///< moving verbs that saw an older status are refused
+  int block_queue = 8192;           ///< places; look-ahead and credits
+
+  /// Periods that drives bridge when setpoints are missing; see find_bridge_cycles().
+  std::optional<int> bridge_cycles;
+
+  double status_rate_hz = 20;
+  double flight_recorder_s = 5;
+};
+
+/// Reads a service file (docs/machine-files.md). Paths in it are relative to the folder of the
+/// file. Throws ConfigError. Proof: tests/unit/config/service_file_test.cpp.
+[[nodiscard]] ServiceConfig load_service(const std::filesystem::path& path);
+
+/// Returns how many lost periods the drives bridge: what the service file says, else what the
+/// machine file says, but at least 50 ms worth in best effort.
+[[nodiscard]] int find_bridge_cycles(const ServiceConfig& service, const MachineModel& machine);
+
+}  // namespace meridian::config

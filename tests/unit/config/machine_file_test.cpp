@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/config/machine_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "meridian/units.hpp"
+#include "support/machines.hpp"
+#include "support/text_file.hpp"
+
+namespace meridian::config {
+namespace {
+
+const std::filesystem::path kMachines = MERIDIAN_SOURCE_DIR "/deploy/machines";
+
+TEST(MachineFile, GivesTheConstantsOfTheLaiMachine) {
+  const MachineModel model = load_machine(kMachines / "lai.toml");
+  EXPECT_EQ(model.name, "lai");
+  EXPECT_EQ(model.kinematics.pivot_mm + model.tool_length_mm, 250);
+  EXPECT_EQ(model.kinematics.e_mm, 60);
+  EXPECT_EQ(model.kinematics.h_mm, 400);
+  EXPECT_EQ(model.cycle_ns, 1'000'000);
+  EXPECT_FALSE(model.default_unit_mm || model.default_unit_inch);
+  EXPECT_DOUBLE_EQ(model.max_feed_mm_per_s, 500);
+  EXPECT_DOUBLE_EQ(model.tolerances.axis_rad, units::rad_from_deg(0.1));
+  EXPECT_EQ(model.pole_policy, PolePolicy::kTurn);
+  EXPECT_EQ(model.frame_rotation, Eigen::Matrix3d::Identity());
+}
+
+TEST(MachineFile, GivesJointsInMachineOrderAndHouseUnits) {
+  const MachineModel model = load_machine(kMachines / "lai.toml");
+  ASSERT_EQ(model.joint_count, 5);
+  const char* const names[] = {"b3", "b2", "b4", "theta1", "theta2"};
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(model.joints[i].name, names[i]);
+    EXPECT_EQ(model.joints[i].is_rotary, i >= 3);
+    EXPECT_FALSE(model.joints[i].is_endless);
+  }
+  EXPECT_EQ(model.joints[2].limits.travel_min, -500);
+  EXPECT_EQ(model.joints[0].limits.jerk, 60000);
+  EXPECT_DOUBLE_EQ(model.joints[3].limits.travel_max, 4 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(model.joints[4].limits.travel_max, std::numbers::pi / 3);
+  EXPECT_DOUBLE_EQ(model.joints[4].limits.velocity, std::numbers::pi / 3);
+  EXPECT_DOUBLE_EQ(model.joints[4].limits.fault_jerk, units::rad_from_deg(48000));
+  EXPECT_DOUBLE_EQ(model.joints[3].limits.following_error, units::rad_from_deg(2));
+}
+
+TEST(MachineFile, OfTheBenchEqualsTheMachineOfTheTests) {
+  const MachineModel file = load_machine(kMachines / "bench.toml");
+  const MachineModel made = test::bench_machine();
+  EXPECT_EQ(file.kinematics.pivot_mm, made.kinematics.pivot_mm);
+  EXPECT_EQ(file.kinematics.e_mm, made.kinematics.e_mm);
+  EXPECT_EQ(file.kinematics.h_mm, made.kinematics.h_mm);
+  EXPECT_EQ(file.tool_length_mm, made.tool_length_mm);
+  for (int i = 0; i < 5; ++i) {
+    const JointLimits &a = file.joints[i].limits, &b = made.joints[i].limits;
+    EXPECT_EQ(file.joints[i].is_endless, made.joints[i].is_endless);
+    EXPECT_DOUBLE_EQ(a.velocity, b.velocity);
+    EXPECT_DOUBLE_EQ(a.acceleration, b.acceleration);
+    EXPECT_DOUBLE_EQ(a.jerk, b.jerk);
+    EXPECT_DOUBLE_EQ(a.fault_jerk, b.fault_jerk);
+    EXPECT_DOUBLE_EQ(a.following_error, b.following_error);
+    if (!file.joints[i].is_endless) {
+      EXPECT_DOUBLE_EQ(a.travel_max, b.travel_max);
+    }
+  }
+}
+
+TEST(MachineFile, EveryShippedMachineLoads) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kMachines)) {
+    SCOPED_TRACE(entry.path());
+    const MachineModel model = load_machine(entry.path());
+    EXPECT_EQ(model.name, entry.path().stem());
+    ++count;
+  }
+  EXPECT_GE(count, 2);
+}
+
+TEST(MachineFile, TakesFrameUnitAndCycleTime) {
+  std::string text = test::read_text(kMachines / "lai.toml");
+  const auto put = [&text](std::string_view from, std::string_view to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("origin_mm = [0, 0, 0]", "origin_mm = [1, 2.5, -3]");
+  put("rotation_deg = [0, 0, 0]", "rotation_deg = [0, 0, 90]");
+  put("default_unit = \"none\"", "default_unit = \"inch\"");
+  put("cycle_us = 1000", "cycle_us = 125");
+  const test::TextFile file(text);
+  const MachineModel model = load_machine(file.path());
+  EXPECT_EQ(model.frame_origin_mm, Vector3(1, 2.5, -3));
+  EXPECT_EQ(model.frame_rotation * Vector3(1, 0, 0), Vector3(0, 1, 0));
+  EXPECT_TRUE(model.default_unit_inch);
+  EXPECT_EQ(model.cycle_ns, 125'000);
+}
+
+}  // namespace
+}  // namespace meridian::config

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "service/config/machine_file.hpp"
+#include "support/text_file.hpp"
+
+namespace meridian::config {
+namespace {
+
+TEST(ToolFile, GivesToolsByNumber) {
+  const test::TextFile file(
+      "[[tool]]\nnumber = 7\nlength_mm = 90.5\nradius_mm = 3\n"
+      "[[tool]]\nnumber = 2\nlength_mm = 110\nradius_mm = 5\n");
+  const ToolTable tools = load_tools(file.path());
+  ASSERT_NE(tools.find(7), nullptr);
+  EXPECT_EQ(tools.find(7)->length_mm, 90.5);
+  EXPECT_EQ(tools.find(2)->radius_mm, 5);
+  EXPECT_EQ(tools.find(3), nullptr);
+  EXPECT_EQ(tools.find(8), nullptr);
+}
+
+TEST(ToolFile, MayBeEmpty) {
+  const test::TextFile file("# no tools\n");
+  EXPECT_EQ(load_tools(file.path()).find(1), nullptr);
+}
+
+TEST(ToolFile, ThatIsShippedHasTheToolOfTheLaiMachine) {
+  const ToolTable tools = load_tools(MERIDIAN_SOURCE_DIR "/deploy/tools.toml");
+  const MachineModel lai = load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
+  ASSERT_NE(tools.find(1), nullptr);
+  EXPECT_EQ(tools.find(1)->length_mm, lai.tool_length_mm);
+}
+
+struct Mistake {
+  const char* text;
+  int line;
+  const char* key;
+  const char* allowed;
+};
+
+TEST(ToolFile, ThatIsWrongIsRefusedWithLineAndKey) {
+  const Mistake mistakes[] = {
+      {"[[tool]]\nnumber = 1\nlength_mm = -1\nradius_mm = 1\n", 3, "tool[0].length_mm",
+       "0 to 10000"},
+      {"[[tool]]\nnumber = 0\nlength_mm = 1\nradius_mm = 1\n", 2, "tool[0].number", "1 to"},
+      {"[[tool]]\nnumber = 1.5\nlength_mm = 1\nradius_mm = 1\n", 2, "tool[0].number", "whole"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\n", 1, "tool[0].radius_mm", "0 to 1000"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\nlength = 1\n", 5, "tool[0].length",
+       "length_mm"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\n"
+       "[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\n",
+       6, "tool[1].number", "once"},
+      {"[tool]\nnumber = 1\n", 1, "tool", "array of tables"},
+      {"[[tools]]\nnumber = 1\n", 1, "tools", "tool"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const test::TextFile file(mistake.text);
+    try {
+      (void)load_tools(file.path());
+      ADD_FAILURE() << "accepted:\n" << mistake.text;
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(error.fault().line, mistake.line) << error.what();
+      EXPECT_EQ(error.fault().key, mistake.key) << error.what();
+      EXPECT_NE(error.fault().allowed.find(mistake.allowed), std::string::npos) << error.what();
+      EXPECT_FALSE(error.fault().remedy.empty()) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meridian::config
