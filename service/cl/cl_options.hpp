@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/cl/frame.hpp"
+
+namespace meridian::cl {
+
+enum class LengthUnit : std::uint8_t { kMillimetre, kInch };
+
+/// Which way an arc turns about the vector that its CIRCLE word gives.
+enum class ArcSense : std::uint8_t {
+  kByForm,  ///< 4 numbers: by INDIRV; 6 and 7: right-handed; 11: clockwise (left-handed)
+  kRight,
+  kLeft
+};
+
+/// What the caller tells the reader beyond the file. Units: mm, s.
+struct ClReaderOptions {
+  std::optional<LengthUnit> unit;          ///< `--units`: wins over the unit word of the file
+  std::optional<LengthUnit> default_unit;  ///< of the machine file: for files without unit word
+  std::optional<double> default_feed_mm_per_s;  ///< `--feed`: for files that cut before a FEDRAT
+  double max_feed_mm_per_s = 0;                 ///< of the machine; 0: not known. Only warned about
+  std::vector<std::string> allowed_words;       ///< `--allow-unknown`: become vendor words
+  bool allow_no_end = false;                    ///< `--allow-no-end`: no FINI is no truncation
+  ArcSense arc_sense = ArcSense::kByForm;
+  std::optional<Frame> frame;  ///< applied to every pose after the frames of the file
+};
+
+}  // namespace meridian::cl

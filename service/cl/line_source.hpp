@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <string_view>
+#include <vector>
+
+namespace meridian::cl {
+
+/// Physical lines of a stream or of a text in memory, one after the other, in constant memory.
+///
+/// Lines end at LF; a CR before it is taken off, and so are a UTF-8 byte order mark at the start
+/// and a DOS end-of-file mark (Ctrl-Z) at the end. Bytes are ISO-8859-1 or UTF-8 alike: nothing
+/// beyond ASCII carries meaning.
+class LineSource {
+ public:
+  enum class Outcome : std::uint8_t { kLine, kEnd, kTooLong, kReadError };
+  static constexpr std::size_t kLongestLine = 64 * 1024;
+
+  /// The stream is read in chunks and must live as long as the source.
+  explicit LineSource(std::istream& stream);
+  /// The text is used in place and must live as long as the source.
+  explicit LineSource(std::string_view text);
+
+  /// The next line without its end. The view is good until the next call.
+  [[nodiscard]] Outcome next(std::string_view& line);
+
+  /// The first bytes of the source, up to 64 KiB; to be asked before the first next().
+  [[nodiscard]] std::string_view head();
+
+  [[nodiscard]] std::uint32_t line_number() const noexcept { return line_number_; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  /// True once the last line came without an LF behind it.
+  [[nodiscard]] bool ended_without_newline() const noexcept { return open_end_; }
+
+ private:
+  void refill();
+
+  std::istream* stream_ = nullptr;
+  std::vector<char> buffer_;
+  const char* begin_ = nullptr;  ///< what is not given out yet
+  const char* end_ = nullptr;
+  std::uint64_t bytes_ = 0;
+  std::uint32_t line_number_ = 0;
+  bool at_end_ = false;  ///< nothing more to read behind end_
+  bool read_error_ = false;
+  bool open_end_ = false;
+  bool started_ = false;
+};
+
+}  // namespace meridian::cl

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/cl/words.hpp"
+
+#include <gtest/gtest.h>
+
+#include "read_text.hpp"
+
+namespace meridian::cl {
+namespace {
+
+const ClBlock& first_block(const ReadText& read) {
+  EXPECT_EQ(read.error, "");
+  return read.blocks.at(0);
+}
+
+TEST(Words, OfToolsBecomeToolBlocks) {
+  for (const char* line :
+       {"LOADTL/45", "LOADTL / 45", "LOADTL/45,ADJUST,1", "LOAD/TOOL,45", "LOAD / TOOL, 45, 2"}) {
+    const auto read = read_body(std::string(line) + "\nGOTO/0,0,0\n");
+    const ClBlock& block = first_block(read);
+    EXPECT_EQ(block.kind, BlockKind::kTool) << line;
+    EXPECT_EQ(block.action, ActionKind::kToolChange);
+    EXPECT_EQ(block.value, 45);
+    EXPECT_EQ(read.summary.tools, (std::vector<std::uint32_t>{45}));
+  }
+  for (const char* line : {"LOADTL/", "LOADTL/A", "LOAD/TAPE,1", "LOADTL/1.5", "LOADTL/-1"}) {
+    EXPECT_EQ(read_body(std::string(line) + "\nGOTO/0,0,0\n").error_line, 3U) << line;
+  }
+}
+
+TEST(Words, ThatOnlyDescribeAToolGiveNoBlock) {
+  const auto read = read_body(
+      "SELECT/TOOL,45\nTLDATA/MILL,30.0000,0.0000,75.0000,0.0000,0.0000\n"
+      "CUTTER/10.,5.,5.,$\n0.,0.,50.\nTOOLNO/1,MILL,1,6,10.\nTPRINT/T1 Fraise \xe0 bout, D 10\n"
+      "GOTO/0,0,0\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.blocks.size(), 2U);
+  EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST(Words, OfTheSpindleComeInAnyOrder) {
+  for (const char* line :
+       {"SPINDL/RPM,1000,CCLW ", "SPINDL/1000,RPM,CCLW", "SPINDL/CCLW,RPM,1000",
+        "SPINDL / RPM, 1000.00,  CCLW", "SPINDL/ 1000.0,CCLW,RPM", "SPINDL/1000,CCLW"}) {
+    const auto read = read_body(std::string(line) + "\nGOTO/0,0,0\n");
+    EXPECT_EQ(first_block(read).action, ActionKind::kSpindleCounterClockwise) << line;
+    EXPECT_EQ(first_block(read).value, 1000);
+  }
+  EXPECT_EQ(first_block(read_body("SPINDL/RPM,1310,CLW\nGOTO/0,0,0\n")).action,
+            ActionKind::kSpindleClockwise);
+  EXPECT_EQ(first_block(read_body("SPINDL/OFF\nGOTO/0,0,0\n")).action, ActionKind::kSpindleOff);
+  const auto again = read_body("SPINDL/800,CCLW\nSPINDL/OFF\nSPINDL/ON\nGOTO/0,0,0\n");
+  EXPECT_EQ(again.blocks.at(2).action, ActionKind::kSpindleCounterClockwise);
+  EXPECT_EQ(again.blocks.at(2).value, 800);
+  EXPECT_EQ(first_block(read_body("SPINDL/ORIENT,90\nGOTO/0,0,0\n")).action,
+            ActionKind::kVendorWord);
+}
+
+TEST(Words, OfTheCoolantBecomeActions) {
+  const auto read = read_body(
+      "COOLNT/ON\nCOOLNT/FLOOD\nCOOLNT/MIST\nCOOLNT/THRU\nCOOLNT/OFF\nCOOLNT/TAPKUL\nGOTO/0,0,0\n");
+  ASSERT_EQ(read.error, "");
+  const ActionKind wanted[] = {ActionKind::kCoolantFlood, ActionKind::kCoolantFlood,
+                               ActionKind::kCoolantMist,  ActionKind::kCoolantThrough,
+                               ActionKind::kCoolantOff,   ActionKind::kVendorWord};
+  for (std::size_t i = 0; i < std::size(wanted); ++i) {
+    EXPECT_EQ(read.blocks.at(i).action, wanted[i]) << i;
+    EXPECT_EQ(read.blocks[i].kind, BlockKind::kAuxiliary);
+  }
+}
+
+TEST(Words, OfDwellAndStop) {
+  const auto read =
+      read_body("DELAY/2.5\nSPINDL/600\nDELAY/ 5.0,REV\nDWELL/1\nSTOP\nOPSTOP\nGOTO/0,0,0\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.blocks.at(0).kind, BlockKind::kDwell);
+  EXPECT_EQ(read.blocks[0].value, 2.5);
+  EXPECT_EQ(read.blocks.at(2).value, 0.5);
+  EXPECT_EQ(read.blocks.at(3).value, 1);
+  EXPECT_EQ(read.blocks.at(4).kind, BlockKind::kStop);
+  EXPECT_EQ(read.blocks.at(5).kind, BlockKind::kOptionalStop);
+  EXPECT_NE(read_body("DELAY/5,REV\nGOTO/0,0,0\n").error, "");
+  EXPECT_NE(read_body("DELAY/-1\nGOTO/0,0,0\n").error, "");
+}
+
+TEST(Words, ForViewersAreSkippedWithOneWarningEach) {
+  const auto read = read_body(
+      "PAINT/PATH\nPAINT/SPEED,10\nPAINT/COLOR,186\nDISPLY/ON\nGOTO/0,0,0\nPAINT/TOOL,NOMORE\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.warnings.size(), 2U);
+  EXPECT_EQ(read.warnings.at(0).line, 3U);
+  EXPECT_EQ(read.summary.display_words, 5U);
+}
+
+TEST(Words, OfVendorsThatDoNotShapeThePathAreSkipped) {
+  const auto read = read_body(
+      "CSI_SET_FLUTE_LENGTH/20\nCSI_SET_FLUTE_LENGTH/30\nCSI_STOCK/\"a b\"\nINSERT/(Bohren) [T1] "
+      "\"x\"\n"
+      "CUTCOM/LEFT\nCUTCOM/OFF\nCYCLE/INIT\nCYCLE/OFF\nMULTAX\nMULTAX/ON\nSET/MODE,ABSOL\n"
+      "PPWORD / A, B, C\nREMARK free $ text\nORIGIN/0,0,0\nGOTO/0,0,0\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.blocks.size(), 2U);
+  EXPECT_EQ(read.warnings.size(), 3U);  // two CSI_ words, CUTCOM
+  EXPECT_TRUE(read.warned_of("CUTCOM is not applied"));
+}
+
+TEST(Words, ThatTheCallerAllowsGoToTheMachine) {
+  ClReaderOptions options = metric();
+  options.allowed_words = {"wobble"};
+  const auto read = read_text("FEDRAT/9\nWOBBLE / 7, FAST\nGOTO/0,0,0\nFINI\n", options);
+  const ClBlock& block = first_block(read);
+  EXPECT_EQ(block.kind, BlockKind::kAuxiliary);
+  EXPECT_EQ(block.action, ActionKind::kVendorWord);
+  EXPECT_STREQ(block.text, "WOBBLE/7,FAST");
+  EXPECT_EQ(block.value, 7);
+  const auto longer =
+      read_text("FEDRAT/9\nWOBBLE/A-VERY-LONG-ARGUMENT-INDEED\nGOTO/0,0,0\nFINI\n", options);
+  EXPECT_STREQ(first_block(longer).text, "WOBBLE/A-VERY-LONG-ARGU");
+  EXPECT_TRUE(longer.warned_of("is cut to 23 characters"));
+}
+
+TEST(Words, OfTheMachineBecomeVendorWords) {
+  const auto read = read_body("AUXFUN/8\nGOTO/0,0,0\n");
+  EXPECT_STREQ(first_block(read).text, "AUXFUN/8");
+  EXPECT_EQ(first_block(read).value, 8);
+}
+
+TEST(Words, TellTheDialect) {
+  const auto dialect = [](const char* head) {
+    return read_text(std::string(head) + "FEDRAT/9\nGOTO/0,0,0\nEND-OF-PATH\nFINI\n", metric())
+        .summary.dialect;
+  };
+  EXPECT_EQ(dialect("TOOL PATH/A,TOOL,B\n"), "NX CLSF");
+  EXPECT_EQ(dialect("PPRINT/APTCL-SPEC,MAKINO-FF,1\n"), "Makino FF CLDATA");
+  EXPECT_EQ(dialect("$$-> CUTTER / 6.0\n"), "Creo NCL");
+  EXPECT_EQ(dialect("UNIT/MM\n"), "SolidWorks CAM APT");
+  EXPECT_EQ(dialect("LOADTL/1\n"), "APT");
+}
+
+TEST(Words, NameTheProgram) {
+  EXPECT_EQ(read_body("PARTNO PIECE 1\nGOTO/0,0,0\n").summary.program, "PIECE 1");
+  EXPECT_EQ(read_text("TOOL PATH/FINISH,TOOL,B\nFEDRAT/9\nGOTO/0,0,0\nEND-OF-PATH\n", metric())
+                .summary.program,
+            "FINISH");
+}
+
+}  // namespace
+}  // namespace meridian::cl
