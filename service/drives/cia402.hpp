@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace meridian::drives {
+
+/// States of a drive. Source: CiA 402-2 (IEC 61800-7-201), finite state automaton.
+enum class DriveState : std::uint8_t {
+  kSwitchOnDisabled,
+  kReadyToSwitchOn,
+  kSwitchedOn,
+  kOperationEnabled,
+  kQuickStopActive,
+  kFaultReactionActive,
+  kFault
+};
+
+/// Object 603Fh.
+enum ErrorCode : std::uint16_t {
+  kErrorNone = 0,
+  kErrorDevice = 0x5000,           ///< injected: device hardware
+  kErrorFollowing = 0x8611,        ///< following error beyond the joint's limit
+  kErrorSetpointsStopped = 0x8700  ///< synchronous controller: setpoints stayed away
+};
+
+/// Returns the state that `controlword` (object 6040h) leads to from `state`. `before` is the
+/// controlword before it: a fault is reset by the rising edge of bit 7 alone. Faults themselves and
+/// the end of a fault reaction are the drive's, not the controlword's.
+/// Proof: tests/unit/drives/cia402_test.cpp.
+[[nodiscard]] constexpr DriveState next_state(DriveState state, std::uint16_t controlword,
+                                              std::uint16_t before) noexcept {
+  if (state == DriveState::kFaultReactionActive) return state;
+  if (state == DriveState::kFault) {
+    const bool is_reset = (controlword & ~before & 0x80) != 0;
+    return is_reset ? DriveState::kSwitchOnDisabled : state;
+  }
+  if ((controlword & 0x02) == 0) return DriveState::kSwitchOnDisabled;  // disable voltage
+  if ((controlword & 0x04) == 0) {                                      // quick stop
+    const bool is_enabled =
+        state == DriveState::kOperationEnabled || state == DriveState::kQuickStopActive;
+    return is_enabled ? DriveState::kQuickStopActive : DriveState::kSwitchOnDisabled;
+  }
+  const bool is_switch_on = (controlword & 0x01) != 0, is_enable = (controlword & 0x09) == 0x09;
+  switch (state) {
+    case DriveState::kSwitchOnDisabled:
+      return is_switch_on ? state : DriveState::kReadyToSwitchOn;
+    case DriveState::kReadyToSwitchOn:
+      return is_switch_on ? DriveState::kSwitchedOn : state;
+    case DriveState::kSwitchedOn:
+    case DriveState::kOperationEnabled:
+      if (is_enable) return DriveState::kOperationEnabled;
+      return is_switch_on ? DriveState::kSwitchedOn : DriveState::kReadyToSwitchOn;
+    default:
+      return state;
+  }
+}
+
+/// Returns bits 0 to 3, 5, 6 of object 6041h for `state`, with voltage enabled (4) and remote (9).
+[[nodiscard]] constexpr std::uint16_t statusword(DriveState state) noexcept {
+  constexpr std::uint16_t kAlways = 0x210;
+  switch (state) {
+    case DriveState::kSwitchOnDisabled:
+      return kAlways | 0x40;
+    case DriveState::kReadyToSwitchOn:
+      return kAlways | 0x21;
+    case DriveState::kSwitchedOn:
+      return kAlways | 0x23;
+    case DriveState::kOperationEnabled:
+      return kAlways | 0x27;
+    case DriveState::kQuickStopActive:
+      return kAlways | 0x07;
+    case DriveState::kFaultReactionActive:
+      return kAlways | 0x0F;
+    case DriveState::kFault:
+      return kAlways | 0x08;
+  }
+  return 0;
+}
+
+inline constexpr std::uint16_t kStatusFollows = 0x1000;  ///< CSP: follows the command value
+inline constexpr std::uint16_t kStatusFollowingError = 0x2000;
+
+}  // namespace meridian::drives

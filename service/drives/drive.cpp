@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meridian::drives {
+
+Drive::Drive(const JointLimits& limits, double position, const ServoLag& lag)
+    : limits_(limits), lag_(lag), servo_{position, 0}, target_(position) {}
+
+void Drive::take_controlword(std::uint16_t controlword) noexcept {
+  const DriveState before = state_;
+  state_ = next_state(state_, controlword, controlword_);
+  controlword_ = controlword;
+  if (before == DriveState::kFault && state_ != DriveState::kFault) error_ = kErrorNone;
+  const bool is_entering =
+      state_ == DriveState::kOperationEnabled && before != DriveState::kOperationEnabled;
+  if (is_entering) {
+    target_ = servo_.position;
+    target_velocity_ = 0;
+    is_following_ = false;
+  }
+}
+
+void Drive::fail(std::uint16_t error) noexcept {
+  if (state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive) return;
+  error_ = error;
+  state_ = DriveState::kFaultReactionActive;
+  target_velocity_ = servo_.velocity;
+}
+
+void Drive::work(const DriveInput& input, double dt_s) noexcept {
+  switch (state_) {
+    case DriveState::kOperationEnabled:
+      take_target(input, dt_s);
+      break;
+    case DriveState::kQuickStopActive:
+      ramp_down(dt_s);
+      break;
+    case DriveState::kFaultReactionActive:
+      ramp_down(dt_s);
+      if (target_velocity_ == 0) state_ = DriveState::kFault;
+      break;
+    default:  // the brake holds
+      target_ = servo_.position;
+      target_velocity_ = 0;
+      servo_.velocity = 0;
+      return;
+  }
+  if (is_blocked_) {
+    servo_.velocity = 0;
+  } else {
+    servo_ = follow(servo_, target_, dt_s, lag_);
+  }
+  const bool is_lagging =
+      limits_.following_error > 0 && std::abs(following_error()) > limits_.following_error;
+  if (is_lagging && state_ == DriveState::kOperationEnabled) fail(kErrorFollowing);
+}
+
+void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
+  if (input.is_new) {
+    is_following_ = input.is_enabled;
+    if (!is_following_) return;
+    target_ = input.position;
+    target_velocity_ = input.velocity;
+    return;
+  }
+  if (!is_following_) return;
+  if (input.periods_without <= input.bridge_cycles) {
+    target_ += target_velocity_ * dt_s;
+  } else {
+    error_ = kErrorSetpointsStopped;
+    state_ = DriveState::kFaultReactionActive;
+    ramp_down(dt_s);
+  }
+}
+
+/// Slows the target down with the joint's FaultStop acceleration.
+void Drive::ramp_down(double dt_s) noexcept {
+  const double step =
+      (limits_.fault_acceleration > 0 ? limits_.fault_acceleration : INFINITY) * dt_s;
+  const double before = target_velocity_;
+  target_velocity_ = std::copysign(std::max(0.0, std::abs(before) - step), before);
+  if (target_velocity_ == 0) target_velocity_ = 0;  // no minus zero
+  target_ += 0.5 * (before + target_velocity_) * dt_s;
+}
+
+std::uint16_t Drive::statusword() const noexcept {
+  std::uint16_t word = drives::statusword(state_);
+  if (state_ == DriveState::kOperationEnabled && is_following_) word |= kStatusFollows;
+  if (error_ == kErrorFollowing) word |= kStatusFollowingError;
+  return word;
+}
+
+}  // namespace meridian::drives

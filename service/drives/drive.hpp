@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/drives/cia402.hpp"
+#include "service/drives/servo.hpp"
+
+namespace meridian::drives {
+
+/// What the group tells a drive for one period.
+struct DriveInput {
+  bool is_new = false;      ///< a setpoint came since the last period
+  bool is_enabled = false;  ///< it asks to be followed
+  double position = 0, velocity = 0;
+  int periods_without = 0;  ///< periods since the newest setpoint, lost ones too
+  int bridge_cycles = 3;    ///< so many are bridged by the velocity
+};
+
+/// One simulated servo drive in cyclic synchronous position mode: CiA 402 states, servo lag,
+/// following error, and the watchdog that bridges missing setpoints by the sent velocity and then
+/// ramps down. Time is the argument of work(). Proof: tests/unit/drives/drive_test.cpp.
+class Drive {
+ public:
+  Drive(const JointLimits& limits, double position, const ServoLag& lag);
+
+  void take_controlword(std::uint16_t controlword) noexcept;
+  /// One period of `dt_s`.
+  void work(const DriveInput& input, double dt_s) noexcept;
+  /// The drive finds something wrong with itself: it ramps down and goes to fault.
+  void fail(std::uint16_t error) noexcept;
+  /// The shaft is stuck: the position stays as it is from now on.
+  void block_shaft() noexcept { is_blocked_ = true; }
+
+  [[nodiscard]] DriveState state() const noexcept { return state_; }
+  [[nodiscard]] std::uint16_t statusword() const noexcept;
+  [[nodiscard]] std::uint16_t error() const noexcept { return error_; }
+  [[nodiscard]] double position() const noexcept { return servo_.position; }
+  [[nodiscard]] double velocity() const noexcept { return servo_.velocity; }
+  [[nodiscard]] double following_error() const noexcept { return target_ - servo_.position; }
+
+ private:
+  void take_target(const DriveInput& input, double dt_s) noexcept;
+  void ramp_down(double dt_s) noexcept;
+
+  JointLimits limits_;
+  ServoLag lag_;
+  DriveState state_ = DriveState::kSwitchOnDisabled;
+  std::uint16_t controlword_ = 0;
+  std::uint16_t error_ = kErrorNone;
+  ServoState servo_;
+  double target_ = 0, target_velocity_ = 0;
+  bool is_following_ = false;  ///< took an enabled setpoint since operation was enabled
+  bool is_blocked_ = false;
+};
+
+}  // namespace meridian::drives

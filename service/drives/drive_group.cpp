@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/drive_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meridian::drives {
+
+DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag)
+    : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9), bridge_cycles_(model.bridge_cycles) {
+  for (int i = 0; i < model.joint_count; ++i) {
+    drives_.emplace_back(model.joints[i].limits, model.joints[i].home, lag);
+  }
+}
+
+bool DriveGroup::is_off() const noexcept {
+  return std::all_of(drives_.begin(), drives_.end(), [](const Drive& drive) {
+    return drive.state() == DriveState::kSwitchOnDisabled ||
+           drive.state() == DriveState::kReadyToSwitchOn || drive.state() == DriveState::kFault;
+  });
+}
+
+void DriveGroup::take(const dds::DriveCommand& command) noexcept {
+  if (command.drive >= drives_.size()) return;
+  if (command.service_id != service_id_) {
+    if (service_id_ != 0 && !is_off()) return;
+    service_id_ = command.service_id;
+    has_setpoint_ = false;
+  }
+  drives_[command.drive].take_controlword(command.controlword);
+}
+
+void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
+  const bool is_finite = std::all_of(drives_.begin(), drives_.end(), [&](const Drive& drive) {
+    const auto i = static_cast<std::size_t>(&drive - drives_.data());
+    return std::isfinite(setpoint.setpoint.position[i]) &&
+           std::isfinite(setpoint.setpoint.velocity[i]);
+  });
+  const bool is_newer = !has_setpoint_ || setpoint.setpoint.cycle > newest_.setpoint.cycle;
+  if (!is_finite || (!is_newer && !is_off())) return;
+  newest_ = setpoint;
+  has_setpoint_ = is_new_ = true;
+  ++setpoints_seen_;
+}
+
+void DriveGroup::work(int periods) noexcept {
+  const double dt_s = cycle_s_ * periods;
+  periods_without_ = is_new_ ? 0 : periods_without_ + periods;
+  if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
+  const bool is_enabled = (newest_.setpoint.flags & kSetpointEnabled) != 0;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i].work({is_new_, is_enabled, newest_.setpoint.position[i],
+                     newest_.setpoint.velocity[i], periods_without_, bridge_cycles_},
+                    dt_s);
+  }
+  is_new_ = false;
+  work_on_injections(dt_s);
+}
+
+void DriveGroup::work_on_injections(double dt_s) noexcept {
+  const bool is_enabled = std::all_of(drives_.begin(), drives_.end(), [](const Drive& drive) {
+    return drive.state() == DriveState::kOperationEnabled;
+  });
+  if (!is_enabled) return;
+  enabled_s_ += dt_s;
+  std::erase_if(injections_, [this](const Injection& injection) {
+    if (enabled_s_ < injection.after_s) return false;
+    Drive& drive = drives_[static_cast<std::size_t>(
+        std::clamp(injection.drive, 0, static_cast<int>(drives_.size()) - 1))];
+    switch (injection.kind) {
+      case Injection::Kind::kFault:
+        drive.fail(kErrorDevice);
+        break;
+      case Injection::Kind::kBlocked:
+        drive.block_shaft();
+        break;
+      case Injection::Kind::kSilence:
+        is_silent_ = true;
+        break;
+      case Injection::Kind::kEmergency:
+        is_emergency_stop_ = true;
+        break;
+    }
+    return true;
+  });
+}
+
+dds::DriveFeedback DriveGroup::feedback() noexcept {
+  dds::DriveFeedback feedback;
+  feedback.joint_mask = (1U << drives_.size()) - 1;
+  feedback.referenced_mask = feedback.joint_mask;
+  feedback.sample = ++sample_;
+  feedback.cycle_seen = has_setpoint_ ? newest_.setpoint.cycle : 0;
+  feedback.is_emergency_stop = is_emergency_stop_;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    feedback.position[i] = drives_[i].position();
+    feedback.statusword[i] = drives_[i].statusword();
+    feedback.error[i] = drives_[i].error();
+  }
+  return feedback;
+}
+
+}  // namespace meridian::drives

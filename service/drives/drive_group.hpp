@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/dds/messages.hpp"
+#include "service/drives/drive.hpp"
+
+namespace meridian::drives {
+
+/// Something that goes wrong on purpose, `after_s` after operation was enabled.
+struct Injection {
+  enum class Kind : std::uint8_t {
+    kFault,     ///< drive `drive` reports a device fault
+    kBlocked,   ///< the shaft of `drive` is stuck: following error
+    kSilence,   ///< no more feedback
+    kEmergency  ///< the stop input opens
+  };
+  Kind kind = Kind::kFault;
+  double after_s = 0;
+  int drive = 0;
+};
+
+/// All drives of a machine behind one wire: takes the service's setpoints and controlwords, works
+/// once per period, tells feedback. It obeys one service until every drive is off. Setpoints are
+/// fresh by their cycle number, not by their clock. Proof: tests/unit/drives/drive_group_test.cpp.
+class DriveGroup {
+ public:
+  /// Drives stand at the joints' home positions.
+  DriveGroup(const MachineModel& model, const ServoLag& lag);
+
+  void take(const dds::DriveCommand& command) noexcept;
+  void take(const dds::SetpointSample& setpoint) noexcept;
+  void set_bridge_cycles(int cycles) noexcept { bridge_cycles_ = cycles; }
+  void inject(const Injection& injection) { injections_.push_back(injection); }
+
+  /// Works `periods` cycle times (more than 1 after a stall of this process).
+  void work(int periods) noexcept;
+
+  /// Returns the feedback of this period.
+  [[nodiscard]] dds::DriveFeedback feedback() noexcept;
+  [[nodiscard]] bool is_silent() const noexcept { return is_silent_; }
+
+  [[nodiscard]] const Drive& drive(int index) const noexcept { return drives_[index]; }
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(drives_.size()); }
+  [[nodiscard]] std::uint64_t service_id() const noexcept { return service_id_; }
+  [[nodiscard]] std::uint64_t setpoints_seen() const noexcept { return setpoints_seen_; }
+  [[nodiscard]] std::uint64_t periods_bridged() const noexcept { return periods_bridged_; }
+
+ private:
+  [[nodiscard]] bool is_off() const noexcept;
+  void work_on_injections(double dt_s) noexcept;
+
+  std::vector<Drive> drives_;
+  std::vector<Injection> injections_;
+  double cycle_s_;
+  int bridge_cycles_;
+  std::uint64_t service_id_ = 0;  ///< whom the drives obey; 0: nobody yet
+  dds::SetpointSample newest_;
+  bool has_setpoint_ = false, is_new_ = false;
+  int periods_without_ = 0;
+  double enabled_s_ = 0;
+  std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
+  bool is_silent_ = false, is_emergency_stop_ = false;
+};
+
+}  // namespace meridian::drives

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/simulated_drives.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
+
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/writer.hpp"
+#include "service/drives/action_peer.hpp"
+
+namespace meridian::drives {
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * kSecond_ns + now.tv_nsec;
+}
+
+void sleep_until(std::int64_t due_ns) noexcept {
+  const timespec due{due_ns / kSecond_ns, due_ns % kSecond_ns};
+  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) != 0) {
+  }
+}
+
+const char* name_of(DriveState state) {
+  constexpr std::array kNames = {
+      "switch on disabled", "ready to switch on", "switched on", "operation enabled",
+      "quick stop",         "fault reaction",     "fault"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+/// Says when a drive changed its state.
+class StateTeller {
+ public:
+  StateTeller(const MachineModel& model, const std::function<void(const std::string&)>& say)
+      : model_(model), say_(say) {}
+
+  void look(const DriveGroup& group) {
+    for (int i = 0; i < group.size(); ++i) {
+      const Drive& drive = group.drive(i);
+      const auto place = static_cast<std::size_t>(i);
+      if (seen_[place] == drive.state()) continue;
+      seen_[place] = drive.state();
+      char error[32] = "";
+      if (drive.error() != kErrorNone) {
+        std::snprintf(error, sizeof error, " (error %04Xh)", drive.error());
+      }
+      say_("drive " + model_.joints[place].name + ": " + name_of(drive.state()) + error);
+    }
+  }
+
+ private:
+  const MachineModel& model_;
+  const std::function<void(const std::string&)>& say_;
+  std::array<DriveState, kMaxJoints> seen_{};
+};
+
+/// The PLC's end of the wire.
+class ActionLink {
+ public:
+  ActionLink(dds::Participant& participant, const SimulatedDrivesOptions& options)
+      : peer_(options.action_delay_ns, options.is_refusing_actions),
+        reader_(participant),
+        writer_(participant) {}
+
+  void work(std::int64_t now_ns, const std::function<void(const std::string&)>& say) {
+    while (reader_.take(action_)) {
+      ++actions_;
+      say("action " + std::to_string(action_.id) + ", line " + std::to_string(action_.line) + ": " +
+          describe(action_));
+      peer_.take(action_, now_ns);
+    }
+    while (const auto done = peer_.due_answer(now_ns)) static_cast<void>(writer_.write(*done));
+  }
+  [[nodiscard]] std::uint64_t actions() const noexcept { return actions_; }
+
+ private:
+  ActionPeer peer_;
+  dds::Reader<dds::Action> reader_;
+  dds::Writer<dds::ActionDone> writer_;
+  dds::Action action_;
+  std::uint64_t actions_ = 0;
+};
+
+}  // namespace
+
+SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const MachineModel& model,
+                                           const SimulatedDrivesOptions& options,
+                                           const std::atomic<bool>& is_stopping,
+                                           const std::function<void(const std::string&)>& say) {
+  DriveGroup group(model, options.lag);
+  for (const Injection& injection : options.injections) group.inject(injection);
+  StateTeller teller(model, say);
+  dds::Writer<dds::DriveFeedback> feedbacks(participant);
+  dds::Reader<dds::SetpointSample> setpoints(participant);
+  dds::Reader<dds::DriveCommand> commands(participant);
+  dds::Reader<dds::MachineInfo> machines(participant);
+  std::optional<ActionLink> actions;
+  if (options.is_action_peer) actions.emplace(participant, options);
+  feedbacks.register_instance(group.feedback());
+
+  SimulatedDrivesReport report;
+  dds::SetpointSample setpoint;
+  dds::DriveCommand command;
+  dds::MachineInfo machine;
+  std::int64_t due_ns = monotonic_ns();
+  while (!is_stopping.load(std::memory_order_relaxed)) {
+    due_ns += model.cycle_ns;
+    sleep_until(due_ns);
+    const std::int64_t now_ns = monotonic_ns();
+    const std::int64_t lost = (now_ns - due_ns) / model.cycle_ns;
+    due_ns += lost * model.cycle_ns;
+    while (machines.take(machine)) group.set_bridge_cycles(static_cast<int>(machine.bridge_cycles));
+    while (commands.take(command)) group.take(command);
+    while (setpoints.take(setpoint)) group.take(setpoint);
+    group.work(static_cast<int>(lost) + 1);
+    if (!group.is_silent()) static_cast<void>(feedbacks.write(group.feedback()));
+    teller.look(group);
+    if (actions) actions->work(now_ns, say);
+    ++report.periods;
+    report.periods_lost += static_cast<std::uint64_t>(lost);
+  }
+  report.setpoints_seen = group.setpoints_seen();
+  report.periods_bridged = group.periods_bridged();
+  if (actions) report.actions = actions->actions();
+  return report;
+}
+
+}  // namespace meridian::drives

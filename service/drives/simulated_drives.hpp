@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/dds/participant.hpp"
+#include "service/drives/drive_group.hpp"
+
+namespace meridian::drives {
+
+struct SimulatedDrivesOptions {
+  ServoLag lag;
+  std::vector<Injection> injections;
+  bool is_action_peer = true;  ///< plays the PLC too
+  bool is_refusing_actions = false;
+  std::int64_t action_delay_ns = 200'000'000;
+};
+
+/// For the word at the end.
+struct SimulatedDrivesReport {
+  std::uint64_t periods = 0, periods_lost = 0, setpoints_seen = 0, periods_bridged = 0;
+  std::uint64_t actions = 0;
+};
+
+/// Puts a DriveGroup and an ActionPeer on the wire and works at the machine's cycle time until
+/// `is_stopping`. Wake-ups keep phase; lost periods of this process are worked in one step. `say`
+/// gets news for the operator: states of drives, actions. Takes bridge_cycles from the machine
+/// topic where a service tells it. Throws DdsError at start.
+SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const MachineModel& model,
+                                           const SimulatedDrivesOptions& options,
+                                           const std::atomic<bool>& is_stopping,
+                                           const std::function<void(const std::string&)>& say);
+
+}  // namespace meridian::drives

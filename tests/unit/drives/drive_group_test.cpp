@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/drive_group.hpp"
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <limits>
+
+#include "support/machines.hpp"
+
+namespace meridian::drives {
+namespace {
+
+class Group : public testing::Test {
+ protected:
+  void command(std::uint16_t controlword, std::uint64_t service = 7) {
+    for (std::uint16_t i = 0; i < 5; ++i) {
+      dds::DriveCommand word;
+      word.drive = i;
+      word.controlword = controlword;
+      word.service_id = service;
+      group_.take(word);
+    }
+  }
+  void enable() {
+    for (const std::uint16_t controlword : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F})
+      command(controlword);
+  }
+  void send(double x, std::uint16_t flags = kSetpointEnabled) {
+    dds::SetpointSample sample;
+    sample.setpoint.cycle = ++cycle_;
+    sample.setpoint.position[0] = x;
+    sample.setpoint.flags = flags;
+    group_.take(sample);
+  }
+
+  MachineModel model_ = test::lai_machine();
+  DriveGroup group_{model_, {LagKind::kFirstOrder, 0}};
+  std::uint64_t cycle_ = 100;
+};
+
+TEST_F(Group, StandsAtHomeAndReportsEveryJoint) {
+  model_.joints[2].home = -33;
+  DriveGroup group(model_, {});
+  const dds::DriveFeedback feedback = group.feedback();
+  EXPECT_EQ(feedback.joint_mask, 0x1Fu);
+  EXPECT_EQ(feedback.referenced_mask, 0x1Fu);
+  EXPECT_EQ(feedback.position[2], -33);
+  EXPECT_EQ(feedback.sample + 1, group.feedback().sample);
+}
+
+TEST_F(Group, FollowsSetpointsAndTellsTheirCycle) {
+  enable();
+  send(1);
+  group_.work(1);
+  const dds::DriveFeedback feedback = group_.feedback();
+  EXPECT_EQ(feedback.position[0], 1);
+  EXPECT_EQ(feedback.cycle_seen, 101u);
+}
+
+TEST_F(Group, AnOldSetpointIsNotFollowed) {
+  enable();
+  send(1);
+  group_.work(1);
+  cycle_ -= 2;
+  send(0.5);
+  group_.work(1);
+  EXPECT_EQ(group_.feedback().position[0], 1);
+}
+
+TEST_F(Group, ASetpointThatIsNoNumberIsNotFollowed) {
+  enable();
+  send(1);
+  group_.work(1);
+  send(std::numeric_limits<double>::quiet_NaN());
+  group_.work(1);
+  EXPECT_EQ(group_.feedback().position[0], 1);
+}
+
+TEST_F(Group, ObeysOneServiceUntilItIsOff) {
+  enable();
+  command(0x00, 8);
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled);
+  command(0x06, 7);
+  command(0x07, 8);
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kSwitchedOn);
+  EXPECT_EQ(group_.service_id(), 8u);
+}
+
+TEST_F(Group, ARestartedServiceMayCountCyclesAnew) {
+  enable();
+  send(1);
+  group_.work(1);
+  command(0x06);
+  cycle_ = 0;
+  send(1);
+  EXPECT_EQ(group_.feedback().cycle_seen, 1u);
+}
+
+TEST_F(Group, InjectsFaultsAfterTheTimeEnabled) {
+  group_.inject({Injection::Kind::kFault, 0.005, 3});
+  enable();
+  for (int i = 0; i < 4; ++i) group_.work(1);
+  EXPECT_EQ(group_.drive(3).error(), kErrorNone);
+  group_.work(1);
+  EXPECT_EQ(group_.drive(3).error(), kErrorDevice);
+}
+
+TEST_F(Group, InjectsSilenceAndTheStopInput) {
+  group_.inject({Injection::Kind::kSilence, 0, 0});
+  group_.inject({Injection::Kind::kEmergency, 0, 0});
+  group_.work(1);
+  EXPECT_FALSE(group_.is_silent());
+  enable();
+  group_.work(1);
+  EXPECT_TRUE(group_.is_silent());
+  EXPECT_TRUE(group_.feedback().is_emergency_stop);
+}
+
+TEST_F(Group, AStallOfItsOwnCountsAsOneStepOfManyPeriods) {
+  enable();
+  send(1);
+  group_.work(1);
+  group_.work(2);
+  EXPECT_EQ(group_.periods_bridged(), 2u);
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled);
+  group_.work(2);
+  EXPECT_NE(group_.drive(0).state(), DriveState::kOperationEnabled);
+}
+
+}  // namespace
+}  // namespace meridian::drives

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <initializer_list>
+
+namespace meridian::drives {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr double kVelocity = 100;  // mm/s
+
+JointLimits limits() {
+  JointLimits joint;
+  joint.following_error = 5;
+  joint.fault_acceleration = 5000;
+  return joint;
+}
+
+Drive enabled_drive(double position = 10) {
+  Drive drive(limits(), position, {LagKind::kSecondOrder, 0.002});
+  for (const std::uint16_t controlword : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F})
+    drive.take_controlword(controlword);
+  return drive;
+}
+
+DriveInput setpoint(double position, double velocity = 0) {
+  return {.is_new = true, .is_enabled = true, .position = position, .velocity = velocity};
+}
+DriveInput nothing(int periods_without) { return {.periods_without = periods_without}; }
+
+/// Runs the drive along x = 10 + v t until it is settled; returns the last setpoint.
+double run_steadily(Drive& drive) {
+  double position = 10;
+  for (int i = 0; i < 300; ++i) {
+    position += kVelocity * kPeriod_s;
+    drive.work(setpoint(position, kVelocity), kPeriod_s);
+  }
+  return position;
+}
+
+TEST(SimulatedDrive, StandsWhileItIsNotEnabled) {
+  Drive drive(limits(), 10, {});
+  for (int i = 0; i < 10; ++i) drive.work(setpoint(12), kPeriod_s);
+  EXPECT_EQ(drive.position(), 10);
+  EXPECT_EQ(drive.error(), kErrorNone);
+}
+
+TEST(SimulatedDrive, StaysWhereItIsWhenEnabled) {
+  Drive drive = enabled_drive();
+  for (int i = 0; i < 10; ++i) drive.work(nothing(i), kPeriod_s);
+  EXPECT_EQ(drive.position(), 10);
+  EXPECT_EQ(drive.state(), DriveState::kOperationEnabled);
+}
+
+TEST(SimulatedDrive, DoesNotFollowASetpointThatIsNotEnabled) {
+  Drive drive = enabled_drive();
+  drive.work({.is_new = true, .is_enabled = false, .position = 99}, kPeriod_s);
+  EXPECT_EQ(drive.position(), 10);
+}
+
+TEST(SimulatedDrive, FollowsWithTheLagOfItsServo) {
+  Drive drive = enabled_drive();
+  run_steadily(drive);
+  EXPECT_NEAR(drive.following_error(), kVelocity * (0.002 - 0.5 * kPeriod_s), 0.02);
+  EXPECT_NEAR(drive.velocity(), kVelocity, 0.1 * kVelocity);  // it ripples with the period
+  EXPECT_EQ(drive.statusword() & kStatusFollows, kStatusFollows);
+}
+
+TEST(SimulatedDrive, BridgesMissingSetpointsByTheSentVelocity) {
+  Drive drive = enabled_drive();
+  const double last = run_steadily(drive);
+  for (int i = 1; i <= 3; ++i) drive.work(nothing(i), kPeriod_s);
+  EXPECT_EQ(drive.state(), DriveState::kOperationEnabled);
+  EXPECT_NEAR(drive.position() + drive.following_error(), last + 3 * kVelocity * kPeriod_s, 1e-9);
+}
+
+TEST(SimulatedDrive, RampsDownAndFaultsWhenSetpointsStayAway) {
+  Drive drive = enabled_drive();
+  const double last = run_steadily(drive);
+  double fastest_change = 0, before = kVelocity;
+  int periods = 0;
+  for (int i = 1; drive.state() != DriveState::kFault && i < 1000; ++i, ++periods) {
+    drive.work(nothing(i), kPeriod_s);
+    fastest_change = std::max(fastest_change, std::abs(drive.velocity() - before) / kPeriod_s);
+    before = drive.velocity();
+  }
+  EXPECT_EQ(drive.state(), DriveState::kFault);
+  EXPECT_EQ(drive.error(), kErrorSetpointsStopped);
+  // 100 mm/s at 5000 mm/s²: 20 periods and 1 mm after three bridged ones.
+  EXPECT_NEAR(periods, 23, 1);
+  EXPECT_NEAR(drive.position(), last + 0.3 + 1.0, 0.2);
+  EXPECT_LT(fastest_change, 2 * 5000);
+}
+
+TEST(SimulatedDrive, AStepBeyondTheFollowingErrorFaults) {
+  Drive drive = enabled_drive();
+  drive.work(setpoint(30), kPeriod_s);
+  EXPECT_EQ(drive.state(), DriveState::kFaultReactionActive);
+  EXPECT_EQ(drive.error(), kErrorFollowing);
+  EXPECT_NE(drive.statusword() & kStatusFollowingError, 0);
+}
+
+TEST(SimulatedDrive, ABlockedShaftEndsInAFollowingError) {
+  Drive drive = enabled_drive();
+  drive.block_shaft();
+  run_steadily(drive);
+  EXPECT_EQ(drive.position(), 10);
+  EXPECT_EQ(drive.error(), kErrorFollowing);
+}
+
+TEST(SimulatedDrive, AFaultIsResetAndEnabledAgainWhereItStands) {
+  Drive drive = enabled_drive();
+  run_steadily(drive);
+  drive.fail(kErrorDevice);
+  for (int i = 0; i < 100; ++i) drive.work(nothing(i), kPeriod_s);
+  ASSERT_EQ(drive.state(), DriveState::kFault);
+  const double stands = drive.position();
+  for (const std::uint16_t controlword :
+       std::initializer_list<std::uint16_t>{0x80, 0x06, 0x07, 0x0F}) {
+    drive.take_controlword(controlword);
+  }
+  EXPECT_EQ(drive.state(), DriveState::kOperationEnabled);
+  EXPECT_EQ(drive.error(), kErrorNone);
+  drive.work(nothing(1), kPeriod_s);
+  EXPECT_EQ(drive.position(), stands);
+}
+
+}  // namespace
+}  // namespace meridian::drives
