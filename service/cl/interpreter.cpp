@@ -41,9 +41,12 @@ tl::unexpected<ClError> Interpreter::refuse(std::uint32_t line, std::string mess
   return tl::make_unexpected(ClError{name_, line, std::move(message), std::move(remedy)});
 }
 
-void Interpreter::warn_once(std::string_view key, std::uint32_t line, std::string message) {
-  if (std::find(warned_.begin(), warned_.end(), key) != warned_.end()) return;
-  if (warnings_.size() >= kMostWarnings) return;
+bool Interpreter::is_new_warning(std::string_view key) const {
+  return warnings_.size() < kMostWarnings &&
+         std::find(warned_.begin(), warned_.end(), key) == warned_.end();
+}
+
+void Interpreter::add_warning(std::string_view key, std::uint32_t line, std::string message) {
   warned_.emplace_back(key);
   warnings_.push_back({line, std::move(message)});
 }
@@ -81,9 +84,10 @@ void Interpreter::vendor_word(const Statement& s, Blocks& out) {
     if (c != ' ' && c != '\t') text.push_back(c);
   }
   if (text.size() >= sizeof b.text) {
-    warn_once("vendor:" + std::string(s.major), s.line,
-              "vendor word " + quoted(text) + " is cut to " + std::to_string(sizeof b.text - 1) +
-                  " characters");
+    warn_once("vendor:" + std::string(s.major), s.line, [&] {
+      return std::string("vendor word " + quoted(text) + " is cut to " +
+                         std::to_string(sizeof b.text - 1) + " characters");
+    });
   }
   std::memcpy(b.text, text.data(), std::min(text.size(), sizeof b.text - 1));
   if (s.number_count > 0) {
@@ -150,11 +154,14 @@ Interpreter::Result Interpreter::dispatch(Word word, const Statement& s, Blocks&
       break;
     case Word::kDisplay:
       ++summary_.display_words;
-      warn_once(s.major, s.line, std::string(s.major) + " is for viewers and skipped");
+      warn_once(s.major, s.line,
+                [&] { return std::string(std::string(s.major) + " is for viewers and skipped"); });
       break;
     case Word::kSkipped:
       if (s.major.starts_with("CSI_")) summary_.dialect = "SolidWorks CAM APT";
-      warn_once(s.major, s.line, std::string(s.major) + " is skipped: it does not shape the path");
+      warn_once(s.major, s.line, [&] {
+        return std::string(std::string(s.major) + " is skipped: it does not shape the path");
+      });
       break;
     case Word::kRefused:
       return refuse(s.line, std::string(s.major) + " " + std::string(refusal(s.major)));
@@ -225,9 +232,10 @@ Interpreter::Result Interpreter::dispatch(Word word, const Statement& s, Blocks&
       return take_cycle(s);
     case Word::kCutCom:
       if (!s.has_word("OFF")) {
-        warn_once(
-            "CUTCOM", s.line,
-            "CUTCOM is not applied: the path is taken as the path of the tool tip, as written");
+        warn_once("CUTCOM", s.line, [&] {
+          return std::string(
+              "CUTCOM is not applied: the path is taken as the path of the tool tip, as written");
+        });
       }
       break;
     case Word::kOrigin:
@@ -267,9 +275,10 @@ Interpreter::Result Interpreter::finish(std::uint32_t last_line, bool open_end, 
       return refuse(last_line, "the file is cut short: there is no FINI, END or END-OF-PATH",
                     "--allow-no-end takes it as whole");
     }
-    warn_once("no end", last_line,
-              std::string("there is no FINI: the list of points is taken as whole") +
-                  (open_end ? ", its last line too, although no line end follows" : ""));
+    warn_once("no end", last_line, [&] {
+      return std::string(std::string("there is no FINI: the list of points is taken as whole") +
+                         (open_end ? ", its last line too, although no line end follows" : ""));
+    });
   }
   if (!motion_begun_) return refuse(0, "there is no motion in the file");
   emit(block(BlockKind::kEnd, last_line), out);

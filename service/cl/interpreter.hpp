@@ -69,7 +69,13 @@ class Interpreter {
   void emit(ClBlock block, Blocks& out);
   void action(BlockKind kind, ActionKind what, double value, std::uint32_t line, Blocks& out);
   void vendor_word(const Statement& s, Blocks& out);
-  void warn_once(std::string_view key, std::uint32_t line, std::string message);
+  bool is_new_warning(std::string_view key) const;
+  void add_warning(std::string_view key, std::uint32_t line, std::string message);
+  /// One warning for each key; `message` is only called for the first.
+  template <class Message>
+  void warn_once(std::string_view key, std::uint32_t line, Message&& message) {
+    if (is_new_warning(key)) add_warning(key, line, message());
+  }
   Result take_unknown(const Statement& s, Blocks& out);
 
   // interpreter_motion.cpp
@@ -87,6 +93,7 @@ class Interpreter {
   Result arc_to(const Vector3& tip, std::uint32_t line, Blocks& out);
   Result feed_into(ClBlock& block, std::uint32_t line);
   void account(const ClBlock& block, double length_mm);
+  void account_axis(double change_chord);
   void suspect_metric(const ClBlock& block);
   void check_arc_sense(const Vector3& tangent, std::uint32_t line);
 
@@ -162,6 +169,8 @@ class Interpreter {
   bool promises_end_ = false;  ///< words of a program, not a bare list of points
   double cutter_written_ = 0;
   bool metric_suspected_ = false;
+  double axis_z_min_ = 2, axis_z_max_ = -2;
+  double change_chord_max_ = 0;
 };
 
 /// "3.5" and the like for messages: six significant digits.

@@ -83,9 +83,10 @@ Interpreter::Result Interpreter::resolve_frame(std::uint32_t line) {
   axis_ =
       frame_.direction(Vector3(axis_written_[0], axis_written_[1], axis_written_[2]).normalized());
   ++summary_.frame_changes;
-  warn_once(
-      "frame", line,
-      "the file changes its frame after motion has begun: all poses are given in the first one");
+  warn_once("frame", line, [&] {
+    return std::string(
+        "the file changes its frame after motion has begun: all poses are given in the first one");
+  });
   return {};
 }
 

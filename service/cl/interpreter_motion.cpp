@@ -121,8 +121,9 @@ Interpreter::Result Interpreter::take_from(const Statement& s) {
   const std::size_t n = s.argument_count;
   if (!s.all_numbers() || (n != 3 && n != 6)) return refuse(s.line, "FROM needs 3 or 6 numbers");
   if (position_told_) {
-    warn_once("FROM", s.line,
-              "FROM behind motion: taken as the new position, without motion to it");
+    warn_once("FROM", s.line, [&] {
+      return std::string("FROM behind motion: taken as the new position, without motion to it");
+    });
   }
   if (auto done = prepare_motion(s.line); !done) return done;
   const std::array<double, 3> xyz = {s.arguments[0].number, s.arguments[1].number,
@@ -281,9 +282,11 @@ void Interpreter::check_arc_sense(const Vector3& tangent, std::uint32_t line) {
   if (along > 0.9) ++arcs_along_;
   if (along < -0.9) ++arcs_against_;
   if (arcs_against_ >= 3 && arcs_against_ > 2 * arcs_along_) {
-    warn_once("arc sense", line,
-              "most arcs start against the motion before them: is their sense of rotation right? "
-              "(--arc-sense)");
+    warn_once("arc sense", line, [&] {
+      return std::string(
+          "most arcs start against the motion before them: is their sense of rotation right? "
+          "(--arc-sense)");
+    });
   }
 }
 
@@ -297,12 +300,28 @@ void Interpreter::suspect_metric(const ClBlock& b) {
   const bool fast = b.feed_meaning == FeedMeaning::kTip && b.feed > kFastInch_mm_per_s;
   if (extent <= kLargestInchPart_mm && !fast) return;
   metric_suspected_ = true;
-  warn_once("metric", b.line,
-            fast
-                ? "inch, but the feed comes to " + short_number(units::per_min_from_per_s(b.feed)) +
-                      " mm/min: plainly metric? (--units mm)"
-                : "inch, but the path is " + short_number(extent) +
-                      " mm wide: plainly metric? (--units mm)");
+  warn_once("metric", b.line, [&] {
+    return std::string(fast ? "inch, but the feed comes to " +
+                                  short_number(units::per_min_from_per_s(b.feed)) +
+                                  " mm/min: plainly metric? (--units mm)"
+                            : "inch, but the path is " + short_number(extent) +
+                                  " mm wide: plainly metric? (--units mm)");
+  });
+}
+
+/// Angles are worked out only where an axis goes beyond all before it.
+void Interpreter::account_axis(double change_chord) {
+  if (change_chord > change_chord_max_) {
+    change_chord_max_ = change_chord;
+    summary_.axis_change_max_rad = angle_between(axis_before_, axis_);
+  }
+  if (axis_[2] < axis_z_min_ || axis_[2] > axis_z_max_) {
+    axis_z_min_ = std::min(axis_z_min_, axis_[2]);
+    axis_z_max_ = std::max(axis_z_max_, axis_[2]);
+    const double tilt = std::atan2(std::hypot(axis_[0], axis_[1]), axis_[2]);
+    summary_.tilt_min_rad = std::min(summary_.tilt_min_rad, tilt);
+    summary_.tilt_max_rad = std::max(summary_.tilt_max_rad, tilt);
+  }
 }
 
 void Interpreter::account(const ClBlock& b, double length) {
@@ -313,15 +332,8 @@ void Interpreter::account(const ClBlock& b, double length) {
   if (summary_.unit == LengthUnit::kInch && !metric_suspected_) suspect_metric(b);
   const Vector3 change = axis_ - axis_before_;
   const bool turns = change != Vector3::Zero();
-  if (turns || !position_told_) {
-    const double tilt = std::atan2(std::hypot(axis_[0], axis_[1]), axis_[2]);
-    summary_.tilt_min_rad = std::min(summary_.tilt_min_rad, tilt);
-    summary_.tilt_max_rad = std::max(summary_.tilt_max_rad, tilt);
-  }
-  const bool measured = position_told_;
-  const double turn = turns && measured ? angle_between(axis_before_, axis_) : 0;
-  summary_.axis_change_max_rad = std::max(summary_.axis_change_max_rad, turn);
-  if (measured && length <= kLeastMove_mm && turn == 0) ++summary_.zero_length;
+  if (turns || !position_told_) account_axis(position_told_ ? change.norm() : 0);
+  if (position_told_ && length <= kLeastMove_mm && !turns) ++summary_.zero_length;
   if (b.kind == BlockKind::kRapid) {
     summary_.rapid_length_mm += length;
     return;

@@ -37,12 +37,15 @@ Interpreter::Result Interpreter::take_units(const Statement& s) {
   }
   if (s.major == "UNIT") summary_.dialect = "SolidWorks CAM APT";
   if (options_.unit && *options_.unit != unit) {
-    warn_once("unit told", s.line,
-              std::string("the file says ") + (unit == LengthUnit::kInch ? "inch" : "millimetre") +
-                  ", --units says otherwise and holds");
+    warn_once("unit told", s.line, [&] {
+      return std::string(std::string("the file says ") +
+                         (unit == LengthUnit::kInch ? "inch" : "millimetre") +
+                         ", --units says otherwise and holds");
+    });
   }
   if (unit_word_ && *unit_word_ != unit && motion_begun_) {
-    warn_once("unit change", s.line, "the unit changes in mid-program");
+    warn_once("unit change", s.line,
+              [&] { return std::string("the unit changes in mid-program"); });
   }
   unit_word_ = unit;
   unit_.reset();
@@ -58,7 +61,8 @@ Interpreter::Result Interpreter::resolve_unit(std::uint32_t line) {
     unit_ = unit_word_;
   } else if (options_.default_unit) {
     unit_ = options_.default_unit;
-    warn_once("unit default", line, "no unit word: the machine's default unit is taken");
+    warn_once("unit default", line,
+              [&] { return std::string("no unit word: the machine's default unit is taken"); });
   } else {
     return refuse(line, "motion, but the file does not say its unit", "--units mm or --units inch");
   }
@@ -67,9 +71,10 @@ Interpreter::Result Interpreter::resolve_unit(std::uint32_t line) {
   feed_dirty_ = true;
   if (*unit_ == LengthUnit::kInch && cutter_written_ * to_mm_ > kLargestCutter_mm) {
     metric_suspected_ = true;
-    warn_once("metric", line,
-              "inch, but the cutter is " + short_number(cutter_written_) +
-                  " wide: plainly metric? (--units mm)");
+    warn_once("metric", line, [&] {
+      return std::string("inch, but the cutter is " + short_number(cutter_written_) +
+                         " wide: plainly metric? (--units mm)");
+    });
   }
   return {};
 }
@@ -103,8 +108,10 @@ Interpreter::Result Interpreter::take_feed(const Statement& s) {
     }
   }
   if (unit == FeedUnit::kInverseTime && number == nullptr && s.number_count == 0) {
-    warn_once("inverse", s.line,
-              "FEDRAT/INVERS without a number asks a post-processor for inverse time: skipped");
+    warn_once("inverse", s.line, [&] {
+      return std::string(
+          "FEDRAT/INVERS without a number asks a post-processor for inverse time: skipped");
+    });
     return {};
   }
   if (number == nullptr || automatic || s.has_empty_argument) {
@@ -118,8 +125,10 @@ Interpreter::Result Interpreter::take_feed(const Statement& s) {
   feed_dirty_ = true;
   if (rapid_) {
     rapid_ = false;
-    warn_once("rapid feed", s.line,
-              "FEDRAT between RAPID and the motion: the feed holds, the motion is not rapid");
+    warn_once("rapid feed", s.line, [&] {
+      return std::string(
+          "FEDRAT between RAPID and the motion: the feed holds, the motion is not rapid");
+    });
   }
   return {};
 }
@@ -169,9 +178,11 @@ Interpreter::Result Interpreter::resolve_feed(std::uint32_t line) {
   const bool inch_feed =
       feed_unit_ == FeedUnit::kInchPerMinute || feed_unit_ == FeedUnit::kInchPerRevolution;
   if ((inch && metric_feed) || (!inch && inch_feed)) {
-    warn_once("feed unit", line,
-              std::string("points in ") + (inch ? "inch" : "millimetre") + ", but feed in " +
-                  (inch ? "millimetre" : "inch") + ": both are taken as written");
+    warn_once("feed unit", line, [&] {
+      return std::string(std::string("points in ") + (inch ? "inch" : "millimetre") +
+                         ", but feed in " + (inch ? "millimetre" : "inch") +
+                         ": both are taken as written");
+    });
   }
   if (per_revolution) {
     if (!spindle_on_ || !(spindle_rpm_ > 0)) {
@@ -189,11 +200,12 @@ Interpreter::Result Interpreter::resolve_feed(std::uint32_t line) {
   summary_.feed_min_mm_per_s = std::min(summary_.feed_min_mm_per_s, feed_);
   summary_.feed_max_mm_per_s = std::max(summary_.feed_max_mm_per_s, feed_);
   if (options_.max_feed_mm_per_s > 0 && feed_ > options_.max_feed_mm_per_s) {
-    warn_once("feed beyond", line,
-              "feed " + short_number(units::per_min_from_per_s(feed_)) +
-                  " mm/min is beyond the machine's " +
-                  short_number(units::per_min_from_per_s(options_.max_feed_mm_per_s)) +
-                  " mm/min and will be limited");
+    warn_once("feed beyond", line, [&] {
+      return std::string("feed " + short_number(units::per_min_from_per_s(feed_)) +
+                         " mm/min is beyond the machine's " +
+                         short_number(units::per_min_from_per_s(options_.max_feed_mm_per_s)) +
+                         " mm/min and will be limited");
+    });
   }
   return {};
 }

@@ -49,6 +49,7 @@ bool is_word(std::string_view text, std::string_view capitals) noexcept {
 }
 
 bool takes_free_text(std::string_view major) noexcept {
+  if (major.size() < 5) return false;
   constexpr std::array<std::string_view, 8> kWords = {"PARTNO", "PPRINT", "INSERT", "REMARK",
                                                       "TPRINT", "LETTER", "TITLES", "PPFUN"};
   return std::any_of(kWords.begin(), kWords.end(),

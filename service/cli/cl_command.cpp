@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+#include <memory>
+
+#include "service/cl/run_cl.hpp"
+#include "service/cli/cl_options.hpp"
+#include "service/cli/commands.hpp"
+
+namespace meridian::cli {
+
+void add_cl_command(CLI::App& app, int& exit_code) {
+  struct Options {
+    cl::RunOptions run;
+    ClFileOptions file;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "cl",
+      "A CL file as plain points, one `x y z i j k feed` a line (mm, mm/min; feed of the block "
+      "that ends there, 0 for rapid; arcs as chords), or a summary of what was read");
+  command
+      ->add_option("file", options->run.file, "CL file (APT or CLDATA text); - is standard input")
+      ->required();
+  command->add_option("-o,--output", options->run.output, "Write to this file");
+  command->add_flag("-s,--summary", options->run.summary, "Tell what was read, no points");
+  command
+      ->add_option("--chord-error", options->run.chord_error_mm,
+                   "How far chords may lie from their arc, mm")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1.0));
+  add_cl_file_options(*command, options->file);
+  add_frame_option(*command, options->file);
+  command->callback([options, &exit_code] {
+    options->run.reader = reader_options(options->file);
+    exit_code = cl::run_cl(options->run, std::cout, std::cerr);
+  });
+}
+
+}  // namespace meridian::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/cli/cl_options.hpp"
+
+#include "meridian/units.hpp"
+#include "service/config/machine_file.hpp"
+
+namespace meridian::cli {
+
+void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
+  command
+      .add_option("--units", options.units, "Unit of the file: mm or inch; wins over its unit word")
+      ->check(CLI::IsMember({"mm", "inch"}));
+  command
+      .add_option("--feed", options.feed_mm_per_min,
+                  "Feed before the first FEDRAT, mm/min, for files that have none")
+      ->check(CLI::Range(1e-6, 1e6));
+  command
+      .add_option("--allow-unknown", options.allow_unknown,
+                  "Pass this unknown word to the machine as a vendor word; may be repeated")
+      ->type_name("WORD");
+  command.add_flag("--allow-no-end", options.allow_no_end,
+                   "Take a file without FINI, END or END-OF-PATH as whole");
+  command
+      .add_option("--arc-sense", options.arc_sense,
+                  "Which way CIRCLE turns about its vector: form (by the number of its arguments), "
+                  "right, left")
+      ->check(CLI::IsMember({"form", "right", "left"}))
+      ->capture_default_str();
+}
+
+void add_frame_option(CLI::App& command, ClFileOptions& options) {
+  command.add_option("--frame", options.frame,
+                     "Workpiece frame x,y,z[,a,b,c] in mm and deg (Rz(c) Ry(b) Rx(a)): poses are "
+                     "put out in the frame around it");
+}
+
+cl::ClReaderOptions reader_options(const ClFileOptions& options) {
+  cl::ClReaderOptions out;
+  if (options.units == "mm") out.unit = cl::LengthUnit::kMillimetre;
+  if (options.units == "inch") out.unit = cl::LengthUnit::kInch;
+  if (options.arc_sense == "right") out.arc_sense = cl::ArcSense::kRight;
+  if (options.arc_sense == "left") out.arc_sense = cl::ArcSense::kLeft;
+  if (options.feed_mm_per_min) {
+    out.default_feed_mm_per_s = units::per_s_from_per_min(*options.feed_mm_per_min);
+  }
+  out.allowed_words = options.allow_unknown;
+  out.allow_no_end = options.allow_no_end;
+  if (!options.frame.empty()) {
+    const config::Frame frame = config::parse_frame(options.frame);
+    out.frame = cl::Frame{frame.rotation, frame.origin_mm};
+  }
+  return out;
+}
+
+}  // namespace meridian::cli

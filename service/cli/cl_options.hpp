@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/cl/cl_options.hpp"
+
+namespace meridian::cli {
+
+/// The options about a CL file that every subcommand which reads one takes alike.
+struct ClFileOptions {
+  std::string units;
+  std::string arc_sense = "form";
+  std::string frame;
+  std::optional<double> feed_mm_per_min;
+  std::vector<std::string> allow_unknown;
+  bool allow_no_end = false;
+};
+
+/// Adds --units, --feed, --allow-unknown, --allow-no-end and --arc-sense to `command`.
+void add_cl_file_options(CLI::App& command, ClFileOptions& options);
+
+/// Adds --frame, for commands that put out points in the frame of the kinematics.
+void add_frame_option(CLI::App& command, ClFileOptions& options);
+
+/// What the reader is told. A wrong --frame throws config::ConfigError.
+[[nodiscard]] cl::ClReaderOptions reader_options(const ClFileOptions& options);
+
+}  // namespace meridian::cli
