@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <limits>
+#include <utility>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/record/joint_judge.hpp"
+#include "service/record/path_judge.hpp"
+
+namespace meridian::record {
+namespace {
+
+/// Distances to the path's ends this close to the least count as there, mm.
+constexpr double kSamePlace_mm = 1e-6;
+
+/// What the first reading of a recording finds: its grid, and where the cut begins and ends.
+class Survey {
+ public:
+  Survey(const CheckedPath& path, const MachineModel& model) : path_(path), model_(model) {}
+
+  void add(const RecordingRow& row) {
+    if (rows_ == 0) first_cycle_ = row.cycle;
+    if (rows_ > 0) judge_grid(row);
+    const bool has_moved = rows_ > 0 && row.joints != last_.joints;
+    if (!begins_.empty() && !has_moved && begins_.back().cycle == last_.cycle) {
+      begins_.back().cycle = row.cycle;  // still at rest there
+    }
+    for (int i = 0; i < model_.joint_count; ++i) {
+      largest_[i] = std::max(largest_[i], std::abs(row.joints[i]));
+    }
+    if (path_.has_begin()) find_ends(row, has_moved);
+    last_ = row;
+    ++rows_;
+  }
+
+  void finish(CheckReport& report, const CheckOptions& options) const {
+    report.rows = rows_;
+    report.missing = missing_;
+    report.longest_gap = longest_gap_;
+    report.cycles = rows_ > 0 ? last_.cycle - first_cycle_ + 1 : 0;
+    report.begin_cycle = begins_.empty() ? 0 : begins_.front().cycle;
+    report.end_cycle = std::max(report.begin_cycle, options.allow_unfinished ? last_move_ : end_);
+    char text[256];
+    const auto find = [&](Finding::Kind kind, std::uint64_t cycle, std::uint64_t count) {
+      report.findings.push_back({kind, text, cycle, 0, count});
+    };
+    if (rows_ == 0) {
+      std::snprintf(text, sizeof text, "the recording has no rows");
+      find(Finding::Kind::kEmpty, 0, 1);
+    }
+    if (missing_ > options.max_missing) {
+      std::snprintf(text, sizeof text, "%llu cycles are missing, %llu allowed",
+                    static_cast<unsigned long long>(missing_),
+                    static_cast<unsigned long long>(options.max_missing));
+      find(Finding::Kind::kMissingCycles, first_gap_, missing_);
+    }
+    if (disorders_ > 0) {
+      std::snprintf(text, sizeof text, "%llu rows do not count up",
+                    static_cast<unsigned long long>(disorders_));
+      find(Finding::Kind::kCycleOrder, disorder_, disorders_);
+    }
+    if (off_grid_ > 0) {
+      std::snprintf(text, sizeof text, "%llu due times are off the grid of %.6g ms",
+                    static_cast<unsigned long long>(off_grid_),
+                    static_cast<double>(model_.cycle_ns) * 1e-6);
+      find(Finding::Kind::kDueGrid, first_off_grid_, off_grid_);
+    }
+  }
+
+  [[nodiscard]] const JointVector& largest() const noexcept { return largest_; }
+
+ private:
+  void judge_grid(const RecordingRow& row) {
+    if (row.cycle <= last_.cycle) {
+      if (disorders_++ == 0) disorder_ = row.cycle;
+      return;
+    }
+    const std::uint64_t gap = row.cycle - last_.cycle - 1;
+    if (gap > 0 && missing_ == 0) first_gap_ = last_.cycle + 1;
+    missing_ += gap;
+    longest_gap_ = std::max(longest_gap_, gap);
+    const std::int64_t wanted =
+        static_cast<std::int64_t>(row.cycle - last_.cycle) * model_.cycle_ns;
+    if (row.due_ns - last_.due_ns != wanted && off_grid_++ == 0) first_off_grid_ = row.cycle;
+  }
+
+  [[nodiscard]] double distance(const RecordingRow& row, double tool_length, const ToolPose& to) {
+    const ToolPose pose = forward(model_, tool_length, row.joints);
+    return (pose.tip - to.tip).norm() + 50.0 * angle_between(pose.axis, to.axis);
+  }
+
+  /// The cut begins where the joints leave the place nearest to the path's begin for the first
+  /// time, and ends where they come to the place nearest to its end for the last time.
+  void find_ends(const RecordingRow& row, bool has_moved) {
+    if (has_moved) last_move_ = row.cycle;
+    if (rows_ > 0 && !has_moved) return;
+    const double to_begin = distance(row, path_.begin_tool_length_mm(), path_.begin());
+    if (begins_.empty() || to_begin < begins_.back().distance) {
+      begins_.push_back({to_begin, row.cycle});
+      while (begins_.front().distance > to_begin + kSamePlace_mm) begins_.pop_front();
+    }
+    const double to_end = distance(row, path_.end_tool_length_mm(), path_.end());
+    if (to_end <= least_end_ + kSamePlace_mm) end_ = row.cycle;
+    least_end_ = std::min(least_end_, to_end);
+  }
+
+  const CheckedPath& path_;
+  const MachineModel& model_;
+  RecordingRow last_;
+  std::uint64_t rows_ = 0, first_cycle_ = 0, missing_ = 0, longest_gap_ = 0, first_gap_ = 0;
+  std::uint64_t disorders_ = 0, disorder_ = 0, off_grid_ = 0, first_off_grid_ = 0;
+  std::uint64_t end_ = 0, last_move_ = 0;
+  double least_end_ = std::numeric_limits<double>::infinity();
+  struct Begin {
+    double distance;
+    std::uint64_t cycle;  ///< the last one at rest there
+  };
+  std::deque<Begin> begins_;  ///< nearer and nearer to the path's begin, all as near as the last
+  JointVector largest_{};
+};
+
+/// Calls `use(row)` for every row in the range of the options.
+template <class Use>
+[[nodiscard]] Expected<bool, RecordError> for_each(RecordingReader& recording,
+                                                   const CheckOptions& options, Use&& use) {
+  recording.rewind();
+  RecordingRow row;
+  for (;;) {
+    auto read = recording.next(row);
+    if (!read) return tl::make_unexpected(std::move(read.error()));
+    if (!*read) return true;
+    if (row.cycle >= options.from_cycle && row.cycle <= options.to_cycle) use(row);
+  }
+}
+
+}  // namespace
+
+Expected<CheckReport, RecordError> check(RecordingReader& recording, const CheckedPath& path,
+                                         const MachineModel& model, const CheckOptions& options) {
+  CheckReport report;
+  report.recording = recording.path();
+  report.motion_blocks = path.motion_block_count();
+  report.tip_length_mm = path.tip_length_mm();
+  report.cycle_s = static_cast<double>(model.cycle_ns) * 1e-9;
+
+  Survey survey(path, model);
+  auto read = for_each(recording, options, [&survey](const RecordingRow& row) { survey.add(row); });
+  if (!read) return tl::make_unexpected(std::move(read.error()));
+  survey.finish(report, options);
+  report.span_s = static_cast<double>(report.cycles) * report.cycle_s;
+  report.cut_s = static_cast<double>(report.end_cycle - report.begin_cycle) * report.cycle_s;
+  if (report.rows == 0) return report;
+
+  JointJudge joints(model, survey.largest());
+  PathJudge tool(model, path, options);
+  read = for_each(recording, options, [&](const RecordingRow& row) {
+    joints.add(row, recording.has_velocity());
+    if (path.has_begin() && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
+      tool.add(row);
+    }
+  });
+  if (!read) return tl::make_unexpected(std::move(read.error()));
+  tool.finish(report);
+  joints.finish(report);
+  return report;
+}
+
+}  // namespace meridian::record

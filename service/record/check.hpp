@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "meridian/expected.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/record/check_report.hpp"
+#include "service/record/checked_path.hpp"
+#include "service/record/recording_reader.hpp"
+
+namespace meridian::record {
+
+struct CheckOptions {
+  double tip_tolerance_mm = 0;    ///< 0: the machine's
+  double axis_tolerance_rad = 0;  ///< 0: the machine's
+  std::uint64_t max_missing = 0;  ///< cycles that may be missing
+  double feed_factor = 1;         ///< highest feed override in the run
+  bool allow_unfinished = false;  ///< the run was ended before the path was
+  std::uint64_t from_cycle = 0;   ///< rows before are not looked at
+  std::uint64_t to_cycle = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Judges a recording against the path of its CL file and the limits of the machine, by forward
+/// kinematics and finite differences alone:
+///
+/// * every commanded pose, at the setpoints and at three places between neighbouring ones (cubic
+///   through four), has a programmed pose near the place being cut within tip and axis tolerance
+///   together; every CL vertex is passed within the tip tolerance, the whole path is cut;
+/// * tip speed never above the programmed feed; inverse time: nor the turn of the axis;
+/// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
+///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
+/// * missing cycles, their order, due times on the grid; sent velocities fit the positions.
+///
+/// Reads the recording twice, in memory that grows with the path alone. Source: DESIGN section 6.
+/// Proof: tests/unit/record/check_test.cpp (every kind of finding provoked).
+[[nodiscard]] Expected<CheckReport, RecordError> check(RecordingReader& recording,
+                                                       const CheckedPath& path,
+                                                       const MachineModel& model,
+                                                       const CheckOptions& options);
+
+}  // namespace meridian::record

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/joint_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "meridian/kinematics/kinematics.hpp"
+
+namespace meridian::record {
+namespace {
+
+constexpr double kRelative = 1e-6;
+constexpr double kRoundings = 8;
+constexpr double kTravelMargin = 1e-9;
+constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
+
+[[nodiscard]] double spacing(double value) noexcept {
+  return std::nextafter(value, std::numeric_limits<double>::infinity()) - value;
+}
+
+}  // namespace
+
+JointJudge::JointJudge(const MachineModel& model, const JointVector& largest)
+    : model_(model), period_(static_cast<double>(model.cycle_ns) * 1e-9) {
+  for (int i = 0; i < model.joint_count; ++i) ulp_[i] = spacing(std::abs(largest[i]));
+}
+
+void JointJudge::note(Excess& excess, double use, bool is_over) const {
+  if (!is_over) return;
+  ++excess.count;
+  excess.use.raise(use, rows_.back().cycle, rows_.back().line);
+}
+
+void JointJudge::judge_rates(int joint) {
+  const auto q = [this, joint](int back) { return rows_[kDepth - 1 - back].joints[joint]; };
+  const JointLimits& limits = model_.joints[joint].limits;
+  // Differences reach back over `order` rows; a FaultStop among them has its own limits.
+  bool is_fault = false;
+  double power = 1;
+  for (int order = 1; order <= 3 && run_ > order; ++order) {
+    power *= period_;
+    is_fault = false;
+    for (int back = 0; back <= order; ++back) {
+      is_fault |= (rows_[kDepth - 1 - back].flags & kSetpointFaultStop) != 0;
+    }
+    const double difference = order == 1   ? q(0) - q(1)
+                              : order == 2 ? q(0) - 2 * q(1) + q(2)
+                                           : q(0) - 3 * q(1) + 3 * q(2) - q(3);
+    const double limit = order == 1   ? limits.velocity
+                         : order == 2 ? (is_fault ? limits.fault_acceleration : limits.acceleration)
+                                      : (is_fault ? limits.fault_jerk : limits.jerk);
+    const double rate = std::abs(difference) / power;
+    const double allowed = limit * (1 + kRelative) + kRoundings * ulp_[joint] / power;
+    Peak& peak = order == 1   ? use_[joint].velocity
+                 : order == 2 ? use_[joint].acceleration
+                              : use_[joint].jerk;
+    peak.raise(rate / limit, rows_.back().cycle, rows_.back().line);
+    note(over_[joint][order - 1], rate / limit, rate > allowed);
+  }
+}
+
+/// Over three consecutive cycles the sent velocity of the middle one differs from the central
+/// difference by no more than jerk·T²/6.
+void JointJudge::judge_velocity(int joint) {
+  if (run_ < 3) return;
+  const RecordingRow& before = rows_[kDepth - 3];
+  const RecordingRow& middle = rows_[kDepth - 2];
+  const RecordingRow& after = rows_[kDepth - 1];
+  const JointLimits& limits = model_.joints[joint].limits;
+  const bool is_fault = ((before.flags | middle.flags | after.flags) & kSetpointFaultStop) != 0;
+  const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
+  const double central = (after.joints[joint] - before.joints[joint]) / (2 * period_);
+  const double error = std::abs(middle.velocity[joint] - central);
+  const double bound = jerk * period_ * period_ / 6;
+  const double allowed =
+      bound * (1 + kRelative) + kRoundings * ulp_[joint] / period_ + 1e-9 * std::abs(central);
+  sent_peak_.raise(error / bound, middle.cycle, middle.line);
+  note(sent_[joint], error / bound, error > allowed);
+}
+
+void JointJudge::add(const RecordingRow& row, bool has_velocity) {
+  const bool is_next = has_row_ && row.cycle == rows_.back().cycle + 1;
+  const bool is_enabled = (row.flags & kSetpointEnabled) != 0;
+  std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
+  rows_.back() = row;
+  run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;
+  if ((row.flags & kSetpointFaultStop) != 0) ++fault_rows_;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const double q = row.joints[i];
+    use_[i].low = has_row_ ? std::min(use_[i].low, q) : q;
+    use_[i].high = has_row_ ? std::max(use_[i].high, q) : q;
+    const JointLimits& limits = model_.joints[i].limits;
+    if (!model_.joints[i].is_endless && is_enabled) {
+      const double beyond = std::max(limits.travel_min - q, q - limits.travel_max);
+      note(outside_[i], beyond, beyond > kTravelMargin);
+    }
+    judge_rates(i);
+    if (has_velocity) judge_velocity(i);
+  }
+  has_row_ = true;
+}
+
+void JointJudge::finish(CheckReport& report) const {
+  char text[256];
+  report.joint_count = model_.joint_count;
+  report.fault_stop_cycles = fault_rows_;
+  report.sent_velocity = sent_peak_;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const JointSpec& joint = model_.joints[i];
+    report.joint_names[i] = joint.name;
+    report.is_rotary[i] = joint.is_rotary;
+    report.joints[i] = use_[i];
+    for (int order = 0; order < 3; ++order) {
+      const Excess& excess = over_[i][order];
+      if (excess.count == 0) continue;
+      std::snprintf(text, sizeof text, "%s of %s is %.6f x its limit in %llu cycles",
+                    kRateNames[order], joint.name.c_str(), excess.use.value,
+                    static_cast<unsigned long long>(excess.count));
+      const auto kind =
+          static_cast<Finding::Kind>(static_cast<int>(Finding::Kind::kVelocity) + order);
+      report.findings.push_back({kind, text, excess.use.cycle, excess.use.line, excess.count});
+    }
+    if (outside_[i].count > 0) {
+      std::snprintf(text, sizeof text, "%s is outside its travel by up to %.6g %s",
+                    joint.name.c_str(), outside_[i].use.value, joint.is_rotary ? "rad" : "mm");
+      report.findings.push_back({Finding::Kind::kTravel, text, outside_[i].use.cycle,
+                                 outside_[i].use.line, outside_[i].count});
+    }
+    if (sent_[i].count > 0) {
+      std::snprintf(
+          text, sizeof text,
+          "sent velocity of %s does not fit its positions (%.3g x what its jerk explains)",
+          joint.name.c_str(), sent_[i].use.value);
+      report.findings.push_back({Finding::Kind::kSentVelocity, text, sent_[i].use.cycle,
+                                 sent_[i].use.line, sent_[i].count});
+    }
+  }
+}
+
+}  // namespace meridian::record

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "meridian/geometry/vector3.hpp"
+#include "service/record/checked_path.hpp"
+
+namespace meridian::record {
+
+/// The programmed pose that a commanded one is held against, and how far apart they are.
+struct PoseMatch {
+  std::size_t element = 0;
+  double t = 0;  ///< place on it, [0, 1]
+  double s = 0;  ///< common length there
+  double tip_mm = 0;
+  double axis_rad = 0;
+};
+
+/// Finds for one commanded pose after the other the programmed pose near the place that is being
+/// cut for which max(tip/tolerance, axis/tolerance) is least. The nearest tip alone would be
+/// ill-posed where the axis turns fast.
+///
+/// Where several are as good (a path that runs back on itself), the one is taken that lies as far
+/// along as the commanded pose has moved. It looks ahead by ten times that distance.
+/// Proof: tests/unit/record/path_follower_test.cpp.
+class PathFollower {
+ public:
+  PathFollower(const CheckedPath& path, double tip_tolerance_mm, double axis_tolerance_rad);
+
+  /// The match of the next pose. Poses come in the order of time, tips of the tool in force.
+  [[nodiscard]] PoseMatch follow(const ToolPose& pose);
+
+  /// How far `pose` is from the begin of element `index`, where a new tool goes on.
+  [[nodiscard]] PoseMatch match_begin(const ToolPose& pose, std::size_t index) const;
+  /// Goes on from `match`, which the pose `pose` of a new tool has: joints have not moved.
+  void jump(const ToolPose& pose, const PoseMatch& match) noexcept;
+
+  /// max(tip/tolerance, axis/tolerance) of a match.
+  [[nodiscard]] double badness(const PoseMatch& match) const noexcept {
+    return std::max(match.tip_mm / tip_tolerance_, match.axis_rad / axis_tolerance_);
+  }
+
+  /// max(tip/tolerance, axis/tolerance) of `pose` against element `index` at `t`.
+  [[nodiscard]] double measure(const ToolPose& pose, std::size_t index, double t) const noexcept;
+
+ private:
+  [[nodiscard]] PoseMatch match_at(const ToolPose& pose, std::size_t index, double t) const;
+  [[nodiscard]] double project(const ToolPose& pose, std::size_t index, double t) const noexcept;
+  [[nodiscard]] std::size_t element_at(double s) const noexcept;
+  [[nodiscard]] PoseMatch scan(const ToolPose& pose, double reach, double expected) const;
+  [[nodiscard]] PoseMatch refine(const ToolPose& pose, std::size_t index) const;
+
+  const CheckedPath& path_;
+  double tip_tolerance_, axis_tolerance_;
+  ToolPose last_{};
+  PoseMatch here_;
+  bool is_first_ = true;
+};
+
+}  // namespace meridian::record

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/record/check.hpp"
+#include "service/record/path_follower.hpp"
+
+namespace meridian::record {
+
+/// Judges the tool against the path: deviation, vertices, tip speed. Rows of the cut alone, in
+/// order. Units: mm, rad, s.
+class PathJudge {
+ public:
+  PathJudge(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
+
+  void add(const RecordingRow& row);
+  /// Judges what is left and adds what was found to the report.
+  void finish(CheckReport& report);
+
+ private:
+  struct Place {
+    std::uint64_t cycle = 0;
+    std::uint32_t line = 0;
+    JointVector joints{};
+  };
+  struct Excess {
+    Peak worst;
+    std::uint64_t count = 0;
+  };
+  void step(bool has_between);
+  void sample(const JointVector& joints, const Place& place, bool is_setpoint);
+  PoseMatch match(const JointVector& joints, ToolPose& pose);
+  void pass_vertices(const ToolPose& pose, double s);
+  void judge_speed(const Place& from, const Place& to, double s_from, double s_to);
+  void add_gap(double s_from, double s_to);
+  [[nodiscard]] double vertex_s(std::size_t index) const noexcept;
+  [[nodiscard]] ToolPose vertex(std::size_t index) const noexcept;
+  [[nodiscard]] std::uint32_t vertex_line(std::size_t index) const noexcept;
+  void finish_vertices(CheckReport& report) const;
+
+  const MachineModel& model_;
+  const CheckedPath& path_;
+  CheckOptions options_;
+  double tip_tolerance_, axis_tolerance_, period_;
+  PathFollower follower_;
+  double tool_length_;
+  std::array<Place, 4> places_{};  ///< newest last
+  int known_ = 0;                  ///< how many of them are filled
+  int run_ = 0;                    ///< consecutive cycles at their end
+  PoseMatch here_{};
+  double reached_ = 0;             ///< largest matched length so far
+  std::array<Vector3, 3> tips_{};  ///< of the last samples without a gap, newest last
+  int tip_count_ = 0;
+  std::vector<double> nearest_;  ///< of each vertex: least distance to the tip's way
+  std::vector<bool> in_gap_;     ///< passed while cycles are missing
+  std::size_t low_ = 0;          ///< vertices before are behind
+  Peak tip_, axis_, tip_between_, axis_between_, feed_, speed_;
+  Excess tip_over_, axis_over_, feed_over_, turn_over_;
+};
+
+}  // namespace meridian::record

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/recording_reader.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "service/record/mapped_file.hpp"
+#include "service/record/words.hpp"
+
+namespace meridian::record {
+namespace {
+
+enum class Field : std::uint8_t {
+  kSkip,
+  kCycle,
+  kDue,
+  kLine,
+  kKind,
+  kJoint,
+  kVelocity,
+  kSequence,
+  kState,
+  kPlanTime,
+  kRate,
+  kEpoch,
+  kFlags,
+  kLateness,
+  kComputation
+};
+
+struct Column {
+  Field field = Field::kSkip;
+  int joint = 0;
+  std::string name;
+};
+
+[[nodiscard]] Column find_column(std::string_view name, const MachineModel& model) {
+  static constexpr std::pair<std::string_view, Field> kNames[] = {
+      {"cycle", Field::kCycle},
+      {"due_ns", Field::kDue},
+      {"line", Field::kLine},
+      {"kind", Field::kKind},
+      {"sequence", Field::kSequence},
+      {"state", Field::kState},
+      {"plan_time_s", Field::kPlanTime},
+      {"rate", Field::kRate},
+      {"epoch", Field::kEpoch},
+      {"flags", Field::kFlags},
+      {"lateness_ns", Field::kLateness},
+      {"computation_ns", Field::kComputation}};
+  for (const auto& [known, field] : kNames) {
+    if (name == known) return {field, 0, std::string(name)};
+  }
+  for (int i = 0; i < model.joint_count; ++i) {
+    if (name == position_column(model.joints[i])) return {Field::kJoint, i, std::string(name)};
+    if (name == velocity_column(model.joints[i])) return {Field::kVelocity, i, std::string(name)};
+  }
+  return {Field::kSkip, 0, std::string(name)};
+}
+
+template <class Number>
+[[nodiscard]] bool parse(std::string_view text, Number& value) noexcept {
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end) return false;
+  if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
+  return true;
+}
+
+template <class Word>
+[[nodiscard]] bool take(const std::optional<Word>& found, Word& value) noexcept {
+  if (found) value = *found;
+  return found.has_value();
+}
+
+[[nodiscard]] bool read_field(const Column& column, std::string_view text, RecordingRow& row) {
+  switch (column.field) {
+    case Field::kSkip:
+      return true;
+    case Field::kCycle:
+      return parse(text, row.cycle);
+    case Field::kDue:
+      return parse(text, row.due_ns);
+    case Field::kLine:
+      return parse(text, row.line);
+    case Field::kKind:
+      return take(find_motion_kind(text), row.kind);
+    case Field::kJoint:
+      return parse(text, row.joints[column.joint]);
+    case Field::kVelocity:
+      return parse(text, row.velocity[column.joint]);
+    case Field::kSequence:
+      return parse(text, row.sequence);
+    case Field::kState:
+      return take(find_state(text), row.state);
+    case Field::kPlanTime:
+      return parse(text, row.plan_time_s);
+    case Field::kRate:
+      return parse(text, row.rate);
+    case Field::kEpoch:
+      return parse(text, row.epoch);
+    case Field::kFlags:
+      return parse(text, row.flags);
+    case Field::kLateness:
+      return parse(text, row.lateness_ns);
+    case Field::kComputation:
+      return parse(text, row.computation_ns);
+  }
+  return false;
+}
+
+/// Cuts the first `separator`-ended part off `text`.
+[[nodiscard]] std::string_view cut(std::string_view& text, char separator) noexcept {
+  const void* found = text.empty() ? nullptr : std::memchr(text.data(), separator, text.size());
+  const std::size_t length =
+      found != nullptr ? static_cast<std::size_t>(static_cast<const char*>(found) - text.data())
+                       : text.size();
+  const std::string_view part = text.substr(0, length);
+  text.remove_prefix(found != nullptr ? length + 1 : length);
+  return part;
+}
+
+[[nodiscard]] std::string_view cut_line(std::string_view& text) noexcept {
+  std::string_view line = cut(text, '\n');
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+}  // namespace
+
+class RecordingReader::Impl {
+ public:
+  MappedFile file;
+  std::string path;
+  std::vector<Column> columns;
+  std::string_view rest;
+  std::string_view first_row;
+  std::uint64_t line = 1;
+  bool has_velocity = false, has_plan_time = false, has_flags = false;
+
+  [[nodiscard]] RecordError error(std::uint64_t at, std::string message, std::string remedy) const {
+    return {path, at, std::move(message), std::move(remedy)};
+  }
+
+  [[nodiscard]] std::optional<RecordError> read_header(const MachineModel& model) {
+    rest = file.text();
+    std::string_view header = cut_line(rest);
+    first_row = rest;
+    bool has_cycle = false, has_due = false;
+    std::uint32_t positions = 0, velocities = 0;
+    bool has_state = false, has_flag_word = false;
+    while (!header.empty()) {
+      columns.push_back(find_column(cut(header, ','), model));
+      const Column& column = columns.back();
+      has_cycle |= column.field == Field::kCycle;
+      has_due |= column.field == Field::kDue;
+      has_state |= column.field == Field::kState;
+      has_flag_word |= column.field == Field::kFlags;
+      has_plan_time |= column.field == Field::kPlanTime;
+      if (column.field == Field::kJoint) positions |= 1U << column.joint;
+      if (column.field == Field::kVelocity) velocities |= 1U << column.joint;
+    }
+    const std::string remedy =
+        "name a recording of machine '" + model.name + "' (docs/recordings.md)";
+    if (!has_cycle || !has_due) {
+      return error(1, "no recording: the header has no column 'cycle' or 'due_ns'", remedy);
+    }
+    const std::uint32_t all = (1U << model.joint_count) - 1U;
+    for (int i = 0; i < model.joint_count; ++i) {
+      if ((positions & (1U << i)) != 0) continue;
+      return error(1, "the header has no column '" + position_column(model.joints[i]) + "'",
+                   remedy);
+    }
+    has_velocity = velocities == all;
+    has_flags = has_state && has_flag_word;
+    return std::nullopt;
+  }
+};
+
+RecordingReader::RecordingReader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RecordingReader::~RecordingReader() = default;
+RecordingReader::RecordingReader(RecordingReader&&) noexcept = default;
+RecordingReader& RecordingReader::operator=(RecordingReader&&) noexcept = default;
+
+Expected<RecordingReader, RecordError> RecordingReader::open(const std::string& path,
+                                                             const MachineModel& model) {
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  if (const int error = impl->file.open(path); error != 0) {
+    return tl::make_unexpected(RecordError{
+        path, 0, std::string("cannot be read: ") + std::strerror(error), "check the name"});
+  }
+  if (auto error = impl->read_header(model)) return tl::make_unexpected(std::move(*error));
+  return RecordingReader(std::move(impl));
+}
+
+Expected<bool, RecordError> RecordingReader::next(RecordingRow& row) {
+  if (impl_->rest.empty()) return false;
+  ++impl_->line;
+  std::string_view text = cut_line(impl_->rest);
+  if (text.empty() && impl_->rest.empty()) return false;
+  std::size_t count = 0;
+  for (const Column& column : impl_->columns) {
+    if (text.empty()) break;
+    ++count;
+    const std::string_view field = cut(text, ',');
+    if (read_field(column, field, row)) continue;
+    return tl::make_unexpected(impl_->error(
+        impl_->line,
+        "column '" + column.name + "' holds '" + std::string(field.substr(0, 40)) + "'",
+        "the row is damaged: record again"));
+  }
+  if (count != impl_->columns.size() || !text.empty()) {
+    return tl::make_unexpected(impl_->error(impl_->line,
+                                            "the row has not as many columns as the header",
+                                            "the recording was cut off or edited: record again"));
+  }
+  return true;
+}
+
+void RecordingReader::rewind() noexcept {
+  impl_->rest = impl_->first_row;
+  impl_->line = 1;
+}
+
+bool RecordingReader::has_velocity() const noexcept { return impl_->has_velocity; }
+bool RecordingReader::has_plan_time() const noexcept { return impl_->has_plan_time; }
+bool RecordingReader::has_flags() const noexcept { return impl_->has_flags; }
+const std::string& RecordingReader::path() const noexcept { return impl_->path; }
+
+}  // namespace meridian::record

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "meridian/expected.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/rt/cycle_data.hpp"
+#include "service/record/record_error.hpp"
+
+namespace meridian::record {
+
+/// One row of a recording. What the file has no column for keeps its default. Units: mm, rad, s.
+struct RecordingRow {
+  std::uint64_t cycle = 0;
+  std::int64_t due_ns = 0;
+  std::uint32_t line = 0;
+  std::uint16_t epoch = 0;
+  std::uint16_t flags = kSetpointEnabled;
+  MotionKind kind = MotionKind::kCut;
+  State state = State::kRunning;
+  std::int32_t lateness_ns = 0;
+  std::int32_t computation_ns = 0;
+  std::uint64_t sequence = 0;
+  double plan_time_s = 0;
+  double rate = 1;
+  JointVector joints{};
+  JointVector velocity{};
+};
+
+/// Reads a recording row by row, as often as wanted, in constant memory (the file is mapped).
+///
+/// Needs the columns cycle, due_ns and one `<joint>_mm` or `<joint>_rad` per joint of the machine,
+/// in any order; the other columns of RecordingWriter are taken where they are, unknown ones are
+/// skipped. Every number is judged. Not thread-safe. Proof: tests/unit/record/recording_test.cpp.
+class RecordingReader {
+ public:
+  [[nodiscard]] static Expected<RecordingReader, RecordError> open(const std::string& path,
+                                                                   const MachineModel& model);
+  ~RecordingReader();
+  RecordingReader(RecordingReader&&) noexcept;
+  RecordingReader& operator=(RecordingReader&&) noexcept;
+
+  /// Reads the next row into `row`; false behind the last one.
+  [[nodiscard]] Expected<bool, RecordError> next(RecordingRow& row);
+  /// Back to the first row.
+  void rewind() noexcept;
+
+  [[nodiscard]] bool has_velocity() const noexcept;
+  [[nodiscard]] bool has_plan_time() const noexcept;
+  /// Columns kind, state and flags: what tells approach, rest and FaultStop apart.
+  [[nodiscard]] bool has_flags() const noexcept;
+  [[nodiscard]] const std::string& path() const noexcept;
+
+ private:
+  class Impl;
+  explicit RecordingReader(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meridian::record

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "scratch.hpp"
+#include "support/machines.hpp"
+#include "support/sample_recording.hpp"
+
+namespace meridian::record {
+namespace {
+
+using test::cut_to;
+using test::SampleRun;
+using test::Scratch;
+
+/// A path with a corner, a spike of 0.02 mm that runs back on itself, tilts and one feed.
+[[nodiscard]] std::vector<ClBlock> sample_blocks() {
+  return {cut_to(1, {80, -40, 20}, 0.3, 30),    cut_to(2, {82, -40, 20}, 0.3, 30),
+          cut_to(3, {82.02, -40, 20}, 0.3, 30), cut_to(4, {82, -40, 20}, 0.3, 30),
+          cut_to(5, {82, -37, 19}, 0.35, 30),   cut_to(6, {82, -37, 19}, 0.25, 30),
+          cut_to(7, {79, -36, 20}, 0.25, 30)};
+}
+
+[[nodiscard]] CheckedPath path_of(const std::vector<ClBlock>& blocks, const MachineModel& model) {
+  CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
+  for (const ClBlock& block : blocks) path.add(block, model.tool_length_mm);
+  return path;
+}
+
+class Check : public ::testing::Test {
+ protected:
+  Check() : blocks(sample_blocks()), records(SampleRun(model, blocks).records) {
+    options.tip_tolerance_mm = 1e-3;
+    options.axis_tolerance_rad = units::rad_from_deg(1e-3);
+  }
+
+  [[nodiscard]] CheckReport run() {
+    const Scratch file(".csv");
+    RecordingReader reader = test::write_and_open(file.path(), model, records);
+    auto report = check(reader, path_of(blocks, model), model, options);
+    EXPECT_TRUE(report.has_value());
+    return *report;
+  }
+
+  [[nodiscard]] static bool has(const CheckReport& report, Finding::Kind kind) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [kind](const Finding& finding) { return finding.kind == kind; });
+  }
+
+  void expect_only(const CheckReport& report, Finding::Kind kind) {
+    EXPECT_TRUE(has(report, kind)) << to_text(report);
+    EXPECT_EQ(report.findings.size(), 1U) << to_text(report);
+  }
+
+  /// First row of the cut of `line` in which it has begun to move well.
+  [[nodiscard]] std::size_t middle_of(std::uint32_t line) const {
+    std::size_t first = 0, count = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (records[i].setpoint.line != line) continue;
+      if (count++ == 0) first = i;
+    }
+    return first + count / 2;
+  }
+
+  MachineModel model = test::lai_machine();
+  std::vector<ClBlock> blocks;
+  std::vector<CycleRecord> records;
+  CheckOptions options;
+};
+
+TEST_F(Check, PassesATrueRecordingAndSaysHowNearTheLimitsItWas) {
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_LT(report.tip_mm.value, 1e-9);
+  EXPECT_LT(report.tip_between_mm.value, 1e-6);
+  EXPECT_LT(report.vertex_mm.value, 1e-9);
+  EXPECT_EQ(report.vertices, 7U);
+  EXPECT_NEAR(report.feed.value, 0.9, 0.01);
+  EXPECT_EQ(report.rows, records.size());
+  EXPECT_EQ(report.missing, 0U);
+  EXPECT_EQ(report.begin_cycle, records[19].setpoint.cycle);
+  EXPECT_EQ(report.end_cycle, records[records.size() - 21].setpoint.cycle);
+  EXPECT_GT(report.joints[0].jerk.value, 0.01);
+  EXPECT_LT(report.joints[0].jerk.value, 1);
+  EXPECT_LT(report.sent_velocity.value, 1);
+  EXPECT_NE(to_text(report).find("PASS\n"), std::string::npos);
+  EXPECT_NE(to_json(report).find("\"passed\": true"), std::string::npos);
+}
+
+TEST_F(Check, RefusesATipTwoMicrometresOff) {
+  const std::size_t middle = middle_of(5);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const double x = (static_cast<double>(i) - static_cast<double>(middle)) / 60.0;
+    if (std::abs(x) < 1) {  // b4 moves the tip alone; smooth, so that no joint limit sees it
+      records[i].joints[2] += 0.002 * std::pow(1 - x * x, 4);
+      records[i].setpoint.velocity[2] += 0.002 * 4 * std::pow(1 - x * x, 3) * -2 * x / 0.060;
+    }
+  }
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kTip);
+  EXPECT_NEAR(report.tip_mm.value, 0.002, 2e-4) << "what lies across the path of line 5";
+  EXPECT_EQ(report.findings[0].line, 5U);
+}
+
+TEST_F(Check, RefusesAToolAxisOffTheGreatCircle) {
+  const std::size_t middle = middle_of(7);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const double x = (static_cast<double>(i) - static_cast<double>(middle)) / 40.0;
+    if (std::abs(x) >= 1) continue;
+    const ToolPose pose = forward(model, model.tool_length_mm, records[i].joints);
+    const double off = units::rad_from_deg(0.003) * std::pow(1 - x * x, 4);
+    const ToolPose tilted{pose.tip, (pose.axis + off * pose.axis.unitOrthogonal()).normalized()};
+    records[i].joints = solve(model, model.tool_length_mm, tilted, 0, records[i].joints).q;
+  }
+  const CheckReport report = run();
+  EXPECT_TRUE(has(report, Finding::Kind::kAxis)) << to_text(report);
+  EXPECT_FALSE(has(report, Finding::Kind::kTip)) << to_text(report);
+}
+
+TEST_F(Check, RefusesAJerkSpikeThatNoToleranceSees) {
+  const std::size_t at = middle_of(2);
+  records[at].joints[0] += 0.0005;
+  const CheckReport report = run();
+  EXPECT_TRUE(has(report, Finding::Kind::kJerk)) << to_text(report);
+  EXPECT_FALSE(has(report, Finding::Kind::kTip)) << to_text(report);
+  const double wanted = 3 * 0.0005 / 1e-9 / model.joints[0].limits.jerk;
+  EXPECT_NEAR(report.joints[0].jerk.value, wanted, 0.5);
+}
+
+TEST_F(Check, RefusesVelocityAndAccelerationAboveTheLimit) {
+  model.joints[1].limits.velocity = 2;
+  EXPECT_TRUE(has(run(), Finding::Kind::kVelocity));
+  model.joints[1].limits.velocity = 300;
+  model.joints[1].limits.acceleration = 100;
+  EXPECT_TRUE(has(run(), Finding::Kind::kAcceleration));
+}
+
+TEST_F(Check, JudgesFaultStopRowsByTheirOwnLimits) {
+  model.joints[1].limits.acceleration = 100;
+  for (CycleRecord& record : records) record.setpoint.flags |= kSetpointFaultStop;
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.fault_stop_cycles, records.size());
+}
+
+TEST_F(Check, RefusesASkippedVertexThoughEveryPoseIsOnThePath) {
+  std::vector<ClBlock> shortened = blocks;
+  shortened.erase(shortened.begin() + 2, shortened.begin() + 4);  // never out to 82.02
+  records = SampleRun(model, shortened).records;
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kVertex);
+  EXPECT_EQ(report.findings[0].line, 3U);
+  EXPECT_NEAR(report.vertex_mm.value, 0.02, 1e-6);
+}
+
+TEST_F(Check, RefusesACutCorner) {
+  std::vector<ClBlock> cut = blocks;
+  cut[4] = cut_to(5, {81.99, -37.01, 19.003}, 0.35, 30);
+  records = SampleRun(model, cut).records;
+  const CheckReport report = run();
+  EXPECT_TRUE(has(report, Finding::Kind::kTip)) << to_text(report);
+  EXPECT_TRUE(has(report, Finding::Kind::kVertex)) << to_text(report);
+}
+
+TEST_F(Check, RefusesAFeedAboveTheProgrammedOne) {
+  blocks[6].feed = 26;  // the recording was made for 30: 27 at its peak
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kFeed);
+  EXPECT_NEAR(report.feed.value, 27.0 / 26.0, 0.01);
+  EXPECT_EQ(report.findings[0].line, 7U);
+  options.feed_factor = 1.1;
+  EXPECT_TRUE(run().passed()) << "an override allows it";
+}
+
+TEST_F(Check, RefusesMoreMissingCyclesThanAllowed) {
+  const std::size_t at = middle_of(5);
+  records.erase(records.begin() + static_cast<std::ptrdiff_t>(at),
+                records.begin() + static_cast<std::ptrdiff_t>(at) + 3);
+  CheckReport report = run();
+  expect_only(report, Finding::Kind::kMissingCycles);
+  EXPECT_EQ(report.missing, 3U);
+  EXPECT_EQ(report.longest_gap, 3U);
+  options.max_missing = 3;
+  report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
+TEST_F(Check, RefusesRowsOutOfOrderAndOffTheGrid) {
+  records[middle_of(5)].setpoint.due_ns += 300;
+  EXPECT_TRUE(has(run(), Finding::Kind::kDueGrid));
+  records[middle_of(5)].setpoint.due_ns -= 300;
+  std::swap(records[5], records[6]);
+  EXPECT_TRUE(has(run(), Finding::Kind::kCycleOrder));
+}
+
+TEST_F(Check, RefusesAPathThatWasNotFinished) {
+  records.resize(middle_of(7));
+  CheckReport report = run();
+  EXPECT_TRUE(has(report, Finding::Kind::kUnfinished)) << to_text(report);
+  options.allow_unfinished = true;
+  report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.vertices, 6U);
+}
+
+TEST_F(Check, RefusesAJointOutsideItsTravel) {
+  model.joints[4].limits.travel_max = 0.34;
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kTravel);
+  EXPECT_NE(report.findings[0].text.find("theta2"), std::string::npos);
+}
+
+TEST_F(Check, RefusesASentVelocityThatIsNotThatOfThePositions) {
+  records[middle_of(2)].setpoint.velocity[0] *= 1.01;
+  expect_only(run(), Finding::Kind::kSentVelocity);
+}
+
+TEST_F(Check, RefusesAnEmptyRecording) {
+  records.clear();
+  EXPECT_TRUE(has(run(), Finding::Kind::kEmpty));
+}
+
+TEST_F(Check, FollowsAToolChange) {
+  MachineModel other = model;
+  std::vector<ClBlock> first(blocks.begin(), blocks.begin() + 2);
+  std::vector<ClBlock> second(blocks.begin() + 4, blocks.end());
+  records = SampleRun(model, first).records;
+  // The same joints with a longer tool: the tip sits deeper along the axis.
+  other.tool_length_mm = model.tool_length_mm + 15;
+  const ToolPose at = forward(other, other.tool_length_mm, records.back().joints);
+  second.insert(second.begin(), second.front());
+  second[0].tip_mm = to_array(at.tip);
+  second[0].axis = to_array(at.axis);
+  for (CycleRecord record : SampleRun(other, second).records) {
+    record.setpoint.cycle = records.back().setpoint.cycle + 1;
+    record.setpoint.due_ns = records.back().setpoint.due_ns + model.cycle_ns;
+    records.push_back(record);
+  }
+  CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
+  for (const ClBlock& block : first) path.add(block, 0);
+  ClBlock tool;
+  tool.kind = BlockKind::kTool;
+  path.add(tool, other.tool_length_mm);
+  for (std::size_t i = 1; i < second.size(); ++i) path.add(second[i], 0);
+  const Scratch file(".csv");
+  RecordingReader reader = test::write_and_open(file.path(), model, records);
+  const auto report = check(reader, path, model, options);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_TRUE(report->passed()) << to_text(*report);
+  EXPECT_EQ(report->vertices, 5U);
+}
+
+TEST_F(Check, WritesJsonThatNamesEveryFinding) {
+  blocks[6].feed = 26;
+  records[middle_of(2)].joints[0] += 0.0005;
+  const std::string json = to_json(run());
+  EXPECT_NE(json.find("\"passed\": false"), std::string::npos);
+  EXPECT_NE(json.find("\"kind\": \"feed\""), std::string::npos);
+  EXPECT_NE(json.find("\"kind\": \"jerk\""), std::string::npos);
+  EXPECT_EQ(std::count(json.begin(), json.end(), '{'), std::count(json.begin(), json.end(), '}'));
+}
+
+}  // namespace
+}  // namespace meridian::record

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/checked_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "service/record/path_follower.hpp"
+#include "support/sample_recording.hpp"
+
+namespace meridian::record {
+namespace {
+
+using test::cut_to;
+
+constexpr double kTip_mm = 1e-3;
+constexpr double kAxis_rad = 1e-5;
+
+TEST(CheckedPath, BeginsAtTheFirstMotionBlock) {
+  CheckedPath path(100, 0);
+  ClBlock dwell;
+  dwell.kind = BlockKind::kDwell;
+  path.add(dwell, 0);
+  EXPECT_FALSE(path.has_begin());
+  path.add(cut_to(1, {1, 2, 3}, 0, 10), 0);
+  EXPECT_TRUE(path.has_begin());
+  EXPECT_EQ(path.begin().tip, Vector3(1, 2, 3));
+  EXPECT_TRUE(path.elements().empty());
+  path.add(cut_to(2, {1, 2, 7}, 0, 10), 0);
+  ASSERT_EQ(path.elements().size(), 1U);
+  EXPECT_DOUBLE_EQ(path.length(), 4);
+  EXPECT_DOUBLE_EQ(path.elements()[0].feed_mm_per_s, 10);
+}
+
+TEST(CheckedPath, KeepsArcsAndHelicesExact) {
+  CheckedPath path(100, 0);
+  path.add(cut_to(1, {10, 0, 0}, 0, 10), 0);
+  ClBlock arc = cut_to(2, {10, 0, 6}, 0.4, 10);
+  arc.is_arc = true;
+  arc.centre_mm = {0, 0, 0};
+  arc.normal = {0, 0, 1};
+  arc.sweep_rad = 2 * std::numbers::pi;
+  path.add(arc, 0);
+  ASSERT_GE(path.elements().size(), 24U);
+  const ToolPose begin{{10, 0, 0}, {0, 0, 1}};
+  const ToolPose end{{10, 0, 6}, {std::sin(0.4), 0, std::cos(0.4)}};
+  for (std::size_t i = 0; i < path.elements().size(); ++i) {
+    const PathElement& element = path.elements()[i];
+    const ToolPose before = i == 0 ? begin : path.elements()[i - 1].pose(1);
+    EXPECT_LT((element.pose(0).tip - before.tip).norm(), 1e-12);
+    EXPECT_LT(angle_between(element.pose(0).axis, before.axis), 1e-12);
+    const ToolPose middle = element.pose(0.5);
+    EXPECT_NEAR(std::hypot(middle.tip[0], middle.tip[1]), 10, 1e-12);
+    const ToolPose slope = element.slope(0.5);
+    const Vector3 tip = (element.pose(0.5 + 1e-6).tip - element.pose(0.5 - 1e-6).tip) / 2e-6;
+    const Vector3 axis = (element.pose(0.5 + 1e-6).axis - element.pose(0.5 - 1e-6).axis) / 2e-6;
+    EXPECT_LT((slope.tip - tip).norm(), 1e-8);
+    EXPECT_LT((slope.axis - axis).norm(), 1e-8);
+    EXPECT_EQ(element.is_block_end, i + 1 == path.elements().size());
+  }
+  const ToolPose last = path.elements().back().pose(1);
+  EXPECT_LT((last.tip - end.tip).norm(), 1e-12);
+  EXPECT_LT(angle_between(last.axis, end.axis), 1e-12);
+}
+
+TEST(CheckedPath, LimitsTipAndAxisWhereFeedIsInverseTime) {
+  CheckedPath path(100, 50);
+  path.add(cut_to(1, {0, 0, 0}, 0, 10), 0);
+  ClBlock block = cut_to(2, {3, 0, 4}, 0.2, 0);
+  block.feed_meaning = FeedMeaning::kInverseTime;
+  block.feed = 4;
+  path.add(block, 0);
+  EXPECT_NEAR(path.elements()[0].feed_mm_per_s, 20, 1e-12);
+  EXPECT_NEAR(path.elements()[0].turn_rad_per_s, 0.8, 1e-12);
+  path.add(cut_to(3, {30, 0, 4}, 0.2, 1000), 0);
+  EXPECT_EQ(path.elements()[1].feed_mm_per_s, 50) << "the machine's highest feed holds";
+}
+
+TEST(CheckedPath, MovesTheTipWithANewTool) {
+  CheckedPath path(100, 0);
+  path.add(cut_to(1, {0, 0, 0}, 0, 10), 0);
+  ClBlock tool;
+  tool.kind = BlockKind::kTool;
+  path.add(tool, 130);
+  path.add(cut_to(3, {0, 0, 0}, 0, 10), 0);
+  ASSERT_EQ(path.elements().size(), 1U);
+  EXPECT_EQ(path.elements()[0].pose(0).tip, Vector3(0, 0, -30));
+  EXPECT_EQ(path.elements()[0].tool_length_mm, 130);
+}
+
+TEST(PathFollower, MinimisesTipAndAxisTogether) {
+  CheckedPath path(100, 0);
+  path.add(cut_to(1, {0, 0, 0}, 0, 10), 0);
+  path.add(cut_to(2, {0.01, 0, 0}, 0.2, 10), 0);  // the axis turns fast: the nearest tip is far off
+  PathFollower follower(path, kTip_mm, kAxis_rad * 100);
+  const ToolPose pose{{0.0040, 0, 0}, {std::sin(0.0802), 0, std::cos(0.0802)}};
+  const PoseMatch match = follower.follow(pose);
+  EXPECT_LT(follower.badness(match), 0.2);
+  for (double t = 0; t <= 1; t += 1e-4) {
+    EXPECT_LE(follower.badness(match), follower.measure(pose, 0, t) + 1e-6);
+  }
+}
+
+TEST(PathFollower, GoesThereAndBackOnTheSameLine) {
+  CheckedPath path(100, 0);
+  path.add(cut_to(1, {0, 0, 0}, 0, 10), 0);
+  path.add(cut_to(2, {5, 0, 0}, 0, 10), 0);
+  path.add(cut_to(3, {0, 0, 0}, 0, 10), 0);
+  path.add(cut_to(4, {5, 0, 0}, 0, 10), 0);
+  PathFollower follower(path, kTip_mm, kAxis_rad);
+  for (int i = 0; i <= 3000; ++i) {
+    const double s = 0.005 * i;
+    const double x = s < 5 ? s : s < 10 ? 10 - s : s - 10;
+    const PoseMatch match = follower.follow({{x, 0, 0}, {0, 0, 1}});
+    ASSERT_LT(match.tip_mm, 1e-9);
+    ASSERT_NEAR(match.s, s, 1e-6);
+  }
+}
+
+TEST(PathFollower, CountsWhatIsBesideAnArc) {
+  CheckedPath path(100, 0);
+  path.add(cut_to(1, {10, 0, 0}, 0, 10), 0);
+  ClBlock arc = cut_to(2, {10, 0, 0}, 0, 10);
+  arc.is_arc = true;
+  arc.sweep_rad = 2 * std::numbers::pi;
+  path.add(arc, 0);
+  PathFollower follower(path, kTip_mm, kAxis_rad);
+  for (int i = 0; i <= 6283; ++i) {
+    const double angle = 0.001 * i;
+    const double radius = 10 + (i > 3000 ? 0.0007 : 0);
+    const PoseMatch match =
+        follower.follow({{radius * std::cos(angle), radius * std::sin(angle), 0}, {0, 0, 1}});
+    ASSERT_NEAR(match.tip_mm, radius - 10, 1e-9) << i;
+    ASSERT_NEAR(match.s, 10 * angle, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace meridian::record

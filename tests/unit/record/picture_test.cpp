@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "scratch.hpp"
+#include "service/record/picture_data.hpp"
+#include "support/machines.hpp"
+#include "support/sample_recording.hpp"
+
+namespace meridian::record {
+namespace {
+
+using test::cut_to;
+using test::SampleRun;
+using test::Scratch;
+
+class Picture : public ::testing::Test {
+ protected:
+  Picture() {
+    for (const ClBlock& block : blocks) path.add(block, 0);
+  }
+  MachineModel model = test::lai_machine();
+  std::vector<ClBlock> blocks{cut_to(1, {80, -40, 20}, 0.3, 30), cut_to(2, {82, -40, 20}, 0.3, 30),
+                              cut_to(3, {82, -37, 19}, 0.35, 30)};
+  std::vector<CycleRecord> records = SampleRun(model, blocks).records;
+  CheckedPath path{model.tool_length_mm, 0};
+};
+
+TEST_F(Picture, LosesNoPeakInItsColumns) {
+  records[150].joints[0] += 0.0005;
+  const Scratch file(".csv");
+  RecordingReader reader = test::write_and_open(file.path(), model, records);
+  PictureData data;
+  ASSERT_FALSE(gather(reader, path, model, 20, data));
+  ASSERT_EQ(data.columns.size(), 20U);
+  double peak = 0;
+  for (const PictureColumn& column : data.columns) peak = std::max(peak, column.rate[2][0].high);
+  EXPECT_NEAR(peak, 3 * 0.0005 / 1e-9 / model.joints[0].limits.jerk, 0.3);
+  EXPECT_EQ(data.columns[10].feed_mm_per_s.high, 30);
+  EXPECT_GT(data.tip.size(), 50U);
+}
+
+TEST_F(Picture, IsAFileOfTheKindItsNameSays) {
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "gnuplot is not installed";
+  const Scratch csv(".csv"), svg(".svg"), png(".png");
+  RecordingReader reader = test::write_and_open(csv.path(), model, records);
+  const auto error = draw(reader, path, model, svg.path());
+  ASSERT_FALSE(error) << error->text();
+  EXPECT_NE(test::read_text(svg.path()).find("<svg"), std::string::npos);
+  ASSERT_FALSE(draw(reader, path, model, png.path()));
+  EXPECT_EQ(test::read_text(png.path()).substr(1, 3), "PNG");
+}
+
+TEST_F(Picture, RefusesOtherFormatsAndRecordingsAtRest) {
+  const Scratch csv(".csv"), svg(".svg");
+  RecordingReader reader = test::write_and_open(csv.path(), model, records);
+  ASSERT_TRUE(draw(reader, path, model, "picture.jpeg"));
+  records.resize(10);
+  RecordingReader still = test::write_and_open(csv.path(), model, records);
+  const auto error = draw(still, path, model, svg.path());
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->text().find("nothing moves"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace meridian::record
