@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "meridian/planner/motion_port.hpp"
+
+namespace meridian {
+
+/// Why a block cannot be run.
+enum class RejectCode : std::uint8_t {
+  kNone,
+  kTravel,        ///< a joint would leave its travel; `value` is where
+  kUnreachable,   ///< no joints put the tool there
+  kAxisReversal,  ///< the axis turns by half a turn: no great circle is meant
+  kFeed,          ///< a cut without a usable feed; `value` is the feed
+  kNotFinite,     ///< a number of the block is not finite, or the axis is not a direction
+  kUnknownTool,   ///< the tool table has no such tool; `value` is its number
+  kTooComplex,    ///< the block needs more pieces than a plan holds
+  kDiscontinuous  ///< guard of the planner: its joints would have jumped; `value` is the jump
+};
+
+/// The planner's verdict on a block.
+struct PlanReject {
+  std::uint64_t sequence = 0;
+  std::uint32_t line = 0;
+  RejectCode code = RejectCode::kNone;
+  int joint = -1;    ///< in machine order, -1 where none is meant
+  double value = 0;  ///< see RejectCode
+};
+
+enum class PlanStatus : std::uint8_t {
+  kOk,      ///< published (nothing, where the block does not move)
+  kNoRoom,  ///< nothing was published: call again with the same block when the port has room
+  kRefused  ///< nothing was published for it, nor will be for later blocks until begin()
+};
+
+struct PlanResult {
+  PlanStatus status = PlanStatus::kOk;
+  PlanReject reject;
+  double axis_deviation_rad = 0;  ///< largest ease of the axis beside the pole
+};
+
+/// Within this distance of the pole the programmed axis is eased onto the pole: nearer, the turn of
+/// the free joint would be made of rounding. 0.00046 deg.
+inline constexpr double kPoleEase_rad = 8e-6;
+
+/// The plain planner: every block from rest to rest, tip on its line or arc, axis on its great
+/// circle, every joint inside its limits at every override, feed never exceeded.
+///
+/// One window per block, without a tail: it ends at rest. The joints of the whole way between two
+/// blocks are judged before anything of it is published. What a block becomes depends on the blocks
+/// before it and on begin() alone. plan() allocates nothing, throws nothing and needs no clock.
+/// Method and formulas: docs/motion.md. Context: planner thread.
+/// Proof: tests/unit/planner, tests/property/planner.
+class RestToRestPlanner {
+ public:
+  explicit RestToRestPlanner(const MachineModel& model, ToolTable tools = {});
+  ~RestToRestPlanner();
+  RestToRestPlanner(const RestToRestPlanner&) = delete;
+  RestToRestPlanner& operator=(const RestToRestPlanner&) = delete;
+
+  /// Starts a program from joints at rest. Its first motion block is approached: retract along the
+  /// tool axis by the clearance as far as travel allows, joint move, down at approach feed.
+  void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch) noexcept;
+
+  /// Plans and publishes one block.
+  [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
+
+  /// Joints and tool length at the end of what was published.
+  [[nodiscard]] const JointVector& joints() const noexcept;
+  [[nodiscard]] double tool_length_mm() const noexcept;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace meridian

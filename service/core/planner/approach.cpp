@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "service/core/planner/router.hpp"
+
+/// The approach: retract along the tool axis, joint move, down. Part of Router.
+namespace meridian {
+namespace {
+
+constexpr double kThere = 1e-12;  // joints that differ less are where they should be
+constexpr double kNearby = 1e-3;  // mm, rad: so near that a joint move alone is made
+constexpr double kNoClearance_mm = 1e-3;
+
+bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
+
+double largest_difference(const JointVector& a, const JointVector& b) noexcept {
+  double largest = 0;
+  for (int i = 0; i < kMaxJoints; ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+std::uint32_t rotary_mask(const MachineModel& model) noexcept {
+  std::uint32_t mask = 0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    if (model.joints[i].is_rotary) mask |= 1U << static_cast<unsigned>(i);
+  }
+  return mask;
+}
+
+ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
+  return {pose.tip + by_mm * pose.axis, pose.axis};
+}
+
+}  // namespace
+
+double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
+                              double tool_length_mm) const noexcept {
+  // With the axis fixed the joints are linear in the lift.
+  const double whole = model_.clearance_mm;
+  if (!(whole > 0)) return 0;
+  const int free = free_joint(model_);
+  const ToolPose top = lifted(pose, whole);
+  const auto at = solve_held(model_, tool_length_mm, top, free >= 0 ? joints[free] : 0.0);
+  double share = 1;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    if (model_.joints[i].is_endless) continue;
+    const double by = at.q[i] - joints[i];
+    const double end =
+        by > 0 ? model_.joints[i].limits.travel_max : model_.joints[i].limits.travel_min;
+    if (std::abs(by) > 1e-9) share = std::min(share, (end - joints[i]) / by);
+  }
+  const double clearance = std::max(0.0, share) * whole;
+  return clearance > kNoClearance_mm ? clearance : 0;
+}
+
+PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job& job,
+                              PlanCursor& cursor, Staging& out) noexcept {
+  const int free = free_joint(model_);
+  const std::uint32_t rotary = rotary_mask(model_);
+  Job rapid = job;
+  rapid.feed_mm_per_s = 0;
+  PathFault fault;
+  const double apart = largest_difference(way.joints, cursor.joints);
+  double down = 0;
+  if (apart > kNearby) {
+    const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm);
+    if (up > 0) {
+      fault = run_held(make_line(cursor.pose, lifted(cursor.pose, up)), cursor.joints[free], rapid,
+                       1.0, cursor, out);
+      if (is_fault(fault)) return fault;
+    }
+    down = find_clearance(target, way.joints, cursor.tool_length_mm);
+  }
+  const JointVector over =
+      down > 0 ? solve_held(model_, cursor.tool_length_mm, lifted(target, down), way.joints[free]).q
+               : way.joints;
+  if (largest_difference(over, cursor.joints) > kThere) {
+    fault = run(make_joint_move(cursor.joints, over, rotary), rapid, 0, cursor, out);
+    if (is_fault(fault)) return fault;
+  }
+  if (down > 0) {
+    fault = run_held(make_line(lifted(target, down), target), cursor.joints[free], job, 1.0, cursor,
+                     out);
+  }
+  return fault;
+}
+
+PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
+  deviation_rad_ = 0;
+  const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
+                        eased(to_vector(block.axis))};
+  Ways ways = find_ways(target, cursor);
+  const int free = free_joint(model_);
+  // Room to turn counts as well: a winding at the end of travel is taken only where no other is.
+  if (free >= 0 && !model_.joints[free].is_endless) {
+    const JointLimits& limits = model_.joints[free].limits;
+    for (int n = 0; n < ways.count; ++n) {
+      const double at = ways.way[n].joints[free];
+      const double room = std::min(at - limits.travel_min, limits.travel_max - at);
+      ways.way[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
+    }
+    std::stable_sort(ways.way.begin(), ways.way.begin() + ways.count,
+                     [](const Way& a, const Way& b) { return a.cost < b.cost; });
+  }
+  const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
+  PathFault first{PathFault::Kind::kUnreachable, -1, 0};
+  if (ways.count == 0) {
+    const auto at = solve(model_, cursor.tool_length_mm, target, 0, cursor.joints);
+    const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
+    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, at.q[joint]};
+  }
+  for (int n = 0; n < ways.count; ++n) {
+    PlanCursor trial = cursor;
+    const Staging::Mark mark = out.mark();
+    const PathFault fault = approach_by(target, ways.way[n], job, trial, out);
+    if (!is_fault(fault)) {
+      cursor = trial;
+      cursor.pose = target;
+      return {};
+    }
+    out.go_back(mark);
+    if (n == 0) first = fault;
+  }
+  return first;
+}
+
+}  // namespace meridian

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/joint_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/joints_at.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kTravelMargin = 1e-9;  // rounding of a travel end that is reached exactly
+/// Rounding of a component of the tool axis, with what turning it into the machine adds.
+constexpr double kAxisNoise = 2 * std::numeric_limits<double>::epsilon();
+
+/// Joints and their derivatives at one place.
+struct Sample {
+  double share_rate = 0;
+  JointVector q{}, d1{}, d2{}, d3{};
+};
+
+bool take_sample(const MachineModel& model, const PathPiece& piece, double s,
+                 const JointVector& reference, Sample& out) noexcept {
+  const auto at = joints_at(model, piece, Jet<3>::variable(s), reference);
+  if (at.status == SolveStatus::kUnreachable) return false;
+  for (int i = 0; i < model.joint_count; ++i) {
+    out.q[i] = at.q[i].derivative(0);
+    out.d1[i] = at.q[i].derivative(1);
+    out.d2[i] = at.q[i].derivative(2);
+    out.d3[i] = at.q[i].derivative(3);
+  }
+  out.share_rate = fraction_at(piece, Jet<1>::variable(s)).derivative(1);
+  return true;
+}
+
+PathFault judge_travel(const MachineModel& model, const JointVector& q) noexcept {
+  const int joint = first_joint_outside_travel(model, q, kTravelMargin);
+  if (joint < 0) return {};
+  return {PathFault::Kind::kTravel, joint, q[joint]};
+}
+
+/// Travel at the turning points that the joints have between two samples `h` apart.
+PathFault judge_between(const MachineModel& model, const Sample& a, const Sample& b,
+                        double h) noexcept {
+  JointVector q = a.q;
+  bool has_turned = false;
+  for (int i = 0; i < model.joint_count; ++i) {
+    if (!(a.d1[i] * b.d1[i] < 0)) continue;
+    // Value of the cubic through both samples where its derivative vanishes (secant).
+    const double t = a.d1[i] / (a.d1[i] - b.d1[i]);
+    const double by = b.q[i] - a.q[i];
+    q[i] = a.q[i] + by * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * a.d1[i] - t * b.d1[i]);
+    has_turned = true;
+  }
+  return has_turned ? judge_travel(model, q) : PathFault{};
+}
+
+/// Largest of three samples of a smooth function, raised by what it may do between them.
+double bound(double a, double b, double c) noexcept {
+  const double largest = std::max({std::abs(a), std::abs(b), std::abs(c)});
+  return largest + 0.25 * (std::max({a, b, c}) - std::min({a, b, c}));
+}
+
+double axis_noise(const MachineModel& model, const PathPiece& piece, double begin,
+                  double end) noexcept {
+  const bool is_solved = piece.kind == PathKind::kLine || piece.kind == PathKind::kArc;
+  if (!is_solved || piece.is_free_driven || piece.axis_turn == 0) return 0;
+  const double distance = std::min({pole_distance(model, pose_at(piece, begin).axis),
+                                    pole_distance(model, pose_at(piece, 0.5 * (begin + end)).axis),
+                                    pole_distance(model, pose_at(piece, end).axis)});
+  return distance > 0 ? kAxisNoise / distance : 0;
+}
+
+}  // namespace
+
+PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, double begin,
+                            double end, int cells, JointVector& joints) noexcept {
+  if (count_ + cells > kCapacity) return {PathFault::Kind::kTooLong, -1, 0};
+  Sample at[3];
+  if (!take_sample(model, piece, begin, joints, at[2])) {
+    return {PathFault::Kind::kUnreachable, -1, 0};
+  }
+  if (const auto fault = judge_travel(model, at[2].q); fault.kind != PathFault::Kind::kNone) {
+    return fault;
+  }
+  const double h = (end - begin) / cells;
+  for (int n = 0; n < cells; ++n) {
+    at[0] = at[2];
+    JointCell& cell = cells_[count_++];
+    cell.begin = begin + n * h;
+    cell.end = n + 1 == cells ? end : begin + (n + 1) * h;
+    for (int k = 1; k <= 2; ++k) {
+      const double s = k == 2 ? cell.end : 0.5 * (cell.begin + cell.end);
+      if (!take_sample(model, piece, s, at[k - 1].q, at[k])) {
+        return {PathFault::Kind::kUnreachable, -1, 0};
+      }
+      PathFault fault = judge_between(model, at[k - 1], at[k], h / 2);
+      if (fault.kind == PathFault::Kind::kNone) fault = judge_travel(model, at[k].q);
+      if (fault.kind != PathFault::Kind::kNone) return fault;
+    }
+    for (int i = 0; i < kMaxJoints; ++i) {
+      cell.d1[i] = bound(at[0].d1[i], at[1].d1[i], at[2].d1[i]);
+      cell.d2[i] = bound(at[0].d2[i], at[1].d2[i], at[2].d2[i]);
+      cell.d3[i] = bound(at[0].d3[i], at[1].d3[i], at[2].d3[i]);
+    }
+    cell.share_rate = bound(at[0].share_rate, at[1].share_rate, at[2].share_rate);
+    cell.noise_rad = axis_noise(model, piece, cell.begin, cell.end);
+  }
+  joints = at[2].q;
+  return {};
+}
+
+JointCell merged(const JointCell& a, const JointCell& b) noexcept {
+  JointCell out;
+  out.begin = std::min(a.begin, b.begin);
+  out.end = std::max(a.end, b.end);
+  out.share_rate = std::max(a.share_rate, b.share_rate);
+  out.noise_rad = std::max(a.noise_rad, b.noise_rad);
+  for (int i = 0; i < kMaxJoints; ++i) {
+    out.d1[i] = std::max(a.d1[i], b.d1[i]);
+    out.d2[i] = std::max(a.d2[i], b.d2[i]);
+    out.d3[i] = std::max(a.d3[i], b.d3[i]);
+  }
+  return out;
+}
+
+}  // namespace meridian

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/path_piece.hpp"
+
+/// What the joints do along a path, cell by cell: bounds of their derivatives by the path length,
+/// and whether they stay inside travel and reach. Units: mm, rad, s.
+namespace meridian {
+
+/// Bounds of |dq/ds|, |d²q/ds²|, |d³q/ds³| of every joint on a short stretch of path.
+struct JointCell {
+  double begin = 0, end = 0;  ///< s
+  double share_rate = 0;      ///< bound of dx/ds, x the share of tip and axis (fraction_at)
+  double noise_rad = 0;       ///< rounding of the free joint beside the pole
+  JointVector d1{}, d2{}, d3{};
+};
+
+/// Why joints cannot follow a path.
+struct PathFault {
+  enum class Kind { kNone, kTravel, kUnreachable, kTooLong, kJump } kind = Kind::kNone;
+  int joint = -1;
+  double value = 0;
+};
+
+/// Cells of one path, in order, in a fixed store.
+class CellTable {
+ public:
+  static constexpr int kCapacity = 1024;
+
+  void clear() noexcept { count_ = 0; }
+  [[nodiscard]] int size() const noexcept { return count_; }
+  [[nodiscard]] std::span<const JointCell> range(int first, int last) const noexcept {
+    return {cells_.data() + first, static_cast<std::size_t>(last - first)};
+  }
+  [[nodiscard]] std::span<const JointCell> all() const noexcept { return range(0, count_); }
+
+  /// Appends `cells` equal cells of `piece` from `begin` to `end` and judges the joints on the way,
+  /// extremes between the samples included. `joints` are those at `begin` (within half a turn) and
+  /// become those at `end`. Nothing may be read after a fault.
+  [[nodiscard]] PathFault append(const MachineModel& model, const PathPiece& piece, double begin,
+                                 double end, int cells, JointVector& joints) noexcept;
+
+ private:
+  std::array<JointCell, kCapacity> cells_;
+  int count_ = 0;
+};
+
+/// One cell that bounds both.
+[[nodiscard]] JointCell merged(const JointCell& a, const JointCell& b) noexcept;
+
+}  // namespace meridian

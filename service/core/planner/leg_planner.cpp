@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/leg_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/joints_at.hpp"
+#include "service/core/planner/stop_authority.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kGrading = 0.7;      // step between nodes, in distances to the pole
+constexpr double kCellGrading = 0.2;  // step between cells
+constexpr double kCellTurn_rad = 0.06;
+constexpr double kCellSweep_rad = 0.14;
+constexpr double kCellFree_rad = 0.14;
+constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
+constexpr double kMostCells = 256;
+constexpr double kLargestJump = 1e-7;  // rounding 8 µrad from the pole is 1e-10
+
+int cells_for(double amount) noexcept {
+  return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMostCells));
+}
+
+/// Distance to the pole at `from_nearest` along the great circle.
+double distance_at(double offset, double from_nearest) noexcept {
+  return std::hypot(offset, std::sin(from_nearest));
+}
+
+bool is_solved(const PathPiece& path) noexcept {
+  return (path.kind == PathKind::kLine || path.kind == PathKind::kArc) && !path.is_free_driven;
+}
+
+}  // namespace
+
+Vector3 find_nearest_pole(const MachineModel& model, const Vector3& axis) noexcept {
+  const Vector3 pole = model.frame_rotation.transpose() * Vector3::UnitZ();
+  return pole.dot(axis) < 0 ? Vector3(-pole) : pole;
+}
+
+LegPlanner::LegPlanner(const MachineModel& model) noexcept : model_(model) {}
+
+PathFault LegPlanner::plan(const Leg& leg, Staging& out, JointVector& joints) noexcept {
+  const double reach =
+      std::max(pose_in_machine(model_, pose_at(leg.path, 0.0)).tip.norm(),
+               pose_in_machine(model_, pose_at(leg.path, leg.path.length)).tip.norm());
+  caps_ = planned_caps(model_, reach);
+  fault_caps_ = fault_caps(model_, reach);
+  tip_length_ = tip_length(leg.path);
+  place_nodes(leg.path);
+  JointVector at_end = joints;
+  if (const auto fault = measure(leg, at_end); fault.kind != PathFault::Kind::kNone) return fault;
+  find_fastest_runs(leg, caps_);
+  // The way back gives the runs last to first: turn it round in place.
+  int runs = 0;
+  std::array<int, kMaxNodes> way;
+  for (int n = node_count_ - 1; n > 0; n = nodes_[n].from) way[runs++] = n;
+  for (int n = runs - 1; n >= 0; --n) {
+    const Node& to = nodes_[way[n]];
+    const PathFault fault = stage_run(leg, nodes_[to.from], to, out, joints);
+    if (fault.kind != PathFault::Kind::kNone) return fault;
+  }
+  return {};
+}
+
+void LegPlanner::place_nodes(const PathPiece& path) noexcept {
+  const double turn = path.axis_turn;
+  node_count_ = 0;
+  const auto add = [&](double at) {
+    Node& node = nodes_[node_count_++];
+    node = {};
+    node.turn = at;
+    node.s = turn > 0 ? path.length * (at / turn) : 0;
+  };
+  add(0);
+  if (is_solved(path) && turn > 0) {
+    passage_ = find_passage(path, find_nearest_pole(model_, to_vector(path.axis_begin)));
+    const double nearest = passage_.nearest_turn, offset = passage_.offset;
+    std::array<double, kMaxNodes / 2 - 2> graded;
+    int count = 0;
+    for (double u = 0.6 * offset; u < 2 * turn + 2 && count < static_cast<int>(graded.size());
+         u += kGrading * std::hypot(offset, u)) {
+      graded[count++] = u;
+    }
+    const auto add_inside = [&](double from_nearest) {
+      const double at = nearest + from_nearest;
+      const double sliver = 0.25 * kGrading * distance_at(offset, from_nearest);
+      if (at > nodes_[node_count_ - 1].turn + sliver && at < turn - sliver) add(at);
+    };
+    for (int n = count - 1; n >= 0; --n) add_inside(-graded[n]);
+    for (int n = 0; n < count; ++n) add_inside(graded[n]);
+  } else {
+    passage_ = {};
+  }
+  add(turn);
+  nodes_[node_count_ - 1].s = path.length;
+  if (node_count_ == 2) return;
+  for (int n = 0; n < node_count_; ++n) {
+    const double u = nodes_[n].turn - passage_.nearest_turn;
+    nodes_[n].azimuth = std::atan2(std::sin(u), passage_.offset * std::cos(u));
+    nodes_[n].has_azimuth = std::abs(nodes_[n].azimuth) < kLargestAzimuth_rad;
+  }
+}
+
+PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
+  const PathPiece& path = leg.path;
+  cells_.clear();
+  azimuth_cells_.clear();
+  PathPiece by_azimuth;
+  double azimuth_from = 0;
+  bool is_begun = false;
+  for (int n = 0; n + 1 < node_count_; ++n) {
+    Node& a = nodes_[n];
+    const Node& b = nodes_[n + 1];
+    a.cell = cells_.size();
+    a.azimuth_cell = azimuth_cells_.size();
+    const double share = path.length > 0 ? (b.s - a.s) / path.length : 1.0;
+    double amount = std::max({share * std::abs(path.arc_sweep) / kCellSweep_rad,
+                              share * path.axis_turn / kCellTurn_rad,
+                              std::abs(share * (path.free_end - path.free_begin)) / kCellFree_rad});
+    if (is_solved(path) && path.axis_turn > 0) {
+      const double near = std::min(distance_at(passage_.offset, a.turn - passage_.nearest_turn),
+                                   distance_at(passage_.offset, b.turn - passage_.nearest_turn));
+      amount = std::max(amount, (b.turn - a.turn) / (kCellGrading * near));
+    }
+    const JointVector at_begin = joints;
+    const PathFault fault = cells_.append(model_, path, a.s, b.s, cells_for(amount), joints);
+    if (fault.kind != PathFault::Kind::kNone) return fault;
+    if (!a.has_azimuth || !b.has_azimuth) continue;
+    if (!is_begun) {
+      // One piece over all nodes near enough, so that its s counts through.
+      int last = n;
+      while (last + 1 < node_count_ && nodes_[last + 1].has_azimuth) ++last;
+      azimuth_from = a.azimuth;
+      by_azimuth = cut_by_azimuth(path, passage_, azimuth_from, nodes_[last].azimuth);
+      is_begun = true;
+    }
+    JointVector at = at_begin;
+    const PathFault azimuth_fault = azimuth_cells_.append(
+        model_, by_azimuth, kAxisLength_mm_per_rad * (a.azimuth - azimuth_from),
+        kAxisLength_mm_per_rad * (b.azimuth - azimuth_from),
+        cells_for((b.azimuth - a.azimuth) / kCellFree_rad), at);
+    if (azimuth_fault.kind != PathFault::Kind::kNone) return azimuth_fault;
+  }
+  nodes_[node_count_ - 1].cell = cells_.size();
+  nodes_[node_count_ - 1].azimuth_cell = azimuth_cells_.size();
+  return {};
+}
+
+double LegPlanner::find_feed_velocity(const Leg& leg, double share_rate) const noexcept {
+  constexpr double kBelow = 1 - 1e-7;  // never above the feed, whatever rounding does
+  double velocity = std::numeric_limits<double>::max();
+  const double tip_rate = tip_length_ * share_rate;
+  if (leg.feed_mm_per_s > 0 && tip_rate > 0) velocity = kBelow * leg.feed_mm_per_s / tip_rate;
+  if (leg.share_per_s > 0 && share_rate > 0) {
+    velocity = std::min(velocity, kBelow * leg.share_per_s / share_rate);
+  }
+  return velocity;
+}
+
+void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg,
+                            const JointCaps& caps) noexcept {
+  const CellTable& table = by_azimuth ? azimuth_cells_ : cells_;
+  JointCell whole{};
+  bool is_begun = false;
+  for (int last = first + 1; last < node_count_; ++last) {
+    const Node& before = nodes_[last - 1];
+    Node& to = nodes_[last];
+    if (by_azimuth && !(before.has_azimuth && to.has_azimuth)) break;
+    const auto cells = by_azimuth ? table.range(before.azimuth_cell, to.azimuth_cell)
+                                  : table.range(before.cell, to.cell);
+    for (const JointCell& cell : cells) {
+      whole = is_begun ? merged(whole, cell) : cell;
+      is_begun = true;
+    }
+    const MotionChoice choice = choose_motion({&whole, 1}, caps, whole.end - whole.begin,
+                                              find_feed_velocity(leg, whole.share_rate));
+    if (choice.profile.jerk == 0) break;
+    const double time = choice.profile.duration();
+    if (nodes_[first].fastest + time < to.fastest) {
+      to.fastest = nodes_[first].fastest + time;
+      to.from = first;
+      to.by_azimuth = by_azimuth;
+    } else if (!by_azimuth && time > to.fastest) {
+      break;  // longer runs from here are slower still
+    }
+  }
+}
+
+void LegPlanner::find_fastest_runs(const Leg& leg, const JointCaps& caps) noexcept {
+  for (int n = 1; n < node_count_; ++n) {
+    nodes_[n].fastest = kNever;
+    nodes_[n].from = n - 1;
+    nodes_[n].by_azimuth = false;
+  }
+  nodes_[0].fastest = 0;
+  if (node_count_ == 2) return;
+  for (int n = 0; n + 1 < node_count_; ++n) {
+    relax_from(n, false, leg, caps);
+    if (nodes_[n].has_azimuth) relax_from(n, true, leg, caps);
+  }
+}
+
+PathFault LegPlanner::stage_run(const Leg& leg, const Node& from, const Node& to, Staging& out,
+                                JointVector& joints) noexcept {
+  const double turn = leg.path.axis_turn;
+  const bool is_whole = node_count_ == 2;
+  PathPiece piece = leg.path;
+  if (to.by_azimuth) {
+    piece = cut_by_azimuth(leg.path, passage_, from.azimuth, to.azimuth);
+  } else if (!is_whole) {
+    const bool is_last = &to == &nodes_[node_count_ - 1];
+    piece = cut_piece(leg.path, from.turn / turn, is_last ? 1.0 : to.turn / turn);
+  }
+  const auto cells = to.by_azimuth ? azimuth_cells_.range(from.azimuth_cell, to.azimuth_cell)
+                                   : cells_.range(from.cell, to.cell);
+  double share_rate = 0;
+  for (const JointCell& cell : cells) share_rate = std::max(share_rate, cell.share_rate);
+  const MotionChoice choice =
+      choose_motion(cells, caps_, piece.length, find_feed_velocity(leg, share_rate));
+  if (choice.profile.jerk == 0) return {PathFault::Kind::kTooLong, -1, 0};
+  const auto begin = joints_at(model_, piece, 0.0, joints);
+  const auto end = joints_at(model_, piece, 0.5 * piece.length, begin.q);
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const double jump = begin.q[i] - joints[i];
+    if (!(std::abs(jump) < kLargestJump)) return {PathFault::Kind::kJump, i, jump};
+  }
+  piece.joints_begin = begin.q;
+  piece.joints_end = joints_at(model_, piece, piece.length, end.q).q;
+  piece.index = out.first_index + static_cast<std::uint64_t>(out.path_count);
+  if (!out.add(piece) || !stage_times(leg, piece, choice, cells, cells.front().begin, out)) {
+    return {PathFault::Kind::kTooLong, -1, 0};
+  }
+  joints = piece.joints_end;
+  return {};
+}
+
+bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const MotionChoice& choice,
+                             std::span<const JointCell> cells, double offset,
+                             Staging& out) const noexcept {
+  TimePiece time;
+  time.kind = TimeKind::kMove;
+  time.is_from_rest = true;
+  time.epoch = piece.epoch;
+  time.window = leg.window;
+  time.path_index = piece.index;
+  time.sequence = piece.sequence;
+  time.line = piece.line;
+  time.feed_mm_per_s = leg.feed_mm_per_s;
+  const StopAuthority authority(cells, offset, caps_, fault_caps_, choice);
+  const ProfilePhases phases = phases_of(choice.profile, piece.length);
+  for (int n = 0; n < phases.count; ++n) {
+    const ProfilePhase& phase = phases.phase[n];
+    const int parts = authority.parts_of(phase);
+    for (int k = 0; k < parts; ++k) {
+      const double t = phase.duration * k / parts;
+      time.duration = phase.duration / parts;
+      time.s0 = phase.s + t * (phase.v + t * (phase.a / 2 + t * phase.j / 6));
+      time.v = phase.v + t * (phase.a + t * phase.j / 2);
+      time.a = phase.a + t * phase.j;
+      time.j = phase.j;
+      authority.grant(time);
+      if (!out.add(time)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace meridian

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/planner/rest_to_rest.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/geometry/unit_vector.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/router.hpp"
+#include "service/core/planner/staging.hpp"
+
+namespace meridian {
+namespace {
+
+RejectCode code_of(PathFault::Kind kind) noexcept {
+  switch (kind) {
+    case PathFault::Kind::kNone:
+      return RejectCode::kNone;
+    case PathFault::Kind::kTravel:
+      return RejectCode::kTravel;
+    case PathFault::Kind::kUnreachable:
+      return RejectCode::kUnreachable;
+    case PathFault::Kind::kTooLong:
+      return RejectCode::kTooComplex;
+    case PathFault::Kind::kJump:
+      break;
+  }
+  return RejectCode::kDiscontinuous;
+}
+
+TimeKind barrier_of(BlockKind kind) noexcept {
+  switch (kind) {
+    case BlockKind::kDwell:
+      return TimeKind::kDwell;
+    case BlockKind::kStop:
+      return TimeKind::kStop;
+    case BlockKind::kOptionalStop:
+      return TimeKind::kOptionalStop;
+    case BlockKind::kEnd:
+      return TimeKind::kEnd;
+    case BlockKind::kAuxiliary:
+    case BlockKind::kTool:
+    case BlockKind::kCut:
+    case BlockKind::kRapid:
+      break;
+  }
+  return TimeKind::kAction;
+}
+
+bool is_finite(const ClBlock& block) noexcept {
+  double zero = 0;
+  for (int i = 0; i < 3; ++i) {
+    zero += 0 * block.tip_mm[i] + 0 * block.axis[i];
+    if (block.is_arc) zero += 0 * block.centre_mm[i] + 0 * block.normal[i];
+  }
+  zero += 0 * block.feed + 0 * block.value + 0 * block.sweep_rad;
+  return zero == 0;
+}
+
+}  // namespace
+
+struct RestToRestPlanner::Workspace {
+  Workspace(const MachineModel& m, ToolTable t) : model(m), tools(std::move(t)), router(m) {}
+
+  const MachineModel& model;
+  ToolTable tools;
+  Router router;
+  Staging staging;
+  PlanCursor cursor;  ///< end of what is published
+  PlanCursor next;    ///< end of what is staged
+  PlanResult result;  ///< of what is staged
+  bool is_staged = false;
+  bool is_refused = false;
+
+  void refuse(const ClBlock& block, RejectCode code, int joint, double value) noexcept {
+    is_refused = true;
+    result = {PlanStatus::kRefused, {block.sequence, block.line, code, joint, value}, 0};
+  }
+
+  /// Stages the whole of `block` behind `cursor`, or refuses it.
+  void stage(const ClBlock& block) noexcept;
+  void stage_motion(ClBlock block) noexcept;
+  void stage_barrier(const ClBlock& block) noexcept;
+};
+
+void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
+  staging.clear(cursor.path_index);
+  next = cursor;
+  result = {};
+  if (!is_finite(block)) return refuse(block, RejectCode::kNotFinite, -1, 0);
+  if (is_motion(block.kind)) {
+    stage_motion(block);
+  } else {
+    stage_barrier(block);
+  }
+  if (is_refused) return;
+  next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
+  is_staged = true;
+}
+
+void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
+  const auto axis = UnitVector3::near_unit(to_vector(block.axis));
+  if (!axis) return refuse(block, RejectCode::kNotFinite, -1, 0);
+  block.axis = to_array(axis->vector());
+  const bool is_cut = block.kind == BlockKind::kCut;
+  if (is_cut && (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0))) {
+    return refuse(block, RejectCode::kFeed, -1, block.feed);
+  }
+  const auto count_window = [this](int pieces_before) {
+    if (staging.time_count > pieces_before) ++next.window;
+  };
+  PathFault fault;
+  if (next.is_first) {
+    fault = router.approach(block, next, staging);
+    result.axis_deviation_rad = router.axis_deviation_rad();
+    next.is_first = false;
+    count_window(0);
+  }
+  if (fault.kind == PathFault::Kind::kNone) {
+    if (!find_great_circle(next.pose.axis, to_vector(block.axis)).is_unique) {
+      return refuse(block, RejectCode::kAxisReversal, -1, 0);
+    }
+    const int before = staging.time_count;
+    fault = router.route(block, next, staging);
+    result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
+    count_window(before);
+  }
+  if (fault.kind != PathFault::Kind::kNone) {
+    refuse(block, code_of(fault.kind), fault.joint, fault.value);
+  }
+}
+
+void RestToRestPlanner::Workspace::stage_barrier(const ClBlock& block) noexcept {
+  TimePiece piece;
+  piece.kind = barrier_of(block.kind);
+  piece.is_from_rest = true;
+  piece.epoch = next.epoch;
+  piece.window = next.window++;
+  piece.sequence = block.sequence;
+  piece.line = block.line;
+  piece.duration = block.kind == BlockKind::kDwell ? std::max(0.0, block.value) : 0.0;
+  if (block.kind == BlockKind::kTool) {
+    const Tool* tool = tools.find(static_cast<int>(std::lround(block.value)));
+    if (tool == nullptr) return refuse(block, RejectCode::kUnknownTool, -1, block.value);
+    next.tool_length_mm = tool->length_mm;
+    next.pose.tip = forward(model, next.tool_length_mm, next.joints).tip;
+  }
+  (void)staging.add(piece);
+}
+
+RestToRestPlanner::RestToRestPlanner(const MachineModel& model, ToolTable tools)
+    : workspace_(std::make_unique<Workspace>(model, std::move(tools))) {
+  begin(JointVector{}, model.tool_length_mm, 0);
+}
+
+RestToRestPlanner::~RestToRestPlanner() = default;
+
+void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
+                              std::uint16_t epoch) noexcept {
+  Workspace& w = *workspace_;
+  w.cursor = {};
+  w.cursor.joints = at_rest;
+  w.cursor.tool_length_mm = tool_length_mm;
+  w.cursor.epoch = epoch;
+  w.cursor.pose = forward(w.model, tool_length_mm, at_rest);
+  w.is_staged = false;
+  w.is_refused = false;
+}
+
+PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  if (w.is_refused) return w.result;
+  if (!w.is_staged) w.stage(block);
+  if (w.is_refused) return w.result;
+  const Staging& staged = w.staging;
+  if (!writer.has_room(static_cast<std::size_t>(staged.path_count),
+                       static_cast<std::size_t>(staged.time_count))) {
+    return {PlanStatus::kNoRoom, {}, 0};
+  }
+  bool is_written = true;
+  for (int n = 0; n < staged.path_count; ++n) is_written &= writer.stage(staged.paths[n]);
+  for (int n = 0; n < staged.time_count; ++n) is_written &= writer.stage(staged.times[n]);
+  if (!is_written) {
+    writer.discard();
+    return {PlanStatus::kNoRoom, {}, 0};
+  }
+  writer.publish();
+  w.cursor = w.next;
+  w.is_staged = false;
+  return w.result;
+}
+
+const JointVector& RestToRestPlanner::joints() const noexcept { return workspace_->cursor.joints; }
+
+double RestToRestPlanner::tool_length_mm() const noexcept {
+  return workspace_->cursor.tool_length_mm;
+}
+
+}  // namespace meridian

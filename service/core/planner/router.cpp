@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/router.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/joints_at.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kNoTip_mm = 1e-9;      // shorter ways are no motion
+constexpr double kNoTurn_rad = 1e-12;   // smaller turns of the axis are none
+constexpr double kSameFree_rad = 1e-9;  // azimuths that differ less need no turn on the pole
+constexpr int kMostTurns = 4;           // windings tried either way
+
+bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
+
+}  // namespace
+
+Vector3 Router::eased(const Vector3& axis) noexcept {
+  const double distance = pole_distance(model_, axis);
+  if (!(distance < kPoleEase_rad)) return axis;
+  deviation_rad_ = std::max(deviation_rad_, distance);
+  return find_nearest_pole(model_, axis);
+}
+
+bool Router::is_at_pole(const Vector3& axis) const noexcept {
+  return free_joint(model_) >= 0 && pole_distance(model_, axis) < kPoleEase_rad;
+}
+
+Router::Job Router::job_of(const ClBlock& block) const noexcept {
+  Job job{block, block.kind == BlockKind::kRapid ? MotionKind::kRapid : MotionKind::kCut};
+  if (block.kind == BlockKind::kRapid) return job;
+  const double most = model_.max_feed_mm_per_s;
+  if (block.feed_meaning == FeedMeaning::kInverseTime) {
+    job.share_per_s = block.feed;
+    job.feed_mm_per_s = most;
+  } else {
+    job.feed_mm_per_s = most > 0 ? std::min(most, block.feed) : block.feed;
+  }
+  return job;
+}
+
+Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept {
+  Ways ways;
+  const int free = free_joint(model_);
+  const auto add = [&](JointVector q) {
+    if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
+    double cost = 0;
+    for (int i = 0; i < model_.joint_count; ++i) {
+      cost = std::max(cost, std::abs(q[i] - cursor.joints[i]) / model_.joints[i].limits.velocity);
+    }
+    ways.way[ways.count++] = {q, cost};
+  };
+  for (int branch = 0; branch < branch_count(model_); ++branch) {
+    const auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);
+    if (at.status == SolveStatus::kUnreachable) continue;
+    add(at.q);
+    if (at.status == SolveStatus::kAtPole) break;
+    if (free < 0 || model_.joints[free].is_endless) continue;
+    for (int turns = 1; turns <= kMostTurns; ++turns) {
+      for (const int sign : {-1, 1}) {
+        JointVector q = at.q;
+        q[free] += sign * turns * 2 * std::numbers::pi;
+        add(q);
+      }
+    }
+  }
+  std::stable_sort(ways.way.begin(), ways.way.begin() + ways.count,
+                   [](const Way& a, const Way& b) { return a.cost < b.cost; });
+  return ways;
+}
+
+PathFault Router::run(const PathPiece& path, const Job& job, double share, PlanCursor& cursor,
+                      Staging& out) noexcept {
+  Leg leg;
+  leg.path = path;
+  leg.path.sequence = job.block.sequence;
+  leg.path.line = job.block.line;
+  leg.path.epoch = cursor.epoch;
+  leg.path.motion = path.kind == PathKind::kTurn ? MotionKind::kPoleTurn : job.motion;
+  leg.path.tool_length_mm = cursor.tool_length_mm;
+  leg.feed_mm_per_s = job.feed_mm_per_s;
+  leg.share_per_s = share > 0 ? job.share_per_s / share : 0;
+  leg.window = cursor.window;
+  return legs_.plan(leg, out, cursor.joints);
+}
+
+PathFault Router::run_held(PathPiece path, double free_end, const Job& job, double share,
+                           PlanCursor& cursor, Staging& out) noexcept {
+  if (!(path.length > kNoTip_mm)) return {};
+  path.is_free_driven = true;
+  path.free_begin = cursor.joints[free_joint(model_)];
+  path.free_end = free_end;
+  return run(path, job, share, cursor, out);
+}
+
+PathFault Router::run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
+                             Staging& out) noexcept {
+  // The branch in force is the one that gives the present joints back.
+  const ToolPose begin = pose_at(path, 0.0);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int branch = 0; branch < branch_count(model_); ++branch) {
+    const auto at = solve(model_, cursor.tool_length_mm, begin, branch, cursor.joints);
+    double distance = 0;
+    for (int i = 0; i < model_.joint_count; ++i) {
+      distance = std::max(distance, std::abs(at.q[i] - cursor.joints[i]));
+    }
+    if (distance < nearest) {
+      nearest = distance;
+      path.branch = static_cast<std::uint8_t>(branch);
+    }
+  }
+  return run(path, job, 1.0, cursor, out);
+}
+
+PathFault Router::turn_free(const ToolPose& pose, double free_end, const Job& job,
+                            PlanCursor& cursor, Staging& out) noexcept {
+  const double free = cursor.joints[free_joint(model_)];
+  if (std::abs(free_end - free) < kSameFree_rad) return {};
+  return run(make_turn(pose, free, free_end), job, 0, cursor, out);
+}
+
+PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
+                             PlanCursor& cursor, Staging& out) noexcept {
+  const Ways ways = find_ways(end, cursor);
+  const int free = free_joint(model_);
+  PathFault first{PathFault::Kind::kUnreachable, -1, 0};
+  if (ways.count == 0) {
+    const auto at = solve(model_, cursor.tool_length_mm, end, 0, cursor.joints);
+    const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
+    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, at.q[joint]};
+  }
+  for (int n = 0; n < ways.count; ++n) {
+    PlanCursor trial = cursor;
+    const Staging::Mark mark = out.mark();
+    const double free_end = ways.way[n].joints[free];
+    PathFault fault = turn_free(pose_at(path, 0.0), free_end, job, trial, out);
+    if (!is_fault(fault)) fault = run_held(path, trial.joints[free], job, 1.0, trial, out);
+    if (!is_fault(fault)) {
+      cursor = trial;
+      return {};
+    }
+    out.go_back(mark);
+    if (n == 0) first = fault;
+  }
+  return first;
+}
+
+bool Router::is_straight_passage(const PathPiece& path, double free_end,
+                                 const PlanCursor& cursor) noexcept {
+  PathPiece held = path;
+  held.is_free_driven = true;
+  held.free_begin = cursor.joints[free_joint(model_)];
+  held.free_end = free_end;
+  held.tool_length_mm = cursor.tool_length_mm;
+  constexpr int kSamples = 64;
+  double largest = 0;
+  for (int n = 0; n <= kSamples; ++n) {
+    const double s = held.length * n / kSamples;
+    const auto at = joints_at(model_, held, s, cursor.joints);
+    const Vector3 axis = forward(model_, held.tool_length_mm, at.q).axis;
+    largest = std::max(largest, angle_between(axis, pose_at(held, s).axis));
+  }
+  if (largest > kPoleEase_rad) return false;
+  deviation_rad_ = std::max(deviation_rad_, largest);
+  return true;
+}
+
+PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double share,
+                            const Job& job, PlanCursor& cursor, Staging& out) noexcept {
+  const Ways ways = find_ways(end, cursor);
+  const int free = free_joint(model_);
+  for (int n = 0; n < ways.count; ++n) {
+    const double free_end = ways.way[n].joints[free];
+    if (!is_straight_passage(path, free_end, cursor)) continue;
+    PlanCursor trial = cursor;
+    const Staging::Mark mark = out.mark();
+    const PathFault fault = run_held(path, free_end, job, 1.0, trial, out);
+    if (!is_fault(fault)) {
+      cursor = trial;
+      return {};
+    }
+    out.go_back(mark);
+  }
+  // Over the pole itself, where the free joint may be turned at rest.
+  const Vector3 begin_axis = to_vector(path.axis_begin);
+  const Vector3 pole = find_nearest_pole(model_, begin_axis);
+  deviation_rad_ = std::max(deviation_rad_, find_passage(path, pole).offset);
+  const PathPiece there = with_axes(cut_piece(path, 0, share), begin_axis, pole);
+  const PathPiece back = with_axes(cut_piece(path, share, 1), pole, end.axis);
+  const Staging::Mark mark = out.mark();
+  PlanCursor trial = cursor;
+  PathFault fault = run_held(there, cursor.joints[free], job, share, trial, out);
+  if (!is_fault(fault)) {
+    Job rest = job;
+    rest.share_per_s = job.share_per_s / (1 - share);
+    fault = leave_pole(back, end, rest, trial, out);
+  }
+  if (is_fault(fault)) {
+    out.go_back(mark);
+    return fault;
+  }
+  cursor = trial;
+  return {};
+}
+
+PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
+  deviation_rad_ = 0;
+  const ToolPose end{to_vector(block.tip_mm), eased(to_vector(block.axis))};
+  PathPiece path = block.is_arc ? make_arc(cursor.pose, end, block) : make_line(cursor.pose, end);
+  if (path.axis_turn < kNoTurn_rad) {
+    path = with_axes(path, cursor.pose.axis, cursor.pose.axis);
+    path.axis_turn = 0;
+  }
+  if (!(path.length > kNoTip_mm)) return {};
+  const Job job = job_of(block);
+  const int free = free_joint(model_);
+  PathFault fault;
+  if (path.axis_turn == 0) {
+    fault = free >= 0 ? run_held(path, cursor.joints[free], job, 1.0, cursor, out)
+                      : run_solved(path, job, cursor, out);
+    cursor.pose.tip = end.tip;
+    return fault;
+  }
+  if (free < 0) {
+    fault = run_solved(path, job, cursor, out);
+  } else if (is_at_pole(cursor.pose.axis)) {
+    fault = leave_pole(path, end, job, cursor, out);
+  } else if (is_at_pole(end.axis)) {
+    fault = run_held(path, cursor.joints[free], job, 1.0, cursor, out);
+  } else {
+    const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
+    const double share = passage.nearest_turn / path.axis_turn;
+    const bool passes = passage.offset < kPoleEase_rad && share > 0 && share < 1;
+    fault =
+        passes ? pass_pole(path, end, share, job, cursor, out) : run_solved(path, job, cursor, out);
+  }
+  cursor.pose = end;
+  return fault;
+}
+
+}  // namespace meridian

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "service/core/planner/leg_planner.hpp"
+#include "service/core/planner/staging.hpp"
+
+namespace meridian {
+
+/// Where the plan has got to.
+struct PlanCursor {
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+  JointVector joints{};
+  double tool_length_mm = 0;
+  bool is_first = true;  ///< no motion block yet: the next one is approached
+  std::uint64_t path_index = 0;
+  std::uint32_t window = 0;
+  std::uint16_t epoch = 0;
+};
+
+/// Finds the legs of a motion block: which branch and winding, where it stops on the pole, and the
+/// approach of the first block. What it stages is judged; on a fault nothing of the block is meant.
+class Router {
+ public:
+  explicit Router(const MachineModel& model) noexcept : model_(model), legs_(model) {}
+
+  /// Plans the way from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
+  [[nodiscard]] PathFault route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+
+  /// Brings the first block's begin under the tool.
+  [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+
+  /// Largest ease of the axis in the last route().
+  [[nodiscard]] double axis_deviation_rad() const noexcept { return deviation_rad_; }
+
+  /// `axis`, or the pole itself where `axis` is eased onto it.
+  [[nodiscard]] Vector3 eased(const Vector3& axis) noexcept;
+
+ private:
+  static constexpr int kMaxWays = 24;
+
+  /// A value of the free joint at the end of a way, from one branch and winding.
+  struct Way {
+    JointVector joints{};
+    double cost = 0;
+  };
+  struct Ways {
+    std::array<Way, kMaxWays> way;
+    int count = 0;
+  };
+
+  /// What all legs of a block share.
+  struct Job {
+    const ClBlock& block;
+    MotionKind motion;
+    double feed_mm_per_s = 0;
+    double share_per_s = 0;
+  };
+
+  [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
+  [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
+  [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;
+  [[nodiscard]] PathFault run(const PathPiece& path, const Job& job, double share,
+                              PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault run_held(PathPiece path, double free_end, const Job& job, double share,
+                                   PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
+                                     Staging& out) noexcept;
+  [[nodiscard]] PathFault turn_free(const ToolPose& pose, double free_end, const Job& job,
+                                    PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
+                                     PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault pass_pole(const PathPiece& path, const ToolPose& end, double share,
+                                    const Job& job, PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] bool is_straight_passage(const PathPiece& path, double free_end,
+                                         const PlanCursor& cursor) noexcept;
+  [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
+                                      PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
+                                      double tool_length_mm) const noexcept;
+
+  const MachineModel& model_;
+  LegPlanner legs_;
+  double deviation_rad_ = 0;
+};
+
+}  // namespace meridian

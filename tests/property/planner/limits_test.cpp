@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "property/planner/plan_trace.hpp"
+#include "property/planner/random_programs.hpp"
+#include "support/machines.hpp"
+
+namespace meridian::test {
+namespace {
+
+constexpr double kLimit = 1 + 1e-6;
+
+/// Joints at plan time `t` of the time piece `n`.
+JointVector joints_in(const MachineModel& model, const Trace& trace, std::size_t n, double t) {
+  const TimePiece& time = trace.times[n];
+  const PathPiece& path = trace.paths[n];
+  const double s = state_at(time, t).s;
+  JointVector reference{};
+  for (int i = 0; i < kMaxJoints; ++i) {
+    const double share = s / path.length;
+    reference[i] = path.joints_begin[i] + share * (path.joints_end[i] - path.joints_begin[i]);
+  }
+  return joints_at(model, path, s, reference).q;
+}
+
+/// `count` setpoints from plan time `from` on.
+std::vector<PlanSample> burst(const MachineModel& model, const Trace& trace,
+                              const std::vector<double>& begins, double from, double cycle_s,
+                              int count, const JointVector& start) {
+  std::vector<PlanSample> out;
+  std::size_t n = 0;
+  for (int k = 0; k < count; ++k) {
+    const double t = from + k * cycle_s;
+    if (t < 0) {
+      out.push_back({start, 0, 0});
+      continue;
+    }
+    if (n == 0) {
+      const auto at = std::upper_bound(begins.begin(), begins.end(), t);
+      n = static_cast<std::size_t>(at - begins.begin());
+    }
+    while (n < begins.size() && begins[n] <= t) ++n;
+    const double in = t - begins[n - 1];
+    if (in >= trace.times[n - 1].duration) {
+      out.push_back({trace.joints, static_cast<int>(n) - 1, 0});
+    } else {
+      out.push_back({joints_in(model, trace, n - 1, in), static_cast<int>(n) - 1, 0});
+    }
+  }
+  return out;
+}
+
+struct Peaks {
+  double v = 0, a = 0, j = 0, feed = 0, tip_mm = 0, axis_rad = 0;
+  void take(const LimitUse& use) {
+    v = std::max(v, use.v);
+    a = std::max(a, use.a);
+    j = std::max(j, use.j);
+  }
+  void take(const Deviation& d) {
+    tip_mm = std::max(tip_mm, d.tip_mm);
+    axis_rad = std::max(axis_rad, d.axis_rad);
+  }
+};
+
+/// Judges a plan at the joints of its time pieces and at random places between.
+void judge(const MachineModel& model, const Trace& trace, const std::vector<ClBlock>& blocks,
+           const JointVector& start, RandomPrograms& draw, Peaks& peaks) {
+  std::vector<double> begins;
+  double time = 0;
+  for (const TimePiece& piece : trace.times) {
+    begins.push_back(time);
+    time += piece.duration;
+  }
+  const auto ways = programmed_ways(blocks);
+  for (std::size_t n = 0; n < begins.size(); ++n) {
+    for (const double cycle : {1e-3, 250e-6}) {
+      const bool at_joint = draw.chance(0.7);
+      const double from = at_joint ? begins[n] - draw.uniform(0, 4) * cycle
+                                   : begins[n] + draw.uniform(0, trace.times[n].duration);
+      const auto setpoints = burst(model, trace, begins, from, cycle, 8, start);
+      const LimitUse use = measure_limits(model, setpoints, cycle);
+      ASSERT_LE(std::max({use.v, use.a, use.j}), kLimit)
+          << use.where << " time piece " << n << " of sequence " << trace.times[n].sequence
+          << " kind " << static_cast<int>(trace.paths[n].kind) << " v " << use.v << " a " << use.a
+          << " j " << use.j << " cycle " << cycle;
+      peaks.take(use);
+      const double feed = measure_feed(model, trace, setpoints, cycle);
+      ASSERT_LE(feed, kLimit) << "time piece " << n;
+      peaks.feed = std::max(peaks.feed, feed);
+      if (n % 8 == 0) peaks.take(measure_deviation(model, trace, setpoints, ways, 8));
+    }
+  }
+  ASSERT_LE(peaks.tip_mm, 1e-3);
+  ASSERT_LE(units::deg_from_rad(peaks.axis_rad), 1e-3);
+}
+
+MachineModel draw_machine(RandomPrograms& draw) {
+  MachineModel model = draw.chance(0.5) ? lai_machine() : bench_machine();
+  if (draw.chance(0.4)) model.frame_rotation = draw.rotation(draw.chance(0.5) ? 0.3 : 3.0);
+  if (draw.chance(0.5)) model.frame_origin_mm = {draw.uniform(-50, 50), draw.uniform(-50, 50), 20};
+  return model;
+}
+
+TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
+  constexpr int kPrograms = 10000;
+  std::map<RejectCode, int> refused;
+  Peaks peaks;
+  std::size_t pieces = 0;
+  double motion_s = 0;
+  for (int n = 0; n < kPrograms; ++n) {
+    const auto seed = static_cast<std::uint64_t>(7000000 + n);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomPrograms draw(seed);
+    const MachineModel model = draw_machine(draw);
+    const auto blocks = draw.program(model, 4);
+    const JointVector start = draw.start(model);
+    const Trace trace = plan_program(model, blocks, start);
+    if (trace.last.status == PlanStatus::kRefused) {
+      ++refused[trace.last.reject.code];
+      ASSERT_TRUE(trace.last.reject.code == RejectCode::kTravel ||
+                  trace.last.reject.code == RejectCode::kAxisReversal)
+          << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
+          << " value " << trace.last.reject.value << " sequence " << trace.last.reject.sequence;
+    }
+    pieces += trace.times.size();
+    motion_s += trace.duration_s();
+    judge(model, trace, blocks, start, draw, peaks);
+    if (HasFatalFailure()) return;
+  }
+  std::printf(
+      "%d programs, %zu time pieces, %.0f s of motion; largest use v %.7f a %.7f j %.7f, feed "
+      "%.7f, tip %.2e mm, axis %.2e deg; refused: travel %d, reversal %d\n",
+      kPrograms, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
+      units::deg_from_rad(peaks.axis_rad), refused[RejectCode::kTravel],
+      refused[RejectCode::kAxisReversal]);
+  EXPECT_LT(refused[RejectCode::kTravel], kPrograms / 4) << "hardly anything was judged";
+}
+
+}  // namespace
+}  // namespace meridian::test
