@@ -7,6 +7,9 @@
 #include <type_traits>
 
 #include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/time_law.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/rate_filter.hpp"
 #include "meridian/rt/state.hpp"
@@ -23,7 +26,7 @@ struct CycleOptions {
   double feedback_timeout_s = 0.02;  ///< feedback older than it is lost
 };
 
-/// The answer of the action peer to the newest action.
+/// The answer of the action peer to an action; an answer is given to exactly one step().
 struct ActionAnswer {
   std::uint64_t sequence = 0;  ///< block whose action it answers
   bool is_answered = false;
@@ -57,29 +60,35 @@ struct StepOutput {
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
 
-/// How far the drives were when a setpoint was due: setpoints are kept so long for it.
+/// Setpoints are kept for that many cycles, to judge the following error of feedback that saw them.
 inline constexpr std::size_t kSentCycles = 256;
 
-/// A setpoint that was sent, to judge the following error of feedback that saw it.
 struct SentSetpoint {
   std::uint64_t cycle = 0;
+  double bridged = 0;  ///< s that the drives had to go on by its velocity, periods being lost
   JointVector position{};
+  JointVector velocity{};
 };
 
 /// A stop that is going on: on the path, or with every joint on its own line where the path cannot
 /// be evaluated any more.
 struct StopInProgress {
   bool is_active = false;
-  bool is_off_path = false;   ///< joints run out along `direction` instead of the path
-  StopLaw law;                ///< in path length, or in the share of `direction` (1: begin)
-  double time = 0;            ///< since it began
-  double passed = 0;          ///< path length of the pieces left behind since it began
-  double speed_begin = 0;     ///< ṡ when it began
-  JointVector begin{};        ///< is_off_path: joints when it began
-  JointVector direction{};    ///< is_off_path: joint velocity when it began
+  bool is_off_path = false;  ///< joints = begin + direction · law instead of the path
+  StopLaw law;               ///< path length; off the path: seconds at the speed of the begin
+  double time = 0;           ///< since it began
+  double passed = 0;         ///< path length of the path pieces left behind since it began
+  double rate_begin = 0;     ///< rate of plan time when it began, for the record
+  double speed_begin = 0;    ///< ṡ when it began
+  double stopping_time = 0, stopping_distance = 0;  ///< as laid out, for the report
+  JointVector begin{};                              ///< joints when it began
+  JointVector direction{};                          ///< is_off_path: joint velocity when it began
   JointVector deviation{};    ///< joints beside the path when it began (taken from feedback)
-  double deviation_time = 0;  ///< s in which `deviation` is run down to zero
+  double deviation_time = 0;  ///< time in which `deviation` is run down to zero
 };
+
+/// What the action peer said about the action that the cycle waits for.
+enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
 
 /// State of the cycle between two step() calls. Built once, no allocation afterwards.
 struct CycleState {
@@ -88,56 +97,64 @@ struct CycleState {
 
   CycleOptions options;
   State state = State::kOff;
+  double state_time = 0;  ///< s since it was entered
   std::uint16_t epoch = 1;
+  Alarm alarm = Alarm::kNone;     ///< why the machine is in FaultStop or Fault
+  std::uint32_t alarms_told = 0;  ///< one bit per Alarm since the last reset
+
   double feed_override = 1;   ///< wanted, 0 to 1.5; above 1 it is the planner's business
   double rapid_override = 1;  ///< wanted, 0 to 1
   RateFilter rate;
-
   double piece_time = 0;    ///< plan time since the piece in force began
   double program_time = 0;  ///< plan time from the program's start to the begin of that piece
+  PathState on_path{};  ///< s in the path piece in force; ṡ, s̈ as they are, override included
   StopInProgress stop;
 
   JointVector joints{};    ///< last commanded
   JointVector velocity{};  ///< its time derivative
-  PathState on_path{};     ///< s in the path piece in force, ṡ, s̈ in force
   MotionKind motion = MotionKind::kApproach;
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
   bool has_block = false;  ///< kBlockStarted was told for `sequence` and kBlockDone was not
 
-  double state_time = 0;  ///< s since the state was entered
-  double rest_time = 0;   ///< s of the barrier in force (dwell, action)
-  bool is_action_due_told = false;
+  double barrier_time = 0;  ///< s at the dwell or action in force
+  ActionState action = ActionState::kNotTold;
   std::uint64_t starved_session = 0;
-  Alarm alarm = Alarm::kNone;  ///< why the machine is in FaultStop or Fault
   std::uint64_t starvations = 0;
   std::uint64_t periods_lost = 0;
-  double unsent_time = 0;  ///< s since the last setpoint that was sent, before this cycle
   std::array<SentSetpoint, kSentCycles> sent{};
 };
 
-/// Adds an event to `out`; `cycle` and `epoch` are filled in. RT: cycle.
-inline void tell(const CycleState& state, const CycleInputs& in, StepOutput& out, EventCode code,
-                 std::uint64_t a = 0, std::uint64_t b = 0, double x = 0) noexcept {
-  if (out.event_count == kMaxEvents) {
-    ++out.events_dropped;
+/// One step() call: what its parts hand to one another.
+struct Cycle {
+  const MachineModel& machine;
+  CycleState& state;
+  MotionReader& reader;
+  const CycleInputs& in;
+  StepOutput& out;
+  double dt;             ///< s per period
+  int periods;           ///< that motion goes on by: 1 and those that were lost
+  JointVector previous;  ///< where the joints were before: last setpoint, or feedback
+  double elapsed;        ///< s since `previous`
+};
+
+/// Adds an event; cycle, line and epoch are filled in. RT: cycle.
+inline void tell(const Cycle& c, EventCode code, std::uint64_t a = 0, std::uint64_t b = 0,
+                 double x = 0) noexcept {
+  if (c.out.event_count == kMaxEvents) {
+    ++c.out.events_dropped;
     return;
   }
-  out.events[out.event_count++] = {code, in.cycle, a, b, x, state.line, state.epoch};
+  c.out.events[c.out.event_count++] = {code, c.in.cycle, a, b, x, c.state.line, c.state.epoch};
 }
 
 /// Enters `next` and tells it; nothing happens if the machine is there already. RT: cycle.
-inline void enter(CycleState& state, const CycleInputs& in, StepOutput& out, State next) noexcept {
-  if (state.state == next) return;
-  tell(state, in, out, EventCode::kStateChanged, static_cast<std::uint64_t>(next),
-       static_cast<std::uint64_t>(state.state));
-  state.state = next;
-  state.state_time = 0;
-}
-
-/// Seconds of one period. RT: cycle.
-[[nodiscard]] inline double period_of(std::int64_t cycle_ns) noexcept {
-  return static_cast<double>(cycle_ns) * 1e-9;
+inline void enter(const Cycle& c, State next) noexcept {
+  if (c.state.state == next) return;
+  tell(c, EventCode::kStateChanged, static_cast<std::uint64_t>(next),
+       static_cast<std::uint64_t>(c.state.state));
+  c.state.state = next;
+  c.state.state_time = 0;
 }
 
 }  // namespace meridian

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/follow_plan.hpp"
+#include "meridian/rt/state_table.hpp"
+#include "meridian/rt/stop_motion.hpp"
+#include "meridian/rt/supervise.hpp"
+
+/// The operator's word: table first, then the conditions that a table cannot hold. RT: cycle.
+namespace meridian {
+
+inline constexpr double kMostFeedOverride = 1.5, kMostRapidOverride = 1.0;
+
+/// At rest: everything planned is void, and all that travels later carries the next epoch.
+inline void drop_program(Cycle& c) noexcept {
+  c.state.has_block = false;
+  c.state.piece_time = 0;
+  c.state.program_time = 0;
+  c.state.epoch = static_cast<std::uint16_t>(c.state.epoch + 1);
+  c.reader.set_epoch(c.state.epoch);
+  tell(c, EventCode::kEpochAdvanced, c.state.epoch);
+}
+
+/// Why a verb that the table allows is refused now; kNone: it is not.
+[[nodiscard]] inline Refusal condition_of(Cycle& c, const Command& command) noexcept {
+  const Feedback& f = c.in.feedback;
+  const std::uint32_t all = all_joints(c.machine);
+  switch (command.verb) {
+    case Verb::kEnable:
+      if (!is_feedback_there(c)) return Refusal::kNoFeedback;
+      return f.emergency_stop || (f.fault_mask & all) != 0 ? Refusal::kFaultPresent
+                                                           : Refusal::kNone;
+    case Verb::kStart:
+      return (f.referenced_mask & all) == all ? Refusal::kNone : Refusal::kNotReferenced;
+    case Verb::kResume:
+      return c.reader.piece() != nullptr || next_piece(c) ? Refusal::kNone : Refusal::kNoProgram;
+    case Verb::kReset:
+      return f.emergency_stop ? Refusal::kFaultPresent : Refusal::kNone;
+    case Verb::kFeedOverride:
+      return command.argument >= 0 && command.argument <= kMostFeedOverride ? Refusal::kNone
+                                                                            : Refusal::kOutOfRange;
+    case Verb::kRapidOverride:
+      return command.argument >= 0 && command.argument <= kMostRapidOverride ? Refusal::kNone
+                                                                             : Refusal::kOutOfRange;
+    default:
+      return Refusal::kNone;
+  }
+}
+
+/// Steps over a program stop that the machine is held at, and goes on.
+inline void resume(Cycle& c) noexcept {
+  const TimeKind kind = c.reader.piece()->kind;
+  if (kind == TimeKind::kStop || kind == TimeKind::kOptionalStop) next_piece(c);
+  enter(c, running_state(c));
+}
+
+/// Goes to the state that the table names.
+inline void go(Cycle& c, State next) noexcept {
+  switch (next) {
+    case State::kEnabling:
+      c.state.joints = c.in.feedback.position;
+      c.previous = c.state.joints;
+      break;
+    case State::kDisabling:
+      drop_program(c);
+      break;
+    case State::kApproaching:
+      c.state.program_time = 0;
+      tell_block(c);
+      break;
+    case State::kHolding:
+    case State::kAborting:
+      if (!c.state.stop.is_active) begin_stop(c, StopKind::kHold);
+      break;
+    case State::kRunning:
+      return resume(c);
+    case State::kOff:
+      c.state.alarm = Alarm::kNone;
+      c.state.alarms_told = 0;
+      break;
+    default:
+      break;
+  }
+  enter(c, next);
+}
+
+/// Does what the command asks for, or refuses it; either is told with the request's number.
+inline void obey(Cycle& c) noexcept {
+  if (!c.in.has_command) return;
+  const Command& command = c.in.command;
+  const VerbEffect effect = effect_of(c.state.state, command.verb);
+  const bool is_asked = effect.effect == Effect::kGo || effect.effect == Effect::kSet;
+  const Refusal refusal = is_asked ? condition_of(c, command) : effect.refusal;
+  if (refusal != Refusal::kNone) {
+    tell(c, EventCode::kRefused, command.request, static_cast<std::uint64_t>(command.verb),
+         static_cast<double>(refusal));
+    return;
+  }
+  tell(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb));
+  if (effect.effect == Effect::kGo) go(c, effect.next);
+  if (command.verb == Verb::kFeedOverride) c.state.feed_override = command.argument;
+  if (command.verb == Verb::kRapidOverride) c.state.rapid_override = command.argument;
+}
+
+}  // namespace meridian

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/follow_plan.hpp"
+#include "meridian/rt/guard.hpp"
+#include "meridian/rt/obey.hpp"
+#include "meridian/rt/state_table.hpp"
+#include "meridian/rt/stop_motion.hpp"
+#include "meridian/rt/supervise.hpp"
+
+/// The cycle. Everything reached from step() is noexcept, bounded and free of allocation.
+namespace meridian {
+
+/// The answer of the action peer, wherever the machine is meanwhile.
+inline void take_action_answer(Cycle& c) noexcept {
+  const bool is_awaited = c.in.action.is_answered && c.state.action == ActionState::kWaiting &&
+                          c.in.action.sequence == c.state.sequence;
+  if (!is_awaited) return;
+  c.state.action = c.in.action.is_done ? ActionState::kDone : ActionState::kRefused;
+}
+
+/// The drives went on with the last velocity for the periods that were lost: feedback of that
+/// setpoint is ahead of it by so much.
+inline void mark_bridged(Cycle& c) noexcept {
+  const std::uint64_t last = c.in.cycle - c.in.lost_periods - 1;
+  SentSetpoint& sent = c.state.sent[last % kSentCycles];
+  if (c.in.lost_periods > 0 && sent.cycle == last) sent.bridged = c.dt * c.in.lost_periods;
+}
+
+/// Drives are off: the setpoint is where they are.
+inline void follow_feedback(Cycle& c) noexcept {
+  if (is_feedback_there(c)) c.state.joints = c.in.feedback.position;
+  rest(c);
+  c.previous = c.state.joints;
+}
+
+inline void wait_for_drives_on(Cycle& c) noexcept {
+  const std::uint32_t all = all_joints(c.machine);
+  rest(c);
+  if ((c.in.feedback.enabled_mask & all) == all) {
+    // What was planned before knew another place.
+    if (c.reader.piece() != nullptr || c.reader.advance() != nullptr) drop_program(c);
+    enter(c, State::kReady);
+  } else if (c.state.state_time > c.state.options.enable_timeout_s) {
+    raise(c, Alarm::kEnableTimeout, first_bit(~c.in.feedback.enabled_mask & all));
+  }
+}
+
+inline void wait_for_drives_off(Cycle& c) noexcept {
+  rest(c);
+  const bool is_off = (c.in.feedback.enabled_mask & all_joints(c.machine)) == 0;
+  if (is_off || c.state.state_time > c.state.options.disable_timeout_s) enter(c, State::kOff);
+}
+
+/// What a stop ends in.
+inline void arrive(Cycle& c) noexcept {
+  finish_stop(c);
+  if (c.state.state == State::kHolding) {
+    enter(c, State::kHeld);
+    return;
+  }
+  drop_program(c);
+  enter(c, c.state.state == State::kAborting ? State::kReady : State::kFault);
+}
+
+/// One cycle of the state in force. False if the path gave no joints.
+[[nodiscard]] inline bool move(Cycle& c) noexcept {
+  switch (c.state.state) {
+    case State::kOff:
+    case State::kFault:
+      follow_feedback(c);
+      return true;
+    case State::kEnabling:
+      wait_for_drives_on(c);
+      return true;
+    case State::kDisabling:
+      wait_for_drives_off(c);
+      return true;
+    case State::kReady:
+    case State::kLoaded:
+      rest(c);
+      if (c.reader.piece() != nullptr || c.reader.advance() != nullptr) enter(c, State::kLoaded);
+      return true;
+    case State::kApproaching:
+    case State::kRunning:
+    case State::kStarving:
+      return follow_plan(c);
+    case State::kHeld:
+      rest(c);
+      return true;
+    case State::kStarved:
+      wait_for_blocks(c);
+      return true;
+    case State::kHolding:
+    case State::kAborting:
+    case State::kFaultStop:
+      if (!follow_stop(c)) return false;
+      if (is_stop_over(c.state.stop)) arrive(c);
+      return true;
+  }
+  return true;
+}
+
+/// The last look before a setpoint leaves. One that must not be sent is replaced by a stop of every
+/// joint along its last velocity, and where even that must not be sent, by standing still.
+inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) noexcept {
+  if (!is_enabled(c.state.state)) return;
+  GuardVerdict verdict = judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed);
+  if (!has_joints) verdict.alarm = Alarm::kUnreachable;
+  if (verdict.alarm == Alarm::kNone) return;
+  c.state.joints = c.previous;
+  raise(c, verdict.alarm, verdict.joint, verdict.value);
+  begin_stop_off_path(c, c.previous, last_velocity);
+  (void)follow_stop(c);
+  verdict = judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed);
+  if (verdict.alarm == Alarm::kNone) return;
+  c.state.joints = c.previous;
+  rest(c);
+  begin_stop_off_path(c, c.previous, {});
+}
+
+/// Rate of plan time in force: of a stop, its speed in shares of the planned one.
+[[nodiscard]] inline double rate_of(const CycleState& state) noexcept {
+  const StopInProgress& stop = state.stop;
+  if (!stop.is_active) return state.rate.rate();
+  return stop.speed_begin > 0 ? stop.rate_begin * state.on_path.ds / stop.speed_begin : 0;
+}
+
+inline void record(Cycle& c) noexcept {
+  CycleState& state = c.state;
+  CycleRecord& out = c.out.record;
+  bool is_moving = false;
+  for (const double v : state.velocity) is_moving |= v != 0;
+  unsigned flags = 0;
+  if (is_enabled(state.state)) flags |= kSetpointEnabled;
+  if (is_moving) flags |= kSetpointMoving;
+  if (state.state == State::kFaultStop) flags |= kSetpointFaultStop;
+  out.setpoint = {c.in.cycle,
+                  c.in.due_ns,
+                  state.joints,
+                  state.velocity,
+                  state.line,
+                  state.epoch,
+                  static_cast<std::uint16_t>(flags)};
+  out.joints = state.joints;
+  out.sequence = state.sequence;
+  out.plan_time_s = state.program_time + state.piece_time;
+  out.rate = rate_of(state);
+  out.state = state.state;
+  out.motion = state.motion;
+  out.lateness_ns = static_cast<std::int32_t>(c.in.now_ns - c.in.due_ns);
+  out.computation_ns = c.in.computation_ns;
+  state.sent[c.in.cycle % kSentCycles] = {c.in.cycle, 0, state.joints, state.velocity};
+}
+
+/// Computes one setpoint: takes in what is known, obeys, moves, guards, and tells.
+///
+/// `in.cycle` grows by 1 + `in.lost_periods` from call to call; plan time goes on by as many
+/// periods, without output for those that were lost. The first call finds `state` in Off. The
+/// result is a function of the arguments alone: the same inputs give the same setpoints bit for
+/// bit. RT: cycle. Proof: tests/unit/rt/step_*_test.cpp, tests/property/rt.
+inline void step(const MachineModel& machine, CycleState& state, MotionReader& reader,
+                 const CycleInputs& in, StepOutput& out) noexcept {
+  const double dt = static_cast<double>(machine.cycle_ns) * 1e-9;
+  const int periods = 1 + static_cast<int>(in.lost_periods);
+  Cycle c{machine, state, reader, in, out, dt, periods, state.joints, dt * periods};
+  const JointVector last_velocity = state.velocity;
+  out.event_count = 0;
+  out.events_dropped = 0;
+  state.state_time += dt * periods;
+  reader.set_epoch(state.epoch);
+  mark_bridged(c);
+  take_action_answer(c);
+  supervise(c);
+  obey(c);
+  const bool has_joints = move(c);
+  guard(c, has_joints, last_velocity);
+  record(c);
+}
+
+}  // namespace meridian

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/on_path.hpp"
+
+/// Stops: hold, abort and FaultStop, on the path and, where it cannot be evaluated, beside it.
+/// RT: cycle.
+namespace meridian {
+
+/// A FaultStop that starts beside the path leaves this share of the joints' FaultStop limits to the
+/// way back to it.
+inline constexpr double kReturnShare = 0.2;
+
+enum class StopKind : std::uint8_t { kHold, kFault };
+
+/// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
+/// at once. A stop that was going on is laid out anew with the authority of `kind`.
+inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
+  StopInProgress& stop = c.state.stop;
+  const double rate = stop.is_active && stop.speed_begin > 0
+                          ? stop.rate_begin * c.state.on_path.ds / stop.speed_begin
+                          : c.state.rate.rate();
+  StopAuthority authority;
+  PathState begin{c.state.on_path.s, 0, 0, 0};
+  if (is_on_move(c)) {
+    const TimePiece& piece = *c.reader.piece();
+    authority = kind == StopKind::kFault ? StopAuthority{piece.fault_accel, piece.fault_jerk}
+                                         : StopAuthority{piece.stop_accel, piece.stop_jerk};
+    authority = {authority.accel * share, authority.jerk * share};
+    begin = c.state.on_path;
+    if (!(begin.ds > 0)) begin = {state_at(piece, c.state.piece_time).s, 0, 0, 0};
+  }
+  stop = {};
+  stop.is_active = true;
+  stop.law = StopLaw(begin, authority);
+  stop.speed_begin = begin.ds;
+  stop.rate_begin = rate;
+  stop.stopping_time = stop.law.duration();
+  stop.stopping_distance = stop.law.distance();
+  stop.begin = c.state.joints;
+}
+
+/// Begins a stop of every joint along its last velocity, all in the same time: the last resort
+/// where the path gives no setpoint that may be sent.
+inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
+                                const JointVector& velocity) noexcept {
+  StopInProgress& stop = c.state.stop;
+  stop = {};
+  stop.is_active = stop.is_off_path = true;
+  stop.begin = joints;
+  StopAuthority authority{1e9, 1e12};
+  bool is_moving = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    const double speed = std::abs(velocity[i]);
+    if (!(speed > 0) || !std::isfinite(speed)) continue;
+    const JointLimits& limits = c.machine.joints[i].limits;
+    stop.direction[i] = velocity[i];
+    authority.accel = std::min(authority.accel, limits.fault_acceleration / speed);
+    authority.jerk = std::min(authority.jerk, limits.fault_jerk / speed);
+    is_moving = true;
+  }
+  stop.law = StopLaw({0, is_moving ? 1.0 : 0.0, 0, 0}, authority);
+}
+
+/// Time from the begin to rest.
+[[nodiscard]] inline double duration_of(const StopInProgress& stop) noexcept {
+  return std::max(stop.law.duration(), stop.deviation_time);
+}
+
+[[nodiscard]] inline bool is_stop_over(const StopInProgress& stop) noexcept {
+  return !stop.is_active || stop.time >= duration_of(stop);
+}
+
+/// Adds what is left of the deviation from the path: 1 - 10x³ + 15x⁴ - 6x⁵ of it.
+inline void add_deviation(Cycle& c) noexcept {
+  const StopInProgress& stop = c.state.stop;
+  if (stop.time >= stop.deviation_time) return;
+  const double x = stop.time / stop.deviation_time;
+  const double left = 1 - x * x * x * (10 - x * (15 - 6 * x));
+  const double slope = -30 * x * x * (1 - x) * (1 - x) / stop.deviation_time;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    c.state.joints[i] += stop.deviation[i] * left;
+    c.state.velocity[i] += stop.deviation[i] * slope;
+  }
+}
+
+/// Puts the joints where the stop off the path is at its time.
+inline void put_off_path(Cycle& c) noexcept {
+  const StopInProgress& stop = c.state.stop;
+  const PathState p = stop.law.at(stop.time);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    c.state.joints[i] = stop.begin[i] + stop.direction[i] * p.s;
+    c.state.velocity[i] = stop.direction[i] * p.ds;
+  }
+}
+
+/// The path came to its end before the stop did (never by more than rounding, see StopLaw).
+inline void end_stop_here(Cycle& c) noexcept {
+  rest(c);
+  c.state.stop.law = StopLaw({c.state.on_path.s, 0, 0, 0}, {});
+  c.state.stop.begin = c.state.joints;
+}
+
+/// Goes on with the stop by the periods of this cycle. False if the path cannot be evaluated.
+[[nodiscard]] inline bool follow_stop(Cycle& c) noexcept {
+  StopInProgress& stop = c.state.stop;
+  stop.time += c.dt * c.periods;
+  if (stop.is_off_path) {
+    put_off_path(c);
+    return true;
+  }
+  if (!is_on_move(c)) {
+    c.state.joints = stop.begin;
+    rest(c);
+    add_deviation(c);
+    return true;
+  }
+  PathState p = stop.law.at(stop.time);
+  p.s -= stop.passed;
+  const bool is_inside = walk_to(c, p.s, stop.passed);
+  c.state.on_path = p;
+  if (!is_inside) {
+    if (is_on_move(c)) return false;
+    end_stop_here(c);
+    add_deviation(c);
+    return true;
+  }
+  c.state.piece_time = time_at(*c.reader.piece(), p.s, c.state.piece_time + c.dt);
+  if (!put_on_path(c, p.s, p.ds)) return false;
+  add_deviation(c);
+  return true;
+}
+
+/// At rest: the rate is zero, and plan time is the one of the place that was reached.
+inline void finish_stop(Cycle& c) noexcept {
+  const StopInProgress& stop = c.state.stop;
+  rest(c);
+  if (stop.stopping_time > 0) {
+    tell(c, EventCode::kStopped, static_cast<std::uint64_t>(stop.stopping_time * 1e9), 0,
+         stop.stopping_distance);
+  }
+  c.state.stop = {};
+  c.state.rate.reset(0);
+}
+
+}  // namespace meridian

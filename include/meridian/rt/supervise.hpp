@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/guard.hpp"
+#include "meridian/rt/on_path.hpp"
+#include "meridian/rt/state_table.hpp"
+#include "meridian/rt/stop_motion.hpp"
+
+/// What makes the machine stop by itself: drives, feedback, emergency input, lost periods.
+/// RT: cycle.
+namespace meridian {
+
+[[nodiscard]] inline std::uint32_t all_joints(const MachineModel& machine) noexcept {
+  return (1U << static_cast<unsigned>(machine.joint_count)) - 1U;
+}
+
+/// Whether every joint reports a finite position and the report is fresh. Time that the host
+/// stalled does not count against the drives.
+[[nodiscard]] inline bool is_feedback_there(const Cycle& c) noexcept {
+  const Feedback& f = c.in.feedback;
+  const double age = static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9;
+  for (const double q : f.position) {
+    if (!std::isfinite(q)) return false;
+  }
+  return f.arrival_ns != 0 && (f.joint_mask & all_joints(c.machine)) == all_joints(c.machine) &&
+         age <= c.state.options.feedback_timeout_s + c.dt * c.in.lost_periods;
+}
+
+/// Tells an alarm, once until the next reset.
+inline void tell_alarm(Cycle& c, Alarm alarm, int joint, double value) noexcept {
+  const std::uint32_t bit = 1U << static_cast<unsigned>(alarm);
+  if ((c.state.alarms_told & bit) != 0) return;
+  c.state.alarms_told |= bit;
+  tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm), static_cast<std::uint64_t>(joint),
+       value);
+}
+
+/// Tells an alarm and goes to FaultStop on the path; one that is going on goes on.
+inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexcept {
+  tell_alarm(c, alarm, joint, value);
+  if (c.state.state == State::kFaultStop) return;
+  c.state.alarm = alarm;
+  begin_stop(c, StopKind::kFault);
+  enter(c, State::kFaultStop);
+}
+
+/// The joint whose feedback is farther from the setpoint that it saw than its limit; -1: none.
+[[nodiscard]] inline int first_joint_behind(const Cycle& c, double& error) noexcept {
+  const Feedback& f = c.in.feedback;
+  const SentSetpoint& sent = c.state.sent[f.cycle_seen % kSentCycles];
+  if (sent.cycle != f.cycle_seen || f.cycle_seen == 0) return -1;
+  for (int i = 0; i < c.machine.joint_count; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    error = f.position[n] - sent.position[n];
+    const double bridged = std::abs(sent.velocity[n]) * sent.bridged;
+    if (!(std::abs(error) <= c.machine.joints[n].limits.following_error + bridged)) return i;
+  }
+  return -1;
+}
+
+[[nodiscard]] inline int first_bit(std::uint32_t mask) noexcept {
+  return mask == 0 ? 0 : std::countr_zero(mask);
+}
+
+/// Looks at drives and feedback while they are enabled.
+inline void judge_drives(Cycle& c) noexcept {
+  const Feedback& f = c.in.feedback;
+  const std::uint32_t all = all_joints(c.machine);
+  if (f.emergency_stop) raise(c, Alarm::kEmergencyStop);
+  if (!is_feedback_there(c)) {
+    raise(c, Alarm::kFeedbackLost, 0, static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9);
+    return;  // what it says is old
+  }
+  if ((f.fault_mask & all) != 0) raise(c, Alarm::kDriveFault, first_bit(f.fault_mask & all));
+  if (c.state.state == State::kEnabling || c.state.state == State::kFaultStop) return;
+  if ((f.enabled_mask & all) != all) raise(c, Alarm::kDriveFault, first_bit(~f.enabled_mask & all));
+  double error = 0;
+  const int joint = first_joint_behind(c, error);
+  if (joint >= 0) raise(c, Alarm::kFollowingError, joint, error);
+}
+
+/// Finds the place of the path ahead that is nearest to `joints` (1 rad counts kAxisLength mm),
+/// Newton from the place in force, never past the plan's rest. The piece in force goes along.
+[[nodiscard]] inline double find_nearest(Cycle& c, const JointVector& joints,
+                                         double& passed) noexcept {
+  constexpr double kClose_mm = 1e-9;
+  double s = c.state.on_path.s;
+  for (int n = 0; n < 20; ++n) {
+    if (!put_on_path(c, s, 1.0)) break;
+    double along = 0, square = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+      const double weight = c.machine.joints[i].is_rotary ? kAxisLength_mm_per_rad : 1.0;
+      along += weight * weight * c.state.velocity[i] * (joints[i] - c.state.joints[i]);
+      square += weight * weight * c.state.velocity[i] * c.state.velocity[i];
+    }
+    if (!(square > 0)) break;
+    const double last = s;
+    s = std::max(0.0, s + along / square);
+    if (!walk_to(c, s, passed) || std::abs(s - last) < kClose_mm) break;
+  }
+  return s;
+}
+
+/// How long joints that are `deviation` beside the path take back to it with kReturnShare of their
+/// limits. 1.875, 5.774 and 60 are the largest derivatives of the polynomial of add_deviation().
+[[nodiscard]] inline double time_to_return(const MachineModel& machine,
+                                           const JointVector& deviation) noexcept {
+  double time = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
+    const JointLimits& limits = machine.joints[i].limits;
+    const double d = std::abs(deviation[i]) / kReturnShare;
+    time = std::max({time, 1.875 * d / limits.velocity,
+                     std::sqrt(5.774 * d / limits.fault_acceleration),
+                     std::cbrt(60 * d / limits.fault_jerk)});
+  }
+  return time;
+}
+
+/// More periods were lost than the drives bridge: they have gone on with the last velocity and then
+/// ramped down. The FaultStop begins where they report to be, with the speed of that ramp, and
+/// leads them back to the path.
+inline void stop_from_feedback(Cycle& c) noexcept {
+  raise(c, Alarm::kPeriodsLost, 0, static_cast<double>(c.in.lost_periods));
+  if (!is_feedback_there(c) || !is_on_move(c) || c.state.stop.is_off_path) return;
+  const JointVector position = c.in.feedback.position;
+  const double ramp_time =
+      c.dt * (c.in.lost_periods - static_cast<double>(c.machine.bridge_cycles));
+  double passed = 0;
+  PathState begin = c.state.on_path;
+  begin.s = find_nearest(c, position, passed);
+  if (is_on_move(c)) {
+    const TimePiece& piece = *c.reader.piece();
+    c.state.piece_time = time_at(piece, begin.s, c.state.piece_time);
+    const double ramped = begin.ds - piece.fault_accel * ramp_time;
+    begin.ds = std::clamp(ramped, 0.0, state_at(piece, c.state.piece_time).ds);
+    begin.dds = -piece.fault_accel * (1 - kReturnShare);
+    if (!put_on_path(c, begin.s, 0)) return;
+  }
+  c.state.on_path = begin;
+  begin_stop(c, StopKind::kFault, 1 - kReturnShare);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    c.state.stop.deviation[i] = position[i] - c.state.joints[i];
+  }
+  c.state.stop.deviation_time = time_to_return(c.machine, c.state.stop.deviation);
+  c.previous = position;
+  c.elapsed = c.dt;
+  c.periods = 1;
+}
+
+/// Looks at everything that may end in a FaultStop, before anything moves.
+inline void supervise(Cycle& c) noexcept {
+  if (c.in.lost_periods > 0) {
+    c.state.periods_lost += c.in.lost_periods;
+    tell(c, EventCode::kPeriodsLost, c.in.lost_periods);
+  }
+  if (!is_enabled(c.state.state)) return;
+  const bool is_bridged = c.in.lost_periods <= static_cast<std::uint32_t>(c.machine.bridge_cycles);
+  if (!is_bridged) {
+    if (c.state.on_path.ds > 0 || c.state.stop.is_active) stop_from_feedback(c);
+    c.periods = 1;
+  }
+  judge_drives(c);
+}
+
+}  // namespace meridian
