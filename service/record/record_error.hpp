@@ -16,9 +16,9 @@ struct RecordError {
   /// "file:line: message; remedy".
   [[nodiscard]] std::string text() const {
     std::string all = file;
-    if (line > 0) all += ":" + std::to_string(line);
-    all += ": " + message;
-    if (!remedy.empty()) all += "; " + remedy;
+    if (line > 0) all.append(":").append(std::to_string(line));
+    all.append(": ").append(message);
+    if (!remedy.empty()) all.append("; ").append(remedy);
     return all;
   }
 };

@@ -69,6 +69,12 @@ std::string reason(const BlockReject& reject, const MachineModel& model) {
       return "no branch or winding leads here from the block before";
     case RejectCode::kApproach:
       return "the machine finds no way to this block from where it stands";
+    case RejectCode::kAxisReversal:
+      return "tool axis turns by half a turn at once: no way round is meant; add a block between";
+    case RejectCode::kTooComplex:
+      return "the block is too long or too curved for one plan; split it";
+    case RejectCode::kDiscontinuous:
+      return "its joints would jump; report this as a bug";
   }
   return "unknown reason";
 }

@@ -22,7 +22,10 @@ enum class RejectCode : std::uint8_t {
   kTravel,         ///< `joint` leaves travel at the block; `value`: joint position
   kTravelBetween,  ///< `joint` leaves travel between the block before and this one
   kBranch,         ///< no way from the block before on any branch and winding
-  kApproach        ///< no way from where the machine stands to the block
+  kApproach,       ///< no way from where the machine stands to the block
+  kAxisReversal,   ///< the axis turns by half a turn: no great circle is meant
+  kTooComplex,     ///< the block needs more pieces than a plan holds
+  kDiscontinuous   ///< guard of the planner: its joints would have jumped; `value`: the jump
 };
 
 /// The verdict on one block. Units: mm, rad. Trivially copyable: crosses rings.

@@ -7,32 +7,11 @@
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
+#include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/motion_port.hpp"
 
 namespace meridian {
-
-/// Why a block cannot be run.
-enum class RejectCode : std::uint8_t {
-  kNone,
-  kTravel,        ///< a joint would leave its travel; `value` is where
-  kUnreachable,   ///< no joints put the tool there
-  kAxisReversal,  ///< the axis turns by half a turn: no great circle is meant
-  kFeed,          ///< a cut without a usable feed; `value` is the feed
-  kNotFinite,     ///< a number of the block is not finite, or the axis is not a direction
-  kUnknownTool,   ///< the tool table has no such tool; `value` is its number
-  kTooComplex,    ///< the block needs more pieces than a plan holds
-  kDiscontinuous  ///< guard of the planner: its joints would have jumped; `value` is the jump
-};
-
-/// The planner's verdict on a block.
-struct PlanReject {
-  std::uint64_t sequence = 0;
-  std::uint32_t line = 0;
-  RejectCode code = RejectCode::kNone;
-  int joint = -1;    ///< in machine order, -1 where none is meant
-  double value = 0;  ///< see RejectCode
-};
 
 enum class PlanStatus : std::uint8_t {
   kOk,      ///< published (nothing, where the block does not move)
@@ -42,7 +21,7 @@ enum class PlanStatus : std::uint8_t {
 
 struct PlanResult {
   PlanStatus status = PlanStatus::kOk;
-  PlanReject reject;
+  BlockReject reject;
   double axis_deviation_rad = 0;  ///< largest ease of the axis beside the pole
 };
 

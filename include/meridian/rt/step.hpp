@@ -130,7 +130,7 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
   return stop.speed_begin > 0 ? stop.rate_begin * state.on_path.ds / stop.speed_begin : 0;
 }
 
-inline void record(Cycle& c) noexcept {
+inline void write_record(Cycle& c) noexcept {
   CycleState& state = c.state;
   CycleRecord& out = c.out.record;
   bool is_moving = false;
@@ -179,7 +179,7 @@ inline void step(const MachineModel& machine, CycleState& state, MotionReader& r
   obey(c);
   const bool has_joints = move(c);
   guard(c, has_joints, last_velocity);
-  record(c);
+  write_record(c);
 }
 
 }  // namespace meridian

@@ -18,7 +18,7 @@ RejectCode code_of(PathFault::Kind kind) noexcept {
     case PathFault::Kind::kNone:
       return RejectCode::kNone;
     case PathFault::Kind::kTravel:
-      return RejectCode::kTravel;
+      return RejectCode::kTravelBetween;
     case PathFault::Kind::kUnreachable:
       return RejectCode::kUnreachable;
     case PathFault::Kind::kTooLong:

@@ -122,7 +122,7 @@ TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
     const Trace trace = plan_program(model, blocks, start);
     if (trace.last.status == PlanStatus::kRefused) {
       ++refused[trace.last.reject.code];
-      ASSERT_TRUE(trace.last.reject.code == RejectCode::kTravel ||
+      ASSERT_TRUE(trace.last.reject.code == RejectCode::kTravelBetween ||
                   trace.last.reject.code == RejectCode::kAxisReversal)
           << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
           << " value " << trace.last.reject.value << " sequence " << trace.last.reject.sequence;
@@ -136,9 +136,9 @@ TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
       "%d programs, %zu time pieces, %.0f s of motion; largest use v %.7f a %.7f j %.7f, feed "
       "%.7f, tip %.2e mm, axis %.2e deg; refused: travel %d, reversal %d\n",
       kPrograms, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
-      units::deg_from_rad(peaks.axis_rad), refused[RejectCode::kTravel],
+      units::deg_from_rad(peaks.axis_rad), refused[RejectCode::kTravelBetween],
       refused[RejectCode::kAxisReversal]);
-  EXPECT_LT(refused[RejectCode::kTravel], kPrograms / 4) << "hardly anything was judged";
+  EXPECT_LT(refused[RejectCode::kTravelBetween], kPrograms / 4) << "hardly anything was judged";
 }
 
 }  // namespace
