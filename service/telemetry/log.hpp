@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace meridian::telemetry {
+
+/// The service's log: lines are queued and written by a thread of their own, so that a blocked
+/// terminal or a full disk holds nobody up; when the queue is full the oldest lines go. `file`
+/// empty: standard error. Throws spdlog::spdlog_ex where the file cannot be opened. Call once.
+[[nodiscard]] std::shared_ptr<spdlog::logger> make_log(const std::filesystem::path& file);
+
+}  // namespace meridian::telemetry

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/spsc_ring.hpp"
+#include "service/record/recording_writer.hpp"
+
+namespace meridian::telemetry {
+
+/// The recording of record, written by a thread of its own: a slow or full disk loses rows, which
+/// are counted, and nothing else.
+class Recorder {
+ public:
+  /// `path` empty: nothing is recorded. Throws std::runtime_error where the file cannot be made.
+  Recorder(const std::string& path, const MachineModel& model);
+
+  /// Telemetry thread: hands a row over. False: no room, the row is lost.
+  [[nodiscard]] bool take(const CycleRecord& record) noexcept;
+  /// Recorder's thread: writes until stop() and everything taken is on disk.
+  void run() noexcept;
+  void stop() noexcept { is_stopping_ = true; }
+
+  [[nodiscard]] bool is_recording() const noexcept { return writer_.has_value(); }
+  [[nodiscard]] std::uint64_t rows_lost() const noexcept { return rows_lost_; }
+
+ private:
+  std::optional<record::RecordingWriter> writer_;
+  SpscRing<CycleRecord, 8192> ring_;
+  std::atomic<bool> is_stopping_{false};
+  std::atomic<std::uint64_t> rows_lost_{0};
+};
+
+}  // namespace meridian::telemetry

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/telemetry/words.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "meridian/rt/state_table.hpp"
+#include "meridian/units.hpp"
+
+namespace meridian::telemetry {
+namespace {
+
+[[nodiscard]] bool is_joint(int joint, const MachineModel& model) {
+  return joint >= 0 && joint < model.joint_count;
+}
+
+[[nodiscard]] std::string joint_name(int joint, const MachineModel& model) {
+  return is_joint(joint, model) ? model.joints[static_cast<std::size_t>(joint)].name : "?";
+}
+
+/// A joint's position or distance with its unit, as people read it.
+[[nodiscard]] std::string quantity(double value, int joint, const MachineModel& model) {
+  if (is_joint(joint, model) && model.joints[static_cast<std::size_t>(joint)].is_rotary) {
+    return fmt::format("{:.6g} deg", units::deg_from_rad(value));
+  }
+  return fmt::format("{:.6g} mm", value);
+}
+
+[[nodiscard]] std::string remedy_for_wrong_state(Verb verb, State state) {
+  switch (state) {
+    case State::kOff:
+      return "enable first";
+    case State::kFault:
+      return "mend the cause, then reset";
+    case State::kRunning:
+    case State::kApproaching:
+      return verb == Verb::kDisable ? "abort first" : "hold first";
+    case State::kReady:
+      return "stream a program first";
+    case State::kHeld:
+    case State::kStarved:
+      return "resume or abort";
+    default:
+      return "wait until the machine has come to rest";
+  }
+}
+
+}  // namespace
+
+Weight weight_of(const Event& event) noexcept {
+  switch (event.code) {
+    case EventCode::kAlarm:
+      return Weight::kError;
+    case EventCode::kRefused:
+    case EventCode::kPeriodsLost:
+      return Weight::kWarning;
+    case EventCode::kBlockStarted:
+    case EventCode::kBlockDone:
+      return Weight::kDetail;
+    default:
+      return Weight::kNews;
+  }
+}
+
+std::string describe(const Event& event, const MachineModel& model) {
+  switch (event.code) {
+    case EventCode::kStateChanged:
+      return fmt::format("state {} -> {}", name_of(static_cast<State>(event.b)),
+                         name_of(static_cast<State>(event.a)));
+    case EventCode::kAccepted:
+      return fmt::format("{} accepted", name_of(static_cast<Verb>(event.b)));
+    case EventCode::kRefused:
+      return fmt::format("{} refused: {}", name_of(static_cast<Verb>(event.b)),
+                         name_of(static_cast<Refusal>(event.x)));
+    case EventCode::kBlockStarted:
+      return fmt::format("block {} of line {} started", event.a, event.b);
+    case EventCode::kBlockDone:
+      return fmt::format("block {} of line {} done", event.a, event.b);
+    case EventCode::kActionDue:
+      return fmt::format("waiting for the action of line {}", event.b);
+    case EventCode::kProgramEnd:
+      return fmt::format("program ended with block {}", event.a);
+    case EventCode::kEpochAdvanced:
+      return fmt::format("queues emptied, epoch {}", event.a);
+    case EventCode::kPeriodsLost:
+      return fmt::format("{} periods lost before cycle {}", event.a, event.cycle);
+    case EventCode::kStopped:
+      return fmt::format("came to rest in {:.3f} s on {:.4g} mm",
+                         1e-9 * static_cast<double>(event.a), event.x);
+    case EventCode::kAlarm:
+      return describe(static_cast<Alarm>(event.a), static_cast<int>(event.b), event.x, event.line,
+                      model);
+  }
+  return fmt::format("event {}", static_cast<int>(event.code));
+}
+
+std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
+                     const MachineModel& model) {
+  const std::string name = joint_name(joint, model);
+  const std::string measured = quantity(value, joint, model);
+  std::string text;
+  switch (alarm) {
+    case Alarm::kNone:
+      return "no alarm";
+    case Alarm::kNotFinite:
+      text = fmt::format("setpoint of {} is not a finite number; report this as a bug", name);
+      break;
+    case Alarm::kTravel:
+      text = fmt::format("setpoint of {} at {} would leave travel; report this as a bug", name,
+                         measured);
+      break;
+    case Alarm::kStep:
+      text = fmt::format("setpoint of {} would step by {} in one cycle; report this as a bug", name,
+                         measured);
+      break;
+    case Alarm::kUnreachable:
+      text = "no joint positions reach the path; report this as a bug";
+      break;
+    case Alarm::kDriveFault:
+      text = fmt::format("drive {} reports a fault; mend it, then reset", name);
+      break;
+    case Alarm::kFeedbackLost:
+      text = fmt::format(
+          "no feedback from drive {}; check that the drives run and their network, "
+          "then reset",
+          name);
+      break;
+    case Alarm::kFollowingError:
+      text = fmt::format(
+          "drive {} lags by {} (allowed {}); look for a blocked axis or a weak drive", name,
+          measured,
+          is_joint(joint, model)
+              ? quantity(model.joints[static_cast<std::size_t>(joint)].limits.following_error,
+                         joint, model)
+              : "?");
+      break;
+    case Alarm::kEmergencyStop:
+      text = "emergency stop input is open; release it, then reset";
+      break;
+    case Alarm::kPeriodsLost:
+      text = fmt::format(
+          "the service missed {:.0f} periods in a row, drives bridge {}; the host is "
+          "too busy or not fit for real time",
+          value, model.bridge_cycles);
+      break;
+    case Alarm::kEnableTimeout:
+      text = fmt::format(
+          "drive {} did not enable in time; check power and drive faults, then reset", name);
+      break;
+    case Alarm::kActionFailed:
+      text = "the action was refused or not done in time; see to the action peer, then resume";
+      break;
+  }
+  return line > 0 ? fmt::format("{} (line {})", text, line) : text;
+}
+
+std::string describe(Verb verb, State state) {
+  if (verb == Verb::kFeedOverride || verb == Verb::kRapidOverride) {
+    return fmt::format("{} set", name_of(verb));
+  }
+  return fmt::format("{} accepted; the machine is {}", name_of(verb), name_of(state));
+}
+
+std::string describe(Verb verb, Refusal refusal, State state) {
+  std::string why;
+  switch (refusal) {
+    case Refusal::kNone:
+      break;
+    case Refusal::kWrongState:
+      why = fmt::format("not in state {}; {}", name_of(state), remedy_for_wrong_state(verb, state));
+      break;
+    case Refusal::kNotReferenced:
+      why = "not every joint is referenced; home the machine";
+      break;
+    case Refusal::kNoProgram:
+      why = "no program is there; stream one first";
+      break;
+    case Refusal::kNoFeedback:
+      why = "no feedback from the drives; start them and check their network";
+      break;
+    case Refusal::kOutOfRange:
+      why = "the value is out of range: feed override 0 to 1.5, rapid override 0 to 1";
+      break;
+    case Refusal::kStale:
+      why = "what you saw is older than 500 ms or of an earlier epoch; look again, then repeat";
+      break;
+    case Refusal::kFaultPresent:
+      why = "a fault is present; mend its cause, then reset";
+      break;
+  }
+  return fmt::format("{} refused: {}", name_of(verb), why);
+}
+
+}  // namespace meridian::telemetry

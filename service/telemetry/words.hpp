@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/rt/cycle_data.hpp"
+
+/// What the cycle tells in numbers, in words for operators and the log.
+namespace meridian::telemetry {
+
+/// How much an event matters to who reads the log.
+enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
+
+[[nodiscard]] Weight weight_of(const Event& event) noexcept;
+/// One sentence, with units; alarms name joint, line and remedy.
+[[nodiscard]] std::string describe(const Event& event, const MachineModel& model);
+/// An alarm with its joint and measured value, what it means and what to do.
+[[nodiscard]] std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
+                                   const MachineModel& model);
+/// Answer to an operator whose verb was accepted; `state` is the one it led to.
+[[nodiscard]] std::string describe(Verb verb, State state);
+/// Answer to an operator whose verb was refused in `state`, with the remedy.
+[[nodiscard]] std::string describe(Verb verb, Refusal refusal, State state);
+
+}  // namespace meridian::telemetry

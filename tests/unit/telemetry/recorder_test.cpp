@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/telemetry/recorder.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "support/machines.hpp"
+
+namespace meridian::telemetry {
+namespace {
+
+std::filesystem::path temporary_file() {
+  return std::filesystem::temp_directory_path() /
+         ("meridian-recorder-" + std::to_string(::getpid()) + ".csv");
+}
+
+TEST(Recorder, WritesEveryRowThatItTookBeforeItEnds) {
+  const auto path = temporary_file();
+  {
+    Recorder recorder(path.string(), test::lai_machine());
+    std::thread writer([&] { recorder.run(); });
+    CycleRecord record;
+    for (std::uint64_t cycle = 1; cycle <= 3000; ++cycle) {
+      record.setpoint.cycle = cycle;
+      ASSERT_TRUE(recorder.take(record));
+    }
+    recorder.stop();
+    writer.join();
+    EXPECT_EQ(recorder.rows_lost(), 0U);
+  }
+  std::ifstream file(path);
+  std::string line;
+  int lines = 0;
+  while (std::getline(file, line)) ++lines;
+  EXPECT_EQ(lines, 3001);
+  std::filesystem::remove(path);
+}
+
+TEST(Recorder, LosesRowsAndCountsThemWhereTheDiskIsFull) {
+  Recorder recorder("/dev/full", test::lai_machine());
+  std::thread writer([&] { recorder.run(); });
+  CycleRecord record;
+  for (int i = 0; i < 8000; ++i) (void)recorder.take(record);
+  recorder.stop();
+  writer.join();
+  EXPECT_GT(recorder.rows_lost(), 0U);
+}
+
+TEST(Recorder, TakesEverythingForNothingWithoutAPath) {
+  Recorder recorder("", test::lai_machine());
+  for (int i = 0; i < 20000; ++i) ASSERT_TRUE(recorder.take({}));
+  EXPECT_EQ(recorder.rows_lost(), 0U);
+}
+
+TEST(Recorder, RefusesAFileThatCannotBeMade) {
+  EXPECT_THROW(Recorder("/nowhere/at/all.csv", test::lai_machine()), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace meridian::telemetry

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/telemetry/words.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "meridian/rt/state_table.hpp"
+#include "support/machines.hpp"
+
+namespace meridian::telemetry {
+namespace {
+
+TEST(Words, NameJointLineValueAndRemedyOfAnAlarm) {
+  const MachineModel model = test::lai_machine();
+  const Event event{.code = EventCode::kAlarm,
+                    .cycle = 77,
+                    .a = static_cast<std::uint64_t>(Alarm::kFollowingError),
+                    .b = 3,
+                    .x = 0.1,
+                    .line = 41};
+  const std::string text = describe(event, model);
+  EXPECT_NE(text.find("theta1"), std::string::npos) << text;
+  EXPECT_NE(text.find("deg"), std::string::npos) << text;
+  EXPECT_NE(text.find("line 41"), std::string::npos) << text;
+  EXPECT_NE(text.find("look for"), std::string::npos) << text;
+  EXPECT_EQ(weight_of(event), Weight::kError);
+}
+
+TEST(Words, SayEveryAlarmDifferently) {
+  const MachineModel model = test::lai_machine();
+  std::set<std::string> texts;
+  for (int alarm = 0; alarm <= static_cast<int>(Alarm::kActionFailed); ++alarm) {
+    texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 3, model));
+  }
+  EXPECT_EQ(texts.size(), static_cast<std::size_t>(Alarm::kActionFailed) + 1);
+}
+
+TEST(Words, TellTheRemedyWithEveryRefusal) {
+  for (int refusal = 1; refusal <= static_cast<int>(Refusal::kFaultPresent); ++refusal) {
+    for (int state = 0; state < kStateCount; ++state) {
+      const std::string text =
+          describe(Verb::kStart, static_cast<Refusal>(refusal), static_cast<State>(state));
+      EXPECT_EQ(text.rfind("start refused: ", 0), 0U);
+      EXPECT_GT(text.size(), std::string("start refused: ").size() + 10) << text;
+    }
+  }
+}
+
+TEST(Words, NameBothStatesOfAChange) {
+  const Event event{.code = EventCode::kStateChanged,
+                    .a = static_cast<std::uint64_t>(State::kRunning),
+                    .b = static_cast<std::uint64_t>(State::kApproaching)};
+  EXPECT_EQ(describe(event, test::lai_machine()), "state Approaching -> Running");
+}
+
+TEST(Words, SurviveNumbersThatNobodyMeant) {
+  const MachineModel model = test::lai_machine();
+  const Event event{.code = EventCode::kAlarm,
+                    .a = static_cast<std::uint64_t>(Alarm::kDriveFault),
+                    .b = 1'000'000};
+  EXPECT_NE(describe(event, model).find("?"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace meridian::telemetry
