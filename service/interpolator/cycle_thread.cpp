@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/cycle_thread.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <limits>
+
+#include "service/interpolator/monotonic.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+[[nodiscard]] std::int32_t narrow(std::int64_t ns) noexcept {
+  using Limits = std::numeric_limits<std::int32_t>;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(ns, Limits::min(), Limits::max()));
+}
+
+void sleep_until(std::int64_t due_ns) noexcept {
+  const timespec due{.tv_sec = due_ns / kSecond_ns, .tv_nsec = due_ns % kSecond_ns};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
+  }
+}
+
+template <class Item, std::size_t N>
+void push_or_count(SpscRing<Item, N>& ring, const Item& item,
+                   std::atomic<std::uint64_t>& overrun) noexcept {
+  if (!ring.try_push(item)) overrun.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+CycleThread::CycleThread(const MachineModel& model, const CycleOptions& options,
+                         Ports& ports) noexcept
+    : model_(model), ports_(ports), state_(options), motion_(ports.motion) {}
+
+void CycleThread::run() noexcept {
+  motion_.set_epoch(state_.epoch);
+  CycleClock clock(monotonic_ns(), model_.cycle_ns);
+  while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
+    sleep_until(clock.next_due_ns());
+    const std::int64_t now_ns = monotonic_ns();
+    gather(clock.woke_at(now_ns), now_ns);
+    step(model_, state_, motion_, inputs_, output_);
+    hand_over(now_ns);
+  }
+}
+
+void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
+  ports_.feedback.refresh();
+  ports_.action_answer.refresh();
+  inputs_.feedback = ports_.feedback.latest();
+  inputs_.action = ports_.action_answer.latest();
+  inputs_.now_ns = now_ns;
+  inputs_.due_ns = period.due_ns;
+  inputs_.cycle = period.number;
+  inputs_.lost_periods = period.lost;
+  inputs_.computation_ns = computation_ns_;
+  inputs_.has_command = ports_.commands.try_pop(inputs_.command);
+  inputs_.session = ports_.session.load(std::memory_order_relaxed);
+  inputs_.stops_at_optional = ports_.stops_at_optional.load(std::memory_order_relaxed);
+}
+
+void CycleThread::hand_over(std::int64_t woke_ns) noexcept {
+  const std::int64_t computed_ns = monotonic_ns();
+  computation_ns_ = narrow(computed_ns - woke_ns);
+  push_or_count(ports_.setpoints, output_.record.setpoint, ports_.setpoints_overrun);
+  ports_.publisher_wake.notify();
+  const std::int64_t handed_ns = monotonic_ns();
+
+  show();  // before the events: who hears of one sees at least the cycle that told it
+  push_or_count(ports_.records, output_.record, ports_.records_overrun);
+  for (std::size_t i = 0; i < output_.event_count; ++i) {
+    push_or_count(ports_.events, output_.events[i], ports_.events_overrun);
+  }
+  ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
+  (void)ports_.timings.try_push({.lateness = output_.record.lateness_ns,
+                                 .computation = computation_ns_,
+                                 .wake = narrow(handed_ns - computed_ns)});
+}
+
+void CycleThread::show() noexcept {
+  view_.record = output_.record;
+  view_.epoch = state_.epoch;
+  view_.alarm = state_.alarm;
+  view_.feed_override = state_.feed_override;
+  view_.rapid_override = state_.rapid_override;
+  ++view_.cycles_run;
+  view_.periods_lost = state_.periods_lost;
+  view_.starvations = state_.starvations;
+  ports_.planner_view.store(view_);
+  ports_.commands_view.store(view_);
+  ports_.telemetry_view.store(view_);
+}
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/rt/step.hpp"
+#include "service/interpolator/cycle_clock.hpp"
+#include "service/interpolator/ports.hpp"
+
+namespace meridian::interpolator {
+
+/// The fixed-rate loop: sleep, step(), hand over. Never calls DDS, allocates, locks or logs; its
+/// system calls are the sleep and the publisher's wake. Proof: tests/integration/rules_test.cpp.
+class CycleThread {
+ public:
+  CycleThread(const MachineModel& model, const CycleOptions& options, Ports& ports) noexcept;
+
+  /// Runs until Ports::is_stopping.
+  void run() noexcept;
+
+ private:
+  void gather(const Period& period, std::int64_t now_ns) noexcept;
+  void hand_over(std::int64_t computed_ns) noexcept;
+  void show() noexcept;
+
+  const MachineModel& model_;
+  Ports& ports_;
+  CycleState state_;
+  MotionReader motion_;
+  CycleInputs inputs_;
+  StepOutput output_;
+  CycleView view_;
+  std::int32_t computation_ns_ = 0;
+};
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "service/dds/messages.hpp"
+#include "service/dds/writer.hpp"
+#include "service/interpolator/ports.hpp"
+
+namespace meridian::interpolator {
+
+/// Walks the drives through CiA 402 as the machine's state asks: controlwords on change and at
+/// 10 Hz. One thread.
+class DriveCommander {
+ public:
+  DriveCommander(dds::Participant& participant, int drive_count, std::uint64_t service_id);
+
+  /// Sends what is due, given the machine's state and what the drives say.
+  void work(State state, std::uint16_t epoch, const DriveWords& words,
+            std::int64_t now_ns) noexcept;
+  /// Lets drives in fault be reset for a while: the operator said so.
+  void reset_faults(std::int64_t now_ns) noexcept { reset_until_ns_ = now_ns + kReset_ns; }
+
+ private:
+  static constexpr std::int64_t kRepeat_ns = 100'000'000;
+  static constexpr std::int64_t kReset_ns = 200'000'000;
+
+  dds::Writer<dds::DriveCommand> writer_;
+  int drive_count_;
+  std::uint64_t service_id_;
+  std::array<dds::DriveCommand, kMaxJoints> sent_{};
+  std::array<std::int64_t, kMaxJoints> sent_ns_{};
+  std::int64_t reset_until_ns_ = 0;
+};
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+/// CiA 402 as a controller sees it: what a statusword says, which controlword comes next.
+/// Proof: tests/unit/interpolator/drive_words_test.cpp.
+namespace meridian::interpolator {
+
+enum class DriveState : std::uint8_t {
+  kNotReady,
+  kSwitchOnDisabled,
+  kReadyToSwitchOn,
+  kSwitchedOn,
+  kOperationEnabled,
+  kQuickStop,
+  kFaultReaction,
+  kFault
+};
+
+/// Source: CiA 402-2, object 6041h, bits 0 to 3, 5 and 6.
+[[nodiscard]] constexpr DriveState drive_state(std::uint16_t statusword) noexcept {
+  switch (statusword & 0x4FU) {
+    case 0x40:
+      return DriveState::kSwitchOnDisabled;
+    case 0x0F:
+      return DriveState::kFaultReaction;
+    case 0x08:
+      return DriveState::kFault;
+    default:
+      break;
+  }
+  switch (statusword & 0x6FU) {
+    case 0x21:
+      return DriveState::kReadyToSwitchOn;
+    case 0x23:
+      return DriveState::kSwitchedOn;
+    case 0x27:
+      return DriveState::kOperationEnabled;
+    case 0x07:
+      return DriveState::kQuickStop;
+    default:
+      return DriveState::kNotReady;
+  }
+}
+
+namespace controlword {
+inline constexpr std::uint16_t kDisableVoltage = 0x00;
+inline constexpr std::uint16_t kShutdown = 0x06;
+inline constexpr std::uint16_t kSwitchOn = 0x07;
+inline constexpr std::uint16_t kEnableOperation = 0x0F;
+inline constexpr std::uint16_t kFaultReset = 0x80;
+}  // namespace controlword
+
+/// Returns the controlword that brings a drive one step nearer to operation enabled, or keeps it
+/// there; with `is_wanted` false, to ready to switch on. A fault is left alone: it is reset by the
+/// operator's word only.
+[[nodiscard]] constexpr std::uint16_t next_controlword(DriveState state, bool is_wanted) noexcept {
+  switch (state) {
+    case DriveState::kReadyToSwitchOn:
+      return is_wanted ? controlword::kSwitchOn : controlword::kShutdown;
+    case DriveState::kSwitchedOn:
+    case DriveState::kOperationEnabled:
+      return is_wanted ? controlword::kEnableOperation : controlword::kShutdown;
+    case DriveState::kQuickStop:
+      return is_wanted ? controlword::kEnableOperation : controlword::kDisableVoltage;
+    case DriveState::kSwitchOnDisabled:
+      return controlword::kShutdown;
+    case DriveState::kNotReady:
+    case DriveState::kFaultReaction:
+    case DriveState::kFault:
+      return controlword::kDisableVoltage;
+  }
+  return controlword::kDisableVoltage;
+}
+
+}  // namespace meridian::interpolator

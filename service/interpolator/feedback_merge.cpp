@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/feedback_merge.hpp"
+
+#include <algorithm>
+
+#include "service/interpolator/drive_words.hpp"
+#include "service/interpolator/monotonic.hpp"
+
+namespace meridian::interpolator {
+
+FeedbackMerge::Group* FeedbackMerge::find_group(std::uint32_t id) noexcept {
+  for (Group& group : groups_) {
+    if (group.source != 0 && group.id == id) return &group;
+  }
+  for (Group& group : groups_) {
+    if (group.source == 0) return &group;
+  }
+  return nullptr;
+}
+
+bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t source,
+                         std::int64_t now_ns) noexcept {
+  Group* group = find_group(sample.drive_group);
+  if (group == nullptr || source == 0 || sample.joint_mask == 0 ||
+      (sample.joint_mask >> kMaxJoints) != 0) {
+    return false;
+  }
+  if (group->source == source && sample.sample <= group->sample) return false;
+  for (Group& other : groups_) {
+    if (&other != group) other.joint_mask &= ~sample.joint_mask;
+  }
+  *group = {sample.drive_group,      source, sample.sample,
+            sample.cycle_seen,       now_ns, sample.joint_mask,
+            sample.is_emergency_stop};
+  for (int joint = 0; joint < kMaxJoints; ++joint) {
+    const std::uint32_t bit = 1U << joint;
+    if ((sample.joint_mask & bit) == 0) continue;
+    const auto i = static_cast<std::size_t>(joint);
+    feedback_.position[i] = sample.position[i];
+    words_.statusword[i] = sample.statusword[i];
+    words_.error[i] = sample.error[i];
+    const DriveState state = drive_state(sample.statusword[i]);
+    const auto set = [bit](std::uint32_t& mask, bool is_set) {
+      mask = is_set ? mask | bit : mask & ~bit;
+    };
+    set(feedback_.enabled_mask, state == DriveState::kOperationEnabled);
+    set(feedback_.fault_mask, state == DriveState::kFault || state == DriveState::kFaultReaction);
+    set(feedback_.referenced_mask, (sample.referenced_mask & bit) != 0);
+  }
+  merge();
+  return true;
+}
+
+void FeedbackMerge::merge() noexcept {
+  feedback_.arrival_ns = INT64_MAX;
+  feedback_.cycle_seen = UINT64_MAX;
+  feedback_.joint_mask = 0;
+  feedback_.emergency_stop = false;
+  for (const Group& group : groups_) {
+    if (group.joint_mask == 0) continue;
+    feedback_.arrival_ns = std::min(feedback_.arrival_ns, group.arrival_ns);
+    feedback_.cycle_seen = std::min(feedback_.cycle_seen, group.cycle_seen);
+    feedback_.joint_mask |= group.joint_mask;
+    feedback_.emergency_stop = feedback_.emergency_stop || group.is_emergency_stop;
+  }
+  words_.joint_mask = feedback_.joint_mask;
+  words_.enabled_mask = feedback_.enabled_mask;
+  words_.fault_mask = feedback_.fault_mask;
+}
+
+FeedbackListener::FeedbackListener(dds::Participant& participant, Ports& ports)
+    : ports_(ports), reader_(participant, [this](auto& reader) { on_data(reader); }) {}
+
+void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept {
+  dds::DriveFeedback sample;
+  dds::SampleInfo info;
+  bool has_news = false;
+  while (reader.take(sample, info)) {
+    if (info.is_valid) has_news = merge_.take(sample, info.source, monotonic_ns()) || has_news;
+  }
+  if (!has_news) return;
+  ports_.feedback.store(merge_.feedback());
+  ports_.drive_words.store(merge_.words());
+  ports_.drive_words_for_status.store(merge_.words());
+}
+
+}  // namespace meridian::interpolator

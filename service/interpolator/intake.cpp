@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/intake.hpp"
+
+#include <algorithm>
+
+#include "service/interpolator/monotonic.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+constexpr auto kIdle = std::chrono::milliseconds(10);
+constexpr std::int64_t kLookForStation_ns = 200'000'000;
+/// A station that asks late still finds its last verdict.
+constexpr std::int64_t kKeepVerdict_ns = 30 * kSecond_ns;
+
+}  // namespace
+
+Intake::Intake(dds::Participant& participant, const MachineModel& model,
+               const stream::ToolLengths& tools, const config::ServiceConfig& service,
+               std::uint64_t service_id, Ports& ports)
+    : ports_(ports),
+      service_(service),
+      judge_(model, tools, service_id),
+      batches_(participant),
+      requests_(participant),
+      credits_(participant),
+      waitset_(participant) {
+  waitset_.attach(batches_);
+  waitset_.attach(requests_);
+}
+
+void Intake::run() noexcept {
+  while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
+    take_events();
+    take_rejects();
+    take_requests();
+    take_batches();
+    look_for_station();
+    free_idle_machine();
+    publish(judge_.due_credit(around()));
+    forget_old_sessions();
+    show();
+    waitset_.wait(kIdle);
+  }
+}
+
+stream::Surroundings Intake::around() noexcept {
+  const auto limit = static_cast<std::size_t>(service_.block_queue);
+  const std::size_t used = ports_.blocks.size() + kReserve;
+  const std::size_t places = std::min(ports_.blocks.capacity(), limit);
+  return {.now_ns = monotonic_ns(),
+          .free_places = places > used ? places - used : 0,
+          .actions = {.is_there = has_action_peer_,
+                      .is_ignored = service_.auxiliary == config::AuxiliaryPolicy::kIgnore}};
+}
+
+void Intake::take_events() {
+  Event event;
+  while (ports_.session_events.try_pop(event)) {
+    if (event.code == EventCode::kProgramEnd) {
+      publish(judge_.on_program_end(around()));
+    } else if (event.b == 1) {
+      ports_.intake_epoch.store(static_cast<std::uint32_t>(event.a), std::memory_order_relaxed);
+      ports_.planner_wake.notify();
+    } else {
+      empty_queue(static_cast<std::uint32_t>(event.a));
+      publish(judge_.on_queues_emptied("the operator or a fault ended the program", around()));
+    }
+  }
+}
+
+void Intake::empty_queue(std::uint32_t epoch) noexcept {
+  ports_.void_until.store(pushed_, std::memory_order_relaxed);
+  ports_.intake_epoch.store(epoch, std::memory_order_relaxed);
+  ports_.voided.fetch_add(1, std::memory_order_release);
+  ports_.planner_wake.notify();
+}
+
+void Intake::take_rejects() {
+  SessionReject refused;
+  while (ports_.rejects.try_pop(refused)) {
+    if (refused.session != judge_.session()) continue;
+    publish(judge_.on_planner_reject(refused.reject, around()));
+  }
+}
+
+/// A refused program whose blocks have all run, or never could, leaves a machine in Ready with
+/// nothing to do: it is free then.
+void Intake::free_idle_machine() {
+  constexpr std::int64_t kIdle_ns = 200'000'000;
+  const bool is_idle = refused_session_ != 0 && refused_session_ == judge_.session() &&
+                       ports_.state.load(std::memory_order_relaxed) == State::kReady &&
+                       ports_.blocks.empty() && ports_.motion.times.empty();
+  if (!is_idle) {
+    idle_since_ns_ = 0;
+    return;
+  }
+  const std::int64_t now_ns = monotonic_ns();
+  if (idle_since_ns_ == 0) idle_since_ns_ = now_ns;
+  if (now_ns - idle_since_ns_ < kIdle_ns) return;
+  empty_queue(ports_.intake_epoch.load(std::memory_order_relaxed));
+  publish(judge_.on_queues_emptied("nothing of the program is left to run", around()));
+}
+
+void Intake::take_requests() {
+  dds::SessionRequest request;
+  dds::SampleInfo info;
+  while (requests_.take(request, info)) {
+    if (!info.is_valid) continue;
+    publish(judge_.on_request(request, around(),
+                              ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
+    if (judge_.session() == request.session && judge_.is_held()) {
+      station_source_ = info.source;
+      is_station_there_ = true;
+    }
+  }
+}
+
+void Intake::take_batches() {
+  dds::Batch batch;
+  stream::Accepted accepted;
+  while (batches_.take(batch)) {
+    const std::optional<dds::Credit> answer = judge_.on_batch(batch, around(), accepted);
+    push(accepted);
+    publish(answer);
+  }
+}
+
+void Intake::push(const stream::Accepted& accepted) {
+  for (std::size_t i = 0; i < accepted.count; ++i) {
+    // There is room: credits count places. A block that found none would be lost without a word.
+    if (!ports_.blocks.stage({judge_.session(), accepted.blocks[i]})) break;
+    ++pushed_;
+  }
+  if (accepted.count == 0) return;
+  ports_.blocks.publish();
+  ports_.planner_wake.notify();
+}
+
+void Intake::look_for_station() {
+  const std::int64_t now_ns = monotonic_ns();
+  if (!is_station_there_ || !judge_.is_held() || now_ns - looked_ns_ < kLookForStation_ns) return;
+  looked_ns_ = now_ns;
+  if (requests_.has_source(station_source_)) return;
+  is_station_there_ = false;
+  judge_.on_station_lost(judge_.session());
+}
+
+void Intake::publish(const std::optional<dds::Credit>& credit) {
+  if (!credit) return;
+  (void)credits_.write(*credit);
+  if (credit->session == judge_.session()) {
+    if (credit->verdict >= dds::Verdict::kRefusedStation) refused_session_ = credit->session;
+    return;
+  }
+  const auto is_same = [&](const Ended& ended) { return ended.credit.session == credit->session; };
+  ended_.erase(std::remove_if(ended_.begin(), ended_.end(), is_same), ended_.end());
+  ended_.push_back({*credit, monotonic_ns()});
+}
+
+void Intake::forget_old_sessions() {
+  const std::int64_t now_ns = monotonic_ns();
+  while (!ended_.empty() &&
+         (now_ns - ended_.front().at_ns > kKeepVerdict_ns || ended_.size() > 64)) {
+    if (ended_.front().credit.session != judge_.session()) {
+      credits_.dispose(ended_.front().credit);
+    }
+    ended_.pop_front();
+  }
+}
+
+void Intake::show() {
+  ports_.session.store(judge_.session(), std::memory_order_relaxed);
+  const stream::IntakeCounters& counters = judge_.counters();
+  const std::lock_guard lock(view_mutex_);
+  view_.session = judge_.session();
+  if (judge_.is_held()) {
+    view_.station = judge_.request().station;
+    view_.program = judge_.request().program;
+    view_.block_count = judge_.request().block_count;
+    view_.blocks_received = judge_.next_sequence();
+  }
+  view_.batches_dropped = counters.batches_duplicate + counters.batches_stale;
+  view_.batches_lost = counters.batches_corrupted + counters.batches_gap;
+  view_.message = judge_.message();
+}
+
+SessionView Intake::view() const {
+  const std::lock_guard lock(view_mutex_);
+  return view_;
+}
+
+}  // namespace meridian::interpolator

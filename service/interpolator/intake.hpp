@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/config/service_file.hpp"
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/waitset.hpp"
+#include "service/dds/writer.hpp"
+#include "service/interpolator/ports.hpp"
+#include "service/stream/intake_judge.hpp"
+
+namespace meridian::interpolator {
+
+/// What intake tells the status.
+struct SessionView {
+  std::uint64_t session = 0;
+  std::string station, program;
+  std::uint64_t block_count = 0;
+  std::uint64_t blocks_received = 0;
+  std::uint64_t batches_dropped = 0, batches_lost = 0;
+  std::string message;
+};
+
+/// The service's end of sessions on DDS: drains its readers always, asks the judge, fills the block
+/// queue, answers with credits.
+class Intake {
+ public:
+  Intake(dds::Participant& participant, const MachineModel& model, const stream::ToolLengths& tools,
+         const config::ServiceConfig& service, std::uint64_t service_id, Ports& ports);
+
+  /// Runs until Ports::is_stopping.
+  void run() noexcept;
+  /// Any thread: there is something in a ring for intake.
+  void wake() noexcept { waitset_.wake(); }
+  /// Any thread: whether somebody reads actions.
+  void set_action_peer(bool is_there) noexcept { has_action_peer_ = is_there; }
+  [[nodiscard]] SessionView view() const;
+
+ private:
+  void take_events();
+  void take_rejects();
+  void free_idle_machine();
+  void take_requests();
+  void take_batches();
+  void look_for_station();
+  void push(const stream::Accepted& accepted);
+  void empty_queue(std::uint32_t epoch) noexcept;
+  void publish(const std::optional<dds::Credit>& credit);
+  void forget_old_sessions();
+  void show();
+  [[nodiscard]] stream::Surroundings around() noexcept;
+
+  /// Free places that the judge is not told of, for what is on its way while it computes credits.
+  static constexpr std::size_t kReserve = 64;
+
+  Ports& ports_;
+  const config::ServiceConfig& service_;
+  stream::IntakeJudge judge_;
+  dds::Reader<dds::Batch> batches_;
+  dds::Reader<dds::SessionRequest> requests_;
+  dds::Writer<dds::Credit> credits_;
+  dds::Waitset waitset_;
+
+  std::uint64_t pushed_ = 0;           ///< blocks put into the queue, ever
+  std::uint64_t refused_session_ = 0;  ///< newest session that was refused while it held
+  std::int64_t idle_since_ns_ = 0;
+  std::uint64_t station_source_ = 0;
+  bool is_station_there_ = false;
+  std::int64_t looked_ns_ = 0;
+  struct Ended {
+    dds::Credit credit;
+    std::int64_t at_ns = 0;
+  };
+  std::deque<Ended> ended_;  ///< credits of sessions that are over, to be disposed of in time
+  std::atomic<bool> has_action_peer_{false};
+
+  mutable std::mutex view_mutex_;
+  SessionView view_;
+};
+
+}  // namespace meridian::interpolator

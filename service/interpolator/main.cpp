@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
+#include <signal.h>
+#include <sys/mman.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "interpolator_version.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/config/service_file.hpp"
+#include "service/interpolator/service.hpp"
+#include "service/telemetry/log.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+enum ExitCode { kFine = 0, kCannotStart = 1, kUsage = 2, kConfigRefused = 3 };
+
+struct Options {
+  std::string machine, service, recording, frame;
+  int domain = -1;
+  bool is_best_effort = false;
+};
+
+/// Threads that libraries start get small stacks too: locked memory is resident.
+void make_stacks_small() {
+  constexpr std::size_t kStack_bytes = 512 * 1024;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kStack_bytes);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
+[[nodiscard]] sigset_t block_end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return signals;
+}
+
+[[nodiscard]] ServiceParts load(const Options& options) {
+  ServiceParts parts;
+  if (!options.service.empty()) parts.service = config::load_service(options.service);
+  if (options.is_best_effort) parts.service.realtime.mode = config::RealtimeMode::kBestEffort;
+  const std::string machine =
+      !options.machine.empty() ? options.machine : parts.service.machine.string();
+  if (machine.empty()) throw StartError("no machine: give --machine FILE or name it in --service");
+  parts.model = config::load_machine(machine);
+  if (!options.frame.empty()) {
+    config::place_workpiece(parts.model, config::parse_frame(options.frame));
+  }
+  if (!parts.service.tools.empty()) parts.tools = config::load_tools(parts.service.tools);
+  parts.model.bridge_cycles = config::find_bridge_cycles(parts.service, parts.model);
+  parts.domain =
+      static_cast<std::uint32_t>(options.domain >= 0 ? options.domain : parts.service.dds_domain);
+  parts.recording =
+      !options.recording.empty() ? options.recording : parts.service.recording.string();
+  return parts;
+}
+
+int serve(const ServiceParts& parts, const sigset_t& signals) {
+  const Realtime realtime(parts.service.realtime);
+  const auto log = telemetry::make_log(parts.service.log);
+  log->info("meridiand {} for machine {}, cycle {} us, domain {}, {}", kVersion, parts.model.name,
+            parts.model.cycle_ns / 1000, parts.domain,
+            realtime.mode() == dds::RealtimeMode::kEnforced
+                ? "real time enforced on CPU " + std::to_string(realtime.cpu())
+                : "real time best effort");
+  for (const std::string& remark : realtime.remarks()) log->warn("{}", remark);
+  const auto service = std::make_unique<Service>(parts, realtime, log);
+  service->start();
+  log->info("answering in Off");
+
+  int signal = 0;
+  sigwait(&signals, &signal);
+  log->info("{}: stopping", signal == SIGINT ? "interrupted" : "asked to end");
+  constexpr auto kPatience = std::chrono::seconds(10);
+  if (!service->switch_off(kPatience)) {
+    log->error("the machine is not Off after {} s; drives stop by their own watchdog",
+               kPatience.count());
+  }
+  service->stop();
+  log->info("ended");
+  return kFine;
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app{"The service of Meridian: CL blocks in, joint setpoints out, at a fixed rate."};
+  app.set_version_flag("--version", std::string("meridiand ") + kVersion);
+  app.add_option("--machine", options.machine, "machine file (TOML)");
+  app.add_option("--service", options.service, "service file (TOML)");
+  app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
+  app.add_option("--record", options.recording, "write the recording of record here (CSV)");
+  app.add_option("--frame", options.frame, "workpiece: x,y,z[,a,b,c] in mm and deg");
+  app.add_flag("--best-effort", options.is_best_effort,
+               "run without real-time rights where they are missing");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kFine : kUsage;
+  }
+  make_stacks_small();
+  const sigset_t signals = block_end_signals();
+  try {
+    return serve(load(options), signals);
+  } catch (const config::ConfigError& error) {
+    std::fprintf(stderr, "meridiand: %s\n", error.what());
+    return kConfigRefused;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "meridiand: %s\n", error.what());
+    return kCannotStart;
+  }
+}
+
+}  // namespace
+}  // namespace meridian::interpolator
+
+int main(int argc, char** argv) {
+  const int code = meridian::interpolator::run(argc, argv);
+  spdlog::shutdown();
+  return code;
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+#include "service/interpolator/ports.hpp"
+
+namespace meridian::interpolator {
+
+/// Plans block by block into the motion port. A plan begins where the machine rests in Ready, in
+/// the epoch of that moment; when the cycle advances the epoch, the plan and all blocks that came
+/// in before intake took note of it are void. What it publishes depends on the blocks and that
+/// beginning alone, never on the clock. Preallocated.
+class PlannerThread {
+ public:
+  PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports);
+
+  /// Runs until Ports::is_stopping.
+  void run() noexcept;
+
+ private:
+  /// Does one piece of work; false if there is none (yet).
+  [[nodiscard]] bool work() noexcept;
+  /// Follows the epochs of cycle and intake; false while blocks of an old one may be about.
+  [[nodiscard]] bool is_in_step() noexcept;
+  [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
+  [[nodiscard]] bool announce_action(const ClBlock& block) noexcept;
+  void pop() noexcept;
+
+  Ports& ports_;
+  MotionWriter writer_;
+  RestToRestPlanner planner_;
+  CycleView view_;
+  std::uint64_t voided_ = 0;     ///< newest of Ports::voided that was followed
+  std::uint64_t popped_ = 0;     ///< blocks taken from the queue, ever
+  bool has_begun_ = false;       ///< a plan is being made
+  bool is_refused_ = false;      ///< a block was refused: nothing behind it moves
+  bool is_action_told_ = false;  ///< of the block at the head of the queue
+};
+
+}  // namespace meridian::interpolator

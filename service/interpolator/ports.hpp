@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "meridian/path/block_reject.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/latest_value.hpp"
+#include "meridian/rt/spsc_ring.hpp"
+#include "service/interpolator/wake.hpp"
+
+/// Everything that passes between the threads of the service, each with one writer and one reader.
+///
+///     intake ─blocks─▶ planner ─motion─▶ cycle ─setpoints─▶ publisher
+///       ▲ ▲              │ │              ▲ │ ├─events─▶ commands ─told─▶ telemetry
+///       │ └───rejects────┘ └─actions──▶ commands        ├─records, timings─▶ telemetry ─▶ recorder
+///       └──────────session_events── commands ──┘        └─views─▶ planner, commands, telemetry
+namespace meridian::interpolator {
+
+/// A block with the session that it belongs to.
+struct QueuedBlock {
+  std::uint64_t session = 0;
+  ClBlock block;
+};
+
+/// An action block that was planned: what to publish when the cycle comes to it.
+struct PlannedAction {
+  std::uint16_t epoch = 0;
+  ClBlock block;
+};
+
+struct SessionReject {
+  std::uint64_t session = 0;
+  BlockReject reject;
+};
+
+/// What the cycle lets others see of itself, as of its newest executed period.
+struct CycleView {
+  CycleRecord record;
+  std::uint16_t epoch = 0;
+  Alarm alarm = Alarm::kNone;
+  double feed_override = 1, rapid_override = 1;
+  std::uint64_t cycles_run = 0;
+  std::uint64_t periods_lost = 0;
+  std::uint64_t starvations = 0;
+};
+
+/// How long the parts of one cycle took. Unit: ns.
+struct CycleTiming {
+  std::int32_t lateness = 0;     ///< actual wake-up minus due
+  std::int32_t computation = 0;  ///< step()
+  std::int32_t wake = 0;         ///< waking the publisher
+};
+
+/// CiA 402 statuswords as the drives sent them last, by joint.
+struct DriveWords {
+  std::array<std::uint16_t, kMaxJoints> statusword{};
+  std::array<std::uint16_t, kMaxJoints> error{};
+  std::uint32_t joint_mask = 0, enabled_mask = 0, fault_mask = 0;
+};
+
+struct Ports {
+  SpscRing<QueuedBlock, 8192> blocks;  ///< look-ahead of at least 5000 blocks
+  Wake planner_wake;
+  SpscRing<SessionReject, 64> rejects;
+  SpscRing<PlannedAction, 1024> actions;
+  MotionPort motion;
+
+  SpscRing<Command, 64> commands;
+  LatestValue<Feedback> feedback;
+  LatestValue<ActionAnswer> action_answer;
+
+  SpscRing<Setpoint, 256> setpoints;
+  Wake publisher_wake;
+  SpscRing<std::int32_t, 8192> sent_minus_due;  ///< publisher to telemetry, ns
+  SpscRing<CycleRecord, 8192> records;
+  SpscRing<CycleTiming, 8192> timings;
+  SpscRing<Event, 4096> events;
+  SpscRing<Event, 4096> told;           ///< all events on to telemetry
+  SpscRing<Event, 256> session_events;  ///< kProgramEnd; kEpochAdvanced, b 1: the queue stays
+  LatestValue<CycleView> planner_view, commands_view, telemetry_view;
+  LatestValue<DriveWords> drive_words, drive_words_for_status;
+
+  std::atomic<bool> is_stopping{false};
+  std::atomic<State> state{State::kOff};  ///< of the machine, for who needs no more than that
+  std::atomic<std::uint64_t> session{0};  ///< that holds the machine
+  std::atomic<bool> stops_at_optional{false};
+  std::atomic<double> spindle_tool_mm{0};  ///< gauge line to tip of the tool in the spindle
+  /// Intake empties the queue by writing how many blocks it ever pushed into `void_until`, the
+  /// epoch from which new blocks are meant into `intake_epoch`, and then counting `voided` up.
+  std::atomic<std::uint64_t> void_until{0};
+  std::atomic<std::uint32_t> intake_epoch{1};
+  std::atomic<std::uint64_t> voided{0};
+  std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};
+  std::atomic<std::uint64_t> writes_failed{0};
+
+  static_assert(std::atomic<double>::is_always_lock_free);
+};
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/service.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <thread>
+#include <utility>
+
+#include "interpolator_version.hpp"
+#include "meridian/units.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+[[nodiscard]] std::uint64_t draw_id() {
+  std::random_device device;
+  const std::uint64_t id = (std::uint64_t{device()} << 32U) | device();
+  return id != 0 ? id : 1;
+}
+
+[[nodiscard]] std::string partition_of(const ServiceParts& parts) {
+  const std::string& chosen = parts.service.dds_partition;
+  return chosen.empty() ? parts.model.name : chosen;
+}
+
+[[nodiscard]] dds::MachineInfo machine_info(const ServiceParts& parts, std::uint64_t service_id) {
+  const MachineModel& model = parts.model;
+  std::array<char, 64> host{};
+  (void)::gethostname(host.data(), host.size() - 1);
+  dds::MachineInfo info;
+  info.service_id = service_id;
+  info.started_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                        std::chrono::system_clock::now().time_since_epoch())
+                        .count();
+  info.name = model.name;
+  info.file_version = model.version;
+  info.service_version = kVersion;
+  info.host = host.data();
+  info.pid = static_cast<std::uint32_t>(::getpid());
+  info.kinematics = "lai";
+  info.cycle_ns = model.cycle_ns;
+  info.bridge_cycles = static_cast<std::uint32_t>(model.bridge_cycles);
+  info.joint_count = static_cast<std::uint32_t>(model.joint_count);
+  for (int joint = 0; joint < model.joint_count; ++joint) {
+    const auto i = static_cast<std::size_t>(joint);
+    const JointSpec& spec = model.joints[i];
+    info.joints[i] = {spec.name,       spec.is_rotary,
+                      spec.is_endless, static_cast<std::uint16_t>(joint),
+                      spec.limits,     spec.home};
+  }
+  info.max_feed_mm_per_min = units::per_min_from_per_s(model.max_feed_mm_per_s);
+  info.tip_tolerance_mm = model.tolerances.tip_mm;
+  info.axis_tolerance_rad = model.tolerances.axis_rad;
+  info.tool_length_mm = model.tool_length_mm;
+  return info;
+}
+
+[[nodiscard]] CycleOptions cycle_options(const config::ServiceConfig& service) {
+  CycleOptions options;
+  options.enable_timeout_s = service.enable_timeout_s;
+  options.action_timeout_s = service.action_timeout_s;
+  options.feedback_timeout_s = service.feedback_timeout_s;
+  return options;
+}
+
+[[nodiscard]] stream::ToolLengths lengths_of(const ToolTable& tools) {
+  stream::ToolLengths lengths;
+  for (const Tool& tool : tools.tools()) {
+    lengths[static_cast<std::uint32_t>(tool.number)] = tool.length_mm;
+  }
+  return lengths;
+}
+
+}  // namespace
+
+Service::Service(const ServiceParts& parts, const Realtime& realtime,
+                 std::shared_ptr<spdlog::logger> log)
+    : parts_(parts),
+      realtime_(realtime),
+      log_(std::move(log)),
+      service_id_(draw_id()),
+      tool_lengths_(lengths_of(parts_.tools)),
+      participant_({.domain = parts_.domain,
+                    .machine = partition_of(parts_),
+                    .transport = realtime.has_priorities() ? dds::Transport::kLoopbackRealtime
+                                                           : dds::Transport::kLoopback}),
+      lease_(participant_, machine_info(parts_, service_id_)),
+      publisher_(participant_, ports_),
+      feedback_(participant_, ports_),
+      intake_(participant_, parts_.model, tool_lengths_, parts_.service, service_id_, ports_),
+      planner_(parts_.model, parts_.tools, ports_),
+      cycle_(parts_.model, cycle_options(parts_.service), ports_),
+      supervisor_(participant_, parts_.model, parts_.tools, parts_.service, service_id_,
+                  status_clock_, ports_),
+      recorder_(parts_.recording, parts_.model),
+      telemetry_(participant_, parts_.model, parts_.service, service_id_, realtime.mode(), intake_,
+                 status_clock_, recorder_, log_, ports_) {
+  ports_.spindle_tool_mm = parts_.model.tool_length_mm;
+  ports_.stops_at_optional = parts_.service.optional_stop;
+  supervisor_.on_session_event([this](bool has_action_peer) {
+    intake_.set_action_peer(has_action_peer);
+    intake_.wake();
+  });
+  take_lease();
+}
+
+Service::~Service() { stop(); }
+
+void Service::take_lease() {
+  // Others announce themselves every 200 ms; a killed service is forgotten after its lease of 1 s.
+  constexpr auto kStartWindow = std::chrono::milliseconds(500);
+  constexpr auto kPatience = std::chrono::milliseconds(1800);
+  const auto holder = lease_.find_holder(kStartWindow, kPatience);
+  if (!holder) return;
+  throw StartError("machine '" + parts_.model.name + "' is served already by meridiand on host " +
+                   holder->host + ", process " + std::to_string(holder->pid) +
+                   "; end that one first, or choose another --domain");
+}
+
+void Service::start() {
+  const config::RealtimeConfig& plan = realtime_.wish();
+  const auto add = [this](const char* name, int priority, bool is_on_realtime_cpu, auto body) {
+    threads_.emplace_back(realtime_, ThreadPlan{name, priority, is_on_realtime_cpu},
+                          std::move(body));
+  };
+  recorder_thread_ = Thread(realtime_, {"recorder", 0, false}, [this] { recorder_.run(); });
+  add("telemetry", 0, false, [this] { telemetry_.run(); });
+  add("intake", 0, false, [this] { intake_.run(); });
+  add("planner", plan.planner_priority, false, [this] { planner_.run(); });
+  add("commands", plan.commands_priority, false, [this] { supervisor_.run(); });
+  add("publisher", plan.publisher_priority, true, [this] { publisher_.run(); });
+  add("cycle", plan.cycle_priority, true, [this] { cycle_.run(); });
+}
+
+bool Service::switch_off(std::chrono::milliseconds patience) {
+  supervisor_.switch_off();
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (!supervisor_.has_switched_off() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return supervisor_.has_switched_off();
+}
+
+void Service::stop() {
+  ports_.is_stopping = true;
+  ports_.publisher_wake.notify();
+  ports_.planner_wake.notify();
+  threads_.clear();
+  recorder_.stop();
+  recorder_thread_.join();
+}
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "service/config/service_file.hpp"
+#include "service/dds/participant.hpp"
+#include "service/interpolator/cycle_thread.hpp"
+#include "service/interpolator/feedback_merge.hpp"
+#include "service/interpolator/intake.hpp"
+#include "service/interpolator/lease.hpp"
+#include "service/interpolator/planner_thread.hpp"
+#include "service/interpolator/ports.hpp"
+#include "service/interpolator/publisher.hpp"
+#include "service/interpolator/realtime.hpp"
+#include "service/interpolator/status_clock.hpp"
+#include "service/interpolator/supervisor.hpp"
+#include "service/interpolator/telemetry_thread.hpp"
+
+namespace meridian::interpolator {
+
+/// What a service is made of.
+struct ServiceParts {
+  MachineModel model;
+  ToolTable tools;
+  config::ServiceConfig service;
+  std::uint32_t domain = 0;
+  std::string recording;  ///< path; empty: none
+};
+
+/// The wiring: the one place where the rooms meet. Built by the main thread, which is pinned off
+/// the real-time CPU by then.
+class Service {
+ public:
+  /// Takes the machine's lease and creates everything; no thread of ours runs yet. Throws
+  /// StartError, dds::DdsError or std::runtime_error.
+  Service(const ServiceParts& parts, const Realtime& realtime, std::shared_ptr<spdlog::logger> log);
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  void start();
+  /// Brings the machine to rest and to Off; false where it is not there within `patience`.
+  [[nodiscard]] bool switch_off(std::chrono::milliseconds patience);
+  /// Ends all threads and closes the recording.
+  void stop();
+
+ private:
+  void take_lease();
+
+  ServiceParts parts_;
+  const Realtime& realtime_;
+  std::shared_ptr<spdlog::logger> log_;
+  std::uint64_t service_id_;
+  stream::ToolLengths tool_lengths_;
+  Ports ports_;
+  StatusClock status_clock_;
+  dds::Participant participant_;
+  Lease lease_;
+  Publisher publisher_;
+  FeedbackListener feedback_;
+  Intake intake_;
+  PlannerThread planner_;
+  CycleThread cycle_;
+  Supervisor supervisor_;
+  telemetry::Recorder recorder_;
+  TelemetryThread telemetry_;
+  std::vector<Thread> threads_;
+  Thread recorder_thread_;
+};
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+
+#include "service/stream/freshness.hpp"
+
+namespace meridian::interpolator {
+
+/// When telemetry published its last statuses; the commands thread asks. Any thread.
+class StatusClock {
+ public:
+  void published(std::uint64_t sequence, std::int64_t now_ns) {
+    const std::lock_guard lock(mutex_);
+    times_.published(sequence, now_ns);
+  }
+  [[nodiscard]] Refusal judge(const dds::CommandRequest& request, std::uint64_t service_id,
+                              std::uint16_t epoch, std::int64_t now_ns) const {
+    const std::lock_guard lock(mutex_);
+    return stream::judge_freshness(request, service_id, epoch, times_, now_ns);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  stream::StatusTimes times_;
+};
+
+}  // namespace meridian::interpolator

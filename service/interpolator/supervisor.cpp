@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/supervisor.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "meridian/rt/state_table.hpp"
+#include "service/interpolator/drive_words.hpp"
+#include "service/interpolator/monotonic.hpp"
+#include "service/telemetry/words.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+/// Rings of the cycle cannot wake a DDS waitset: look at them so often.
+constexpr auto kLookAtRings = std::chrono::milliseconds(2);
+constexpr std::int64_t kResetDrives_ns = 300'000'000;
+
+}  // namespace
+
+Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
+                       const ToolTable& tools, const config::ServiceConfig& service,
+                       std::uint64_t service_id, const StatusClock& status_clock, Ports& ports)
+    : model_(model),
+      tools_(tools),
+      service_(service),
+      service_id_(service_id),
+      status_clock_(status_clock),
+      ports_(ports),
+      commands_(participant),
+      replies_(participant),
+      actions_done_(participant),
+      actions_(participant),
+      drives_(participant, model.joint_count, service_id),
+      waitset_(participant) {
+  waitset_.attach(commands_);
+  waitset_.attach(actions_done_);
+}
+
+void Supervisor::run() noexcept {
+  while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
+    if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
+    ports_.drive_words.refresh();
+    ports_.state.store(view_.record.state, std::memory_order_relaxed);
+    take_commands();
+    take_actions_done();
+    take_events();
+    send_delayed_reset();
+    work_on_switching_off();
+    drives_.work(view_.record.state, view_.epoch, ports_.drive_words.latest(), monotonic_ns());
+    look_for_action_peer();
+    waitset_.wait(kLookAtRings);
+  }
+}
+
+void Supervisor::switch_off() noexcept {
+  is_switching_off_ = true;
+  waitset_.wake();
+}
+
+void Supervisor::take_commands() {
+  dds::CommandRequest request;
+  while (commands_.take(request)) take_command(request);
+}
+
+void Supervisor::take_command(const dds::CommandRequest& request) {
+  for (const Answered& answered : answered_) {
+    if (answered.operator_id == request.operator_id && answered.request == request.request &&
+        request.operator_id != 0) {
+      (void)replies_.write(answered.reply);
+      return;
+    }
+  }
+  for (const Pending& pending : pending_) {
+    if (pending.key != 0 && pending.request.operator_id == request.operator_id &&
+        pending.request.request == request.request) {
+      return;
+    }
+  }
+  if (static_cast<int>(request.verb) >= kVerbCount) {
+    reply(request, false, Refusal::kOutOfRange, "this service does not know that verb");
+    return;
+  }
+  const Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns());
+  if (is_switching_off_ || refusal != Refusal::kNone) {
+    const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
+    reply(request, false, why,
+          is_switching_off_ ? "the service is shutting down"
+                            : telemetry::describe(request.verb, why, view_.record.state));
+    return;
+  }
+  if (request.verb == Verb::kReset && view_.record.state == State::kFault &&
+      delayed_until_ns_ == 0) {
+    drives_.reset_faults(monotonic_ns());
+    delayed_reset_ = request;
+    delayed_until_ns_ = monotonic_ns() + kResetDrives_ns;
+    return;
+  }
+  send(request, request.verb, request.argument);
+}
+
+void Supervisor::send_delayed_reset() {
+  if (delayed_until_ns_ == 0) return;
+  const DriveWords& words = ports_.drive_words.latest();
+  bool has_fault = false;
+  for (int joint = 0; joint < model_.joint_count; ++joint) {
+    const DriveState state = drive_state(words.statusword[static_cast<std::size_t>(joint)]);
+    has_fault = has_fault || state == DriveState::kFault || state == DriveState::kFaultReaction;
+  }
+  if (has_fault && monotonic_ns() < delayed_until_ns_) return;
+  delayed_until_ns_ = 0;
+  send(delayed_reset_, Verb::kReset, 0);
+}
+
+void Supervisor::send(const dds::CommandRequest& request, Verb verb, double argument) {
+  const auto place = std::find_if(pending_.begin(), pending_.end(),
+                                  [](const Pending& pending) { return pending.key == 0; });
+  if (place == pending_.end() ||
+      !ports_.commands.try_push({.request = next_key_, .verb = verb, .argument = argument})) {
+    reply(request, false, Refusal::kWrongState, "too many commands at once; say it again");
+    return;
+  }
+  *place = {next_key_++, request};
+}
+
+void Supervisor::take_events() {
+  Event event;
+  bool has_session_event = false;
+  while (ports_.events.try_pop(event)) {
+    switch (event.code) {
+      case EventCode::kAccepted:
+      case EventCode::kRefused:
+        answer(event);
+        break;
+      case EventCode::kActionDue:
+        publish_action(event);
+        break;
+      case EventCode::kStateChanged:
+        told_state_ = static_cast<State>(event.a);
+        break;
+      case EventCode::kProgramEnd:
+      case EventCode::kEpochAdvanced:
+        is_action_open_ = false;
+        action_ = {};
+        ports_.action_answer.store({});
+        // Nothing was planned while the drives were off: what waits in the queue stays good.
+        event.b =
+            event.code == EventCode::kEpochAdvanced && told_state_ == State::kEnabling ? 1 : 0;
+        has_session_event = ports_.session_events.try_push(event) || has_session_event;
+        break;
+      default:
+        break;
+    }
+    (void)ports_.told.try_push(event);
+  }
+  if (has_session_event && tell_intake_) tell_intake_(has_action_peer_);
+}
+
+void Supervisor::answer(const Event& event) {
+  const auto pending = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& place) {
+    return place.key != 0 && place.key == event.a;
+  });
+  if (pending == pending_.end()) return;
+  if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
+  const bool is_accepted = event.code == EventCode::kAccepted;
+  const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
+  const Verb verb = pending->request.verb;
+  reply(pending->request, is_accepted, refusal,
+        is_accepted ? telemetry::describe(verb, view_.record.state)
+                    : telemetry::describe(verb, refusal, view_.record.state));
+  pending->key = 0;
+}
+
+void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
+                       const std::string& text) {
+  if (request.operator_id == 0) return;  // our own, while shutting down
+  const dds::Reply reply{.request = request.request,
+                         .operator_id = request.operator_id,
+                         .service_id = service_id_,
+                         .verb = request.verb,
+                         .is_accepted = is_accepted,
+                         .refusal = refusal,
+                         .state = view_.record.state,
+                         .epoch = view_.epoch,
+                         .text = text};
+  (void)replies_.write(reply);
+  answered_[answered_at_++ % answered_.size()] = {request.operator_id, request.request, reply};
+}
+
+void Supervisor::publish_action(const Event& event) {
+  const auto is_meant = [&event](const PlannedAction& planned) {
+    return planned.epoch == event.epoch && planned.block.sequence == event.a;
+  };
+  // One that failed is asked for again after a resume.
+  while (!is_meant(action_)) {
+    if (!ports_.actions.try_pop(action_)) return;
+  }
+  is_action_open_ = true;
+  if (service_.auxiliary == config::AuxiliaryPolicy::kIgnore) {
+    settle_action(true);
+    return;
+  }
+  const ClBlock& block = action_.block;
+  (void)actions_.write({.id = ++action_id_,
+                        .service_id = service_id_,
+                        .sequence = block.sequence,
+                        .line = block.line,
+                        .kind = block.action,
+                        .value = block.value,
+                        .text = std::string(block.text, ::strnlen(block.text, sizeof block.text))});
+}
+
+void Supervisor::take_actions_done() {
+  dds::ActionDone done;
+  while (actions_done_.take(done)) {
+    if (!is_action_open_ || done.service_id != service_id_ || done.id != action_id_) continue;
+    settle_action(done.is_done);
+  }
+}
+
+void Supervisor::settle_action(bool is_done) {
+  is_action_open_ = false;
+  if (is_done && action_.block.kind == BlockKind::kTool) {
+    if (const Tool* tool = tools_.find(static_cast<int>(action_.block.value)); tool != nullptr) {
+      ports_.spindle_tool_mm.store(tool->length_mm, std::memory_order_relaxed);
+    }
+  }
+  ports_.action_answer.store(
+      {.sequence = action_.block.sequence, .is_answered = true, .is_done = is_done});
+}
+
+void Supervisor::look_for_action_peer() {
+  constexpr std::int64_t kLook_ns = 100'000'000;
+  if (monotonic_ns() - looked_ns_ < kLook_ns) return;
+  looked_ns_ = monotonic_ns();
+  const bool is_there = actions_.matched_readers() > 0 && actions_done_.matched_writers() > 0;
+  if (std::exchange(has_action_peer_, is_there) != is_there && tell_intake_) tell_intake_(is_there);
+}
+
+void Supervisor::work_on_switching_off() {
+  constexpr std::int64_t kAskAgain_ns = 100'000'000;
+  if (!is_switching_off_ || is_off_) return;
+  const State state = view_.record.state;
+  if (state == State::kOff || state == State::kFault) {
+    is_off_ = true;
+    return;
+  }
+  const std::int64_t now_ns = monotonic_ns();
+  if (now_ns - asked_off_ns_ < kAskAgain_ns) return;
+  asked_off_ns_ = now_ns;
+  const VerbEffect disable = effect_of(state, Verb::kDisable);
+  const Verb verb = disable.effect == Effect::kGo ? Verb::kDisable : Verb::kAbort;
+  dds::CommandRequest own;
+  own.verb = verb;
+  send(own, verb, 0);
+}
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "service/config/service_file.hpp"
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/waitset.hpp"
+#include "service/dds/writer.hpp"
+#include "service/interpolator/drive_commander.hpp"
+#include "service/interpolator/ports.hpp"
+#include "service/interpolator/status_clock.hpp"
+
+namespace meridian::interpolator {
+
+/// The commands thread: operators' verbs to the cycle and its answers back, actions out and in,
+/// controlwords to the drives, events on to who wants them, and the orderly end of the service.
+class Supervisor {
+ public:
+  Supervisor(dds::Participant& participant, const MachineModel& model, const ToolTable& tools,
+             const config::ServiceConfig& service, std::uint64_t service_id,
+             const StatusClock& status_clock, Ports& ports);
+
+  /// Runs until Ports::is_stopping.
+  void run() noexcept;
+  /// Any thread: bring the machine to rest and to Off, then has_switched_off().
+  void switch_off() noexcept;
+  [[nodiscard]] bool has_switched_off() const noexcept { return is_off_.load(); }
+  /// Before run(): `tell_intake` is called when there is something in a ring for intake, or when
+  /// an action peer came or went.
+  void on_session_event(std::function<void(bool has_action_peer)> tell_intake) {
+    tell_intake_ = std::move(tell_intake);
+  }
+
+ private:
+  struct Pending {
+    std::uint64_t key = 0;  ///< Command::request, 0: place is free
+    dds::CommandRequest request;
+  };
+  struct Answered {
+    std::uint64_t operator_id = 0, request = 0;
+    dds::Reply reply;
+  };
+
+  void take_commands();
+  void take_command(const dds::CommandRequest& request);
+  void send(const dds::CommandRequest& request, Verb verb, double argument);
+  void take_events();
+  void answer(const Event& event);
+  void reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
+             const std::string& text);
+  void publish_action(const Event& event);
+  void take_actions_done();
+  void settle_action(bool is_done);
+  void send_delayed_reset();
+  void work_on_switching_off();
+  void look_for_action_peer();
+
+  const MachineModel& model_;
+  const ToolTable& tools_;
+  const config::ServiceConfig& service_;
+  std::uint64_t service_id_;
+  const StatusClock& status_clock_;
+  Ports& ports_;
+  dds::Reader<dds::CommandRequest> commands_;
+  dds::Writer<dds::Reply> replies_;
+  dds::Reader<dds::ActionDone> actions_done_;
+  dds::Writer<dds::Action> actions_;
+  DriveCommander drives_;
+  dds::Waitset waitset_;
+  std::function<void(bool)> tell_intake_;
+
+  CycleView view_;
+  State told_state_ = State::kOff;  ///< by the events so far
+  std::uint64_t next_key_ = 1;
+  std::array<Pending, 64> pending_{};
+  std::array<Answered, 32> answered_{};  ///< for requests that come twice
+  std::size_t answered_at_ = 0;
+  PlannedAction action_{};  ///< newest that was due
+  std::uint64_t action_id_ = 0;
+  bool is_action_open_ = false;
+  bool has_action_peer_ = false;
+  std::atomic<bool> is_switching_off_{false}, is_off_{false};
+  std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
+  dds::CommandRequest delayed_reset_;  ///< waits until drives left their fault
+  std::int64_t delayed_until_ns_ = 0;  ///< 0: none waits
+};
+
+}  // namespace meridian::interpolator

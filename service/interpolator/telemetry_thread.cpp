@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/telemetry_thread.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "meridian/rt/state_table.hpp"
+#include "meridian/units.hpp"
+#include "service/interpolator/monotonic.hpp"
+#include "service/telemetry/words.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+constexpr auto kLookAtRings = std::chrono::milliseconds(10);
+
+}  // namespace
+
+TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineModel& model,
+                                 const config::ServiceConfig& service, std::uint64_t service_id,
+                                 dds::RealtimeMode mode, const Intake& intake,
+                                 StatusClock& status_clock, telemetry::Recorder& recorder,
+                                 std::shared_ptr<spdlog::logger> log, Ports& ports)
+    : model_(model),
+      service_(service),
+      service_id_(service_id),
+      intake_(intake),
+      status_clock_(status_clock),
+      recorder_(recorder),
+      log_(std::move(log)),
+      ports_(ports),
+      statuses_(participant),
+      latencies_(participant),
+      motion_(model) {
+  status_.service_id = service_id_;
+  status_.realtime_mode = mode;
+  status_.is_auxiliary_ignored = service.auxiliary == config::AuxiliaryPolicy::kIgnore;
+}
+
+void TelemetryThread::run() noexcept {
+  const auto status_period_ns = static_cast<std::int64_t>(1e9 / service_.status_rate_hz);
+  while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
+    drain();
+    const std::int64_t now_ns = monotonic_ns();
+    const bool is_due = has_news_ || now_ns - status_ns_ >= status_period_ns;
+    if (is_due && view_.cycles_run > 0) publish_status(now_ns);
+    if (now_ns - latency_ns_ >= kSecond_ns) publish_latency(now_ns);
+    std::this_thread::sleep_for(kLookAtRings);
+  }
+  drain();
+  publish_status(monotonic_ns());
+}
+
+void TelemetryThread::drain() {
+  Event event;
+  while (ports_.told.try_pop(event)) tell(event);
+  CycleRecord record;
+  const double tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
+  while (ports_.records.try_pop(record)) {
+    (void)recorder_.take(record);
+    motion_.see(record, tool_mm);
+  }
+  CycleTiming timing;
+  while (ports_.timings.try_pop(timing)) {
+    lateness_.record(timing.lateness);
+    computation_.record(timing.computation);
+    wake_.record(timing.wake);
+  }
+  std::int32_t sent_minus_due = 0;
+  while (ports_.sent_minus_due.try_pop(sent_minus_due)) sent_.record(sent_minus_due);
+  if (ports_.telemetry_view.refresh()) view_ = ports_.telemetry_view.latest();
+  if (std::exchange(told_state_, view_.record.state) != view_.record.state) has_news_ = true;
+}
+
+void TelemetryThread::tell(const Event& event) {
+  switch (event.code) {
+    case EventCode::kBlockDone:
+      ++status_.blocks_done;
+      break;
+    case EventCode::kAlarm:
+      status_.alarm = static_cast<Alarm>(event.a);
+      status_.alarm_joint = static_cast<std::uint8_t>(event.b);
+      status_.alarm_line = event.line;
+      status_.alarm_value = event.x;
+      has_news_ = true;
+      break;
+    case EventCode::kStopped:
+      status_.stop_time_s = 1e-9 * static_cast<double>(event.a);
+      status_.stop_distance_mm = event.x;
+      has_news_ = true;
+      break;
+    case EventCode::kEpochAdvanced:
+      status_.blocks_done = 0;
+      has_news_ = true;
+      break;
+    default:
+      break;
+  }
+  const telemetry::Weight weight = telemetry::weight_of(event);
+  if (weight == telemetry::Weight::kDetail) return;
+  const std::string words = telemetry::describe(event, model_);
+  if (weight != telemetry::Weight::kNews || event.code == EventCode::kStopped) {
+    status_.message = words;
+  }
+  log_->log(weight == telemetry::Weight::kError     ? spdlog::level::err
+            : weight == telemetry::Weight::kWarning ? spdlog::level::warn
+                                                    : spdlog::level::info,
+            "cycle {}: {}", event.cycle, words);
+}
+
+void TelemetryThread::publish_status(std::int64_t now_ns) {
+  const CycleRecord& record = view_.record;
+  const SessionView session = intake_.view();
+  dds::Status& status = status_;
+  if (status.session != session.session && session.session != 0) status.blocks_done = 0;
+  if (status.state == State::kFault && record.state == State::kOff) status.alarm = Alarm::kNone;
+  ++status.status_sequence;
+  status.time_ns = now_ns;
+  status.cycle = record.setpoint.cycle;
+  status.state = record.state;
+  status.epoch = view_.epoch;
+  status.session = session.session;
+  status.station = session.station;
+  status.program = session.program;
+  status.block_count = session.block_count;
+  status.blocks_received = session.blocks_received;
+  status.batches_dropped = session.batches_dropped;
+  status.batches_lost = session.batches_lost;
+  status.block = record.sequence;
+  status.line = record.setpoint.line;
+  status.motion = record.motion;
+  status.is_at_pole = record.motion == MotionKind::kPoleTurn;
+  status.feed_achieved_mm_per_min = units::per_min_from_per_s(motion_.feed_mm_per_s());
+  status.limiting_joint = is_on_path(record.state) ? motion_.limiting_joint() : -1;
+  status.feed_override = view_.feed_override;
+  status.rapid_override = view_.rapid_override;
+  status.rate = record.rate;
+  status.plan_time_s = record.plan_time_s;
+  status.joints = record.joints;
+  if (ports_.drive_words_for_status.refresh()) words_ = ports_.drive_words_for_status.latest();
+  status.drives_enabled_mask = words_.enabled_mask;
+  status.drives_fault_mask = words_.fault_mask;
+  status.blocks_queued = static_cast<std::uint32_t>(ports_.blocks.size());
+  status.pieces_queued = static_cast<std::uint32_t>(ports_.motion.times.size());
+  status.cycles_run = view_.cycles_run;
+  status.periods_lost = view_.periods_lost;
+  status.starvations = view_.starvations;
+  status.setpoints_overrun = ports_.setpoints_overrun + ports_.writes_failed;
+  status.records_overrun = ports_.records_overrun + recorder_.rows_lost();
+  status.events_overrun = ports_.events_overrun;
+  if (!session.message.empty() && session.message != session_message_) {
+    session_message_ = status.message = session.message;
+    log_->info("{}", session.message);
+  }
+  // The clock first: a verb that quotes this status may be here before write() returns.
+  status_clock_.published(status.status_sequence, now_ns);
+  (void)statuses_.write(status);
+  status_ns_ = now_ns;
+  has_news_ = false;
+  motion_.reset();
+}
+
+void TelemetryThread::publish_latency(std::int64_t now_ns) {
+  latency_ns_ = now_ns;
+  dds::Latency latency;
+  latency.service_id = service_id_;
+  latency.time_ns = now_ns;
+  for (const auto* book : {&lateness_, &computation_, &wake_, &sent_}) {
+    latency.histograms.push_back(book->snapshot());
+  }
+  (void)latencies_.write(latency);
+}
+
+}  // namespace meridian::interpolator

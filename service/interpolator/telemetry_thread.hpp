@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/config/service_file.hpp"
+#include "service/dds/messages.hpp"
+#include "service/dds/writer.hpp"
+#include "service/interpolator/intake.hpp"
+#include "service/interpolator/ports.hpp"
+#include "service/interpolator/status_clock.hpp"
+#include "service/telemetry/latency_book.hpp"
+#include "service/telemetry/motion_watch.hpp"
+#include "service/telemetry/recorder.hpp"
+
+namespace meridian::interpolator {
+
+/// Drains what the other threads tell: events into words, records to the recorder, timings into
+/// histograms; publishes the status at 20 Hz and on change, latencies at 1 Hz.
+class TelemetryThread {
+ public:
+  TelemetryThread(dds::Participant& participant, const MachineModel& model,
+                  const config::ServiceConfig& service, std::uint64_t service_id,
+                  dds::RealtimeMode mode, const Intake& intake, StatusClock& status_clock,
+                  telemetry::Recorder& recorder, std::shared_ptr<spdlog::logger> log, Ports& ports);
+
+  /// Runs until Ports::is_stopping; what is in the rings by then is drained.
+  void run() noexcept;
+
+ private:
+  void drain();
+  void tell(const Event& event);
+  void publish_status(std::int64_t now_ns);
+  void publish_latency(std::int64_t now_ns);
+
+  const MachineModel& model_;
+  const config::ServiceConfig& service_;
+  std::uint64_t service_id_;
+  const Intake& intake_;
+  StatusClock& status_clock_;
+  telemetry::Recorder& recorder_;
+  std::shared_ptr<spdlog::logger> log_;
+  Ports& ports_;
+  dds::Writer<dds::Status> statuses_;
+  dds::Writer<dds::Latency> latencies_;
+
+  CycleView view_;
+  dds::Status status_;
+  DriveWords words_;
+  telemetry::MotionWatch motion_;
+  telemetry::LatencyBook lateness_{"wake-up lateness"}, computation_{"cycle computation"},
+      wake_{"publisher's wake"}, sent_{"sent minus due"};
+  std::int64_t status_ns_ = 0, latency_ns_ = 0;
+  State told_state_ = State::kOff;
+  bool has_news_ = true;
+  std::string session_message_;  ///< newest of intake that was told
+};
+
+}  // namespace meridian::interpolator

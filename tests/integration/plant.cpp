@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integration/plant.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/units.hpp"
+#include "service/config/machine_file.hpp"
+
+namespace meridian::test {
+namespace {
+
+[[nodiscard]] std::int64_t now_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+}  // namespace
+
+bool eventually(const std::function<bool()>& condition, milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  do {
+    if (condition()) return true;
+    std::this_thread::sleep_for(milliseconds(2));
+  } while (std::chrono::steady_clock::now() < end);
+  return condition();
+}
+
+Process::Process(const std::vector<std::string>& arguments, std::filesystem::path log)
+    : log_(std::move(log)) {
+  std::vector<std::string> words = arguments;
+  words[0] = std::string(MERIDIAN_BINARY_DIR) + "/bin/" + words[0];
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_ = ::fork();
+  if (pid_ != 0) return;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int file = ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  ::dup2(file, STDOUT_FILENO);
+  ::dup2(file, STDERR_FILENO);
+  ::execv(argv[0], argv.data());
+  ::_exit(127);
+}
+
+Process::~Process() {
+  if (exit_code_) return;
+  send_signal(SIGKILL);
+  (void)wait(milliseconds(5000));
+}
+
+void Process::send_signal(int signal) const {
+  if (!exit_code_) ::kill(pid_, signal);
+}
+
+std::optional<int> Process::wait(milliseconds patience) {
+  (void)eventually(
+      [this] {
+        int status = 0;
+        if (exit_code_ || ::waitpid(pid_, &status, WNOHANG) != pid_) return exit_code_.has_value();
+        exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        return true;
+      },
+      patience);
+  return exit_code_;
+}
+
+std::string Process::said() const {
+  std::ostringstream all;
+  all << std::ifstream(log_).rdbuf();
+  return all.str();
+}
+
+std::string machine_file() {
+  return std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/lai.toml";
+}
+
+Plant::Plant()
+    : folder_(std::filesystem::temp_directory_path() / ("meridian-plant-" + domain())),
+      participant_({.domain = domain_.id(), .machine = "lai"}),
+      statuses_(participant_),
+      commands_(participant_),
+      replies_(participant_),
+      requests_(participant_),
+      batches_(participant_),
+      credits_(participant_) {
+  std::filesystem::remove_all(folder_);
+  std::filesystem::create_directories(folder_);
+}
+
+Plant::~Plant() {
+  service_.reset();
+  drives_.reset();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+Process& Plant::start_service(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"meridiand", "--machine", machine_file(), "--domain",
+                                        domain(),    "--record",  recording(),    "--best-effort"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  status_.reset();
+  service_ = std::make_unique<Process>(arguments, folder_ / "service.log");
+  return *service_;
+}
+
+Process& Plant::start_drives(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"meridian",     "drives",   "--machine",
+                                        machine_file(), "--domain", domain()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  drives_ = std::make_unique<Process>(arguments, folder_ / "drives.log");
+  return *drives_;
+}
+
+std::unique_ptr<Process> Plant::another_service() {
+  return std::make_unique<Process>(
+      std::vector<std::string>{"meridiand", "--machine", machine_file(), "--domain", domain(),
+                               "--best-effort"},
+      folder_ / "second.log");
+}
+
+void Plant::look() {
+  dds::Status status;
+  while (statuses_.take(status)) status_ = status;
+}
+
+const dds::Status& Plant::status() {
+  look();
+  (void)eventually([this] {
+    look();
+    return status_.has_value();
+  });
+  if (!status_) status_.emplace();
+  return *status_;
+}
+
+bool Plant::wait_for(State state, milliseconds patience) {
+  return eventually([&] { return status().state == state; }, patience);
+}
+
+std::optional<dds::Reply> Plant::say(Verb verb, double argument) {
+  if (!eventually(
+          [this] { return commands_.matched_readers() > 0 && replies_.matched_writers() > 0; })) {
+    return std::nullopt;
+  }
+  const dds::Status& seen = status();
+  dds::CommandRequest request;
+  request.request = ++request_;
+  request.operator_id = 4711;
+  request.operator_name = "test";
+  request.verb = verb;
+  request.epoch_seen = seen.epoch;
+  request.status_seen = seen.status_sequence;
+  request.service_id_seen = seen.service_id;
+  request.argument = argument;
+  (void)commands_.write(request);
+  dds::Reply reply;
+  const bool has_reply = eventually([&] {
+    while (replies_.take(reply)) {
+      if (reply.operator_id == request.operator_id && reply.request == request.request) return true;
+    }
+    return false;
+  });
+  return has_reply ? std::optional(reply) : std::nullopt;
+}
+
+bool Plant::enable() {
+  // Until feedback is there an enable is refused: ask again.
+  return eventually([this] {
+           const auto reply = say(Verb::kEnable);
+           return reply && reply->is_accepted;
+         }) &&
+         wait_for(State::kReady);
+}
+
+bool Plant::stream(const std::vector<ClBlock>& blocks,
+                   const std::function<bool(const stream::Station&)>& until,
+                   milliseconds patience) {
+  (void)eventually([this] {
+    return requests_.matched_readers() > 0 && batches_.matched_readers() > 0 &&
+           credits_.matched_writers() > 0;
+  });
+  dds::SessionRequest open;
+  open.session = 1000 + ++session_;
+  open.station = "test";
+  open.program = "small program";
+  open.block_count = blocks.size();
+  station_ = std::make_unique<stream::Station>(open, [blocks, next = std::size_t{0}]() mutable {
+    if (next == blocks.size()) return stream::Supply{};
+    return stream::Supply{stream::Supply::Kind::kBlock, blocks[next++]};
+  });
+  return stream_on(until, patience);
+}
+
+bool Plant::stream_on(const std::function<bool(const stream::Station&)>& until,
+                      milliseconds patience) {
+  dds::Batch batch;
+  dds::Credit credit;
+  return eventually(
+      [&] {
+        if (const auto request = station_->due_request(now_ns())) (void)requests_.write(*request);
+        while (credits_.take(credit)) station_->on_credit(credit, now_ns());
+        while (station_->next_batch(now_ns(), batch)) {
+          if (!batches_.write(batch)) station_->on_not_sent();
+        }
+        look();
+        return until(*station_);
+      },
+      patience);
+}
+
+std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min, double step_mm) {
+  const MachineModel model = config::load_machine(machine_file());
+  JointVector home{};
+  for (int i = 0; i < model.joint_count; ++i) {
+    home[static_cast<std::size_t>(i)] = model.joints[static_cast<std::size_t>(i)].home;
+  }
+  const ToolPose start = forward(model, model.tool_length_mm, home);
+  std::vector<ClBlock> program;
+  for (int i = 0; i < blocks; ++i) {
+    const double angle_rad = units::rad_from_deg(10 + i % 7);
+    const double turn_rad = units::rad_from_deg(20 + 1.5 * (i % 11));
+    const Vector3 axis(std::sin(angle_rad) * std::cos(turn_rad),
+                       std::sin(angle_rad) * std::sin(turn_rad), std::cos(angle_rad));
+    const Vector3 tip =
+        start.tip + Vector3(step_mm * i, i % 2 == 0 ? 0 : step_mm, -5 + 0.1 * (i % 5));
+    ClBlock block;
+    block.sequence = static_cast<std::uint64_t>(i);
+    block.line = static_cast<std::uint32_t>(i + 1);
+    block.kind = i == 0 ? BlockKind::kRapid : BlockKind::kCut;
+    block.feed_meaning = i == 0 ? FeedMeaning::kNone : FeedMeaning::kTip;
+    block.feed = i == 0 ? 0 : units::per_s_from_per_min(feed_mm_per_min);
+    block.tip_mm = to_array(tip);
+    block.axis = to_array(axis.normalized());
+    program.push_back(block);
+  }
+  return program;
+}
+
+}  // namespace meridian::test

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/writer.hpp"
+#include "service/stream/station.hpp"
+#include "support/private_domain.hpp"
+
+namespace meridian::test {
+
+using std::chrono::milliseconds;
+
+/// Asks `condition` again and again; false where it did not come true in time.
+[[nodiscard]] bool eventually(const std::function<bool()>& condition,
+                              milliseconds patience = milliseconds(5000));
+
+/// A program of ours that runs beside the test; killed with it.
+class Process {
+ public:
+  /// Starts build/bin/`arguments[0]`; what it says goes to `log`.
+  Process(const std::vector<std::string>& arguments, std::filesystem::path log);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send_signal(int signal) const;
+  /// Exit code, or nothing where it still runs after `patience`. A death by signal is 128 + signal.
+  [[nodiscard]] std::optional<int> wait(milliseconds patience);
+  [[nodiscard]] std::string said() const;
+  [[nodiscard]] pid_t pid() const noexcept { return pid_; }
+
+ private:
+  pid_t pid_ = -1;
+  std::filesystem::path log_;
+  std::optional<int> exit_code_;
+};
+
+/// Service and drives as processes on a private domain, with the test as operator and station.
+class Plant {
+ public:
+  Plant();
+  ~Plant();
+
+  /// Start meridiand (best effort, Lai machine, recording on) or the drives, `more` on the command
+  /// line.
+  Process& start_service(const std::vector<std::string>& more = {});
+  Process& start_drives(const std::vector<std::string>& more = {});
+  [[nodiscard]] std::unique_ptr<Process> another_service();
+
+  /// The newest status; waits for a first one.
+  [[nodiscard]] const dds::Status& status();
+  [[nodiscard]] bool wait_for(State state, milliseconds patience = milliseconds(8000));
+  /// Says a verb as an operator who has just looked; nothing where no reply came.
+  [[nodiscard]] std::optional<dds::Reply> say(Verb verb, double argument = 0);
+  [[nodiscard]] bool enable();
+
+  /// Streams `blocks` and goes on until `until` is true of the station, or time is up.
+  [[nodiscard]] bool stream(const std::vector<ClBlock>& blocks,
+                            const std::function<bool(const stream::Station&)>& until,
+                            milliseconds patience = milliseconds(8000));
+  /// Goes on with the station of the last stream().
+  [[nodiscard]] bool stream_on(const std::function<bool(const stream::Station&)>& until,
+                               milliseconds patience);
+  [[nodiscard]] const stream::Station& station() const { return *station_; }
+
+  [[nodiscard]] std::filesystem::path recording() const { return folder_ / "recording.csv"; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] std::string domain() const { return std::to_string(domain_.id()); }
+  [[nodiscard]] dds::Participant& participant() { return participant_; }
+  [[nodiscard]] Process& service() { return *service_; }
+
+ private:
+  void look();
+
+  support::PrivateDomain domain_;
+  std::filesystem::path folder_;
+  dds::Participant participant_;
+  dds::Reader<dds::Status> statuses_;
+  dds::Writer<dds::CommandRequest> commands_;
+  dds::Reader<dds::Reply> replies_;
+  dds::Writer<dds::SessionRequest> requests_;
+  dds::Writer<dds::Batch> batches_;
+  dds::Reader<dds::Credit> credits_;
+  std::optional<dds::Status> status_;
+  std::unique_ptr<stream::Station> station_;
+  std::unique_ptr<Process> service_, drives_;
+  std::uint64_t request_ = 0, session_ = 0;
+};
+
+/// A small five-axis program near home: zigzag cuts at `feed_mm_per_min` with tilting axis.
+[[nodiscard]] std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min,
+                                                 double step_mm = 2);
+
+[[nodiscard]] std::string machine_file();
+
+}  // namespace meridian::test
