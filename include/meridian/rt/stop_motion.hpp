@@ -109,7 +109,7 @@ inline void end_stop_here(Cycle& c) noexcept {
 /// Goes on with the stop by the periods of this cycle. False if the path cannot be evaluated.
 [[nodiscard]] inline bool follow_stop(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
-  stop.time += c.dt * c.periods;
+  for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
   if (stop.is_off_path) {
     put_off_path(c);
     return true;

@@ -38,8 +38,8 @@ TEST(LatestValue, TellsEachValueOnceAndKeepsIt) {
 
 TEST(LatestValue, IsNeverTornNorOlderThanBeforeBetweenTwoThreads) {
   const auto port = std::make_unique<LatestValue<Item>>();
-  const testing::Trial trial = testing::try_latest(*port, 500ms, false);
-  EXPECT_GT(trial.items, 1000u);
+  const testing::Trial trial = testing::try_latest(*port, 20s, false);
+  EXPECT_GE(trial.items, testing::kEnoughItems);
   EXPECT_EQ(trial.faults, 0u);
 }
 

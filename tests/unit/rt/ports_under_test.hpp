@@ -31,7 +31,11 @@ struct Trial {
   std::uint64_t faults = 0;  ///< of these: torn, lost, repeated or out of order
 };
 
-/// Sends the numbers 1.. through `ring` for `time`, or until a fault shows if `until_fault`.
+/// A trial that looks for the absence of faults goes on until it has seen so many values.
+inline constexpr std::uint64_t kEnoughItems = 20000;
+
+/// Sends the numbers 1.. through `ring` until enough went through; for `time` at most, or until a
+/// fault shows if `until_fault`.
 template <class Ring>
 Trial try_ring(Ring& ring, std::chrono::milliseconds time, bool until_fault) {
   std::atomic<bool> is_over{false};
@@ -48,7 +52,8 @@ Trial try_ring(Ring& ring, std::chrono::milliseconds time, bool until_fault) {
   const auto end = std::chrono::steady_clock::now() + time;
   std::uint64_t expected = 1;
   Item item;
-  while (std::chrono::steady_clock::now() < end && !(until_fault && trial.faults > 0)) {
+  while (std::chrono::steady_clock::now() < end &&
+         (until_fault ? trial.faults == 0 : trial.items < kEnoughItems)) {
     if (!ring.try_pop(item)) {
       std::this_thread::yield();
       continue;
@@ -62,8 +67,9 @@ Trial try_ring(Ring& ring, std::chrono::milliseconds time, bool until_fault) {
   return trial;
 }
 
-/// Stores rising numbers in `port` for `time`, or until a fault shows if `until_fault`. A value
-/// must be whole, and newer than the one before where the port says that it is new.
+/// Stores rising numbers in `port` until enough was read; for `time` at most, or until a fault
+/// shows if `until_fault`. A value must be whole, and newer than the one before where the port says
+/// that it is new.
 template <class Port>
 Trial try_latest(Port& port, std::chrono::milliseconds time, bool until_fault) {
   std::atomic<bool> is_over{false};
@@ -77,7 +83,8 @@ Trial try_latest(Port& port, std::chrono::milliseconds time, bool until_fault) {
   const auto end = std::chrono::steady_clock::now() + time;
   std::uint64_t newest = 0;
   Item item;
-  while (std::chrono::steady_clock::now() < end && !(until_fault && trial.faults > 0)) {
+  while (std::chrono::steady_clock::now() < end &&
+         (until_fault ? trial.faults == 0 : trial.items < kEnoughItems)) {
     const bool is_new = port.load(item);
     ++trial.items;
     const std::uint64_t n = item.words.front();

@@ -68,8 +68,8 @@ TEST(SpscRing, LooksAheadWithoutTaking) {
 
 TEST(SpscRing, LosesAndTearsNothingBetweenTwoThreads) {
   const auto ring = std::make_unique<SpscRing<Item, 8>>();
-  const testing::Trial trial = testing::try_ring(*ring, 500ms, false);
-  EXPECT_GT(trial.items, 1000u);
+  const testing::Trial trial = testing::try_ring(*ring, 20s, false);
+  EXPECT_GE(trial.items, testing::kEnoughItems);
   EXPECT_EQ(trial.faults, 0u);
 }
 

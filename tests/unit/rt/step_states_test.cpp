@@ -4,37 +4,20 @@
 #include <cmath>
 #include <vector>
 
-#include "support/cycle_world.hpp"
-#include "support/machines.hpp"
-#include "support/made_plan.hpp"
+#include "unit/rt/program.hpp"
 
 /// The arrows of the state diagram, one by one (docs/operating.md).
 namespace meridian {
 namespace {
 
-using test::CycleWorld;
+using test::alarm_of;
+using test::kLimits;
 using test::MadePlan;
-
-const ToolPose kBegin{{0, 0, 0}, {std::sin(0.3), 0, std::cos(0.3)}};
-const PathLimits kLimits{100, 1500, 30000};
-
-/// A machine in Off with a program of its own in the port.
-struct Program {
-  Program() : plan(machine, *world.port, kBegin) { world.in.feedback.position = plan.joints(); }
-  MachineModel machine = test::lai_machine();
-  CycleWorld world{machine};
-  MadePlan plan;
-};
-
-Alarm alarm_of(const CycleWorld& world) {
-  return static_cast<Alarm>(world.last(EventCode::kAlarm).a);
-}
-Refusal refusal_of(const CycleWorld& world) {
-  return static_cast<Refusal>(world.last(EventCode::kRefused).x);
-}
+using test::Program;
+using test::refusal_of;
 
 TEST(Step, WhileOffTheSetpointIsTheFeedbackAndNotEnabled) {
-  Program p;
+  Program p(State::kOff);
   p.world.in.feedback.position[2] = 12.5;
   const CycleRecord& record = p.world.run();
   EXPECT_EQ(record.setpoint.position[2], 12.5);
@@ -42,7 +25,7 @@ TEST(Step, WhileOffTheSetpointIsTheFeedbackAndNotEnabled) {
 }
 
 TEST(Step, TheFirstEnabledSetpointIsTheFeedback) {
-  Program p;
+  Program p(State::kOff);
   p.world.run();
   p.world.in.feedback.position[0] += 0.125;
   const CycleRecord& record = p.world.command(Verb::kEnable);
@@ -52,7 +35,7 @@ TEST(Step, TheFirstEnabledSetpointIsTheFeedback) {
 }
 
 TEST(Step, EnablingRepeatsTheLatchedFeedbackAndTimesOutToFault) {
-  Program p;
+  Program p(State::kOff);
   p.world.run();
   p.world.are_drives_alive = true;
   p.world.command(Verb::kEnable);
@@ -73,7 +56,7 @@ TEST(Step, EnablingRepeatsTheLatchedFeedbackAndTimesOutToFault) {
 }
 
 TEST(Step, RefusesToEnableWithoutFeedbackOrWithAFaultPresent) {
-  Program p;
+  Program p(State::kOff);
   p.world.are_drives_alive = false;
   p.world.command(Verb::kEnable);
   EXPECT_EQ(refusal_of(p.world), Refusal::kNoFeedback);
@@ -86,7 +69,6 @@ TEST(Step, RefusesToEnableWithoutFeedbackOrWithAFaultPresent) {
 
 TEST(Step, OnlyReadyWithBlocksIsLoadedAndOnlyStartMoves) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.world.run_for(0.1);
   EXPECT_EQ(p.world.now(), State::kReady);
   p.plan.cut({10, 0, 0}, kLimits);
@@ -102,7 +84,6 @@ TEST(Step, OnlyReadyWithBlocksIsLoadedAndOnlyStartMoves) {
 
 TEST(Step, RunsAProgramFromApproachToEnd) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({0, 0, -5}, kLimits, MotionKind::kApproach);
   p.plan.cut({10, 0, 0}, kLimits);
   p.plan.cut({0, 10, 0}, kLimits);
@@ -124,7 +105,6 @@ TEST(Step, RunsAProgramFromApproachToEnd) {
 
 TEST(Step, RefusesToStartUnreferenced) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({10, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.in.feedback.referenced_mask = 0b10111;
@@ -135,12 +115,9 @@ TEST(Step, RefusesToStartUnreferenced) {
 
 TEST(Step, HoldsOnThePathAndResumesToTheEnd) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({50, 0, 0}, kLimits);
   p.plan.barrier(TimeKind::kEnd);
-  ASSERT_TRUE(p.world.run_until(State::kLoaded));
-  p.world.command(Verb::kStart);
-  p.world.run_for(0.2);
+  p.run(0.2);
   p.world.command(Verb::kHold);
   EXPECT_EQ(p.world.now(), State::kHolding);
   ASSERT_TRUE(p.world.run_until(State::kHeld));
@@ -159,11 +136,8 @@ TEST(Step, HoldsOnThePathAndResumesToTheEnd) {
 
 TEST(Step, AbortStopsOnThePathThenEmptiesTheQueueAndAdvancesTheEpoch) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   for (int n = 0; n < 20; ++n) p.plan.cut({50, 0, 0}, kLimits);
-  ASSERT_TRUE(p.world.run_until(State::kLoaded));
-  p.world.command(Verb::kStart);
-  p.world.run_for(0.2);
+  p.run(0.2);
   p.world.command(Verb::kAbort);
   EXPECT_EQ(p.world.now(), State::kAborting);
   EXPECT_EQ(p.world.records.back().setpoint.epoch, 1);
@@ -176,12 +150,11 @@ TEST(Step, AbortStopsOnThePathThenEmptiesTheQueueAndAdvancesTheEpoch) {
 
 TEST(Step, ASecondProgramRunsAfterAnAbort) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({50, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.command(Verb::kAbort);
   ASSERT_EQ(p.world.now(), State::kReady);
-  MadePlan second(p.machine, *p.world.port, kBegin);
+  MadePlan second(p.machine, *p.world.port, test::kBegin);
   second.set_epoch(p.world.state.epoch);
   second.cut({0, 20, 0}, kLimits);
   second.barrier(TimeKind::kEnd);
@@ -193,7 +166,6 @@ TEST(Step, ASecondProgramRunsAfterAnAbort) {
 
 TEST(Step, StarvedContinuesByItselfInTimeAndInItsOwnSession) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({5, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.command(Verb::kStart);
@@ -208,7 +180,6 @@ TEST(Step, StarvedContinuesByItselfInTimeAndInItsOwnSession) {
 
 TEST(Step, StarvedTooLongWaitsForTheOperator) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({5, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.command(Verb::kStart);
@@ -225,7 +196,6 @@ TEST(Step, StarvedTooLongWaitsForTheOperator) {
 
 TEST(Step, StarvedDoesNotContinueForAnotherStation) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({5, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.command(Verb::kStart);
@@ -238,7 +208,6 @@ TEST(Step, StarvedDoesNotContinueForAnotherStation) {
 
 TEST(Step, HoldWhileStarvedMeansHeld) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({5, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.command(Verb::kStart);
@@ -252,7 +221,6 @@ TEST(Step, HoldWhileStarvedMeansHeld) {
 
 TEST(Step, DisablesOnlyAtRestAndOverDisablingToOff) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({50, 0, 0}, kLimits);
   ASSERT_TRUE(p.world.run_until(State::kLoaded));
   p.world.command(Verb::kStart);
@@ -282,13 +250,10 @@ TEST(Step, OverridesOutOfRangeAreRefusedAndInRangeAreKeptForThePlanner) {
 
 TEST(Step, FollowsTheOverrideOfTheMotionInForce) {
   Program p;
-  ASSERT_TRUE(p.world.enable());
   p.plan.cut({60, 0, 0}, kLimits, MotionKind::kRapid);
   p.plan.cut({60, 0, 0}, kLimits);
   p.world.command(Verb::kFeedOverride, 0.5);
-  ASSERT_TRUE(p.world.run_until(State::kLoaded));
-  p.world.command(Verb::kStart);
-  p.world.run_for(0.2);
+  p.run(0.2);
   EXPECT_EQ(p.world.records.back().rate, 1);
   p.world.run_for(1.2);
   EXPECT_EQ(p.world.records.back().motion, MotionKind::kCut);
