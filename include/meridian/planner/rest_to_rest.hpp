@@ -45,7 +45,8 @@ class RestToRestPlanner {
   RestToRestPlanner& operator=(const RestToRestPlanner&) = delete;
 
   /// Starts a program from joints at rest. Its first motion block is approached: retract along the
-  /// tool axis by the clearance as far as travel allows, joint move, down at approach feed.
+  /// tool axis by the clearance as far as travel allows, joint move, down at approach feed. In an
+  /// epoch that saw a program before, pieces and windows go on being counted.
   void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch) noexcept;
 
   /// Plans and publishes one block.

@@ -159,7 +159,13 @@ RestToRestPlanner::~RestToRestPlanner() = default;
 void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
                               std::uint16_t epoch) noexcept {
   Workspace& w = *workspace_;
-  w.cursor = {};
+  PlanCursor cursor;
+  if (epoch == w.cursor.epoch) {
+    // What the epoch published before may still lie in the port: no index comes twice.
+    cursor.path_index = w.cursor.path_index;
+    cursor.window = w.cursor.window;
+  }
+  w.cursor = cursor;
   w.cursor.joints = at_rest;
   w.cursor.tool_length_mm = tool_length_mm;
   w.cursor.epoch = epoch;
