@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "bench/cycle_workload.hpp"
 #include "bench/ik_workload.hpp"
+#include "bench/planner_workload.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -20,10 +22,14 @@ int main(int argc, char** argv) {
   std::uint64_t checksum = 0;
   if (workload == "inverse_kinematics") {
     checksum = meridian::bench::run_inverse_kinematics(count);
+  } else if (workload == "cycle") {
+    checksum = meridian::bench::run_cycle(count);
+  } else if (workload == "planner") {
+    checksum = meridian::bench::run_planner(count);
   } else {
     std::fprintf(stderr, "no workload %s\n", argv[1]);
     return 2;
   }
   std::printf("%016llx\n", static_cast<unsigned long long>(checksum));
-  return 0;
+  return checksum != 0 ? 0 : 1;
 }

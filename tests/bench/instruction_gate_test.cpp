@@ -63,6 +63,8 @@ void expect_within_budget(const std::string& workload, int calls) {
 }
 
 TEST(InstructionGate, InverseKinematics) { expect_within_budget("inverse_kinematics", 4096); }
+TEST(InstructionGate, Cycle) { expect_within_budget("cycle", 8000); }
+TEST(InstructionGate, Planner) { expect_within_budget("planner", 100); }
 
 }  // namespace
 }  // namespace meridian
