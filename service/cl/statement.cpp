@@ -62,6 +62,14 @@ bool Statement::has_word(std::string_view word) const noexcept {
                      [word](const Argument& argument) { return is_word(argument.text, word); });
 }
 
+const Argument* Statement::only_number() const noexcept {
+  if (number_count != 1) return nullptr;
+  for (const Argument& argument : arguments) {
+    if (argument.is_number) return &argument;
+  }
+  return nullptr;
+}
+
 StatementReader::Outcome StatementReader::next_line(std::string_view& line) {
   switch (lines_.next(line)) {
     case LineSource::Outcome::kLine:

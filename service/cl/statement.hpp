@@ -36,6 +36,9 @@ struct Statement {
   [[nodiscard]] bool all_numbers() const noexcept {
     return number_count == argument_count && !has_empty_argument && !has_more_arguments;
   }
+  /// The number of a statement such as SPINDL/RPM,1000,CLW, wherever it stands; null unless there
+  /// is just one.
+  [[nodiscard]] const Argument* only_number() const noexcept;
   /// True where some argument is this word (in capitals; compared without regard to case).
   [[nodiscard]] bool has_word(std::string_view word) const noexcept;
 };

@@ -17,7 +17,8 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
   command
       .add_option("--allow-unknown", options.allow_unknown,
                   "Pass this unknown word to the machine as a vendor word; may be repeated")
-      ->type_name("WORD");
+      ->type_name("WORD")
+      ->allow_extra_args(false);
   command.add_flag("--allow-no-end", options.allow_no_end,
                    "Take a file without FINI, END or END-OF-PATH as whole");
   command

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/cli/status_text.hpp"
+#include "service/dds/participant.hpp"
+#include "service/stream/operator_link.hpp"
+
+namespace meridian::cli {
+
+namespace {
+
+struct CtlOptions {
+  PeerOptions peer;
+  std::string verb, wait, operator_name;
+  std::optional<double> percent;
+  double wait_s = 60;
+};
+
+const std::map<std::string, Verb>& verbs() {
+  static const std::map<std::string, Verb> kVerbs{{"enable", Verb::kEnable},
+                                                  {"disable", Verb::kDisable},
+                                                  {"start", Verb::kStart},
+                                                  {"hold", Verb::kHold},
+                                                  {"resume", Verb::kResume},
+                                                  {"abort", Verb::kAbort},
+                                                  {"reset", Verb::kReset},
+                                                  {"override", Verb::kFeedOverride},
+                                                  {"rapid-override", Verb::kRapidOverride}};
+  return kVerbs;
+}
+
+int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptions& options) {
+  const State wanted = *parse_state(options.wait);
+  // In a fault the machine stays until it is reset: no use waiting on.
+  const auto is_over = [wanted](State state) { return state == wanted || state == State::kFault; };
+  State last = reply.state;
+  static_cast<void>(link.wait_for_state(
+      reply, is_over, [&last](const dds::Status& status) { last = status.state; },
+      std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3))));
+  if (last == wanted) {
+    std::printf("%s\n", text_of(last));
+    return kFine;
+  }
+  const std::string message = link.status() ? link.status()->message : "";
+  std::fprintf(stderr, "meridian: machine is %s, not %s%s%s\n", text_of(last), text_of(wanted),
+               message.empty() ? "" : ": ", message.c_str());
+  return kVerdictNo;
+}
+
+int run_ctl(CtlOptions& options) {
+  const Verb verb = verbs().at(options.verb);
+  const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
+  if (is_override != options.percent.has_value()) {
+    std::fprintf(stderr, "meridian: %s takes %s\n", options.verb.c_str(),
+                 is_override ? "a value in %" : "no value");
+    return kUsage;
+  }
+  if (!options.wait.empty() && !parse_state(options.wait)) {
+    std::fprintf(stderr, "meridian: --wait %s: no such state; there are %s\n", options.wait.c_str(),
+                 all_states().c_str());
+    return kUsage;
+  }
+  int exit_code = kFine;
+  if (!find_machine(options.peer, exit_code)) return exit_code;
+  dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
+  stream::OperatorLink link(participant, options.operator_name);
+  const auto reply = link.ask(verb, options.percent.value_or(0) / 100, options.peer.timeout());
+  if (!reply) {
+    std::fprintf(stderr, "meridian: machine %s does not answer\n", options.peer.machine.c_str());
+    return kNoPeer;
+  }
+  std::fprintf(reply->is_accepted ? stdout : stderr, "%s: %s\n",
+               reply->is_accepted ? "accepted" : "refused", reply->text.c_str());
+  std::fflush(stdout);
+  if (!reply->is_accepted) return kMachineRefused;
+  return options.wait.empty() ? kFine : wait_for(link, *reply, options);
+}
+
+}  // namespace
+
+void add_ctl_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CtlOptions>();
+  CLI::App* command = app.add_subcommand(
+      "ctl", "Ask the machine for something, print `accepted` or `refused` and why");
+  std::vector<std::string> names;
+  for (const auto& [name, verb] : verbs()) names.push_back(name);
+  command
+      ->add_option("verb", options->verb,
+                   "enable, disable, start, hold, resume, abort, reset, override, rapid-override")
+      ->required()
+      ->check(CLI::IsMember(names))
+      ->type_name("VERB");
+  command->add_option("value", options->percent, "override: 0 to 150 %, rapid-override: 0 to 100 %")
+      ->type_name("PERCENT");
+  command
+      ->add_option("--wait", options->wait,
+                   "Wait until the machine is in this state; exit code 1 where it does not come")
+      ->type_name("STATE");
+  command->add_option("--wait-time", options->wait_s, "How long --wait waits, s")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e7));
+  const char* user = std::getenv("USER");
+  options->operator_name = user != nullptr ? user : "operator";
+  command->add_option("--operator", options->operator_name, "Who asks, for the log")
+      ->capture_default_str();
+  add_peer_options(*command, options->peer);
+  command->callback([options, &exit_code] { exit_code = run_ctl(*options); });
+}
+
+}  // namespace meridian::cli

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/dds/participant.hpp"
+#include "service/drives/simulated_drives.hpp"
+
+namespace meridian::cli {
+
+namespace {
+
+struct DrivesOptions {
+  std::string machine_file, partition;
+  std::uint32_t domain = 0;
+  std::string lag = "second";
+  double time_constant_ms = 2;
+  bool has_no_actions = false, is_refusing_actions = false, is_quiet = false;
+  double action_delay_s = 0.2;
+  std::vector<std::string> injections;
+};
+
+/// Reads KIND@SECONDS or KIND@SECONDS:JOINT.
+drives::Injection parse_injection(const std::string& text, const MachineModel& model) {
+  using Kind = drives::Injection::Kind;
+  static const std::map<std::string, Kind> kKinds{{"fault", Kind::kFault},
+                                                  {"blocked", Kind::kBlocked},
+                                                  {"silence", Kind::kSilence},
+                                                  {"emergency", Kind::kEmergency}};
+  const std::size_t at = text.find('@'), colon = text.find(':');
+  const auto kind = kKinds.find(text.substr(0, at));
+  char* end = nullptr;
+  const double after_s = at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 1, &end);
+  const bool is_number =
+      end != nullptr && end != text.c_str() + at + 1 && (*end == '\0' || *end == ':');
+  if (kind == kKinds.end() || !is_number || !(after_s >= 0)) {
+    throw CLI::ValidationError("--inject", "'" + text +
+                                               "' is not fault, blocked, silence or emergency "
+                                               "@SECONDS, then :JOINT");
+  }
+  drives::Injection injection{kind->second, after_s, 0};
+  if (colon == std::string::npos) return injection;
+  const std::string joint = text.substr(colon + 1);
+  while (injection.drive < model.joint_count && model.joints[injection.drive].name != joint) {
+    ++injection.drive;
+  }
+  if (injection.drive == model.joint_count) {
+    throw CLI::ValidationError("--inject", "machine " + model.name + " has no joint " + joint);
+  }
+  return injection;
+}
+
+void run_drives(const DrivesOptions& options) {
+  const MachineModel model = config::load_machine(options.machine_file);
+  drives::SimulatedDrivesOptions simulated;
+  simulated.lag = {
+      options.lag == "first" ? drives::LagKind::kFirstOrder : drives::LagKind::kSecondOrder,
+      options.time_constant_ms * 1e-3};
+  for (const std::string& text : options.injections) {
+    simulated.injections.push_back(parse_injection(text, model));
+  }
+  simulated.is_action_peer = !options.has_no_actions;
+  simulated.is_refusing_actions = options.is_refusing_actions;
+  simulated.action_delay_ns = static_cast<std::int64_t>(options.action_delay_s * 1e9);
+  watch_for_stop();
+  dds::Participant participant(
+      {.domain = options.domain,
+       .machine = options.partition.empty() ? model.name : options.partition});
+  std::printf("drives of machine %s in DDS domain %u: %d joints, cycle %.3f ms%s\n",
+              model.name.c_str(), options.domain, model.joint_count,
+              static_cast<double>(model.cycle_ns) * 1e-6,
+              simulated.is_action_peer ? ", answers actions" : "");
+  std::fflush(stdout);
+  const auto say = [&](const std::string& text) {
+    if (options.is_quiet) return;
+    std::printf("%s\n", text.c_str());
+    std::fflush(stdout);
+  };
+  const auto report = drives::run_simulated_drives(participant, model, simulated, stop_flag(), say);
+  std::printf(
+      "drives stopped: %llu periods, %llu lost, %llu setpoints, %llu periods bridged, %llu "
+      "actions\n",
+      static_cast<unsigned long long>(report.periods),
+      static_cast<unsigned long long>(report.periods_lost),
+      static_cast<unsigned long long>(report.setpoints_seen),
+      static_cast<unsigned long long>(report.periods_bridged),
+      static_cast<unsigned long long>(report.actions));
+}
+
+}  // namespace
+
+void add_drives_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DrivesOptions>();
+  CLI::App* command = app.add_subcommand(
+      "drives",
+      "Simulated drives of a machine: CiA 402 in cyclic synchronous position mode, servo lag, "
+      "following error, watchdog; plays the PLC that answers actions. Runs until interrupted");
+  command->add_option("--machine", options->machine_file, "Machine file (TOML)")->required();
+  command->add_option("--machine-name", options->partition,
+                      "DDS partition; default: the machine's name");
+  command->add_option("--domain", options->domain, "DDS domain")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 230));
+  command->add_option("--lag", options->lag, "Order of the servo's lag: first or second")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"first", "second"}));
+  command->add_option("--time-constant", options->time_constant_ms, "Time constant of the lag, ms")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_flag("--no-actions", options->has_no_actions, "Nobody answers actions");
+  command->add_flag("--refuse-actions", options->is_refusing_actions, "Every action is refused");
+  command->add_option("--action-delay", options->action_delay_s, "Time that an action takes, s")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3600.0));
+  command
+      ->add_option("--inject", options->injections,
+                   "Something that goes wrong, KIND@SECONDS[:JOINT] after operation is enabled; "
+                   "KIND: fault, blocked, silence, emergency. May be repeated")
+      ->type_name("WHAT");
+  command->add_flag("-q,--quiet", options->is_quiet, "Say only begin and end");
+  command->callback([options, &exit_code] {
+    run_drives(*options);
+    exit_code = kFine;
+  });
+}
+
+}  // namespace meridian::cli

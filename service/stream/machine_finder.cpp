@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/stream/machine_finder.hpp"
+
+#include <algorithm>
+
+#include "service/dds/participant.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/waitset.hpp"
+
+namespace meridian::stream {
+
+std::vector<dds::MachineInfo> find_machines(std::uint32_t domain, const std::string& machine,
+                                            std::chrono::milliseconds timeout) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kMoment{150};
+  dds::Participant participant({.domain = domain, .machine = machine.empty() ? "*" : machine});
+  dds::Reader<dds::MachineInfo> reader(participant);
+  dds::Waitset waitset(participant);
+  waitset.attach(reader);
+
+  std::vector<dds::MachineInfo> found;
+  auto end = Clock::now() + timeout;
+  for (auto now = Clock::now(); now < end; now = Clock::now()) {
+    waitset.wait(end - now);
+    dds::MachineInfo info;
+    while (reader.take(info)) {
+      if (found.empty()) end = Clock::now() + (machine.empty() ? kMoment : kMoment / 150);
+      std::erase_if(found, [&](const dds::MachineInfo& other) {
+        return other.name == info.name && other.started_ns <= info.started_ns;
+      });
+      found.push_back(info);
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const dds::MachineInfo& a, const dds::MachineInfo& b) { return a.name < b.name; });
+  return found;
+}
+
+}  // namespace meridian::stream

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/stream/operator_link.hpp"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+namespace meridian::stream {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kRepeat{300};
+
+}  // namespace
+
+std::uint64_t draw_id() {
+  std::random_device device;
+  const std::uint64_t id = (std::uint64_t{device()} << 32U) | device();
+  return id != 0 ? id : 1;
+}
+
+OperatorLink::OperatorLink(dds::Participant& participant, std::string operator_name)
+    : name_(std::move(operator_name)),
+      operator_id_(draw_id()),
+      commands_(participant),
+      replies_(participant),
+      statuses_(participant),
+      waitset_(participant) {
+  waitset_.attach(replies_);
+  waitset_.attach(statuses_);
+}
+
+bool OperatorLink::take_statuses() {
+  bool is_newer = false;
+  dds::Status status;
+  while (statuses_.take(status)) {
+    status_ = status;
+    is_newer = true;
+  }
+  return is_newer;
+}
+
+bool OperatorLink::wait_for_status(Milliseconds timeout) {
+  const auto end = Clock::now() + timeout;
+  while (!take_statuses()) {
+    const auto now = Clock::now();
+    if (now >= end) return false;
+    dds::Reply ignored;
+    while (replies_.take(ignored)) {
+    }
+    waitset_.wait(end - now);
+  }
+  return true;
+}
+
+std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Milliseconds timeout) {
+  dds::CommandRequest request;
+  request.request = ++request_;
+  request.operator_id = operator_id_;
+  request.operator_name = name_;
+  request.verb = verb;
+  request.argument = argument;
+  const auto end = Clock::now() + timeout;
+  auto due = Clock::now();
+  for (auto now = due; now < end; now = Clock::now()) {
+    static_cast<void>(take_statuses());
+    if (now >= due && status_ && commands_.matched_readers() > 0) {
+      request.epoch_seen = status_->epoch;
+      request.status_seen = status_->status_sequence;
+      request.service_id_seen = status_->service_id;
+      static_cast<void>(commands_.write(request));
+      due = now + kRepeat;
+    }
+    dds::Reply reply;
+    while (replies_.take(reply)) {
+      if (reply.operator_id == operator_id_ && reply.request == request_) return reply;
+    }
+    constexpr Milliseconds kLook{20};
+    waitset_.wait(std::min<Clock::duration>(end - now, kLook));
+  }
+  return std::nullopt;
+}
+
+std::optional<State> OperatorLink::wait_for_state(
+    const dds::Reply& reply, const std::function<bool(State)>& is_there,
+    const std::function<void(const dds::Status&)>& look, Milliseconds timeout) {
+  if (is_there(reply.state)) return reply.state;
+  const auto begin = Clock::now(), end = begin + timeout;
+  // A status that left before the verb took effect may still come in: the first one that counts
+  // shows the state of the reply, or comes so late that it must be younger.
+  bool counts = false;
+  for (auto now = begin; now < end; now = Clock::now()) {
+    const auto left = std::chrono::duration_cast<Milliseconds>(end - now);
+    if (!wait_for_status(std::max(left, Milliseconds{1}))) continue;
+    look(*status_);
+    counts = counts || status_->state == reply.state || Clock::now() - begin > kRepeat;
+    if (counts && is_there(status_->state)) return status_->state;
+  }
+  return std::nullopt;
+}
+
+}  // namespace meridian::stream

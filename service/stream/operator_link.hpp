@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "meridian/rt/state.hpp"
+#include "service/dds/messages.hpp"
+#include "service/dds/participant.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/waitset.hpp"
+#include "service/dds/writer.hpp"
+
+namespace meridian::stream {
+
+/// An operator's place at a machine: sees its status, asks for verbs and hears the answers. Every
+/// request quotes the newest status that was seen; it is repeated until it is answered, and the
+/// service answers a repetition without acting twice. One thread.
+class OperatorLink {
+ public:
+  using Milliseconds = std::chrono::milliseconds;
+
+  /// Throws DdsError.
+  OperatorLink(dds::Participant& participant, std::string operator_name);
+
+  /// Takes what came and waits for more, at most `timeout`; true if there is a newer status.
+  bool wait_for_status(Milliseconds timeout);
+  /// The newest status; nothing where none was seen yet.
+  [[nodiscard]] const std::optional<dds::Status>& status() const noexcept { return status_; }
+
+  /// Asks for `verb` and returns the answer; nothing where the service stays silent.
+  [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout);
+
+  /// Waits until the machine is in a state that `is_there` likes, after `reply` (the answer to the
+  /// verb that is to lead there), and returns that state. `look` sees every status meanwhile.
+  /// Nothing: time was up.
+  [[nodiscard]] std::optional<State> wait_for_state(
+      const dds::Reply& reply, const std::function<bool(State)>& is_there,
+      const std::function<void(const dds::Status&)>& look, Milliseconds timeout);
+
+ private:
+  bool take_statuses();
+
+  std::string name_;
+  std::uint64_t operator_id_;
+  std::uint64_t request_ = 0;
+  dds::Writer<dds::CommandRequest> commands_;
+  dds::Reader<dds::Reply> replies_;
+  dds::Reader<dds::Status> statuses_;
+  dds::Waitset waitset_;
+  std::optional<dds::Status> status_;
+};
+
+/// Returns a random number that is not 0, for sessions and operators.
+[[nodiscard]] std::uint64_t draw_id();
+
+}  // namespace meridian::stream
