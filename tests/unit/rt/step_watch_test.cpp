@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// The cycle makes no heap call, takes no lock and meets no page fault, on every path: program,
+/// hold and resume, override, abort, each fault, lost periods, barriers. Counted per thread around
+/// step() and its world, whose own storage is sized before.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <ostream>
+
+#include "support/heap_watch.hpp"
+#include "support/kernel_account.hpp"
+#include "support/lock_watch.hpp"
+#include "unit/rt/program.hpp"
+
+namespace meridian {
+namespace {
+
+using test::kLimits;
+using test::Program;
+
+struct Scenario {
+  const char* name;
+  void (*run)(Program&);
+  State end;
+};
+void PrintTo(const Scenario& scenario, std::ostream* out) { *out << scenario.name; }
+
+/// Runs the planned cuts until the machine stands somewhere.
+void run_on(Program& p, State until) { (void)p.world.run_until(until, 5); }
+
+const Scenario kScenarios[] = {
+    {"Off", [](Program& p) { p.world.run_for(0.1); }, State::kLoaded},
+    {"WholeProgram",
+     [](Program& p) {
+       p.run(0.2);
+       run_on(p, State::kStarved);
+     },
+     State::kStarved},
+    {"HoldAndResumeAndOverride",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.command(Verb::kFeedOverride, 0.3);
+       p.world.run_for(0.05);
+       p.world.command(Verb::kHold);
+       run_on(p, State::kHeld);
+       p.world.command(Verb::kResume);
+       p.world.command(Verb::kFeedOverride, 1.2);
+       p.world.run_for(0.1);
+     },
+     State::kRunning},
+    {"Abort",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.command(Verb::kAbort);
+       run_on(p, State::kReady);
+     },
+     State::kReady},
+    {"RefusedVerb",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.command(Verb::kReset);
+       p.world.command(Verb::kEnable);
+     },
+     State::kRunning},
+    {"LostPeriods",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.run(2);
+       p.world.run_for(0.05);
+     },
+     State::kRunning},
+    {"TooManyLostPeriods",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.run(100);
+       run_on(p, State::kFault);
+     },
+     State::kFault},
+    {"DriveFault",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.in.feedback.fault_mask = 4;
+       run_on(p, State::kFault);
+     },
+     State::kFault},
+    {"EmergencyStop",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.in.feedback.emergency_stop = true;
+       run_on(p, State::kFault);
+     },
+     State::kFault},
+    {"LostFeedback",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.are_drives_alive = false;
+       run_on(p, State::kFault);
+     },
+     State::kFault},
+    {"GuardMeetsNaN",
+     [](Program& p) {
+       p.run(0.2);
+       p.world.machine.kinematics.h_mm = std::numeric_limits<double>::quiet_NaN();
+       run_on(p, State::kFault);
+     },
+     State::kFault},
+};
+
+class StepWatch : public testing::TestWithParam<Scenario> {
+ protected:
+  /// A machine in Ready with a plan: two cuts with a dwell between them.
+  static void prepare(Program& p) {
+    p.world.records.resize(20'000);  // touched once, so that the test's own rows cost nothing
+    p.world.records.clear();
+    p.world.events.resize(1'000);
+    p.world.events.clear();
+    p.plan.cut({20, 0, 0}, kLimits);
+    p.plan.barrier(TimeKind::kDwell, 0.05);
+    p.plan.cut({20, 0, 0}, kLimits);
+  }
+};
+
+TEST_P(StepWatch, CountsNothing) {
+  if (!watch::is_heap_watched()) {
+    GTEST_SKIP() << "the sanitizer owns malloc";
+  }
+  for (const bool is_warm : {false, true}) {  // the first run maps the code of this path
+    Program p;
+    prepare(p);
+    const watch::HeapWatch heap;
+    const watch::LockWatch locks;
+    const watch::KernelAccount begin = watch::kernel_account();
+    GetParam().run(p);
+    const watch::KernelAccount account = watch::kernel_account() - begin;
+    EXPECT_EQ(heap.calls(), (watch::HeapCalls{0, 0}));
+    EXPECT_EQ(locks.calls().locks, 0U);
+    if (is_warm) {
+      EXPECT_EQ(account.minor_faults, 0);
+      EXPECT_EQ(account.major_faults, 0);
+    }
+    EXPECT_EQ(p.world.now(), GetParam().end) << "the scenario went another way";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, StepWatch, testing::ValuesIn(kScenarios),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+}  // namespace
+}  // namespace meridian
