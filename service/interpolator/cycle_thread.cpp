@@ -85,6 +85,11 @@ void CycleThread::show() noexcept {
   view_.alarm = state_.alarm;
   view_.feed_override = state_.feed_override;
   view_.rapid_override = state_.rapid_override;
+  const TimePiece* piece = motion_.piece();
+  const PathPiece* path = motion_.path();
+  view_.feed_mm_per_s = piece != nullptr ? piece->feed_mm_per_s : 0;
+  view_.branch = path != nullptr ? path->branch : view_.branch;
+  view_.is_at_pole = path != nullptr && path->kind == PathKind::kTurn;
   ++view_.cycles_run;
   view_.periods_lost = state_.periods_lost;
   view_.starvations = state_.starvations;

@@ -27,6 +27,7 @@ bool PlannerThread::work() noexcept {
     if (view_.record.state != State::kReady) return false;
     planner_.begin(view_.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view_.epoch);
+    published_before_s_ = writer_.published_s();
     has_begun_ = true;
   }
   return plan(*queued);
@@ -56,6 +57,8 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
     case PlanStatus::kNoRoom:
       return false;
     case PlanStatus::kOk:
+      ports_.planned_s.store(writer_.published_s() - published_before_s_,
+                             std::memory_order_relaxed);
       if (queued.block.kind == BlockKind::kEnd) has_begun_ = false;
       break;
     case PlanStatus::kRefused:

@@ -34,11 +34,12 @@ class PlannerThread {
   MotionWriter writer_;
   RestToRestPlanner planner_;
   CycleView view_;
-  std::uint64_t voided_ = 0;     ///< newest of Ports::voided that was followed
-  std::uint64_t popped_ = 0;     ///< blocks taken from the queue, ever
-  bool has_begun_ = false;       ///< a plan is being made
-  bool is_refused_ = false;      ///< a block was refused: nothing behind it moves
-  bool is_action_told_ = false;  ///< of the block at the head of the queue
+  std::uint64_t voided_ = 0;       ///< newest of Ports::voided that was followed
+  std::uint64_t popped_ = 0;       ///< blocks taken from the queue, ever
+  double published_before_s_ = 0;  ///< when the plan was begun
+  bool has_begun_ = false;         ///< a plan is being made
+  bool is_refused_ = false;        ///< a block was refused: nothing behind it moves
+  bool is_action_told_ = false;    ///< of the block at the head of the queue
 };
 
 }  // namespace meridian::interpolator

@@ -44,6 +44,9 @@ struct CycleView {
   std::uint16_t epoch = 0;
   Alarm alarm = Alarm::kNone;
   double feed_override = 1, rapid_override = 1;
+  double feed_mm_per_s = 0;  ///< programmed, of the time piece in force
+  std::uint8_t branch = 0;   ///< of the path piece in force
+  bool is_at_pole = false;   ///< the free joint turns on the pole
   std::uint64_t cycles_run = 0;
   std::uint64_t periods_lost = 0;
   std::uint64_t starvations = 0;
@@ -95,6 +98,7 @@ struct Ports {
   std::atomic<std::uint64_t> void_until{0};
   std::atomic<std::uint32_t> intake_epoch{1};
   std::atomic<std::uint64_t> voided{0};
+  std::atomic<double> planned_s{0};  ///< plan time of the program that was published
   std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};
   std::atomic<std::uint64_t> writes_failed{0};
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/telemetry_thread.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -130,7 +131,9 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.block = record.sequence;
   status.line = record.setpoint.line;
   status.motion = record.motion;
-  status.is_at_pole = record.motion == MotionKind::kPoleTurn;
+  status.branch = view_.branch;
+  status.is_at_pole = view_.is_at_pole;
+  status.feed_programmed_mm_per_min = units::per_min_from_per_s(view_.feed_mm_per_s);
   status.feed_achieved_mm_per_min = units::per_min_from_per_s(motion_.feed_mm_per_s());
   status.limiting_joint = is_on_path(record.state) ? motion_.limiting_joint() : -1;
   status.feed_override = view_.feed_override;
@@ -143,6 +146,9 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.drives_fault_mask = words_.fault_mask;
   status.blocks_queued = static_cast<std::uint32_t>(ports_.blocks.size());
   status.pieces_queued = static_cast<std::uint32_t>(ports_.motion.times.size());
+  const double done_s = is_on_path(record.state) ? record.plan_time_s : 0;
+  status.planned_s = std::max(0.0, ports_.planned_s.load(std::memory_order_relaxed) - done_s);
+  if (status.pieces_queued == 0) status.planned_s = 0;
   status.cycles_run = view_.cycles_run;
   status.periods_lost = view_.periods_lost;
   status.starvations = view_.starvations;

@@ -176,6 +176,7 @@ std::optional<dds::Reply> Plant::say(Verb verb, double argument) {
 bool Plant::enable() {
   // Until feedback is there an enable is refused: ask again.
   return eventually([this] {
+           std::this_thread::sleep_for(milliseconds(20));
            const auto reply = say(Verb::kEnable);
            return reply && reply->is_accepted;
          }) &&

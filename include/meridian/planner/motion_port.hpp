@@ -47,19 +47,29 @@ class MotionWriter {
 
   /// Adds a piece to the window being written; the cycle does not see it yet. False if full.
   [[nodiscard]] bool stage(const PathPiece& piece) noexcept { return port_.paths.stage(piece); }
-  [[nodiscard]] bool stage(const TimePiece& piece) noexcept { return port_.times.stage(piece); }
+  [[nodiscard]] bool stage(const TimePiece& piece) noexcept {
+    if (!port_.times.stage(piece)) return false;
+    staged_s_ += piece.duration;
+    return true;
+  }
 
   /// Forgets what was staged.
   void discard() noexcept {
     port_.paths.discard_staged();
     port_.times.discard_staged();
+    staged_s_ = 0;
   }
 
   /// Shows the staged window to the cycle.
   void publish() noexcept {
     port_.paths.publish();
     port_.times.publish();
+    published_s_ += staged_s_;
+    staged_s_ = 0;
   }
+
+  /// Plan time published ever, tails included, s.
+  [[nodiscard]] double published_s() const noexcept { return published_s_; }
 
   /// The newest window whose tail the cycle entered: it will take up only a window that starts from
   /// rest there.
@@ -72,6 +82,7 @@ class MotionWriter {
 
  private:
   MotionPort& port_;
+  double staged_s_ = 0, published_s_ = 0;
 };
 
 /// The cycle's end of the port: the piece in force and the rules that say which one follows.
