@@ -9,6 +9,11 @@ namespace {
 constexpr std::size_t kBufferSize = 256 * 1024;
 constexpr std::size_t kHeadSize = 64 * 1024;
 constexpr char kDosEnd = '\x1a';
+
+const char* find_newline(const char* begin, const char* end) {
+  if (begin == end) return nullptr;
+  return static_cast<const char*>(std::memchr(begin, '\n', static_cast<std::size_t>(end - begin)));
+}
 }  // namespace
 
 LineSource::LineSource(std::istream& stream) : stream_(&stream), buffer_(kBufferSize) {
@@ -46,14 +51,14 @@ std::string_view LineSource::head() {
 
 LineSource::Outcome LineSource::next(std::string_view& line) {
   if (!started_) (void)head();
-  const void* newline = std::memchr(begin_, '\n', static_cast<std::size_t>(end_ - begin_));
+  const char* newline = find_newline(begin_, end_);
   if (newline == nullptr && !at_end_) {
     refill();
-    newline = std::memchr(begin_, '\n', static_cast<std::size_t>(end_ - begin_));
+    newline = find_newline(begin_, end_);
   }
   if (newline == nullptr && read_error_) return Outcome::kReadError;
   if (newline == nullptr && begin_ == end_) return Outcome::kEnd;
-  const char* const stop = newline != nullptr ? static_cast<const char*>(newline) : end_;
+  const char* const stop = newline != nullptr ? newline : end_;
   const char* tail = stop;
   if (static_cast<std::size_t>(tail - begin_) > kLongestLine) return Outcome::kTooLong;
   if (tail != begin_ && tail[-1] == '\r') --tail;
