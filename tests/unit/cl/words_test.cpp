@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 #include "read_text.hpp"
 
 namespace meridian::cl {
@@ -142,6 +145,24 @@ TEST(Words, NameTheProgram) {
   EXPECT_EQ(read_text("TOOL PATH/FINISH,TOOL,B\nFEDRAT/9\nGOTO/0,0,0\nEND-OF-PATH\n", metric())
                 .summary.program,
             "FINISH");
+}
+
+std::string content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+TEST(Documentation, ShowsAnExampleThatIsReadWithoutAWarning) {
+  const std::string example = content(MERIDIAN_SOURCE_DIR "/docs/examples/first.apt");
+  ASSERT_FALSE(example.empty());
+  EXPECT_NE(content(MERIDIAN_SOURCE_DIR "/docs/cl-files.md").find("```\n" + example + "```"),
+            std::string::npos);
+  const auto read = read_text(example);
+  EXPECT_EQ(read.error, "");
+  EXPECT_TRUE(read.warnings.empty());
+  EXPECT_EQ(read.motion().size(), 5U);
 }
 
 }  // namespace
