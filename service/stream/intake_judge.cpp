@@ -210,6 +210,7 @@ std::optional<dds::Credit> IntakeJudge::on_queues_emptied(const std::string& rea
 
 void IntakeJudge::on_station_lost(std::uint64_t session) {
   if (session_ == 0 || session != session_) return;
+  if (is_complete_) return;  // it has done its work
   is_lost_ = true;
   message_ = "station " + request_.station + " is gone";
   if (next_ == 0) static_cast<void>(end_session(Verdict::kClosed, message_, {}));

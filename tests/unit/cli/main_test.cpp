@@ -43,7 +43,7 @@ TEST(Tool, VersionIsFine) {
 }
 
 TEST(Tool, EverySubcommandExplainsItself) {
-  for (const char* name : {"ctl", "status", "drives"}) {
+  for (const char* name : {"ctl", "status", "drives", "stream"}) {
     EXPECT_EQ(run(std::string(name) + " --help").exit_code, 0) << name;
     EXPECT_EQ(run(std::string(name) + " --no-such-option").exit_code, 2) << name;
   }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "service/cli/cl_options.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/cli/progress_text.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/dds/participant.hpp"
+#include "service/stream/stream_run.hpp"
+
+namespace meridian::cli {
+
+namespace {
+
+struct StreamCommandOptions {
+  PeerOptions peer;
+  ClFileOptions file;
+  stream::StreamOptions stream;
+  std::string machine_file, tool_file;
+  bool has_no_preflight = false;
+};
+
+int exit_code_of(stream::StreamEnd end) {
+  switch (end) {
+    case stream::StreamEnd::kFine:
+      return kFine;
+    case stream::StreamEnd::kInterrupted:
+      return kVerdictNo;
+    case stream::StreamEnd::kInputRefused:
+      return kInputRefused;
+    case stream::StreamEnd::kMachineRefused:
+      return kMachineRefused;
+    case stream::StreamEnd::kNoPeer:
+      return kNoPeer;
+  }
+  return kVerdictNo;
+}
+
+/// Reads the whole file first; false where it is refused.
+bool pass_preflight(StreamCommandOptions& options) {
+  std::optional<stream::PreflightMachine> machine;
+  if (!options.machine_file.empty()) {
+    machine.emplace();
+    machine->model = config::load_machine(options.machine_file);
+    if (!options.tool_file.empty()) machine->tools = config::load_tools(options.tool_file);
+  }
+  stream::PreflightReport report =
+      stream::preflight(options.stream.file, options.stream.reader, machine);
+  for (const auto& warning : report.warnings) {
+    std::fprintf(stderr, "%s:%u: warning: %s\n", options.stream.file.c_str(), warning.line,
+                 warning.message.c_str());
+  }
+  if (!report.refusal.empty()) {
+    std::fprintf(stderr, "meridian: %s\n", report.refusal.c_str());
+    return false;
+  }
+  std::printf("preflight: %llu blocks, %s at programmed feeds%s\n",
+              static_cast<unsigned long long>(report.blocks),
+              time_text(report.times.total_s()).c_str(),
+              machine ? "" : "; reach and travel are the service's to judge");
+  options.stream.preflight = std::move(report);
+  return true;
+}
+
+int run_stream_command(StreamCommandOptions& options) {
+  options.stream.reader = reader_options(options.file);
+  int exit_code = kFine;
+  const auto machine = find_machine(options.peer, exit_code);
+  if (!machine) return exit_code;
+  options.stream.reader.max_feed_mm_per_s = machine->max_feed_mm_per_min / 60;
+  const bool is_endless = options.stream.file == "-";
+  if (!options.has_no_preflight && !is_endless && !pass_preflight(options)) return kInputRefused;
+
+  watch_for_stop();
+  dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
+  ProgressPrinter printer(::isatty(STDOUT_FILENO) != 0);
+  const stream::StreamEnd end =
+      stream::run_stream(participant, options.stream, stop_flag(),
+                         {.say = [&](const std::string& text) { printer.say(text); },
+                          .show = [&](const stream::ProgressView& view) { printer.show(view); }});
+  printer.end();
+  return exit_code_of(end);
+}
+
+}  // namespace
+
+void add_stream_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<StreamCommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "stream",
+      "Stream a CL file to the machine: preflight of the whole file, session, blocks as credits "
+      "come, progress and what the machine says. Blocks alone move nothing: start is `meridian "
+      "ctl start`");
+  command
+      ->add_option("file", options->stream.file,
+                   "CL file (APT or CLDATA text); - is standard input, without preflight")
+      ->required();
+  command->add_flag("--no-preflight", options->has_no_preflight,
+                    "Stream at once, for endless sources; what is wrong is found on the way");
+  command->add_option("--machine", options->machine_file,
+                      "Judge reach and travel in the preflight by this machine file");
+  command->add_option("--tools", options->tool_file, "... and this tool table");
+  command->add_flag("--wait-end", options->stream.is_waiting_for_end,
+                    "Stay until the machine ran the program");
+  std::array<char, 64> host{};
+  static_cast<void>(::gethostname(host.data(), host.size() - 1));
+  options->stream.station = host.data();
+  command->add_option("--station", options->stream.station, "Name of this station, for messages")
+      ->capture_default_str();
+  add_cl_file_options(*command, options->file);
+  add_frame_option(*command, options->file);
+  add_peer_options(*command, options->peer);
+  command->callback([options, &exit_code] { exit_code = run_stream_command(*options); });
+}
+
+}  // namespace meridian::cli

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/stream/station_link.hpp"
+
+#include <thread>
+
+namespace meridian::stream {
+
+namespace {
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+StationLink::StationLink(dds::Participant& participant, Station& station)
+    : station_(station),
+      requests_(participant),
+      batches_(participant),
+      credits_(participant),
+      statuses_(participant),
+      waitset_(participant) {
+  waitset_.attach(credits_);
+  waitset_.attach(statuses_);
+}
+
+bool StationLink::has_service() const noexcept {
+  return requests_.matched_readers() > 0 && batches_.matched_readers() > 0 &&
+         credits_.matched_writers() > 0;
+}
+
+void StationLink::work(std::chrono::milliseconds timeout) {
+  dds::Credit credit;
+  while (credits_.take(credit)) station_.on_credit(credit, monotonic_ns());
+  // Asked before the service knows this station, the answer could pass it by.
+  if (station_.state() != StationState::kOpening || has_service()) {
+    if (const auto request = station_.due_request(monotonic_ns())) {
+      static_cast<void>(requests_.write(*request));
+    }
+  } else {
+    constexpr std::chrono::milliseconds kLook{20};
+    timeout = std::min(timeout, kLook);
+  }
+  constexpr int kBatchesAtOnce = 32;
+  int sent = 0;
+  while (sent < kBatchesAtOnce && station_.next_batch(monotonic_ns(), batch_)) {
+    ++sent;
+    if (batches_.write(batch_)) continue;
+    station_.on_not_sent();
+    break;
+  }
+  if (sent < kBatchesAtOnce) waitset_.wait(timeout);
+}
+
+std::optional<dds::Status> StationLink::take_status() {
+  std::optional<dds::Status> newest;
+  dds::Status status;
+  while (statuses_.take(status)) newest = status;
+  return newest;
+}
+
+void StationLink::close() {
+  if (!has_service()) return;
+  static_cast<void>(requests_.write(station_.close_request()));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
+}  // namespace meridian::stream

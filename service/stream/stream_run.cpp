@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/stream/stream_run.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "meridian/rt/state_table.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/stream/operator_link.hpp"
+#include "service/stream/station.hpp"
+#include "service/stream/station_link.hpp"
+
+namespace meridian::stream {
+
+namespace {
+
+std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string file_name(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+Source source_of(cl::ClReader& reader) {
+  return [&reader]() -> Supply {
+    auto next = reader.next();
+    if (!next) return {.kind = Supply::Kind::kBad, .text = next.error().text()};
+    if (!*next) return {.kind = Supply::Kind::kEnd};
+    return {.kind = Supply::Kind::kBlock, .block = **next};
+  };
+}
+
+dds::SessionRequest request_of(const StreamOptions& options) {
+  dds::SessionRequest request;
+  request.session = draw_id();
+  request.station = options.station;
+  request.program = options.file == "-" ? "standard input" : file_name(options.file);
+  if (options.preflight) {
+    request.block_count = options.preflight->blocks;
+    if (options.preflight->contains_actions) request.policies = dds::kPolicyContainsActions;
+  }
+  return request;
+}
+
+/// Says once what is new.
+class Newsreader {
+ public:
+  explicit Newsreader(const StreamListener& listener) : listener_(listener) {}
+
+  void station(const std::string& message) { tell(message, station_); }
+  void status(const dds::Status& status) {
+    tell(status.message, machine_);
+    if (has_state_ && status.state == state_) return;
+    has_state_ = true;
+    state_ = status.state;
+    const bool is_known = static_cast<int>(state_) < kStateCount;
+    listener_.say(std::string("machine is ") + (is_known ? name_of(state_) : "unknown"));
+  }
+
+ private:
+  void tell(const std::string& message, std::string& last) {
+    if (message.empty() || message == station_ || message == machine_) return;
+    last = message;
+    listener_.say(message);
+  }
+
+  const StreamListener& listener_;
+  std::string station_, machine_;
+  State state_ = State::kOff;
+  bool has_state_ = false;
+};
+
+}  // namespace
+
+StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options,
+                     const std::atomic<bool>& is_stopping, const StreamListener& listener) {
+  std::ifstream file;
+  if (options.file != "-") {
+    file.open(options.file, std::ios::binary);
+    if (!file) {
+      listener.say(options.file + ": cannot be opened; check the path and the right to read it");
+      return StreamEnd::kInputRefused;
+    }
+  }
+  cl::ClReader reader(options.file == "-" ? std::cin : static_cast<std::istream&>(file),
+                      options.file, options.reader);
+  const dds::SessionRequest request = request_of(options);
+  Station station(request, source_of(reader));
+  StationLink link(participant, station);
+  ProgressMeter meter(options.preflight ? options.preflight->times : TimeTable{});
+  Newsreader news(listener);
+
+  constexpr std::chrono::milliseconds kIdle{50};
+  constexpr std::int64_t kPatience_ns = 5'000'000'000;
+  std::int64_t heard_ns = monotonic_ns();
+  while (!station.is_over()) {
+    if (station.state() == StationState::kComplete && !options.is_waiting_for_end) break;
+    if (is_stopping.load()) {
+      link.close();
+      listener.say("interrupted: the machine runs the blocks that it has and stops");
+      return StreamEnd::kInterrupted;
+    }
+    link.work(kIdle);
+    news.station(station.message());
+    const std::int64_t now_ns = monotonic_ns();
+    if (const auto status = link.take_status()) {
+      heard_ns = now_ns;
+      const bool is_ours = status->session == request.session;
+      if (is_ours) listener.show(meter.look(*status, now_ns));
+      if (is_ours || station.state() != StationState::kOpening) news.status(*status);
+    } else if (now_ns - heard_ns > kPatience_ns) {
+      listener.say("no word from the service for 5 s: is meridiand still running?");
+      return StreamEnd::kNoPeer;
+    }
+  }
+  switch (station.state()) {
+    case StationState::kComplete:
+    case StationState::kRan:
+      return StreamEnd::kFine;
+    case StationState::kBadSource:
+      link.close();
+      listener.say(station.message());
+      return StreamEnd::kInputRefused;
+    case StationState::kNoAnswer:
+      listener.say(station.message());
+      return StreamEnd::kNoPeer;
+    default:
+      return StreamEnd::kMachineRefused;
+  }
+}
+
+}  // namespace meridian::stream

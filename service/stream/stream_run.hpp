@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "service/cl/cl_options.hpp"
+#include "service/dds/participant.hpp"
+#include "service/stream/preflight.hpp"
+#include "service/stream/progress.hpp"
+
+namespace meridian::stream {
+
+struct StreamOptions {
+  std::string file;     ///< "-": standard input
+  std::string station;  ///< name of this station, for messages
+  cl::ClReaderOptions reader;
+  std::optional<PreflightReport> preflight;  ///< nothing: not done
+  bool is_waiting_for_end = false;           ///< until the machine ran the program
+};
+
+enum class StreamEnd : std::uint8_t {
+  kFine,
+  kInterrupted,
+  kInputRefused,
+  kMachineRefused,
+  kNoPeer
+};
+
+/// Who hears what happens.
+struct StreamListener {
+  std::function<void(const std::string&)> say;  ///< what station and machine say, once each
+  std::function<void(const ProgressView&)> show;
+};
+
+/// Streams a CL file into the machine of `participant`, until everything is in (or ran, see
+/// options), somebody refuses, or `is_stopping`. Throws DdsError at start.
+[[nodiscard]] StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options,
+                                   const std::atomic<bool>& is_stopping,
+                                   const StreamListener& listener);
+
+}  // namespace meridian::stream
