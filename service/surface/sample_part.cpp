@@ -14,7 +14,7 @@ namespace {
 constexpr double kDomeRadius_mm = 100;
 constexpr double kPetal_mm = 57;  // sin 34.75 deg of the dome's radius
 constexpr int kPetals = 3;
-constexpr int kBlocksPerHalfPetal = 40;
+constexpr int kBlocksPerHalfPetal = 24;
 constexpr double kClear_mm = 40;
 constexpr double kNear_mm = 5;
 constexpr double kPlungeFeed_mm_per_min = 1200;
