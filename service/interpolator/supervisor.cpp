@@ -90,8 +90,9 @@ void Supervisor::take_command(const dds::CommandRequest& request) {
                             : telemetry::describe(request.verb, why, view_.record.state));
     return;
   }
-  if (request.verb == Verb::kReset && view_.record.state == State::kFault &&
-      delayed_until_ns_ == 0) {
+  const State state = view_.record.state;
+  const bool may_reset_drives = state == State::kFault || state == State::kOff;
+  if (request.verb == Verb::kReset && may_reset_drives && delayed_until_ns_ == 0) {
     drives_.reset_faults(monotonic_ns());
     delayed_reset_ = request;
     delayed_until_ns_ = monotonic_ns() + kResetDrives_ns;

@@ -148,11 +148,15 @@ bool Plant::wait_for(State state, milliseconds patience) {
 }
 
 std::optional<dds::Reply> Plant::say(Verb verb, double argument) {
+  return say_having_seen(verb, status(), argument);
+}
+
+std::optional<dds::Reply> Plant::say_having_seen(Verb verb, const dds::Status& seen,
+                                                 double argument) {
   if (!eventually(
           [this] { return commands_.matched_readers() > 0 && replies_.matched_writers() > 0; })) {
     return std::nullopt;
   }
-  const dds::Status& seen = status();
   dds::CommandRequest request;
   request.request = ++request_;
   request.operator_id = 4711;

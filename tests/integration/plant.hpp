@@ -63,6 +63,8 @@ class Plant {
   [[nodiscard]] bool wait_for(State state, milliseconds patience = milliseconds(8000));
   /// Says a verb as an operator who has just looked; nothing where no reply came.
   [[nodiscard]] std::optional<dds::Reply> say(Verb verb, double argument = 0);
+  [[nodiscard]] std::optional<dds::Reply> say_having_seen(Verb verb, const dds::Status& seen,
+                                                          double argument = 0);
   [[nodiscard]] bool enable();
 
   /// Streams `blocks` and goes on until `until` is true of the station, or time is up.

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <string>
+#include <thread>
+
+#include "integration/plant.hpp"
+
+namespace meridian::test {
+namespace {
+
+using stream::Station;
+using stream::StationState;
+
+class Fault : public testing::Test {
+ protected:
+  /// Runs a slow program with `drives` on the drives' command line.
+  void run_with(const std::vector<std::string>& drives) {
+    plant.start_service();
+    plant.start_drives(drives);
+    ASSERT_TRUE(plant.enable()) << plant.service().said();
+    ASSERT_TRUE(plant.stream(small_program(60, 500), [](const Station& station) {
+      return station.state() == StationState::kComplete;
+    })) << plant.station().message();
+    ASSERT_TRUE(plant.wait_for(State::kLoaded));
+    const auto start = plant.say(Verb::kStart);
+    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  }
+  void expect_fault(Alarm alarm) {
+    ASSERT_TRUE(plant.wait_for(State::kFault)) << plant.service().said();
+    EXPECT_EQ(plant.status().alarm, alarm) << plant.service().said();
+    EXPECT_NE(plant.service().said().find("-> FaultStop"), std::string::npos);
+  }
+  void expect_recovery() {
+    ASSERT_TRUE(eventually([&] {
+      const auto reset = plant.say(Verb::kReset);
+      return reset && reset->is_accepted && plant.wait_for(State::kOff, milliseconds(500));
+    })) << plant.service().said();
+    EXPECT_EQ(plant.status().alarm, Alarm::kNone);
+    EXPECT_EQ(plant.status().session, 0U) << "the program is over";
+    EXPECT_TRUE(plant.enable()) << plant.service().said();
+    std::this_thread::sleep_for(milliseconds(200));
+    EXPECT_EQ(plant.status().state, State::kReady) << "nothing of the old program is left";
+  }
+  Plant plant;
+};
+
+TEST_F(Fault, OfADriveStopsNamesTheJointAndIsResetByTheOperator) {
+  run_with({"--inject", "fault@2.5:theta2"});
+  expect_fault(Alarm::kDriveFault);
+  EXPECT_EQ(plant.status().alarm_joint, 4);
+  EXPECT_NE(plant.service().said().find("drive theta2 reports a fault"), std::string::npos)
+      << plant.service().said();
+  EXPECT_GT(plant.status().alarm_line, 0U);
+  expect_recovery();
+}
+
+TEST_F(Fault, OfAShaftThatIsStuckIsAFollowingError) {
+  run_with({"--inject", "blocked@2.5:b3"});
+  ASSERT_TRUE(plant.wait_for(State::kFault)) << plant.service().said();
+  const Alarm alarm = plant.status().alarm;
+  EXPECT_TRUE(alarm == Alarm::kFollowingError || alarm == Alarm::kDriveFault)
+      << plant.service().said();
+}
+
+TEST_F(Fault, OfSilentDrivesIsLostFeedback) {
+  run_with({"--inject", "silence@2.5"});
+  expect_fault(Alarm::kFeedbackLost);
+}
+
+TEST_F(Fault, OfTheEmergencyInputIsNotResetWhileItIsOpen) {
+  run_with({"--inject", "emergency@2.5"});
+  expect_fault(Alarm::kEmergencyStop);
+  const auto reset = plant.say(Verb::kReset);
+  ASSERT_TRUE(reset);
+  EXPECT_FALSE(reset->is_accepted);
+  EXPECT_EQ(reset->refusal, Refusal::kFaultPresent) << reset->text;
+}
+
+TEST_F(Fault, OfTheServiceItselfLeavesAMachineThatWaitsForEnableAndStart) {
+  run_with({});
+  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  const std::uint64_t first_id = plant.status().service_id;
+  plant.service().send_signal(SIGKILL);
+  ASSERT_TRUE(plant.service().wait(milliseconds(2000)));
+  plant.start_service();
+  ASSERT_TRUE(eventually([&] { return plant.status().service_id != first_id; }, milliseconds(6000)))
+      << plant.service().said();
+  EXPECT_EQ(plant.status().state, State::kOff);
+  const auto start = plant.say(Verb::kStart);
+  ASSERT_TRUE(start);
+  EXPECT_FALSE(start->is_accepted);
+  std::this_thread::sleep_for(milliseconds(300));
+  const JointVector before = plant.status().joints;
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_EQ(plant.status().joints, before) << "nothing moves by itself";
+  // Left alone the drives' watchdog took them to fault; the operator resets it in Off.
+  const auto reset = plant.say(Verb::kReset);
+  ASSERT_TRUE(reset && reset->is_accepted) << (reset ? reset->text : "no reply");
+  EXPECT_TRUE(plant.enable()) << plant.service().said();
+}
+
+}  // namespace
+}  // namespace meridian::test

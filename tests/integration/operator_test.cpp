@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "integration/plant.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/record/recording_reader.hpp"
+
+namespace meridian::test {
+namespace {
+
+using stream::Station;
+using stream::StationState;
+
+class Operator : public testing::Test {
+ protected:
+  void load(const std::vector<ClBlock>& blocks) {
+    plant.start_service();
+    plant.start_drives();
+    ASSERT_TRUE(plant.enable()) << plant.service().said();
+    ASSERT_TRUE(plant.stream(blocks, [](const Station& station) {
+      return station.state() == StationState::kComplete;
+    })) << plant.station().message();
+    ASSERT_TRUE(plant.wait_for(State::kLoaded));
+  }
+  void say(Verb verb, double argument = 0) {
+    const auto reply = plant.say(verb, argument);
+    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
+  }
+  /// Ends the service and reads what it recorded.
+  std::vector<record::RecordingRow> rows() {
+    plant.service().send_signal(SIGTERM);
+    EXPECT_EQ(plant.service().wait(milliseconds(8000)), 0) << plant.service().said();
+    const MachineModel model = config::load_machine(machine_file());
+    auto reader = record::RecordingReader::open(plant.recording(), model);
+    std::vector<record::RecordingRow> all;
+    if (!reader) return all;
+    record::RecordingRow row;
+    for (;;) {
+      const auto has_row = reader->next(row);
+      if (!has_row || !*has_row) return all;
+      all.push_back(row);
+    }
+  }
+  Plant plant;
+};
+
+[[nodiscard]] double speed_of(const record::RecordingRow& row) {
+  double square = 0;
+  for (const double v : row.velocity) square += v * v;
+  return std::sqrt(square);
+}
+
+TEST_F(Operator, HoldsWithinTwoCyclesAndResumesFromThatVeryPoint) {
+  load(small_program(30, 800, 20));
+  say(Verb::kStart);
+  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  std::this_thread::sleep_for(milliseconds(700));
+  say(Verb::kHold);
+  ASSERT_TRUE(plant.wait_for(State::kHeld));
+  EXPECT_TRUE(eventually([&] { return plant.status().stop_time_s > 0; }));
+  say(Verb::kResume);
+  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  std::this_thread::sleep_for(milliseconds(200));
+  const auto recorded = rows();
+  ASSERT_FALSE(recorded.empty());
+
+  const auto is_in = [](State state) {
+    return [state](const auto& r) { return r.state == state; };
+  };
+  const auto hold = std::find_if(recorded.begin(), recorded.end(), is_in(State::kHolding));
+  const auto held = std::find_if(hold, recorded.end(), is_in(State::kHeld));
+  const auto resumed = std::find_if_not(held, recorded.end(), is_in(State::kHeld));
+  ASSERT_NE(resumed, recorded.end());
+  ASSERT_GT(hold, recorded.begin() + 1);
+  std::printf("speed before, at and after the hold was seen: %.6f %.6f %.6f\n", speed_of(hold[-1]),
+              speed_of(hold[0]), speed_of(hold[1]));
+  EXPECT_LT(speed_of(hold[1]), speed_of(hold[-1])) << "slower in the second cycle at the latest";
+  EXPECT_EQ(speed_of(*held), 0.0);
+  EXPECT_EQ(resumed[-1].joints, held->joints) << "stands still while held";
+}
+
+TEST_F(Operator, SetsTheOverrideAndJointLimitsWin) {
+  load(small_program(12, 600, 20));
+  say(Verb::kFeedOverride, 0.5);
+  EXPECT_TRUE(eventually([&] { return plant.status().feed_override == 0.5; }));
+  const auto too_much = plant.say(Verb::kFeedOverride, 7);
+  ASSERT_TRUE(too_much);
+  EXPECT_EQ(too_much->refusal, Refusal::kOutOfRange);
+}
+
+TEST_F(Operator, AbortsAProgramAndItsSessionWithIt) {
+  load(small_program(40, 500));
+  say(Verb::kStart);
+  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  say(Verb::kAbort);
+  ASSERT_TRUE(plant.wait_for(State::kReady));
+  EXPECT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(3000)));
+  EXPECT_EQ(plant.station().credit().verdict, dds::Verdict::kAborted);
+  const auto start = plant.say(Verb::kStart);
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->refusal, Refusal::kNoProgram) << start->text;
+}
+
+TEST_F(Operator, WaitsForActionsAtRest) {
+  auto blocks = small_program(4, 3000);
+  ClBlock spindle;
+  spindle.kind = BlockKind::kAuxiliary;
+  spindle.action = ActionKind::kSpindleClockwise;
+  spindle.value = 8000;
+  spindle.line = 77;
+  blocks.insert(blocks.begin() + 2, spindle);
+  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].sequence = i;
+  load(blocks);
+  say(Verb::kStart);
+  ASSERT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(10000)))
+      << plant.service().said();
+  EXPECT_EQ(plant.station().state(), StationState::kRan) << plant.station().message();
+  EXPECT_NE(plant.service().said().find("waiting for the action of line 77"), std::string::npos)
+      << plant.service().said();
+}
+
+TEST_F(Operator, IsRefusedWhoSawAnOldStatus) {
+  load(small_program(4, 3000));
+  const dds::Status old = plant.status();
+  std::this_thread::sleep_for(milliseconds(700));
+  const auto reply = plant.say_having_seen(Verb::kStart, old);
+  ASSERT_TRUE(reply);
+  EXPECT_FALSE(reply->is_accepted);
+  EXPECT_EQ(reply->refusal, Refusal::kStale) << reply->text;
+}
+
+}  // namespace
+}  // namespace meridian::test
