@@ -13,8 +13,8 @@ namespace meridian {
 namespace {
 
 constexpr double kTravelMargin = 1e-9;  // rounding of a travel end that is reached exactly
-/// Rounding of a component of the tool axis, with what turning it into the machine adds.
-constexpr double kAxisNoise = 2 * std::numeric_limits<double>::epsilon();
+/// Rounding of a component of the tool axis.
+constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
 
 /// Joints and their derivatives at one place.
 struct Sample {

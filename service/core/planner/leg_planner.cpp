@@ -9,19 +9,20 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
-#include "service/core/planner/stop_authority.hpp"
+#include "service/core/planner/authority_table.hpp"
 
 namespace meridian {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kGrading = 0.7;      // step between nodes, in distances to the pole
-constexpr double kCellGrading = 0.2;  // step between cells
+constexpr double kCellGrading = 0.1;  // step between cells
 constexpr double kCellTurn_rad = 0.06;
 constexpr double kCellSweep_rad = 0.14;
 constexpr double kCellFree_rad = 0.14;
 constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
 constexpr double kMostCells = 256;
+constexpr int kLeastAzimuthCells = 4;  // between two nodes
 constexpr double kLargestJump = 1e-7;  // rounding 8 µrad from the pole is 1e-10
 
 int cells_for(double amount) noexcept {
@@ -145,7 +146,7 @@ PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
     const PathFault azimuth_fault = azimuth_cells_.append(
         model_, by_azimuth, kAxisLength_mm_per_rad * (a.azimuth - azimuth_from),
         kAxisLength_mm_per_rad * (b.azimuth - azimuth_from),
-        cells_for((b.azimuth - a.azimuth) / kCellFree_rad), at);
+        std::max(kLeastAzimuthCells, cells_for((b.azimuth - a.azimuth) / kCellFree_rad)), at);
     if (azimuth_fault.kind != PathFault::Kind::kNone) return azimuth_fault;
   }
   nodes_[node_count_ - 1].cell = cells_.size();
@@ -253,14 +254,14 @@ bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const Motio
   time.sequence = piece.sequence;
   time.line = piece.line;
   time.feed_mm_per_s = leg.feed_mm_per_s;
-  const StopAuthority authority(cells, offset, caps_, fault_caps_, choice);
+  const AuthorityTable authority(cells, offset, caps_, fault_caps_, choice);
   const ProfilePhases phases = phases_of(choice.profile, piece.length);
   for (int n = 0; n < phases.count; ++n) {
     const ProfilePhase& phase = phases.phase[n];
-    const int parts = authority.parts_of(phase);
-    for (int k = 0; k < parts; ++k) {
-      const double t = phase.duration * k / parts;
-      time.duration = phase.duration / parts;
+    const AuthorityTable::Cuts cuts = authority.cut(phase);
+    for (int k = 0; k <= cuts.count; ++k) {
+      const double t = k == 0 ? 0 : cuts.time[k - 1];
+      time.duration = (k == cuts.count ? phase.duration : cuts.time[k]) - t;
       time.s0 = phase.s + t * (phase.v + t * (phase.a / 2 + t * phase.j / 6));
       time.v = phase.v + t * (phase.a + t * phase.j / 2);
       time.a = phase.a + t * phase.j;

@@ -9,7 +9,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kAuthority = 0.87;
+constexpr double kAuthority = 0.9;
 constexpr double kMost = 1e12;  // a path along which no joint moves has no limit of its own
 /// Third differences are judged down to this cycle time.
 constexpr double kShortestCycle_s = 250e-6;

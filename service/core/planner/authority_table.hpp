@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "meridian/planner/profile.hpp"
@@ -14,14 +15,22 @@ namespace meridian {
 /// that such a stop can reach, beside the speed that it can have there. Where the joints'
 /// derivatives vary along the piece, phases are cut into parts so that a stop on the easy stretch
 /// is not as slow as one on the hard stretch.
-class StopAuthority {
+class AuthorityTable {
  public:
   /// `offset` is the s of `cells` at which the piece begins.
-  StopAuthority(std::span<const JointCell> cells, double offset, const JointCaps& caps,
-                const JointCaps& fault_caps, const MotionChoice& choice) noexcept;
+  AuthorityTable(std::span<const JointCell> cells, double offset, const JointCaps& caps,
+                 const JointCaps& fault_caps, const MotionChoice& choice) noexcept;
 
-  /// Into how many equal parts of time `phase` is to be cut.
-  [[nodiscard]] int parts_of(const ProfilePhase& phase) const noexcept;
+  static constexpr int kMostCuts = 192;
+
+  /// Times inside a phase, ascending.
+  struct Cuts {
+    std::array<double, kMostCuts> time{};
+    int count = 0;
+  };
+
+  /// Where to cut `phase` so that authorities differ little within a part.
+  [[nodiscard]] Cuts cut(const ProfilePhase& phase) const noexcept;
 
   /// Fills in stop_* and fault_* of a part whose motion is set.
   void grant(TimePiece& time) const noexcept;
