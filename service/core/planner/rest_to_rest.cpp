@@ -126,9 +126,16 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
     count_window(before);
   }
-  if (fault.kind != PathFault::Kind::kNone) {
-    refuse(block, code_of(fault.kind), fault.joint, fault.value);
+  if (fault.kind == PathFault::Kind::kNone) return;
+  RejectCode code = code_of(fault.kind);
+  if (code == RejectCode::kTravelBetween) {
+    if (!router.is_reachable(block, next)) {
+      code = RejectCode::kTravel;
+    } else if (cursor.is_first && staging.time_count == 0) {
+      code = RejectCode::kApproach;
+    }
   }
+  refuse(block, code, fault.joint, fault.value);
 }
 
 void RestToRestPlanner::Workspace::stage_barrier(const ClBlock& block) noexcept {

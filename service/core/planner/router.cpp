@@ -78,6 +78,10 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
   return ways;
 }
 
+bool Router::is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept {
+  return find_ways({to_vector(block.tip_mm), to_vector(block.axis)}, cursor).count > 0;
+}
+
 PathFault Router::run(const PathPiece& path, const Job& job, double share, PlanCursor& cursor,
                       Staging& out) noexcept {
   Leg leg;

@@ -34,6 +34,9 @@ class Router {
   /// Brings the first block's begin under the tool.
   [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
+  /// Whether any branch and winding puts the tool on the block's end.
+  [[nodiscard]] bool is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept;
+
   /// Largest ease of the axis in the last route().
   [[nodiscard]] double axis_deviation_rad() const noexcept { return deviation_rad_; }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
@@ -119,7 +118,7 @@ MachineModel draw_machine(RandomPrograms& draw) {
 
 TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
   constexpr int kPrograms = 10000;
-  std::map<RejectCode, int> refused;
+  int refusals = 0;
   Peaks peaks;
   std::size_t pieces = 0;
   double motion_s = 0;
@@ -132,8 +131,10 @@ TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
     const JointVector start = draw.start(model);
     const Trace trace = plan_program(model, blocks, start);
     if (trace.last.status == PlanStatus::kRefused) {
-      ++refused[trace.last.reject.code];
+      ++refusals;
       ASSERT_TRUE(trace.last.reject.code == RejectCode::kTravelBetween ||
+                  trace.last.reject.code == RejectCode::kTravel ||
+                  trace.last.reject.code == RejectCode::kApproach ||
                   trace.last.reject.code == RejectCode::kAxisReversal)
           << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
           << " value " << trace.last.reject.value << " sequence " << trace.last.reject.sequence;
@@ -145,11 +146,10 @@ TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
   }
   std::printf(
       "%d programs, %zu time pieces, %.0f s of motion; largest use v %.7f a %.7f j %.7f, feed "
-      "%.7f, tip %.2e mm, axis %.2e deg; refused: travel %d, reversal %d\n",
+      "%.7f, tip %.2e mm, axis %.2e deg; refused: %d\n",
       kPrograms, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
-      units::deg_from_rad(peaks.axis_rad), refused[RejectCode::kTravelBetween],
-      refused[RejectCode::kAxisReversal]);
-  EXPECT_LT(refused[RejectCode::kTravelBetween], kPrograms / 4) << "hardly anything was judged";
+      units::deg_from_rad(peaks.axis_rad), refusals);
+  EXPECT_LT(refusals, kPrograms / 4) << "hardly anything was judged";
 }
 
 }  // namespace
