@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+namespace {
+
+struct Outcome {
+  int exit_code;
+  std::string output;
+};
+
+/// Runs `meridian arguments` with what `input` prints on its standard input.
+Outcome run(const std::string& arguments, const std::string& input = "true") {
+  const std::string command =
+      input + " | " + std::string(MERIDIAN_BINARY_DIR) + "/bin/meridian " + arguments + " 2>&1";
+  std::FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return {-1, {}};
+  std::string output;
+  char buffer[4096];
+  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) output.append(buffer, n);
+  return {WEXITSTATUS(pclose(pipe)), output};
+}
+
+const std::string kPart = MERIDIAN_SOURCE_DIR "/deploy/parts/blossom.apt";
+
+TEST(ClCommand, GivesOnePointALineForEveryMotionBlock) {
+  const Outcome outcome = run("cl " + kPart);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 148);
+  EXPECT_EQ(outcome.output.substr(0, outcome.output.find('\n')).substr(0, 5), "79.8 ");
+}
+
+TEST(ClCommand, PutsPointsOutInTheFrameAroundTheWorkpiece) {
+  const Outcome outcome =
+      run("cl --frame 100,0,0,0,0,90 -", "printf 'UNITS/MM\\nFEDRAT/60\\nGOTO/1,2,3\\n'");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.output.find("98 1 3 0 0 1 60"), std::string::npos) << outcome.output;
+}
+
+TEST(ClCommand, TellsASummary) {
+  const Outcome outcome = run("cl --summary " + kPart);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.output.find("MERIDIAN BLOSSOM"), std::string::npos);
+}
+
+TEST(ClCommand, RefusesWithExitCodeThree) {
+  EXPECT_EQ(run("cl /no/such/file").exit_code, 3);
+  const Outcome outcome = run("cl -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.output.find("--units mm"), std::string::npos);
+  EXPECT_EQ(run("cl --units mm -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'").exit_code, 0);
+  EXPECT_EQ(run("cl --units mm --feed 60 -", "printf 'GOTO/1,2,3'").exit_code, 0);
+}
+
+TEST(ClCommand, PassesEachWordThatIsAllowed) {
+  const std::string program = "printf 'UNITS/MM\\nFEDRAT/60\\nFOO/1\\nBAR\\nGOTO/1,2,3\\nFINI\\n'";
+  EXPECT_EQ(run("cl -", program).exit_code, 3);
+  EXPECT_EQ(run("cl --allow-unknown FOO -", program).exit_code, 3);
+  EXPECT_EQ(run("cl --allow-unknown FOO --allow-unknown BAR -", program).exit_code, 0);
+}
+
+TEST(ClCommand, KnowsUsage) {
+  EXPECT_EQ(run("cl").exit_code, 2);
+  EXPECT_EQ(run("cl --units furlong " + kPart).exit_code, 2);
+  EXPECT_EQ(run("cl --help").exit_code, 0);
+}
+
+TEST(SurfaceCommand, WritesASampleByItsName) {
+  const std::string file = testing::TempDir() + "surface_command.apt";
+  EXPECT_EQ(run("surface --sample blossom -o " + file).exit_code, 0);
+  EXPECT_TRUE(std::ifstream(file).good());
+  EXPECT_EQ(run("surface --sample nothing").exit_code, 2);
+  EXPECT_EQ(run("surface --sample blossom -o /no/such/place/x").exit_code, 3);
+  EXPECT_EQ(run("surface --help").exit_code, 0);
+}
+
+}  // namespace
