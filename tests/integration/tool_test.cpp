@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "integration/plant.hpp"
+
+namespace meridian::test {
+namespace {
+
+constexpr milliseconds kShort{10'000}, kLong{40'000};
+
+const char* const kGoodPart =
+    "PARTNO/GOOD\nUNITS/MM\nFEDRAT/6000,MMPM\nGOTO/0,0,150,0,0,1\n"
+    "GOTO/20,0,150,0.1736481777,0,0.9848077530\nGOTO/20,20,150,0,0,1\nFINI\n";
+const char* const kPartOutOfTravel =
+    "PARTNO/FAR\nUNITS/MM\nFEDRAT/6000,MMPM\nGOTO/0,0,150,0,0,1\nGOTO/2000,0,150,0,0,1\nFINI\n";
+
+/// The tool against a service, as a person or a script uses it.
+class Tool : public testing::Test {
+ protected:
+  Process run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "meridian");
+    arguments.insert(arguments.end(), {"--domain", plant.domain()});
+    const auto log = plant.folder() / ("tool-" + std::to_string(++runs_) + ".log");
+    return Process(arguments, log);
+  }
+  std::string part(const std::string& name, const std::string& text) {
+    const auto path = plant.folder() / name;
+    std::ofstream(path) << text;
+    return path.string();
+  }
+
+  Plant plant;
+
+ private:
+  int runs_ = 0;
+};
+
+TEST_F(Tool, StreamsAPartFromOpenToEnd) {
+  plant.start_service();
+  plant.start_drives();
+  Process enable = run({"ctl", "enable", "--wait", "Ready"});
+  ASSERT_EQ(enable.wait(kShort), 0) << enable.said();
+  Process stream = run({"stream", part("good.apt", kGoodPart), "--wait-end", "--machine",
+                        machine_file(), "--station", "cam-1"});
+  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << stream.said();
+  Process second = run({"stream", part("other.apt", kGoodPart), "--station", "cam-2"});
+  EXPECT_EQ(second.wait(kShort), 4) << second.said();
+  EXPECT_NE(second.said().find("is held by station cam-1 with program good.apt"), std::string::npos)
+      << second.said();
+  Process start = run({"ctl", "start", "--wait", "Ready"});
+  EXPECT_EQ(start.wait(kLong), 0) << start.said() << plant.service().said();
+  EXPECT_EQ(stream.wait(kShort), 0) << stream.said();
+  const std::string said = stream.said();
+  EXPECT_NE(said.find("program good.apt is in: 4 blocks"), std::string::npos) << said;
+  EXPECT_NE(said.find("machine is Running"), std::string::npos) << said;
+  EXPECT_NE(said.find("ran to its end"), std::string::npos) << said;
+  EXPECT_EQ(said.find('\r'), std::string::npos) << "in a pipe plain lines";
+}
+
+TEST_F(Tool, RefusesInputBeforeTheMachineSeesIt) {
+  plant.start_service();
+  Process stream = run({"stream", part("far.apt", kPartOutOfTravel), "--machine", machine_file()});
+  EXPECT_EQ(stream.wait(kShort), 3) << stream.said();
+  EXPECT_NE(stream.said().find("far.apt: line 5, block 1: b3 at 2000 mm"), std::string::npos)
+      << stream.said();
+  EXPECT_EQ(plant.status().session, 0u);
+}
+
+TEST_F(Tool, TellsWhatTheMachineRefusesWithoutPreflight) {
+  plant.start_service();
+  Process stream = run({"stream", part("far.apt", kPartOutOfTravel), "--no-preflight"});
+  EXPECT_EQ(stream.wait(kShort), 4) << stream.said();
+  EXPECT_NE(stream.said().find("line 5, block 1: b3 at 2000 mm"), std::string::npos)
+      << stream.said();
+}
+
+TEST_F(Tool, ExitCodesOfCtlAndStatus) {
+  Process alone = run({"status", "--timeout", "0.5"});
+  EXPECT_EQ(alone.wait(kShort), 5) << alone.said();
+  plant.start_service();
+  Process status = run({"status", "--json"});
+  EXPECT_EQ(status.wait(kShort), 0) << status.said();
+  EXPECT_NE(status.said().find("\"state\":\"Off\""), std::string::npos) << status.said();
+  Process start = run({"ctl", "start"});
+  EXPECT_EQ(start.wait(kShort), 4) << start.said();
+  EXPECT_NE(start.said().find("refused: "), std::string::npos) << start.said();
+  Process wait = run({"ctl", "hold", "--wait", "Held"});
+  EXPECT_EQ(wait.wait(kShort), 4) << wait.said();
+  Process never = run({"ctl", "disable", "--wait", "Ready", "--wait-time", "0.5"});
+  EXPECT_EQ(never.wait(kShort), 1) << never.said();
+}
+
+}  // namespace
+}  // namespace meridian::test
