@@ -50,6 +50,11 @@ bool pass_preflight(StreamCommandOptions& options) {
   if (!options.machine_file.empty()) {
     machine.emplace();
     machine->model = config::load_machine(options.machine_file);
+    if (machine->model.default_unit_mm) {
+      options.stream.reader.default_unit = cl::LengthUnit::kMillimetre;
+    } else if (machine->model.default_unit_inch) {
+      options.stream.reader.default_unit = cl::LengthUnit::kInch;
+    }
     if (!options.tool_file.empty()) machine->tools = config::load_tools(options.tool_file);
   }
   stream::PreflightReport report =

@@ -54,14 +54,11 @@ void read_service(Section section, const std::filesystem::path& folder, ServiceC
       section.number_or("enable_timeout_s", config.enable_timeout_s, {0.1, 600});
   config.feedback_timeout_s =
       section.number_or("feedback_timeout_s", config.feedback_timeout_s, {1e-3, 10});
-  config.command_stale_s = section.number_or("command_stale_s", config.command_stale_s, {0.01, 60});
   config.block_queue = section.integer_or("block_queue", config.block_queue, 5000, 1'000'000);
   if (const int bridge = section.integer_or("bridge_cycles", -1, 0, 1000); bridge >= 0) {
     config.bridge_cycles = bridge;
   }
   config.status_rate_hz = section.number_or("status_rate_hz", config.status_rate_hz, {1, 100});
-  config.flight_recorder_s =
-      section.number_or("flight_recorder_s", config.flight_recorder_s, {0, 60});
   section.finish();
 }
 

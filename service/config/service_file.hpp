@@ -53,14 +53,12 @@ struct ServiceConfig {
   double action_timeout_s = 60;
   double enable_timeout_s = 5;
   double feedback_timeout_s = 0.1;  ///< older feedback counts as lost
-  double command_stale_s = 0.5;     ///< moving verbs that saw an older status are refused
   int block_queue = 8192;           ///< places; look-ahead and credits
 
   /// Periods that drives bridge when setpoints are missing; see find_bridge_cycles().
   std::optional<int> bridge_cycles;
 
   double status_rate_hz = 20;
-  double flight_recorder_s = 5;
 };
 
 /// Reads a service file (docs/machine-files.md). Paths in it are relative to the folder of the
