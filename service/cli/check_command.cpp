@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include "meridian/units.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/machine_options.hpp"
+#include "service/record/check.hpp"
+#include "service/record/compare.hpp"
+#include "service/record/picture.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  std::string recording, file, picture;
+  std::vector<std::string> same;
+  double tip_tolerance_mm = 0, axis_tolerance_deg = 0;
+  bool is_json = false;
+  record::CheckOptions check;
+  MachineOptions machine;
+  ClFileOptions cl;
+};
+
+int refuse(const std::string& message) {
+  std::cerr << message << "\n";
+  return kInputRefused;
+}
+
+int compare(const Options& options, const MachineModel& model) {
+  auto a = record::RecordingReader::open(options.same[0], model);
+  if (!a) return refuse(a.error().text());
+  auto b = record::RecordingReader::open(options.same[1], model);
+  if (!b) return refuse(b.error().text());
+  const auto report = record::compare(*a, *b, model);
+  if (!report) return refuse(report.error().text());
+  std::cout << to_text(*report, options.same[0], options.same[1], model);
+  return report->is_same() ? kFine : kVerdictNo;
+}
+
+/// The path of the CL file; a message where the file is refused.
+[[nodiscard]] std::string read_path(const Options& options, const MachineModel& model,
+                                    const ToolTable& tools, record::CheckedPath& path) {
+  std::ifstream file(options.file, std::ios::binary);
+  if (!file) return options.file + ": cannot be opened";
+  cl::ClReader reader(file, options.file, reader_options(options.cl, model));
+  for (;;) {
+    const auto block = reader.next();
+    if (!block) return block.error().text();
+    if (!*block) return "";
+    double tool_length_mm = 0;
+    if ((*block)->kind == BlockKind::kTool) {
+      const Tool* tool = tools.find(static_cast<int>((*block)->value));
+      if (tool == nullptr) {
+        return options.file + ":" + std::to_string((*block)->line) +
+               ": the tool is not in the tool table; name one with --tools";
+      }
+      tool_length_mm = tool->length_mm;
+    }
+    path.add(**block, tool_length_mm);
+  }
+}
+
+int check(Options& options, const MachineModel& model) {
+  const ToolTable tools = load_tools(options.machine);
+  record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
+  if (!options.file.empty()) {
+    const std::string refusal = read_path(options, model, tools, path);
+    if (!refusal.empty()) return refuse(refusal);
+  }
+  auto recording = record::RecordingReader::open(options.recording, model);
+  if (!recording) return refuse(recording.error().text());
+  if (!options.picture.empty()) {
+    const auto error = record::draw(*recording, path, model, options.picture);
+    if (error) return refuse(error->text());
+  }
+  options.check.tip_tolerance_mm = options.tip_tolerance_mm;
+  options.check.axis_tolerance_rad = units::rad_from_deg(options.axis_tolerance_deg);
+  auto report = record::check(*recording, path, model, options.check);
+  if (!report) return refuse(report.error().text());
+  report->path_name = options.file;
+  std::cout << (options.is_json ? to_json(*report) : to_text(*report));
+  return report->passed() ? kFine : kVerdictNo;
+}
+
+int run(Options& options) {
+  const MachineModel model = load_machine(options.machine);
+  if (!options.same.empty()) return compare(options, model);
+  if (options.recording.empty()) {
+    std::cerr << "meridian check: name a recording, or two behind --same\n";
+    return kUsage;
+  }
+  return check(options, model);
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "check",
+      "A recording judged against its CL file by forward kinematics, and against the limits of the "
+      "machine; or two recordings compared bit for bit. Exit code 1 where anything is wrong");
+  command->add_option("recording", options->recording, "Recording (CSV)");
+  command->add_option("file", options->file,
+                      "CL file that it cut; without one only joints and cycles are judged");
+  add_machine_options(*command, options->machine, true);
+  command
+      ->add_option("--same", options->same,
+                   "Instead: do these two recordings hold the same motion, bit for bit on every "
+                   "cycle that both sent?")
+      ->expected(2)
+      ->type_name("A B");
+  command
+      ->add_option("--tip-tolerance-mm", options->tip_tolerance_mm, "Instead of the machine file's")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--axis-tolerance-deg", options->axis_tolerance_deg,
+                   "Instead of the machine file's")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--max-missing", options->check.max_missing, "Cycles that may be missing")
+      ->capture_default_str();
+  command
+      ->add_option("--feed-factor", options->check.feed_factor,
+                   "Highest feed override of the run, 1 is 100 %")
+      ->check(CLI::Range(0.01, 10.0))
+      ->capture_default_str();
+  command->add_flag("--unfinished", options->check.allow_unfinished,
+                    "The run was ended before its path was");
+  command->add_option("--from-cycle", options->check.from_cycle, "Leave out the cycles before");
+  command->add_option("--to-cycle", options->check.to_cycle, "Leave out the cycles behind");
+  command->add_option("--picture", options->picture,
+                      "Draw tip path, joints, speeds and rates to this .png or .svg");
+  command->add_flag("--json", options->is_json, "The report as JSON");
+  add_cl_file_options(*command, options->cl);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include "service/cl/cl_reader.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/machine_options.hpp"
+#include "service/record/recording_reader.hpp"
+#include "service/record/recording_writer.hpp"
+#include "service/simulate/simulate.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  std::string file, record, events, start_from, auxiliary = "ignore";
+  bool stops_at_optional = false;
+  MachineOptions machine;
+  ClFileOptions cl;
+};
+
+int refuse(const std::string& message) {
+  std::cerr << message << "\n";
+  return kInputRefused;
+}
+
+/// Joints of the first enabled row.
+[[nodiscard]] Expected<JointVector, record::RecordError> first_joints(const std::string& file,
+                                                                      const MachineModel& model) {
+  auto reader = record::RecordingReader::open(file, model);
+  if (!reader) return tl::make_unexpected(reader.error());
+  record::RecordingRow row;
+  for (;;) {
+    const auto read = reader->next(row);
+    if (!read) return tl::make_unexpected(read.error());
+    if (!*read) {
+      return tl::make_unexpected(
+          record::RecordError{file, 0, "the drives are never enabled in it", "name another"});
+    }
+    if ((row.flags & kSetpointEnabled) != 0) return row.joints;
+  }
+}
+
+int exit_code_of(simulate::Outcome outcome) {
+  switch (outcome) {
+    case simulate::Outcome::kDone:
+      return kFine;
+    case simulate::Outcome::kRefused:
+      return kInputRefused;
+    default:
+      return kVerdictNo;
+  }
+}
+
+int run(const Options& options) {
+  const MachineModel model = load_machine(options.machine);
+  const ToolTable tools = load_tools(options.machine);
+  simulate::SimulateOptions simulation;
+  simulation.stops_at_optional = options.stops_at_optional;
+  simulation.has_action_peer = options.auxiliary == "ignore";
+  if (!options.events.empty()) {
+    std::ifstream file(options.events, std::ios::binary);
+    if (!file) return refuse(options.events + ": cannot be opened");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    auto events = simulate::read_operator_events(text, options.events);
+    if (!events) return refuse(events.error());
+    simulation.events = std::move(*events);
+  }
+  if (!options.start_from.empty()) {
+    const auto joints = first_joints(options.start_from, model);
+    if (!joints) return refuse(joints.error().text());
+    simulation.start = *joints;
+  }
+  std::ifstream file;
+  if (options.file != "-") {
+    file.open(options.file, std::ios::binary);
+    if (!file) return refuse(options.file + ": cannot be opened");
+  }
+  cl::ClReader reader(options.file == "-" ? std::cin : file, options.file,
+                      reader_options(options.cl, model));
+  std::optional<record::RecordingWriter> writer;
+  if (!options.record.empty()) {
+    auto created = record::RecordingWriter::create(options.record, model);
+    if (!created) return refuse(created.error().text());
+    writer.emplace(std::move(*created));
+  }
+  const simulate::SimulateReport report = simulate::simulate(
+      reader, options.file, model, tools, simulation, [&writer](const CycleRecord& row) {
+        if (writer) (void)writer->write(row);
+      });
+  for (const cl::ClWarning& warning : reader.warnings()) {
+    std::cerr << options.file << ":" << warning.line << ": warning: " << warning.message << "\n";
+  }
+  std::cout << to_text(report, model);
+  if (writer && !writer->close()) {
+    return refuse(options.record + ": " + std::strerror(writer->error_number()));
+  }
+  return exit_code_of(report.outcome);
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "simulate",
+      "A CL file through planner and cycle as the service runs it, without DDS and clock: "
+      "traversal "
+      "time, nearest limits, recording. Actions (tool, spindle, coolant) are done at once");
+  command->add_option("file", options->file, "CL file (APT or CLDATA text); - is standard input")
+      ->required();
+  add_machine_options(*command, options->machine, true);
+  command->add_option("-r,--record", options->record, "Write every cycle to this recording (CSV)");
+  command->add_option("--events", options->events,
+                      "Replay operator events: rows cycle,verb,argument (docs/recordings.md)");
+  command->add_option("--start-from", options->start_from,
+                      "Start at the joints at which the drives were enabled in this recording "
+                      "instead of the machine's home");
+  command
+      ->add_option("--auxiliary", options->auxiliary,
+                   "Action words: ignore (done at once), refuse (as a service without action peer)")
+      ->check(CLI::IsMember({"ignore", "refuse"}))
+      ->capture_default_str();
+  command->add_flag("--optional-stops", options->stops_at_optional, "Optional stops stop");
+  add_cl_file_options(*command, options->cl);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli

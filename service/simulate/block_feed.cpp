@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/simulate/block_feed.hpp"
+
+namespace meridian::simulate {
+namespace {
+
+[[nodiscard]] stream::ToolLengths lengths_of(const ToolTable& tools) {
+  stream::ToolLengths lengths;
+  for (const Tool& tool : tools.tools()) {
+    lengths.emplace(static_cast<std::uint32_t>(tool.number), tool.length_mm);
+  }
+  return lengths;
+}
+
+}  // namespace
+
+BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
+                     MotionPort& port, bool has_action_peer)
+    : reader_(reader),
+      model_(model),
+      judge_(model, lengths_of(tools)),
+      actions_{.is_there = has_action_peer, .is_ignored = false},
+      planner_(model, tools),
+      writer_(port) {}
+
+void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch) {
+  judge_.begin(model_.tool_length_mm);
+  planner_.begin(at_rest, model_.tool_length_mm, epoch);
+  has_begun_ = true;
+}
+
+/// Reads and judges the next block into `block_`; false if there is none to plan.
+bool BlockFeed::take_block() {
+  auto read = reader_.next();
+  if (!read) {
+    refusal_ = read.error().text();
+    return false;
+  }
+  if (!*read) return false;
+  const BlockReject verdict = judge_.judge(**read, actions_);
+  if (verdict.code != RejectCode::kNone) {
+    refusal_ = stream::describe(verdict, model_);
+    return false;
+  }
+  block_ = **read;
+  if (is_motion(block_->kind)) ++motion_blocks_;
+  return true;
+}
+
+void BlockFeed::fill() {
+  while (!is_over_) {
+    if (!block_ && !take_block()) {
+      is_over_ = true;
+      return;
+    }
+    const PlanResult result = planner_.plan(*block_, writer_);
+    if (result.status == PlanStatus::kNoRoom) return;
+    if (result.status == PlanStatus::kRefused) {
+      refusal_ = stream::describe(result.reject, model_);
+      is_over_ = true;
+      return;
+    }
+    block_.reset();
+  }
+}
+
+}  // namespace meridian::simulate

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "meridian/kinematics/tool_table.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/stream/block_judge.hpp"
+
+namespace meridian::simulate {
+
+/// Reader, judge and planner in one hand: what station, intake and planner thread do live, block by
+/// block in the same order, so that the plan is the same.
+class BlockFeed {
+ public:
+  BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
+            MotionPort& port, bool has_action_peer);
+
+  /// Starts the program from joints at rest.
+  void begin(const JointVector& at_rest, std::uint16_t epoch);
+  /// Plans until the port is full, the blocks are through, or one is refused.
+  void fill();
+
+  [[nodiscard]] bool has_begun() const noexcept { return has_begun_; }
+  /// No block will come any more.
+  [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+  /// Why the last block was refused, one sentence; empty where none was.
+  [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
+  [[nodiscard]] std::uint64_t motion_blocks() const noexcept { return motion_blocks_; }
+  [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return judge_.feeds_limited(); }
+
+ private:
+  [[nodiscard]] bool take_block();
+
+  cl::ClReader& reader_;
+  const MachineModel& model_;
+  stream::BlockJudge judge_;
+  stream::ActionPeer actions_;
+  RestToRestPlanner planner_;
+  MotionWriter writer_;
+  std::optional<ClBlock> block_;  ///< judged, not planned yet
+  std::string refusal_;
+  std::uint64_t motion_blocks_ = 0;
+  bool has_begun_ = false, is_over_ = false;
+};
+
+}  // namespace meridian::simulate

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "meridian/rt/cycle_data.hpp"
+#include "service/simulate/simulate_report.hpp"
+
+namespace meridian::simulate {
+
+/// Sees in each cycle which limit was nearest, by differences of the setpoints.
+class LimitMeter {
+ public:
+  explicit LimitMeter(const MachineModel& model) : model_(model) {}
+
+  /// `feed_mm_per_s`: programmed, 0 for none. Counts where the program moves.
+  void add(const CycleRecord& record, double tool_length_mm, double feed_mm_per_s,
+           LimitShares& shares);
+
+ private:
+  const MachineModel& model_;
+  std::array<JointVector, 4> joints_{};  ///< newest last
+  Vector3 tip_ = Vector3::Zero();
+  int known_ = 0;
+};
+
+}  // namespace meridian::simulate

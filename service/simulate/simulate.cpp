@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/simulate/simulate.hpp"
+
+#include <chrono>
+#include <memory>
+
+#include "meridian/rt/state_table.hpp"
+#include "meridian/rt/step.hpp"
+#include "service/simulate/block_feed.hpp"
+#include "service/simulate/limit_meter.hpp"
+
+namespace meridian::simulate {
+namespace {
+
+constexpr std::uint64_t kEnableCycle = 10;  ///< Off before it
+constexpr std::uint64_t kRestCycles = 10;   ///< at rest behind the end
+
+/// One run: the world around step(), and the books.
+class Run {
+ public:
+  Run(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
+      const SimulateOptions& options)
+      : model_(model),
+        options_(options),
+        port_(std::make_unique<MotionPort>()),
+        motion_(*port_),
+        feed_(reader, model, tools, *port_, options.has_action_peer),
+        meter_(model) {
+    for (int i = 0; i < model.joint_count; ++i) joints_[i] = model.joints[i].home;
+    if (options.start) joints_ = *options.start;
+    in_.session = 1;
+    in_.stops_at_optional = options.stops_at_optional;
+  }
+
+  void go(SimulateReport& report, const std::function<void(const CycleRecord&)>& take) {
+    while (!is_over(report)) {
+      if (feed_.has_begun()) feed_.fill();
+      prepare();
+      step(model_, state_, motion_, in_, out_);
+      joints_ = out_.record.joints;
+      take(out_.record);
+      keep_books(report);
+      if (state_.state == State::kReady && !feed_.has_begun()) {
+        feed_.begin(joints_, state_.epoch);
+      }
+    }
+    report.cycles = in_.cycle;
+    report.motion_blocks = feed_.motion_blocks();
+    report.feeds_limited = feed_.feeds_limited();
+    if (report.outcome == Outcome::kDone || report.outcome == Outcome::kStarved) {
+      if (!feed_.refusal().empty()) report.outcome = Outcome::kRefused;
+    }
+    if (report.outcome == Outcome::kRefused) report.reason = feed_.refusal();
+  }
+
+ private:
+  /// What the cycle is to see next.
+  void prepare() {
+    ++in_.cycle;
+    in_.due_ns = static_cast<std::int64_t>(in_.cycle) * model_.cycle_ns;
+    in_.now_ns = in_.due_ns;
+    const std::uint32_t all = (1U << static_cast<unsigned>(model_.joint_count)) - 1U;
+    const bool is_on = is_enabled(state_.state);
+    in_.feedback = {.arrival_ns = in_.now_ns,
+                    .cycle_seen = in_.cycle - 1,
+                    .position = joints_,
+                    .joint_mask = all,
+                    .enabled_mask = is_on ? all : 0,
+                    .fault_mask = 0,
+                    .referenced_mask = all,
+                    .emergency_stop = false};
+    in_.action = {.sequence = state_.sequence,
+                  .is_answered = state_.action == ActionState::kWaiting,
+                  .is_done = true};
+    in_.has_command = true;
+    if (in_.cycle == kEnableCycle) {
+      command(Verb::kEnable);
+    } else if (state_.state == State::kLoaded && !start_cycle_) {
+      start_cycle_ = in_.cycle;
+      command(Verb::kStart);
+    } else if (is_event_due()) {
+      const OperatorEvent& event = options_.events[next_event_++];
+      command(event.verb, event.argument);
+    } else if (is_at_program_stop()) {
+      command(Verb::kResume);
+    } else {
+      in_.has_command = false;
+    }
+  }
+
+  void command(Verb verb, double argument = 0) { in_.command = {++request_, verb, argument}; }
+
+  [[nodiscard]] bool is_event_due() const {
+    return start_cycle_ && next_event_ < options_.events.size() &&
+           static_cast<std::int64_t>(in_.cycle - *start_cycle_) >=
+               options_.events[next_event_].cycle;
+  }
+
+  [[nodiscard]] bool is_at_program_stop() const {
+    if (state_.state != State::kHeld || motion_.piece() == nullptr) return false;
+    const TimeKind kind = motion_.piece()->kind;
+    return kind == TimeKind::kStop || kind == TimeKind::kOptionalStop;
+  }
+
+  void keep_books(SimulateReport& report) {
+    for (std::size_t i = 0; i < out_.event_count; ++i) keep_event(out_.events[i], report);
+    const double period = report.cycle_s;
+    const bool is_moving = (out_.record.setpoint.flags & kSetpointMoving) != 0;
+    if (is_program_over_ || !start_cycle_ || in_.cycle <= *start_cycle_) return;
+    const bool is_approach = !has_approached_ && out_.record.motion == MotionKind::kApproach;
+    has_approached_ = has_approached_ || (!is_approach && is_moving);
+    if (is_approach) {
+      report.approach_s += period;
+    } else {
+      report.program_s += period;
+      if (!is_moving) report.waiting_s += period;
+    }
+    const PathPiece* path = motion_.path();
+    const double length = path != nullptr ? path->tool_length_mm : model_.tool_length_mm;
+    const TimePiece* piece = motion_.piece();
+    meter_.add(out_.record, length, piece != nullptr ? piece->feed_mm_per_s : 0, report.shares);
+  }
+
+  void keep_event(const Event& event, SimulateReport& report) {
+    switch (event.code) {
+      case EventCode::kProgramEnd:
+        is_program_over_ = true;
+        return;
+      case EventCode::kBlockDone:
+        ++report.blocks_done;
+        return;
+      case EventCode::kAlarm:
+        if (report.reason.empty()) {
+          report.reason = "alarm " + std::to_string(event.a) + " of joint " +
+                          std::to_string(event.b) + " at line " + std::to_string(event.line);
+        }
+        break;
+      case EventCode::kStateChanged:
+      case EventCode::kRefused:
+        break;
+      default:
+        return;
+    }
+    if (report.happenings.size() < SimulateReport::kMostHappenings) {
+      report.happenings.push_back({in_.cycle, event});
+    } else {
+      ++report.happenings_dropped;
+    }
+  }
+
+  /// Whether nothing more will happen; sets the outcome.
+  [[nodiscard]] bool is_over(SimulateReport& report) {
+    if (in_.cycle <= kEnableCycle) return false;
+    const bool has_events = start_cycle_ && next_event_ < options_.events.size();
+    bool is_end = false;
+    switch (state_.state) {
+      case State::kFault:
+        report.outcome = Outcome::kFault;
+        return ++rested_ > kRestCycles;
+      case State::kReady:
+        is_end = is_program_over_ || start_cycle_ || feed_.is_over();
+        report.outcome = is_program_over_ ? Outcome::kDone
+                         : start_cycle_   ? Outcome::kStopped
+                                          : Outcome::kStarved;
+        break;
+      case State::kStarved:
+        is_end = feed_.is_over();
+        report.outcome = Outcome::kStarved;
+        break;
+      case State::kHeld:
+        is_end = !has_events && !is_at_program_stop();
+        report.outcome = Outcome::kStopped;
+        break;
+      case State::kApproaching:
+      case State::kRunning:
+        is_end = !has_events && out_.record.rate == 0 && state_.feed_override == 0;
+        report.outcome = Outcome::kStopped;
+        break;
+      default:
+        break;
+    }
+    rested_ = is_end ? rested_ + 1 : 0;
+    return rested_ > kRestCycles;
+  }
+
+  const MachineModel& model_;
+  const SimulateOptions& options_;
+  std::unique_ptr<MotionPort> port_;
+  MotionReader motion_;
+  BlockFeed feed_;
+  LimitMeter meter_;
+  CycleState state_;
+  CycleInputs in_;
+  StepOutput out_;
+  JointVector joints_{};
+  std::optional<std::uint64_t> start_cycle_;
+  std::size_t next_event_ = 0;
+  std::uint64_t request_ = 0, rested_ = 0;
+  bool is_program_over_ = false, has_approached_ = false;
+};
+
+}  // namespace
+
+SimulateReport simulate(cl::ClReader& reader, const std::string& name, const MachineModel& model,
+                        const ToolTable& tools, const SimulateOptions& options,
+                        const std::function<void(const CycleRecord&)>& take) {
+  const auto begin = std::chrono::steady_clock::now();
+  SimulateReport report;
+  report.name = name;
+  report.cycle_s = static_cast<double>(model.cycle_ns) * 1e-9;
+  Run(reader, model, tools, options).go(report, take);
+  const cl::ClSummary& summary = reader.summary();
+  report.blocks = summary.blocks;
+  report.at_feed_s = summary.cut_time_s;
+  report.cut_length_mm = summary.cut_length_mm;
+  report.rapid_length_mm = summary.rapid_length_mm;
+  report.computing_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+}  // namespace meridian::simulate

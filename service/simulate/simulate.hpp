@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "meridian/rt/cycle_data.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/simulate/operator_events.hpp"
+#include "service/simulate/simulate_report.hpp"
+
+namespace meridian::simulate {
+
+struct SimulateOptions {
+  std::optional<JointVector> start;   ///< joints when the drives are enabled; nothing: home
+  std::vector<OperatorEvent> events;  ///< replayed
+  bool has_action_peer = true;        ///< false: programs with action words are refused
+  bool stops_at_optional = false;     ///< optional stops stop
+};
+
+/// Runs a CL file through judge, planner and cycle as the service does, without DDS and without a
+/// clock: drives that are ideal (feedback is the last setpoint, enabled at once), actions that are
+/// done at once, an operator who enables, starts, and resumes at program stops.
+///
+/// The motion is that of the service, bit for bit on every cycle that it sends. `take` gets every
+/// cycle. Context: a tool's main thread; memory is fixed but for the reader's.
+/// Proof: tests/unit/simulate, tests/corpus/simulate_corpus_test.cpp.
+[[nodiscard]] SimulateReport simulate(cl::ClReader& reader, const std::string& name,
+                                      const MachineModel& model, const ToolTable& tools,
+                                      const SimulateOptions& options,
+                                      const std::function<void(const CycleRecord&)>& take);
+
+}  // namespace meridian::simulate

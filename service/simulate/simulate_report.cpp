@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/simulate/simulate_report.hpp"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+
+#include "meridian/rt/state_table.hpp"
+
+namespace meridian::simulate {
+namespace {
+
+using Count = unsigned long long;  // what printf calls std::uint64_t
+constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
+
+[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
+  char line[512];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  text += line;
+}
+
+void append_shares(std::string& text, const LimitShares& shares, const MachineModel& model) {
+  std::vector<std::pair<std::uint64_t, std::string>> all{{shares.feed, "feed"},
+                                                         {shares.none, "none above half"}};
+  for (int i = 0; i < model.joint_count; ++i) {
+    for (int order = 0; order < 3; ++order) {
+      all.emplace_back(shares.joints[i][order], model.joints[i].name + " " + kRateNames[order]);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  text += "limited by";
+  const char* separator = " ";
+  for (const auto& [cycles, what] : all) {
+    const double share = static_cast<double>(cycles) / static_cast<double>(shares.cycles);
+    if (share < 0.01) break;
+    append(text, "%s%s %.0f %%", separator, what.c_str(), 100 * share);
+    separator = ", ";
+  }
+  text += "\n";
+}
+
+void append_happening(std::string& text, const Happening& happening) {
+  const Event& event = happening.event;
+  append(text, "  cycle %llu: ", static_cast<Count>(happening.cycle));
+  if (event.code == EventCode::kStateChanged) {
+    append(text, "%s -> %s\n", name_of(static_cast<State>(event.b)),
+           name_of(static_cast<State>(event.a)));
+  } else if (event.code == EventCode::kRefused) {
+    append(text, "%s refused: %s\n", name_of(static_cast<Verb>(event.b)),
+           name_of(static_cast<Refusal>(event.x)));
+  } else if (event.code == EventCode::kAccepted) {
+    append(text, "%s accepted\n", name_of(static_cast<Verb>(event.b)));
+  } else {
+    append(text, "alarm %llu, joint %llu, value %.6g, line %u\n", static_cast<Count>(event.a),
+           static_cast<Count>(event.b), event.x, event.line);
+  }
+}
+
+[[nodiscard]] const char* word(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kDone:
+      return "DONE";
+    case Outcome::kStopped:
+      return "STOPPED by the operator";
+    case Outcome::kRefused:
+      return "REFUSED";
+    case Outcome::kStarved:
+      return "STARVED: the blocks ended without the end of the program";
+    case Outcome::kFault:
+      return "FAULT";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string to_text(const SimulateReport& report, const MachineModel& model) {
+  std::string text;
+  append(text, "program    %s: %llu blocks, %llu of motion, %.3f mm of cuts, %.3f mm of rapids\n",
+         report.name.c_str(), static_cast<Count>(report.blocks),
+         static_cast<Count>(report.motion_blocks), report.cut_length_mm, report.rapid_length_mm);
+  if (report.feeds_limited > 0) {
+    append(text, "           %llu blocks were programmed above the machine's highest feed\n",
+           static_cast<Count>(report.feeds_limited));
+  }
+  append(text, "time       %.3f s, after an approach of %.3f s; %.3f s of it waiting\n",
+         report.program_s, report.approach_s, report.waiting_s);
+  append(text, "           the cuts alone at the programmed feed: %.3f s\n", report.at_feed_s);
+  if (report.shares.cycles > 0) append_shares(text, report.shares, model);
+  append(text, "cycles     %llu of %.6g ms, computed in %.2f s\n",
+         static_cast<Count>(report.cycles), report.cycle_s * 1e3, report.computing_s);
+  if (!report.happenings.empty()) text += "events\n";
+  for (const Happening& happening : report.happenings) append_happening(text, happening);
+  if (report.happenings_dropped > 0) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.happenings_dropped));
+  }
+  text += word(report.outcome);
+  if (!report.reason.empty()) text += ": " + report.reason;
+  return text + "\n";
+}
+
+}  // namespace meridian::simulate
