@@ -108,7 +108,14 @@ inline void wait_at_barrier(Cycle& c) noexcept {
     if (beyond < 0) return true;
     const TimePiece& piece = *c.reader.piece();
     if (!settle_at_end(c, state_at(piece, piece.duration))) return false;
-    if (next_piece(c) && is_on_move(c)) c.state.piece_time = beyond;
+    if (!next_piece(c) || !is_on_move(c)) continue;
+    if (is_plan_at_rest(c)) {
+      const double rate = c.state.rate.rate();
+      aim_rate(c);  // from this rest on another override may be in force
+      c.state.piece_time = beyond * (c.state.rate.rate() / rate);
+    } else {
+      c.state.piece_time = beyond;
+    }
   }
   return true;
 }
