@@ -18,6 +18,7 @@ namespace {
 
 /// Distances to the path's ends this close to the least count as there, mm.
 constexpr double kSamePlace_mm = 1e-6;
+constexpr double kMmPerRad = 50;  ///< what a turn of the axis counts for in them
 
 /// What the first reading of a recording finds: its grid, and where the cut begins and ends.
 class Survey {
@@ -44,12 +45,18 @@ class Survey {
     report.missing = missing_;
     report.longest_gap = longest_gap_;
     report.cycles = rows_ > 0 ? last_.cycle - first_cycle_ + 1 : 0;
-    report.begin_cycle = begins_.empty() ? 0 : begins_.front().cycle;
-    report.end_cycle = std::max(report.begin_cycle, options.allow_unfinished ? last_move_ : end_);
     char text[256];
     const auto find = [&](Finding::Kind kind, std::uint64_t cycle, std::uint64_t count) {
       report.findings.push_back({kind, text, cycle, 0, count});
     };
+    if (has_cut(options)) {
+      report.begin_cycle = begins_.front().cycle;
+      report.end_cycle = std::max(report.begin_cycle, options.allow_unfinished ? last_move_ : end_);
+    } else if (path_.has_begin() && rows_ > 0 && !options.allow_unfinished) {
+      std::snprintf(text, sizeof text, "the begin of the path was never reached, %.6f mm off it",
+                    begins_.back().distance);
+      find(Finding::Kind::kUnfinished, 0, 1);
+    }
     if (rows_ == 0) {
       std::snprintf(text, sizeof text, "the recording has no rows");
       find(Finding::Kind::kEmpty, 0, 1);
@@ -73,6 +80,13 @@ class Survey {
     }
   }
 
+  /// Whether the path was begun at all.
+  [[nodiscard]] bool has_cut(const CheckOptions& options) const noexcept {
+    return !begins_.empty() &&
+           begins_.back().distance <=
+               options.tip_tolerance_mm + kMmPerRad * options.axis_tolerance_rad;
+  }
+
   [[nodiscard]] const JointVector& largest() const noexcept { return largest_; }
 
  private:
@@ -92,7 +106,7 @@ class Survey {
 
   [[nodiscard]] double distance(const RecordingRow& row, double tool_length, const ToolPose& to) {
     const ToolPose pose = forward(model_, tool_length, row.joints);
-    return (pose.tip - to.tip).norm() + 50.0 * angle_between(pose.axis, to.axis);
+    return (pose.tip - to.tip).norm() + kMmPerRad * angle_between(pose.axis, to.axis);
   }
 
   /// The cut begins where the joints leave the place nearest to the path's begin for the first
@@ -142,8 +156,13 @@ template <class Use>
 }  // namespace
 
 Expected<CheckReport, RecordError> check(RecordingReader& recording, const CheckedPath& path,
-                                         const MachineModel& model, const CheckOptions& options) {
+                                         const MachineModel& model, const CheckOptions& wanted) {
+  CheckOptions options = wanted;
+  if (!(options.tip_tolerance_mm > 0)) options.tip_tolerance_mm = model.tolerances.tip_mm;
+  if (!(options.axis_tolerance_rad > 0)) options.axis_tolerance_rad = model.tolerances.axis_rad;
   CheckReport report;
+  report.tip_tolerance_mm = options.tip_tolerance_mm;
+  report.axis_tolerance_rad = options.axis_tolerance_rad;
   report.recording = recording.path();
   report.motion_blocks = path.motion_block_count();
   report.tip_length_mm = path.tip_length_mm();
@@ -159,14 +178,15 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
 
   JointJudge joints(model, survey.largest());
   PathJudge tool(model, path, options);
+  const bool has_cut = survey.has_cut(options);
   read = for_each(recording, options, [&](const RecordingRow& row) {
     joints.add(row, recording.has_velocity());
-    if (path.has_begin() && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
+    if (has_cut && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
       tool.add(row);
     }
   });
   if (!read) return tl::make_unexpected(std::move(read.error()));
-  tool.finish(report);
+  if (has_cut) tool.finish(report);
   joints.finish(report);
   return report;
 }

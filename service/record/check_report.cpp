@@ -108,20 +108,25 @@ std::string to_text(const CheckReport& report) {
   append(text, ", %.3f s at %.6g ms\n", report.span_s, report.cycle_s * 1e3);
   append(text, "path       %s: %llu motion blocks, %.3f mm\n", report.path_name.c_str(),
          static_cast<Count>(report.motion_blocks), report.tip_length_mm);
-  append(text, "cut        cycles %llu to %llu, %.3f s\n", static_cast<Count>(report.begin_cycle),
-         static_cast<Count>(report.end_cycle), report.cut_s);
-  append_deviation(text, "tip", report.tip_mm, report.tip_between_mm, 1e3, "um",
-                   report.tip_tolerance_mm);
-  append_deviation(text, "axis", report.axis_rad, report.axis_between_rad, units::deg_from_rad(1.0),
-                   "deg", report.axis_tolerance_rad);
-  append(text, "vertices   %llu passed, the farthest by %.6f um (line %u)",
-         static_cast<Count>(report.vertices), report.vertex_mm.value * 1e3, report.vertex_mm.line);
-  if (report.vertices_in_gaps > 0) {
-    append(text, ", %llu behind missing cycles", static_cast<Count>(report.vertices_in_gaps));
+  if (report.begin_cycle == report.end_cycle) {
+    text += "cut        nothing\n";
+  } else {
+    append(text, "cut        cycles %llu to %llu, %.3f s\n", static_cast<Count>(report.begin_cycle),
+           static_cast<Count>(report.end_cycle), report.cut_s);
+    append_deviation(text, "tip", report.tip_mm, report.tip_between_mm, 1e3, "um",
+                     report.tip_tolerance_mm);
+    append_deviation(text, "axis", report.axis_rad, report.axis_between_rad,
+                     units::deg_from_rad(1.0), "deg", report.axis_tolerance_rad);
+    append(text, "vertices   %llu passed, the farthest by %.6f um (line %u)",
+           static_cast<Count>(report.vertices), report.vertex_mm.value * 1e3,
+           report.vertex_mm.line);
+    if (report.vertices_in_gaps > 0) {
+      append(text, ", %llu behind missing cycles", static_cast<Count>(report.vertices_in_gaps));
+    }
+    append(text, "\nfeed       %.6f x the programmed feed (%s), tip speed up to %.3f mm/min\n",
+           report.feed.value, place(report.feed).c_str(),
+           units::per_min_from_per_s(report.tip_speed_mm_per_s.value));
   }
-  append(text, "\nfeed       %.6f x the programmed feed (%s), tip speed up to %.3f mm/min\n",
-         report.feed.value, place(report.feed).c_str(),
-         units::per_min_from_per_s(report.tip_speed_mm_per_s.value));
   append(text, "joint      velocity acceleration     jerk  (1 is the limit)      range\n");
   for (int i = 0; i < report.joint_count; ++i) {
     const JointUse& use = report.joints[i];

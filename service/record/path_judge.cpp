@@ -33,10 +33,8 @@ PathJudge::PathJudge(const MachineModel& model, const CheckedPath& path,
     : model_(model),
       path_(path),
       options_(options),
-      tip_tolerance_(options.tip_tolerance_mm > 0 ? options.tip_tolerance_mm
-                                                  : model.tolerances.tip_mm),
-      axis_tolerance_(options.axis_tolerance_rad > 0 ? options.axis_tolerance_rad
-                                                     : model.tolerances.axis_rad),
+      tip_tolerance_(options.tip_tolerance_mm),
+      axis_tolerance_(options.axis_tolerance_rad),
       period_(static_cast<double>(model.cycle_ns) * 1e-9),
       follower_(path, tip_tolerance_, axis_tolerance_),
       tool_length_(path.begin_tool_length_mm()),
@@ -203,8 +201,6 @@ void PathJudge::finish(CheckReport& report) {
     if (known_ == 2) places_[0] = places_[1];
     step(false);
   }
-  report.tip_tolerance_mm = tip_tolerance_;
-  report.axis_tolerance_rad = axis_tolerance_;
   report.tip_mm = tip_;
   report.axis_rad = axis_;
   report.tip_between_mm = tip_between_;

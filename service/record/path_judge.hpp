@@ -16,6 +16,7 @@ namespace meridian::record {
 /// order. Units: mm, rad, s.
 class PathJudge {
  public:
+  /// Both tolerances of `options` are in force.
   PathJudge(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
 
   void add(const RecordingRow& row);

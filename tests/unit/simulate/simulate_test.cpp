@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/units.hpp"
+#include "support/machines.hpp"
+#include "support/simulated_run.hpp"
+
+namespace meridian::simulate {
+namespace {
+
+using record::CheckReport;
+using test::check_records;
+using test::path_of;
+using test::run_simulation;
+using test::SimulatedRun;
+
+/// A cycle in the middle of the cut, counted from the start.
+[[nodiscard]] std::int64_t middle_of(const SimulatedRun& run) {
+  return static_cast<std::int64_t>((run.report.approach_s + 0.5 * run.report.program_s) /
+                                   run.report.cycle_s);
+}
+
+/// Lines, a tilt, an arc of half a turn, a rapid.
+constexpr const char* kPart =
+    "UNITS / MM\nMULTAX / ON\nFEDRAT / 1200, MMPM\n"
+    "GOTO / 80, -40, 20, 0.2, 0, 0.979796\nGOTO / 95, -40, 20, 0.2, 0, 0.979796\n"
+    "GOTO / 95, -25, 18, 0.1, 0.2, 0.974679\nGOTO / 90, -25, 18, 0, 0.2, 0.979796\n"
+    "CIRCLE / 85, -25, 18, 0, 0, 1, 5\nGOTO / 80, -25, 18, 0, 0.2, 0.979796\n"
+    "RAPID\nGOTO / 80, -25, 40, 0, 0, 1\nFINI\n";
+
+class Simulate : public ::testing::Test {
+ protected:
+  Simulate() {
+    options.tip_tolerance_mm = 1e-3;
+    options.axis_tolerance_rad = units::rad_from_deg(1e-3);
+  }
+  ~Simulate() override { std::remove(recording.c_str()); }
+
+  [[nodiscard]] CheckReport check(const SimulatedRun& run, const char* text,
+                                  const ToolTable& tools = {}) const {
+    return check_records(run.records, path_of(text, model, tools), model, options, recording);
+  }
+
+  MachineModel model = test::lai_machine();
+  record::CheckOptions options;
+  std::string recording = ::testing::TempDir() + "simulate_" + std::to_string(::getpid()) + ".csv";
+};
+
+TEST_F(Simulate, CutsTheWholePathInsideEveryLimit) {
+  const SimulatedRun run = run_simulation(kPart, model);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_EQ(run.report.motion_blocks, 6U);
+  EXPECT_EQ(run.report.cycles, run.records.size());
+  EXPECT_GT(run.report.approach_s, 0.1);
+  EXPECT_GT(run.report.program_s, run.report.at_feed_s);
+  const CheckReport report = check(run, kPart);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_GT(report.feed.value, 0.9);
+  EXPECT_NEAR(report.cut_s, run.report.program_s, 0.01);
+}
+
+TEST_F(Simulate, GivesTheSameBitsEveryTime) {
+  const SimulatedRun one = run_simulation(kPart, model), two = run_simulation(kPart, model);
+  ASSERT_EQ(one.records.size(), two.records.size());
+  for (std::size_t i = 0; i < one.records.size(); ++i) {
+    ASSERT_EQ(std::memcmp(&one.records[i].joints, &two.records[i].joints, sizeof(JointVector)), 0);
+  }
+}
+
+TEST_F(Simulate, StartsWhereItIsToldTo) {
+  SimulateOptions simulation;
+  simulation.start = JointVector{50, 60, 70, 0.5, 0.1, 0};
+  const SimulatedRun run = run_simulation(kPart, model, simulation);
+  EXPECT_EQ(run.records.front().joints, *simulation.start);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone);
+  EXPECT_TRUE(check(run, kPart).passed());
+}
+
+TEST_F(Simulate, ReplaysHoldAndResumeWithinEveryLimit) {
+  SimulateOptions simulation;
+  const SimulatedRun plain = run_simulation(kPart, model);
+  const std::int64_t middle = middle_of(plain);
+  simulation.events = {{middle, Verb::kHold, 0}, {middle + 700, Verb::kResume, 0}};
+  const SimulatedRun run = run_simulation(kPart, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_GT(run.report.program_s, plain.report.program_s + 0.4);
+  const CheckReport report = check(run, kPart);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
+TEST_F(Simulate, ReplaysOverrides) {
+  SimulateOptions simulation;
+  const SimulatedRun plain = run_simulation(kPart, model);
+  simulation.events = {{0, Verb::kFeedOverride, 0.5}};
+  const SimulatedRun run = run_simulation(kPart, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone);
+  EXPECT_GT(run.report.program_s, 1.7 * plain.report.program_s);
+  options.feed_factor = 0.5;
+  const CheckReport report = check(run, kPart);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
+TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {
+  options.allow_unfinished = true;
+  const std::int64_t middle = middle_of(run_simulation(kPart, model));
+  for (const OperatorEvent& event :
+       {OperatorEvent{middle, Verb::kHold, 0}, OperatorEvent{middle, Verb::kAbort, 0},
+        OperatorEvent{middle, Verb::kFeedOverride, 0}}) {
+    SimulateOptions simulation;
+    simulation.events = {event};
+    const SimulatedRun run = run_simulation(kPart, model, simulation);
+    EXPECT_EQ(run.report.outcome, Outcome::kStopped) << to_text(run.report, model);
+    const CheckReport report = check(run, kPart);
+    EXPECT_TRUE(report.passed()) << to_text(report);
+    EXPECT_GT(report.vertices, 1U);
+    EXPECT_LT(report.vertices, 17U);
+  }
+}
+
+TEST_F(Simulate, MayBeEndedInTheApproach) {
+  SimulateOptions simulation;
+  simulation.events = {{100, Verb::kAbort, 0}};
+  const SimulatedRun run = run_simulation(kPart, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kStopped);
+  EXPECT_FALSE(check(run, kPart).passed()) << "the path was never begun";
+  options.allow_unfinished = true;
+  const CheckReport report = check(run, kPart);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
+TEST_F(Simulate, RunsTheBlocksBeforeARefusedOneAndNamesIt) {
+  const char* text =
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0, 1\nGOTO / 95, -40, 20\n"
+      "GOTO / 95, -40, 1900\nGOTO / 96, -40, 20\nFINI\n";
+  const SimulatedRun run = run_simulation(text, model);
+  EXPECT_EQ(run.report.outcome, Outcome::kRefused);
+  EXPECT_NE(run.report.reason.find("line 5"), std::string::npos) << run.report.reason;
+  const ToolPose last = forward(model, model.tool_length_mm, run.records.back().joints);
+  EXPECT_LT((last.tip - Vector3(95, -40, 20)).norm(), 1e-9);
+}
+
+TEST_F(Simulate, DoesNotMoveForAFileWhoseFirstBlockIsRefused) {
+  const SimulatedRun run = run_simulation(
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 1900, 0, 0, 1\nFINI\n", model);
+  EXPECT_EQ(run.report.outcome, Outcome::kRefused);
+  for (const CycleRecord& record : run.records) {
+    ASSERT_EQ(record.joints, run.records.front().joints);
+  }
+}
+
+TEST_F(Simulate, DoesActionsAtOnceAndResumesAtStops) {
+  const char* text =
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nSPINDL / 8000, CLW\nGOTO / 80, -40, 20, 0, 0, 1\n"
+      "COOLNT / ON\nGOTO / 95, -40, 20\nSTOP\nGOTO / 95, -30, 20\nOPSTOP\nDELAY / 0.25\n"
+      "GOTO / 90, -30, 20\nFINI\n";
+  const SimulatedRun run = run_simulation(text, model);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_GT(run.report.waiting_s, 0.25);
+  EXPECT_LT(run.report.waiting_s, 0.3);
+  EXPECT_TRUE(check(run, text).passed()) << to_text(check(run, text));
+  SimulateOptions simulation;
+  simulation.has_action_peer = false;
+  const SimulatedRun alone = run_simulation(text, model, simulation);
+  EXPECT_EQ(alone.report.outcome, Outcome::kRefused);
+  EXPECT_NE(alone.report.reason.find("action"), std::string::npos) << alone.report.reason;
+}
+
+TEST_F(Simulate, ChangesToolsOfItsTable) {
+  const char* text =
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.1, 0.994987\nGOTO / 95, -40, 20\n"
+      "LOADTL / 3\nGOTO / 95, -40, 30\nGOTO / 80, -40, 30\nFINI\n";
+  const ToolTable tools({{3, 130, 8}});
+  const SimulatedRun run = run_simulation(text, model, {}, tools);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_TRUE(check(run, text, tools).passed()) << to_text(check(run, text, tools));
+  EXPECT_EQ(run_simulation(text, model).report.outcome, Outcome::kRefused) << "no such tool";
+}
+
+TEST_F(Simulate, NamesTheNearestLimit) {
+  model.joints[3].limits.velocity = 0.05;  // C creeps
+  const char* text =
+      "UNITS / MM\nFEDRAT / 6000, MMPM\nGOTO / 80, -40, 20, 0.2, 0, 0.979796\n"
+      "GOTO / 80, -40, 20, 0, 0.2, 0.979796\nFINI\n";
+  const SimulatedRun run = run_simulation(text, model);
+  EXPECT_GT(run.report.shares.joints[3][0], 9 * run.report.shares.cycles / 10);
+  EXPECT_NE(to_text(run.report, model).find("theta1 velocity"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace meridian::simulate
