@@ -32,20 +32,59 @@ class MadePlan {
     const ProfilePhases phases =
         phases_of(rest_to_rest_with_reserve(path.length, limits), path.length);
     for (int i = 0; i < phases.count; ++i) {
-      TimePiece piece = next_piece(TimeKind::kMove);
-      const ProfilePhase& phase = phases.phase[static_cast<std::size_t>(i)];
-      piece.path_index = path.index;
-      piece.duration = phase.duration;
-      piece.s0 = phase.s;
-      piece.v = phase.v;
-      piece.a = phase.a;
-      piece.j = phase.j;
-      piece.stop_accel = limits.acceleration;
-      piece.stop_jerk = limits.jerk;
-      piece.fault_accel = 2 * limits.acceleration;
-      piece.fault_jerk = 4 * limits.jerk;
-      (void)writer_.stage(piece);
+      stage_phase(phases.phase[static_cast<std::size_t>(i)], path, 0, limits);
     }
+    end_window();
+  }
+
+  /// As cut(), in one motion over two path pieces that meet in the middle.
+  void cut_over_two_paths(const Vector3& delta, const PathLimits& limits) {
+    const double length = delta.norm();
+    const ProfilePhases phases = phases_of(rest_to_rest_with_reserve(length, limits), length);
+    const PathPiece first = stage_path(delta / 2, MotionKind::kCut);
+    const PathPiece second = stage_path(delta / 2, MotionKind::kCut);
+    for (int i = 0; i < phases.count; ++i) {
+      ProfilePhase phase = phases.phase[static_cast<std::size_t>(i)];
+      const double middle = phase.v > 0 ? (length / 2 - phase.s) / phase.v : 0;
+      if (phase.a == 0 && phase.j == 0) {  // the cruise holds the middle
+        const double whole = phase.duration;
+        phase.duration = middle;
+        stage_phase(phase, first, 0, limits);
+        phase.duration = whole - middle;
+        phase.s = length / 2;
+      }
+      const bool is_behind = phase.s >= length / 2;
+      stage_phase(phase, is_behind ? second : first, is_behind ? length / 2 : 0, limits);
+    }
+    end_window();
+  }
+
+  /// Sets off along `delta` in a window that ends at cruising speed after `cruise_s`, with the stop
+  /// from there as its tail. continue_cut() publishes the window that goes on instead.
+  void cut_with_tail(const Vector3& delta, const PathLimits& limits, double cruise_s) {
+    long_path_ = stage_path(delta, MotionKind::kCut);
+    long_limits_ = limits;
+    const Profile profile = rest_to_rest_with_reserve(long_path_.length, limits);
+    const ProfilePhases phases = phases_of(profile, long_path_.length);
+    for (int i = 0; i < 4; ++i) {
+      ProfilePhase phase = phases.phase[static_cast<std::size_t>(i)];
+      if (i == 3) phase.duration = cruise_s;
+      stage_phase(phase, long_path_, 0, limits);
+    }
+    cruise_ = phases.phase[3];
+    cruise_.s += cruise_.v * cruise_s;
+    stage_stop(cruise_.s - phases.phase[4].s, phases, true);
+    writer_.publish();
+    ++window_;
+  }
+  void continue_cut() {
+    const double length = long_path_.length;
+    const ProfilePhases phases = phases_of(rest_to_rest_with_reserve(length, long_limits_), length);
+    is_next_from_rest_ = false;
+    cruise_.duration = (phases.phase[4].s - cruise_.s) / cruise_.v;
+    stage_phase(cruise_, long_path_, 0, long_limits_);
+    stage_stop(0, phases, false);
+    is_next_from_rest_ = true;
     end_window();
   }
 
@@ -76,10 +115,34 @@ class MadePlan {
     (void)writer_.stage(path);
     return path;
   }
+  void stage_phase(const ProfilePhase& phase, const PathPiece& path, double begin,
+                   const PathLimits& limits, bool is_tail = false) {
+    TimePiece piece = next_piece(TimeKind::kMove);
+    piece.is_tail = is_tail;
+    piece.path_index = path.index;
+    piece.duration = phase.duration;
+    piece.s0 = phase.s - begin;
+    piece.v = phase.v;
+    piece.a = phase.a;
+    piece.j = phase.j;
+    piece.stop_accel = limits.acceleration;
+    piece.stop_jerk = limits.jerk;
+    piece.fault_accel = 2 * limits.acceleration;
+    piece.fault_jerk = 4 * limits.jerk;
+    (void)writer_.stage(piece);
+  }
+  /// The last three phases of a profile, `by` further on.
+  void stage_stop(double by, const ProfilePhases& phases, bool is_tail) {
+    for (std::size_t i = 4; i < 7; ++i) {
+      ProfilePhase phase = phases.phase[i];
+      phase.s += by;
+      stage_phase(phase, long_path_, 0, long_limits_, is_tail);
+    }
+  }
   TimePiece next_piece(TimeKind kind) const {
     TimePiece piece;
     piece.kind = kind;
-    piece.is_from_rest = true;
+    piece.is_from_rest = is_next_from_rest_;
     piece.epoch = epoch_;
     piece.window = window_;
     piece.sequence = sequence_;
@@ -99,6 +162,10 @@ class MadePlan {
   std::uint64_t index_ = 0, sequence_ = 0;
   std::uint32_t window_ = 0;
   std::uint16_t epoch_ = 1;
+  bool is_next_from_rest_ = true;
+  PathPiece long_path_;  ///< of cut_with_tail
+  PathLimits long_limits_;
+  ProfilePhase cruise_;
 };
 
 }  // namespace meridian::test

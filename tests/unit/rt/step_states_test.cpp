@@ -134,6 +134,21 @@ TEST(Step, HoldsOnThePathAndResumesToTheEnd) {
   }
 }
 
+TEST(Step, TheSetpointOfTheCycleThatSeesTheHoldAlreadyDecelerates) {
+  Program p;
+  p.plan.cut({80, 0, 0}, kLimits);
+  p.run(0.4);
+  const auto& r = p.world.records;
+  const auto step_of = [&r](std::size_t back) {
+    return r[r.size() - 1 - back].joints[0] - r[r.size() - 2 - back].joints[0];
+  };
+  EXPECT_NEAR(step_of(0), step_of(1), 1e-12);  // cruise
+  p.world.command(Verb::kHold);
+  EXPECT_LT(step_of(0), step_of(1) - 1e-6);
+  p.world.run();
+  EXPECT_LT(step_of(0), step_of(1) - 1e-5);
+}
+
 TEST(Step, AbortStopsOnThePathThenEmptiesTheQueueAndAdvancesTheEpoch) {
   Program p;
   for (int n = 0; n < 20; ++n) p.plan.cut({50, 0, 0}, kLimits);

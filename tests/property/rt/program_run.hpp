@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "meridian/planner/rest_to_rest.hpp"
+#include "property/planner/random_programs.hpp"
+#include "support/cycle_world.hpp"
+#include "support/machines.hpp"
+
+/// Random programs through the real planner, port and cycle.
+namespace meridian::test {
+
+/// A random program that ends, with feeds at which it is over soon.
+inline std::vector<ClBlock> draw_program(RandomPrograms& random, const MachineModel& machine,
+                                         int length) {
+  std::vector<ClBlock> blocks = random.program(machine, length);
+  for (ClBlock& block : blocks) {
+    if (block.feed_meaning == FeedMeaning::kTip) block.feed = std::max(block.feed, 20.0);
+    if (block.feed_meaning == FeedMeaning::kInverseTime) block.feed = std::max(block.feed, 2.0);
+  }
+  ClBlock end;
+  end.kind = BlockKind::kEnd;
+  end.sequence = blocks.size();
+  end.line = 10 * static_cast<std::uint32_t>(end.sequence) + 7;
+  blocks.push_back(end);
+  return blocks;
+}
+
+/// One of two machines, cycle time 125 µs to 4 ms.
+inline MachineModel draw_machine(RandomPrograms& random) {
+  MachineModel machine = random.chance(0.5) ? bench_machine() : lai_machine();
+  machine.cycle_ns = static_cast<std::int64_t>(random.log_uniform(125e3, 4e6));
+  return machine;
+}
+
+/// A random machine with a random program for it.
+struct Draw {
+  explicit Draw(std::uint64_t seed) : random(seed), machine(draw_machine(random)) {
+    blocks = draw_program(random, machine, 5);
+  }
+
+  /// Joints on the first block, so that nothing is to be approached; one program in ten approaches.
+  [[nodiscard]] JointVector start() {
+    const JointVector anywhere = random.start(machine);
+    if (random.chance(0.1)) return anywhere;
+    const ToolPose pose{to_vector(blocks.front().tip_mm), to_vector(blocks.front().axis)};
+    JointVector q = solve(machine, machine.tool_length_mm, pose, 0, {}).q;
+    wind_into_travel(machine, {}, q);
+    return first_joint_outside_travel(machine, q, 0) < 0 ? q : anywhere;
+  }
+  RandomPrograms random;
+  MachineModel machine;
+  std::vector<ClBlock> blocks;
+};
+
+/// The machine on its way through one program: planned as far as the port takes it, cycle by cycle.
+class ProgramRun {
+ public:
+  ProgramRun(const MachineModel& machine, const std::vector<ClBlock>& blocks,
+             const JointVector& start)
+      : world(machine, start), planner_(world.machine), writer_(*world.port), blocks_(blocks) {
+    is_started_ = world.enable();
+    planner_.begin(start, machine.tool_length_mm, world.state.epoch);
+    plan();
+    is_started_ = is_started_ && !is_refused_ && world.run_until(State::kLoaded, 1);
+    if (is_started_) world.command(Verb::kStart);
+  }
+
+  /// False where the planner refused a block: the program is of no use then.
+  [[nodiscard]] bool is_started() const { return is_started_; }
+  [[nodiscard]] bool is_over() const { return world.now() == State::kReady || is_refused_; }
+
+  const CycleRecord& run() {
+    plan();
+    return world.run();
+  }
+  const CycleRecord& command(Verb verb, double argument = 0) {
+    plan();
+    return world.command(verb, argument);
+  }
+
+  CycleWorld world;
+
+ private:
+  void plan() {
+    while (next_ < blocks_.size() && !is_refused_) {
+      const PlanResult result = planner_.plan(blocks_[next_], writer_);
+      if (result.status == PlanStatus::kNoRoom) return;
+      is_refused_ = result.status == PlanStatus::kRefused;
+      next_ += is_refused_ ? 0 : 1;
+    }
+  }
+
+  RestToRestPlanner planner_;
+  MotionWriter writer_;
+  std::vector<ClBlock> blocks_;
+  std::size_t next_ = 0;
+  bool is_refused_ = false, is_started_ = false;
+};
+
+/// Largest shares of the joints' limits by differences of setpoints, rounding (8 ulp(q)/Tⁿ) taken
+/// off.
+struct LimitShares {
+  double v = 0, a = 0, j = 0;
+  void take(const LimitShares& other) {
+    v = std::max(v, other.v);
+    a = std::max(a, other.a);
+    j = std::max(j, other.j);
+  }
+};
+
+/// Judges the setpoints from record `first` on; `is_fault` takes the FaultStop limits.
+inline LimitShares shares_of_limits(const CycleWorld& world, std::size_t first, bool is_fault) {
+  LimitShares out;
+  const auto& r = world.records;
+  const double dt = world.dt();
+  for (std::size_t n = std::max<std::size_t>(first, 3); n < r.size(); ++n) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(world.machine.joint_count); ++i) {
+      const JointLimits& limits = world.machine.joints[i].limits;
+      const double accel = is_fault ? limits.fault_acceleration : limits.acceleration;
+      const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
+      const double q0 = r[n - 3].joints[i], q1 = r[n - 2].joints[i], q2 = r[n - 1].joints[i],
+                   q3 = r[n].joints[i];
+      const double most = std::max(std::abs(q0), std::abs(q3));
+      const double ulp = 8 * (std::nextafter(most, 1e300) - most);
+      out.take({(std::abs(q3 - q2) - ulp) / dt / limits.velocity,
+                (std::abs((q3 - q2) - (q2 - q1)) - ulp) / (dt * dt) / accel,
+                (std::abs((q3 - q2) - 2 * (q2 - q1) + (q1 - q0)) - ulp) / (dt * dt * dt) / jerk});
+    }
+  }
+  return out;
+}
+
+}  // namespace meridian::test
