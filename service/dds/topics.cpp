@@ -228,6 +228,11 @@ int Writer<Message>::matched_readers() const noexcept {
   return std::max(0, dds_get_matched_subscriptions(impl_->writer, nullptr, 0));
 }
 
+template <class Message>
+std::int32_t Writer<Message>::handle() const noexcept {
+  return impl_->writer;
+}
+
 #define MERIDIAN_INSTANTIATE(MESSAGE) \
   template class Reader<MESSAGE>;     \
   template class Writer<MESSAGE>

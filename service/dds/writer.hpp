@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "service/dds/participant.hpp"
@@ -23,6 +24,7 @@ class Writer {
   /// Ends the message's instance; late joiners do not get it any more.
   void dispose(const Message& message) noexcept;
   [[nodiscard]] int matched_readers() const noexcept;
+  [[nodiscard]] std::int32_t handle() const noexcept;
 
  private:
   struct Impl;

@@ -6,9 +6,7 @@
 namespace meridian::interpolator {
 
 Publisher::Publisher(dds::Participant& participant, Ports& ports)
-    : ports_(ports), writer_(participant) {
-  writer_.register_instance({});
-}
+    : ports_(ports), writer_(participant) {}
 
 void Publisher::run() noexcept {
   constexpr std::int64_t kLookForStop_ns = 100'000'000;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "service/dds/messages.hpp"
-#include "service/dds/writer.hpp"
+#include "service/dds/setpoint_writer.hpp"
 #include "service/interpolator/ports.hpp"
 
 namespace meridian::interpolator {
@@ -18,7 +18,7 @@ class Publisher {
 
  private:
   Ports& ports_;
-  dds::Writer<dds::SetpointSample> writer_;
+  dds::SetpointWriter writer_;
 };
 
 }  // namespace meridian::interpolator

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/dds/setpoint_writer.hpp"
+
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "service/dds/convert.hpp"
+
+namespace meridian::dds {
+namespace {
+
+using Wire = meridian_wire_Setpoint;
+
+/// Serialized, a setpoint is the bytes of its struct: natural alignment, no padding between fields.
+constexpr std::size_t kPayload_bytes = 124;
+constexpr std::size_t kHeader_bytes = 4;
+static_assert(std::is_trivially_copyable_v<Wire>);
+static_assert(offsetof(Wire, sent_minus_due_ns) + sizeof(Wire::sent_minus_due_ns) ==
+              kPayload_bytes);
+
+/// The number of references that are held on a sample.
+std::uint32_t references(const ddsi_serdata& sample) noexcept {
+  return ddsrt_atomic_ld32(&sample.refc);
+}
+
+/// Entities that exist only while the moulds are made.
+class Entity {
+ public:
+  explicit Entity(dds_entity_t handle) : handle_(handle) {
+    if (handle < 0) throw DdsError(std::string("setpoints: ") + dds_strretcode(-handle));
+  }
+  ~Entity() { dds_delete(handle_); }
+  Entity(const Entity&) = delete;
+  Entity& operator=(const Entity&) = delete;
+  [[nodiscard]] dds_entity_t handle() const noexcept { return handle_; }
+
+ private:
+  dds_entity_t handle_;
+};
+
+}  // namespace
+
+SetpointWriter::SetpointWriter(Participant& participant) : writer_(participant) {
+  writer_.register_instance({});
+  make_moulds(participant);
+}
+
+SetpointWriter::~SetpointWriter() {
+  for (const Mould& mould : moulds_) {
+    if (mould.sample != nullptr) ddsi_serdata_unref(mould.sample);
+  }
+}
+
+/// A writer and a reader of this process on a topic of the same type: what the reader takes is the
+/// very sample that Cyclone serialized, with a reference that is ours.
+void SetpointWriter::make_moulds(Participant& participant) {
+  const Entity topic(dds_create_topic(participant.handle(), &meridian_wire_Setpoint_desc,
+                                      "meridian/setpoint_mould", nullptr, nullptr));
+  const Entity reader(dds_create_reader(participant.handle(), topic.handle(), nullptr, nullptr));
+  const Entity writer(dds_create_writer(participant.handle(), topic.handle(), nullptr, nullptr));
+  SetpointSample pattern;
+  pattern.setpoint.cycle = 0x0123456789abcdefULL;
+  pattern.setpoint.position.fill(1.25);
+  pattern.sent_minus_due_ns = 77;
+  Wire wire{};
+  to_wire(pattern, wire);
+  for (Mould& mould : moulds_) {
+    dds_sample_info_t info;
+    if (dds_write(writer.handle(), &wire) != DDS_RETCODE_OK ||
+        dds_takecdr(reader.handle(), &mould.sample, 1, &info, DDS_ANY_STATE) != 1) {
+      throw DdsError("setpoints: Cyclone DDS did not hand back a sample of its own process");
+    }
+    ddsrt_iovec_t bytes;
+    ddsi_serdata* const held =
+        ddsi_serdata_to_ser_ref(mould.sample, 0, kHeader_bytes + kPayload_bytes, &bytes);
+    mould.payload = static_cast<std::byte*>(bytes.iov_base) + kHeader_bytes;
+    ddsi_serdata_to_ser_unref(held, &bytes);
+    if (std::memcmp(mould.payload, &wire, kPayload_bytes) != 0) {
+      throw DdsError("setpoints: Cyclone DDS serializes them otherwise than this program expects");
+    }
+  }
+}
+
+bool SetpointWriter::write(const SetpointSample& sample) noexcept {
+  for (std::size_t i = 0; i < moulds_.size(); ++i) {
+    const Mould& mould = moulds_[next_];
+    next_ = (next_ + 1) % moulds_.size();
+    if (references(*mould.sample) != 1) continue;  // still being sent, or kept for its deadline
+    Wire wire{};
+    to_wire(sample, wire);
+    std::memcpy(mould.payload, &wire, kPayload_bytes);
+    // Writing gives up one reference; the mould keeps its own.
+    return dds_writecdr(writer_.handle(), ddsi_serdata_ref(mould.sample)) == DDS_RETCODE_OK;
+  }
+  ++without_mould_;
+  return writer_.write(sample);
+}
+
+}  // namespace meridian::dds

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// What the cycle and publisher threads of the real service ask of heap, locks and kernel over a
+/// whole run: programs with hold, resume and override over DDS with drives, after a first program
+/// as warm-up. Counted from outside by libmeridian_watch.so; budgets in deploy/budgets.toml.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "integration/plant.hpp"
+#include "support/budgets.hpp"
+#include "support/heap_watch.hpp"
+#include "support/watch_report.hpp"
+
+namespace meridian::test {
+namespace {
+
+using stream::Station;
+using stream::StationState;
+using support::load_budget;
+
+bool is_complete(const Station& station) { return station.state() == StationState::kComplete; }
+bool has_ran(const Station& station) { return station.state() == StationState::kRan; }
+
+/// A plant whose service runs with the counters on.
+class Counters : public testing::Test {
+ protected:
+  Counters() : watched_(plant_.folder() / "watch") {}
+
+  void SetUp() override {
+    if (!watch::is_heap_watched()) {
+      GTEST_SKIP() << "the sanitizer owns malloc";
+    }
+    for (const std::string& pair : watched_.environment()) {
+      const auto equals = pair.find('=');
+      ::setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 1);
+    }
+    plant_.start_service();
+    ::unsetenv("LD_PRELOAD");
+    ::unsetenv("MERIDIAN_WATCH");
+    plant_.start_drives();
+    ASSERT_TRUE(plant_.enable()) << plant_.service().said();
+    has_locked_memory_ =
+        plant_.service().said().find("memory cannot be locked") == std::string::npos;
+  }
+
+  void load(int blocks, double feed_mm_per_min) {
+    ASSERT_TRUE(plant_.stream(small_program(blocks, feed_mm_per_min), is_complete))
+        << plant_.station().message() << plant_.service().said();
+    ASSERT_TRUE(plant_.wait_for(State::kLoaded)) << plant_.service().said();
+  }
+
+  void say(Verb verb, double argument = 0) {
+    const auto reply = plant_.say(verb, argument);
+    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
+  }
+
+  /// A program from its first block to its end, held and resumed on the way, at changing override.
+  void run_program(int blocks) {
+    load(blocks, 3000);
+    say(Verb::kStart);
+    ASSERT_TRUE(plant_.wait_for(State::kRunning));
+    say(Verb::kFeedOverride, 0.6);
+    std::this_thread::sleep_for(milliseconds(300));
+    say(Verb::kHold);
+    ASSERT_TRUE(plant_.wait_for(State::kHeld));
+    say(Verb::kResume);
+    say(Verb::kFeedOverride, 1.0);
+    ASSERT_TRUE(plant_.stream_on(has_ran, milliseconds(30000)))
+        << plant_.station().message() << plant_.service().said();
+    ASSERT_TRUE(plant_.wait_for(State::kReady));
+  }
+
+  Plant plant_;
+  watch::WatchedProgram watched_;
+  bool has_locked_memory_ = false;
+};
+
+TEST_F(Counters, AWholeRunCostsCycleAndPublisherNoHeapCallNoPageFaultAndTheCycleNoLock) {
+  ASSERT_NO_FATAL_FAILURE(run_program(10));
+  const watch::Report begin = watched_.report("begin");
+  const dds::Status before = plant_.status();
+  ASSERT_NO_FATAL_FAILURE(run_program(40));
+  const dds::Status after = plant_.status();
+  const watch::Report change = watch::difference(begin, watched_.report("end"));
+  std::printf("%llu cycles, %llu periods lost, memory %s\n%s",
+              static_cast<unsigned long long>(after.cycles_run - before.cycles_run),
+              static_cast<unsigned long long>(after.periods_lost - before.periods_lost),
+              has_locked_memory_ ? "locked" : "not locked: best effort",
+              watch::to_text(change).c_str());
+
+  const watch::ThreadCounts* const cycle = watch::find_thread(change, "cycle");
+  const watch::ThreadCounts* const publisher = watch::find_thread(change, "publisher");
+  ASSERT_TRUE(cycle != nullptr && publisher != nullptr) << watch::to_text(change);
+  for (const watch::ThreadCounts* const thread : {cycle, publisher}) {
+    EXPECT_LE(thread->allocations + thread->frees, load_budget("cycle_heap_calls").allowed())
+        << thread->name;
+    if (has_locked_memory_) {
+      EXPECT_LE(thread->minor_faults + thread->major_faults,
+                load_budget("cycle_page_faults").allowed())
+          << thread->name;
+    }
+  }
+  EXPECT_LE(cycle->locks, load_budget("cycle_locks").allowed());
+  // One sleep a cycle and no other wait. The status is up to one period of its rate older than the
+  // counters.
+  constexpr std::uint64_t kStatusAge_cycles = 300;
+  EXPECT_LE(cycle->voluntary_switches, after.cycles_run - before.cycles_run + kStatusAge_cycles);
+  EXPECT_GT(cycle->voluntary_switches, 1000U) << "the cycle hardly ran";
+}
+
+TEST_F(Counters, TheCycleAsksTheKernelForItsSleepAndThePublishersWakeAlone) {
+  if (std::system("strace -V > /dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "no strace on this host, as on one without the rights to trace";
+  }
+  load(40, 600);
+  say(Verb::kStart);
+  ASSERT_TRUE(plant_.wait_for(State::kRunning));
+  const watch::Report report = watched_.report("running");
+  const watch::ThreadCounts* const cycle = watch::find_thread(report, "cycle");
+  ASSERT_NE(cycle, nullptr);
+  // Only that one thread is traced, for a second of the run.
+  const auto trace = plant_.folder() / "trace.txt";
+  const std::string command = "timeout -s INT 1 strace -p " + std::to_string(cycle->thread_id) +
+                              " -o " + trace.string() + " 2> /dev/null";
+  (void)!std::system(command.c_str());
+
+  std::set<std::string> calls;
+  std::size_t count = 0;
+  std::ifstream lines(trace);
+  for (std::string line; std::getline(lines, line);) {
+    const auto bracket = line.find('(');
+    if (bracket != std::string::npos && line.rfind("---", 0) != 0 && line.rfind("strace", 0) != 0) {
+      calls.insert(line.substr(0, bracket));
+      ++count;
+    }
+  }
+  if (count == 0) {
+    GTEST_SKIP() << "this host does not let strace attach (no rights)";
+  }
+  std::ostringstream names;
+  for (const std::string& call : calls) {
+    names << call << " ";
+  }
+  std::printf("%zu system calls of the cycle thread in 1 s: %s\n", count, names.str().c_str());
+  calls.erase("clock_nanosleep");
+  calls.erase("futex");
+  calls.erase("restart_syscall");  // the sleep that strace came into
+  EXPECT_TRUE(calls.empty()) << names.str();
+}
+
+}  // namespace
+}  // namespace meridian::test
