@@ -13,7 +13,9 @@ Interpreter::Result Interpreter::take_mode(const Statement& s) {
 }
 
 Interpreter::Result Interpreter::take_cycle(const Statement& s) {
-  if (s.has_word("OFF") || s.has_word("INIT") || s.has_word("NOMORE")) return {};
+  for (const std::string_view word : {"OFF", "INIT", "NOMORE"}) {
+    if (s.argument_count > 0 && is_word(s.arguments[0].text, word)) return {};
+  }
   return refuse(s.line,
                 "CYCLE/" + std::string(s.rest.substr(0, 40)) +
                     " is a canned cycle: its motion is known to the control alone",

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
+#include <streambuf>
 
 namespace meridian::cl {
 namespace {
@@ -23,22 +25,35 @@ LineSource::LineSource(std::istream& stream) : stream_(&stream), buffer_(kBuffer
 LineSource::LineSource(std::string_view text)
     : begin_(text.data()), end_(text.data() + text.size()), at_end_(true) {}
 
+/// Takes what the stream has, at least one byte: a slow source is not waited for longer than it
+/// takes to its next line.
 void LineSource::refill() {
   if (at_end_) return;
   const auto rest = static_cast<std::size_t>(end_ - begin_);
   std::memmove(buffer_.data(), begin_, rest);
   begin_ = buffer_.data();
-  stream_->read(buffer_.data() + rest, static_cast<std::streamsize>(buffer_.size() - rest));
-  end_ = begin_ + rest + static_cast<std::size_t>(stream_->gcount());
-  if (stream_->eof() || stream_->fail()) {
-    at_end_ = true;
-    read_error_ = stream_->bad();
+  end_ = begin_ + rest;
+  try {
+    std::streambuf* const source = stream_->rdbuf();
+    std::streamsize ready = source->in_avail();
+    if (ready <= 0) {
+      if (std::streambuf::traits_type::eq_int_type(source->sgetc(),
+                                                   std::streambuf::traits_type::eof())) {
+        at_end_ = true;
+        return;
+      }
+      ready = std::max<std::streamsize>(source->in_avail(), 1);
+    }
+    const auto room = static_cast<std::streamsize>(buffer_.size() - rest);
+    end_ += source->sgetn(buffer_.data() + rest, std::min(ready, room));
+  } catch (const std::exception&) {  // what a file buffer throws when the medium fails
+    at_end_ = read_error_ = true;
   }
 }
 
 std::string_view LineSource::head() {
   if (!started_) {
-    while (!at_end_ && static_cast<std::size_t>(end_ - begin_) < kHeadSize) refill();
+    if (!at_end_) refill();
     constexpr std::string_view kMark = "\xef\xbb\xbf";
     if (std::string_view(begin_, end_).starts_with(kMark)) {
       begin_ += kMark.size();
@@ -52,7 +67,8 @@ std::string_view LineSource::head() {
 LineSource::Outcome LineSource::next(std::string_view& line) {
   if (!started_) (void)head();
   const char* newline = find_newline(begin_, end_);
-  if (newline == nullptr && !at_end_) {
+  while (newline == nullptr && !at_end_ &&
+         static_cast<std::size_t>(end_ - begin_) <= kLongestLine) {
     refill();
     newline = find_newline(begin_, end_);
   }

@@ -18,7 +18,7 @@ class LineSource {
   enum class Outcome : std::uint8_t { kLine, kEnd, kTooLong, kReadError };
   static constexpr std::size_t kLongestLine = 64 * 1024;
 
-  /// The stream is read in chunks and must live as long as the source.
+  /// The stream is read as its bytes come and must live as long as the source.
   explicit LineSource(std::istream& stream);
   /// The text is used in place and must live as long as the source.
   explicit LineSource(std::string_view text);
@@ -26,7 +26,8 @@ class LineSource {
   /// The next line without its end. The view is good until the next call.
   [[nodiscard]] Outcome next(std::string_view& line);
 
-  /// The first bytes of the source, up to 64 KiB; to be asked before the first next().
+  /// The first bytes of the source, as many as it has at once, up to 64 KiB; to be asked before the
+  /// first next().
   [[nodiscard]] std::string_view head();
 
   [[nodiscard]] std::uint32_t line_number() const noexcept { return line_number_; }

@@ -79,6 +79,7 @@ int run_cl(const RunOptions& options, std::ostream& out, std::ostream& err) {
       return kInputRefused;
     }
   }
+  if (options.file == "-") std::ios::sync_with_stdio(false);
   std::istream& in = options.file == "-" ? std::cin : file;
   if (options.output.empty()) return read_through(options, in, out, err);
   std::ofstream target(options.output, std::ios::binary);

@@ -110,6 +110,16 @@ TEST(Circle, WithElevenNumbersTurnsClockwise) {
   EXPECT_NEAR(m[2].sweep_rad, kPi / 2, 1e-15);
 }
 
+TEST(Circle, TakesNormalsOfMinusZero) {
+  const auto m =
+      read_body(
+          "GOTO/5.6943646,-2.1512949,28.0\nCIRCLE/1.5623138,0.6640481,28.0,-0.0000000,"
+          "-0.0000000,-1.0000000,5.0,0.0020000,0.5,10.0,0.0\nGOTO/6.1638998,2.6199127,28.0\n")
+          .motion();
+  EXPECT_EQ(m.at(1).normal, (Array3{0, 0, 1}));
+  EXPECT_LT(m[1].sweep_rad, 1.01);
+}
+
 TEST(Circle, OfAHelixOfSeveralTurnsBecomesOneArcPerTurn) {
   const auto read =
       read_body("GOTO/-1,0,0\nCIRCLE/0,0,-2,0,0,-1,1,.002,.5,1,0,TIMES,2\nGOTO/-1,0,-2.5\n");

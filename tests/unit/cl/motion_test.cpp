@@ -2,6 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <istream>
+#include <streambuf>
+#include <string>
+#include <vector>
 
 #include "read_text.hpp"
 
@@ -120,6 +124,46 @@ TEST(Reader, KeepsShortSegmentsOfTenDecimals) {
                      "  0.0000000000, 0.0000000000, 1.0000000000\n")
                      .motion();
   EXPECT_NEAR(m.at(1).tip_mm[0] - m.at(0).tip_mm[0], 1e-4, 1e-14);
+}
+
+TEST(Reader, TakesAxesThatJumpByARightAngleBetweenSetups) {
+  const auto read = read_body(
+      "TRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nGOTO/0,0,25.,0,0,1\n"
+      "CSYS/0,0,1,0,1,0,0,0,0,1,0,0\nRAPID/\nGOTO/25,0,0,1,0,0\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().at(1).axis, (Array3{1, 0, 0}));
+  EXPECT_NEAR(read.summary.axis_change_max_rad, std::asin(1.0), 1e-15);
+}
+
+/// Gives one line at a time and knows how many were asked for.
+class SlowSource : public std::streambuf {
+ public:
+  explicit SlowSource(std::vector<std::string> lines) : lines_(std::move(lines)) {}
+  [[nodiscard]] std::size_t given() const { return given_; }
+
+ private:
+  int_type underflow() override {
+    if (given_ == lines_.size()) return traits_type::eof();
+    std::string& line = lines_[given_++];
+    setg(line.data(), line.data(), line.data() + line.size());
+    return traits_type::to_int_type(line[0]);
+  }
+  std::vector<std::string> lines_;
+  std::size_t given_ = 0;
+};
+
+TEST(Reader, GivesABlockAsSoonAsItsLineIsThere) {
+  SlowSource source({"UNITS/MM\n", "FEDRAT/60\n", "GOTO/1,2,3,$\n", "0,0,1\n", "GOTO/1,2,4\n",
+                     "FINI\n", "never asked for\n"});
+  std::istream stream(&source);
+  ClReader reader(stream, "slow");
+  for (const std::size_t lines : {4U, 5U, 6U}) {
+    const auto block = reader.next();
+    ASSERT_TRUE(block && *block);
+    EXPECT_EQ(source.given(), lines);
+  }
+  EXPECT_FALSE(reader.next()->has_value());
+  EXPECT_EQ(source.given(), 6U);
 }
 
 TEST(Reader, RefusesMalformedGotos) {
