@@ -29,6 +29,7 @@ class DriveSide {
   };
   /// Arrivals so far; call while nothing is being sent, or take the tail with a grain of salt.
   [[nodiscard]] std::vector<Arrival> arrivals() const;
+  [[nodiscard]] std::size_t count() const { return count_.load(std::memory_order_acquire); }
   void forget() { count_.store(0, std::memory_order_release); }
 
  private:
