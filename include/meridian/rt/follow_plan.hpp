@@ -98,6 +98,15 @@ inline void wait_at_barrier(Cycle& c) noexcept {
   }
 }
 
+/// At a rest of the plan: the override of the piece that begins is in force at once. Returns the plan
+/// time that `beyond` at the old rate is at the new one, never more than a period of it.
+[[nodiscard]] inline double take_up_override(Cycle& c, double beyond) noexcept {
+  const double old_rate = c.state.rate.rate();
+  aim_rate(c);
+  const double rate = c.state.rate.rate();
+  return rate * (beyond < old_rate * c.dt ? beyond / old_rate : c.dt);
+}
+
 /// One period of plan time on the motion in force and those behind it, up to the next barrier.
 /// False if the path cannot be evaluated.
 [[nodiscard]] inline bool move_one_period(Cycle& c) noexcept {
@@ -109,13 +118,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
     const TimePiece& piece = *c.reader.piece();
     if (!settle_at_end(c, state_at(piece, piece.duration))) return false;
     if (!next_piece(c) || !is_on_move(c)) continue;
-    if (is_plan_at_rest(c)) {
-      const double rate = c.state.rate.rate();
-      aim_rate(c);  // from this rest on another override may be in force
-      c.state.piece_time = beyond * (c.state.rate.rate() / rate);
-    } else {
-      c.state.piece_time = beyond;
-    }
+    c.state.piece_time = is_plan_at_rest(c) ? take_up_override(c, beyond) : beyond;
   }
   return true;
 }
