@@ -130,45 +130,47 @@ class Interpreter {
   double to_mm_ = 1;
   std::optional<Frame> written_frame_;  ///< MSYS, CSYS: origin in the unit of the file
   std::optional<Frame> reference_;      ///< the frame in force at the first motion, mm
-  bool csys_holds_ = true;              ///< not under TRNTYP/WORLD
-  bool written_is_csys_ = false;
-  bool frame_dirty_ = false;
-  bool frame_is_identity_ = true;
-  Frame frame_;  ///< what poses of the file are put through
-  bool motion_begun_ = false;
+  Frame frame_;                         ///< what poses of the file are put through
 
   // modal state
-  bool has_position_ = false;
-  bool position_told_ = false;  ///< some motion block ended at tip_
   Vector3 tip_ = Vector3::Zero();
   std::array<double, 3> axis_written_{0, 0, 1};
   Vector3 axis_ = Vector3::UnitZ();
   Vector3 axis_before_ = Vector3::UnitZ();
   Vector3 direction_ = Vector3::Zero();  ///< of the last straight motion, unit; zero: none
-  bool rapid_ = false;
   PendingArc arc_;
   std::optional<std::array<double, 3>> forward_;  ///< INDIRV
   std::uint64_t arcs_along_ = 0, arcs_against_ = 0;
 
-  FeedUnit feed_unit_ = FeedUnit::kNone;
   double feed_written_ = 0;
-  bool feed_dirty_ = true;
   double feed_ = 0;  ///< mm/s or 1/s
-  FeedMeaning feed_meaning_ = FeedMeaning::kNone;
   double spindle_rpm_ = 0;
-  bool spindle_on_ = false;
+  FeedUnit feed_unit_ = FeedUnit::kNone;
+  FeedMeaning feed_meaning_ = FeedMeaning::kNone;
   ActionKind spindle_sense_ = ActionKind::kSpindleClockwise;
 
-  // structure
+  // claims
+  bool csys_holds_ = true;  ///< not under TRNTYP/WORLD
+  bool written_is_csys_ = false;
+  bool frame_dirty_ = false;
+  bool frame_is_identity_ = true;
+  bool motion_begun_ = false;
+  bool has_position_ = false;
+  bool position_told_ = false;  ///< some motion block ended at tip_
+  bool rapid_ = false;
+  bool feed_dirty_ = true;
+  bool spindle_on_ = false;
   bool finished_ = false;
   bool end_told_ = false;
-  std::uint32_t open_path_line_ = 0;  ///< TOOL PATH that waits for END-OF-PATH
-  int open_sections_ = 0;             ///< PPRINT/BEGIN-SECTION
   bool sections_closed_ = false;
   bool path_closed_ = false;
   bool promises_end_ = false;  ///< words of a program, not a bare list of points
-  double cutter_written_ = 0;
   bool metric_suspected_ = false;
+
+  // structure and summary
+  std::uint32_t open_path_line_ = 0;  ///< TOOL PATH that waits for END-OF-PATH
+  int open_sections_ = 0;             ///< PPRINT/BEGIN-SECTION
+  double cutter_written_ = 0;
   double axis_z_min_ = 2, axis_z_max_ = -2;
   double change_chord_max_ = 0;
 };
