@@ -90,7 +90,8 @@ class BadInput : public testing::Test {
     EXPECT_EQ(answer->credits, 0u);
     EXPECT_NE(answer->text.find("line 4, block 3: "), std::string::npos) << answer->text;
     EXPECT_NE(answer->text.find(text), std::string::npos) << answer->text;
-    station.send(3, small_program(6, kFeed_mm_per_min));  // it does not take no for an answer
+    const std::vector<ClBlock> good = small_program(6, kFeed_mm_per_min);
+    station.send(3, {good.begin() + 3, good.end()});  // it does not take no for an answer
     ASSERT_NO_FATAL_FAILURE(run_out());
     EXPECT_NE(plant.service().said().find(answer->text), std::string::npos) << "not in the log";
     const Motion motion = motion_of_run();
@@ -138,12 +139,12 @@ TEST_F(BadInput, AGreatCircleThatLeavesTravelBetweenTwoLegalBlocksMovesNothing) 
   const double tilt = units::rad_from_deg(30), corner = units::rad_from_deg(130);
   ClBlock block = small_program(1, kFeed_mm_per_min)[0];
   block.tip_mm = {kRadius_mm * std::cos(corner), kRadius_mm * std::sin(corner), 190};
-  std::vector<ClBlock> blocks(3, block);
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const double azimuth = units::rad_from_deg(i < 2 ? 0 : 80);
+  std::vector<ClBlock> blocks(4, block);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const double azimuth = units::rad_from_deg(i == 2 ? 80 : 0);
     blocks[i].sequence = i;
     blocks[i].line = 40 + i;
-    blocks[i].tip_mm[2] += i == 0 ? 0 : 1;
+    blocks[i].tip_mm[2] += i;
     blocks[i].axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
                       std::cos(tilt)};
   }
@@ -222,7 +223,8 @@ TEST_F(BadInput, BlocksBeyondCreditAreDroppedAndTheSessionRefused) {
   ASSERT_TRUE(answer);
   EXPECT_NE(answer->text.find("had credit up to "), std::string::npos) << answer->text;
   EXPECT_EQ(answer->credits, 0u);
-  station.send(3, small_program(3, kFeed_mm_per_min));
+  const std::vector<ClBlock> more = small_program(6, kFeed_mm_per_min);
+  station.send(3, {more.begin() + 3, more.end()});
   ASSERT_NO_FATAL_FAILURE(run_out());
   const Motion motion = motion_of_run();
   EXPECT_EQ(motion.last_sequence_moving, 2u);
