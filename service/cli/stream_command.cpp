@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "meridian/units.hpp"
 #include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
@@ -44,19 +45,35 @@ int exit_code_of(stream::StreamEnd end) {
   return kVerdictNo;
 }
 
-/// Reads the whole file first; false where it is refused.
-bool pass_preflight(StreamCommandOptions& options) {
+/// Returns the machine that the file is judged for: the one that the service tells, unless files
+/// were given. Nothing where the service does not tell its file.
+std::optional<stream::PreflightMachine> preflight_machine(const StreamCommandOptions& options,
+                                                          const dds::MachineInfo& info) {
   std::optional<stream::PreflightMachine> machine;
   if (!options.machine_file.empty()) {
     machine.emplace();
     machine->model = config::load_machine(options.machine_file);
-    if (machine->model.default_unit_mm) {
-      options.stream.reader.default_unit = cl::LengthUnit::kMillimetre;
-    } else if (machine->model.default_unit_inch) {
-      options.stream.reader.default_unit = cl::LengthUnit::kInch;
-    }
     if (!options.tool_file.empty()) machine->tools = config::load_tools(options.tool_file);
+    return machine;
   }
+  if (info.machine_file.empty()) return machine;
+  machine.emplace();
+  machine->model = config::parse_machine(info.machine_file, "machine file of the service");
+  config::Frame frame;
+  for (int i = 0; i < 9; ++i) {
+    frame.rotation(i / 3, i % 3) = info.frame_rotation[static_cast<std::size_t>(i)];
+  }
+  frame.origin_mm = to_vector(info.frame_origin_mm);
+  config::place_workpiece(machine->model, frame);
+  if (!info.tool_file.empty()) {
+    machine->tools = config::parse_tools(info.tool_file, "tool table of the service");
+  }
+  return machine;
+}
+
+/// Reads the whole file first; false where it is refused.
+bool pass_preflight(StreamCommandOptions& options,
+                    const std::optional<stream::PreflightMachine>& machine) {
   stream::PreflightReport report =
       stream::preflight(options.stream.file, options.stream.reader, machine);
   for (const auto& warning : report.warnings) {
@@ -80,9 +97,16 @@ int run_stream_command(StreamCommandOptions& options) {
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
-  options.stream.reader.max_feed_mm_per_s = machine->max_feed_mm_per_min / 60;
-  const bool is_endless = options.stream.file == "-";
-  if (!options.has_no_preflight && !is_endless && !pass_preflight(options)) return kInputRefused;
+  const auto judged_for = preflight_machine(options, *machine);
+  cl::ClReaderOptions& reader = options.stream.reader;
+  reader.max_feed_mm_per_s = units::per_s_from_per_min(machine->max_feed_mm_per_min);
+  if (judged_for && judged_for->model.default_unit_mm) {
+    reader.default_unit = cl::LengthUnit::kMillimetre;
+  } else if (judged_for && judged_for->model.default_unit_inch) {
+    reader.default_unit = cl::LengthUnit::kInch;
+  }
+  const bool is_read_first = !options.has_no_preflight && options.stream.file != "-";
+  if (is_read_first && !pass_preflight(options, judged_for)) return kInputRefused;
 
   watch_for_stop();
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
@@ -110,8 +134,10 @@ void add_stream_command(CLI::App& app, int& exit_code) {
       ->required();
   command->add_flag("--no-preflight", options->has_no_preflight,
                     "Stream at once, for endless sources; what is wrong is found on the way");
-  command->add_option("--machine", options->machine_file,
-                      "Judge reach and travel in the preflight by this machine file");
+  command->add_option(
+      "--machine", options->machine_file,
+      "Judge reach and travel in the preflight by this machine file; default: the one that "
+      "the service tells");
   command->add_option("--tools", options->tool_file, "... and this tool table");
   command->add_flag("--wait-end", options->stream.is_waiting_for_end,
                     "Stay until the machine ran the program");

@@ -140,9 +140,10 @@ void read_frame(Section section, MachineModel& model) {
 
 }  // namespace
 
-MachineModel load_machine(const std::filesystem::path& path) {
-  const toml::table table = parse_file(path);
-  Section file(path.string(), table);
+namespace {
+
+MachineModel read_file(const toml::table& table, const std::string& name) {
+  Section file(name, table);
   MachineModel model;
   read_machine(file.section("machine"), model);
   read_lai(file.section("kinematics"), model);
@@ -154,6 +155,16 @@ MachineModel load_machine(const std::filesystem::path& path) {
   read_frame(file.section_or("frame"), model);
   file.finish();
   return model;
+}
+
+}  // namespace
+
+MachineModel load_machine(const std::filesystem::path& path) {
+  return read_file(parse_file(path), path.string());
+}
+
+MachineModel parse_machine(std::string_view text, const std::string& name) {
+  return read_file(parse_text(text, name), name);
 }
 
 }  // namespace meridian::config

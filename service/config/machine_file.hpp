@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "meridian/kinematics/machine_model.hpp"
@@ -15,9 +16,13 @@ namespace meridian::config {
 /// Proof: tests/unit/config/machine_file_test.cpp.
 [[nodiscard]] MachineModel load_machine(const std::filesystem::path& path);
 
+/// The same for the text of a machine file, as a service tells it; `name` is what messages call it.
+[[nodiscard]] MachineModel parse_machine(std::string_view text, const std::string& name);
+
 /// Reads a tool table: [[tool]] with number, length_mm and radius_mm. Throws ConfigError.
 /// Proof: tests/unit/config/tool_file_test.cpp.
 [[nodiscard]] ToolTable load_tools(const std::filesystem::path& path);
+[[nodiscard]] ToolTable parse_tools(std::string_view text, const std::string& name);
 
 /// Where the workpiece lies in the frame of the kinematics. rotation = Rz(c) Ry(b) Rx(a).
 struct Frame {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <sstream>
 #include <utility>
 
@@ -83,11 +84,18 @@ toml::table parse_file(const std::filesystem::path& path) {
                        .allowed = "a TOML file that can be read",
                        .remedy = "check the path; deploy/machines has one file per machine"});
   }
+  std::ifstream input(path, std::ios::binary);
+  std::ostringstream text;
+  text << input.rdbuf();
+  return parse_text(text.str(), path.string());
+}
+
+toml::table parse_text(std::string_view text, const std::string& name) {
   try {
-    return toml::parse_file(path.string());
+    return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw ConfigError(
-        {.file = path.string(),
+        {.file = name,
          .line = static_cast<int>(error.source().begin.line),
          .value = "this is not TOML: " + on_one_line(std::string(error.description())),
          .allowed = "TOML 1.0",

@@ -24,6 +24,9 @@ struct Range {
 /// Reads a TOML file. Throws ConfigError where there is none or it is not TOML.
 [[nodiscard]] toml::table parse_file(const std::filesystem::path& path);
 
+/// The same for text; `name` is what messages call it.
+[[nodiscard]] toml::table parse_text(std::string_view text, const std::string& name);
+
 /// One table of a TOML file that is read key by key. It remembers what was asked for, so that
 /// finish() can refuse every other key; each refusal names file, line, key, value, what is allowed
 /// and the remedy. The table must outlive it. Everything throws ConfigError.

@@ -6,9 +6,10 @@
 
 namespace meridian::config {
 
-ToolTable load_tools(const std::filesystem::path& path) {
-  const toml::table table = parse_file(path);
-  Section file(path.string(), table);
+namespace {
+
+ToolTable read_file(const toml::table& table, const std::string& name) {
+  Section file(name, table);
   std::vector<Tool> tools;
   for (Section& section : file.sections_or("tool")) {
     Tool tool;
@@ -24,6 +25,16 @@ ToolTable load_tools(const std::filesystem::path& path) {
   }
   file.finish();
   return ToolTable(std::move(tools));
+}
+
+}  // namespace
+
+ToolTable load_tools(const std::filesystem::path& path) {
+  return read_file(parse_file(path), path.string());
+}
+
+ToolTable parse_tools(std::string_view text, const std::string& name) {
+  return read_file(parse_text(text, name), name);
 }
 
 }  // namespace meridian::config

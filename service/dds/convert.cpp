@@ -438,6 +438,10 @@ void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   wire.tip_tolerance_mm = message.tip_tolerance_mm;
   wire.axis_tolerance_rad = message.axis_tolerance_rad;
   wire.tool_length_mm = message.tool_length_mm;
+  std::copy(message.frame_rotation.begin(), message.frame_rotation.end(), wire.frame_rotation);
+  std::copy(message.frame_origin_mm.begin(), message.frame_origin_mm.end(), wire.frame_origin_mm);
+  copy_text(message.machine_file, wire.machine_file);
+  copy_text(message.tool_file, wire.tool_file);
 }
 
 void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
@@ -474,6 +478,10 @@ void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
   message.tip_tolerance_mm = wire.tip_tolerance_mm;
   message.axis_tolerance_rad = wire.axis_tolerance_rad;
   message.tool_length_mm = wire.tool_length_mm;
+  std::copy_n(wire.frame_rotation, 9, message.frame_rotation.begin());
+  std::copy_n(wire.frame_origin_mm, 3, message.frame_origin_mm.begin());
+  message.machine_file = text_of(wire.machine_file);
+  message.tool_file = text_of(wire.tool_file);
 }
 
 void to_wire(const Latency& message, meridian_wire_Latency& wire) noexcept {

@@ -247,7 +247,13 @@ struct MachineInfo {
   double tip_tolerance_mm = 0;
   double axis_tolerance_rad = 0;
   double tool_length_mm = 0;
+  std::array<double, 9> frame_rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row
+  Array3 frame_origin_mm{};
+  std::string machine_file{};  ///< its text; empty where it is longer than kMachineFileBytes
+  std::string tool_file{};     ///< text of the tool table; empty: none, or longer than fits
 };
+
+inline constexpr std::size_t kMachineFileBytes = 12287, kToolFileBytes = 4095;
 
 inline constexpr std::size_t kHistogramBuckets = 64;
 inline constexpr std::size_t kMaxHistograms = 6;

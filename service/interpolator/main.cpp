@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include "interpolator_version.hpp"
@@ -47,6 +49,13 @@ void make_stacks_small() {
   return signals;
 }
 
+[[nodiscard]] std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
 [[nodiscard]] ServiceParts load(const Options& options) {
   ServiceParts parts;
   if (!options.service.empty()) parts.service = config::load_service(options.service);
@@ -55,10 +64,14 @@ void make_stacks_small() {
       !options.machine.empty() ? options.machine : parts.service.machine.string();
   if (machine.empty()) throw StartError("no machine: give --machine FILE or name it in --service");
   parts.model = config::load_machine(machine);
+  parts.machine_file = text_of(machine);
   if (!options.frame.empty()) {
     config::place_workpiece(parts.model, config::parse_frame(options.frame));
   }
-  if (!parts.service.tools.empty()) parts.tools = config::load_tools(parts.service.tools);
+  if (!parts.service.tools.empty()) {
+    parts.tools = config::load_tools(parts.service.tools);
+    parts.tool_file = text_of(parts.service.tools);
+  }
   parts.model.bridge_cycles = config::find_bridge_cycles(parts.service, parts.model);
   parts.domain =
       static_cast<std::uint32_t>(options.domain >= 0 ? options.domain : parts.service.dds_domain);

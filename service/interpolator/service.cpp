@@ -55,6 +55,12 @@ namespace {
   info.tip_tolerance_mm = model.tolerances.tip_mm;
   info.axis_tolerance_rad = model.tolerances.axis_rad;
   info.tool_length_mm = model.tool_length_mm;
+  for (int i = 0; i < 9; ++i) {
+    info.frame_rotation[static_cast<std::size_t>(i)] = model.frame_rotation(i / 3, i % 3);
+  }
+  info.frame_origin_mm = to_array(model.frame_origin_mm);
+  if (parts.machine_file.size() <= dds::kMachineFileBytes) info.machine_file = parts.machine_file;
+  if (parts.tool_file.size() <= dds::kToolFileBytes) info.tool_file = parts.tool_file;
   return info;
 }
 

@@ -32,7 +32,8 @@ struct ServiceParts {
   ToolTable tools;
   config::ServiceConfig service;
   std::uint32_t domain = 0;
-  std::string recording;  ///< path; empty: none
+  std::string recording;                ///< path; empty: none
+  std::string machine_file, tool_file;  ///< their texts, for the machine topic
 };
 
 /// The wiring: the one place where the rooms meet. Built by the main thread, which is pinned off

@@ -44,8 +44,7 @@ TEST_F(Tool, StreamsAPartFromOpenToEnd) {
   plant.start_drives();
   Process enable = run({"ctl", "enable", "--wait", "Ready"});
   ASSERT_EQ(enable.wait(kShort), 0) << enable.said();
-  Process stream = run({"stream", part("good.apt", kGoodPart), "--wait-end", "--machine",
-                        machine_file(), "--station", "cam-1"});
+  Process stream = run({"stream", part("good.apt", kGoodPart), "--wait-end", "--station", "cam-1"});
   ASSERT_TRUE(plant.wait_for(State::kLoaded)) << stream.said();
   Process second = run({"stream", part("other.apt", kGoodPart), "--station", "cam-2"});
   EXPECT_EQ(second.wait(kShort), 4) << second.said();
@@ -63,7 +62,7 @@ TEST_F(Tool, StreamsAPartFromOpenToEnd) {
 
 TEST_F(Tool, RefusesInputBeforeTheMachineSeesIt) {
   plant.start_service();
-  Process stream = run({"stream", part("far.apt", kPartOutOfTravel), "--machine", machine_file()});
+  Process stream = run({"stream", part("far.apt", kPartOutOfTravel)});
   EXPECT_EQ(stream.wait(kShort), 3) << stream.said();
   EXPECT_NE(stream.said().find("far.apt: line 5, block 1: b3 at 2000 mm"), std::string::npos)
       << stream.said();
