@@ -44,6 +44,7 @@ class Survey {
     report.rows = rows_;
     report.missing = missing_;
     report.longest_gap = longest_gap_;
+    report.has_later_program = has_later_program_;
     report.cycles = rows_ > 0 ? last_.cycle - first_cycle_ + 1 : 0;
     char text[256];
     const auto find = [&](Finding::Kind kind, std::uint64_t cycle, std::uint64_t count) {
@@ -51,7 +52,7 @@ class Survey {
     };
     if (has_cut(options)) {
       report.begin_cycle = begins_.front().cycle;
-      report.end_cycle = std::max(report.begin_cycle, options.allow_unfinished ? last_move_ : end_);
+      report.end_cycle = std::max(report.begin_cycle, last_move_);
     } else if (path_.has_begin() && rows_ > 0 && !options.allow_unfinished) {
       std::snprintf(text, sizeof text, "the begin of the path was never reached, %.6f mm off it",
                     begins_.back().distance);
@@ -110,18 +111,19 @@ class Survey {
   }
 
   /// The cut begins where the joints leave the place nearest to the path's begin for the first
-  /// time, and ends where they come to the place nearest to its end for the last time.
+  /// time, and ends with the last motion of the program: that of the next begins with its approach.
   void find_ends(const RecordingRow& row, bool has_moved) {
+    const bool is_enabled = (row.flags & kSetpointEnabled) != 0;
+    if (rows_ > 0 && (!has_moved || !is_enabled)) return;
+    if (has_moved && row.kind != MotionKind::kApproach) has_run_ = true;
+    if (has_moved && row.kind == MotionKind::kApproach && has_run_) has_later_program_ = true;
+    if (has_later_program_) return;
     if (has_moved) last_move_ = row.cycle;
-    if (rows_ > 0 && !has_moved) return;
     const double to_begin = distance(row, path_.begin_tool_length_mm(), path_.begin());
     if (begins_.empty() || to_begin < begins_.back().distance) {
       begins_.push_back({to_begin, row.cycle});
       while (begins_.front().distance > to_begin + kSamePlace_mm) begins_.pop_front();
     }
-    const double to_end = distance(row, path_.end_tool_length_mm(), path_.end());
-    if (to_end <= least_end_ + kSamePlace_mm) end_ = row.cycle;
-    least_end_ = std::min(least_end_, to_end);
   }
 
   const CheckedPath& path_;
@@ -129,8 +131,8 @@ class Survey {
   RecordingRow last_;
   std::uint64_t rows_ = 0, first_cycle_ = 0, missing_ = 0, longest_gap_ = 0, first_gap_ = 0;
   std::uint64_t disorders_ = 0, disorder_ = 0, off_grid_ = 0, first_off_grid_ = 0;
-  std::uint64_t end_ = 0, last_move_ = 0;
-  double least_end_ = std::numeric_limits<double>::infinity();
+  std::uint64_t last_move_ = 0;
+  bool has_run_ = false, has_later_program_ = false;
   struct Begin {
     double distance;
     std::uint64_t cycle;  ///< the last one at rest there

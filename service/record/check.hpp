@@ -29,7 +29,8 @@ struct CheckOptions {
 ///
 /// * every commanded pose, at the setpoints and at three places between neighbouring ones (cubic
 ///   through four), has a programmed pose near the place being cut within tip and axis tolerance
-///   together; every CL vertex is passed within the tip tolerance, the whole path is cut;
+///   together; every CL vertex is passed within the tip tolerance, the whole path is cut, and
+///   nothing more;
 /// * tip speed never above the programmed feed; inverse time: nor the turn of the axis;
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;

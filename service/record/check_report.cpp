@@ -113,6 +113,7 @@ std::string to_text(const CheckReport& report) {
   } else {
     append(text, "cut        cycles %llu to %llu, %.3f s\n", static_cast<Count>(report.begin_cycle),
            static_cast<Count>(report.end_cycle), report.cut_s);
+    if (report.has_later_program) text += "           a later program follows and is not judged\n";
     append_deviation(text, "tip", report.tip_mm, report.tip_between_mm, 1e3, "um",
                      report.tip_tolerance_mm);
     append_deviation(text, "axis", report.axis_rad, report.axis_between_rad,

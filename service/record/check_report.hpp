@@ -63,6 +63,7 @@ struct CheckReport {
   double cycle_s = 0, span_s = 0;
   std::uint64_t begin_cycle = 0, end_cycle = 0;  ///< first and last of the cut
   double cut_s = 0;
+  bool has_later_program = false;  ///< which is not judged against the path
   std::uint64_t motion_blocks = 0;
   double tip_length_mm = 0;
   double tip_tolerance_mm = 0, axis_tolerance_rad = 0;

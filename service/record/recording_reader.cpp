@@ -138,7 +138,7 @@ class RecordingReader::Impl {
   std::string_view rest;
   std::string_view first_row;
   std::uint64_t line = 1;
-  bool has_velocity = false, has_plan_time = false, has_flags = false;
+  bool has_velocity = false, has_plan_time = false;
 
   [[nodiscard]] RecordError error(std::uint64_t at, std::string message, std::string remedy) const {
     return {path, at, std::move(message), std::move(remedy)};
@@ -150,14 +150,11 @@ class RecordingReader::Impl {
     first_row = rest;
     bool has_cycle = false, has_due = false;
     std::uint32_t positions = 0, velocities = 0;
-    bool has_state = false, has_flag_word = false;
     while (!header.empty()) {
       columns.push_back(find_column(cut(header, ','), model));
       const Column& column = columns.back();
       has_cycle |= column.field == Field::kCycle;
       has_due |= column.field == Field::kDue;
-      has_state |= column.field == Field::kState;
-      has_flag_word |= column.field == Field::kFlags;
       has_plan_time |= column.field == Field::kPlanTime;
       if (column.field == Field::kJoint) positions |= 1U << column.joint;
       if (column.field == Field::kVelocity) velocities |= 1U << column.joint;
@@ -174,7 +171,6 @@ class RecordingReader::Impl {
                    remedy);
     }
     has_velocity = velocities == all;
-    has_flags = has_state && has_flag_word;
     return std::nullopt;
   }
 };
@@ -227,7 +223,6 @@ void RecordingReader::rewind() noexcept {
 
 bool RecordingReader::has_velocity() const noexcept { return impl_->has_velocity; }
 bool RecordingReader::has_plan_time() const noexcept { return impl_->has_plan_time; }
-bool RecordingReader::has_flags() const noexcept { return impl_->has_flags; }
 const std::string& RecordingReader::path() const noexcept { return impl_->path; }
 
 }  // namespace meridian::record

@@ -53,8 +53,6 @@ class RecordingReader {
 
   [[nodiscard]] bool has_velocity() const noexcept;
   [[nodiscard]] bool has_plan_time() const noexcept;
-  /// Columns kind, state and flags: what tells approach, rest and FaultStop apart.
-  [[nodiscard]] bool has_flags() const noexcept;
   [[nodiscard]] const std::string& path() const noexcept;
 
  private:

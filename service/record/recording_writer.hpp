@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "meridian/expected.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/rt/cycle_data.hpp"
+#include "service/record/csv_file.hpp"
 #include "service/record/record_error.hpp"
 
 namespace meridian::record {
@@ -19,40 +20,31 @@ namespace meridian::record {
 ///
 /// Numbers carry 17 significant digits, so that a reader gets the very same doubles. Memory is
 /// fixed after create(): rows gather in a buffer that goes to the file when it is full. A full disk
-/// ends the recording and nothing else. Context: I/O; one thread.
+/// ends the recording and nothing else; what the destructor cannot write is lost, so call close()
+/// where it matters. Context: I/O; one thread.
 /// Proof: tests/unit/record/recording_test.cpp.
 class RecordingWriter {
  public:
   /// Creates or empties the file and writes the header.
   [[nodiscard]] static Expected<RecordingWriter, RecordError> create(const std::string& path,
                                                                      const MachineModel& model);
-  /// Writes what is buffered; a failure is lost here, so call close() where it matters.
-  ~RecordingWriter();
-  RecordingWriter(RecordingWriter&& other) noexcept;
-  RecordingWriter& operator=(RecordingWriter&& other) noexcept;
-  RecordingWriter(const RecordingWriter&) = delete;
-  RecordingWriter& operator=(const RecordingWriter&) = delete;
-
   /// Adds a row. False once a write failed (errno in error_number()); the row is dropped then.
   bool write(const CycleRecord& record) noexcept;
   /// Hands what is buffered to the system.
-  bool flush() noexcept;
+  bool flush() noexcept { return file_.flush(); }
   /// Flushes and closes; false where any row was lost.
-  bool close() noexcept;
+  bool close() noexcept { return file_.close(); }
 
   [[nodiscard]] std::uint64_t row_count() const noexcept { return rows_; }
-  [[nodiscard]] int error_number() const noexcept { return error_number_; }
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] int error_number() const noexcept { return file_.error_number(); }
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
  private:
-  RecordingWriter(int file, std::string path, int joint_count);
+  RecordingWriter(CsvFile file, int joint_count)
+      : file_(std::move(file)), joint_count_(joint_count) {}
 
-  std::string path_;
-  std::vector<char> buffer_;
-  std::size_t used_ = 0;
+  CsvFile file_;
   std::uint64_t rows_ = 0;
-  int file_ = -1;
-  int error_number_ = 0;
   int joint_count_ = 0;
 };
 

@@ -208,6 +208,27 @@ TEST_F(Check, RefusesAPathThatWasNotFinished) {
   EXPECT_EQ(report.vertices, 6U);
 }
 
+TEST_F(Check, RefusesMotionBehindTheEndOfThePath) {
+  std::vector<ClBlock> longer = blocks;
+  longer.push_back(cut_to(8, {78.998, -35.996, 20}, 0.25, 30));
+  records = SampleRun(model, longer).records;
+  expect_only(run(), Finding::Kind::kTip);
+}
+
+TEST_F(Check, LeavesALaterProgramAlone) {
+  for (CycleRecord record : SampleRun(model, {blocks[0], blocks[1]}).records) {
+    record.setpoint.cycle = records.back().setpoint.cycle + 1;
+    record.setpoint.due_ns = records.back().setpoint.due_ns + model.cycle_ns;
+    record.motion = MotionKind::kApproach;
+    const bool is_first = record.setpoint.line == 1;
+    if (is_first) record.setpoint.flags = 0;  // the drives are off between the programs
+    records.push_back(record);
+  }
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_TRUE(report.has_later_program);
+}
+
 TEST_F(Check, RefusesAJointOutsideItsTravel) {
   model.joints[4].limits.travel_max = 0.34;
   const CheckReport report = run();

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "meridian/rt/spsc_ring.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/dds/reader.hpp"
+#include "service/record/wire_recording.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  std::string output;
+  double duration_s = 0;
+  bool until_end = false;
+  std::int64_t max_missing = -1;
+  PeerOptions peer;
+};
+
+[[nodiscard]] std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// The names and units of the joints, and the cycle: all that a recording of the wire needs.
+[[nodiscard]] MachineModel model_of(const dds::MachineInfo& machine) {
+  MachineModel model;
+  model.name = machine.name;
+  model.cycle_ns = machine.cycle_ns;
+  model.joint_count = static_cast<int>(machine.joint_count);
+  for (std::uint32_t i = 0; i < machine.joint_count; ++i) {
+    model.joints[i].name = machine.joints[i].name;
+    model.joints[i].is_rotary = machine.joints[i].is_rotary;
+  }
+  return model;
+}
+
+template <class Message>
+struct Arrived {
+  Message message;
+  std::int64_t arrival_ns = 0;
+};
+
+/// Takes samples on the receive thread, with the time of their arrival.
+template <class Message>
+class Tap {
+ public:
+  explicit Tap(dds::Participant& participant)
+      : reader_(participant, [this](dds::Reader<Message>& reader) {
+          Arrived<Message> arrived;
+          while (reader.take(arrived.message)) {
+            arrived.arrival_ns = now_ns();
+            if (!ring_.try_push(arrived)) overrun_.fetch_add(1, std::memory_order_relaxed);
+          }
+        }) {}
+
+  [[nodiscard]] const Arrived<Message>* next() { return ring_.peek(0); }
+  void pop() { ring_.drop(1); }
+  [[nodiscard]] std::uint64_t overrun() const { return overrun_.load(); }
+
+ private:
+  SpscRing<Arrived<Message>, 8192> ring_;
+  std::atomic<std::uint64_t> overrun_{0};
+  dds::Reader<Message> reader_;
+};
+
+/// Sees from the status that a program ran and is over.
+class EndWatch {
+ public:
+  explicit EndWatch(dds::Participant& participant) : reader_(participant) {}
+
+  [[nodiscard]] bool is_over() {
+    dds::Status status;
+    while (reader_.take(status)) {
+      const bool is_idle = status.state == State::kReady || status.state == State::kOff ||
+                           status.state == State::kFault;
+      has_run_ = has_run_ || status.state == State::kRunning;
+      is_over_ = has_run_ && is_idle;
+    }
+    return is_over_;
+  }
+
+ private:
+  dds::Reader<dds::Status> reader_;
+  bool has_run_ = false, is_over_ = false;
+};
+
+void take_feedback(const dds::DriveFeedback& feedback, record::WireRow& row) {
+  row.feedback_cycle = feedback.cycle_seen;
+  for (std::size_t i = 0; i < row.feedback.size(); ++i) {
+    if ((feedback.joint_mask >> i & 1U) != 0) row.feedback[i] = feedback.position[i];
+  }
+}
+
+int run(Options& options) {
+  int exit_code = kFine;
+  const auto machine = find_machine(options.peer, exit_code);
+  if (!machine) return exit_code;
+  const MachineModel model = model_of(*machine);
+  auto writer = record::WireWriter::create(options.output, model);
+  if (!writer) {
+    std::cerr << writer.error().text() << "\n";
+    return kInputRefused;
+  }
+  dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
+  const auto setpoints = std::make_unique<Tap<dds::SetpointSample>>(participant);
+  const auto feedbacks = std::make_unique<Tap<dds::DriveFeedback>>(participant);
+  EndWatch end(participant);
+  record::WireBook book(model);
+  record::WireRow row;
+  watch_for_stop();
+  std::fprintf(stderr, "meridian record: listening to machine %s%s\n", machine->name.c_str(),
+               options.until_end ? " until its program ends" : ", Ctrl-C ends");
+  const auto begin = std::chrono::steady_clock::now();
+  for (bool is_last = false; !is_last;) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    is_last = stop_flag().load() ||
+              (options.duration_s > 0 && passed.count() >= options.duration_s) ||
+              (options.until_end && end.is_over());
+    while (const auto* setpoint = setpoints->next()) {
+      for (const auto* feedback = feedbacks->next();
+           feedback != nullptr && feedback->arrival_ns <= setpoint->arrival_ns;
+           feedback = feedbacks->next()) {
+        take_feedback(feedback->message, row);
+        feedbacks->pop();
+      }
+      row.setpoint = setpoint->message.setpoint;
+      row.sent_minus_due_ns = setpoint->message.sent_minus_due_ns;
+      row.arrival_ns = setpoint->arrival_ns;
+      setpoints->pop();
+      book.add(row);
+      (void)writer->write(row);
+    }
+    if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::cout << book.to_text();
+  if (setpoints->overrun() > 0) {
+    std::cout << "  " << setpoints->overrun() << " setpoints came faster than they were written\n";
+  }
+  if (!writer->close()) {
+    std::cerr << options.output << ": " << std::strerror(writer->error_number()) << "\n";
+    return kInputRefused;
+  }
+  if (book.received() == 0) return kNoPeer;
+  const bool is_bad =
+      options.max_missing >= 0 && book.missing() > static_cast<std::uint64_t>(options.max_missing);
+  return is_bad ? kVerdictNo : kFine;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "record",
+      "Setpoints and feedback as they are seen on the wire, into a recording, with the gaps, the "
+      "age of what arrives and the following error");
+  command->add_option("output", options->output, "Recording to write (CSV)")->required();
+  command->add_option("--duration", options->duration_s, "End after so many seconds")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--until-end", options->until_end, "End when the program in the machine ends");
+  command->add_option("--max-missing", options->max_missing,
+                      "Exit code 1 where more cycles are missing");
+  add_peer_options(*command, options->peer);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli
