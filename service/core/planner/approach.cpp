@@ -103,8 +103,7 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
       const double room = std::min(at - limits.travel_min, limits.travel_max - at);
       ways.way[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
     }
-    std::stable_sort(ways.way.begin(), ways.way.begin() + ways.count,
-                     [](const Way& a, const Way& b) { return a.cost < b.cost; });
+    ways.sort();
   }
   const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};

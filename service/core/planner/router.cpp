@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
@@ -48,6 +50,12 @@ Router::Job Router::job_of(const ClBlock& block) const noexcept {
   return job;
 }
 
+void Router::Ways::sort() noexcept {
+  for (int n = 1; n < count; ++n) {
+    for (int k = n; k > 0 && way[k].cost < way[k - 1].cost; --k) std::swap(way[k], way[k - 1]);
+  }
+}
+
 Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept {
   Ways ways;
   const int free = free_joint(model_);
@@ -73,8 +81,7 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
       }
     }
   }
-  std::stable_sort(ways.way.begin(), ways.way.begin() + ways.count,
-                   [](const Way& a, const Way& b) { return a.cost < b.cost; });
+  ways.sort();
   return ways;
 }
 

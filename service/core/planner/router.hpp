@@ -54,6 +54,9 @@ class Router {
   struct Ways {
     std::array<Way, kMaxWays> way;
     int count = 0;
+
+    /// Cheapest first, those of equal cost as they were found. Takes no memory.
+    void sort() noexcept;
   };
 
   /// What all legs of a block share.
