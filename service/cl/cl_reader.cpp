@@ -84,9 +84,9 @@ class ClReader::Impl {
   std::optional<ClError> error_;
 };
 
-ClReader::ClReader(std::istream& input, std::string name, ClReaderOptions options)
+ClReader::ClReader(std::istream& input, const std::string& name, ClReaderOptions options)
     : impl_(std::make_unique<Impl>(input, name, std::move(options))) {}
-ClReader::ClReader(std::string_view text, std::string name, ClReaderOptions options)
+ClReader::ClReader(std::string_view text, const std::string& name, ClReaderOptions options)
     : impl_(std::make_unique<Impl>(text, name, std::move(options))) {}
 ClReader::~ClReader() = default;
 ClReader::ClReader(ClReader&&) noexcept = default;

@@ -25,12 +25,14 @@ namespace meridian::cl {
 class ClReader {
  public:
   /// `input` must live as long as the reader; `name` is what messages call the file.
-  ClReader(std::istream& input, std::string name, ClReaderOptions options = {});
+  ClReader(std::istream& input, const std::string& name, ClReaderOptions options = {});
   /// `text` must live as long as the reader.
-  ClReader(std::string_view text, std::string name, ClReaderOptions options = {});
+  ClReader(std::string_view text, const std::string& name, ClReaderOptions options = {});
   ~ClReader();
   ClReader(ClReader&&) noexcept;
   ClReader& operator=(ClReader&&) noexcept;
+  ClReader(const ClReader&) = delete;
+  ClReader& operator=(const ClReader&) = delete;
 
   /// The next block; nothing behind the block of kind kEnd; an error once and for all.
   [[nodiscard]] Expected<std::optional<ClBlock>, ClError> next();
