@@ -412,6 +412,7 @@ void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   copy_text(message.service_version, wire.service_version);
   copy_text(message.host, wire.host);
   wire.pid = message.pid;
+  wire.is_serving = message.is_serving ? 1 : 0;
   copy_text(message.kinematics, wire.kinematics);
   copy_text(message.clock, wire.clock);
   wire.cycle_ns = message.cycle_ns;
@@ -452,6 +453,7 @@ void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
   message.service_version = text_of(wire.service_version);
   message.host = text_of(wire.host);
   message.pid = wire.pid;
+  message.is_serving = wire.is_serving != 0;
   message.kinematics = text_of(wire.kinematics);
   message.clock = text_of(wire.clock);
   message.cycle_ns = wire.cycle_ns;

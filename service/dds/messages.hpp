@@ -237,6 +237,7 @@ struct MachineInfo {
   std::string service_version{};
   std::string host{};
   std::uint32_t pid = 0;
+  bool is_serving = false;  ///< false: claims the machine, waits whether another one holds it
   std::string kinematics{};
   std::string clock = "monotonic";
   std::int64_t cycle_ns = 0;

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/cycle_thread.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <ctime>
-#include <limits>
 
 #include "service/interpolator/monotonic.hpp"
 
 namespace meridian::interpolator {
 namespace {
-
-[[nodiscard]] std::int32_t narrow(std::int64_t ns) noexcept {
-  using Limits = std::numeric_limits<std::int32_t>;
-  return static_cast<std::int32_t>(std::clamp<std::int64_t>(ns, Limits::min(), Limits::max()));
-}
 
 void sleep_until(std::int64_t due_ns) noexcept {
   const timespec due{.tv_sec = due_ns / kSecond_ns, .tv_nsec = due_ns % kSecond_ns};
@@ -63,7 +56,7 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
 
 void CycleThread::hand_over(std::int64_t woke_ns) noexcept {
   const std::int64_t computed_ns = monotonic_ns();
-  computation_ns_ = narrow(computed_ns - woke_ns);
+  computation_ns_ = narrow_ns(computed_ns - woke_ns);
   push_or_count(ports_.setpoints, output_.record.setpoint, ports_.setpoints_overrun);
   ports_.publisher_wake.notify();
   const std::int64_t handed_ns = monotonic_ns();
@@ -76,7 +69,7 @@ void CycleThread::hand_over(std::int64_t woke_ns) noexcept {
   ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
   (void)ports_.timings.try_push({.lateness = output_.record.lateness_ns,
                                  .computation = computation_ns_,
-                                 .wake = narrow(handed_ns - computed_ns)});
+                                 .wake = narrow_ns(handed_ns - computed_ns)});
 }
 
 void CycleThread::show() noexcept {

@@ -12,8 +12,13 @@ Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim)
 }
 
 bool Lease::goes_before_us(const dds::MachineInfo& other) const noexcept {
-  return std::tie(other.started_ns, other.service_id) <
-         std::tie(claim_.started_ns, claim_.service_id);
+  return other.is_serving || std::tie(other.started_ns, other.service_id) <
+                                 std::tie(claim_.started_ns, claim_.service_id);
+}
+
+void Lease::hold() {
+  claim_.is_serving = true;
+  (void)writer_.write(claim_);
 }
 
 void Lease::look() {

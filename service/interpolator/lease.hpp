@@ -10,8 +10,9 @@
 
 namespace meridian::interpolator {
 
-/// One service per machine: each publishes its claim on the machine topic, and of two the later
-/// gives way. Proof: tests/integration/lease_test.cpp.
+/// One service per machine: each publishes its claim on the machine topic. One that serves already
+/// keeps the machine, whatever the clocks say; of two that start together the later gives way.
+/// Proof: tests/integration/lease_test.cpp.
 class Lease {
  public:
   /// Publishes `claim`.
@@ -22,6 +23,8 @@ class Lease {
   /// how long to listen for others before the machine is taken to be free.
   [[nodiscard]] std::optional<dds::MachineInfo> find_holder(std::chrono::milliseconds start_window,
                                                             std::chrono::milliseconds patience);
+  /// The machine is ours: others hear it.
+  void hold();
 
  private:
   struct Holder {

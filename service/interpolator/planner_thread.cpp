@@ -7,11 +7,12 @@ PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, 
     : ports_(ports), writer_(ports.motion), planner_(model, tools) {}
 
 void PlannerThread::run() noexcept {
-  // The cycle cannot wake us when it makes room in its rings: look again after a while.
-  constexpr std::int64_t kLookAgain_ns = 2'000'000;
+  // The cycle cannot wake us when it makes room in its rings or comes to Ready: look again.
+  constexpr std::int64_t kLookAgain_ns = 2'000'000, kIdle_ns = 50'000'000;
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     const std::uint32_t seen = ports_.planner_wake.look();
-    if (!work()) ports_.planner_wake.wait(seen, kLookAgain_ns);
+    if (work()) continue;
+    ports_.planner_wake.wait(seen, ports_.blocks.empty() ? kIdle_ns : kLookAgain_ns);
   }
 }
 

@@ -14,7 +14,7 @@ void Publisher::run() noexcept {
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     const std::uint32_t seen = ports_.publisher_wake.look();
     while (ports_.setpoints.try_pop(sample.setpoint)) {
-      sample.sent_minus_due_ns = static_cast<std::int32_t>(monotonic_ns() - sample.setpoint.due_ns);
+      sample.sent_minus_due_ns = narrow_ns(monotonic_ns() - sample.setpoint.due_ns);
       if (!writer_.write(sample)) ports_.writes_failed.fetch_add(1, std::memory_order_relaxed);
       (void)ports_.sent_minus_due.try_push(sample.sent_minus_due_ns);
     }

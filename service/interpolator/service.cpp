@@ -120,7 +120,10 @@ void Service::take_lease() {
   constexpr auto kStartWindow = std::chrono::milliseconds(500);
   constexpr auto kPatience = std::chrono::milliseconds(1800);
   const auto holder = lease_.find_holder(kStartWindow, kPatience);
-  if (!holder) return;
+  if (!holder) {
+    lease_.hold();
+    return;
+  }
   throw StartError("machine '" + parts_.model.name + "' is served already by meridiand on host " +
                    holder->host + ", process " + std::to_string(holder->pid) +
                    "; end that one first, or choose another --domain");

@@ -95,15 +95,16 @@ void TelemetryThread::tell(const Event& event) {
       status_.blocks_done = 0;
       has_news_ = true;
       break;
+    case EventCode::kPeriodsLost:
+      periods_lost_ += event.a;  // told once a second: a busy host loses many
+      return;
     default:
       break;
   }
   const telemetry::Weight weight = telemetry::weight_of(event);
   if (weight == telemetry::Weight::kDetail) return;
   const std::string words = telemetry::describe(event, model_);
-  if (weight != telemetry::Weight::kNews || event.code == EventCode::kStopped) {
-    status_.message = words;
-  }
+  if (event.code == EventCode::kAlarm || event.code == EventCode::kStopped) status_.message = words;
   log_->log(weight == telemetry::Weight::kError     ? spdlog::level::err
             : weight == telemetry::Weight::kWarning ? spdlog::level::warn
                                                     : spdlog::level::info,
@@ -169,6 +170,8 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
 
 void TelemetryThread::publish_latency(std::int64_t now_ns) {
   latency_ns_ = now_ns;
+  if (periods_lost_ > 0) log_->warn("{} periods lost in the last second", periods_lost_);
+  periods_lost_ = 0;
   dds::Latency latency;
   latency.service_id = service_id_;
   latency.time_ns = now_ns;

@@ -57,6 +57,7 @@ class TelemetryThread {
       wake_{"publisher's wake"}, sent_{"sent minus due"};
   std::int64_t status_ns_ = 0, latency_ns_ = 0;
   State told_state_ = State::kOff;
+  std::uint64_t periods_lost_ = 0;  ///< since that was told last
   bool has_news_ = true;
   std::string session_message_;  ///< newest of intake that was told
 };
