@@ -44,6 +44,12 @@ struct TimePiece {
   /// its FaultStop limits).
   double stop_accel = 0, stop_jerk = 0;
   double fault_accel = 0, fault_jerk = 0;
+  /// The same where ṡ stays next to nothing; `authority_velocity` is the ṡ up to which the former
+  /// hold. A machine that is slower than planned (override, resume) may use what lies between:
+  /// rt/stop_authority.hpp. 0: nothing is known.
+  double authority_velocity = 0;
+  double slow_stop_accel = 0, slow_stop_jerk = 0;
+  double slow_fault_accel = 0, slow_fault_jerk = 0;
 };
 static_assert(std::is_trivially_copyable_v<TimePiece>);
 

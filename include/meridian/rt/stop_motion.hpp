@@ -7,6 +7,7 @@
 
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/on_path.hpp"
+#include "meridian/rt/stop_authority.hpp"
 
 /// Stops: hold, abort and FaultStop, on the path and, where it cannot be evaluated, beside it.
 /// RT: cycle.
@@ -15,8 +16,6 @@ namespace meridian {
 /// A FaultStop that starts beside the path leaves this share of the joints' FaultStop limits to the
 /// way back to it.
 inline constexpr double kReturnShare = 0.2;
-
-enum class StopKind : std::uint8_t { kHold, kFault };
 
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
 /// at once. A stop that was going on is laid out anew with the authority of `kind`.
@@ -29,11 +28,10 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   PathState begin{c.state.on_path.s, 0, 0, 0};
   if (is_on_move(c)) {
     const TimePiece& piece = *c.reader.piece();
-    authority = kind == StopKind::kFault ? StopAuthority{piece.fault_accel, piece.fault_jerk}
-                                         : StopAuthority{piece.stop_accel, piece.stop_jerk};
-    authority = {authority.accel * share, authority.jerk * share};
     begin = c.state.on_path;
     if (!(begin.ds > 0)) begin = {state_at(piece, c.state.piece_time).s, 0, 0, 0};
+    authority = authority_of(piece, kind, begin);
+    authority = {authority.accel * share, authority.jerk * share};
   }
   stop = {};
   stop.is_active = true;

@@ -91,6 +91,11 @@ void AuthorityTable::grant(TimePiece& time) const noexcept {
   const PathLimits fault = find_authority(cells, fault_caps_, velocity, accel);
   time.fault_accel = std::max(fault.acceleration, time.stop_accel);
   time.fault_jerk = std::max(fault.jerk, time.stop_jerk);
+  time.authority_velocity = velocity;
+  time.slow_stop_accel = find_acceleration(cells, caps_, 0);
+  time.slow_stop_jerk = find_jerk(cells, caps_, 0, 0);
+  time.slow_fault_accel = find_acceleration(cells, fault_caps_, 0);
+  time.slow_fault_jerk = find_jerk(cells, fault_caps_, 0, 0);
 }
 
 }  // namespace meridian

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "meridian/geometry/jet.hpp"
+#include "meridian/planner/joints_at.hpp"
+#include "meridian/planner/time_law.hpp"
+
+/// The least time to rest on a path, from the joint limits along it alone.
+namespace meridian::test {
+
+/// Interval of s̈ or s⃛ that every joint allows.
+struct Interval {
+  double low = -1e12, high = 1e12;
+  /// Adds |q' x + rest| <= limit.
+  void allow(double slope, double rest, double limit) {
+    if (std::abs(slope) < 1e-12) return;
+    const double a = (-limit - rest) / slope, b = (limit - rest) / slope;
+    low = std::max(low, std::min(a, b));
+    high = std::min(high, std::max(a, b));
+  }
+};
+
+/// Time in which the greediest stop comes to rest: at every instant the hardest braking that the
+/// joints' acceleration and jerk allow just there, let go in time to land. It looks no way ahead,
+/// so where limits get tighter it is faster than any stop that keeps them: never too slow an
+/// oracle. On a straight cruise it is the exact optimum but for its step.
+inline double least_stopping_time(const MachineModel& machine, const PathPiece& path,
+                                  PathState state, const JointVector& joints) {
+  constexpr double kStep_s = 1e-4;
+  JointVector reference = joints;
+  double time = 0;
+  while (state.ds > 1e-9 && time < 20) {
+    const auto q =
+        joints_at(machine, path, Jet<3>::variable(std::min(state.s, path.length)), reference);
+    Interval accel, jerk;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
+      const JointLimits& limits = machine.joints[i].limits;
+      const double d1 = q.q[i].derivative(1), d2 = q.q[i].derivative(2), d3 = q.q[i].derivative(3),
+                   v = state.ds;
+      accel.allow(d1, d2 * v * v, limits.acceleration);
+      jerk.allow(d1, 3 * d2 * v * state.dds + d3 * v * v * v, limits.jerk);
+      reference[i] = value_of(q.q[i]);
+    }
+    const double a = state.dds;
+    const double rising = std::max(jerk.high, 1e-6);
+    const bool must_let_go = a < 0 && state.ds <= a * a / (2 * rising);
+    if (must_let_go) return time - 2 * state.ds / a;  // constant jerk to rest
+    double j = std::max(jerk.low, (accel.low - a) / kStep_s);
+    j = std::min(j, rising);
+    state.s += kStep_s * (state.ds + kStep_s * (a / 2 + kStep_s * j / 6));
+    state.ds += kStep_s * (a + kStep_s * j / 2);
+    state.dds += kStep_s * j;
+    time += kStep_s;
+  }
+  return time;
+}
+
+}  // namespace meridian::test

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <vector>
+
+#include "property/rt/program_run.hpp"
+#include "property/rt/stop_oracle.hpp"
+
+/// Holds at any instant of random programs against the least time that the path allows.
+namespace meridian {
+namespace {
+
+using test::Draw;
+using test::ProgramRun;
+
+constexpr std::uint64_t kSeed = 20240620;
+constexpr int kPrograms = 60;
+constexpr double kMostSeconds = 40;  // of motion per program
+
+TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
+  std::cout << "seed " << kSeed << "\n";
+  std::vector<double> ratios;
+  for (int n = 0; n < kPrograms; ++n) {
+    Draw draw(kSeed + 1000 + static_cast<std::uint64_t>(n));
+    ProgramRun run(draw.machine, draw.blocks, draw.start());
+    if (!run.is_started()) continue;
+    const double dt = run.world.dt();
+    double next = draw.random.uniform(0, 0.2);
+    for (double t = 0; t < kMostSeconds && !run.is_over(); t += dt) {
+      if (t < next || !is_on_path(run.world.now()) || run.world.reader.path() == nullptr) {
+        run.run();
+        continue;
+      }
+      next = t + draw.random.log_uniform(0.02, 0.5);
+      const PathPiece path = *run.world.reader.path();
+      const PathState begin = run.world.state.on_path;
+      const JointVector joints = run.world.state.joints;
+      run.command(Verb::kHold);
+      ASSERT_TRUE(run.world.run_until(State::kHeld, 10));
+      const double taken = static_cast<double>(run.world.last(EventCode::kStopped).a) * 1e-9;
+      run.command(Verb::kResume);
+      if (begin.ds <= 1e-3 || path.kind == PathKind::kJoint) continue;
+      const double least = test::least_stopping_time(draw.machine, path, begin, joints);
+      ratios.push_back((taken - 2 * dt) / least);
+      if (ratios.back() > 1.25) {
+        std::printf("program %d: %.4f s, least %.4f s, v %.3f a %.1f s %.3f of %.3f kind %d\n", n,
+                    taken, least, begin.ds, begin.dds, begin.s, path.length,
+                    static_cast<int>(path.kind));
+      }
+    }
+  }
+  std::sort(ratios.begin(), ratios.end());
+  ASSERT_GT(ratios.size(), 100u);
+  std::printf("%zu stops, (time - 2 cycles)/least: median %.3f, 99 %% %.3f, worst %.3f\n",
+              ratios.size(), ratios[ratios.size() / 2], ratios[ratios.size() * 99 / 100],
+              ratios.back());
+  EXPECT_LE(ratios.back(), 1.25);
+}
+
+}  // namespace
+}  // namespace meridian
