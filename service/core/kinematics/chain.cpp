@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/kinematics/chain.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace meridian {
+namespace {
+
+constexpr double kNominal = 1e-12;
+
+double angle_between(const Vector3& a, const Vector3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A sine or cosine that is nominally zero is zero: poles and reach of orthogonal machines exact.
+double snapped(double x) { return std::abs(x) < kNominal ? 0.0 : x; }
+
+Vector3 unit(const Vector3& v, const char* what) {
+  if (!(std::abs(v.norm() - 1.0) < 1e-6)) {
+    throw std::invalid_argument(std::string(what) + " is not a unit vector");
+  }
+  return v.normalized();
+}
+
+void sort_joints(ChainKinematics& k) {
+  int rotary = 0, linear = 0;
+  for (const ChainJoint& joint : k.chain) {
+    const double sign = joint.is_table_side ? -1.0 : 1.0;
+    const Vector3 direction = unit(joint.direction, "the direction of a joint");
+    if (joint.is_rotary) {
+      if (rotary == 2) throw std::invalid_argument("more than two rotary joints");
+      (rotary++ == 0 ? k.a : k.b) = {joint.joint, sign, direction, joint.point_mm};
+    } else {
+      if (linear == 3) throw std::invalid_argument("more than three linear joints");
+      k.linear[linear++] = {joint.joint, rotary, sign * direction};
+    }
+  }
+}
+
+}  // namespace
+
+ChainKinematics describe_chain(const std::array<ChainJoint, ChainKinematics::kChainLength>& chain,
+                               const Vector3& home_axis, const Vector3& gauge_mm) {
+  ChainKinematics k;
+  k.chain = chain;
+  k.home_axis = unit(home_axis, "the tool axis at home");
+  k.gauge_mm = gauge_mm;
+  sort_joints(k);
+
+  const Vector3 normal = k.a.axis.cross(k.b.axis);
+  if (normal.norm() < 1e-3) throw std::invalid_argument("the rotary axes are parallel");
+  if (k.b.axis.cross(k.home_axis).norm() < 1e-3) {
+    throw std::invalid_argument("the tool axis is parallel to the rotary axis next to it");
+  }
+  Eigen::Matrix3d directions;
+  for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
+  if (std::abs(directions.determinant()) < 1e-3) {
+    throw std::invalid_argument("the linear joints do not span space at home");
+  }
+
+  const double psi = angle_between(k.a.axis, k.b.axis);
+  const double cone = angle_between(k.b.axis, k.home_axis);
+  const double m = 0.5 * (cone - psi), p = 0.5 * (cone + psi);
+  k.m_sin = snapped(std::sin(m));
+  k.m_cos = k.m_sin == 0 ? 1.0 : std::cos(m);
+  k.p_cos = snapped(std::cos(p));
+  k.p_sin = k.p_cos == 0 ? 1.0 : std::sin(p);
+  k.has_pole = k.m_sin == 0;
+  k.has_opposite_pole = k.p_cos == 0;
+  k.azimuth_sin = normal;
+  k.azimuth_cos = k.b.axis - k.a.axis.dot(k.b.axis) * k.a.axis;
+  const double y = k.b.axis.dot(k.a.axis.cross(k.home_axis));
+  const double x = k.b.axis.cross(k.a.axis).dot(k.b.axis.cross(k.home_axis));
+  const double norm = std::hypot(x, y);
+  k.b0_sin = snapped(y / norm);
+  k.b0_cos = snapped(x / norm);
+  return k;
+}
+
+namespace chain {
+
+double pole_distance(const ChainKinematics& k, const Vector3& axis) noexcept {
+  const double angle = angle_between(k.a.axis, axis);
+  double distance = std::numbers::pi;
+  if (k.has_pole) distance = angle;
+  if (k.has_opposite_pole) distance = std::min(distance, std::numbers::pi - angle);
+  return distance;
+}
+
+double measure(const ChainKinematics& k, const JointVector& q) noexcept {
+  const SinCos<double> a = sin_cos(k.a.sign * q[k.a.joint]);
+  const SinCos<double> b = sin_cos(k.b.sign * q[k.b.joint]);
+  Eigen::Matrix3d d;
+  for (int i = 0; i < 3; ++i) d.col(i) = column(k, i, a, b);
+  const Vector3 axis = turn<double>(k.a.axis, a, turn<double>(k.b.axis, b, k.home_axis));
+  const Vector3 second = turn<double>(k.a.axis, a, k.b.axis);
+  return std::abs(d.determinant()) * std::abs(k.a.axis.cross(second).dot(axis));
+}
+
+Reach reach(const ChainKinematics& k) noexcept {
+  const double psi = angle_between(k.a.axis, k.b.axis);
+  const double cone = angle_between(k.b.axis, k.home_axis);
+  return {k.has_pole ? 0.0 : std::abs(cone - psi),
+          std::min(cone + psi, 2.0 * std::numbers::pi - cone - psi)};
+}
+
+}  // namespace chain
+}  // namespace meridian
