@@ -41,7 +41,7 @@ void read_machine(Section machine, MachineModel& model) {
 
 void read_lai(Section table, MachineModel& model) {
   (void)table.choice("family", {"lai"});  // one family so far
-  model.kinematics = lai_from_table({.b1 = table.number("b1_mm", kLength_mm),
+  model.lai = lai_from_table({.b1 = table.number("b1_mm", kLength_mm),
                                      .a2 = table.number("a2_mm", kLength_mm),
                                      .a3 = table.number("a3_mm", kLength_mm),
                                      .l3 = table.number("l3_mm", kLength_mm),

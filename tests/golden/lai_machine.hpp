@@ -16,12 +16,12 @@ struct GoldenMachine {
   double tool_length_mm = 0;
 
   GoldenMachine(const LaiTable& constants, double tool_length) : tool_length_mm(tool_length) {
-    model.kinematics = lai_from_table(constants);
+    model.lai = lai_from_table(constants);
   }
 
   GoldenMachine(const GoldenTable& table, std::size_t row, const std::string& ending) {
     const auto constant = [&](const char* name) { return table.number(row, name + ending); };
-    model.kinematics = lai_from_table({.b1 = constant("b1"),
+    model.lai = lai_from_table({.b1 = constant("b1"),
                                        .a2 = constant("a2"),
                                        .a3 = constant("a3"),
                                        .l3 = constant("l3"),

@@ -14,7 +14,7 @@ namespace meridian::test {
 [[nodiscard]] inline MachineModel bench_machine() {
   MachineModel model;
   model.name = "bench";
-  model.kinematics = {.pivot_mm = 100, .e_mm = 0, .h_mm = 400};
+  model.lai = {.pivot_mm = 100, .e_mm = 0, .h_mm = 400};
   model.tool_length_mm = 100;
   const char* const names[] = {"b3", "b2", "b4", "theta1", "theta2"};
   for (int i = 0; i < 5; ++i) {
@@ -42,7 +42,7 @@ namespace meridian::test {
 [[nodiscard]] inline MachineModel lai_machine() {
   MachineModel model = bench_machine();
   model.name = "lai";
-  model.kinematics = {.pivot_mm = 140, .e_mm = 60, .h_mm = 400};
+  model.lai = {.pivot_mm = 140, .e_mm = 60, .h_mm = 400};
   model.tool_length_mm = 110;
   for (int i = 0; i < 3; ++i) {
     model.joints[i].limits.travel_min = -600;

@@ -47,6 +47,7 @@ struct ChainKinematics {
   std::array<Linear, 3> linear;
 
   Vector3 azimuth_sin, azimuth_cos;  ///< of K about a, from b: dot products, eq. 4.7
+  Vector3 tilt_sin, tilt_cos;        ///< of the axis about b, from k0: dot products, eq. 4.11
   double b0_sin = 0, b0_cos = 1;     ///< azimuth of k0 about b, from a
   double m_sin = 0, m_cos = 1;       ///< m = (angle(b, k0) - angle(a, b)) / 2
   double p_sin = 0, p_cos = 1;       ///< p = (angle(b, k0) + angle(a, b)) / 2
@@ -218,13 +219,22 @@ template <class S>
   const SinCos<S> a = sin_cos(S(k.a.sign * free));
   const SinCos<S> back{-a.sin, a.cos};
   const Vec3<S> z = turn<S>(k.a.axis, back, pose.axis);
-  const Vector3 side = k.b.axis.cross(k.home_axis);
-  const Vector3 front = k.home_axis - k.b.axis.dot(k.home_axis) * k.b.axis;
-  const S angle = atan2(dot(side, z), dot(front, z));
+  const S angle = atan2(dot(k.tilt_sin, z), dot(k.tilt_cos, z));
   q = {};
   q[k.a.joint] = free;
   q[k.b.joint] = k.b.sign * angle;
   return place_tip(k, tool_length_mm, pose.tip, a, sin_cos(angle), q);
+}
+
+/// Whether the unit vector `axis` is nearer to a pole than `hold_rad`.
+[[nodiscard]] inline bool is_at_pole(const ChainKinematics& k, const Vector3& axis,
+                                     double hold_rad) noexcept {
+  const Vector3& a = k.a.axis;
+  const double x = axis[1] * a[2] - axis[2] * a[1], y = axis[2] * a[0] - axis[0] * a[2];
+  const double z = axis[0] * a[1] - axis[1] * a[0];
+  if (x * x + y * y + z * z >= hold_rad * hold_rad) return false;
+  const double along = axis[0] * a[0] + axis[1] * a[1] + axis[2] * a[2];
+  return along > 0 ? k.has_pole : k.has_opposite_pole;
 }
 
 /// Angle from the axis to the nearest pole, in [0, π]; π where the machine has none.

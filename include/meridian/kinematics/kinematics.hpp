@@ -5,12 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "meridian/geometry/jet.hpp"
 #include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/chain.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/lai_chain.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/robot.hpp"
 #include "meridian/kinematics/winding.hpp"
 
 /// What everybody calls: joints to pose and back, for double and for jets, in the workpiece frame W
@@ -65,20 +68,54 @@ template <class S>
 template <class S>
 [[nodiscard]] inline Pose<S> forward(const MachineModel& model, double tool_length_mm,
                                      const Joints<S>& q) noexcept {
-  const double length = model.kinematics.pivot_mm + tool_length_mm;
-  return pose_in_workpiece(model, lai::forward(model.kinematics, length, q));
+  switch (model.family) {
+    case MachineFamily::kChain:
+      return pose_in_workpiece(model, chain::forward(model.chain, tool_length_mm, q));
+    case MachineFamily::kRobot:
+      return pose_in_workpiece(model, robot::forward(model.robot, tool_length_mm, q));
+    case MachineFamily::kLai:
+      break;
+  }
+  return pose_in_workpiece(model, lai::forward(model.lai, model.lai.pivot_mm + tool_length_mm, q));
 }
 
 /// How many solutions of the inverse kinematics a pose has: `branch` runs from 0 below it.
-[[nodiscard]] inline int branch_count(const MachineModel&) noexcept { return 2; }
+[[nodiscard]] inline int branch_count(const MachineModel& model) noexcept {
+  return model.family == MachineFamily::kRobot ? robot::kBranchCount : 2;
+}
 
-/// Index of the rotary joint that the pole leaves free; -1 where the machine has no pole.
-[[nodiscard]] inline int free_joint(const MachineModel&) noexcept { return lai::kTheta1; }
+/// Index of the rotary joint that the pole leaves free; -1 where the machine has no pole of the
+/// tool axis (robots are singular by where the arm stands, not by where the tool points).
+[[nodiscard]] inline int free_joint(const MachineModel& model) noexcept {
+  if (model.family == MachineFamily::kLai) return lai::kTheta1;
+  const bool has_pole = model.family == MachineFamily::kChain &&
+                        (model.chain.has_pole || model.chain.has_opposite_pole);
+  return has_pole ? model.chain.a.joint : -1;
+}
 
-/// Returns the angle from the tool axis to the nearest pole, in [0, π/2], accurate down to zero.
-/// Frame of `axis`: W; its length does not matter.
+/// Returns the direction of the pole in W, unit: the tool axis along the free joint's own axis. Of
+/// a machine with two opposite poles, either. Zero where it has none.
+[[nodiscard]] inline Vector3 pole_direction(const MachineModel& model) noexcept {
+  if (free_joint(model) < 0) return Vector3::Zero();
+  Vector3 pole = Vector3::UnitZ();
+  if (model.family == MachineFamily::kChain) {
+    pole = model.chain.has_pole ? model.chain.a.axis : Vector3(-model.chain.a.axis);
+  }
+  return model.frame_rotation.transpose() * pole;
+}
+
+/// Returns the angle from the tool axis to the nearest pole, accurate down to zero; π where the
+/// machine has no pole. Frame of `axis`: W; its length does not matter.
 [[nodiscard]] inline double pole_distance(const MachineModel& model, const Vector3& axis) noexcept {
   const Vector3 k = model.frame_rotation * axis;
+  switch (model.family) {
+    case MachineFamily::kChain:
+      return chain::pole_distance(model.chain, k);
+    case MachineFamily::kRobot:
+      return std::numbers::pi;
+    case MachineFamily::kLai:
+      break;
+  }
   return std::atan2(hypot(k[0], k[1]), std::abs(k[2]));
 }
 
@@ -92,6 +129,57 @@ template <class S>
   return zero == 0.0;
 }
 
+/// `pose` with its axis made exactly unit.
+template <class S>
+[[nodiscard]] inline Pose<S> with_unit_axis(const Pose<S>& pose) noexcept {
+  using std::sqrt;
+  const S per_norm = 1.0 / sqrt(S(pose.axis[0] * pose.axis[0] + pose.axis[1] * pose.axis[1] +
+                                  pose.axis[2] * pose.axis[2]));
+  return {pose.tip, {pose.axis[0] * per_norm, pose.axis[1] * per_norm, pose.axis[2] * per_norm}};
+}
+
+template <class S>
+[[nodiscard]] inline SolveStatus solve_lai(const MachineModel& model, double tool_length_mm,
+                                           const Pose<S>& pose, int branch,
+                                           const JointVector& reference, Joints<S>& q) noexcept {
+  const double length = model.lai.pivot_mm + tool_length_mm;
+  const double square = value_of(pose.axis[0]) * value_of(pose.axis[0]) +
+                        value_of(pose.axis[1]) * value_of(pose.axis[1]);
+  if (square < kPoleHold_rad * kPoleHold_rad) {
+    q = lai::solve_held(model.lai, length, pose, S(reference[lai::kTheta1]));
+    return SolveStatus::kAtPole;
+  }
+  const S radius = hypot(pose.axis[0], pose.axis[1]);
+  q = lai::solve(model.lai, length, pose, branch == 0 ? 1.0 : -1.0, radius);
+  return SolveStatus::kOk;
+}
+
+template <class S>
+[[nodiscard]] inline SolveStatus solve_chain(const MachineModel& model, double tool_length_mm,
+                                             const Pose<S>& pose, int branch,
+                                             const JointVector& reference, Joints<S>& q) noexcept {
+  const ChainKinematics& k = model.chain;
+  const Vector3 axis{value_of(pose.axis[0]), value_of(pose.axis[1]), value_of(pose.axis[2])};
+  if (chain::is_at_pole(k, axis, kPoleHold_rad)) {
+    const bool is_solved = chain::solve_held(k, tool_length_mm, pose, S(reference[k.a.joint]), q);
+    return is_solved ? SolveStatus::kAtPole : SolveStatus::kUnreachable;
+  }
+  return chain::solve(k, tool_length_mm, pose, branch == 0 ? 1.0 : -1.0, q)
+             ? SolveStatus::kOk
+             : SolveStatus::kUnreachable;
+}
+
+template <class S>
+[[nodiscard]] inline SolveStatus solve_robot(const MachineModel& model, double tool_length_mm,
+                                             const Pose<S>& pose, int branch,
+                                             const JointVector& reference, Joints<S>& q) noexcept {
+  bool is_held = false;
+  if (!robot::solve(model.robot, tool_length_mm, pose, branch, reference, q, is_held)) {
+    return SolveStatus::kUnreachable;
+  }
+  return is_held ? SolveStatus::kAtPole : SolveStatus::kOk;
+}
+
 }  // namespace detail
 
 /// Returns the joints that put the tool at `pose` with the free joint (see free_joint) at `free`.
@@ -102,10 +190,21 @@ template <class S>
 template <class S>
 [[nodiscard]] inline Solution<S> solve_held(const MachineModel& model, double tool_length_mm,
                                             const Pose<S>& pose, const S& free) noexcept {
-  const double length = model.kinematics.pivot_mm + tool_length_mm;
-  Solution<S> out{lai::solve_held(model.kinematics, length, pose_in_machine(model, pose), free),
-                  SolveStatus::kOk};
-  if (!detail::all_finite(out.q)) out.status = SolveStatus::kUnreachable;
+  const Pose<S> in_machine = pose_in_machine(model, pose);
+  Solution<S> out{{}, SolveStatus::kOk};
+  bool is_reachable = true;
+  switch (model.family) {
+    case MachineFamily::kLai:
+      out.q = lai::solve_held(model.lai, model.lai.pivot_mm + tool_length_mm, in_machine, free);
+      break;
+    case MachineFamily::kChain:
+      is_reachable = chain::solve_held(model.chain, tool_length_mm, in_machine, free, out.q);
+      break;
+    case MachineFamily::kRobot:
+      is_reachable = false;
+      break;
+  }
+  if (!is_reachable || !detail::all_finite(out.q)) out.status = SolveStatus::kUnreachable;
   return out;
 }
 
@@ -122,23 +221,25 @@ template <class S>
 [[nodiscard]] inline Solution<S> solve(const MachineModel& model, double tool_length_mm,
                                        const Pose<S>& pose, int branch,
                                        const JointVector& reference) noexcept {
-  const double length = model.kinematics.pivot_mm + tool_length_mm;
   const Pose<S> in_machine = pose_in_machine(model, pose);
-  const double square = value_of(in_machine.axis[0]) * value_of(in_machine.axis[0]) +
-                        value_of(in_machine.axis[1]) * value_of(in_machine.axis[1]);
-  Solution<S> out;
-  if (square < kPoleHold_rad * kPoleHold_rad) {
-    out.q = lai::solve_held(model.kinematics, length, in_machine, S(reference[lai::kTheta1]));
-    out.status = SolveStatus::kAtPole;
-  } else {
-    const S radius = hypot(in_machine.axis[0], in_machine.axis[1]);
-    out.q = lai::solve(model.kinematics, length, in_machine, branch == 0 ? 1.0 : -1.0, radius);
-    out.q[lai::kTheta1] +=
-        kTurn_rad * whole_turns(value_of(out.q[lai::kTheta1]), reference[lai::kTheta1]);
-    out.status = SolveStatus::kOk;
+  Solution<S> out{{}, SolveStatus::kOk};
+  switch (model.family) {
+    case MachineFamily::kLai:
+      out.status = detail::solve_lai(model, tool_length_mm, in_machine, branch, reference, out.q);
+      break;
+    case MachineFamily::kChain:
+      out.status = detail::solve_chain(model, tool_length_mm, detail::with_unit_axis(in_machine),
+                                       branch, reference, out.q);
+      break;
+    case MachineFamily::kRobot:
+      out.status = detail::solve_robot(model, tool_length_mm, detail::with_unit_axis(in_machine),
+                                       branch, reference, out.q);
+      break;
   }
-  out.q[lai::kTheta2] +=
-      kTurn_rad * whole_turns(value_of(out.q[lai::kTheta2]), reference[lai::kTheta2]);
+  for (int i = 0; i < model.joint_count; ++i) {
+    if (!model.joints[i].is_rotary) continue;
+    out.q[i] += kTurn_rad * whole_turns(value_of(out.q[i]), reference[i]);
+  }
   if (!detail::all_finite(out.q)) out.status = SolveStatus::kUnreachable;
   return out;
 }
@@ -179,17 +280,31 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kM
 /// Returns the derivative of forward() by the joints. Units: mm and rad per mm and rad.
 [[nodiscard]] inline Jacobian jacobian(const MachineModel& model, double tool_length_mm,
                                        const JointVector& q) noexcept {
-  const double length = model.kinematics.pivot_mm + tool_length_mm;
-  const Eigen::Matrix<double, 6, 5> in_machine = lai::jacobian(model.kinematics, length, q);
-  Jacobian out(6, 5);
-  out.topRows<3>().noalias() = model.frame_rotation.transpose() * in_machine.topRows<3>();
-  out.bottomRows<3>().noalias() = model.frame_rotation.transpose() * in_machine.bottomRows<3>();
+  Jacobian out(6, model.joint_count);
+  for (int i = 0; i < model.joint_count; ++i) {
+    Joints<Jet<1>> moved;
+    for (int n = 0; n < kMaxJoints; ++n) moved[n] = Jet<1>(q[n]);
+    moved[i] = Jet<1>::variable(q[i]);
+    const Pose<Jet<1>> pose = forward(model, tool_length_mm, moved);
+    for (int row = 0; row < 3; ++row) {
+      out(row, i) = pose.tip[row].derivative(1);
+      out(row + 3, i) = pose.axis[row].derivative(1);
+    }
+  }
   return out;
 }
 
-/// Returns sqrt(det JᵀJ), the distance from singularity: 0 on the pole. It depends on neither frame
-/// nor tool.
-[[nodiscard]] inline double measure(const MachineModel&, const JointVector& q) noexcept {
+/// Returns sqrt(det JᵀJ), the distance from singularity: 0 on the pole, at a limit of reach, where
+/// an arm is stretched or a wrist aligned. It depends on neither frame nor tool.
+[[nodiscard]] inline double measure(const MachineModel& model, const JointVector& q) noexcept {
+  switch (model.family) {
+    case MachineFamily::kChain:
+      return chain::measure(model.chain, q);
+    case MachineFamily::kRobot:
+      return robot::measure(model.robot, q);
+    case MachineFamily::kLai:
+      break;
+  }
   return lai::measure(q);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 
 #include "meridian/geometry/jet.hpp"
@@ -73,26 +72,6 @@ template <class S>
   place_tip(constants, length, pose.tip, turn, SinCos<S>{along * per_norm, pose.axis[2] * per_norm},
             q);
   return q;
-}
-
-/// Jacobian of (Px, Py, Pz, Kx, Ky, Kz) by the joints, eq. 2.7.
-[[nodiscard]] inline Eigen::Matrix<double, 6, 5> jacobian(const LaiKinematics& constants,
-                                                          double length,
-                                                          const JointVector& q) noexcept {
-  const auto [s1, c1] = sin_cos(q[kTheta1]);
-  const auto [s2, c2] = sin_cos(q[kTheta2]);
-  const double u = q[kB3] - length * s2;
-  const double v = q[kB2] - constants.e_mm;
-  Eigen::Matrix<double, 6, 5> j;
-  // clang-format off
-  j << c1, -s1,  0, -u * s1 - v * c1, -length * c1 * c2,
-       s1,  c1,  0,  u * c1 - v * s1, -length * s1 * c2,
-        0,   0, -1,                0,       length * s2,
-        0,   0,  0,         -s1 * s2,           c1 * c2,
-        0,   0,  0,          c1 * s2,           s1 * c2,
-        0,   0,  0,                0,               -s2;
-  // clang-format on
-  return j;
 }
 
 /// sqrt(det JᵀJ) = |sin theta2|, eq. 2.8: zero on the pole and nowhere else inside the tilt's

@@ -7,8 +7,11 @@
 #include <string>
 
 #include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/chain.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/lai.hpp"
+#include "meridian/kinematics/robot.hpp"
+#include "meridian/kinematics/stage.hpp"
 
 namespace meridian {
 
@@ -28,6 +31,13 @@ struct JointSpec {
   JointLimits limits;
 };
 
+/// Which closed forms a machine has. The one of its own in MachineModel is filled, the others rest.
+enum class MachineFamily : std::uint8_t {
+  kLai,    ///< the machine of Lai et al. by its Denavit-Hartenberg table
+  kChain,  ///< any chain of three linear and two rotary joints
+  kRobot   ///< articulated, 5R or 6R
+};
+
 /// What the planner does where the path runs into the pole of the free rotary joint.
 enum class PolePolicy : std::uint8_t {
   kTurn  ///< stop on the pole and turn the free joint alone, tip and axis fixed
@@ -44,7 +54,11 @@ struct Tolerances {
 struct MachineModel {
   std::string name;
   std::string version;
-  LaiKinematics kinematics;
+  MachineFamily family = MachineFamily::kLai;
+  LaiKinematics lai;
+  ChainKinematics chain;
+  RobotKinematics robot;
+  ActuatorStage stage;  ///< between joints and drives
   int joint_count = 5;
   std::array<JointSpec, kMaxJoints> joints;
   double tool_length_mm = 0;  ///< tool in the spindle when the service starts

@@ -74,6 +74,8 @@ ChainKinematics describe_chain(const std::array<ChainJoint, ChainKinematics::kCh
   k.has_opposite_pole = k.p_cos == 0;
   k.azimuth_sin = normal;
   k.azimuth_cos = k.b.axis - k.a.axis.dot(k.b.axis) * k.a.axis;
+  k.tilt_sin = k.b.axis.cross(k.home_axis);
+  k.tilt_cos = k.home_axis - k.b.axis.dot(k.home_axis) * k.b.axis;
   const double y = k.b.axis.dot(k.a.axis.cross(k.home_axis));
   const double x = k.b.axis.cross(k.a.axis).dot(k.b.axis.cross(k.home_axis));
   const double norm = std::hypot(x, y);

@@ -41,7 +41,7 @@ bool is_solved(const PathPiece& path) noexcept {
 }  // namespace
 
 Vector3 find_nearest_pole(const MachineModel& model, const Vector3& axis) noexcept {
-  const Vector3 pole = model.frame_rotation.transpose() * Vector3::UnitZ();
+  const Vector3 pole = pole_direction(model);
   return pole.dot(axis) < 0 ? Vector3(-pole) : pole;
 }
 

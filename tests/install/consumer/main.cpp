@@ -9,7 +9,7 @@
 
 int main() {
   meridian::MachineModel model;
-  model.kinematics = {.pivot_mm = 140, .e_mm = 60, .h_mm = 400};
+  model.lai = {.pivot_mm = 140, .e_mm = 60, .h_mm = 400};
   const meridian::JointVector joints{10, 20, 30, 0.4, 0.5, 0};
   const auto pose = meridian::forward(model, 110.0, joints);
   const auto back = meridian::solve(model, 110.0, pose, 0, joints);

@@ -17,9 +17,9 @@ const std::filesystem::path kMachines = MERIDIAN_SOURCE_DIR "/deploy/machines";
 TEST(MachineFile, GivesTheConstantsOfTheLaiMachine) {
   const MachineModel model = load_machine(kMachines / "lai.toml");
   EXPECT_EQ(model.name, "lai");
-  EXPECT_EQ(model.kinematics.pivot_mm + model.tool_length_mm, 250);
-  EXPECT_EQ(model.kinematics.e_mm, 60);
-  EXPECT_EQ(model.kinematics.h_mm, 400);
+  EXPECT_EQ(model.lai.pivot_mm + model.tool_length_mm, 250);
+  EXPECT_EQ(model.lai.e_mm, 60);
+  EXPECT_EQ(model.lai.h_mm, 400);
   EXPECT_EQ(model.cycle_ns, 1'000'000);
   EXPECT_FALSE(model.default_unit_mm || model.default_unit_inch);
   EXPECT_DOUBLE_EQ(model.max_feed_mm_per_s, 500);
@@ -49,9 +49,9 @@ TEST(MachineFile, GivesJointsInMachineOrderAndHouseUnits) {
 TEST(MachineFile, OfTheBenchEqualsTheMachineOfTheTests) {
   const MachineModel file = load_machine(kMachines / "bench.toml");
   const MachineModel made = test::bench_machine();
-  EXPECT_EQ(file.kinematics.pivot_mm, made.kinematics.pivot_mm);
-  EXPECT_EQ(file.kinematics.e_mm, made.kinematics.e_mm);
-  EXPECT_EQ(file.kinematics.h_mm, made.kinematics.h_mm);
+  EXPECT_EQ(file.lai.pivot_mm, made.lai.pivot_mm);
+  EXPECT_EQ(file.lai.e_mm, made.lai.e_mm);
+  EXPECT_EQ(file.lai.h_mm, made.lai.h_mm);
   EXPECT_EQ(file.tool_length_mm, made.tool_length_mm);
   for (int i = 0; i < 5; ++i) {
     const JointLimits &a = file.joints[i].limits, &b = made.joints[i].limits;

@@ -102,7 +102,7 @@ const Scenario kScenarios[] = {
     {"GuardMeetsNaN",
      [](Program& p) {
        p.run(0.2);
-       p.world.machine.kinematics.h_mm = std::numeric_limits<double>::quiet_NaN();
+       p.world.machine.lai.h_mm = std::numeric_limits<double>::quiet_NaN();
        run_on(p, State::kFault);
      },
      State::kFault},
