@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/config/machine_file.hpp"
 
-#include <array>
 #include <cmath>
 #include <string>
 
 #include "meridian/units.hpp"
+#include "service/config/kinematics_file.hpp"
 #include "service/config/section.hpp"
 
 namespace meridian::config {
@@ -37,18 +37,6 @@ void read_machine(Section machine, MachineModel& model) {
   model.bridge_cycles = machine.integer_or("bridge_cycles", 3, 0, 1000);
   model.tool_length_mm = machine.number("tool_length_mm", {0, 1e4});
   machine.finish();
-}
-
-void read_lai(Section table, MachineModel& model) {
-  (void)table.choice("family", {"lai"});  // one family so far
-  model.lai = lai_from_table({.b1 = table.number("b1_mm", kLength_mm),
-                                     .a2 = table.number("a2_mm", kLength_mm),
-                                     .a3 = table.number("a3_mm", kLength_mm),
-                                     .l3 = table.number("l3_mm", kLength_mm),
-                                     .l4 = table.number("l4_mm", kLength_mm),
-                                     .b5 = table.number("b5_mm", kLength_mm),
-                                     .l5 = table.number("l5_mm", {0, 1e5})});
-  table.finish();
 }
 
 /// The keys of a joint, in mm or in deg.
@@ -85,6 +73,8 @@ void read_travel(Section& section, const JointKeys& keys, double unit, JointSpec
   joint.limits.travel_max = high * unit;
 }
 
+}  // namespace
+
 void read_joint(Section section, JointSpec& joint) {
   const JointKeys keys(joint.is_rotary ? "deg" : "mm");
   const double unit = joint.is_rotary ? units::kDegree_rad : 1.0;
@@ -114,16 +104,7 @@ void read_joint(Section section, JointSpec& joint) {
   section.finish();
 }
 
-void read_joints(Section joints, MachineModel& model) {
-  constexpr std::array kNames = {"b3", "b2", "b4", "theta1", "theta2"};
-  model.joint_count = static_cast<int>(kNames.size());
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    model.joints[i].name = kNames[i];
-    model.joints[i].is_rotary = i >= 3;
-    read_joint(joints.section(kNames[i]), model.joints[i]);
-  }
-  joints.finish();
-}
+namespace {
 
 void read_tolerances(Section section, MachineModel& model) {
   model.tolerances.tip_mm = section.number("tip_mm", {1e-6, 10});
@@ -146,8 +127,9 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   Section file(name, table);
   MachineModel model;
   read_machine(file.section("machine"), model);
-  read_lai(file.section("kinematics"), model);
-  read_joints(file.section("joints"), model);
+  Section joints = file.section("joints");
+  read_kinematics(file.section("kinematics"), joints, model);
+  joints.finish();
   read_tolerances(file.section("tolerances"), model);
   Section pole = file.section("pole");
   model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"turn"}));

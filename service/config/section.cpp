@@ -188,17 +188,34 @@ std::array<double, 2> Section::pair(std::string_view key, Range range, std::stri
           finite_number(*array->get(1), key, range, remedy)};
 }
 
+std::array<double, 3> Section::triple(std::string_view key, Range range, std::string_view remedy) {
+  const std::string allowed = "[x, y, z], each " + words(range);
+  const toml::array* array = need(key, allowed, remedy).as_array();
+  if (array == nullptr || array->size() != 3) {
+    refuse(key, allowed, "write three numbers in brackets");
+  }
+  return {finite_number(*array->get(0), key, range, remedy),
+          finite_number(*array->get(1), key, range, remedy),
+          finite_number(*array->get(2), key, range, remedy)};
+}
+
 std::array<double, 3> Section::triple_or(std::string_view key, std::array<double, 3> otherwise,
                                          Range range) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return otherwise;
-  const toml::array* array = node->as_array();
-  if (array == nullptr || array->size() != 3) {
-    refuse(key, "[x, y, z], each " + words(range), "write three numbers in brackets");
+  return find(key) == nullptr ? otherwise : triple(key, range);
+}
+
+std::vector<std::string> Section::texts(std::string_view key, std::size_t count,
+                                        std::string_view remedy) {
+  const std::string allowed = std::to_string(count) + " texts in brackets";
+  const toml::array* array = need(key, allowed, remedy).as_array();
+  if (array == nullptr || array->size() != count) refuse(key, allowed, std::string(remedy));
+  std::vector<std::string> out;
+  for (const toml::node& node : *array) {
+    const auto value = node.value<std::string>();
+    if (!value || value->empty()) refuse(key, allowed, std::string(remedy));
+    out.push_back(*value);
   }
-  return {finite_number(*array->get(0), key, range, ""),
-          finite_number(*array->get(1), key, range, ""),
-          finite_number(*array->get(2), key, range, "")};
+  return out;
 }
 
 bool Section::truth_or(std::string_view key, bool otherwise) {

@@ -41,6 +41,8 @@ class Section {
   [[nodiscard]] int integer_or(std::string_view key, int otherwise, int low, int high);
   [[nodiscard]] std::array<double, 2> pair(std::string_view key, Range range,
                                            std::string_view remedy = "");
+  [[nodiscard]] std::array<double, 3> triple(std::string_view key, Range range,
+                                             std::string_view remedy = "");
   [[nodiscard]] std::array<double, 3> triple_or(std::string_view key,
                                                 std::array<double, 3> otherwise, Range range);
 
@@ -49,6 +51,9 @@ class Section {
   /// Text: at least one character unless `may_be_empty`.
   [[nodiscard]] std::string text(std::string_view key, std::string_view remedy = "");
   [[nodiscard]] std::string text_or(std::string_view key, std::string_view otherwise);
+  /// As many texts in brackets as `count` says.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key, std::size_t count,
+                                               std::string_view remedy = "");
 
   /// Returns the place in `choices` of the word that the file gives.
   [[nodiscard]] int choice(std::string_view key, std::initializer_list<std::string_view> choices);

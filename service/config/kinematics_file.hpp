@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/config/section.hpp"
+
+namespace meridian::config {
+
+/// Reads [kinematics] and the joints that its family has: `lai` by its table, `chain` joint by
+/// joint from the workpiece to the tool, `robot5` and `robot6` by their lengths. Throws
+/// ConfigError.
+void read_kinematics(Section table, Section& joints, MachineModel& model);
+
+/// Reads the limits of one joint; name and kind are set. Refuses every key that is not a limit and
+/// was not asked for before.
+void read_joint(Section section, JointSpec& joint);
+
+}  // namespace meridian::config
