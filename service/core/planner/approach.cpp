@@ -39,13 +39,23 @@ ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
 
 double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
                               double tool_length_mm) const noexcept {
-  // With the axis fixed the joints are linear in the lift.
   const double whole = model_.clearance_mm;
   if (!(whole > 0)) return 0;
-  const int free = free_joint(model_);
-  const ToolPose top = lifted(pose, whole);
-  const auto at = solve_held(model_, tool_length_mm, top, free >= 0 ? joints[free] : 0.0);
   double share = 1;
+  if (free_joint(model_) < 0) {
+    // The joints of an arm bend on the way up: as far as the whole way stays in reach and travel.
+    constexpr int kSteps = 16;
+    for (int n = 1; n <= kSteps; ++n) {
+      const auto at = solve_near(lifted(pose, whole * n / kSteps), joints, tool_length_mm);
+      if (at.status == SolveStatus::kOk && first_joint_outside_travel(model_, at.q, 0) < 0)
+        continue;
+      share = static_cast<double>(n - 1) / kSteps;
+      break;
+    }
+    return share * whole > kNoClearance_mm ? share * whole : 0;
+  }
+  // With the axis fixed the joints of a machine with linear joints are linear in the lift.
+  const auto at = solve_near(lifted(pose, whole), joints, tool_length_mm);
   for (int i = 0; i < model_.joint_count; ++i) {
     if (model_.joints[i].is_endless) continue;
     const double by = at.q[i] - joints[i];
@@ -59,7 +69,6 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
 
 PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job& job,
                               PlanCursor& cursor, Staging& out) noexcept {
-  const int free = free_joint(model_);
   const std::uint32_t rotary = rotary_mask(model_);
   Job rapid = job;
   rapid.feed_mm_per_s = 0;
@@ -69,22 +78,19 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   if (apart > kNearby) {
     const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm);
     if (up > 0) {
-      fault = run_held(make_line(cursor.pose, lifted(cursor.pose, up)), cursor.joints[free], rapid,
-                       1.0, cursor, out);
+      fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
       if (is_fault(fault)) return fault;
     }
     down = find_clearance(target, way.joints, cursor.tool_length_mm);
   }
   const JointVector over =
-      down > 0 ? solve_held(model_, cursor.tool_length_mm, lifted(target, down), way.joints[free]).q
-               : way.joints;
+      down > 0 ? solve_near(lifted(target, down), way.joints, cursor.tool_length_mm).q : way.joints;
   if (largest_difference(over, cursor.joints) > kThere) {
     fault = run(make_joint_move(cursor.joints, over, rotary), rapid, 0, cursor, out);
     if (is_fault(fault)) return fault;
   }
   if (down > 0) {
-    fault = run_held(make_line(lifted(target, down), target), cursor.joints[free], job, 1.0, cursor,
-                     out);
+    fault = run_lift(make_line(lifted(target, down), target), job, cursor, out);
   }
   return fault;
 }

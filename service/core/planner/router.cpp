@@ -113,22 +113,44 @@ PathFault Router::run_held(PathPiece path, double free_end, const Job& job, doub
   return run(path, job, share, cursor, out);
 }
 
-PathFault Router::run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
-                             Staging& out) noexcept {
-  // The branch in force is the one that gives the present joints back.
-  const ToolPose begin = pose_at(path, 0.0);
+PathFault Router::run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
+                           Staging& out) noexcept {
+  const int free = free_joint(model_);
+  return free >= 0 ? run_held(path, cursor.joints[free], job, 1.0, cursor, out)
+                   : run_solved(path, job, cursor, out);
+}
+
+/// The branch that gives `joints` back at `pose`.
+int Router::branch_of(const ToolPose& pose, const JointVector& joints,
+                      double tool_length_mm) const noexcept {
+  int best = 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (int branch = 0; branch < branch_count(model_); ++branch) {
-    const auto at = solve(model_, cursor.tool_length_mm, begin, branch, cursor.joints);
+    const auto at = solve(model_, tool_length_mm, pose, branch, joints);
+    if (at.status == SolveStatus::kUnreachable) continue;
     double distance = 0;
     for (int i = 0; i < model_.joint_count; ++i) {
-      distance = std::max(distance, std::abs(at.q[i] - cursor.joints[i]));
+      distance = std::max(distance, std::abs(at.q[i] - joints[i]));
     }
     if (distance < nearest) {
       nearest = distance;
-      path.branch = static_cast<std::uint8_t>(branch);
+      best = branch;
     }
   }
+  return best;
+}
+
+Solution<double> Router::solve_near(const ToolPose& pose, const JointVector& joints,
+                                    double tool_length_mm) const noexcept {
+  const int free = free_joint(model_);
+  if (free >= 0) return solve_held(model_, tool_length_mm, pose, joints[free]);
+  return solve(model_, tool_length_mm, pose, branch_of(pose, joints, tool_length_mm), joints);
+}
+
+PathFault Router::run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
+                             Staging& out) noexcept {
+  path.branch = static_cast<std::uint8_t>(
+      branch_of(pose_at(path, 0.0), cursor.joints, cursor.tool_length_mm));
   return run(path, job, 1.0, cursor, out);
 }
 
@@ -236,8 +258,7 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   const int free = free_joint(model_);
   PathFault fault;
   if (path.axis_turn == 0) {
-    fault = free >= 0 ? run_held(path, cursor.joints[free], job, 1.0, cursor, out)
-                      : run_solved(path, job, cursor, out);
+    fault = run_lift(path, job, cursor, out);
     cursor.pose.tip = end.tip;
     return fault;
   }

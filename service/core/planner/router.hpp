@@ -4,6 +4,7 @@
 #include <array>
 
 #include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "service/core/planner/leg_planner.hpp"
@@ -74,6 +75,14 @@ class Router {
                               PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault run_held(PathPiece path, double free_end, const Job& job, double share,
                                    PlanCursor& cursor, Staging& out) noexcept;
+  /// A way with the axis fixed: on the free joint held where it is, or on the branch in force.
+  [[nodiscard]] PathFault run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
+                                   Staging& out) noexcept;
+  [[nodiscard]] int branch_of(const ToolPose& pose, const JointVector& joints,
+                              double tool_length_mm) const noexcept;
+  /// The joints of `pose` nearest to `joints`, the free joint held where the machine has one.
+  [[nodiscard]] Solution<double> solve_near(const ToolPose& pose, const JointVector& joints,
+                                            double tool_length_mm) const noexcept;
   [[nodiscard]] PathFault run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
                                      Staging& out) noexcept;
   [[nodiscard]] PathFault turn_free(const ToolPose& pose, double free_end, const Job& job,
