@@ -43,6 +43,15 @@ class GoldenTable {
     return parse(word(row, column));
   }
 
+  /// By place instead of name.
+  [[nodiscard]] double number_at(std::size_t row, std::size_t column) const {
+    return parse(rows_.at(row).at(column));
+  }
+  [[nodiscard]] bool is_number(std::size_t row, std::size_t column) const {
+    const std::string& cell = rows_.at(row).at(column);
+    return cell.find_first_not_of("+-.eE0123456789") == std::string::npos;
+  }
+
   /// The numbers of `count` neighbouring columns that begin with `column`.
   [[nodiscard]] std::vector<double> numbers(std::size_t row, const std::string& column,
                                             std::size_t count) const {

@@ -22,12 +22,12 @@ struct GoldenMachine {
   GoldenMachine(const GoldenTable& table, std::size_t row, const std::string& ending) {
     const auto constant = [&](const char* name) { return table.number(row, name + ending); };
     model.lai = lai_from_table({.b1 = constant("b1"),
-                                       .a2 = constant("a2"),
-                                       .a3 = constant("a3"),
-                                       .l3 = constant("l3"),
-                                       .l4 = constant("l4"),
-                                       .b5 = constant("b5"),
-                                       .l5 = constant("l5")});
+                                .a2 = constant("a2"),
+                                .a3 = constant("a3"),
+                                .l3 = constant("l3"),
+                                .l4 = constant("l4"),
+                                .b5 = constant("b5"),
+                                .l5 = constant("l5")});
     tool_length_mm = constant("lt");
   }
 };

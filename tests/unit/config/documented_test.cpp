@@ -33,7 +33,8 @@ TEST_P(Documented, HasEveryKeyOfTheShippedFile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Documented,
-                         testing::Values("machines/lai.toml", "machines/bench.toml", "tools.toml",
+                         testing::Values("machines/lai.toml", "machines/bench.toml",
+                                         "machines/nutating-head.toml", "machines/robot-5r.toml", "tools.toml",
                                          "service.toml"));
 
 }  // namespace
