@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -86,12 +85,12 @@ void read_chain(Section& table, Section& joints, MachineModel& model) {
   const Vector3 axis = direction(table, "tool_axis", "give the tool axis at home, tip to spindle");
   const Vector3 gauge = to_vector(
       table.triple("gauge_mm", kLength_mm, "give the middle of the spindle's face at home"));
-  try {
-    model.chain = describe_chain(chain, axis, gauge);
-  } catch (const std::invalid_argument& error) {
-    table.refuse("chain", std::string("a machine that can work; ") + error.what(),
+  const auto described = describe_chain(chain, axis, gauge);
+  if (!described) {
+    table.refuse("chain", "a machine that can work; " + described.error(),
                  "mend the joints' kinds, directions and order");
   }
+  model.chain = *described;
 }
 
 void read_robot(Section& table, Section& joints, bool is_six_axis, MachineModel& model) {

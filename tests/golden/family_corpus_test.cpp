@@ -56,7 +56,7 @@ GoldenChain chain_of(const std::string& name) {
     joints[i].direction = vector_of(joint["dir"]);
     if (joints[i].is_rotary) joints[i].point_mm = vector_of(joint["point"]);
   }
-  return {describe_chain(joints, vector_of(machine["k0"]), vector_of(machine["gauge"])),
+  return {*describe_chain(joints, vector_of(machine["k0"]), vector_of(machine["gauge"])),
           number_of(machine["tool_length"]), vector_of(machine["workpiece_zero"])};
 }
 

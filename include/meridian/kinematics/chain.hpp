@@ -4,7 +4,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <string>
 
+#include "meridian/expected.hpp"
 #include "meridian/geometry/jet.hpp"
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/joints.hpp"
@@ -55,12 +57,11 @@ struct ChainKinematics {
   bool has_opposite_pole = false;    ///< so does K = -a
 };
 
-/// Returns the chain with its constants worked out.
-///
-/// Throws std::invalid_argument with the reason where the five joints are not three linear and two
-/// rotary ones, a direction is not unit, the rotary axes are parallel, the tool axis is parallel to
-/// rotary axis b (it could not tilt), or the linear directions at home do not span space.
-[[nodiscard]] ChainKinematics describe_chain(
+/// Returns the chain with its constants worked out, or the reason why it cannot work: the five
+/// joints are not three linear and two rotary ones, a direction is not unit, the rotary axes are
+/// parallel, the tool axis is parallel to rotary axis b (it could not tilt), or the linear
+/// directions at home do not span space. At start-up only.
+[[nodiscard]] Expected<ChainKinematics, std::string> describe_chain(
     const std::array<ChainJoint, ChainKinematics::kChainLength>& chain, const Vector3& home_axis,
     const Vector3& gauge_mm);
 

@@ -11,7 +11,6 @@
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/lai.hpp"
 #include "meridian/kinematics/robot.hpp"
-#include "meridian/kinematics/stage.hpp"
 
 namespace meridian {
 
@@ -58,7 +57,6 @@ struct MachineModel {
   LaiKinematics lai;
   ChainKinematics chain;
   RobotKinematics robot;
-  ActuatorStage stage;  ///< between joints and drives
   int joint_count = 5;
   std::array<JointSpec, kMaxJoints> joints;
   double tool_length_mm = 0;  ///< tool in the spindle when the service starts

@@ -151,7 +151,7 @@ template <class S>
   const Vec3<S>& t = arm.tool;
   is_held = false;
   if (!k.has_spherical_wrist) {
-    const double in_plane = std::hypot(value_of(t[0]), value_of(t[2]));
+    const double in_plane = hypot(value_of(t[0]), value_of(t[2]));
     if (in_plane < kWristHold_rad) {
       is_held = true;
       q[kPitch] = S(reference[kPitch]);
@@ -168,7 +168,7 @@ template <class S>
   const S x = e.cos * t[0] + e.sin * t[2], z = e.cos * t[2] - e.sin * t[0];
   const S& y = t[1];
   q[kSpin] = S(reference[kSpin]);
-  if (std::hypot(value_of(y), value_of(z)) < kWristHold_rad) {
+  if (hypot(value_of(y), value_of(z)) < kWristHold_rad) {
     is_held = true;
     q[kRoll] = S(reference[kRoll]);
     const SinCos<S> roll = sin_cos(q[kRoll]);

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace meridian {
@@ -20,49 +19,42 @@ double angle_between(const Vector3& a, const Vector3& b) {
 /// A sine or cosine that is nominally zero is zero: poles and reach of orthogonal machines exact.
 double snapped(double x) { return std::abs(x) < kNominal ? 0.0 : x; }
 
-Vector3 unit(const Vector3& v, const char* what) {
-  if (!(std::abs(v.norm() - 1.0) < 1e-6)) {
-    throw std::invalid_argument(std::string(what) + " is not a unit vector");
-  }
-  return v.normalized();
-}
+bool is_unit(const Vector3& v) { return std::abs(v.norm() - 1.0) < 1e-6; }
 
-void sort_joints(ChainKinematics& k) {
+/// Sorts the joints into a, b and the three linear ones; returns what is wrong with them, or
+/// nothing.
+std::string sort_joints(ChainKinematics& k) {
   int rotary = 0, linear = 0;
   for (const ChainJoint& joint : k.chain) {
+    if (!is_unit(joint.direction)) return "the direction of a joint is not a unit vector";
     const double sign = joint.is_table_side ? -1.0 : 1.0;
-    const Vector3 direction = unit(joint.direction, "the direction of a joint");
-    if (joint.is_rotary) {
-      if (rotary == 2) throw std::invalid_argument("more than two rotary joints");
+    const Vector3 direction = joint.direction.normalized();
+    if (joint.is_rotary && rotary < 2) {
       (rotary++ == 0 ? k.a : k.b) = {joint.joint, sign, direction, joint.point_mm};
-    } else {
-      if (linear == 3) throw std::invalid_argument("more than three linear joints");
+    } else if (!joint.is_rotary && linear < 3) {
       k.linear[linear++] = {joint.joint, rotary, sign * direction};
+    } else {
+      return "it takes two rotary and three linear joints";
     }
   }
+  return "";
 }
 
-}  // namespace
-
-ChainKinematics describe_chain(const std::array<ChainJoint, ChainKinematics::kChainLength>& chain,
-                               const Vector3& home_axis, const Vector3& gauge_mm) {
-  ChainKinematics k;
-  k.chain = chain;
-  k.home_axis = unit(home_axis, "the tool axis at home");
-  k.gauge_mm = gauge_mm;
-  sort_joints(k);
-
-  const Vector3 normal = k.a.axis.cross(k.b.axis);
-  if (normal.norm() < 1e-3) throw std::invalid_argument("the rotary axes are parallel");
-  if (k.b.axis.cross(k.home_axis).norm() < 1e-3) {
-    throw std::invalid_argument("the tool axis is parallel to the rotary axis next to it");
+std::string find_fault(const ChainKinematics& k) {
+  constexpr double kLeast = 1e-3;
+  if (k.a.axis.cross(k.b.axis).norm() < kLeast) return "the rotary axes are parallel";
+  if (k.b.axis.cross(k.home_axis).norm() < kLeast) {
+    return "the tool axis is parallel to the rotary axis next to it";
   }
   Eigen::Matrix3d directions;
   for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
-  if (std::abs(directions.determinant()) < 1e-3) {
-    throw std::invalid_argument("the linear joints do not span space at home");
+  if (std::abs(directions.determinant()) < kLeast) {
+    return "the linear joints do not span space at home";
   }
+  return "";
+}
 
+void work_out_constants(ChainKinematics& k) {
   const double psi = angle_between(k.a.axis, k.b.axis);
   const double cone = angle_between(k.b.axis, k.home_axis);
   const double m = 0.5 * (cone - psi), p = 0.5 * (cone + psi);
@@ -72,15 +64,31 @@ ChainKinematics describe_chain(const std::array<ChainJoint, ChainKinematics::kCh
   k.p_sin = k.p_cos == 0 ? 1.0 : std::sin(p);
   k.has_pole = k.m_sin == 0;
   k.has_opposite_pole = k.p_cos == 0;
-  k.azimuth_sin = normal;
+  k.azimuth_sin = k.a.axis.cross(k.b.axis);
   k.azimuth_cos = k.b.axis - k.a.axis.dot(k.b.axis) * k.a.axis;
   k.tilt_sin = k.b.axis.cross(k.home_axis);
   k.tilt_cos = k.home_axis - k.b.axis.dot(k.home_axis) * k.b.axis;
   const double y = k.b.axis.dot(k.a.axis.cross(k.home_axis));
-  const double x = k.b.axis.cross(k.a.axis).dot(k.b.axis.cross(k.home_axis));
+  const double x = k.b.axis.cross(k.a.axis).dot(k.tilt_sin);
   const double norm = std::hypot(x, y);
   k.b0_sin = snapped(y / norm);
   k.b0_cos = snapped(x / norm);
+}
+
+}  // namespace
+
+Expected<ChainKinematics, std::string> describe_chain(
+    const std::array<ChainJoint, ChainKinematics::kChainLength>& chain, const Vector3& home_axis,
+    const Vector3& gauge_mm) {
+  ChainKinematics k;
+  k.chain = chain;
+  if (!is_unit(home_axis)) return tl::unexpected(std::string("the tool axis is not a unit vector"));
+  k.home_axis = home_axis.normalized();
+  k.gauge_mm = gauge_mm;
+  std::string fault = sort_joints(k);
+  if (fault.empty()) fault = find_fault(k);
+  if (!fault.empty()) return tl::unexpected(fault);
+  work_out_constants(k);
   return k;
 }
 
