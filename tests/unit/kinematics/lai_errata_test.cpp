@@ -41,7 +41,7 @@ JointVector draw_joints(test::RandomPoses& draw) {
 
 MachineModel machine() {
   MachineModel model = test::bench_machine();
-  model.kinematics = lai_from_table(kTable);
+  model.lai = lai_from_table(kTable);
   return model;
 }
 
