@@ -68,9 +68,12 @@ void run_drives(const DrivesOptions& options) {
   simulated.is_refusing_actions = options.is_refusing_actions;
   simulated.action_delay_ns = static_cast<std::int64_t>(options.action_delay_s * 1e9);
   watch_for_stop();
+  simulated.has_priority = drives::prepare_drive_priority();
   dds::Participant participant(
       {.domain = options.domain,
-       .machine = options.partition.empty() ? model.name : options.partition});
+       .machine = options.partition.empty() ? model.name : options.partition,
+       .transport =
+           simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback});
   std::printf("drives of machine %s in DDS domain %u: %d joints, cycle %.3f ms%s\n",
               model.name.c_str(), options.domain, model.joint_count,
               static_cast<double>(model.cycle_ns) * 1e-6,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/drives/simulated_drives.hpp"
 
+#include <pthread.h>
+#include <sched.h>
 #include <time.h>
 
 #include <algorithm>
@@ -16,6 +18,13 @@
 namespace meridian::drives {
 
 namespace {
+
+constexpr int kDrivePriority = 65;
+
+bool set_priority(int policy, int priority) noexcept {
+  const sched_param param{.sched_priority = priority};
+  return ::pthread_setschedparam(::pthread_self(), policy, &param) == 0;
+}
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
@@ -93,6 +102,18 @@ class ActionLink {
 
 }  // namespace
 
+bool prepare_drive_priority() noexcept {
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  if (::sched_getaffinity(0, sizeof cpus, &cpus) == 0 && CPU_COUNT(&cpus) > 1) {
+    int last = 0;
+    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) last = CPU_ISSET(cpu, &cpus) ? cpu : last;
+    CPU_CLR(last, &cpus);
+    static_cast<void>(::sched_setaffinity(0, sizeof cpus, &cpus));
+  }
+  return set_priority(SCHED_FIFO, kDrivePriority) && set_priority(SCHED_OTHER, 0);
+}
+
 SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const MachineModel& model,
                                            const SimulatedDrivesOptions& options,
                                            const std::atomic<bool>& is_stopping,
@@ -112,6 +133,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
   dds::SetpointSample setpoint;
   dds::DriveCommand command;
   dds::MachineInfo machine;
+  if (options.has_priority) static_cast<void>(set_priority(SCHED_FIFO, kDrivePriority));
   std::int64_t due_ns = monotonic_ns();
   while (!is_stopping.load(std::memory_order_relaxed)) {
     due_ns += model.cycle_ns;

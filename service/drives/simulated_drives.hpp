@@ -19,7 +19,13 @@ struct SimulatedDrivesOptions {
   bool is_action_peer = true;  ///< plays the PLC too
   bool is_refusing_actions = false;
   std::int64_t action_delay_ns = 200'000'000;
+  bool has_priority = false;  ///< works at FIFO 65
 };
+
+/// Real drives have processors of their own; these share them with everybody. Pins the calling
+/// thread off the last CPU, which a service on this host uses for its cycle, so that DDS threads
+/// inherit that. Returns whether there is a right to real-time threads.
+[[nodiscard]] bool prepare_drive_priority() noexcept;
 
 /// For the word at the end.
 struct SimulatedDrivesReport {
