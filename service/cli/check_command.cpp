@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -75,7 +75,8 @@ int check(Options& options, const MachineModel& model) {
   auto recording = record::RecordingReader::open(options.recording, model);
   if (!recording) return refuse(recording.error().text());
   if (!options.picture.empty()) {
-    const auto error = record::draw(*recording, path, model, options.picture);
+    const auto error = record::draw(
+        *recording, path, model, std::filesystem::path(options.file).filename(), options.picture);
     if (error) return refuse(error->text());
   }
   options.check.tip_tolerance_mm = options.tip_tolerance_mm;

@@ -3,6 +3,9 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 
@@ -14,6 +17,8 @@ namespace {
 
 constexpr std::size_t kColumns = 1500;
 constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
+constexpr const char* kColours[kMaxJoints] = {"#1f5fa8", "#2a9d5c", "#e08214",
+                                              "#c22f4f", "#7b4fa3", "#444444"};
 
 /// gnuplot's single-quoted string.
 [[nodiscard]] std::string quoted(std::string_view text) {
@@ -57,33 +62,60 @@ void print_data(std::FILE* out, const PictureData& data, const MachineModel& mod
     print(out, column.feed_mm_per_s, units::kMinute_s);
     for (int i = 0; i < model.joint_count; ++i) {
       print(out, column.position[i], at_edge(model.joints[i], 1.0));
-      for (int order = 0; order < 3; ++order) print(out, column.rate[order][i], 1);
+      for (int order = 0; order < 3; ++order) {
+        const Extremes& rate = column.rate[order][i];
+        std::fprintf(out, " %.5g", std::max(std::abs(rate.low), std::abs(rate.high)));
+      }
     }
     std::fputs("\n", out);
   }
   std::fputs("EOD\n", out);
 }
 
-/// A band from the low to the high column of one value, with a line on top where it is thin.
-void print_band(std::FILE* out, int low, const std::string& title, int colour, bool is_first) {
-  std::fprintf(
-      out,
-      "%s $columns using 1:%d:%d with filledcurves fs transparent solid 0.6 lc %d notitle, "
-      "$columns using 1:%d with lines lw 1 lc %d title %s",
-      is_first ? "plot" : ",", low, low + 1, colour, low + 1, colour, quoted(title).c_str());
-}
-
-[[nodiscard]] constexpr int column_of(int joint, int what) { return 6 + 8 * joint + 2 * what; }
+/// Column of a joint's lowest position; the highest and the shares of its three limits follow.
+[[nodiscard]] constexpr int column_of(int joint) { return 6 + 5 * joint; }
 
 void print_joints(std::FILE* out, const MachineModel& model, bool is_rotary) {
   std::fprintf(out, "set ylabel 'joints, %s'\n", is_rotary ? "deg" : "mm");
-  bool is_first = true;
+  const char* separator = "plot";
   for (int i = 0; i < model.joint_count; ++i) {
     if (model.joints[i].is_rotary != is_rotary) continue;
-    print_band(out, column_of(i, 0), model.joints[i].name, i + 1, is_first);
-    is_first = false;
+    const int low = column_of(i);
+    std::fprintf(out,
+                 "%s $columns using 1:%d:%d with filledcurves fs transparent solid 0.5 lc '%s' "
+                 "notitle, $columns using 1:%d with lines lw 1.5 lc '%s' title %s",
+                 separator, low, low + 1, kColours[i], low + 1, kColours[i],
+                 quoted(model.joints[i].name).c_str());
+    separator = ",";
   }
-  std::fputs(is_first ? "plot NaN notitle\n" : "\n", out);
+  std::fputs(separator[0] == 'p' ? "plot NaN notitle\n" : "\n", out);
+}
+
+void print_shares(std::FILE* out, const MachineModel& model, int order) {
+  std::fprintf(out, "set ylabel '%s, share'\nset yrange [0:1.1]\nset ytics 0.5\n",
+               kRateNames[order]);
+  std::fputs("plot 1 lw 1.5 lc '#cc3333' title 'limit'", out);
+  for (int i = 0; i < model.joint_count; ++i) {
+    std::fprintf(out, ", $columns using 1:%d with lines lw 1 lc '%s' title %s",
+                 column_of(i) + 2 + order, kColours[i], quoted(model.joints[i].name).c_str());
+  }
+  std::fputs("\n", out);
+}
+
+/// Ranges of the program's tip path, approach left out, with a margin.
+void print_ranges(std::FILE* out, const PictureData& data) {
+  std::array<Extremes, 3> box;
+  for (const PictureData::Point& point : data.tip) {
+    if (point.kind == MotionKind::kApproach) continue;
+    for (int i = 0; i < 3; ++i) box[static_cast<std::size_t>(i)].add(point.tip[i]);
+  }
+  if (box[0].is_empty) return;
+  double longest = 1;
+  for (const Extremes& side : box) longest = std::max(longest, side.high - side.low);
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::fprintf(out, "set %crange [%.6g:%.6g]\n", "xyz"[i], box[i].low - 0.05 * longest,
+                 box[i].high + 0.1 * longest);
+  }
 }
 
 void print_script(std::FILE* out, const PictureData& data, const MachineModel& model,
@@ -94,22 +126,25 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
                is_svg ? "svg" : "pngcairo", is_svg ? 14 : 11);
   std::fprintf(out, "set output %s\n", quoted(file).c_str());
   std::fprintf(out, "set multiplot title %s\n", quoted(title).c_str());
+  print_ranges(out, data);
   std::fputs(
-      "set key outside right top samplen 1\nset grid lc '#dddddd'\nset border lc '#555555'\n"
-      "set origin 0,0.02\nset size 0.48,0.93\nset view equal xyz\nset view 60,35\nset ticslevel 0\n"
-      "set xlabel 'x, mm'\nset ylabel 'y, mm'\nset zlabel 'z, mm'\nset key inside right top\n"
-      "set xtics autofreq\n"
-      "splot $way0 with lines lc '#bbbbbb' title 'approach', $way2 with lines lc '#cc6633' title "
-      "'rapid', $way1 with lines lc '#1f5fa8' title 'cut', $way3 with points pt 7 ps 0.5 lc "
-      "'#aa2288' title 'pole turn'\n"
-      "unset view\nset key outside right top samplen 1\nset xlabel\nset lmargin 10\n"
-      "set rmargin 14\nset bmargin 1.6\nset tmargin 0.6\nunset zlabel\n",
+      "set grid lc '#dddddd'\nset border lc '#555555'\n"
+      "set origin 0.02,0.02\nset size 0.48,0.93\nset view equal xyz\nset view 60,35,1.15\n"
+      "set ticslevel 0\nset xyplane relative 0\n"
+      "set xlabel 'x, mm'\nset ylabel 'y, mm'\nset zlabel 'z, mm'\n"
+      "set key at screen 0.13,0.93 left top samplen 2\n"
+      "splot $way0 with lines lc '#bbbbbb' title 'approach', $way2 with lines lc '#e08214' title "
+      "'rapid', $way1 with lines lw 1.5 lc '#1f5fa8' title 'cut', $way3 with points pt 7 ps 0.8 lc "
+      "'#c22f4f' title 'pole turn'\n"
+      "unset view\nset key outside right top samplen 1.5\nunset zlabel\nset xlabel\n"
+      "set autoscale\nset lmargin 10\nset rmargin 16\nset bmargin 0.8\nset tmargin 0.6\n"
+      "set format x ''\n",
       out);
   std::fprintf(out, "set xrange [0:%.7g]\n", data.columns.back().time_s);
-  constexpr double kHeight = 0.93 / 6;
+  constexpr double kHeight = 0.91 / 6;
   int place = 0;
   const auto next = [&] {
-    std::fprintf(out, "set origin 0.48,%.4f\nset size 0.52,%.4f\n", 0.95 - kHeight * ++place,
+    std::fprintf(out, "set origin 0.5,%.4f\nset size 0.5,%.4f\n", 0.95 - kHeight * ++place,
                  kHeight);
   };
   next();
@@ -117,20 +152,24 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
   next();
   print_joints(out, model, true);
   next();
+  double feed = 0;
+  for (const PictureColumn& column : data.columns) feed = std::max(feed, column.feed_mm_per_s.high);
+  std::fprintf(out, "set ylabel 'tip, mm/min'\nset yrange [0:%s%.6g]\n", feed > 0 ? "" : "*#",
+               1.3 * feed * units::kMinute_s);
   std::fputs(
-      "set ylabel 'tip, mm/min'\nset yrange [0:*]\n"
-      "plot $columns using 1:5 with lines lw 1.5 lc '#cc3333' title 'programmed', $columns using "
-      "1:2:3 with filledcurves fs transparent solid 0.6 lc '#1f5fa8' notitle, $columns using 1:3 "
-      "with lines lc '#1f5fa8' title 'achieved'\n",
+      "plot $columns using 1:2:3 with filledcurves fs transparent solid 0.4 lc '#1f5fa8' notitle, "
+      "$columns using 1:3 with lines lc '#1f5fa8' title 'achieved', $columns using 1:5 with lines "
+      "lw 1.5 lc '#cc3333' title 'programmed'\n",
       out);
   for (int order = 0; order < 3; ++order) {
     next();
-    if (order == 2) std::fputs("set xlabel 'time, s' offset 0,0.6\nset bmargin 2.6\n", out);
-    std::fprintf(out, "set ylabel '%s / limit'\nset yrange [-1.1:1.1]\n", kRateNames[order]);
-    for (int i = 0; i < model.joint_count; ++i) {
-      print_band(out, column_of(i, 1 + order), model.joints[i].name, i + 1, i == 0);
+    if (order == 2) {
+      // The last one carries the axis.
+      std::fprintf(out,
+                   "set xlabel 'time, s' offset 0,0.6\nset format x '%%g'\n"
+                   "set bmargin at screen 0.06\n");
     }
-    std::fputs(", 1 lc '#cc3333' notitle, -1 lc '#cc3333' notitle\n", out);
+    print_shares(out, model, order);
   }
   std::fputs("unset multiplot\nset output\n", out);
 }
@@ -138,7 +177,8 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
 }  // namespace
 
 std::optional<RecordError> draw(RecordingReader& recording, const CheckedPath& path,
-                                const MachineModel& model, const std::string& file) {
+                                const MachineModel& model, const std::string& title,
+                                const std::string& file) {
   const bool is_svg = file.ends_with(".svg");
   if (!is_svg && !file.ends_with(".png")) {
     return RecordError{file, 0, "no picture format that is known", "end the name in .png or .svg"};
@@ -149,10 +189,10 @@ std::optional<RecordError> draw(RecordingReader& recording, const CheckedPath& p
   if (gnuplot == nullptr) {
     return RecordError{file, 0, "gnuplot cannot be started", "install gnuplot-nox"};
   }
-  char title[160];
-  std::snprintf(title, sizeof title, "machine %s, %.1f s, limits at 1", model.name.c_str(),
+  char behind[160];
+  std::snprintf(behind, sizeof behind, "machine %s, %.1f s", model.name.c_str(),
                 data.columns.back().time_s);
-  print_script(gnuplot, data, model, title, file, is_svg);
+  print_script(gnuplot, data, model, title.empty() ? behind : title + ", " + behind, file, is_svg);
   const int status = ::pclose(gnuplot);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return std::nullopt;
   return RecordError{file, 0, "gnuplot failed", "install gnuplot-nox; is the folder writable?"};

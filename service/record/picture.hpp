@@ -16,8 +16,10 @@ namespace meridian::record {
 /// .svg.
 ///
 /// Where the recording has more cycles than the picture has columns, each column shows the extremes
-/// of its cycles, so that no peak is lost. `path` gives the programmed feed; it may be empty.
+/// of its cycles, so that no peak is lost. `title` is put before machine and time. `path` gives the
+/// programmed feed; it may be empty.
 [[nodiscard]] std::optional<RecordError> draw(RecordingReader& recording, const CheckedPath& path,
-                                              const MachineModel& model, const std::string& file);
+                                              const MachineModel& model, const std::string& title,
+                                              const std::string& file);
 
 }  // namespace meridian::record

@@ -48,20 +48,20 @@ TEST_F(Picture, IsAFileOfTheKindItsNameSays) {
     GTEST_SKIP() << "gnuplot is not installed";
   const Scratch csv(".csv"), svg(".svg"), png(".png");
   RecordingReader reader = test::write_and_open(csv.path(), model, records);
-  const auto error = draw(reader, path, model, svg.path());
+  const auto error = draw(reader, path, model, "part", svg.path());
   ASSERT_FALSE(error) << error->text();
   EXPECT_NE(test::read_text(svg.path()).find("<svg"), std::string::npos);
-  ASSERT_FALSE(draw(reader, path, model, png.path()));
+  ASSERT_FALSE(draw(reader, path, model, "part", png.path()));
   EXPECT_EQ(test::read_text(png.path()).substr(1, 3), "PNG");
 }
 
 TEST_F(Picture, RefusesOtherFormatsAndRecordingsAtRest) {
   const Scratch csv(".csv"), svg(".svg");
   RecordingReader reader = test::write_and_open(csv.path(), model, records);
-  ASSERT_TRUE(draw(reader, path, model, "picture.jpeg"));
+  ASSERT_TRUE(draw(reader, path, model, "part", "picture.jpeg"));
   records.resize(10);
   RecordingReader still = test::write_and_open(csv.path(), model, records);
-  const auto error = draw(still, path, model, svg.path());
+  const auto error = draw(still, path, model, "part", svg.path());
   ASSERT_TRUE(error);
   EXPECT_NE(error->text().find("nothing moves"), std::string::npos);
 }
