@@ -55,7 +55,10 @@ void TelemetryThread::run() noexcept {
 
 void TelemetryThread::drain() {
   Event event;
-  while (ports_.told.try_pop(event)) tell(event);
+  while (ports_.told.try_pop(event)) {
+    recorder_.take(event);
+    tell(event);
+  }
   CycleRecord record;
   const double tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
   while (ports_.records.try_pop(record)) {

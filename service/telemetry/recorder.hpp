@@ -9,6 +9,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/spsc_ring.hpp"
+#include "service/record/operator_events_writer.hpp"
 #include "service/record/recording_writer.hpp"
 
 namespace meridian::telemetry {
@@ -22,6 +23,8 @@ class Recorder {
 
   /// Telemetry thread: hands a row over. False: no room, the row is lost.
   [[nodiscard]] bool take(const CycleRecord& record) noexcept;
+  /// Telemetry thread: accepted verbs go into a file of their own, for a replay.
+  void take(const Event& event) noexcept;
   /// Recorder's thread: writes until stop() and everything taken is on disk.
   void run() noexcept;
   void stop() noexcept { is_stopping_ = true; }
@@ -31,6 +34,8 @@ class Recorder {
 
  private:
   std::optional<record::RecordingWriter> writer_;
+  std::optional<record::OperatorEventsWriter> events_writer_;
+  SpscRing<Event, 256> events_;
   SpscRing<CycleRecord, 8192> ring_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::uint64_t> rows_lost_{0};

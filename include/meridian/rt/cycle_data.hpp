@@ -65,7 +65,7 @@ struct Command {
 
 enum class EventCode : std::uint16_t {
   kStateChanged,   ///< a: new state, b: old state
-  kAccepted,       ///< a: request, b: verb
+  kAccepted,       ///< a: request, b: verb, x: its argument
   kRefused,        ///< a: request, b: verb, x: Refusal
   kBlockStarted,   ///< a: sequence, b: line
   kBlockDone,      ///< a: sequence, b: line

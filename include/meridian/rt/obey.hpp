@@ -99,7 +99,8 @@ inline void obey(Cycle& c) noexcept {
          static_cast<double>(refusal));
     return;
   }
-  tell(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb));
+  tell(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb),
+       command.argument);
   if (effect.effect == Effect::kGo) go(c, effect.next);
   if (command.verb == Verb::kFeedOverride) c.state.feed_override = command.argument;
   if (command.verb == Verb::kRapidOverride) c.state.rapid_override = command.argument;

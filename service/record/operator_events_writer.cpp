@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/operator_events_writer.hpp"
+
+#include "meridian/rt/state_table.hpp"
+
+namespace meridian::record {
+
+std::string operator_events_path(const std::string& recording) {
+  const std::size_t folder = recording.rfind('/');
+  const std::size_t dot = recording.rfind('.');
+  const bool has_ending = dot != std::string::npos && (folder == std::string::npos || dot > folder);
+  return recording.substr(0, has_ending ? dot : recording.size()) + ".events.csv";
+}
+
+Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const std::string& path) {
+  auto file = CsvFile::create(path);
+  if (!file) return tl::make_unexpected(std::move(file.error()));
+  (void)file->append("cycle,verb,argument\n");
+  (void)file->flush();
+  return OperatorEventsWriter(std::move(*file));
+}
+
+bool OperatorEventsWriter::write(const Event& event) noexcept {
+  if (event.code != EventCode::kAccepted || event.b >= kVerbCount) return true;
+  char* const at = file_.begin_row();
+  if (at == nullptr) return false;
+  CsvRow row(at);
+  row.put_integer(event.cycle).put(',').put(name_of(static_cast<Verb>(event.b)));
+  file_.end_row(row.put(',').put_real(event.x).put('\n').end());
+  return file_.flush();
+}
+
+}  // namespace meridian::record

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "meridian/expected.hpp"
+#include "meridian/rt/cycle_data.hpp"
+#include "service/record/csv_file.hpp"
+#include "service/record/record_error.hpp"
+
+namespace meridian::record {
+
+/// The file of operator events that belongs to a recording: run.csv has run.events.csv.
+[[nodiscard]] std::string operator_events_path(const std::string& recording);
+
+/// Writes what operators asked for and the cycle took, one row `cycle,verb,argument` each, for
+/// `meridian simulate --events`. Every row reaches the system at once: there are few.
+/// Proof: tests/unit/record/operator_events_writer_test.cpp.
+class OperatorEventsWriter {
+ public:
+  [[nodiscard]] static Expected<OperatorEventsWriter, RecordError> create(const std::string& path);
+
+  /// Adds the event if it is an accepted verb; others are passed over. False once a write failed.
+  bool write(const Event& event) noexcept;
+
+ private:
+  explicit OperatorEventsWriter(CsvFile file) : file_(std::move(file)) {}
+  CsvFile file_;
+};
+
+}  // namespace meridian::record

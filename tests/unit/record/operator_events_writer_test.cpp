@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/operator_events_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scratch.hpp"
+
+namespace meridian::record {
+namespace {
+
+TEST(OperatorEventsWriter, KeepsAcceptedVerbsWithCycleAndArgument) {
+  const test::Scratch file(".csv");
+  auto writer = OperatorEventsWriter::create(file.path());
+  ASSERT_TRUE(writer.has_value());
+  Event event;
+  event.cycle = 1203;
+  event.code = EventCode::kAccepted;
+  event.b = static_cast<std::uint64_t>(Verb::kStart);
+  EXPECT_TRUE(writer->write(event));
+  event.cycle = 2000;
+  event.b = static_cast<std::uint64_t>(Verb::kFeedOverride);
+  event.x = 0.1;
+  EXPECT_TRUE(writer->write(event));
+  event.code = EventCode::kRefused;
+  EXPECT_TRUE(writer->write(event));
+  EXPECT_EQ(test::read_text(file.path()),
+            "cycle,verb,argument\n1203,start,0\n2000,feed_override,0.10000000000000001\n");
+}
+
+TEST(OperatorEventsWriter, SitsBesideItsRecording) {
+  EXPECT_EQ(operator_events_path("a.b/run.csv"), "a.b/run.events.csv");
+  EXPECT_EQ(operator_events_path("a.b/run"), "a.b/run.events.csv");
+}
+
+}  // namespace
+}  // namespace meridian::record
