@@ -109,7 +109,7 @@ void Realtime::need(bool is_there, const std::string& what, const std::string& r
   if (is_there) return;
   if (is_enforced()) {
     throw StartError("real time is enforced, but " + what + "; remedy: " + remedy +
-                     ", or set realtime = \"best_effort\" in the service file");
+                     ", or set mode = \"best_effort\" under [realtime] in the service file");
   }
   remarks_.push_back("best effort: " + what + "; remedy: " + remedy);
 }
