@@ -53,7 +53,7 @@ TEST(Recorder, LosesRowsAndCountsThemWhereTheDiskIsFull) {
 
 TEST(Recorder, TakesEverythingForNothingWithoutAPath) {
   Recorder recorder("", test::lai_machine());
-  for (int i = 0; i < 20000; ++i) ASSERT_TRUE(recorder.take({}));
+  for (int i = 0; i < 20000; ++i) ASSERT_TRUE(recorder.take(CycleRecord{}));
   EXPECT_EQ(recorder.rows_lost(), 0U);
 }
 
