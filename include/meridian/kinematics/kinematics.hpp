@@ -138,6 +138,15 @@ template <class S>
   return {pose.tip, {pose.axis[0] * per_norm, pose.axis[1] * per_norm, pose.axis[2] * per_norm}};
 }
 
+/// The families beside the first stay calls of their own: inlined into solve() they would cost
+/// every machine the registers.
+///
+/// Puts rotary joint `i` into the winding nearest to `reference`.
+template <class S>
+inline void wind(Joints<S>& q, int i, const JointVector& reference) noexcept {
+  q[i] += kTurn_rad * whole_turns(value_of(q[i]), reference[i]);
+}
+
 template <class S>
 [[nodiscard]] inline SolveStatus solve_lai(const MachineModel& model, double tool_length_mm,
                                            const Pose<S>& pose, int branch,
@@ -147,36 +156,48 @@ template <class S>
                         value_of(pose.axis[1]) * value_of(pose.axis[1]);
   if (square < kPoleHold_rad * kPoleHold_rad) {
     q = lai::solve_held(model.lai, length, pose, S(reference[lai::kTheta1]));
+    wind(q, lai::kTheta2, reference);
     return SolveStatus::kAtPole;
   }
   const S radius = hypot(pose.axis[0], pose.axis[1]);
   q = lai::solve(model.lai, length, pose, branch == 0 ? 1.0 : -1.0, radius);
+  wind(q, lai::kTheta1, reference);
+  wind(q, lai::kTheta2, reference);
   return SolveStatus::kOk;
 }
 
 template <class S>
-[[nodiscard]] inline SolveStatus solve_chain(const MachineModel& model, double tool_length_mm,
-                                             const Pose<S>& pose, int branch,
-                                             const JointVector& reference, Joints<S>& q) noexcept {
+[[nodiscard, gnu::noinline]] inline SolveStatus solve_chain(const MachineModel& model,
+                                                            double tool_length_mm,
+                                                            const Pose<S>& any, int branch,
+                                                            const JointVector& reference,
+                                                            Joints<S>& q) noexcept {
   const ChainKinematics& k = model.chain;
+  const Pose<S> pose = with_unit_axis(any);
   const Vector3 axis{value_of(pose.axis[0]), value_of(pose.axis[1]), value_of(pose.axis[2])};
   if (chain::is_at_pole(k, axis, kPoleHold_rad)) {
     const bool is_solved = chain::solve_held(k, tool_length_mm, pose, S(reference[k.a.joint]), q);
+    wind(q, k.b.joint, reference);
     return is_solved ? SolveStatus::kAtPole : SolveStatus::kUnreachable;
   }
-  return chain::solve(k, tool_length_mm, pose, branch == 0 ? 1.0 : -1.0, q)
-             ? SolveStatus::kOk
-             : SolveStatus::kUnreachable;
+  const bool is_solved = chain::solve(k, tool_length_mm, pose, branch == 0 ? 1.0 : -1.0, q);
+  wind(q, k.a.joint, reference);
+  wind(q, k.b.joint, reference);
+  return is_solved ? SolveStatus::kOk : SolveStatus::kUnreachable;
 }
 
 template <class S>
-[[nodiscard]] inline SolveStatus solve_robot(const MachineModel& model, double tool_length_mm,
-                                             const Pose<S>& pose, int branch,
-                                             const JointVector& reference, Joints<S>& q) noexcept {
+[[nodiscard, gnu::noinline]] inline SolveStatus solve_robot(const MachineModel& model,
+                                                            double tool_length_mm,
+                                                            const Pose<S>& any, int branch,
+                                                            const JointVector& reference,
+                                                            Joints<S>& q) noexcept {
+  const Pose<S> pose = with_unit_axis(any);
   bool is_held = false;
   if (!robot::solve(model.robot, tool_length_mm, pose, branch, reference, q, is_held)) {
     return SolveStatus::kUnreachable;
   }
+  for (int i = 0; i < model.joint_count; ++i) wind(q, i, reference);
   return is_held ? SolveStatus::kAtPole : SolveStatus::kOk;
 }
 
@@ -222,23 +243,17 @@ template <class S>
                                        const Pose<S>& pose, int branch,
                                        const JointVector& reference) noexcept {
   const Pose<S> in_machine = pose_in_machine(model, pose);
-  Solution<S> out{{}, SolveStatus::kOk};
+  Solution<S> out;
   switch (model.family) {
     case MachineFamily::kLai:
       out.status = detail::solve_lai(model, tool_length_mm, in_machine, branch, reference, out.q);
       break;
     case MachineFamily::kChain:
-      out.status = detail::solve_chain(model, tool_length_mm, detail::with_unit_axis(in_machine),
-                                       branch, reference, out.q);
+      out.status = detail::solve_chain(model, tool_length_mm, in_machine, branch, reference, out.q);
       break;
     case MachineFamily::kRobot:
-      out.status = detail::solve_robot(model, tool_length_mm, detail::with_unit_axis(in_machine),
-                                       branch, reference, out.q);
+      out.status = detail::solve_robot(model, tool_length_mm, in_machine, branch, reference, out.q);
       break;
-  }
-  for (int i = 0; i < model.joint_count; ++i) {
-    if (!model.joints[i].is_rotary) continue;
-    out.q[i] += kTurn_rad * whole_turns(value_of(out.q[i]), reference[i]);
   }
   if (!detail::all_finite(out.q)) out.status = SolveStatus::kUnreachable;
   return out;
