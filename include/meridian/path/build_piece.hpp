@@ -38,7 +38,7 @@ namespace meridian {
 [[nodiscard]] PathPiece with_axes(const PathPiece& piece, const Vector3& begin,
                                   const Vector3& end) noexcept;
 
-/// Length of the tip's way on `piece`; 0 for kTurn and kJoint.
+/// Length of the tip's way on `piece`, kLine or kArc; 0 for other kinds.
 [[nodiscard]] double tip_length(const PathPiece& piece) noexcept;
 
 /// The part of a kLine, kArc or kTurn piece between shares `from` < `to` of its length.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -14,9 +15,14 @@ enum class PathKind : std::uint8_t {
   kLine,   ///< tip straight, tool axis on the great circle
   kArc,    ///< tip on an arc or helix, tool axis on the great circle
   kJoint,  ///< every joint linear in s (approach, joint-space rapid)
-  kTurn    ///< on the pole: tip and axis fixed, the free rotary joint turns from `free_begin` to
+  kTurn,   ///< on the pole: tip and axis fixed, the free rotary joint turns from `free_begin` to
            ///< `free_end`
+  kSpline  ///< tip and axis on quartics in s, see `spline`
 };
+
+/// Quartics of tip and unnormalised axis: component d at x is the sum of c[d][k] x^k, d = 0..2 tip
+/// (mm), d = 3..5 O (the tool axis is O/|O|).
+using PoseQuartic = std::array<std::array<double, 5>, 6>;
 
 /// What the operator sees the machine do on a piece; the `kind` column of a recording.
 enum class MotionKind : std::uint8_t { kApproach, kCut, kRapid, kPoleTurn };
@@ -56,6 +62,8 @@ struct PathPiece {
   double azimuth_begin = 0, azimuth_end = 0;
   double pole_offset = 0;   ///< o
   double azimuth_from = 0;  ///< atan2(o sin, cos) at azimuth_begin
+  PoseQuartic spline{};  ///< kSpline: quartics in s; s is the parameter u of the spline, which is
+                         ///< nearly, not exactly, the length named above
   JointVector
       joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve
   JointVector joints_end{};  ///< joints at s = length, windings included

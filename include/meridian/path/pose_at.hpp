@@ -23,6 +23,26 @@ template <class S>
   return (atan2(S(piece.pole_offset * sine), cosine) - piece.azimuth_from) / piece.axis_turn;
 }
 
+/// Returns tip and unit axis of `quartic` at `x`. Not defined where O is zero, which a band spline
+/// never is: O stays within the axis tolerance of a unit vector.
+/// RT: cycle. Source: docs/motion.md, section 1. Proof: tests/unit/path/pose_at_test.cpp.
+template <class S>
+[[nodiscard]] inline Pose<S> pose_on(const PoseQuartic& quartic, const S& x) noexcept {
+  using std::sqrt;
+  const auto component = [&](int d) {
+    const std::array<double, 5>& c = quartic[d];
+    S sum = x * c[4] + c[3];
+    for (int k = 2; k >= 0; --k) sum = sum * x + c[k];
+    return sum;
+  };
+  Pose<S> out;
+  for (int i = 0; i < 3; ++i) out.tip[i] = component(i);
+  const S o[3] = {component(3), component(4), component(5)};
+  const S shrink = 1.0 / sqrt(S(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]));
+  for (int i = 0; i < 3; ++i) out.axis[i] = o[i] * shrink;
+  return out;
+}
+
 /// Returns the tool pose of `piece` at path length `s` in [0, length].
 ///
 /// A kJoint piece has no path of its own in W: its pose at the begin is returned, and joints_at()
@@ -38,6 +58,7 @@ template <class S>
     }
     return out;
   }
+  if (piece.kind == PathKind::kSpline) return pose_on(piece.spline, s);
   const S x = fraction_at(piece, s);
   if (piece.kind == PathKind::kArc) {
     const auto [sine, cosine] = sin_cos(S(piece.arc_sweep * x));

@@ -67,7 +67,8 @@ double bound(double a, double b, double c) noexcept {
 double axis_noise(const MachineModel& model, const PathPiece& piece, double begin,
                   double end) noexcept {
   const bool is_solved = piece.kind == PathKind::kLine || piece.kind == PathKind::kArc;
-  if (!is_solved || piece.is_free_driven || piece.axis_turn == 0) return 0;
+  const bool turns = piece.kind == PathKind::kSpline || (is_solved && piece.axis_turn != 0);
+  if (!turns || piece.is_free_driven) return 0;
   const double distance = std::min({pole_distance(model, pose_at(piece, begin).axis),
                                     pole_distance(model, pose_at(piece, 0.5 * (begin + end)).axis),
                                     pole_distance(model, pose_at(piece, end).axis)});

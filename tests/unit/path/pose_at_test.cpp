@@ -77,6 +77,47 @@ TEST(PoseAt, LetsTheAzimuthGrowEvenlyBesideThePole) {
   }
 }
 
+/// A spline piece 2 mm long with a different polynomial in every component.
+PathPiece curved_spline() {
+  PathPiece piece;
+  piece.kind = PathKind::kSpline;
+  piece.length = 2;
+  piece.spline = {{{100, 1, 0.5, -0.25, 0.125},
+                   {-40, 0.5, 0.25, 0.1, -0.05},
+                   {7, -1, 0.3, 0.2, 0.1},
+                   {0.1, 0.02, -0.01, 0.003, 0.001},
+                   {-0.2, 0.01, 0.02, -0.002, 0.0005},
+                   {0.97, -0.01, 0.002, 0.001, -0.0004}}};
+  return piece;
+}
+
+TEST(PoseAt, FollowsTheQuarticsOfASplineWithAUnitAxis) {
+  const PathPiece piece = curved_spline();
+  const ToolPose pose = pose_at(piece, 1.5);
+  EXPECT_NEAR(pose.tip[0], 100 + 1.5 + 0.5 * 2.25 - 0.25 * 3.375 + 0.125 * 5.0625, 1e-13);
+  EXPECT_NEAR(pose.tip[2], 7 - 1.5 + 0.3 * 2.25 + 0.2 * 3.375 + 0.1 * 5.0625, 1e-14);
+  EXPECT_NEAR(pose.axis.norm(), 1.0, 1e-15);
+  const double o3 = 0.1 + 0.03 - 0.0225 + 0.003 * 3.375 + 0.001 * 5.0625;
+  const double o4 = -0.2 + 0.015 + 0.045 - 0.002 * 3.375 + 0.0005 * 5.0625;
+  EXPECT_NEAR(pose.axis[1] / pose.axis[0], o4 / o3, 1e-14);
+  EXPECT_EQ(pose_at(piece, 0.0).tip[1], -40);
+}
+
+TEST(PoseAt, GivesDerivativesOfASplineThroughJets) {
+  const PathPiece piece = curved_spline();
+  const double s = 0.7, h = 1e-3;
+  const auto pose = pose_at(piece, Jet<3>::variable(s));
+  EXPECT_NEAR(pose.tip[0].derivative(3), 6 * -0.25 + 24 * 0.125 * s, 1e-13);
+  for (int i = 0; i < 3; ++i) {
+    const auto axis = [&](int steps) { return pose_at(piece, s + steps * h).axis[i]; };
+    EXPECT_EQ(pose.axis[i].value(), axis(0));
+    EXPECT_NEAR(pose.axis[i].derivative(1), (axis(1) - axis(-1)) / (2 * h), 1e-7);
+    EXPECT_NEAR(pose.axis[i].derivative(2), (axis(1) - 2 * axis(0) + axis(-1)) / (h * h), 1e-7);
+    EXPECT_NEAR(pose.axis[i].derivative(3),
+                (axis(2) - 2 * axis(1) + 2 * axis(-1) - axis(-2)) / (2 * h * h * h), 1e-6);
+  }
+}
+
 TEST(PoseAt, StaysAtTheBeginOfAPieceWithoutLength) {
   PathPiece piece = tilted_line();
   piece.length = 0;
