@@ -18,6 +18,7 @@ struct ProgressView {
   std::uint64_t block_count = 0;  ///< 0: not known
   std::uint32_t line = 0;
   double feed_programmed_mm_per_min = 0, feed_achieved_mm_per_min = 0;
+  bool is_under_way = false;        ///< from the approach to the last block, stops on the way too
   double fraction = 0;              ///< of the program's ideal time, 0 to 1
   std::optional<double> to_go_s{};  ///< once enough has run to tell
 };
@@ -42,6 +43,7 @@ class ProgressMeter {
                       .line = status.line,
                       .feed_programmed_mm_per_min = status.feed_programmed_mm_per_min,
                       .feed_achieved_mm_per_min = status.feed_achieved_mm_per_min};
+    view.is_under_way = is_under_way(status.state);
     if (times_.total_s() > 0) view.fraction = done_s / times_.total_s();
     constexpr double kEnough = 0.005;
     if (view.fraction > kEnough && run_s_ > 0) {
@@ -53,6 +55,11 @@ class ProgressMeter {
  private:
   [[nodiscard]] static bool is_running(State state) noexcept {
     return state == State::kRunning || state == State::kStarving || state == State::kHolding;
+  }
+
+  [[nodiscard]] static bool is_under_way(State state) noexcept {
+    return state == State::kApproaching || is_running(state) || state == State::kHeld ||
+           state == State::kStarved || state == State::kAborting;
   }
 
   TimeTable times_;

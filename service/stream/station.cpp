@@ -28,6 +28,7 @@ std::optional<dds::SessionRequest> Station::due_request(std::int64_t now_ns) {
 
 /// Reads from the source until `wanted` blocks wait from the cursor on, or it has no more.
 void Station::fill(std::uint64_t wanted) {
+  is_source_waiting_ = false;
   while (!is_at_end_ && progress_.read < cursor_ + wanted) {
     Supply supply = source_();
     switch (supply.kind) {
@@ -39,12 +40,24 @@ void Station::fill(std::uint64_t wanted) {
         is_at_end_ = true;
         break;
       case Supply::Kind::kWait:
+        is_source_waiting_ = true;
         return;
       case Supply::Kind::kBad:
         stop(StationState::kBadSource, std::move(supply.text));
         return;
     }
   }
+}
+
+/// A small batch waits for more credit, unless nothing under way could bring any, and a short while
+/// for more blocks of a source that has none just now.
+bool Station::is_worth_sending(std::uint64_t count, std::uint64_t there, std::int64_t now_ns) {
+  if (count == dds::kBatchBlocks) return true;
+  if (count == 0) return false;
+  if (count < there) return cursor_ == acknowledged_;
+  if (!is_source_waiting_) return true;
+  if (!gathering_since_ns_) gathering_since_ns_ = now_ns;
+  return now_ns - *gathering_since_ns_ >= options_.gather_ns;
 }
 
 bool Station::next_batch(std::int64_t now_ns, dds::Batch& batch) {
@@ -63,11 +76,9 @@ bool Station::next_batch(std::int64_t now_ns, dds::Batch& batch) {
   const std::uint64_t there = progress_.read - cursor_;
   const std::uint64_t count = std::min(may_send, there);
   const bool is_end = is_at_end_ && count == there;
-  if (count == 0 && !is_end) return false;
-  // A small batch waits for more credit, unless nothing under way could bring any.
-  const bool is_small = count < dds::kBatchBlocks && count < there;
-  if (is_small && cursor_ > acknowledged_) return false;
+  if (!is_end && !is_worth_sending(count, there, now_ns)) return false;
 
+  gathering_since_ns_.reset();
   cursor_before_ = cursor_;
   end_sent_before_ = is_end_sent_;
   batch.session = request_.session;

@@ -41,6 +41,7 @@ struct StationOptions {
   std::int64_t open_timeout_ns = 5'000'000'000;
   std::int64_t resend_after_ns = 500'000'000;  ///< no progress for so long: send again
   std::int64_t gap_quiet_ns = 50'000'000;      ///< at least so long between two resends for one gap
+  std::int64_t gather_ns = 5'000'000;  ///< a source that waits fills a small batch for so long
 };
 
 /// For progress bars.
@@ -64,6 +65,8 @@ class Station {
   [[nodiscard]] std::optional<dds::SessionRequest> due_request(std::int64_t now_ns);
   /// Fills the next batch that may be sent now; false where there is none.
   [[nodiscard]] bool next_batch(std::int64_t now_ns, dds::Batch& batch);
+  /// Whether a small batch is due StationOptions::gather_ns after its first block, not at an event.
+  [[nodiscard]] bool is_gathering() const noexcept { return gathering_since_ns_.has_value(); }
   /// The batch of the last next_batch() could not be written: it is due again.
   void on_not_sent() noexcept;
   void on_credit(const dds::Credit& credit, std::int64_t now_ns);
@@ -80,6 +83,8 @@ class Station {
 
  private:
   void fill(std::uint64_t wanted);
+  [[nodiscard]] bool is_worth_sending(std::uint64_t count, std::uint64_t there,
+                                      std::int64_t now_ns);
   void stop(StationState state, std::string text);
 
   dds::SessionRequest request_;
@@ -92,10 +97,12 @@ class Station {
 
   std::deque<ClBlock> blocks_;  ///< read and not acknowledged, from sequence `acknowledged_`
   std::uint64_t acknowledged_ = 0;
-  std::uint64_t cursor_ = 0;       ///< next sequence to be sent
-  std::uint64_t granted_end_ = 0;  ///< sequences below it may be sent
-  bool is_at_end_ = false;         ///< the source has no more
-  bool is_end_sent_ = false;       ///< the end mark went out after `cursor_` got to the end
+  std::uint64_t cursor_ = 0;                        ///< next sequence to be sent
+  std::uint64_t granted_end_ = 0;                   ///< sequences below it may be sent
+  bool is_at_end_ = false;                          ///< the source has no more
+  bool is_source_waiting_ = false;                  ///< it had nothing when asked last
+  std::optional<std::int64_t> gathering_since_ns_;  ///< when a small batch was first held back
+  bool is_end_sent_ = false;  ///< the end mark went out after `cursor_` got to the end
   std::uint64_t service_id_ = 0;
   std::int64_t opened_ns_ = 0, asked_ns_ = 0, progress_ns_ = 0, went_back_ns_ = 0;
   std::uint64_t went_back_to_ = ~std::uint64_t{0};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/stream/station_link.hpp"
 
+#include <algorithm>
 #include <thread>
 
 namespace meridian::stream {
@@ -51,6 +52,8 @@ void StationLink::work(std::chrono::milliseconds timeout) {
     station_.on_not_sent();
     break;
   }
+  constexpr std::chrono::milliseconds kGather{2};
+  if (station_.is_gathering()) timeout = std::min(timeout, kGather);
   if (sent < kBatchesAtOnce) waitset_.wait(timeout);
 }
 

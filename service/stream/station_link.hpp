@@ -22,6 +22,8 @@ class StationLink {
 
   /// Sends and receives what there is; waits at most `timeout` where there is nothing.
   void work(std::chrono::milliseconds timeout);
+  /// Ends a work() that waits, or the next one; from any thread.
+  void wake() noexcept { waitset_.wake(); }
   /// Gives the machine back and lets the word get out.
   void close();
 

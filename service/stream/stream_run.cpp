@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/stream/stream_run.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <fstream>
-#include <iostream>
-#include <memory>
+#include <optional>
 
 #include "meridian/rt/state_table.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/stream/operator_link.hpp"
+#include "service/stream/source_pump.hpp"
 #include "service/stream/station.hpp"
 #include "service/stream/station_link.hpp"
 
@@ -27,20 +29,15 @@ std::string file_name(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
-Source source_of(cl::ClReader& reader) {
-  return [&reader]() -> Supply {
-    auto next = reader.next();
-    if (!next) return {.kind = Supply::Kind::kBad, .text = next.error().text()};
-    if (!*next) return {.kind = Supply::Kind::kEnd};
-    return {.kind = Supply::Kind::kBlock, .block = **next};
-  };
-}
+constexpr const char* kStandardInput = "standard input";
+
+bool is_pipe(const StreamOptions& options) { return options.file == "-"; }
 
 dds::SessionRequest request_of(const StreamOptions& options) {
   dds::SessionRequest request;
   request.session = draw_id();
   request.station = options.station;
-  request.program = options.file == "-" ? "standard input" : file_name(options.file);
+  request.program = is_pipe(options) ? kStandardInput : file_name(options.file);
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies = dds::kPolicyContainsActions;
@@ -81,18 +78,23 @@ class Newsreader {
 StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options,
                      const std::atomic<bool>& is_stopping, const StreamListener& listener) {
   std::ifstream file;
-  if (options.file != "-") {
+  if (!is_pipe(options)) {
     file.open(options.file, std::ios::binary);
     if (!file) {
       listener.say(options.file + ": cannot be opened; check the path and the right to read it");
       return StreamEnd::kInputRefused;
     }
   }
-  cl::ClReader reader(options.file == "-" ? std::cin : static_cast<std::istream&>(file),
-                      options.file, options.reader);
+  cl::ClReader reader(file, options.file, options.reader);
+  Source source = [&reader] { return supply_of(reader); };
   const dds::SessionRequest request = request_of(options);
-  Station station(request, source_of(reader));
+  Station station(request, [&source] { return source(); });
   StationLink link(participant, station);
+  std::optional<SourcePump> pump;
+  if (is_pipe(options)) {
+    pump.emplace(STDIN_FILENO, kStandardInput, options.reader, [&link] { link.wake(); });
+    source = [&pump] { return pump->take(); };
+  }
   ProgressMeter meter(options.preflight ? options.preflight->times : TimeTable{});
   Newsreader news(listener);
 
@@ -112,7 +114,10 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
     if (const auto status = link.take_status()) {
       heard_ns = now_ns;
       const bool is_ours = status->session == request.session;
-      if (is_ours) listener.show(meter.look(*status, now_ns));
+      if (is_ours) {
+        const ProgressView view = meter.look(*status, now_ns);
+        if (view.is_under_way) listener.show(view);
+      }
       if (is_ours || station.state() != StationState::kOpening) news.status(*status);
     } else if (now_ns - heard_ns > kPatience_ns) {
       listener.say("no word from the service for 5 s: is meridiand still running?");

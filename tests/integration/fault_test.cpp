@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "integration/plant.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/config/machine_file.hpp"
 
 namespace meridian::test {
 namespace {
@@ -99,6 +101,43 @@ TEST_F(Fault, OfTheServiceItselfLeavesAMachineThatWaitsForEnableAndStart) {
   const auto reset = plant.say(Verb::kReset);
   ASSERT_TRUE(reset && reset->is_accepted) << (reset ? reset->text : "no reply");
   EXPECT_TRUE(plant.enable()) << plant.service().said();
+}
+
+TEST(StationFault, LeavesAMachineThatRunsWhatItWasGivenStopsOnThePathAndWaits) {
+  Plant plant;
+  plant.start_service();
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  const auto program = small_program(24, 2000);
+  InputPipe pipe;
+  Process station({"meridian", "stream", "-", "--domain", plant.domain()},
+                  plant.folder() / "station.log", &pipe);
+  pipe.write("PARTNO/PIPE\nUNITS/MM\nFEDRAT/2000,MMPM\n" + cl_text(program));
+  ASSERT_TRUE(eventually([&] { return plant.status().blocks_received >= program.size(); }))
+      << station.said();
+  ASSERT_TRUE(plant.wait_for(State::kLoaded));
+  const auto start = plant.say(Verb::kStart);
+  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  station.send_signal(SIGKILL);
+  ASSERT_TRUE(station.wait(milliseconds(2000)));
+
+  ASSERT_TRUE(plant.wait_for(State::kStarved, milliseconds(30000))) << plant.service().said();
+  const dds::Status starved = plant.status();
+  EXPECT_EQ(starved.alarm, Alarm::kNone);
+  EXPECT_EQ(starved.block, program.size() - 1) << "every block that was granted is run";
+  EXPECT_NE(starved.session, 0U) << "the program is not over";
+  const MachineModel model = config::load_machine(machine_file());
+  const ToolPose at = forward(model, model.tool_length_mm, starved.joints);
+  const Vector3 wanted(program.back().tip_mm.data());
+  EXPECT_LT((at.tip - wanted).norm(), 2e-3) << "on the path, at the end of the last block";
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_EQ(plant.status().state, State::kStarved) << "it waits for the operator";
+  EXPECT_EQ(plant.status().joints, starved.joints);
+  const auto abort = plant.say(Verb::kAbort);
+  ASSERT_TRUE(abort && abort->is_accepted) << (abort ? abort->text : "no reply");
+  ASSERT_TRUE(plant.wait_for(State::kReady)) << plant.service().said();
+  EXPECT_TRUE(eventually([&] { return plant.status().session == 0; })) << "the machine is free";
 }
 
 }  // namespace

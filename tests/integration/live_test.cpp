@@ -4,8 +4,8 @@
 
 #include <cstdio>
 #include <fstream>
-#include <iomanip>
 #include <string>
+#include <vector>
 
 #include "integration/plant.hpp"
 #include "meridian/units.hpp"
@@ -17,17 +17,13 @@ namespace {
 
 /// The small program as a CL file, with a dwell and an action in it.
 void write_cl_file(const std::string& path, int blocks) {
+  const auto program = small_program(blocks, 4000);
+  const std::size_t half = program.size() / 2;
+  const std::vector<ClBlock> first(program.begin(), program.begin() + static_cast<long>(half));
   std::ofstream file(path);
   file << "PARTNO SMALL PROGRAM\nUNITS/MM\nSPINDL/8000,RPM,CLW\nFEDRAT/4000,MMPM\n"
-       << std::setprecision(12);
-  int place = 0;
-  for (const ClBlock& block : small_program(blocks, 4000)) {
-    if (++place == blocks / 2) file << "DELAY/0.3\nCOOLNT/FLOOD\n";
-    file << "GOTO/";
-    for (const double x : block.tip_mm) file << x << ",";
-    file << block.axis[0] << "," << block.axis[1] << "," << block.axis[2] << "\n";
-  }
-  file << "FINI\n";
+       << cl_text(first) << "DELAY/0.3\nCOOLNT/FLOOD\n"
+       << cl_text(program, half) << "FINI\n";
 }
 
 /// Station, service, drives and operator as they are live; simulator and checker judge them.

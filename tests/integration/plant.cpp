@@ -7,8 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -35,7 +37,29 @@ bool eventually(const std::function<bool()>& condition, milliseconds patience) {
   return condition();
 }
 
-Process::Process(const std::vector<std::string>& arguments, std::filesystem::path log)
+InputPipe::InputPipe() {
+  std::array<int, 2> ends{-1, -1};
+  (void)::pipe2(ends.data(), O_CLOEXEC);
+  read_end_ = ends[0];
+  write_end_ = ends[1];
+}
+
+InputPipe::~InputPipe() {
+  close();
+  ::close(read_end_);
+}
+
+void InputPipe::write(const std::string& text) const {
+  (void)!::write(write_end_, text.data(), text.size());
+}
+
+void InputPipe::close() {
+  if (write_end_ >= 0) ::close(write_end_);
+  write_end_ = -1;
+}
+
+Process::Process(const std::vector<std::string>& arguments, std::filesystem::path log,
+                 const InputPipe* input)
     : log_(std::move(log)) {
   std::vector<std::string> words = arguments;
   words[0] = std::string(MERIDIAN_BINARY_DIR) + "/bin/" + words[0];
@@ -48,6 +72,7 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
   const int file = ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
   ::dup2(file, STDOUT_FILENO);
   ::dup2(file, STDERR_FILENO);
+  if (input != nullptr) ::dup2(input->read_end(), STDIN_FILENO);
   ::execv(argv[0], argv.data());
   ::_exit(127);
 }
@@ -78,6 +103,18 @@ std::string Process::said() const {
   std::ostringstream all;
   all << std::ifstream(log_).rdbuf();
   return all.str();
+}
+
+std::string cl_text(const std::vector<ClBlock>& blocks, std::size_t begin) {
+  std::ostringstream text;
+  text << std::setprecision(12);
+  for (std::size_t i = begin; i < blocks.size(); ++i) {
+    const ClBlock& block = blocks[i];
+    text << "GOTO/";
+    for (const double x : block.tip_mm) text << x << ",";
+    text << block.axis[0] << "," << block.axis[1] << "," << block.axis[2] << "\n";
+  }
+  return text.str();
 }
 
 std::string machine_file() {

@@ -25,11 +25,30 @@ using std::chrono::milliseconds;
 [[nodiscard]] bool eventually(const std::function<bool()>& condition,
                               milliseconds patience = milliseconds(5000));
 
+/// A pipe that the test writes and a process reads as its standard input.
+class InputPipe {
+ public:
+  InputPipe();
+  ~InputPipe();
+  InputPipe(const InputPipe&) = delete;
+  InputPipe& operator=(const InputPipe&) = delete;
+
+  void write(const std::string& text) const;
+  /// What the reader sees as the end of its input.
+  void close();
+  [[nodiscard]] int read_end() const noexcept { return read_end_; }
+
+ private:
+  int read_end_ = -1, write_end_ = -1;
+};
+
 /// A program of ours that runs beside the test; killed with it.
 class Process {
  public:
-  /// Starts build/bin/`arguments[0]`; what it says goes to `log`.
-  Process(const std::vector<std::string>& arguments, std::filesystem::path log);
+  /// Starts build/bin/`arguments[0]`; what it says goes to `log`. It reads `input` where one is
+  /// given, else what the test reads.
+  Process(const std::vector<std::string>& arguments, std::filesystem::path log,
+          const InputPipe* input = nullptr);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -103,6 +122,9 @@ class Plant {
 /// A small five-axis program near home: zigzag cuts at `feed_mm_per_min` with tilting axis.
 [[nodiscard]] std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min,
                                                  double step_mm = 2);
+
+/// `blocks` from place `begin` on as statements of a CL file, without head and end.
+[[nodiscard]] std::string cl_text(const std::vector<ClBlock>& blocks, std::size_t begin = 0);
 
 [[nodiscard]] std::string machine_file();
 

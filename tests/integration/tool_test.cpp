@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <fstream>
 #include <string>
@@ -58,6 +59,43 @@ TEST_F(Tool, StreamsAPartFromOpenToEnd) {
   EXPECT_NE(said.find("machine is Running"), std::string::npos) << said;
   EXPECT_NE(said.find("ran to its end"), std::string::npos) << said;
   EXPECT_EQ(said.find('\r'), std::string::npos) << "in a pipe plain lines";
+}
+
+TEST_F(Tool, StreamsAPipeAtThePaceOfItsWriter) {
+  plant.start_service();
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  InputPipe pipe;
+  Process stream({"meridian", "stream", "-", "--wait-end", "--domain", plant.domain()},
+                 plant.folder() / "pipe.log", &pipe);
+  const auto program = small_program(12, 600);
+  const std::vector<ClBlock> first(program.begin(), program.begin() + 9);
+  pipe.write("PARTNO/PIPE\nUNITS/MM\nFEDRAT/600,MMPM\n" + cl_text(first));
+  ASSERT_TRUE(eventually([&] { return plant.status().blocks_received >= first.size(); }, kShort))
+      << "a batch that is not full waits for nobody: " << stream.said();
+  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << stream.said();
+  EXPECT_EQ(stream.said().find('%'), std::string::npos)
+      << "nothing is under way: " << stream.said();
+  Process start = run({"ctl", "start", "--wait", "Starved"});
+  ASSERT_EQ(start.wait(kLong), 0) << start.said() << plant.service().said();
+  EXPECT_NE(stream.said().find('%'), std::string::npos) << stream.said();
+  pipe.write(cl_text(program, first.size()) + "FINI\n");
+  pipe.close();
+  Process resume = run({"ctl", "resume"});
+  EXPECT_TRUE(resume.wait(kShort));  // refused where the machine went on by itself
+  EXPECT_EQ(stream.wait(kLong), 0) << stream.said() << plant.service().said();
+  EXPECT_NE(stream.said().find("ran to its end"), std::string::npos) << stream.said();
+}
+
+TEST_F(Tool, LeavesAPipeThatIsSilentWhenItIsInterrupted) {
+  plant.start_service();
+  InputPipe pipe;
+  Process stream({"meridian", "stream", "-", "--domain", plant.domain()},
+                 plant.folder() / "pipe.log", &pipe);
+  ASSERT_TRUE(eventually([&] { return plant.status().session != 0; }, kShort)) << stream.said();
+  stream.send_signal(SIGINT);
+  EXPECT_EQ(stream.wait(kShort), 1) << stream.said();
+  EXPECT_NE(stream.said().find("interrupted"), std::string::npos) << stream.said();
 }
 
 TEST_F(Tool, RefusesInputBeforeTheMachineSeesIt) {

@@ -70,6 +70,21 @@ TEST(Progress, DoesNotCountTheTimeInHeld) {
   EXPECT_DOUBLE_EQ(*view.to_go_s, 50);
 }
 
+TEST(Progress, IsUnderWayFromTheApproachToTheLastBlockAndInStopsOnTheWay) {
+  ProgressMeter meter(TimeTable{});
+  const auto is_under_way = [&](State state) {
+    return meter.look(status(state, 0), 0).is_under_way;
+  };
+  for (const State state : {State::kApproaching, State::kRunning, State::kHolding, State::kHeld,
+                            State::kStarving, State::kStarved, State::kAborting}) {
+    EXPECT_TRUE(is_under_way(state)) << static_cast<int>(state);
+  }
+  for (const State state : {State::kOff, State::kEnabling, State::kReady, State::kLoaded,
+                            State::kDisabling, State::kFaultStop, State::kFault}) {
+    EXPECT_FALSE(is_under_way(state)) << static_cast<int>(state);
+  }
+}
+
 TEST(Progress, SaysNothingAboutTimeBeforeAnythingRan) {
   ProgressMeter meter(TimeTable{});
   EXPECT_FALSE(meter.look(status(State::kLoaded, 0), 0).to_go_s);

@@ -177,8 +177,42 @@ TEST(StationProtocol, WaitsForASourceThatHasNothingNow) {
   station.on_credit(credit(0, 1), 0);
   dds::Batch batch;
   EXPECT_FALSE(station.next_batch(0, batch));
-  ASSERT_TRUE(station.next_batch(0, batch));
+  EXPECT_FALSE(station.is_gathering());
+  EXPECT_FALSE(station.next_batch(0, batch));
+  EXPECT_TRUE(station.is_gathering());
+  ASSERT_TRUE(station.next_batch(StationOptions{}.gather_ns, batch));
   EXPECT_EQ(batch.count, 1u);
+}
+
+/// A source that has had `there` blocks so far and waits for more.
+struct SlowSource {
+  std::uint64_t there = 0, given = 0;
+  Supply operator()() {
+    if (given == there) return {.kind = Supply::Kind::kWait};
+    return {.kind = Supply::Kind::kBlock, .block = test::good_cut(given++)};
+  }
+};
+
+TEST(StationProtocol, HoldsASmallBatchOfASlowSourceBackForAFewMillisecondsOnly) {
+  SlowSource source;
+  Station station({.session = 5}, [&source] { return source(); });
+  static_cast<void>(station.due_request(0));
+  station.on_credit(credit(0, 1000), 0);
+  constexpr std::int64_t kGather = StationOptions{}.gather_ns;
+  dds::Batch batch;
+  source.there = 3;
+  EXPECT_FALSE(station.next_batch(0, batch));
+  source.there = 5;
+  EXPECT_FALSE(station.next_batch(kGather - 1, batch));
+  ASSERT_TRUE(station.next_batch(kGather, batch)) << "so long after the first of them";
+  EXPECT_EQ(batch.count, 5u);
+  EXPECT_FALSE(station.is_gathering());
+  source.there = 5 + 40;
+  ASSERT_TRUE(station.next_batch(2 * kGather, batch)) << "a whole batch waits for nothing";
+  EXPECT_EQ(batch.count, 32u);
+  EXPECT_FALSE(station.next_batch(2 * kGather, batch));
+  ASSERT_TRUE(station.next_batch(3 * kGather, batch));
+  EXPECT_EQ(batch.count, 8u);
 }
 
 }  // namespace
