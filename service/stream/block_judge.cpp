@@ -172,7 +172,9 @@ BlockReject BlockJudge::judge_pose(const ClBlock& block) {
       joints_ = found.q;
       return true;
     }
-    if (!has_joints) first = reject(block, RejectCode::kTravel, found.q[outside], outside);
+    if (!has_joints) {
+      first = reject(block, RejectCode::kTravel, limited_value(model_, found.q, outside), outside);
+    }
     has_joints = true;
     return false;
   };

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/stream/block_judge.hpp"
 
@@ -21,10 +22,10 @@ std::string text(const char* format, Arguments... arguments) {
   return buffer;
 }
 
-/// Returns "b4 at 612.3 mm (travel -400 to 400 mm)".
+/// Returns "b4 at 612.3 mm (travel -400 to 400 mm)"; of a drive of the stage the same.
 std::string joint_text(const BlockReject& reject, const MachineModel& model) {
-  if (reject.joint < 0 || reject.joint >= model.joint_count) return "a joint";
-  const JointSpec& joint = model.joints[reject.joint];
+  if (reject.joint < 0 || reject.joint >= limited_count(model)) return "a joint";
+  const JointSpec& joint = limited_spec(model, reject.joint);
   const char* unit = joint.is_rotary ? "deg" : "mm";
   const auto shown = [&joint](double value) {
     return joint.is_rotary ? units::deg_from_rad(value) : value;

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 
 /// Machines for tests of the core, which knows no files.
@@ -53,6 +53,34 @@ namespace meridian::test {
   model.joints[3].limits.travel_max = 4 * std::numbers::pi;
   model.joints[4].limits.travel_min = units::rad_from_deg(-60);
   model.joints[4].limits.travel_max = units::rad_from_deg(60);
+  return model;
+}
+
+/// lai_machine() with two sliders that carry slide b2 and table theta1, which turns 60° either way.
+/// The table carries the workpiece, so slide and turn of the stage run against the joints.
+[[nodiscard]] inline MachineModel hybrid_machine() {
+  MachineModel model = lai_machine();
+  model.name = "lai-hybrid";
+  model.stage = {.kind = StageKind::kTwoSlider,
+                 .linear_joint = 1,
+                 .rotary_joint = 3,
+                 .sign_s = -1,
+                 .sign_phi = -1,
+                 .radius_mm = 150,
+                 .rail_mm = 150,
+                 .rod_mm = 300,
+                 .phi_max_rad = units::rad_from_deg(60)};
+  model.joints[3].limits.travel_min = units::rad_from_deg(-60);
+  model.joints[3].limits.travel_max = units::rad_from_deg(60);
+  for (std::size_t i = 0; i < kStageDrives; ++i) {
+    model.stage_drives[i] = model.joints[1];
+    model.stage_drives[i].name = i == 0 ? "u1" : "u2";
+    model.stage_drives[i].limits.travel_min = -900;
+    model.stage_drives[i].limits.travel_max = 400;
+  }
+  const JointVector home = drives_of(model, JointVector{});
+  model.stage_drives[0].home = home[1];
+  model.stage_drives[1].home = home[3];
   return model;
 }
 

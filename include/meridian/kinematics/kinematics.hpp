@@ -12,6 +12,7 @@
 #include "meridian/kinematics/chain.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/lai_chain.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/robot.hpp"
 #include "meridian/kinematics/winding.hpp"
@@ -275,16 +276,26 @@ inline void wind_into_travel(const MachineModel& model, const JointVector& refer
   }
 }
 
-/// Returns the first joint that is farther than `margin` outside its travel (or not a number); -1
-/// where all are inside. Endless joints have no travel. Units: mm and rad alike. RT: cycle.
+/// Whether `at` is a number no farther than `margin` outside the travel of `joint`. Endless joints
+/// have no travel. Units: mm and rad alike. RT: cycle.
+[[nodiscard]] inline bool is_inside_travel(const JointSpec& joint, double at,
+                                           double margin) noexcept {
+  return joint.is_endless
+             ? std::isfinite(at)
+             : at >= joint.limits.travel_min - margin && at <= joint.limits.travel_max + margin;
+}
+
+/// Returns the first joint, or drive of the stage, that is farther than `margin` outside its travel
+/// (or not a number), by its place in limited.hpp; -1 where all are inside. RT: cycle.
 [[nodiscard]] inline int first_joint_outside_travel(const MachineModel& model, const JointVector& q,
                                                     double margin) noexcept {
   for (int i = 0; i < model.joint_count; ++i) {
-    const JointLimits& limits = model.joints[i].limits;
-    const bool is_inside = model.joints[i].is_endless ? std::isfinite(q[i])
-                                                      : q[i] >= limits.travel_min - margin &&
-                                                            q[i] <= limits.travel_max + margin;
-    if (!is_inside) return i;
+    if (!is_inside_travel(model.joints[i], q[i], margin)) return i;
+  }
+  if (!has_stage(model)) return -1;
+  const LimitedVector all = limited_of(model, q);
+  for (int i = model.joint_count; i < limited_count(model); ++i) {
+    if (!is_inside_travel(limited_spec(model, i), all[i], margin)) return i;
   }
   return -1;
 }

@@ -11,6 +11,7 @@
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/lai.hpp"
 #include "meridian/kinematics/robot.hpp"
+#include "meridian/kinematics/stage.hpp"
 
 namespace meridian {
 
@@ -59,6 +60,8 @@ struct MachineModel {
   RobotKinematics robot;
   int joint_count = 5;
   std::array<JointSpec, kMaxJoints> joints;
+  ActuatorStage stage;  ///< between two of the joints and their drives; identity: none
+  std::array<JointSpec, kStageDrives> stage_drives;  ///< its sliders u1, u2 (linear)
   double tool_length_mm = 0;  ///< tool in the spindle when the service starts
   Eigen::Matrix3d frame_rotation =
       Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics

@@ -16,6 +16,9 @@ enum class StageKind : std::uint8_t {
   kPinSlot     ///< two sliders whose pins run in radial slots of the table
 };
 
+/// Drives of a stage.
+inline constexpr int kStageDrives = 2;
+
 /// What stands between two of the joints and their drives: a stage with two sliders u1, u2 that
 /// carries a slide s and a table angle φ, with s = sign_s · joint + offset_s and φ likewise.
 /// The drives take the places of the two joints in drive order, u1 that of the linear one.
@@ -108,6 +111,18 @@ template <class S>
   const double d = g.radius_mm * cosine - g.rail_mm;
   const double rod_rate = d * g.radius_mm * sine / std::sqrt((g.rod_mm - d) * (g.rod_mm + d));
   return 2.0 * g.radius_mm * cosine + (g.side1 - g.side2) * rod_rate;
+}
+
+/// Largest way that either drive makes for a turn of the table, mm/rad, within the stage's range:
+/// what an error of φ costs.
+[[nodiscard]] inline double lever_mm(const ActuatorStage& g) noexcept {
+  if (g.kind == StageKind::kIdentity) return 0;
+  const double sine = std::sin(g.phi_max_rad), cosine = std::cos(g.phi_max_rad);
+  if (g.kind == StageKind::kPinSlot) return std::abs(g.rail_mm) / (cosine * cosine);
+  // |d(±r sin φ)| is r at most; |w'| = |d| r |sin φ| / w, with |d| and sin φ at their largest.
+  const double d =
+      std::max(std::abs(g.radius_mm - g.rail_mm), std::abs(g.radius_mm * cosine - g.rail_mm));
+  return g.radius_mm * (1 + d * sine / std::sqrt((g.rod_mm - d) * (g.rod_mm + d)));
 }
 
 }  // namespace stage

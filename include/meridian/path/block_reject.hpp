@@ -33,7 +33,7 @@ struct BlockReject {
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
   RejectCode code = RejectCode::kNone;
-  std::int32_t joint = -1;  ///< machine order; -1: none
+  std::int32_t joint = -1;  ///< machine order, then the drives of the stage; -1: none
   double value = 0;         ///< see RejectCode
 };
 static_assert(std::is_trivially_copyable_v<BlockReject>);

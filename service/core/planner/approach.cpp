@@ -54,14 +54,15 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
     }
     return share * whole > kNoClearance_mm ? share * whole : 0;
   }
-  // With the axis fixed the joints of a machine with linear joints are linear in the lift.
+  // With the axis fixed joints and drives of a machine with linear joints are linear in the lift.
   const auto at = solve_near(lifted(pose, whole), joints, tool_length_mm);
-  for (int i = 0; i < model_.joint_count; ++i) {
-    if (model_.joints[i].is_endless) continue;
-    const double by = at.q[i] - joints[i];
-    const double end =
-        by > 0 ? model_.joints[i].limits.travel_max : model_.joints[i].limits.travel_min;
-    if (std::abs(by) > 1e-9) share = std::min(share, (end - joints[i]) / by);
+  const LimitedVector from = limited_of(model_, joints), to = limited_of(model_, at.q);
+  for (int i = 0; i < limited_count(model_); ++i) {
+    const JointSpec& spec = limited_spec(model_, i);
+    if (spec.is_endless) continue;
+    const double by = to[i] - from[i];
+    const double end = by > 0 ? spec.limits.travel_max : spec.limits.travel_min;
+    if (std::abs(by) > 1e-9) share = std::min(share, (end - from[i]) / by);
   }
   const double clearance = std::max(0.0, share) * whole;
   return clearance > kNoClearance_mm ? clearance : 0;
@@ -116,7 +117,7 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
   if (ways.count == 0) {
     const auto at = solve(model_, cursor.tool_length_mm, target, 0, cursor.joints);
     const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
-    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, at.q[joint]};
+    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
   }
   for (int n = 0; n < ways.count; ++n) {
     PlanCursor trial = cursor;

@@ -16,10 +16,18 @@ constexpr double kTravelMargin = 1e-9;  // rounding of a travel end that is reac
 /// Rounding of a component of the tool axis.
 constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
 
-/// Joints and their derivatives at one place.
+/// Joints and drives of the stage, and their derivatives, at one place.
 struct Sample {
   double share_rate = 0;
-  JointVector q{}, d1{}, d2{}, d3{};
+  JointVector joints{};
+  LimitedVector q, d1, d2, d3;  ///< filled as far as limited_count()
+
+  void set(int i, const Jet<3>& x) noexcept {
+    q[i] = x.derivative(0);
+    d1[i] = x.derivative(1);
+    d2[i] = x.derivative(2);
+    d3[i] = x.derivative(3);
+  }
 };
 
 bool take_sample(const MachineModel& model, const PathPiece& piece, double s,
@@ -27,35 +35,41 @@ bool take_sample(const MachineModel& model, const PathPiece& piece, double s,
   const auto at = joints_at(model, piece, Jet<3>::variable(s), reference);
   if (at.status == SolveStatus::kUnreachable) return false;
   for (int i = 0; i < model.joint_count; ++i) {
-    out.q[i] = at.q[i].derivative(0);
-    out.d1[i] = at.q[i].derivative(1);
-    out.d2[i] = at.q[i].derivative(2);
-    out.d3[i] = at.q[i].derivative(3);
+    out.set(i, at.q[i]);
+    out.joints[i] = value_of(at.q[i]);
+  }
+  if (has_stage(model)) {
+    const Limited<Jet<3>> all = limited_of(model, at.q);
+    for (int i = model.joint_count; i < limited_count(model); ++i) out.set(i, all[i]);
   }
   out.share_rate = fraction_at(piece, Jet<1>::variable(s)).derivative(1);
   return true;
 }
 
-PathFault judge_travel(const MachineModel& model, const JointVector& q) noexcept {
-  const int joint = first_joint_outside_travel(model, q, kTravelMargin);
-  if (joint < 0) return {};
-  return {PathFault::Kind::kTravel, joint, q[joint]};
+PathFault judge_travel(const MachineModel& model, const LimitedVector& q) noexcept {
+  for (int i = 0; i < limited_count(model); ++i) {
+    if (!is_inside_travel(limited_spec(model, i), q[i], kTravelMargin)) {
+      return {PathFault::Kind::kTravel, i, q[i]};
+    }
+  }
+  return {};
 }
 
 /// Travel at the turning points that the joints have between two samples `h` apart.
 PathFault judge_between(const MachineModel& model, const Sample& a, const Sample& b,
                         double h) noexcept {
-  JointVector q = a.q;
-  bool has_turned = false;
-  for (int i = 0; i < model.joint_count; ++i) {
+  for (int i = 0; i < limited_count(model); ++i) {
     if (!(a.d1[i] * b.d1[i] < 0)) continue;
     // Value of the cubic through both samples where its derivative vanishes (secant).
     const double t = a.d1[i] / (a.d1[i] - b.d1[i]);
     const double by = b.q[i] - a.q[i];
-    q[i] = a.q[i] + by * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * a.d1[i] - t * b.d1[i]);
-    has_turned = true;
+    const double q =
+        a.q[i] + by * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * a.d1[i] - t * b.d1[i]);
+    if (!is_inside_travel(limited_spec(model, i), q, kTravelMargin)) {
+      return {PathFault::Kind::kTravel, i, q};
+    }
   }
-  return has_turned ? judge_travel(model, q) : PathFault{};
+  return {};
 }
 
 /// Largest of three samples of a smooth function, raised by what it may do between them.
@@ -88,6 +102,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
     return fault;
   }
   const double h = (end - begin) / cells;
+  const int count = limited_count(model);
   for (int n = 0; n < cells; ++n) {
     at[0] = at[2];
     JointCell& cell = cells_[count_++];
@@ -95,14 +110,14 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
     cell.end = n + 1 == cells ? end : begin + (n + 1) * h;
     for (int k = 1; k <= 2; ++k) {
       const double s = k == 2 ? cell.end : 0.5 * (cell.begin + cell.end);
-      if (!take_sample(model, piece, s, at[k - 1].q, at[k])) {
+      if (!take_sample(model, piece, s, at[k - 1].joints, at[k])) {
         return {PathFault::Kind::kUnreachable, -1, 0};
       }
       PathFault fault = judge_between(model, at[k - 1], at[k], h / 2);
       if (fault.kind == PathFault::Kind::kNone) fault = judge_travel(model, at[k].q);
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }
-    for (int i = 0; i < kMaxJoints; ++i) {
+    for (int i = 0; i < count; ++i) {
       cell.d1[i] = bound(at[0].d1[i], at[1].d1[i], at[2].d1[i]);
       cell.d2[i] = bound(at[0].d2[i], at[1].d2[i], at[2].d2[i]);
       cell.d3[i] = bound(at[0].d3[i], at[1].d3[i], at[2].d3[i]);
@@ -110,7 +125,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
     cell.share_rate = bound(at[0].share_rate, at[1].share_rate, at[2].share_rate);
     cell.noise_rad = axis_noise(model, piece, cell.begin, cell.end);
   }
-  joints = at[2].q;
+  joints = at[2].joints;
   return {};
 }
 
@@ -120,7 +135,7 @@ JointCell merged(const JointCell& a, const JointCell& b) noexcept {
   out.end = std::max(a.end, b.end);
   out.share_rate = std::max(a.share_rate, b.share_rate);
   out.noise_rad = std::max(a.noise_rad, b.noise_rad);
-  for (int i = 0; i < kMaxJoints; ++i) {
+  for (int i = 0; i < kMaxLimited; ++i) {
     out.d1[i] = std::max(a.d1[i], b.d1[i]);
     out.d2[i] = std::max(a.d2[i], b.d2[i]);
     out.d3[i] = std::max(a.d3[i], b.d3[i]);

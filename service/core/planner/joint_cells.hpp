@@ -4,25 +4,26 @@
 #include <array>
 #include <span>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/path/path_piece.hpp"
 
 /// What the joints do along a path, cell by cell: bounds of their derivatives by the path length,
 /// and whether they stay inside travel and reach. Units: mm, rad, s.
 namespace meridian {
 
-/// Bounds of |dq/ds|, |d²q/ds²|, |d³q/ds³| of every joint on a short stretch of path.
+/// Bounds of |dq/ds|, |d²q/ds²|, |d³q/ds³| of everything that has limits on a short stretch of
+/// path: the joints, then the drives of the stage.
 struct JointCell {
   double begin = 0, end = 0;  ///< s
   double share_rate = 0;      ///< bound of dx/ds, x the share of tip and axis (fraction_at)
   double noise_rad = 0;       ///< rounding of the free joint beside the pole
-  JointVector d1{}, d2{}, d3{};
+  LimitedVector d1{}, d2{}, d3{};
 };
 
 /// Why joints cannot follow a path.
 struct PathFault {
   enum class Kind { kNone, kTravel, kUnreachable, kTooLong, kJump } kind = Kind::kNone;
-  int joint = -1;
+  int joint = -1;  ///< place in limited.hpp; -1: none
   double value = 0;
 };
 

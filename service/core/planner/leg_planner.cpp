@@ -125,6 +125,12 @@ PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
     double amount = std::max({share * std::abs(path.arc_sweep) / kCellSweep_rad,
                               share * path.axis_turn / kCellTurn_rad,
                               std::abs(share * (path.free_end - path.free_begin)) / kCellFree_rad});
+    if (path.kind == PathKind::kJoint && has_stage(model_)) {
+      // The joints are linear in s and the drives of the stage are not.
+      const auto turned = static_cast<std::size_t>(model_.stage.rotary_joint);
+      const double by = path.joints_end[turned] - path.joints_begin[turned];
+      amount = std::max(amount, std::abs(share * by) / kCellFree_rad);
+    }
     if (is_solved(path) && path.axis_turn > 0) {
       const double near = std::min(distance_at(passage_.offset, a.turn - passage_.nearest_turn),
                                    distance_at(passage_.offset, b.turn - passage_.nearest_turn));

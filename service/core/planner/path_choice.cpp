@@ -26,6 +26,9 @@ void set_noise_gain(const MachineModel& model, double reach_mm, JointCaps& caps)
     if (!model.joints[i].is_rotary) caps.noise_gain[i] = gain * reach_mm;
   }
   if (const int free = free_joint(model); free >= 0) caps.noise_gain[free] = gain;
+  for (int i = model.joint_count; i < limited_count(model); ++i) {
+    caps.noise_gain[i] = gain * (reach_mm + stage::lever_mm(model.stage));
+  }
 }
 
 /// Whether the curvature terms at `velocity` leave kAuthority of what rest would allow.
@@ -59,9 +62,9 @@ void keep_faster(const MotionChoice& other, MotionChoice& best) noexcept {
 
 JointCaps planned_caps(const MachineModel& model, double reach_mm) noexcept {
   JointCaps caps;
-  caps.count = model.joint_count;
+  caps.count = limited_count(model);
   for (int i = 0; i < caps.count; ++i) {
-    const JointLimits& limits = model.joints[i].limits;
+    const JointLimits& limits = limited_spec(model, i).limits;
     caps.velocity[i] = kPlannedShare * limits.velocity;
     caps.acceleration[i] = kPlannedShare * limits.acceleration;
     caps.jerk[i] = kPlannedShare * limits.jerk;
@@ -73,7 +76,7 @@ JointCaps planned_caps(const MachineModel& model, double reach_mm) noexcept {
 JointCaps fault_caps(const MachineModel& model, double reach_mm) noexcept {
   JointCaps caps = planned_caps(model, reach_mm);
   for (int i = 0; i < caps.count; ++i) {
-    const JointLimits& limits = model.joints[i].limits;
+    const JointLimits& limits = limited_spec(model, i).limits;
     const double accel = std::max(limits.fault_acceleration, limits.acceleration);
     const double jerk = std::max(limits.fault_jerk, limits.jerk);
     caps.acceleration[i] = kPlannedShare * accel;
@@ -89,8 +92,9 @@ double find_acceleration(std::span<const JointCell> cells, const JointCaps& caps
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {
       const double left = caps.acceleration[i] - cell.d2[i] * square;
-      if (left < accel * cell.d1[i]) accel = left / cell.d1[i];
+      if (!(left < accel * cell.d1[i])) continue;
       if (left < 0) return left;
+      accel = left / cell.d1[i];
     }
   }
   return accel;
@@ -105,8 +109,9 @@ double find_jerk(std::span<const JointCell> cells, const JointCaps& caps, double
     for (int i = 0; i < caps.count; ++i) {
       const double left = caps.jerk[i] - caps.noise_gain[i] * cell.noise_rad - cell.d3[i] * cube -
                           cell.d2[i] * mixed;
-      if (left < jerk * cell.d1[i]) jerk = left / cell.d1[i];
+      if (!(left < jerk * cell.d1[i])) continue;
       if (left < 0) return left;
+      jerk = left / cell.d1[i];
     }
   }
   return jerk;

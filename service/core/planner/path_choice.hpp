@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/profile.hpp"
 #include "service/core/planner/joint_cells.hpp"
 
@@ -15,10 +15,10 @@
 /// Units: mm, rad, s. Source: docs/motion.md.
 namespace meridian {
 
-/// Limits of the joints that a motion may use.
+/// Limits that a motion may use: of the joints, then of the drives of the stage.
 struct JointCaps {
-  JointVector velocity{}, acceleration{}, jerk{};
-  JointVector noise_gain{};  ///< jerk that differences of setpoints show per rad of joint noise
+  LimitedVector velocity{}, acceleration{}, jerk{};
+  LimitedVector noise_gain{};  ///< jerk that differences of setpoints show per rad of joint noise
   int count = 0;
 };
 

@@ -62,8 +62,9 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
   const auto add = [&](JointVector q) {
     if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
     double cost = 0;
-    for (int i = 0; i < model_.joint_count; ++i) {
-      cost = std::max(cost, std::abs(q[i] - cursor.joints[i]) / model_.joints[i].limits.velocity);
+    const LimitedVector from = limited_of(model_, cursor.joints), to = limited_of(model_, q);
+    for (int i = 0; i < limited_count(model_); ++i) {
+      cost = std::max(cost, std::abs(to[i] - from[i]) / limited_spec(model_, i).limits.velocity);
     }
     ways.way[ways.count++] = {q, cost};
   };
@@ -169,7 +170,7 @@ PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const J
   if (ways.count == 0) {
     const auto at = solve(model_, cursor.tool_length_mm, end, 0, cursor.joints);
     const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
-    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, at.q[joint]};
+    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
   }
   for (int n = 0; n < ways.count; ++n) {
     PlanCursor trial = cursor;

@@ -116,17 +116,37 @@ MachineModel draw_machine(RandomPrograms& draw) {
   return model;
 }
 
-TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
-  constexpr int kPrograms = 10000;
+/// A machine with any of the stages, whose drives are sometimes weaker than the joints.
+MachineModel draw_hybrid(RandomPrograms& draw) {
+  MachineModel model = hybrid_machine();
+  if (draw.chance(0.3)) {
+    model.stage.side2 = -1;  // scissor
+    model.stage.rail_mm = 0;
+    model.stage_drives[1].limits.travel_min = -400;
+    model.stage_drives[1].limits.travel_max = 900;
+  } else if (draw.chance(0.3)) {
+    model.stage.kind = StageKind::kPinSlot;
+  }
+  for (JointSpec& drive : model.stage_drives) {
+    drive.limits.velocity *= draw.log_uniform(0.3, 3);
+    drive.limits.acceleration *= draw.log_uniform(0.2, 5);
+    drive.limits.jerk *= draw.log_uniform(0.1, 10);
+  }
+  return model;
+}
+
+template <class DrawMachine>
+void judge_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any) {
+  const int kPrograms = programs;
   int refusals = 0;
   Peaks peaks;
   std::size_t pieces = 0;
   double motion_s = 0;
   for (int n = 0; n < kPrograms; ++n) {
-    const auto seed = static_cast<std::uint64_t>(7000000 + n);
+    const auto seed = first_seed + static_cast<std::uint64_t>(n);
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomPrograms draw(seed);
-    const MachineModel model = draw_machine(draw);
+    const MachineModel model = draw_any(draw);
     const auto blocks = draw.program(model, 4);
     const JointVector start = draw.start(model);
     const Trace trace = plan_program(model, blocks, start);
@@ -142,7 +162,7 @@ TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
     pieces += trace.times.size();
     motion_s += trace.duration_s();
     judge(model, trace, blocks, start, draw, peaks);
-    if (HasFatalFailure()) return;
+    if (testing::Test::HasFatalFailure()) return;
   }
   std::printf(
       "%d programs, %zu time pieces, %.0f s of motion; largest use v %.7f a %.7f j %.7f, feed "
@@ -150,6 +170,14 @@ TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
       kPrograms, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
       units::deg_from_rad(peaks.axis_rad), refusals);
   EXPECT_LT(refusals, kPrograms / 4) << "hardly anything was judged";
+}
+
+TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
+  judge_programs(10000, 7000000, draw_machine);
+}
+
+TEST(RestToRest, KeepsEveryLimitOfJointsAndDrivesBehindAnyStage) {
+  judge_programs(2000, 7200000, draw_hybrid);
 }
 
 }  // namespace

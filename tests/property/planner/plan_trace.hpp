@@ -105,8 +105,8 @@ inline std::vector<PlanSample> sample(const MachineModel& model, const Trace& tr
   return out;
 }
 
-/// Largest use of velocity, acceleration and jerk limits by finite differences, what rounding may
-/// add (8 ulp(q)/T^n) taken off: a value above 1 + 1e-6 breaks a limit.
+/// Largest use of velocity, acceleration and jerk limits of joints and drives by differences, what
+/// rounding may add (8 ulp(q)/T^n) taken off: a value above 1 + 1e-6 breaks a limit.
 struct LimitUse {
   double v = 0, a = 0, j = 0;
   std::string where;
@@ -115,15 +115,16 @@ struct LimitUse {
 inline LimitUse measure_limits(const MachineModel& model, const std::vector<PlanSample>& setpoints,
                                double cycle_s) {
   LimitUse use;
-  for (int i = 0; i < model.joint_count; ++i) {
-    const JointLimits& limits = model.joints[i].limits;
+  std::vector<LimitedVector> at;
+  for (const PlanSample& s : setpoints) at.push_back(limited_of(model, s.q));
+  for (int i = 0; i < limited_count(model); ++i) {
+    const JointLimits& limits = limited_spec(model, i).limits;
     double largest = 0;
-    for (const PlanSample& s : setpoints) largest = std::max(largest, std::abs(s.q[i]));
+    for (const LimitedVector& q : at) largest = std::max(largest, std::abs(q[i]));
     const double ulp = std::nextafter(largest, 1e300) - largest;
     const double t1 = cycle_s, t2 = t1 * t1, t3 = t2 * t1;
     for (std::size_t n = 3; n < setpoints.size(); ++n) {
-      const double q0 = setpoints[n - 3].q[i], q1 = setpoints[n - 2].q[i],
-                   q2 = setpoints[n - 1].q[i], q3 = setpoints[n].q[i];
+      const double q0 = at[n - 3][i], q1 = at[n - 2][i], q2 = at[n - 1][i], q3 = at[n][i];
       const double v = (std::abs(q3 - q2) - 8 * ulp) / t1 / limits.velocity;
       const double a = (std::abs((q3 - q2) - (q2 - q1)) - 8 * ulp) / t2 / limits.acceleration;
       const double j =

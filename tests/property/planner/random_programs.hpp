@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "meridian/geometry/vector3.hpp"
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/units.hpp"
 
@@ -28,8 +28,10 @@ class RandomPrograms {
   }
   [[nodiscard]] bool chance(double p) { return uniform(0, 1) < p; }
 
-  /// Tool axis by tilt and azimuth about the pole of the machine, seen from its workpiece frame.
+  /// Tool axis by tilt and azimuth about the pole of the machine, seen from its workpiece frame. A
+  /// stage turns by less than a quarter turn either way: azimuths are drawn together for it.
   [[nodiscard]] static Vector3 axis_of(const MachineModel& model, double tilt, double azimuth) {
+    if (has_stage(model)) azimuth -= 0.4 * std::remainder(azimuth, std::numbers::pi);
     const Vector3 in_machine(std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
                              std::cos(tilt));
     return model.frame_rotation.transpose() * in_machine;
