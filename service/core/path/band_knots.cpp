@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/path/band_knots.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meridian {
+namespace {
+
+constexpr double kLargestGap_mm = 2.0;
+constexpr double kGrowth = 0.3;     // of the gap per mm of u
+constexpr double kMeanShare = 0.8;  // of the tolerances, for the mean spline
+constexpr double kSpread = 0.65;    // deviation of the mean spline <= 0.65 gaps of a way
+constexpr double kCorner = 0.33;    // and <= 0.33 gaps of the jumps of direction
+constexpr double kSupport = 2.5;    // a jump is felt so many gaps away
+constexpr double kShrink = 0.8;     // gaps are tried in this ratio
+/// Ways ahead that the gap at a vertex can depend on before grading, in gaps: more than the
+/// support, and no less than what grading adds (1/kGrowth), so that both keep to kVertexReach
+/// vertices.
+constexpr double kReach = 3.5;
+
+/// Longest gap so that no more than kVertexReach vertices are needed on either side of `i`.
+double gap_by_density(const BandPolyline& line, std::int64_t i) noexcept {
+  double gap = kLargestGap_mm;
+  if (i + kVertexReach <= line.last()) {
+    gap = std::min(gap, (line[i + kVertexReach].u - line[i].u) / kReach);
+  }
+  if (i >= kVertexReach) gap = std::min(gap, (line[i].u - line[i - kVertexReach].u) / kSupport);
+  return gap;
+}
+
+/// Bound of the mean spline's deviation, in tolerances, that gaps of `gap` about vertex `i` give.
+double mean_deviation(const BandPolyline& line, std::int64_t i, double gap) noexcept {
+  const std::int64_t low = std::max<std::int64_t>(i - kVertexReach, 0);
+  const double u = line[i].u;
+  const std::int64_t from = line.find_from(u - kSupport * gap, low);
+  const std::int64_t to = std::min(line.find_after(u + kSupport * gap, i), line.last());
+  const bool is_near_pole = line[to].near_pole > line[std::max(low, from - 1)].near_pole;
+  const double axis_tolerance = (is_near_pole ? 0.5 : 1.0) * line.tolerance().axis_rad;
+  const double tip = (line[to].tip_turns - line[from].tip_turns) / line.tolerance().tip_mm;
+  const double axis = (line[to].axis_turns - line[from].axis_turns) / axis_tolerance;
+  return kCorner * gap * std::max(tip, axis);
+}
+
+/// Largest gap that needs no look at the blocks: the polyline is 1-Lipschitz in u.
+double least_gap(const BandTolerance& tolerance) noexcept {
+  const double axis_tolerance = (tolerance.pole ? 0.5 : 1.0) * tolerance.axis_rad;
+  return kMeanShare / kSpread * std::min(tolerance.tip_mm, kAxisLength_mm_per_rad * axis_tolerance);
+}
+
+double find_gap(const BandPolyline& line, std::int64_t i) noexcept {
+  const double least = least_gap(line.tolerance());
+  const double dense = gap_by_density(line, i);
+  if (i == 0 || i == line.last()) return std::max(dense, least);
+  for (double gap = dense; gap > least; gap *= kShrink) {
+    if (mean_deviation(line, i, gap) <= kMeanShare) return gap;
+  }
+  return least;
+}
+
+}  // namespace
+
+void BandGaps::advance(BandPolyline& line) noexcept {
+  for (;; ++front_) {
+    const std::int64_t i = front_;
+    if (i > line.last()) return;
+    const bool is_known = line.is_complete() || i + kVertexReach <= line.last() ||
+                          line[line.last()].u - line[i].u > kReach * kLargestGap_mm;
+    if (!is_known) return;
+    line[i].gap = find_gap(line, i);
+    if (i == 0) continue;
+    line[i].gap = std::min(line[i].gap, line[i - 1].gap + kGrowth * (line[i].u - line[i - 1].u));
+    for (std::int64_t k = i; k > line.first(); --k) {
+      const double most = line[k].gap + kGrowth * (line[k].u - line[k - 1].u);
+      if (!(line[k - 1].gap > most)) break;
+      line[k - 1].gap = most;
+    }
+  }
+}
+
+bool BandGaps::is_final(const BandPolyline& line, std::int64_t i) const noexcept {
+  if (i >= front_) return false;
+  if (line.is_complete() && front_ > line.last()) return true;
+  return kGrowth * (line[front_ - 1].u - line[i].u) > 1.001 * line[i].gap;
+}
+
+void BandKnots::begin() noexcept {
+  ring_.clear();
+  is_complete_ = false;
+  for (int k = 0; k < 5; ++k) ring_.push({});
+}
+
+bool BandKnots::advance(const BandPolyline& line, const BandGaps& gaps) noexcept {
+  if (is_complete_ || line.last() < 1) return false;
+  const Knot before = ring_.back();
+  const std::int64_t i = line.segment_at(before.t, before.segment);
+  if (!gaps.is_final(line, i + 1)) return false;
+  const BandVertex& a = line[i];
+  const BandVertex& b = line[i + 1];
+  const double gap = std::min({kLargestGap_mm, a.gap + kGrowth * (before.t - a.u),
+                               b.gap + kGrowth * std::max(0.0, b.u - before.t)});
+  const double step = gap / (1 + kGrowth);
+  const double end = line[line.last()].u;
+  if (!line.is_complete() || before.t + 1.5 * step < end) {
+    ring_.push({before.t + step, i});
+    return true;
+  }
+  if (count() == 5) {  // shorter than a step: still four spans
+    for (int k = 1; k < 4; ++k) ring_.push({0.25 * k * end, 0});
+  }
+  for (int k = 0; k < 5; ++k) ring_.push({end, ring_.back().segment});
+  is_complete_ = true;
+  return true;
+}
+
+}  // namespace meridian

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/path/band_polyline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "meridian/path/pose_at.hpp"
+
+namespace meridian {
+namespace {
+
+/// Share of the tip tolerance that chords of an arc may use.
+constexpr double kChordShare = 0.02;
+/// Share of the tolerances that is kept for points dropped (kLeastStep_mm), for the chord of the
+/// axis instead of its arc and for the parameter of the two (docs/motion.md, 1.1).
+constexpr double kReserve = 0.002;
+/// Within this angle of the pole the band leaves half of the axis tolerance.
+constexpr double kPoleReach_rad = 0.02;
+constexpr double kPoleShare = 0.5;
+constexpr double kLargestTurn_rad = 0.052;  // 3 deg
+
+Vector6 join(const ToolPose& pose) noexcept {
+  return {pose.tip[0], pose.tip[1], pose.tip[2], pose.axis[0], pose.axis[1], pose.axis[2]};
+}
+
+Vector3 tip_of(const Vector6& x) noexcept { return {x[0], x[1], x[2]}; }
+Vector3 axis_of(const Vector6& x) noexcept { return {x[3], x[4], x[5]}; }
+
+/// Whether some point of the chord from `a` to `b` lies within kPoleReach_rad of `pole` or its
+/// opposite.
+bool comes_near(const Vector3& pole, const Vector3& a, const Vector3& b) noexcept {
+  const Vector3 from = a.cross(pole), way = b.cross(pole) - from;
+  const double square = way.squaredNorm();
+  const double t = square > 0 ? std::clamp(-from.dot(way) / square, 0.0, 1.0) : 0.0;
+  return (from + t * way).squaredNorm() < kPoleReach_rad * kPoleReach_rad;
+}
+
+}  // namespace
+
+BandPolyline::BandPolyline() : ring_(static_cast<std::size_t>(kVertexCapacity)) {}
+
+void BandPolyline::begin(const ToolPose& pose, const BandTolerance& tolerance) noexcept {
+  ring_.clear();
+  tolerance_ = tolerance;
+  // Tip and axis share u; on a chord the axis turns by 0.008 Δ³ unevenly: at most 0.1 %.
+  largest_turn_ = std::min(kLargestTurn_rad, std::cbrt(0.125 * tolerance.axis_rad));
+  is_finished_ = false;
+  piece_.reset();
+  pose_ = pose;
+  pattern_ = {};
+  BandVertex first;
+  first.x = join(pose);
+  ring_.push(first);
+}
+
+void BandPolyline::take(const ClBlock& block) noexcept {
+  end_ = {to_vector(block.tip_mm), to_vector(block.axis)};
+  piece_ = block.is_arc ? make_arc(pose_, end_, block) : make_line(pose_, end_);
+  double steps = std::ceil(piece_->axis_turn / largest_turn_);
+  pattern_.share = 1 - kReserve;
+  if (block.is_arc) {
+    const double radius = to_vector(piece_->arc_x).norm();
+    const double sagitta = kChordShare * tolerance_.tip_mm;
+    const double sweep = 4 * std::asin(std::sqrt(std::min(0.5, 0.5 * sagitta / radius)));
+    steps = std::max(steps, std::ceil(piece_->arc_sweep / sweep));
+    pattern_.share -= kChordShare;
+  }
+  steps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
+  step_ = 0;
+  const bool is_inverse = block.feed_meaning == FeedMeaning::kInverseTime;
+  const double infinite = std::numeric_limits<double>::infinity();
+  pattern_.feed_mm_per_s = is_inverse ? infinite : block.feed;
+  pattern_.u_speed_mm_per_s = is_inverse ? block.feed * piece_->length : infinite;
+  pattern_.block_feed_mm_per_s = is_inverse ? block.feed * tip_length(*piece_) : block.feed;
+  pattern_.sequence = block.sequence;
+  pattern_.line = block.line;
+  cut();
+}
+
+bool BandPolyline::cut() noexcept {
+  while (piece_ && !ring_.is_full()) {
+    if (++step_ < steps_) {
+      const double share = static_cast<double>(step_) / static_cast<double>(steps_);
+      add(pose_at(*piece_, share * piece_->length), false);
+    } else {
+      add(end_, true);
+      pose_ = end_;
+      piece_.reset();
+    }
+  }
+  return !piece_;
+}
+
+void BandPolyline::add(const ToolPose& pose, bool ends_block) noexcept {
+  BandVertex& before = ring_.back();
+  BandVertex next = pattern_;
+  next.x = join(pose);
+  const Vector3 tip = tip_of(next.x) - tip_of(before.x);
+  const Vector3 axis = axis_of(next.x) - axis_of(before.x);
+  const double square =
+      tip.squaredNorm() + kAxisLength_mm_per_rad * kAxisLength_mm_per_rad * axis.squaredNorm();
+  if (square < kLeastStep_mm * kLeastStep_mm) {
+    if (ends_block && before.sequence == next.sequence) before.ends_block = true;
+    return;
+  }
+  next.u = before.u + std::sqrt(square);
+  next.ends_block = ends_block;
+  next.axis_tolerance = tolerance_.axis_rad;
+  next.near_pole = before.near_pole;
+  if (tolerance_.pole &&
+      comes_near(to_vector(*tolerance_.pole), axis_of(before.x), axis_of(next.x))) {
+    next.axis_tolerance *= kPoleShare;
+    ++next.near_pole;
+  }
+  next.tip_turns = before.tip_turns;
+  next.axis_turns = before.axis_turns;
+  if (last() > 0) {
+    const BandVertex& earlier = ring_[last() - 1];
+    const double back = before.u - earlier.u, forth = next.u - before.u;
+    next.tip_turns += (tip / forth - (tip_of(before.x) - tip_of(earlier.x)) / back).norm();
+    next.axis_turns += (axis / forth - (axis_of(before.x) - axis_of(earlier.x)) / back).norm();
+  }
+  ring_.push(next);
+}
+
+std::int64_t BandPolyline::find_after(double u, std::int64_t low) const noexcept {
+  std::int64_t high = last() + 1;
+  while (low < high) {
+    const std::int64_t middle = (low + high) / 2;
+    if (ring_[middle].u <= u) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+std::int64_t BandPolyline::find_from(double u, std::int64_t low) const noexcept {
+  std::int64_t high = last() + 1;
+  while (low < high) {
+    const std::int64_t middle = (low + high) / 2;
+    if (ring_[middle].u < u) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+std::int64_t BandPolyline::segment_at(double u, std::int64_t low) const noexcept {
+  return std::clamp(find_after(u, low + 1), low + 1, last()) - 1;
+}
+
+Vector6 BandPolyline::at(double u, std::int64_t i) const noexcept {
+  const BandVertex& a = ring_[i];
+  const BandVertex& b = ring_[i + 1];
+  const double share = (u - a.u) / (b.u - a.u);
+  Vector6 out;
+  for (std::size_t d = 0; d < 6; ++d) out[d] = a.x[d] + share * (b.x[d] - a.x[d]);
+  return out;
+}
+
+}  // namespace meridian

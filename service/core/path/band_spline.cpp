@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/path/band_spline.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "service/core/path/band_hull.hpp"
+#include "service/core/path/band_knots.hpp"
+#include "service/core/path/band_polyline.hpp"
+#include "service/core/path/band_smoother.hpp"
+
+namespace meridian {
+namespace {
+
+/// A window looks at that many knots behind its last control point.
+constexpr std::int64_t kKnotsAhead = 7;
+/// Vertices that a window may lie over, unless it would have fewer points than kLeastWindow: what
+/// the ring holds less what the knots look ahead and back.
+constexpr std::int64_t kWindowVertices = kVertexCapacity - 4 * kVertexReach;
+constexpr std::int64_t kLeastWindow = 8;
+
+std::size_t capacity_for(const BandTuning& tuning) noexcept {
+  return std::bit_ceil(2 * static_cast<std::size_t>(tuning.window) + 64);
+}
+
+}  // namespace
+
+struct BandSpline::Workspace {
+  explicit Workspace(const BandTuning& numbers)
+      : tuning(numbers),
+        knots(capacity_for(numbers)),
+        points(capacity_for(numbers)),
+        smoother(numbers) {}
+
+  void begin(const ToolPose& pose, const BandTolerance& tolerance) noexcept {
+    line.begin(pose, tolerance);
+    gaps.begin();
+    knots.begin();
+    points.clear();
+    first = 1;
+    checked = 4;
+    next_span = committed = 4;
+    point_segment = block_end = 0;
+    is_last = has_failed = false;
+  }
+
+  /// Number of control points; meaningful once all knots are set.
+  [[nodiscard]] std::int64_t count() const noexcept { return knots.count() - 5; }
+
+  /// Cuts blocks in work and finds gaps as far as there is room.
+  void advance_line() noexcept {
+    for (std::int64_t before = -1; before != line.last();) {
+      before = line.last();
+      line.drop_before(
+          std::min(gaps.needed_from(), knots.segment(std::max<std::int64_t>(first, 4))));
+      line.cut();
+      gaps.advance(line);
+    }
+  }
+
+  /// Vertices between the begin of the window and knot `k`, nearly.
+  [[nodiscard]] std::int64_t vertices_to(std::int64_t k) const noexcept {
+    return knots.segment(k) - knots.segment(first);
+  }
+
+  /// Sets the knots that the next window needs. False where blocks are missing.
+  bool advance_knots() noexcept {
+    const auto needs_more = [&] {
+      const std::int64_t last = knots.count() - 1;
+      if (last < first + kLeastWindow + kKnotsAhead) return true;
+      return last < first + tuning.window + kKnotsAhead && vertices_to(last) <= kWindowVertices;
+    };
+    while (!knots.is_complete() && needs_more()) {
+      if (!knots.advance(line, gaps)) return false;
+    }
+    return true;
+  }
+
+  /// Puts the control points of new knots on the polyline.
+  void add_points() noexcept {
+    const std::int64_t end = knots.is_complete() ? count() : knots.count() - 4;
+    for (std::int64_t i = points.end_index(); i < end; ++i) {
+      const double u = knots.greville(i);
+      point_segment = line.segment_at(u, std::max(point_segment, line.first()));
+      points.push(line.at(u, point_segment));
+    }
+  }
+
+  /// The end of the window's free points, and whether it is the last window.
+  std::int64_t find_window_end() noexcept {
+    std::int64_t end = first + tuning.window;
+    if (knots.is_complete()) end = std::min(end, count() - 1);
+    const auto knot_behind = [&] { return std::min(end + kKnotsAhead, knots.count() - 1); };
+    while (end > first + kLeastWindow &&
+           (vertices_to(knot_behind()) > kWindowVertices ||
+            (!knots.is_complete() && end + kKnotsAhead >= knots.count()))) {
+      --end;
+    }
+    is_last = knots.is_complete() && end == count() - 1;
+    return end;
+  }
+
+  /// Bounds the mean spline where the window meets it for the first time.
+  void check_mean(std::int64_t to) noexcept {
+    for (; checked < to; ++checked) {
+      const double deviation =
+          bound_deviation(line, quartic_of(knots, points, checked), knots.t(checked),
+                          knots.t(checked + 1), knots.segment(checked));
+      statistics.largest_mean = std::max(statistics.largest_mean, deviation);
+    }
+  }
+
+  /// Smooths and commits one window. False where blocks are missing.
+  bool run_window() noexcept {
+    knots.drop_before(first - 8);
+    points.drop_before(first - 8);
+    advance_line();
+    if (!advance_knots()) return false;
+    add_points();
+    const std::int64_t end = find_window_end();
+    const std::int64_t limit = knots.is_complete() ? count() : points.end_index();
+    check_mean(std::min(end + 4, limit));
+    const SmoothedWindow window = smoother.smooth(line, knots, points, first, end, limit);
+    ++statistics.windows;
+    statistics.pulled_windows += window.is_pulled ? 1 : 0;
+    statistics.reset_windows += window.is_reset ? 1 : 0;
+    statistics.largest = std::max(statistics.largest, window.largest);
+    if (!window.is_inside) {
+      has_failed = true;
+      return false;
+    }
+    const std::int64_t before = first;
+    const bool is_whole = end == first + tuning.window;
+    first = is_last ? count() : first + (is_whole ? tuning.commit : (end - first) / 2);
+    checked = std::max(checked, end + 4);
+    committed = first;
+    statistics.control_points += static_cast<std::uint64_t>(first - before);
+    return true;
+  }
+
+  void emit() noexcept {
+    const std::int64_t s = next_span++;
+    span = {};
+    span.u0 = knots.t(s);
+    span.length = knots.t(s + 1) - span.u0;
+    span.c = quartic_of(knots, points, s);
+    std::int64_t i = line.segment_at(span.u0, knots.segment(s)) + 1;
+    block_end = std::max(block_end, i);
+    span.sequence = line[i].sequence;
+    span.line = line[i].line;
+    for (;; ++i) {
+      span.feed_mm_per_s = std::min(span.feed_mm_per_s, line[i].feed_mm_per_s);
+      span.u_speed_mm_per_s = std::min(span.u_speed_mm_per_s, line[i].u_speed_mm_per_s);
+      if (i >= line.last() || line[i].u >= knots.t(s + 1)) break;
+    }
+  }
+
+  BandTuning tuning;
+  BandPolyline line;
+  BandGaps gaps;
+  BandKnots knots;
+  ControlPoints points;
+  BandSmoother smoother;
+  BandStatistics statistics;
+  BandSpan span;
+  std::int64_t first = 1;      ///< first control point that is not final
+  std::int64_t checked = 4;    ///< spans before this one are bounded
+  std::int64_t next_span = 4;  ///< to be handed out
+  std::int64_t committed = 4;  ///< spans before this one are final
+  std::int64_t point_segment = 0, block_end = 0;
+  bool is_last = false;  ///< the last window is done
+  bool has_failed = false;
+};
+
+BandSpline::BandSpline(const BandTuning& tuning)
+    : workspace_(std::make_unique<Workspace>(tuning)) {}
+BandSpline::~BandSpline() = default;
+
+void BandSpline::begin(const ToolPose& pose, const BandTolerance& tolerance) noexcept {
+  workspace_->begin(pose, tolerance);
+}
+
+bool BandSpline::push(const ClBlock& block) noexcept {
+  if (!workspace_->line.cut()) return false;
+  workspace_->line.take(block);
+  return true;
+}
+
+void BandSpline::finish() noexcept { workspace_->line.finish(); }
+
+const BandSpan* BandSpline::next() noexcept {
+  Workspace& w = *workspace_;
+  while (w.next_span >= w.committed) {
+    if (w.is_last || w.has_failed || !w.run_window()) return nullptr;
+  }
+  w.emit();
+  return &w.span;
+}
+
+std::optional<BlockEnd> BandSpline::next_block_end() noexcept {
+  Workspace& w = *workspace_;
+  const double end = w.knots.t(w.next_span);
+  for (; w.block_end <= w.line.last() && w.line[w.block_end].u <= end; ++w.block_end) {
+    const BandVertex& vertex = w.line[w.block_end];
+    if (!vertex.ends_block) continue;
+    ++w.block_end;
+    return BlockEnd{vertex.u, vertex.sequence, vertex.line, vertex.block_feed_mm_per_s};
+  }
+  return std::nullopt;
+}
+
+bool BandSpline::is_done() const noexcept {
+  const Workspace& w = *workspace_;
+  const bool has_no_way = w.line.is_complete() && w.line.last() < 1;
+  return has_no_way || (w.is_last && w.next_span >= w.committed);
+}
+
+bool BandSpline::has_failed() const noexcept { return workspace_->has_failed; }
+
+const BandStatistics& BandSpline::statistics() const noexcept { return workspace_->statistics; }
+
+}  // namespace meridian
