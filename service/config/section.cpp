@@ -204,6 +204,39 @@ std::array<double, 3> Section::triple_or(std::string_view key, std::array<double
   return find(key) == nullptr ? otherwise : triple(key, range);
 }
 
+std::vector<double> Section::numbers(std::string_view key, std::size_t least, std::size_t most,
+                                     Range range, std::string_view remedy) {
+  const std::string count =
+      least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most);
+  const std::string allowed = count + " numbers in brackets, each " + words(range);
+  const toml::array* array = need(key, allowed, remedy).as_array();
+  if (array == nullptr) refuse(key, allowed, "write numbers in brackets, with commas between");
+  if (array->size() < least || array->size() > most) {
+    throw ConfigError({.file = file_,
+                       .line = static_cast<int>(array->source().begin.line),
+                       .key = full_name(key),
+                       .value = std::to_string(array->size()) + " numbers",
+                       .allowed = allowed,
+                       .remedy = remedy.empty() ? "add or remove numbers" : std::string(remedy)});
+  }
+  std::vector<double> out;
+  for (const toml::node& node : *array) {
+    const auto value = node.value<double>();
+    const bool is_number = node.is_integer() || node.is_floating_point();
+    if (!is_number || !value || !(*value >= range.low && *value <= range.high)) {
+      throw ConfigError(
+          {.file = file_,
+           .line = static_cast<int>(node.source().begin.line),
+           .key = full_name(key) + "[" + std::to_string(out.size()) + "]",
+           .value = written(node),
+           .allowed = words(range),
+           .remedy = "write a number inside this range, in the unit that the key names"});
+    }
+    out.push_back(*value);
+  }
+  return out;
+}
+
 std::vector<std::string> Section::texts(std::string_view key, std::size_t count,
                                         std::string_view remedy) {
   const std::string allowed = std::to_string(count) + " texts in brackets";

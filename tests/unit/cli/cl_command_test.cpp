@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "support/text_file.hpp"
+
 namespace {
 
 struct Outcome {
@@ -77,6 +79,34 @@ TEST(SurfaceCommand, WritesASampleByItsName) {
   EXPECT_EQ(run("surface --sample nothing").exit_code, 2);
   EXPECT_EQ(run("surface --sample blossom -o /no/such/place/x").exit_code, 3);
   EXPECT_EQ(run("surface --help").exit_code, 0);
+}
+
+const std::string kPatch = MERIDIAN_SOURCE_DIR "/deploy/parts/reference-patch.toml";
+
+TEST(SurfaceCommand, CoversAPatchAndReportsBesideIt) {
+  const std::string file = testing::TempDir() + "surface_patch.apt";
+  const Outcome to_file = run("surface " + kPatch + " -o " + file);
+  EXPECT_EQ(to_file.exit_code, 0);
+  EXPECT_NE(to_file.output.find("21 lines, 441 contacts"), std::string::npos) << to_file.output;
+  EXPECT_EQ(run("cl " + file).exit_code, 0);
+  const Outcome finer = run("surface " + kPatch + " --points 5 --lines 3 -o " + file);
+  EXPECT_NE(finer.output.find("3 lines, 15 contacts"), std::string::npos) << finer.output;
+  EXPECT_EQ(run("surface " + kPatch + " 2>/dev/null | head -1").output, "PARTNO REFERENCE PATCH\n");
+}
+
+TEST(SurfaceCommand, SaysNoToACutterThatGougesAndToWhatItCannotTake) {
+  std::string text = meridian::test::read_text(kPatch);
+  text.replace(text.find("diameter_mm = 10"), 16, "diameter_mm = 560");
+  const meridian::test::TextFile large(text);
+  const Outcome outcome = run("surface " + large.path().string() + " -o /dev/null");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("WARNING"), std::string::npos);
+  EXPECT_EQ(run("surface " + kPatch + " -o /no/such/place/x").exit_code, 3);
+  EXPECT_EQ(run("surface /no/such/patch.toml").exit_code, 3);
+  EXPECT_EQ(run("surface").exit_code, 2);
+  EXPECT_EQ(run("surface " + kPatch + " --sample blossom").exit_code, 2);
+  EXPECT_EQ(run("surface " + kPatch + " --points 5 --chord-error-mm 1").exit_code, 2);
+  EXPECT_EQ(run("surface " + kPatch + " -o /dev/null --picture /tmp/x.bmp").exit_code, 3);
 }
 
 }  // namespace
