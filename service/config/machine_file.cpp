@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/config/machine_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "meridian/units.hpp"
 #include "service/config/kinematics_file.hpp"
@@ -73,6 +75,14 @@ void read_travel(Section& section, const JointKeys& keys, double unit, JointSpec
   joint.limits.travel_max = high * unit;
 }
 
+/// An axis letter, or any letter with one or two digits; "-" before it or not.
+bool is_nc_word(std::string_view word) {
+  if (!word.empty() && word[0] == '-') word.remove_prefix(1);
+  if (word.empty() || word.size() > 3 || word[0] < 'A' || word[0] > 'Z') return false;
+  if (word.size() == 1) return std::string_view("XYZABCUVW").find(word) != std::string_view::npos;
+  return std::all_of(word.begin() + 1, word.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 }  // namespace
 
 void read_joint(Section section, JointSpec& joint) {
@@ -89,6 +99,14 @@ void read_joint(Section section, JointSpec& joint) {
   limits.fault_jerk = section.number(keys.fault_jerk, kRate) * unit;
   limits.following_error = section.number(keys.following_error, {1e-6, 1e4}) * unit;
   joint.home = section.number(keys.home, {-1e5, 1e5}) * unit;
+  joint.nc_word = section.text_or("nc_word", "");
+  if (!joint.nc_word.empty() && !is_nc_word(joint.nc_word)) {
+    section.refuse(
+        "nc_word",
+        "one of X Y Z A B C U V W, or a letter with one or two digits; - before it where "
+        "the controller counts against the joint",
+        "write the address that the controller has for this joint");
+  }
 
   if (limits.fault_acceleration < limits.acceleration) {
     section.refuse(keys.fault_acceleration, "at least " + keys.acceleration,

@@ -25,6 +25,9 @@ struct JointLimits {
 
 struct JointSpec {
   std::string name;  ///< column of a recording is name_mm or name_rad
+  /// Address in NC programs, "-" before it where the controller counts against the joint; empty:
+  /// the name is the address.
+  std::string nc_word;
   bool is_rotary = false;
   bool is_endless = false;
   double home = 0;

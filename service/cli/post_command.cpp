@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <regex>
+#include <string>
+
+#include "meridian/units.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/machine_options.hpp"
+#include "service/post/post.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  std::string file, output, dialect = "joints";
+  std::optional<double> axis_deg, rapid_feed_mm_per_min;
+  post::PostOptions post;
+  MachineOptions machine;
+  ClFileOptions cl;
+};
+
+int refuse(const std::string& message) {
+  std::cerr << message << "\n";
+  return kInputRefused;
+}
+
+/// All of `text` or no file of that name that was not there before.
+bool write_whole(const std::string& output, const std::string& text) {
+  const std::string part = output + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file << text;
+  file.close();
+  if (file && std::rename(part.c_str(), output.c_str()) == 0) return true;
+  std::remove(part.c_str());
+  return false;
+}
+
+int run(Options options) {
+  const MachineModel model = load_machine(options.machine);
+  const ToolTable tools = load_tools(options.machine);
+  if (options.axis_deg) options.post.axis_rad = units::rad_from_deg(*options.axis_deg);
+  if (options.rapid_feed_mm_per_min) {
+    options.post.rapid_feed_mm_per_s = units::per_s_from_per_min(*options.rapid_feed_mm_per_min);
+  }
+  std::ifstream file;
+  if (options.file != "-") {
+    file.open(options.file, std::ios::binary);
+    if (!file) return refuse(options.file + ": cannot be opened");
+  }
+  cl::ClReader reader(options.file == "-" ? std::cin : file, options.file,
+                      reader_options(options.cl, model));
+  const auto program = post::write_nc(reader, options.file, model, tools, options.post);
+  for (const cl::ClWarning& warning : reader.warnings()) {
+    std::cerr << options.file << ":" << warning.line << ": warning: " << warning.message << "\n";
+  }
+  if (!program) {
+    const post::PostError& error = program.error();
+    return refuse(options.file + (error.line > 0 ? ":" + std::to_string(error.line) : "") + ": " +
+                  error.message);
+  }
+  if (program->feeds_limited > 0) {
+    std::cerr << options.file << ": warning: " << program->feeds_limited
+              << " feeds above the machine's highest were limited to it\n";
+  }
+  if (options.output.empty()) {
+    std::cout << program->text << std::flush;
+    return std::cout ? kFine : refuse("meridian post: the output cannot be written");
+  }
+  if (!write_whole(options.output, program->text)) {
+    return refuse(options.output + ": cannot be written");
+  }
+  std::cout << options.output << ": " << program->motion_blocks << " CL motions, "
+            << program->blocks << " NC blocks\n";
+  return kFine;
+}
+
+/// A check that a word of the machine's own looks like one.
+CLI::Validator matches(const char* pattern, const char* description) {
+  return {[pattern, description](std::string& text) {
+            return std::regex_match(text, std::regex(pattern))
+                       ? std::string()
+                       : std::string("is not ") + description;
+          },
+          description};
+}
+
+}  // namespace
+
+void add_post_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "post",
+      "Write the NC program of a CL file. Branch, winding and poles as the service decides them; "
+      "what cannot be expressed is refused with its line, and nothing is written then "
+      "(docs/postprocessor.md)");
+  command->add_option("file", options->file, "CL file (APT or CLDATA text); - is standard input")
+      ->required();
+  add_machine_options(*command, options->machine, true);
+  command->add_option("-o,--output", options->output, "Write to this file; else standard output");
+  command
+      ->add_option("--dialect", options->dialect,
+                   "joints: joint words and feed in inverse time, for controllers without "
+                   "tool-centre control")
+      ->check(CLI::IsMember({"joints"}))
+      ->capture_default_str();
+  command
+      ->add_option("--chord-mm", options->post.chord_mm,
+                   "How far the tip may leave its path between two NC blocks; else tip_mm of the "
+                   "machine's tolerances")
+      ->check(CLI::Range(1e-4, 10.0));
+  command
+      ->add_option("--axis-deg", options->axis_deg,
+                   "How far the tool axis may; else axis_deg of the machine's tolerances")
+      ->check(CLI::Range(1e-4, 10.0));
+  command
+      ->add_option("--rapid-feed", options->rapid_feed_mm_per_min,
+                   "Write rapids as cuts at this feed, mm/min, for controllers whose G0 is not "
+                   "straight")
+      ->check(CLI::Range(1.0, 1e6));
+  command->add_option("--work-offset", options->post.work_offset, "Work offset in force")
+      ->check(matches("G5[4-9](\\.1 ?P[0-9]{1,3})?", "G54 to G59 or G54.1 Pn"))
+      ->capture_default_str();
+  command
+      ->add_option("--retract", options->post.retract,
+                   "The machine's own block that takes the tool clear of the part, such as "
+                   "\"G53 G0 Z0\"")
+      ->check(matches("[A-Z0-9 .,=+-]{2,60}", "one NC block"));
+  command
+      ->add_option("--through-coolant", options->post.through_coolant,
+                   "The machine's word for coolant through the tool, such as M88")
+      ->check(matches("M[0-9]{1,3}", "an M word"));
+  command->add_flag("--line-words", options->post.has_line_words,
+                    "N words: the line of the CL file that a block comes from");
+  add_cl_file_options(*command, options->cl);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli

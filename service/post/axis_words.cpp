@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/post/axis_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/units.hpp"
+#include "service/post/nc_text.hpp"
+
+namespace meridian::post {
+namespace {
+
+constexpr std::string_view kLetters = "XYZABCUVW";
+
+[[nodiscard]] bool is_axis_letter(std::string_view text) {
+  return text.size() == 1 && kLetters.find(text[0]) != std::string_view::npos;
+}
+
+}  // namespace
+
+Expected<AxisWords, PostError> AxisWords::of(const MachineModel& model) {
+  AxisWords words;
+  words.count_ = model.joint_count;
+  for (int i = 0; i < model.joint_count; ++i) {
+    const JointSpec& joint = model.joints[i];
+    Axis& axis = words.axes_[i];
+    axis.is_rotary = joint.is_rotary;
+    axis.address = joint.nc_word.empty() ? joint.name : joint.nc_word;
+    if (joint.nc_word.empty() && !is_axis_letter(joint.name)) {
+      return tl::make_unexpected(
+          PostError{0, "joint " + joint.name + " of machine " + model.name +
+                           " has no NC word; write nc_word = \"X\" (its address; \"-X\" where the "
+                           "controller counts against the joint) into [joints." +
+                           joint.name + "] of the machine file"});
+    }
+    if (axis.address[0] == '-') {
+      axis.sign = -1;
+      axis.address.erase(0, 1);
+    }
+    for (int k = 0; k < i; ++k) {
+      if (words.axes_[k].address != axis.address) continue;
+      return tl::make_unexpected(PostError{0, "joints " + model.joints[k].name + " and " +
+                                                  joint.name + " of machine " + model.name +
+                                                  " have the same NC word " + axis.address});
+    }
+  }
+  return words;
+}
+
+int AxisWords::find(std::string_view address) const noexcept {
+  for (int i = 0; i < count_; ++i) {
+    if (axes_[i].address == address) return i;
+  }
+  return -1;
+}
+
+double AxisWords::value(int i, double q) const {
+  const Axis& axis = axes_[i];
+  return axis.is_rotary ? rounded(axis.sign * units::deg_from_rad(q), kRotaryDecimals)
+                        : rounded(axis.sign * q, kLinearDecimals);
+}
+
+double AxisWords::joint(int i, double value) const noexcept {
+  const Axis& axis = axes_[i];
+  return axis.sign * (axis.is_rotary ? units::rad_from_deg(value) : value);
+}
+
+JointVector AxisWords::as_written(const JointVector& q) const {
+  JointVector out{};
+  for (int i = 0; i < count_; ++i) out[i] = joint(i, value(i, q[i]));
+  return out;
+}
+
+std::string AxisWords::word(int i, double value) const {
+  const Axis& axis = axes_[i];
+  std::string out = axis.address;
+  if (out.size() > 1) out += "=";
+  return out + fixed(value, axis.is_rotary ? kRotaryDecimals : kLinearDecimals);
+}
+
+int retract_sense(const MachineModel& model, const AxisWords& words) {
+  const int z = words.find("Z");
+  if (z < 0 || words.is_rotary(z)) return 0;
+  JointVector home{};
+  for (int i = 0; i < model.joint_count; ++i) home[i] = model.joints[i].home;
+  const Vector3 axis = forward(model, model.tool_length_mm, home).axis;
+  const Vector3 motion = jacobian(model, model.tool_length_mm, home).col(z).head<3>();
+  const double along = motion.dot(axis);
+  constexpr double kParallel = 0.999;
+  if (!(std::abs(along) > kParallel)) return 0;
+  return along > 0 ? 1 : -1;
+}
+
+}  // namespace meridian::post

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joint words in RS-274, feed in inverse time.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "meridian/units.hpp"
+#include "service/post/nc_text.hpp"
+#include "service/post/program.hpp"
+
+namespace meridian::post {
+namespace {
+
+constexpr int kInverseDecimals = 3;
+constexpr double kMostInverse_per_min = 99999.999;  // what controllers take; faster is slowed
+
+class JointProgram final : public Program {
+ public:
+  explicit JointProgram(const ProgramParts& parts) : parts_(parts) {
+    has_line_words_ = parts.options.has_line_words;
+  }
+
+  [[nodiscard]] BlockMotion motion() const noexcept override { return BlockMotion::kJoints; }
+
+  void begin(const std::vector<std::string>& notes) override {
+    line({"%"});
+    for (const std::string& note : notes) comment(note);
+    comment("JOINT WORDS - THE WORK OFFSET HOLDS THE ZEROS OF THE JOINTS");
+    comment("TOOL LENGTH IS IN THEM - ROTARY WORDS COUNT ON THROUGH TURNS");
+    block({"G17 G21 G40 G49 G80 G90 G94"});
+    block({parts_.options.work_offset});
+  }
+
+  void retract() override {
+    forget();
+    if (parts_.options.retract) {
+      block({*parts_.options.retract});
+      block({"G90"});
+      return;
+    }
+    const int z = parts_.words.find("Z");
+    const JointLimits& limits = parts_.model.joints[z].limits;
+    const double top = parts_.retract_sense > 0 ? limits.travel_max : limits.travel_min;
+    Target up;
+    up.joints[z] = parts_.words.joint(z, parts_.words.value(z, top));
+    go("G0", up, 1U << static_cast<unsigned>(z), "");
+  }
+
+  void start(const Target& over) override {
+    const int z = parts_.words.find("Z");
+    const unsigned all = (1U << static_cast<unsigned>(parts_.words.count())) - 1U;
+    const unsigned last = z >= 0 ? 1U << static_cast<unsigned>(z) : 0;
+    forget();
+    go("G0", over, all & ~last, "");
+    if (last != 0) go("G0", over, last, "");
+    block({"G93"});
+  }
+
+  void start_at(const Target& at) override {
+    forget();
+    comment("THE MACHINE MUST STAND WHERE THE NEXT BLOCK SAYS");
+    block({"M0"});
+    go("G0", at, kAll, "");
+    block({"G93"});
+  }
+
+  void rapid(const Target& to) override { go("G0", to, kAll, ""); }
+
+  void cut(const Target& to) override {
+    const double per_min = std::min(units::kMinute_s / to.duration_s, kMostInverse_per_min);
+    std::string feed = " F";
+    feed += fixed_down(per_min, kInverseDecimals);
+    go("G1", to, kAll, feed);
+  }
+
+  void dwell(double seconds) override { block({"G4 P", fixed(seconds, 3)}); }
+  void spindle_off() override { block({"M5"}); }
+  void spindle_on(bool is_clockwise, double rev_per_min) override {
+    block({"S", fixed(rev_per_min, 0), is_clockwise ? " M3" : " M4"});
+  }
+  void coolant(const std::string& word) override { block({word}); }
+  void change_tool(int number) override { block({"T", std::to_string(number), " M6"}); }
+  void stop(bool is_optional) override { block({is_optional ? "M1" : "M0"}); }
+  void end() override {
+    block({"G94"});
+    block({"M5"});
+    block({"M9"});
+    block({"M30"});
+    line({"%"});
+  }
+
+ private:
+  static constexpr unsigned kAll = ~0U;
+
+  void comment(const std::string& text) { line({"(", harmless(text), ")"}); }
+  void forget() { written_ = {}; }
+
+  /// One block to `to` with the words of `joints` (bits) that changed; none where none did.
+  void go(std::string_view code, const Target& to, unsigned joints, std::string_view feed) {
+    std::string words;
+    for (int i = 0; i < parts_.words.count(); ++i) {
+      if ((joints >> static_cast<unsigned>(i) & 1U) == 0) continue;
+      const double value = parts_.words.value(i, to.joints[i]);
+      if (written_[i] == value) continue;
+      written_[i] = value;
+      words.append(" ").append(parts_.words.word(i, value));
+    }
+    if (!words.empty()) block({code, words, feed});
+  }
+
+  ProgramParts parts_;
+  std::array<std::optional<double>, kMaxJoints> written_;
+};
+
+}  // namespace
+
+std::unique_ptr<Program> make_joint_program(const ProgramParts& parts) {
+  return std::make_unique<JointProgram>(parts);
+}
+
+}  // namespace meridian::post

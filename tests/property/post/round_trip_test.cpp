@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// The NC program of a random CL program, read back: the CL points are found again, in order, and
+// between them the machine that it describes keeps to the path and the feed.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/units.hpp"
+#include "property/planner/random_programs.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/cl/cl_writer.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/post/axis_words.hpp"
+#include "service/post/post.hpp"
+#include "support/cl_way.hpp"
+#include "support/nc_program.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr unsigned kSeed = 20261121;
+constexpr int kPrograms = 12;
+constexpr int kLength = 10;
+constexpr int kSamples = 8;              // of every NC block, ends included
+constexpr double kPointTip_mm = 3e-3;    // words have 1e-4 mm and 1e-5 deg; 1.5 m of arm
+constexpr double kPointAxis_rad = 2e-5;  // easing onto the pole and a rounded angle
+constexpr double kRounding = 1e-6;       // of a tolerance
+
+const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/deploy/machines";
+
+/// Where the part lies so that the machine reaches it.
+MachineModel machine_of(const std::string& name) {
+  MachineModel model = config::load_machine(kFolder / (name + ".toml"));
+  if (model.family == MachineFamily::kRobot) {
+    config::place_workpiece(model, config::parse_frame("850,0,250"));
+  }
+  return model;
+}
+
+std::string text_of(const std::vector<ClBlock>& blocks) {
+  std::ostringstream out;
+  cl::ClWriter writer(out, "TRIAL");
+  for (const ClBlock& block : blocks) writer.write(block);
+  ClBlock end;
+  end.kind = BlockKind::kEnd;
+  writer.write(end);
+  return out.str();
+}
+
+std::vector<ClBlock> blocks_of(const std::string& text) {
+  std::vector<ClBlock> blocks;
+  cl::ClReader reader(text, "trial.apt");
+  for (auto block = reader.next(); block && *block; block = reader.next())
+    blocks.push_back(**block);
+  return blocks;
+}
+
+/// A program that is read back: joints of every block by its words.
+struct ReadBack {
+  const MachineModel& model;
+  post::AxisWords words;
+  test::NcProgramRead nc;
+
+  [[nodiscard]] JointVector joints(const test::NcMove& move) const {
+    JointVector q{};
+    for (int i = 0; i < model.joint_count; ++i) {
+      const auto at = move.at.find(words.address(i));
+      if (at != move.at.end()) q[i] = words.joint(i, at->second);
+    }
+    return q;
+  }
+  [[nodiscard]] ToolPose pose(const JointVector& q) const {
+    return forward(model, model.tool_length_mm, q);
+  }
+};
+
+bool is_at(const ToolPose& a, const ToolPose& b) {
+  return (a.tip - b.tip).norm() < kPointTip_mm && test::angle_of(a.axis, b.axis) < kPointAxis_rad;
+}
+
+/// Largest share of a joint's velocity that a way of `seconds` between `a` and `b` takes.
+double joint_time(const MachineModel& model, const JointVector& a, const JointVector& b) {
+  double longest = 0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    longest = std::max(longest, std::abs(b[i] - a[i]) / model.joints[i].limits.velocity);
+  }
+  return longest;
+}
+
+struct Counts {
+  int programs = 0, refused = 0, nc_blocks = 0, turns = 0, at_feed = 0;
+  double worst = 0;
+};
+
+class PostRoundTrip : public testing::TestWithParam<std::string> {
+ protected:
+  MachineModel model = machine_of(GetParam());
+  Counts counts;
+
+  void judge_feed(const ReadBack& read, const test::NcMove& move, const JointVector& from,
+                  const JointVector& to, const test::ClWay& way) {
+    if (move.is_rapid) return;
+    ASSERT_TRUE(move.is_inverse && move.has_feed) << "NC line " << move.line;
+    const double seconds = 60 / move.feed;
+    const double by_joints = joint_time(model, from, to);
+    EXPECT_GE(seconds, by_joints * (1 - 1e-9)) << "a joint is too fast, NC line " << move.line;
+    const double length = (read.pose(to).tip - read.pose(from).tip).norm();
+    const double most = model.max_feed_mm_per_s;
+    const double feed = way.block.feed_meaning == FeedMeaning::kTip
+                            ? std::min(way.block.feed, most)
+                            : std::min(way.length() * way.block.feed, most);
+    constexpr double kDigits_mm = 5e-3;  // rounded words at both ends
+    EXPECT_LE(length, feed * seconds * (1 + 1e-9) + kDigits_mm) << "NC line " << move.line;
+    if (way.block.is_arc || way.block.feed_meaning != FeedMeaning::kTip) return;
+    if (seconds > 1.01 * by_joints + 1e-3 && length > 0.1) {
+      EXPECT_NEAR(length / seconds, feed, feed * (6e-4 + 2 * kDigits_mm / length))
+          << "NC line " << move.line;
+      ++counts.at_feed;
+    }
+  }
+
+  /// Largest deviation from `way` of the straight joint motion, in tolerances.
+  static double worst_between(const ReadBack& read, const JointVector& from, const JointVector& to,
+                              const test::ClWay& way, double chord_mm, double axis_rad) {
+    double worst = 0;
+    for (int k = 0; k <= kSamples; ++k) {
+      JointVector q = from;
+      const double u = static_cast<double>(k) / kSamples;
+      for (int i = 0; i < kMaxJoints; ++i) q[i] += u * (to[i] - from[i]);
+      worst = std::max(worst, test::deviation(way, read.pose(q), chord_mm, axis_rad));
+    }
+    return worst;
+  }
+
+  void judge(const std::string& cl_text, const std::string& nc_text, double chord_mm,
+             double axis_rad) {
+    const ReadBack read{model, *post::AxisWords::of(model), test::read_nc(nc_text)};
+    const std::vector<ClBlock> blocks = blocks_of(cl_text);
+    const auto ways = test::ways_of(blocks);
+    ASSERT_GT(ways.size(), 0U);
+    const ToolPose first{to_vector(blocks[0].tip_mm), to_vector(blocks[0].axis).normalized()};
+    const auto& moves = read.nc.moves;
+    std::size_t n = 0;
+    while (n < moves.size() && !is_at(read.pose(read.joints(moves[n])), first)) ++n;
+    ASSERT_LT(n, moves.size()) << "the first point is not in the program";
+    std::size_t at = 0;  // way in force
+    JointVector from = read.joints(moves[n]);
+    for (++n; n < moves.size(); ++n) {
+      const JointVector to = read.joints(moves[n]);
+      while (at < ways.size() && ways[at].block.line != moves[n].cl_line) {
+        ASSERT_TRUE(is_at(read.pose(from), ways[at].end))
+            << "no block ends on CL line " << ways[at].block.line;
+        ++at;
+      }
+      ASSERT_LT(at, ways.size()) << "no such CL line, NC line " << moves[n].line;
+      const double worst = worst_between(read, from, to, ways[at], chord_mm, axis_rad);
+      ASSERT_LE(worst, 1 + kRounding)
+          << "NC line " << moves[n].line << ", CL line " << ways[at].block.line;
+      counts.worst = std::max(counts.worst, worst);
+      judge_feed(read, moves[n], from, to, ways[at]);
+      from = to;
+    }
+    while (at < ways.size() && is_at(read.pose(from), ways[at].end)) ++at;
+    ASSERT_EQ(at, ways.size()) << "CL points are missing";
+    counts.nc_blocks += static_cast<int>(moves.size());
+    for (std::size_t k = 1; k < moves.size(); ++k) {
+      const ToolPose a = read.pose(read.joints(moves[k - 1])), b = read.pose(read.joints(moves[k]));
+      if (is_at(a, b)) ++counts.turns;
+    }
+  }
+};
+
+TEST_P(PostRoundTrip, JointWordsGiveTheClPathBackWithinTheTolerancesAndAtTheFeed) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  test::RandomPrograms draw(kSeed);
+  for (int n = 0; n < kPrograms; ++n) {
+    SCOPED_TRACE(n);
+    const std::string text = text_of(draw.program(model, kLength));
+    post::PostOptions options;
+    options.has_line_words = true;
+    options.chord_mm = draw.log_uniform(0.004, 0.05);
+    options.axis_rad = units::rad_from_deg(draw.log_uniform(0.02, 0.5));
+    cl::ClReader reader(text, "trial.apt");
+    const auto program = post::write_nc(reader, "trial.apt", model, {}, options);
+    if (!program) {
+      EXPECT_GT(program.error().line, 0U) << program.error().message;
+      ++counts.refused;
+      continue;
+    }
+    ++counts.programs;
+    judge(text, program->text, *options.chord_mm, *options.axis_rad);
+    if (HasFatalFailure()) {
+      std::printf("%s\n%s\n", text.c_str(), program->text.c_str());
+      return;
+    }
+  }
+  std::printf("%s: %d programs, %d refused, %d NC blocks, %d at rest, %d at feed, worst %.3f\n",
+              GetParam().c_str(), counts.programs, counts.refused, counts.nc_blocks, counts.turns,
+              counts.at_feed, counts.worst);
+  EXPECT_GT(counts.programs, kPrograms / 5);
+  EXPECT_GT(counts.at_feed, 2);
+}
+
+std::vector<std::string> shipped_machines() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+    names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, PostRoundTrip, testing::ValuesIn(shipped_machines()),
+                         [](const auto& machine) {
+                           std::string name = machine.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace meridian
