@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "meridian/planner/rest_to_rest.hpp"
+#include "property/planner/feed_paths.hpp"
 #include "property/planner/random_programs.hpp"
 #include "support/heap_watch.hpp"
 #include "support/machines.hpp"
@@ -37,6 +38,37 @@ TEST(RestToRest, PlansWithoutAHeapCall) {
   }
   EXPECT_EQ(calls, watch::HeapCalls{}) << calls.allocations << " allocations";
   EXPECT_GT(planned, 1000) << refused << " refused";
+}
+
+TEST(RollingFeed, PlansWithoutAHeapCall) {
+  if (!watch::is_heap_watched()) GTEST_SKIP() << "sanitizers watch the heap themselves";
+  watch::HeapCalls calls;
+  std::int64_t windows = 0;
+  for (const double failing : {0.0, 0.5}) {
+    FeedSettings settings;
+    settings.failing_share = failing;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      test::RandomPrograms draw(seed);
+      const test::FeedPath path = test::draw_path(test::lai_machine(), draw);
+      RollingFeed planner(path.model, settings);
+      const watch::HeapWatch heap;
+      planner.begin(path.start, path.branch, path.model.tool_length_mm);
+      for (const BandSpan& span : path.spans) {
+        ASSERT_EQ(planner.push(span).kind, PathFault::Kind::kNone);
+        while (planner.try_plan()) {
+        }
+      }
+      ASSERT_EQ(planner.finish().kind, PathFault::Kind::kNone);
+      while (planner.try_plan()) {
+        if (seed % 2 == 0) planner.resume_from(planner.window().rest_cell);
+      }
+      calls.allocations += heap.calls().allocations;
+      calls.frees += heap.calls().frees;
+      windows += planner.count().windows;
+    }
+  }
+  EXPECT_EQ(calls, watch::HeapCalls{}) << calls.allocations << " allocations";
+  EXPECT_GT(windows, 40);
 }
 
 }  // namespace

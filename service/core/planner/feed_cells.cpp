@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "service/core/planner/path_choice.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
+constexpr double kTravelMargin = 1e-9;   // rounding of a travel end that is reached exactly
+constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
+constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
+constexpr int kRounds = 16;              // of halving: lengths of a ratio of 60 000
+constexpr double kLeastTight = 0.2;
+constexpr double kNone = 1e-12;  // derivative that counts as none
+/// Rounding of a component of the tool axis.
+constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
+
+double square(double x) noexcept { return x * x; }
+
+/// Share of jerk left beside what rounding of the axis near the pole shows as in third differences.
+double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
+                         const Pose<double>& pose) noexcept {
+  if (free_joint(model) < 0) return 1;
+  const double distance = pole_distance(model, pose.axis);
+  const double noise = distance > 0 ? kAxisNoise / distance : 0;
+  const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
+  double share = 1;
+  for (int i = 0; i < limits.count; ++i) {
+    share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
+  }
+  return std::max(share, kLeastTight);
+}
+
+}  // namespace
+
+CellGrid::CellGrid(const MachineModel& model, const FeedLimits& limits,
+                   const CellSettings& settings)
+    : model_(model), limits_(limits), settings_(settings), cells_(kCells) {
+  drafts_.reserve(kDrafts);
+  finer_.reserve(kDrafts);
+}
+
+void CellGrid::begin(const JointVector& joints, int branch, double tool_length_mm) noexcept {
+  waiting_count_ = 0;
+  drafts_.clear();
+  next_span_ = 0;
+  first_ = last_ = 0;
+  last_h_ = 0;
+  joints_ = joints;
+  branch_ = branch;
+  tool_length_mm_ = tool_length_mm;
+  is_finished_ = false;
+  fault_ = {};
+}
+
+PathFault CellGrid::take_sample(const BandSpan& span, double x, JointVector& reference,
+                                CellSample& out) const noexcept {
+  const auto pose = pose_on(span.c, Jet<3>::variable(x));
+  const auto at = solve(model_, tool_length_mm_, pose, branch_, reference);
+  if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
+  double tip_speed = 0;
+  for (int i = 0; i < 3; ++i) tip_speed += square(pose.tip[i].derivative(1));
+  const double share = square(settings_.feed_share);
+  double b = std::min(1 / kNone, share * square(span.u_speed_mm_per_s));
+  b = std::min(b, share * square(span.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
+  for (int i = 0; i < limits_.count; ++i) {
+    reference[i] = value_of(at.q[i]);
+    const double d1 = out.d1[i] = at.q[i].derivative(1);
+    const double d2 = out.d2[i] = at.q[i].derivative(2);
+    const double d3 = out.d3[i] = at.q[i].derivative(3);
+    b = std::min(b, square(limits_.velocity[i] / std::max(std::abs(d1), kNone)));
+    b = std::min(b, limits_.acceleration[i] / std::max(std::abs(d2), kNone));
+    // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
+    b = std::min(b, 4 * std::pow(limits_.jerk[i] / std::max(std::abs(d3), kNone), 2.0 / 3.0));
+  }
+  if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
+  out.most_b = b;
+  return {};
+}
+
+double CellGrid::time_per_u(const BandSpan& span, double x) const noexcept {
+  JointVector reference = joints_;
+  CellSample at;
+  if (take_sample(span, x, reference, at).kind != PathFault::Kind::kNone) return 0;
+  double slowest = 1 / std::sqrt(at.most_b);
+  for (int i = 0; i < limits_.count; ++i) {
+    slowest = std::max({slowest, std::abs(at.d1[i]) / limits_.velocity[i],
+                        kCurvatureShare * std::sqrt(std::abs(at.d2[i]) / limits_.acceleration[i]),
+                        kCurvatureShare * std::cbrt(std::abs(at.d3[i]) / limits_.jerk[i])});
+  }
+  return slowest;
+}
+
+void CellGrid::draft_cells(const BandSpan& span) noexcept {
+  constexpr int kProbes = 4;
+  double time = 0;
+  for (int k = 0; k < kProbes; ++k) time += time_per_u(span, span.length * (k + 0.5) / kProbes);
+  time *= span.length / kProbes;
+  const double wanted = std::ceil(std::min(time / settings_.cell_s, 1.0 * kMostPerSpan));
+  const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
+  const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMostPerSpan));
+  const double h = span.length / cells;
+  for (int k = 0; k < cells; ++k) drafts_.push_back({waiting_count_ - 1, k * h, h});
+}
+
+void CellGrid::halve(double left, double ratio, int rounds) noexcept {
+  for (int round = 0; round < rounds; ++round) {
+    finer_.clear();
+    bool is_changed = false;
+    for (std::size_t n = 0; n < drafts_.size(); ++n) {
+      const Draft& draft = drafts_[n];
+      const double before = n > 0 ? drafts_[n - 1].h : left;
+      const double behind = n + 1 < drafts_.size() ? drafts_[n + 1].h : draft.h;
+      const bool is_long = draft.h > ratio * before || draft.h > ratio * behind;
+      const std::size_t needed = finer_.size() + 2 + drafts_.size() - n;
+      if (!is_long || needed > kDrafts) {
+        finer_.push_back(draft);
+        continue;
+      }
+      finer_.push_back({draft.waiting, draft.x, 0.5 * draft.h});
+      finer_.push_back({draft.waiting, draft.x + 0.5 * draft.h, 0.5 * draft.h});
+      is_changed = true;
+    }
+    drafts_.swap(finer_);
+    if (!is_changed) return;
+  }
+}
+
+PathFault CellGrid::push(const BandSpan& span) noexcept {
+  if (fault_.kind != PathFault::Kind::kNone) return fault_;
+  if (!(span.length > 0)) return {};
+  waiting_[static_cast<std::size_t>(waiting_count_++)] = span;
+  draft_cells(span);
+  halve(last_ > 0 ? last_h_ : std::numeric_limits<double>::infinity(), kRatio, kRounds);
+  return make_cells();
+}
+
+PathFault CellGrid::finish() noexcept {
+  if (fault_.kind != PathFault::Kind::kNone) return fault_;
+  is_finished_ = true;
+  // A short path: cells enough for a motion to be shaped.
+  while (last_ == 0 && !drafts_.empty() && drafts_.size() < kLeast) {
+    halve(std::numeric_limits<double>::infinity(), 0, 1);
+  }
+  return make_cells();
+}
+
+PathFault CellGrid::make_cells() noexcept {
+  std::size_t used = 0;
+  while (used < drafts_.size() && last_ - first_ < kCells) {
+    const int behind = waiting_count_ - 1 - drafts_[used].waiting;
+    const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kLeast;
+    if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
+    fault_ = make_cell(drafts_[used]);
+    if (fault_.kind != PathFault::Kind::kNone) break;
+    ++used;
+  }
+  if (used == 0) return fault_;
+  drafts_.erase(drafts_.begin(), drafts_.begin() + static_cast<std::ptrdiff_t>(used));
+  const int gone = drafts_.empty() ? waiting_count_ : drafts_.front().waiting;
+  for (int n = gone; n < waiting_count_; ++n) waiting_[n - gone] = waiting_[n];
+  for (Draft& draft : drafts_) draft.waiting -= gone;
+  waiting_count_ -= gone;
+  next_span_ += static_cast<std::uint64_t>(gone);
+  return fault_;
+}
+
+PathFault CellGrid::make_cell(const Draft& draft) noexcept {
+  const BandSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
+  FeedCell& cell = (*this)[last_];
+  cell.span = next_span_ + static_cast<std::uint64_t>(draft.waiting);
+  cell.x = draft.x;
+  cell.h = draft.h;
+  cell.most_b = std::numeric_limits<double>::infinity();
+  JointVector reference = joints_;
+  for (int k = 0; k <= FeedCell::kSteps; ++k) {
+    CellSample& at = cell.at[static_cast<std::size_t>(k)];
+    const double x = draft.x + draft.h * k / FeedCell::kSteps;
+    const JointVector before = reference;
+    if (const auto fault = take_sample(span, x, reference, at);
+        fault.kind != PathFault::Kind::kNone) {
+      return fault;
+    }
+    cell.most_b = std::min(cell.most_b, at.most_b);
+    if (const int joint = first_joint_outside_travel(model_, reference, kTravelMargin);
+        joint >= 0) {
+      return {PathFault::Kind::kTravel, joint, reference[joint]};
+    }
+    for (int i = 0; i < limits_.count; ++i) {
+      const double jump = reference[i] - before[i];
+      if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
+        return {PathFault::Kind::kJump, i, jump};
+      }
+    }
+  }
+  joints_ = reference;
+  cell.tight = 1;
+  for (const double x : {draft.x, draft.x + draft.h}) {
+    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.c, x)));
+  }
+  last_h_ = cell.h;
+  ++last_;
+  return {};
+}
+
+double CellGrid::most_b_at(std::int64_t cell) const noexcept {
+  double b = std::numeric_limits<double>::infinity();
+  if (cell > first_) b = (*this)[cell - 1].most_b;
+  if (cell < last_) b = std::min(b, (*this)[cell].most_b);
+  return b;
+}
+
+}  // namespace meridian

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed_check.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace meridian {
+namespace {
+
+constexpr int kSteps = FeedCell::kSteps;
+constexpr double kNoBound = 1e9;
+using Samples = std::array<double, kSteps + 1>;
+
+/// Largest |f| of a smooth function from its samples: between them a peak rises to about the top of
+/// the parabola through the three samples around it.
+double peak_of(const Samples& f) noexcept {
+  double most = 0;
+  for (int k = 0; k <= kSteps; ++k) most = std::max(most, std::abs(f[k]));
+  for (int k = 1; k < kSteps; ++k) {
+    const double sign = f[k] < 0 ? -1 : 1;
+    const double left = sign * f[k - 1], top = sign * f[k], right = sign * f[k + 1];
+    const double bend = 2 * top - left - right;
+    if (!(bend > 0) || top < left || top < right) continue;
+    most = std::max(most, top + (right - left) * (right - left) / (8 * bend));
+  }
+  return most;
+}
+
+}  // namespace
+
+FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& law) noexcept {
+  FeedUse use;
+  const double second = (law.slope_end - law.slope) / cell.h;
+  Samples b, v, a, j;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double x = cell.h * k / kSteps;
+    b[k] = law.b + x * (law.slope + 0.5 * second * x);
+    if (!(b[k] > 0)) {
+      use.jerk = kNoBound;
+      return use;
+    }
+    v[k] = std::sqrt(b[k]);
+    a[k] = 0.5 * (law.slope + second * x);
+    j[k] = 0.5 * second * v[k];
+    use.b = std::max(use.b, b[k] / cell.at[k].most_b);
+  }
+  for (int i = 0; i < limits.count; ++i) {
+    Samples velocity, acceleration, jerk;
+    double with_filter = 0;
+    for (int k = 0; k <= kSteps; ++k) {
+      const CellSample& at = cell.at[k];
+      velocity[k] = at.d1[i] * v[k];
+      acceleration[k] = at.d1[i] * a[k] + at.d2[i] * b[k];
+      jerk[k] = at.d1[i] * j[k] + 3 * at.d2[i] * v[k] * a[k] + at.d3[i] * v[k] * b[k];
+      with_filter =
+          std::max(with_filter, std::abs(acceleration[k]) + limits.slope * std::abs(velocity[k]));
+    }
+    use.velocity = std::max(use.velocity, peak_of(velocity) / limits.velocity[i]);
+    use.acceleration = std::max(
+        {use.acceleration, std::max(peak_of(acceleration), with_filter) / limits.acceleration[i]});
+    use.jerk = std::max(use.jerk, peak_of(jerk) / limits.jerk[i]);
+  }
+  return use;
+}
+
+void add_use(const FeedLimits& limits, const CellSample& at, double v, double a, double j,
+             FeedUse& use) noexcept {
+  use.b = std::max(use.b, v * v / at.most_b);
+  for (int i = 0; i < limits.count; ++i) {
+    const double velocity = std::abs(at.d1[i] * v);
+    const double acceleration = std::abs(at.d1[i] * a + at.d2[i] * v * v);
+    const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v);
+    use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
+    use.acceleration = std::max(use.acceleration,
+                                (acceleration + limits.slope * velocity) / limits.acceleration[i]);
+    use.jerk = std::max(use.jerk, jerk / limits.jerk[i]);
+  }
+}
+
+}  // namespace meridian

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/planner/rate_limits.hpp"
+
+namespace meridian {
+
+/// How fast the cycle may change the rate of plan time while a plan of the feed runs; zero: never.
+struct RateReserve {
+  double slope = kRateSlope_per_s;
+  double curvature = kRateCurvature_per_s2;
+};
+
+/// What a plan of the feed may use of every joint: the machine's limits less what the rate filter
+/// may add. With |q̈| + slope |q̇| <= acceleration and |q⃛| <= jerk every run of the plan at a rate
+/// in [0, 1] stays inside the machine's limits (docs/motion.md, eq. 8.3). Units: mm, rad, s.
+struct FeedLimits {
+  int count = 0;
+  JointVector velocity{}, acceleration{}, jerk{};
+  double slope = 0;  ///< of the rate, 1/s
+
+  /// Every limit times a share.
+  [[nodiscard]] FeedLimits scaled(double share_v, double share_a, double share_j) const noexcept {
+    FeedLimits out = *this;
+    for (int i = 0; i < count; ++i) {
+      out.velocity[i] *= share_v;
+      out.acceleration[i] *= share_a;
+      out.jerk[i] *= share_j;
+    }
+    return out;
+  }
+};
+
+/// Where a machine's jerk is too small for the reserve beside full velocity and acceleration, the
+/// plan uses less of those two, so that at least half of the jerk is left.
+[[nodiscard]] FeedLimits make_feed_limits(const MachineModel& model,
+                                          const RateReserve& reserve) noexcept;
+
+}  // namespace meridian

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/band_span.hpp"
+#include "service/core/planner/feed_cells.hpp"
+#include "service/core/planner/feed_piece.hpp"
+#include "service/core/planner/feed_rest.hpp"
+#include "service/core/planner/jerk_step.hpp"
+
+namespace meridian {
+
+struct FeedSettings {
+  CellSettings cells;
+  RateReserve reserve;
+  int window_cells = 120;  ///< planned at a time, to a rest at their end; at most 160
+  int commit_cells = 40;   ///< of them kept
+  /// Convex programmes per window, each around the result of the last. The plan of the window
+  /// before is a good place to linearise at: a second one gains little and doubles the work.
+  int refinements = 1;
+  /// Share of the windows that are declared to have no plan: for tests of what then happens.
+  double failing_share = 0;
+};
+
+/// A planned window: pieces that stand, then the rest of its plan up to rest, which a later window
+/// may replace. The last window of a path and every crawl have no tail.
+struct FeedWindow {
+  bool is_from_rest = false;
+  std::span<const FeedPiece> committed, tail;
+  std::int64_t rest_cell = 0;  ///< cell before which the window comes to rest, tail included
+};
+
+/// What was done, for reports and tests.
+struct FeedCount {
+  std::int64_t windows = 0, solves = 0, rounds = 0, kept = 0, stops = 0, crawls = 0, tightened = 0;
+};
+
+/// The feed over a stream of spans, window by window, inside velocity, acceleration and jerk of
+/// every joint and the programmed feed; every plan ends at rest inside the spans that are there.
+///
+/// A window is planned when the cells it covers are there and not earlier, so what is planned
+/// follows from the spans alone, not from when they came. A window without a plan of its own keeps
+/// the tail of the one before; at rest the last resort is a crawl. Both always exist: the motion
+/// is never without a plan that ends at rest.
+///
+/// Fixed store, bounded work per window, no clock. Units: mm, rad, s. Context: planner thread.
+/// Source: docs/motion.md, section 8. Proof: tests/property/planner/feed_test.cpp.
+class RollingFeed {
+ public:
+  RollingFeed(const MachineModel& model, const FeedSettings& settings);
+
+  /// Starts a path, at rest at its begin, on `branch` of the inverse kinematics; `joints` tell the
+  /// windings.
+  void begin(const JointVector& joints, int branch, double tool_length_mm) noexcept;
+
+  /// Whether push() would take another span.
+  [[nodiscard]] bool has_room() const noexcept { return grid_.has_room(); }
+  /// Takes the next span. A fault (travel, reach) ends the path: nothing of the span is planned.
+  [[nodiscard]] PathFault push(const BandSpan& span) noexcept;
+  /// The path ends with the last span, at rest.
+  [[nodiscard]] PathFault finish() noexcept;
+
+  /// Plans the next window if its cells are there; window() is then valid until the next call.
+  [[nodiscard]] bool try_plan() noexcept;
+  [[nodiscard]] const FeedWindow& window() const noexcept { return window_; }
+
+  /// The machine ran the tail of a window and rests before `cell` (FeedWindow::rest_cell): the next
+  /// window starts there from rest. For one of the last three windows.
+  void resume_from(std::int64_t cell) noexcept;
+
+  /// Whether all of a finished path is committed.
+  [[nodiscard]] bool is_done() const noexcept {
+    return grid_.is_complete() && next_ == grid_.last();
+  }
+  [[nodiscard]] const CellGrid& grid() const noexcept { return grid_; }
+  [[nodiscard]] const FeedLimits& limits() const noexcept { return limits_; }
+  [[nodiscard]] const FeedCount& count() const noexcept { return count_; }
+
+ private:
+  /// A plan from the boundary before `first` to rest before `end`; its last cell is `stop`.
+  struct Plan {
+    std::int64_t first = 0, end = 0;
+    std::vector<double> b, slope;  ///< at boundaries first .. end - 1
+    RestCell stop;
+    [[nodiscard]] int cells() const noexcept { return static_cast<int>(end - first) - 1; }
+  };
+  struct Attempt;
+
+  [[nodiscard]] bool plan_window() noexcept;
+  [[nodiscard]] bool attempt(const Attempt& how) noexcept;
+  void choose_bar(const Attempt& how) noexcept;
+  [[nodiscard]] bool refine() noexcept;
+  [[nodiscard]] bool check_and_tighten(bool may_tighten) noexcept;
+  void take_result() noexcept;
+  void commit(bool is_new) noexcept;
+  void commit_crawl() noexcept;
+  [[nodiscard]] bool is_failing() const noexcept;
+  [[nodiscard]] std::int64_t window_end() const noexcept;
+
+  FeedSettings settings_;
+  FeedLimits limits_;   ///< what plans are checked against
+  FeedLimits planned_;  ///< what they are made for
+  CellGrid grid_;
+  JerkStep solver_;
+  std::int64_t next_ = 0;  ///< first cell that is not committed
+  bool is_at_rest_ = true;
+  FeedState state_;  ///< at the boundary before next_, where not at rest
+  RestCell start_;   ///< of the window being planned
+  Plan old_, new_, best_;
+  std::vector<double> backward_, bound_, bar_knots_, bar_middles_, accel_share_, jerk_share_;
+  FeedPieces committed_, tail_;
+  FeedWindow window_;
+  FeedCount count_;
+};
+
+}  // namespace meridian
