@@ -39,9 +39,9 @@ struct TimePiece {
   double j = 0;                 ///< mm/s³
   double k = 0;                 ///< 1/s²
   double feed_mm_per_s = 0;     ///< programmed tip feed, 0 for rapid
-  /// Authority to stop: every motion on the path from here to the next rest with ṡ no faster than
-  /// planned, |s̈| <= stop_accel and |s⃛| <= stop_jerk keeps every joint inside its limits (fault_*:
-  /// its FaultStop limits).
+  /// Authority to stop: every StopLaw from here to the next rest with ṡ no faster than planned,
+  /// |s̈| <= stop_accel and |s⃛| <= stop_jerk keeps every joint inside its limits (fault_*: its
+  /// FaultStop limits).
   double stop_accel = 0, stop_jerk = 0;
   double fault_accel = 0, fault_jerk = 0;
   /// The same where ṡ stays next to nothing; `authority_velocity` is the ṡ up to which the former

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "meridian/planner/stop_product.hpp"
 #include "meridian/planner/time_law.hpp"
 #include "meridian/planner/time_piece.hpp"
 #include "meridian/rt/stop_law.hpp"
@@ -16,11 +17,12 @@ enum class StopKind : std::uint8_t { kHold, kFault };
 /// Acceleration and jerk along the path that a stop from `state` may use.
 ///
 /// The planner gives (A₁, J₁) that hold up to the speed v₁, and (A₀, J₀) that hold next to rest.
-/// Both keep |q'| A + |q''| v² and |q'| J + 3 |q''| v A + |q'''| v³ of every joint below what it
-/// may do. At the share x = v/v₁ of the speed a weighted sum of the two keeps them too:
+/// Both keep |q'| A + |q''| v² and |q'| J + 3 |q''| P + |q'''| v³ of every joint below what it may
+/// do; P is the largest ṡ |s̈| of the stop (planner/stop_product.hpp). At the share x = v/v₁ of the
+/// speed a weighted sum of the two keeps them too:
 ///
 ///     A = (1 - x²) A₀ + x² A₁, at most A₁/x
-///     J = (1 - y) J₀ + y J₁,   y = max(x A/A₁, x³)
+///     J = (1 - y) J₀ + y J₁,   y = max(P/P₁, x³); (A₁, J₁) where y > 1
 ///
 /// A need not be more than the stop will use, sqrt(J v + a²/2): less of it leaves more jerk.
 /// RT: cycle. Proof: tests/property/rt/stop_authority_test.cpp.
@@ -39,7 +41,11 @@ enum class StopKind : std::uint8_t { kHold, kFault };
   const double used = std::sqrt(slow_jerk * state.ds + 0.5 * state.dds * state.dds);
   const double most = std::min((1 - x * x) * slow_accel + x * x * fast.accel, fast.accel / x);
   const double accel = std::min(most, std::max(used, std::abs(state.dds)));
-  const double y = std::clamp(std::max(x * accel / fast.accel, x * x * x), 0.0, 1.0);
+  const double top = state.ds + 0.5 * state.dds * state.dds / fast.jerk;
+  const double product = largest_stop_product(top, accel, slow_jerk);
+  const double product_fast = largest_stop_product(piece.authority_velocity, fast.accel, fast.jerk);
+  const double y = std::max(product / product_fast, x * x * x);
+  if (!(y <= 1)) return fast;
   return {accel, (1 - y) * slow_jerk + y * fast.jerk};
 }
 

@@ -21,7 +21,7 @@ class AuthorityTable {
   AuthorityTable(std::span<const JointCell> cells, double offset, const JointCaps& caps,
                  const JointCaps& fault_caps, const MotionChoice& choice) noexcept;
 
-  static constexpr int kMostCuts = 192;
+  static constexpr int kMostCuts = 95;
 
   /// Times inside a phase, ascending.
   struct Cuts {
@@ -36,7 +36,12 @@ class AuthorityTable {
   void grant(TimePiece& time) const noexcept;
 
  private:
+  /// A stretch of a phase, by its times.
+  struct Part {
+    double begin = 0, end = 0;
+  };
   [[nodiscard]] std::span<const JointCell> cells_between(double begin, double end) const noexcept;
+  [[nodiscard]] bool is_even(const ProfilePhase& phase, const Part& part) const noexcept;
 
   std::span<const JointCell> cells_;
   double offset_;

@@ -78,6 +78,15 @@ double bound(double a, double b, double c) noexcept {
   return largest + 0.25 * (std::max({a, b, c}) - std::min({a, b, c}));
 }
 
+/// What moving along the path asks of the joint that it asks most of: 1 / (s̈ that is possible).
+double hardness(const MachineModel& model, const LimitedVector& d1) noexcept {
+  double most = 0;
+  for (int i = 0; i < limited_count(model); ++i) {
+    most = std::max(most, std::abs(d1[i]) / limited_spec(model, i).limits.acceleration);
+  }
+  return most;
+}
+
 double axis_noise(const MachineModel& model, const PathPiece& piece, double begin,
                   double end) noexcept {
   const bool is_solved = piece.kind == PathKind::kLine || piece.kind == PathKind::kArc;
@@ -101,6 +110,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
   if (const auto fault = judge_travel(model, at[2].q); fault.kind != PathFault::Kind::kNone) {
     return fault;
   }
+  coarseness_ = 1;
   const double h = (end - begin) / cells;
   const int count = limited_count(model);
   for (int n = 0; n < cells; ++n) {
@@ -122,6 +132,9 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       cell.d2[i] = bound(at[0].d2[i], at[1].d2[i], at[2].d2[i]);
       cell.d3[i] = bound(at[0].d3[i], at[1].d3[i], at[2].d3[i]);
     }
+    double least = hardness(model, at[0].d1);
+    for (int k = 1; k <= 2; ++k) least = std::min(least, hardness(model, at[k].d1));
+    if (least > 0) coarseness_ = std::max(coarseness_, hardness(model, cell.d1) / least);
     cell.share_rate = bound(at[0].share_rate, at[1].share_rate, at[2].share_rate);
     cell.noise_rad = axis_noise(model, piece, cell.begin, cell.end);
   }

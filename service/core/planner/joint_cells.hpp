@@ -33,11 +33,18 @@ class CellTable {
   static constexpr int kCapacity = 1024;
 
   void clear() noexcept { count_ = 0; }
+  /// Forgets the cells from `first` on.
+  void go_back(int first) noexcept { count_ = first; }
   [[nodiscard]] int size() const noexcept { return count_; }
   [[nodiscard]] std::span<const JointCell> range(int first, int last) const noexcept {
     return {cells_.data() + first, static_cast<std::size_t>(last - first)};
   }
   [[nodiscard]] std::span<const JointCell> all() const noexcept { return range(0, count_); }
+
+  /// How much slower than its easiest place a cell looks at worst: the largest ratio of the
+  /// acceleration along the path that the joints allow at a sample to the one that the bounds of
+  /// its cell allow, of the last append().
+  [[nodiscard]] double coarseness() const noexcept { return coarseness_; }
 
   /// Appends `cells` equal cells of `piece` from `begin` to `end` and judges the joints on the way,
   /// extremes between the samples included. `joints` are those at `begin` (within half a turn) and
@@ -48,6 +55,7 @@ class CellTable {
  private:
   std::array<JointCell, kCapacity> cells_;
   int count_ = 0;
+  double coarseness_ = 1;
 };
 
 /// One cell that bounds both.

@@ -22,6 +22,8 @@ constexpr double kCellSweep_rad = 0.14;
 constexpr double kCellFree_rad = 0.14;
 constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
 constexpr double kMostCells = 256;
+constexpr double kCoarse = 1.12;
+constexpr int kMostRefinements = 3;
 constexpr int kLeastAzimuthCells = 4;  // between two nodes
 constexpr double kLargestJump = 1e-7;  // rounding 8 µrad from the pole is 1e-10
 
@@ -109,6 +111,23 @@ void LegPlanner::place_nodes(const PathPiece& path) noexcept {
   }
 }
 
+/// Takes more cells where the limits of the path change much from end to end of one.
+PathFault LegPlanner::append_cells(CellTable& table, const PathPiece& path, double begin,
+                                   double end, int cells, JointVector& joints) noexcept {
+  const int first = table.size();
+  const JointVector at_begin = joints;
+  for (int round = 0;; ++round) {
+    const PathFault fault = table.append(model_, path, begin, end, cells, joints);
+    const bool is_fine = table.coarseness() <= kCoarse || round == kMostRefinements;
+    if (is_fine || fault.kind != PathFault::Kind::kNone || first + 2 * cells > kMostCells) {
+      return fault;
+    }
+    table.go_back(first);
+    joints = at_begin;
+    cells *= 2;
+  }
+}
+
 PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
   const PathPiece& path = leg.path;
   cells_.clear();
@@ -137,7 +156,7 @@ PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
       amount = std::max(amount, (b.turn - a.turn) / (kCellGrading * near));
     }
     const JointVector at_begin = joints;
-    const PathFault fault = cells_.append(model_, path, a.s, b.s, cells_for(amount), joints);
+    const PathFault fault = append_cells(cells_, path, a.s, b.s, cells_for(amount), joints);
     if (fault.kind != PathFault::Kind::kNone) return fault;
     if (!a.has_azimuth || !b.has_azimuth) continue;
     if (!is_begun) {
@@ -149,8 +168,8 @@ PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
       is_begun = true;
     }
     JointVector at = at_begin;
-    const PathFault azimuth_fault = azimuth_cells_.append(
-        model_, by_azimuth, kAxisLength_mm_per_rad * (a.azimuth - azimuth_from),
+    const PathFault azimuth_fault = append_cells(
+        azimuth_cells_, by_azimuth, kAxisLength_mm_per_rad * (a.azimuth - azimuth_from),
         kAxisLength_mm_per_rad * (b.azimuth - azimuth_from),
         std::max(kLeastAzimuthCells, cells_for((b.azimuth - a.azimuth) / kCellFree_rad)), at);
     if (azimuth_fault.kind != PathFault::Kind::kNone) return azimuth_fault;

@@ -51,6 +51,8 @@ class LegPlanner {
   };
 
   void place_nodes(const PathPiece& path) noexcept;
+  [[nodiscard]] PathFault append_cells(CellTable& table, const PathPiece& path, double begin,
+                                       double end, int cells, JointVector& joints) noexcept;
   [[nodiscard]] PathFault measure(const Leg& leg, JointVector& joints) noexcept;
   void find_fastest_runs(const Leg& leg, const JointCaps& caps) noexcept;
   void relax_from(int first, bool by_azimuth, const Leg& leg, const JointCaps& caps) noexcept;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/planner/stop_product.hpp"
 
 namespace meridian {
 namespace {
@@ -102,8 +103,13 @@ double find_acceleration(std::span<const JointCell> cells, const JointCaps& caps
 
 double find_jerk(std::span<const JointCell> cells, const JointCaps& caps, double velocity,
                  double acceleration) noexcept {
+  return find_jerk_beside(cells, caps, velocity, velocity * acceleration);
+}
+
+double find_jerk_beside(std::span<const JointCell> cells, const JointCaps& caps, double velocity,
+                        double product) noexcept {
   const double cube = velocity * velocity * velocity;
-  const double mixed = 3 * velocity * acceleration;
+  const double mixed = 3 * product;
   double jerk = kMost;
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {
@@ -150,14 +156,16 @@ MotionChoice choose_motion(std::span<const JointCell> cells, const JointCaps& ca
   return best;
 }
 
-PathLimits find_authority(std::span<const JointCell> cells, const JointCaps& caps, double velocity,
-                          double acceleration) noexcept {
-  const double rest_jerk = find_jerk(cells, caps, velocity, 0);
+PathLimits find_authority(std::span<const JointCell> cells, const JointCaps& caps,
+                          const StopRange& range) noexcept {
+  const double rest_jerk = find_jerk(cells, caps, range.velocity, 0);
+  // The deepest deceleration d of a stop: d² = j v + a²/2, and that is j times the peak of v.
   const double needed =
-      1.01 * std::sqrt(std::max(0.0, velocity * rest_jerk) + 0.5 * acceleration * acceleration);
-  const double accel =
-      std::min(find_acceleration(cells, caps, velocity), std::max(needed, acceleration));
-  return {velocity, accel, find_jerk(cells, caps, velocity, accel)};
+      1.01 * std::sqrt(std::max(0.0, range.velocity * rest_jerk) + 0.5 * range.fall * range.fall);
+  const double accel = std::min(find_acceleration(cells, caps, range.velocity),
+                                std::max(needed, range.acceleration));
+  const double product = largest_stop_product(range.top, accel, rest_jerk);
+  return {range.velocity, accel, find_jerk_beside(cells, caps, range.velocity, product)};
 }
 
 }  // namespace meridian

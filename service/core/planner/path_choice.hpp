@@ -28,11 +28,15 @@ inline constexpr double kPlannedShare = 0.99;
 [[nodiscard]] JointCaps planned_caps(const MachineModel& model, double reach_mm) noexcept;
 [[nodiscard]] JointCaps fault_caps(const MachineModel& model, double reach_mm) noexcept;
 
-/// Largest |s̈| beside ṡ <= `velocity`, and largest |s⃛| beside both. Not positive: none.
+/// Largest |s̈| beside ṡ <= `velocity`, and largest |s⃛| beside both, or beside ṡ |s̈| <= `product`.
+/// Not positive: none.
 [[nodiscard]] double find_acceleration(std::span<const JointCell> cells, const JointCaps& caps,
                                        double velocity) noexcept;
 [[nodiscard]] double find_jerk(std::span<const JointCell> cells, const JointCaps& caps,
                                double velocity, double acceleration) noexcept;
+
+[[nodiscard]] double find_jerk_beside(std::span<const JointCell> cells, const JointCaps& caps,
+                                      double velocity, double product) noexcept;
 
 /// A motion on a piece and the limits that it was made for.
 struct MotionChoice {
@@ -46,8 +50,16 @@ struct MotionChoice {
 [[nodiscard]] MotionChoice choose_motion(std::span<const JointCell> cells, const JointCaps& caps,
                                          double length, double feed_velocity) noexcept;
 
-/// Authority to stop from a state with ṡ <= `velocity` and |s̈| <= `acceleration`.
+/// States that a stop may start from.
+struct StopRange {
+  double velocity = 0;      ///< largest ṡ, also while the stop lets go of s̈ > 0
+  double top = 0;           ///< largest ṡ that there would be at s̈ = 0
+  double acceleration = 0;  ///< largest |s̈|
+  double fall = 0;          ///< largest -s̈
+};
+
+/// Authority to stop from such states.
 [[nodiscard]] PathLimits find_authority(std::span<const JointCell> cells, const JointCaps& caps,
-                                        double velocity, double acceleration) noexcept;
+                                        const StopRange& range) noexcept;
 
 }  // namespace meridian

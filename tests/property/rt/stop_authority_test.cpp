@@ -27,10 +27,10 @@ double accel_at(const std::array<Row, 5>& rows, double v) {
   for (const Row& r : rows) most = std::min(most, (r.accel - r.d2 * v * v) / r.d1);
   return most;
 }
-double jerk_at(const std::array<Row, 5>& rows, double v, double a) {
+double jerk_at(const std::array<Row, 5>& rows, double v, double product) {
   double most = 1e12;
   for (const Row& r : rows) {
-    most = std::min(most, (r.jerk - 3 * r.d2 * v * a - r.d3 * v * v * v) / r.d1);
+    most = std::min(most, (r.jerk - 3 * r.d2 * product - r.d3 * v * v * v) / r.d1);
   }
   return most;
 }
@@ -50,7 +50,8 @@ TEST(StopAuthority, KeepsEveryJointBetweenRestAndThePlannedSpeed) {
     const double v1 = piece.authority_velocity = 100 * unit(draw);
     piece.stop_accel = accel_at(rows, v1) * unit(draw);
     if (!(piece.stop_accel > 0)) continue;
-    piece.stop_jerk = jerk_at(rows, v1, piece.stop_accel);
+    const double product = largest_stop_product(v1, piece.stop_accel, jerk_at(rows, v1, 0));
+    piece.stop_jerk = jerk_at(rows, v1, product);
     if (!(piece.stop_jerk > 0)) continue;
     piece.slow_stop_accel = accel_at(rows, 0);
     piece.slow_stop_jerk = jerk_at(rows, 0, 0);
@@ -59,7 +60,18 @@ TEST(StopAuthority, KeepsEveryJointBetweenRestAndThePlannedSpeed) {
     const double rise = std::max(state.dds, 0.0);
     const double peak = std::min(v1, state.ds + 0.5 * rise * rise / piece.stop_jerk);
     EXPECT_LE(got.accel, accel_at(rows, peak) * (1 + 1e-9));
-    EXPECT_LE(got.jerk, jerk_at(rows, peak, got.accel) * (1 + 1e-9));
+    // What the stop really does, followed from its begin to its end.
+    const StopLaw law(state, got);
+    double largest = 0;
+    for (int k = 0; k <= 200; ++k) {
+      const PathState at = law.at(law.duration() * k / 200);
+      largest = std::max(largest, at.ds * std::abs(at.dds));
+    }
+    const double top = state.ds + 0.5 * state.dds * state.dds / got.jerk;
+    EXPECT_LE(largest, largest_stop_product(top, got.accel, got.jerk) * (1 + 1e-9));
+    if (top <= v1) {
+      EXPECT_LE(got.jerk, jerk_at(rows, peak, largest) * (1 + 1e-9));
+    }
     EXPECT_GE(got.jerk, piece.stop_jerk * (1 - 1e-9));
     used += got.jerk > 1.01 * piece.stop_jerk;
   }
