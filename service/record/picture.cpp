@@ -16,6 +16,7 @@ namespace meridian::record {
 namespace {
 
 constexpr std::size_t kColumns = 1500;
+constexpr int kWhiskers = 160;  ///< lines along the tool axis, over the whole cut
 constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
 constexpr const char* kColours[kMaxJoints] = {"#1f5fa8", "#2a9d5c", "#e08214",
                                               "#c22f4f", "#7b4fa3", "#444444"};
@@ -39,6 +40,52 @@ void print(std::FILE* out, const Extremes& value, double scale) {
   }
 }
 
+[[nodiscard]] double largest(const Extremes& rate) {
+  return std::max(std::abs(rate.low), std::abs(rate.high));
+}
+
+/// Ranges of the program's tip path, approach left out.
+[[nodiscard]] std::array<Extremes, 3> box_of(const PictureData& data) {
+  std::array<Extremes, 3> box;
+  for (const PictureData::Point& point : data.tip) {
+    if (point.kind == MotionKind::kApproach) continue;
+    for (int i = 0; i < 3; ++i) box[static_cast<std::size_t>(i)].add(point.tip[i]);
+  }
+  return box;
+}
+
+[[nodiscard]] double longest_side(const std::array<Extremes, 3>& box) {
+  double longest = 1;
+  for (const Extremes& side : box) longest = std::max(longest, side.high - side.low);
+  return longest;
+}
+
+/// Data block $whiskers: the tool axis at even steps along the cut, as vectors.
+void print_whiskers(std::FILE* out, const PictureData& data) {
+  double way = 0;
+  const auto each_cut = [&data](auto&& use) {
+    for (std::size_t i = 1; i < data.tip.size(); ++i) {
+      const auto& from = data.tip[i - 1];
+      const auto& to = data.tip[i];
+      if (from.kind != MotionKind::kCut || to.kind != MotionKind::kCut) continue;
+      use(to, (to.tip - from.tip).norm());
+    }
+  };
+  each_cut([&way](const PictureData::Point&, double step) { way += step; });
+  const double length = 0.16 * longest_side(box_of(data));
+  double since = way;
+  std::fputs("$whiskers << EOD\n", out);
+  each_cut([&](const PictureData::Point& at, double step) {
+    since += step;
+    if (since < way / kWhiskers) return;
+    since = 0;
+    const Vector3 by = length * at.axis;
+    std::fprintf(out, "%.6g %.6g %.6g %.6g %.6g %.6g\n", at.tip[0], at.tip[1], at.tip[2], by[0],
+                 by[1], by[2]);
+  });
+  std::fputs(way > 0 ? "EOD\n" : "NaN NaN NaN NaN NaN NaN\nEOD\n", out);
+}
+
 /// Data blocks: $way (a blank line parts stretches of one kind) and $columns.
 void print_data(std::FILE* out, const PictureData& data, const MachineModel& model) {
   for (int kind = 0; kind < 4; ++kind) {
@@ -55,6 +102,7 @@ void print_data(std::FILE* out, const PictureData& data, const MachineModel& mod
     }
     std::fputs(has_any ? "EOD\n" : "NaN NaN NaN\nEOD\n", out);
   }
+  print_whiskers(out, data);
   std::fputs("$columns << EOD\n", out);
   for (const PictureColumn& column : data.columns) {
     std::fprintf(out, "%.7g", column.time_s);
@@ -64,8 +112,13 @@ void print_data(std::FILE* out, const PictureData& data, const MachineModel& mod
       print(out, column.position[i], at_edge(model.joints[i], 1.0));
       for (int order = 0; order < 3; ++order) {
         const Extremes& rate = column.rate[order][i];
-        std::fprintf(out, " %.5g", std::max(std::abs(rate.low), std::abs(rate.high)));
+        std::fprintf(out, " %.5g", largest(rate));
       }
+    }
+    for (int order = 0; order < 3; ++order) {
+      double most = 0;
+      for (const Extremes& rate : column.rate[order]) most = std::max(most, largest(rate));
+      std::fprintf(out, " %.5g", most);
     }
     std::fputs("\n", out);
   }
@@ -91,86 +144,109 @@ void print_joints(std::FILE* out, const MachineModel& model, bool is_rotary) {
   std::fputs(separator[0] == 'p' ? "plot NaN notitle\n" : "\n", out);
 }
 
-void print_shares(std::FILE* out, const MachineModel& model, int order) {
-  std::fprintf(out, "set ylabel '%s, share'\nset yrange [0:1.1]\nset ytics 0.5\n",
-               kRateNames[order]);
-  std::fputs("plot 1 lw 1.5 lc '#cc3333' title 'limit'", out);
+void print_velocities(std::FILE* out, const MachineModel& model) {
+  std::fputs("set ylabel 'velocity, % of limit'\nset yrange [0:115]\nset ytics 50\n", out);
+  std::fputs("plot 100 lw 2 lc '#cc3333' title 'limit'", out);
   for (int i = 0; i < model.joint_count; ++i) {
-    std::fprintf(out, ", $columns using 1:%d with lines lw 1 lc '%s' title %s",
-                 column_of(i) + 2 + order, kColours[i], quoted(model.joints[i].name).c_str());
+    std::fprintf(out, ", $columns using 1:(100*$%d) with lines lw 1.5 lc '%s' title %s",
+                 column_of(i) + 2, kColours[i], quoted(model.joints[i].name).c_str());
   }
   std::fputs("\n", out);
 }
 
-/// Ranges of the program's tip path, approach left out, with a margin.
-void print_ranges(std::FILE* out, const PictureData& data) {
-  std::array<Extremes, 3> box;
-  for (const PictureData::Point& point : data.tip) {
-    if (point.kind == MotionKind::kApproach) continue;
-    for (int i = 0; i < 3; ++i) box[static_cast<std::size_t>(i)].add(point.tip[i]);
+/// Of all joints the largest share of acceleration or jerk.
+void print_largest(std::FILE* out, const MachineModel& model, int order) {
+  const int column = column_of(model.joint_count) + order;
+  std::fprintf(out, "set ylabel '%s, %% of limit'\n", kRateNames[order]);
+  std::fprintf(out,
+               "plot 100 lw 2 lc '#cc3333' title 'limit', $columns using 1:(100*$%d) with "
+               "filledcurves y1=0 fs transparent solid 0.35 lc '#1f5fa8' notitle, $columns using "
+               "1:(100*$%d) with lines lw 1 lc '#1f5fa8' title 'largest of joints'\n",
+               column, column);
+}
+
+void print_feed(std::FILE* out, const PictureData& data) {
+  double feed = 0;
+  for (const PictureColumn& column : data.columns) feed = std::max(feed, column.feed_mm_per_s.high);
+  std::fputs("set ylabel 'tip, mm/min'\n", out);
+  if (feed > 0) {
+    std::fprintf(out, "set yrange [0:%.6g]\n", 1.3 * feed * units::kMinute_s);
+  } else {
+    std::fputs("set yrange [0:*]\n", out);
   }
+  std::fputs(
+      "plot $columns using 1:2:3 with filledcurves fs transparent solid 0.4 lc '#1f5fa8' notitle, "
+      "$columns using 1:3 with lines lw 1.5 lc '#1f5fa8' title 'achieved', ",
+      out);
+  std::fputs(feed > 0 ? "$columns using 1:5 with lines lw 2 lc '#cc3333' title 'programmed'\n"
+                      : "-1 lw 2 lc '#cc3333' title 'feed unknown'\n",
+             out);
+  std::fputs("set yrange [*:*]\n", out);
+}
+
+/// Ranges of the space that the tip path and the tool axes on it take.
+void print_ranges(std::FILE* out, const PictureData& data) {
+  const std::array<Extremes, 3> box = box_of(data);
   if (box[0].is_empty) return;
-  double longest = 1;
-  for (const Extremes& side : box) longest = std::max(longest, side.high - side.low);
+  const double longest = longest_side(box);
   for (std::size_t i = 0; i < 3; ++i) {
     std::fprintf(out, "set %crange [%.6g:%.6g]\n", "xyz"[i], box[i].low - 0.05 * longest,
-                 box[i].high + 0.1 * longest);
+                 box[i].high + (i == 2 ? 0.2 : 0.05) * longest);
   }
+}
+
+void print_space(std::FILE* out, const PictureData& data) {
+  print_ranges(out, data);
+  std::fputs(
+      "set grid lc '#dddddd'\nset border lc '#555555'\n"
+      "set origin 0,0\nset size 0.52,0.95\nset view equal xyz\nset view 58,35,1.25\n"
+      "set ticslevel 0\nset xyplane relative 0\n"
+      "set xlabel 'x, mm'\nset ylabel 'y, mm'\nset zlabel 'z' offset 2,0\n"
+      "set key at screen 0.03,0.93 left top reverse Left samplen 2\n"
+      "splot $whiskers with vectors nohead lw 1 lc '#9db8d8' title 'tool axis', "
+      "$way0 with lines lw 2 lc '#bbbbbb' title 'approach', "
+      "$way2 with lines lw 2 lc '#e08214' title 'rapid', "
+      "$way1 with lines lw 3 lc '#1f5fa8' title 'cut', "
+      "$way3 with points pt 7 ps 1.5 lc '#c22f4f' title 'turn at the pole'\n",
+      out);
 }
 
 void print_script(std::FILE* out, const PictureData& data, const MachineModel& model,
                   const std::string& title, const std::string& file, bool is_svg) {
   print_data(out, data, model);
   std::fprintf(out,
-               "set terminal %s size 1500,1200 background '#ffffff' font 'sans,%d' noenhanced\n",
-               is_svg ? "svg" : "pngcairo", is_svg ? 14 : 11);
+               "set terminal %s size 1800,1260 background '#ffffff' font 'sans,%d' noenhanced\n",
+               is_svg ? "svg" : "pngcairo", is_svg ? 18 : 15);
   std::fprintf(out, "set output %s\n", quoted(file).c_str());
-  std::fprintf(out, "set multiplot title %s\n", quoted(title).c_str());
-  print_ranges(out, data);
+  std::fprintf(out, "set multiplot title %s font ',20'\n", quoted(title).c_str());
+  print_space(out, data);
   std::fputs(
-      "set grid lc '#dddddd'\nset border lc '#555555'\n"
-      "set origin 0.02,0.02\nset size 0.48,0.93\nset view equal xyz\nset view 60,35,1.15\n"
-      "set ticslevel 0\nset xyplane relative 0\n"
-      "set xlabel 'x, mm'\nset ylabel 'y, mm'\nset zlabel 'z, mm'\n"
-      "set key at screen 0.13,0.93 left top samplen 2\n"
-      "splot $way0 with lines lc '#bbbbbb' title 'approach', $way2 with lines lc '#e08214' title "
-      "'rapid', $way1 with lines lw 1.5 lc '#1f5fa8' title 'cut', $way3 with points pt 7 ps 0.8 lc "
-      "'#c22f4f' title 'pole turn'\n"
-      "unset view\nset key outside right top samplen 1.5\nunset zlabel\nset xlabel\n"
-      "set autoscale\nset lmargin 10\nset rmargin 16\nset bmargin 0.8\nset tmargin 0.6\n"
-      "set format x ''\n",
+      "unset view\nset key outside right top noreverse Right samplen 1.5\nunset zlabel\n"
+      "set xlabel\nset autoscale\nset lmargin 10\nset rmargin 17\nset bmargin 0.8\n"
+      "set tmargin 0.8\nset format x ''\n",
       out);
   std::fprintf(out, "set xrange [0:%.7g]\n", data.columns.back().time_s);
-  constexpr double kHeight = 0.91 / 6;
+  constexpr double kHeight = 0.9 / 6;
   int place = 0;
   const auto next = [&] {
     std::fprintf(out, "set origin 0.5,%.4f\nset size 0.5,%.4f\n", 0.95 - kHeight * ++place,
                  kHeight);
   };
   next();
+  print_feed(out, data);
+  next();
   print_joints(out, model, false);
   next();
   print_joints(out, model, true);
   next();
-  double feed = 0;
-  for (const PictureColumn& column : data.columns) feed = std::max(feed, column.feed_mm_per_s.high);
-  std::fprintf(out, "set ylabel 'tip, mm/min'\nset yrange [0:%s%.6g]\n", feed > 0 ? "" : "*#",
-               1.3 * feed * units::kMinute_s);
-  std::fputs(
-      "plot $columns using 1:2:3 with filledcurves fs transparent solid 0.4 lc '#1f5fa8' notitle, "
-      "$columns using 1:3 with lines lc '#1f5fa8' title 'achieved', $columns using 1:5 with lines "
-      "lw 1.5 lc '#cc3333' title 'programmed'\n",
-      out);
-  for (int order = 0; order < 3; ++order) {
-    next();
-    if (order == 2) {
-      // The last one carries the axis.
-      std::fprintf(out,
-                   "set xlabel 'time, s' offset 0,0.6\nset format x '%%g'\n"
-                   "set bmargin at screen 0.06\n");
-    }
-    print_shares(out, model, order);
-  }
+  print_velocities(out, model);
+  next();
+  print_largest(out, model, 1);
+  next();
+  // The last one carries the axis.
+  std::fputs("set xlabel 'time, s' offset 0,0.6\nset format x '%g'\nset bmargin at screen 0.065\n",
+             out);
+  print_largest(out, model, 2);
   std::fputs("unset multiplot\nset output\n", out);
 }
 

@@ -67,7 +67,8 @@ class Filler {
                               (period * period * period * limits.jerk));
       }
     }
-    const Vector3 tip = forward(model_, length_, row.joints).tip;
+    const ToolPose pose = forward(model_, length_, row.joints);
+    const Vector3 tip = pose.tip;
     if (run_ > 1) column.tip_speed_mm_per_s.add((tip - tip_).norm() / period);
     const auto feed = feeds_.find(row.line);
     if (row.kind == MotionKind::kCut && feed != feeds_.end() && feed->second > 0) {
@@ -77,8 +78,9 @@ class Filler {
     auto& way = data_.tip;
     if (way.empty() || way.back().kind != row.kind ||
         (tip - way.back().tip).norm() >= span_.way_mm / kPointsOnWay) {
-      if (!way.empty() && way.back().kind != row.kind) way.push_back({tip, way.back().kind});
-      way.push_back({tip, row.kind});
+      if (!way.empty() && way.back().kind != row.kind)
+        way.push_back({tip, pose.axis, way.back().kind});
+      way.push_back({tip, pose.axis, row.kind});
     }
   }
 

@@ -37,6 +37,7 @@ struct PictureData {
   std::vector<PictureColumn> columns;
   struct Point {
     Vector3 tip;
+    Vector3 axis;  ///< of the tool, tip to shank
     MotionKind kind;
   };
   std::vector<Point> tip;  ///< in the workpiece frame

@@ -55,6 +55,29 @@ TEST_F(Picture, IsAFileOfTheKindItsNameSays) {
   EXPECT_EQ(test::read_text(png.path()).substr(1, 3), "PNG");
 }
 
+TEST_F(Picture, SaysThatTheFeedIsUnknownWhereTheFileHasNone) {
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "gnuplot is not installed";
+  const Scratch csv(".csv"), svg(".svg");
+  RecordingReader reader = test::write_and_open(csv.path(), model, records);
+  const CheckedPath without{model.tool_length_mm, 0};
+  const auto error = draw(reader, without, model, "part", svg.path());
+  ASSERT_FALSE(error) << error->text();
+  EXPECT_NE(test::read_text(svg.path()).find("feed unknown"), std::string::npos);
+  ASSERT_FALSE(draw(reader, path, model, "part", svg.path()));
+  EXPECT_EQ(test::read_text(svg.path()).find("feed unknown"), std::string::npos);
+  EXPECT_NE(test::read_text(svg.path()).find("programmed"), std::string::npos);
+}
+
+TEST_F(Picture, ShowsTheToolAxisAlongTheCut) {
+  const Scratch file(".csv");
+  RecordingReader reader = test::write_and_open(file.path(), model, records);
+  PictureData data;
+  ASSERT_FALSE(gather(reader, path, model, 20, data));
+  const Vector3 wanted = to_vector(blocks.back().axis);
+  EXPECT_LT((data.tip.back().axis - wanted).norm(), 1e-5);
+}
+
 TEST_F(Picture, RefusesOtherFormatsAndRecordingsAtRest) {
   const Scratch csv(".csv"), svg(".svg");
   RecordingReader reader = test::write_and_open(csv.path(), model, records);
