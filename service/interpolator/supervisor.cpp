@@ -239,6 +239,8 @@ void Supervisor::look_for_action_peer() {
   if (std::exchange(has_action_peer_, is_there) != is_there && tell_intake_) tell_intake_(is_there);
 }
 
+/// Asks for the next step to Off, where there is one to ask for: a machine that is on its way there
+/// (Aborting, FaultStop, Disabling) is waited for.
 void Supervisor::work_on_switching_off() {
   constexpr std::int64_t kAskAgain_ns = 100'000'000;
   if (!is_switching_off_ || is_off_) return;
@@ -250,11 +252,13 @@ void Supervisor::work_on_switching_off() {
   const std::int64_t now_ns = monotonic_ns();
   if (now_ns - asked_off_ns_ < kAskAgain_ns) return;
   asked_off_ns_ = now_ns;
-  const VerbEffect disable = effect_of(state, Verb::kDisable);
-  const Verb verb = disable.effect == Effect::kGo ? Verb::kDisable : Verb::kAbort;
-  dds::CommandRequest own;
-  own.verb = verb;
-  send(own, verb, 0);
+  for (const Verb verb : {Verb::kDisable, Verb::kAbort}) {
+    if (effect_of(state, verb).effect != Effect::kGo) continue;
+    dds::CommandRequest own;
+    own.verb = verb;
+    send(own, verb, 0);
+    return;
+  }
 }
 
 }  // namespace meridian::interpolator

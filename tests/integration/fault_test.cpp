@@ -103,6 +103,26 @@ TEST_F(Fault, OfTheServiceItselfLeavesAMachineThatWaitsForEnableAndStart) {
   EXPECT_TRUE(plant.enable()) << plant.service().said();
 }
 
+TEST_F(Fault, OfDrivesThatDieWhileTheServiceEndsIsNoReasonToAskAgainAndAgain) {
+  run_with({});
+  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  plant.drives().send_signal(SIGKILL);
+  ASSERT_TRUE(plant.drives().wait(milliseconds(2000)));
+  plant.service().send_signal(SIGTERM);
+  EXPECT_EQ(plant.service().wait(milliseconds(12000)), 0) << plant.service().said();
+  EXPECT_EQ(plant.service().said().find("refused"), std::string::npos) << plant.service().said();
+}
+
+TEST_F(Fault, OfDrivesThatDieAtRestIsNoReasonToAskAgainAndAgainEither) {
+  plant.start_service();
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  plant.drives().send_signal(SIGSTOP);
+  plant.service().send_signal(SIGTERM);
+  EXPECT_EQ(plant.service().wait(milliseconds(12000)), 0) << plant.service().said();
+  EXPECT_EQ(plant.service().said().find("refused"), std::string::npos) << plant.service().said();
+}
+
 TEST(StationFault, LeavesAMachineThatRunsWhatItWasGivenStopsOnThePathAndWaits) {
   Plant plant;
   plant.start_service();

@@ -100,6 +100,7 @@ class Plant {
   [[nodiscard]] std::string domain() const { return std::to_string(domain_.id()); }
   [[nodiscard]] dds::Participant& participant() { return participant_; }
   [[nodiscard]] Process& service() { return *service_; }
+  [[nodiscard]] Process& drives() { return *drives_; }
 
  private:
   void look();
