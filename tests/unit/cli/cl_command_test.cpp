@@ -89,6 +89,9 @@ TEST(SurfaceCommand, CoversAPatchAndReportsBesideIt) {
   EXPECT_EQ(to_file.exit_code, 0);
   EXPECT_NE(to_file.output.find("21 lines, 441 contacts"), std::string::npos) << to_file.output;
   EXPECT_EQ(run("cl " + file).exit_code, 0);
+  const std::string picture = testing::TempDir() + "surface.svg";
+  EXPECT_EQ(run("surface " + kPatch + " -o /dev/null --picture " + picture).exit_code, 0);
+  EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
   const Outcome finer = run("surface " + kPatch + " --points 5 --lines 3 -o " + file);
   EXPECT_NE(finer.output.find("3 lines, 15 contacts"), std::string::npos) << finer.output;
   EXPECT_EQ(run("surface " + kPatch + " 2>/dev/null | head -1").output, "PARTNO REFERENCE PATCH\n");
@@ -107,6 +110,27 @@ TEST(SurfaceCommand, SaysNoToACutterThatGougesAndToWhatItCannotTake) {
   EXPECT_EQ(run("surface " + kPatch + " --sample blossom").exit_code, 2);
   EXPECT_EQ(run("surface " + kPatch + " --points 5 --chord-error-mm 1").exit_code, 2);
   EXPECT_EQ(run("surface " + kPatch + " -o /dev/null --picture /tmp/x.bmp").exit_code, 3);
+}
+
+const std::string kMachine = MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml";
+
+TEST(MachineCommand, TellsDrawsAndWritesAPattern) {
+  const std::string picture = testing::TempDir() + "machine.svg";
+  const std::string pattern = testing::TempDir() + "pattern.apt";
+  const Outcome outcome =
+      run("machine " + kMachine + " --picture " + picture + " --pattern " + pattern);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("workpiece - C - A - X - Y - Z - tool"), std::string::npos);
+  EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
+  EXPECT_EQ(run("cl " + pattern).exit_code, 0);
+}
+
+TEST(MachineCommand, SaysNoToASlipAndToWhatItCannotTake) {
+  EXPECT_EQ(run("machine " + kMachine + " --frame 0,9000,0").exit_code, 1);
+  EXPECT_EQ(run("machine /no/such/machine.toml").exit_code, 3);
+  EXPECT_EQ(run("machine " + kMachine + " --picture x.bmp").exit_code, 3);
+  EXPECT_EQ(run("machine " + kMachine + " --pattern /no/such/place/x").exit_code, 3);
+  EXPECT_EQ(run("machine").exit_code, 2);
 }
 
 }  // namespace
