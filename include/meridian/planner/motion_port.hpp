@@ -14,7 +14,7 @@
 ///
 ///     planner ─ MotionWriter ─▶ [paths: where] ─▶ MotionReader ─ cycle
 ///                             ─▶ [times: when ] ─▶
-///                             ◀─ tail entered ──
+///                             ◀─ tail entered, window begun ──
 ///
 /// Windows are published whole. Path pieces are shown before the time pieces that refer to them, so
 /// a time piece that the cycle sees always has its path. Every published plan ends at rest: either
@@ -26,6 +26,8 @@ struct MotionPort {
   SpscRing<TimePiece, 16384> times;
   /// Epoch and window whose tail the cycle entered last, packed by MotionReader; 0: none yet.
   std::atomic<std::uint64_t> tail_entered{0};
+  /// Epoch and window that the cycle is in or was in last, packed the same way.
+  std::atomic<std::uint64_t> window_begun{0};
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
@@ -74,13 +76,22 @@ class MotionWriter {
   /// The newest window whose tail the cycle entered: it will take up only a window that starts from
   /// rest there.
   [[nodiscard]] std::optional<WindowName> tail_entered() const noexcept {
-    const std::uint64_t packed = port_.tail_entered.load(std::memory_order_acquire);
+    return unpack(port_.tail_entered.load(std::memory_order_acquire));
+  }
+
+  /// The window that the cycle began last. It has passed those before without their tails, but for
+  /// the one that tail_entered() names.
+  [[nodiscard]] std::optional<WindowName> window_begun() const noexcept {
+    return unpack(port_.window_begun.load(std::memory_order_acquire));
+  }
+
+ private:
+  [[nodiscard]] static std::optional<WindowName> unpack(std::uint64_t packed) noexcept {
     if (packed == 0) return std::nullopt;
     return WindowName{static_cast<std::uint16_t>(packed >> 32U),
                       static_cast<std::uint32_t>(packed & 0xffffffffU)};
   }
 
- private:
   MotionPort& port_;
   double staged_s_ = 0, published_s_ = 0;
 };
@@ -187,19 +198,27 @@ class MotionReader {
     piece_ = &next;
     if (next.is_tail && !is_past_tail_) {
       is_past_tail_ = true;
-      port_.tail_entered.store(
-          (std::uint64_t{1} << 63U) | (std::uint64_t{next.epoch} << 32U) | next.window,
-          std::memory_order_release);
+      port_.tail_entered.store(pack(next), std::memory_order_release);
     } else if (!next.is_tail) {
       is_past_tail_ = false;
     }
+    const std::uint64_t begun = pack(next);
+    if (begun != begun_) {
+      begun_ = begun;
+      port_.window_begun.store(begun, std::memory_order_release);
+    }
     last_ = {next.epoch, next.window};
+  }
+
+  [[nodiscard]] static std::uint64_t pack(const TimePiece& piece) noexcept {
+    return (std::uint64_t{1} << 63U) | (std::uint64_t{piece.epoch} << 32U) | piece.window;
   }
 
   MotionPort& port_;
   const TimePiece* piece_ = nullptr;
   const PathPiece* path_ = nullptr;
   WindowName last_;
+  std::uint64_t begun_ = 0;  ///< what window_begun holds
   std::uint16_t epoch_ = 0;
   bool is_past_tail_ = false;  ///< a tail was entered: only a window from rest may follow
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
@@ -51,6 +52,22 @@ class RestToRestPlanner {
 
   /// Plans and publishes one block.
   [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
+
+  /// Where another planner takes over from this one, or gives back: the pose and joints at the end
+  /// of what was published, and the names that come next in the epoch.
+  struct Junction {
+    ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+    JointVector joints{};
+    double tool_length_mm = 0;
+    std::uint16_t epoch = 0;
+    std::uint64_t path_index = 0;
+    std::uint32_t window = 0;
+    bool is_first = true;  ///< no motion block yet: the next one is approached
+  };
+  [[nodiscard]] Junction junction() const noexcept;
+  /// Goes on at rest from where another planner brought the machine, within rounding of a pose that
+  /// junction() would tell. Only where no block waits for room.
+  void continue_at(const Junction& junction) noexcept;
 
   /// Joints and tool length at the end of what was published.
   [[nodiscard]] const JointVector& joints() const noexcept;

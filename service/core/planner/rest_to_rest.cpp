@@ -7,27 +7,12 @@
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/fault_code.hpp"
 #include "service/core/planner/router.hpp"
 #include "service/core/planner/staging.hpp"
 
 namespace meridian {
 namespace {
-
-RejectCode code_of(PathFault::Kind kind) noexcept {
-  switch (kind) {
-    case PathFault::Kind::kNone:
-      return RejectCode::kNone;
-    case PathFault::Kind::kTravel:
-      return RejectCode::kTravelBetween;
-    case PathFault::Kind::kUnreachable:
-      return RejectCode::kUnreachable;
-    case PathFault::Kind::kTooLong:
-      return RejectCode::kTooComplex;
-    case PathFault::Kind::kJump:
-      break;
-  }
-  return RejectCode::kDiscontinuous;
-}
 
 TimeKind barrier_of(BlockKind kind) noexcept {
   switch (kind) {
@@ -202,6 +187,18 @@ PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) n
   w.cursor = w.next;
   w.is_staged = false;
   return w.result;
+}
+
+RestToRestPlanner::Junction RestToRestPlanner::junction() const noexcept {
+  const PlanCursor& at = workspace_->cursor;
+  return {at.pose, at.joints, at.tool_length_mm, at.epoch, at.path_index, at.window, at.is_first};
+}
+
+void RestToRestPlanner::continue_at(const Junction& junction) noexcept {
+  Workspace& w = *workspace_;
+  w.cursor = {junction.pose,       junction.joints, junction.tool_length_mm, junction.is_first,
+              junction.path_index, junction.window, junction.epoch};
+  w.is_staged = false;
 }
 
 const JointVector& RestToRestPlanner::joints() const noexcept { return workspace_->cursor.joints; }

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+
+namespace meridian {
+
+/// How a program's cuts join.
+enum class Transition : std::uint8_t {
+  kSmooth,    ///< on through blocks, corners rounded inside the tolerances
+  kExactStop  ///< rest at the end of every block
+};
+
+struct SmoothSettings {
+  Transition transition = Transition::kSmooth;
+  double tip_tolerance_mm = 0;    ///< 0: the machine's
+  double axis_tolerance_rad = 0;  ///< 0: the machine's
+};
+
+/// The planner that runs on through blocks: cuts become a band spline, the rolling feed moves along
+/// it in windows that each end in a stop of their own. Everything else is left to the plain planner
+/// and done at rest: approach, rapids, dwells, actions, stops, blocks at or close by the pole, and
+/// machines with an actuator stage.
+///
+/// A cut that was taken (kOk) is published when enough of what follows it is known: up to 172 mm
+/// of path and half a second of motion later, or when a block comes that is done at rest. What is
+/// published depends on the blocks and begin() alone, as long as the machine does not run dry; it
+/// then goes on from where it came to rest. Fixed store, no clock.
+///
+/// A refusal may name a block that was taken before; what is published ends at rest ahead of it.
+/// Method and formulas: docs/motion.md. Context: planner thread.
+/// Proof: tests/property/planner/smooth_planner_test.cpp.
+class SmoothPlanner {
+ public:
+  explicit SmoothPlanner(const MachineModel& model, ToolTable tools = {});
+  ~SmoothPlanner();
+  SmoothPlanner(const SmoothPlanner&) = delete;
+  SmoothPlanner& operator=(const SmoothPlanner&) = delete;
+
+  /// As RestToRestPlanner::begin().
+  void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
+             const SmoothSettings& settings = {}) noexcept;
+
+  /// Takes one block and publishes what has become ready. kNoRoom: the block was not taken, call
+  /// again with the same one.
+  [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
+
+  /// Publishes what is ready, without a new block: where the port was full, or the machine ran dry
+  /// and has to be sent on. A refusal found on the way is told by the next plan().
+  void advance(MotionWriter& writer) noexcept;
+
+  /// Joints and tool length at the end of the last motion that was published to its end.
+  [[nodiscard]] const JointVector& joints() const noexcept;
+  [[nodiscard]] double tool_length_mm() const noexcept;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace meridian

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/planner/smooth_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/geometry/unit_vector.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "service/core/planner/fault_code.hpp"
+#include "service/core/planner/leg_planner.hpp"
+#include "service/core/planner/smooth_run.hpp"
+
+namespace meridian {
+namespace {
+
+/// Blocks whose axis comes nearer to the pole than this share of the axis tolerance are done from
+/// rest to rest: the smoothed axis, up to half of it away, could pass on the other side.
+constexpr double kPoleShare = 0.6;
+
+/// Least distance of the axis on the great circle from `begin` to `end` to the pole.
+double least_pole_distance(const MachineModel& model, const PathPiece& way, const Vector3& begin,
+                           const Vector3& end) noexcept {
+  const double at_ends = std::min(pole_distance(model, begin), pole_distance(model, end));
+  for (const double side : {1.0, -1.0}) {
+    const PolePassage passage = find_passage(way, side * pole_direction(model));
+    if (passage.nearest_turn > 0 && passage.nearest_turn < way.axis_turn) {
+      return std::min(at_ends, passage.offset);
+    }
+  }
+  return at_ends;
+}
+
+}  // namespace
+
+struct SmoothPlanner::Workspace {
+  Workspace(const MachineModel& m, ToolTable t) : model(m), plain(m, std::move(t)), run(m) {}
+
+  [[nodiscard]] BandTolerance tolerance() const noexcept {
+    BandTolerance out;
+    out.tip_mm =
+        settings.tip_tolerance_mm > 0 ? settings.tip_tolerance_mm : model.tolerances.tip_mm;
+    out.axis_rad =
+        settings.axis_tolerance_rad > 0 ? settings.axis_tolerance_rad : model.tolerances.axis_rad;
+    out.tip_mm = std::max(out.tip_mm, 1e-3);
+    out.axis_rad = std::max(out.axis_rad, 1e-4);
+    if (free_joint(model) >= 0) out.pole = to_array(pole_direction(model));
+    return out;
+  }
+
+  /// `block` as it can be run on through, or nothing where it is done at rest.
+  [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
+  void begin_run() noexcept;
+  void end_run() noexcept;
+  [[nodiscard]] PlanResult refuse() noexcept;
+  /// Publishes what is ready of the run.
+  [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
+
+  const MachineModel& model;
+  RestToRestPlanner plain;
+  SmoothRun run;
+  SmoothSettings settings;
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
+  JointVector joints{};
+  bool is_running = false;
+  bool is_refused = false;
+  PlanResult refusal;
+};
+
+std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
+  if (settings.transition != Transition::kSmooth || block.kind != BlockKind::kCut) return {};
+  if (has_stage(model) || plain.junction().is_first) return {};
+  if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return {};
+  const auto unit = UnitVector3::near_unit(to_vector(block.axis));
+  if (!unit || !to_vector(block.tip_mm).allFinite()) return {};
+  Vector3 axis = unit->vector();
+  if (block.feed_meaning == FeedMeaning::kTip && model.max_feed_mm_per_s > 0) {
+    block.feed = std::min(block.feed, model.max_feed_mm_per_s);
+  }
+  if (free_joint(model) >= 0 && pole_distance(model, axis) < kPoleEase_rad) {
+    axis = find_nearest_pole(model, axis);
+  }
+  block.axis = to_array(axis);
+  if (axis == pose.axis) return block;
+  if (!find_great_circle(pose.axis, axis).is_unique) return {};
+  if (free_joint(model) < 0) return block;
+  const PathPiece way = make_line(pose, {to_vector(block.tip_mm), axis});
+  const double least = kPoleShare * tolerance().axis_rad;
+  if (least_pole_distance(model, way, pose.axis, axis) < least) return {};
+  return block;
+}
+
+void SmoothPlanner::Workspace::begin_run() noexcept {
+  const RestToRestPlanner::Junction at = plain.junction();
+  RunStart start;
+  start.pose = at.pose;
+  start.joints = at.joints;
+  start.tool_length_mm = at.tool_length_mm;
+  start.epoch = at.epoch;
+  start.path_index = at.path_index;
+  start.window = at.window;
+  double nearest = 1e300;
+  for (int branch = 0; branch < branch_count(model); ++branch) {
+    const auto found = solve(model, at.tool_length_mm, at.pose, branch, at.joints);
+    if (found.status == SolveStatus::kUnreachable) continue;
+    double off = 0;
+    for (int i = 0; i < model.joint_count; ++i) {
+      off = std::max(off, std::abs(found.q[i] - at.joints[i]));
+    }
+    if (off < nearest) {
+      nearest = off;
+      start.branch = branch;
+    }
+  }
+  run.begin(start, tolerance());
+  is_running = true;
+}
+
+void SmoothPlanner::Workspace::end_run() noexcept {
+  RestToRestPlanner::Junction at = plain.junction();
+  at.pose = pose;
+  at.joints = joints = run.joints();
+  at.path_index = run.next_path_index();
+  at.window = run.next_window();
+  plain.continue_at(at);
+  is_running = false;
+}
+
+SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexcept {
+  const SmoothRun::Status status = run.publish(writer);
+  if (status == SmoothRun::Status::kFailed && !is_refused) {
+    is_refused = true;
+    BlockReject reject = run.faulty_block();
+    reject.code = code_of(run.fault().kind);
+    refusal = {PlanStatus::kRefused, reject, 0};
+  }
+  return status;
+}
+
+SmoothPlanner::SmoothPlanner(const MachineModel& model, ToolTable tools)
+    : workspace_(std::make_unique<Workspace>(model, std::move(tools))) {}
+
+SmoothPlanner::~SmoothPlanner() = default;
+
+void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
+                          const SmoothSettings& settings) noexcept {
+  Workspace& w = *workspace_;
+  if (w.is_running) w.end_run();  // no index comes twice
+  w.plain.begin(at_rest, tool_length_mm, epoch);
+  w.settings = settings;
+  w.is_refused = false;
+  w.pose = w.plain.junction().pose;
+  w.joints = at_rest;
+}
+
+PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
+  using Status = SmoothRun::Status;
+  Workspace& w = *workspace_;
+  if (w.is_refused) return w.refusal;
+  const auto cut = w.smoothable(block);
+  if (w.is_running) {
+    if (!cut) w.run.finish();
+    const Status status = w.publish(writer);
+    if (w.is_refused) return w.refusal;
+    if (status == Status::kNoRoom || (!cut && status != Status::kDone))
+      return {PlanStatus::kNoRoom, {}, 0};
+    if (!cut) w.end_run();
+  }
+  if (!cut) {
+    const PlanResult result = w.plain.plan(block, writer);
+    if (result.status == PlanStatus::kRefused) {
+      w.is_refused = true;
+      w.refusal = result;
+    } else if (result.status == PlanStatus::kOk) {
+      w.pose = w.plain.junction().pose;
+      w.joints = w.plain.joints();
+    }
+    return result;
+  }
+  if (!w.is_running) w.begin_run();
+  w.run.take(*cut);
+  w.pose = {to_vector(cut->tip_mm), to_vector(cut->axis)};
+  (void)w.publish(writer);
+  return w.is_refused ? w.refusal : PlanResult{};
+}
+
+void SmoothPlanner::advance(MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  if (w.is_running && !w.is_refused) (void)w.publish(writer);
+}
+
+const JointVector& SmoothPlanner::joints() const noexcept { return workspace_->joints; }
+
+double SmoothPlanner::tool_length_mm() const noexcept { return workspace_->plain.tool_length_mm(); }
+
+}  // namespace meridian

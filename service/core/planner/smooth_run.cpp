@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/smooth_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/planner/joints_at.hpp"
+
+namespace meridian {
+namespace {
+
+/// More spans than the feed keeps cells: every cell lies in one span.
+constexpr std::size_t kSpans = 2048;
+
+bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
+
+}  // namespace
+
+SmoothRun::SmoothRun(const MachineModel& model)
+    : model_(model), feed_(model, {}), authority_(model), spans_(kSpans) {}
+
+void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance) noexcept {
+  start_ = start;
+  band_.begin(start.pose, tolerance);
+  feed_.begin(start.joints, start.branch, start.tool_length_mm);
+  spans_.clear();
+  staged_spans_ = 0;
+  span_joints_ = start.joints;
+  window_ = start.window;
+  open_.fill({});
+  has_window_ = is_feed_finished_ = false;
+  fault_ = {};
+  faulty_block_ = {};
+}
+
+void SmoothRun::take(const ClBlock& block) noexcept {
+  if (!band_.push(block)) fail({PathFault::Kind::kTooLong, -1, 0}, block.sequence, block.line);
+}
+
+void SmoothRun::fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept {
+  fault_ = fault;
+  faulty_block_.sequence = sequence;
+  faulty_block_.line = line;
+  faulty_block_.joint = fault.joint;
+  faulty_block_.value = fault.value;
+}
+
+SmoothRun::Status SmoothRun::publish(MotionWriter& writer) noexcept {
+  for (;;) {
+    follow_tail(writer);
+    if (has_window_ && !write(writer)) return Status::kNoRoom;
+    has_window_ = false;
+    if (is_fault(fault_)) return Status::kFailed;
+    const Status status = prepare();
+    if (has_window_) continue;
+    return status == Status::kDone && !is_end_certain(writer) ? Status::kNoRoom : status;
+  }
+}
+
+/// Whether the cycle will come to the end of the run: no tail is left that it could enter instead.
+bool SmoothRun::is_end_certain(const MotionWriter& writer) const noexcept {
+  const bool has_one_window = window_ == start_.window + 1;
+  if (window_ == start_.window || has_one_window) return true;
+  const auto begun = writer.window_begun();
+  return begun && begun->epoch == start_.epoch && begun->window + 1 == window_;
+}
+
+/// Plans the next window, from as many spans as it takes.
+SmoothRun::Status SmoothRun::prepare() noexcept {
+  for (;;) {
+    has_window_ = feed_.try_plan();
+    if (has_window_) return Status::kNoRoom;
+    if (is_fault(fault_)) return Status::kFailed;
+    if (is_feed_finished_ && feed_.is_done()) return Status::kDone;
+    if (!feed_.has_room()) return Status::kNeedsBlocks;
+    PathFault fault;
+    std::uint64_t sequence = spans_.end_index() > 0 ? spans_.back().sequence : 0;
+    std::uint32_t line = spans_.end_index() > 0 ? spans_.back().line : 0;
+    if (const BandSpan* span = band_.next()) {
+      spans_.push(*span);
+      sequence = span->sequence;
+      line = span->line;
+      fault = feed_.push(*span);
+    } else if (band_.has_failed()) {
+      fault = {PathFault::Kind::kTooLong, -1, 0};
+    } else if (band_.is_done() && !is_feed_finished_) {
+      is_feed_finished_ = true;
+      fault = feed_.finish();
+    } else {
+      return Status::kNeedsBlocks;
+    }
+    if (is_fault(fault)) {
+      fail(fault, sequence, line);
+      return Status::kFailed;
+    }
+  }
+}
+
+/// The cycle came to a tail before the next window did: go on from the rest at its end.
+void SmoothRun::follow_tail(const MotionWriter& writer) noexcept {
+  const auto tail = writer.tail_entered();
+  if (!tail || tail->epoch != start_.epoch) return;
+  for (OpenWindow& open : open_) {
+    if (open.rest_cell < 0 || open.window != tail->window) continue;
+    feed_.resume_from(open.rest_cell);
+    open_.fill({});
+    has_window_ = false;
+    return;
+  }
+}
+
+bool SmoothRun::write(MotionWriter& writer) noexcept {
+  const FeedWindow& window = feed_.window();
+  std::uint64_t until = staged_spans_;
+  for (const auto& pieces : {window.committed, window.tail}) {
+    for (const FeedPiece& piece : pieces) until = std::max(until, piece.span + 1);
+  }
+  if (!writer.has_room(until - staged_spans_, window.committed.size() + window.tail.size())) {
+    return false;
+  }
+  bool is_written = stage_spans(writer, until);
+  authority_.begin(feed_.grid(), window.rest_cell);
+  for (const FeedPiece& piece : window.committed) is_written &= stage_piece(writer, piece, false);
+  for (const FeedPiece& piece : window.tail) is_written &= stage_piece(writer, piece, true);
+  if (!is_written) {
+    writer.discard();
+    return false;
+  }
+  writer.publish();
+  open_[window_ % open_.size()] = {window_, window.tail.empty() ? -1 : window.rest_cell};
+  ++window_;
+  return true;
+}
+
+bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
+  for (; staged_spans_ < until; ++staged_spans_) {
+    const BandSpan& span = spans_[static_cast<std::int64_t>(staged_spans_)];
+    PathPiece piece = make_spline(span);
+    piece.index = start_.path_index + staged_spans_;
+    piece.epoch = start_.epoch;
+    piece.branch = static_cast<std::uint8_t>(start_.branch);
+    piece.tool_length_mm = start_.tool_length_mm;
+    piece.joints_begin = joints_at(model_, piece, 0.0, span_joints_).q;
+    piece.joints_end = joints_at(model_, piece, span.length, piece.joints_begin).q;
+    span_joints_ = piece.joints_end;
+    if (!writer.stage(piece)) return false;
+  }
+  return true;
+}
+
+bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool is_tail) noexcept {
+  const BandSpan& span = spans_[static_cast<std::int64_t>(piece.span)];
+  TimePiece time;
+  time.kind = TimeKind::kMove;
+  time.is_tail = is_tail;
+  time.is_from_rest = feed_.window().is_from_rest;
+  time.epoch = start_.epoch;
+  time.window = window_;
+  time.path_index = start_.path_index + piece.span;
+  time.sequence = span.sequence;
+  time.line = span.line;
+  time.duration = piece.duration;
+  time.s0 = piece.s0;
+  time.v = piece.v;
+  time.a = piece.a;
+  time.j = piece.j;
+  time.k = piece.k;
+  time.feed_mm_per_s = std::isfinite(span.feed_mm_per_s) ? span.feed_mm_per_s : 0;
+  authority_.grant(piece, time);
+  return writer.stage(time);
+}
+
+}  // namespace meridian

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/band_spline.hpp"
+#include "meridian/path/block_reject.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "service/core/path/index_ring.hpp"
+#include "service/core/planner/feed_authority.hpp"
+#include "service/core/planner/rolling_feed.hpp"
+
+namespace meridian {
+
+/// Where a run starts, and the names that its pieces get.
+struct RunStart {
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+  JointVector joints{};
+  int branch = 0;
+  double tool_length_mm = 0;
+  std::uint16_t epoch = 0;
+  std::uint64_t path_index = 0;  ///< of the next path piece
+  std::uint32_t window = 0;      ///< the next one
+};
+
+/// A stretch of program without a rest: from blocks through spline and feed to windows in the port.
+/// It starts and ends at rest.
+class SmoothRun {
+ public:
+  enum class Status : std::uint8_t {
+    kNeedsBlocks,  ///< all that is ready was published
+    kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
+                   ///< again
+    kDone,         ///< finish() was called and everything is published
+    kFailed        ///< fault() says why; what is published ends at rest
+  };
+
+  explicit SmoothRun(const MachineModel& model);
+
+  void begin(const RunStart& start, const BandTolerance& tolerance) noexcept;
+
+  /// Takes a cut. Only where publish() has said kNeedsBlocks.
+  void take(const ClBlock& block) noexcept;
+  /// No more blocks: the run ends on the last one.
+  void finish() noexcept { band_.finish(); }
+
+  /// Plans and publishes what is ready.
+  [[nodiscard]] Status publish(MotionWriter& writer) noexcept;
+
+  [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
+  /// The block that the fault is on; its code is left to the caller.
+  [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
+
+  /// Names for what follows the run, and the joints at its end.
+  [[nodiscard]] std::uint64_t next_path_index() const noexcept {
+    return start_.path_index + staged_spans_;
+  }
+  [[nodiscard]] std::uint32_t next_window() const noexcept { return window_; }
+  [[nodiscard]] const JointVector& joints() const noexcept { return span_joints_; }
+
+ private:
+  /// A published window that may still end in its tail.
+  struct OpenWindow {
+    std::uint32_t window = 0;
+    std::int64_t rest_cell = -1;  ///< -1: it has no tail
+  };
+
+  [[nodiscard]] Status prepare() noexcept;
+  void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
+  [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
+  void follow_tail(const MotionWriter& writer) noexcept;
+  [[nodiscard]] bool write(MotionWriter& writer) noexcept;
+  [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;
+  [[nodiscard]] bool stage_piece(MotionWriter& writer, const FeedPiece& piece,
+                                 bool is_tail) noexcept;
+
+  const MachineModel& model_;
+  BandSpline band_;
+  RollingFeed feed_;
+  FeedAuthority authority_;
+  IndexRing<BandSpan> spans_;  ///< by number, as far back as a window may go
+  RunStart start_;
+  std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
+  JointVector span_joints_{};       ///< at the end of the last of them
+  std::uint32_t window_ = 0;
+  std::array<OpenWindow, 4> open_;
+  bool has_window_ = false;  ///< feed_.window() waits for room
+  bool is_feed_finished_ = false;
+  PathFault fault_;
+  BlockReject faulty_block_;
+};
+
+}  // namespace meridian

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Programs run on through their blocks: limits, tolerances and feed of what comes out of the port,
+/// barriers at rest, running dry.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <random>
+
+#include "property/path/hostile_path.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "support/machines.hpp"
+
+namespace meridian::test {
+namespace {
+
+constexpr double kLimit = 1 + 1e-6;
+
+std::vector<ClBlock> hostile(std::uint32_t seed, int sections) {
+  auto blocks = HostilePath(seed).make(sections);
+  ClBlock end;
+  end.kind = BlockKind::kEnd;
+  end.sequence = blocks.size();
+  blocks.push_back(end);
+  return blocks;
+}
+
+struct Peaks {
+  double v = 0, a = 0, j = 0, feed = 0, off = 0, duration_s = 0;
+};
+
+/// Judges setpoints of `trace` by `blocks` alone.
+void judge(const MachineModel& model, const SmoothTrace& trace, const std::vector<ClBlock>& blocks,
+           const JointVector& start, Peaks& peaks) {
+  ASSERT_EQ(trace.last.status, PlanStatus::kOk)
+      << "code " << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
+      << " block " << trace.last.reject.sequence;
+  ASSERT_EQ(trace.times.back().kind, TimeKind::kEnd);
+  const auto ways = programmed_ways(blocks);
+  for (const double cycle : {1e-3, 250e-6}) {
+    const auto setpoints = sample(model, trace, cycle, 0.37, start);
+    const LimitUse use = measure_limits(model, setpoints, cycle);
+    ASSERT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where << " cycle " << cycle;
+    const double feed = measure_feed(model, trace, setpoints, cycle);
+    ASSERT_LE(feed, 1.0001);
+    peaks.v = std::max(peaks.v, use.v);
+    peaks.a = std::max(peaks.a, use.a);
+    peaks.j = std::max(peaks.j, use.j);
+    peaks.feed = std::max(peaks.feed, feed);
+    if (cycle != 1e-3) continue;
+    for (std::size_t n = 3; n + 3 < setpoints.size(); n += 7) {
+      const auto k = static_cast<std::size_t>(setpoints[n].piece);
+      if (trace.times[k].kind != TimeKind::kMove) continue;
+      if (trace.paths[k].motion == MotionKind::kApproach) continue;
+      const ToolPose pose = forward(model, trace.paths[k].tool_length_mm, setpoints[n].q);
+      const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
+                                       model.tolerances.axis_rad);
+      ASSERT_LE(off, 1 + 1e-6) << "setpoint " << n << " block " << trace.times[k].sequence;
+      peaks.off = std::max(peaks.off, off);
+    }
+  }
+  peaks.duration_s += trace.duration_s();
+  const ToolPose end = forward(model, model.tool_length_mm, trace.joints);
+  EXPECT_LE((end.tip - to_vector(blocks[blocks.size() - 2].tip_mm)).norm(), 2e-6);
+}
+
+void print(const char* what, const Peaks& peaks) {
+  std::printf("%s: %.0f s, v %.4f a %.4f j %.4f feed %.5f of the limits, %.3f tolerances\n", what,
+              peaks.duration_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.off);
+}
+
+TEST(SmoothPlanner, KeepsLimitsFeedAndTolerancesOnHostilePrograms) {
+  for (const MachineModel& model : {bench_machine(), lai_machine()}) {
+    Peaks peaks;
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      SCOPED_TRACE(testing::Message() << model.name << " seed " << seed);
+      const auto blocks = hostile(seed, 12);
+      const JointVector start = joints_of(model, blocks[0]);
+      judge(model, plan_smooth(model, blocks, start), blocks, start, peaks);
+    }
+    print(model.name.c_str(), peaks);
+  }
+}
+
+TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
+  const MachineModel model = lai_machine();
+  Peaks peaks;
+  int tails = 0;
+  for (std::uint32_t seed = 11; seed <= 14; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const auto blocks = hostile(seed, 12);
+    const JointVector start = joints_of(model, blocks[0]);
+    std::mt19937 engine(seed);
+    const auto trace = plan_smooth(
+        model, blocks, start, {}, [&](std::size_t) { return engine() % 5 == 0; },
+        [&](std::size_t) { return engine() % 4 == 0; });
+    judge(model, trace, blocks, start, peaks);
+    tails += trace.tails;
+  }
+  EXPECT_GT(tails, 50);
+  print("run dry", peaks);
+}
+
+TEST(SmoothPlanner, PublishesTheSameHoweverTheBlocksArrive) {
+  const MachineModel model = lai_machine();
+  for (std::uint32_t seed = 21; seed <= 22; ++seed) {
+    const auto blocks = hostile(seed, 6);
+    const JointVector start = joints_of(model, blocks[0]);
+    const auto eager = plan_smooth(model, blocks, start);
+    std::mt19937 engine(seed);
+    const auto lazy = plan_smooth(
+        model, blocks, start, {}, [&](std::size_t) { return engine() % 50 == 0; },
+        [](std::size_t) { return false; });
+    ASSERT_EQ(eager.times.size(), lazy.times.size()) << "seed " << seed;
+    for (std::size_t n = 0; n < eager.times.size(); ++n) {
+      const TimePiece &a = eager.times[n], &b = lazy.times[n];
+      ASSERT_TRUE(a.s0 == b.s0 && a.v == b.v && a.a == b.a && a.j == b.j && a.k == b.k &&
+                  a.duration == b.duration && a.path_index == b.path_index &&
+                  a.stop_accel == b.stop_accel && a.window == b.window)
+          << "seed " << seed << " piece " << n;
+      ASSERT_EQ(eager.paths[n].spline, lazy.paths[n].spline);
+    }
+  }
+}
+
+TEST(SmoothPlanner, RestsWhereRapidsDwellsAndActionsStand) {
+  const MachineModel model = lai_machine();
+  auto blocks = hostile(31, 8);
+  blocks.pop_back();
+  std::vector<ClBlock> program;
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    ClBlock block = blocks[n];
+    if (n % 23 == 22) block.kind = BlockKind::kRapid;
+    program.push_back(block);
+    if (n % 31 == 30) {
+      ClBlock dwell;
+      dwell.kind = n % 2 == 0 ? BlockKind::kDwell : BlockKind::kAuxiliary;
+      dwell.value = 0.01;
+      program.push_back(dwell);
+    }
+  }
+  program.emplace_back().kind = BlockKind::kEnd;
+  for (std::size_t n = 0; n < program.size(); ++n) program[n].sequence = n;
+  const JointVector start = joints_of(model, program[0]);
+  const auto trace = plan_smooth(model, program, start);
+  Peaks peaks;
+  judge(model, trace, program, start, peaks);
+  int barriers = 0, splines = 0;
+  for (std::size_t n = 1; n < trace.times.size(); ++n) {
+    splines += trace.paths[n].kind == PathKind::kSpline ? 1 : 0;
+    const bool is_barrier = trace.times[n].kind != TimeKind::kMove;
+    const bool is_rapid = trace.paths[n].motion == MotionKind::kRapid;
+    if (!is_barrier && !is_rapid) continue;
+    ++barriers;
+    const TimePiece& before = trace.times[n - 1];
+    if (before.kind != TimeKind::kMove || trace.paths[n - 1].motion == MotionKind::kRapid) continue;
+    EXPECT_LE(state_at(before, before.duration).ds, 1e-6) << n;
+  }
+  EXPECT_GT(barriers, 5);
+  EXPECT_GT(splines, 100);
+}
+
+TEST(SmoothPlanner, StopsAtEveryBlockWhereAskedTo) {
+  const MachineModel model = lai_machine();
+  const auto blocks = hostile(41, 6);
+  const JointVector start = joints_of(model, blocks[0]);
+  SmoothSettings settings;
+  settings.transition = Transition::kExactStop;
+  const auto trace = plan_smooth(model, blocks, start, settings);
+  const Trace plain = plan_program(model, blocks, start);
+  ASSERT_EQ(trace.times.size(), plain.times.size());
+  for (std::size_t n = 0; n < trace.times.size(); ++n) {
+    EXPECT_EQ(trace.times[n].duration, plain.times[n].duration);
+    EXPECT_NE(trace.paths[n].kind, PathKind::kSpline);
+  }
+  EXPECT_LT(plan_smooth(model, blocks, start).duration_s(), 0.95 * plain.duration_s());
+}
+
+TEST(SmoothPlanner, RefusesWhatLeavesTravelAndRestsAheadOfIt) {
+  MachineModel model = lai_machine();
+  std::vector<ClBlock> blocks;
+  for (int n = 0; n < 400; ++n) {
+    ClBlock block;
+    block.sequence = static_cast<std::uint64_t>(n);
+    block.tip_mm = {0.5 * n, 3 * std::sin(0.05 * n), 0};
+    block.axis = {std::sin(0.3), 0, std::cos(0.3)};
+    block.feed = 30;
+    block.feed_meaning = FeedMeaning::kTip;
+    blocks.push_back(block);
+  }
+  const JointVector start = joints_of(model, blocks[0]);
+  const JointVector at = joints_of(model, blocks[300]);
+  int joint = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::abs(at[i] - start[i]) > std::abs(at[joint] - start[joint])) joint = i;
+  }
+  JointLimits& limits = model.joints[joint].limits;
+  (at[joint] > start[joint] ? limits.travel_max : limits.travel_min) = at[joint];
+  const auto trace = plan_smooth(model, blocks, start);
+  ASSERT_EQ(trace.last.status, PlanStatus::kRefused);
+  EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
+  EXPECT_EQ(trace.last.reject.joint, joint);
+  EXPECT_NEAR(static_cast<double>(trace.last.reject.sequence), 300, 4);
+  const TimePiece& last = trace.times.back();
+  EXPECT_TRUE(last.is_tail);
+  EXPECT_LE(state_at(last, last.duration).ds, 1e-6);
+  EXPECT_GT(last.sequence, 150U);
+}
+
+}  // namespace
+}  // namespace meridian::test

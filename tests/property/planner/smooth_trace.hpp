@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "meridian/planner/smooth_planner.hpp"
+#include "property/planner/plan_trace.hpp"
+
+/// Smooth programs through the real port, read as the cycle reads it.
+namespace meridian::test {
+
+/// Reads the port and stops before every tail that no window follows, unless told to run it.
+class PatientReader {
+ public:
+  explicit PatientReader(MotionPort& port) : reader_(port) {}
+
+  /// Reads on into `trace`; `runs_dry` lets the machine enter a tail.
+  void read(Trace& trace, bool runs_dry) {
+    while (runs_dry || !is_before_tail()) {
+      const TimePiece* piece = reader_.advance();
+      if (piece == nullptr) return;
+      if (piece->is_tail) ++tails_;
+      trace.times.push_back(*piece);
+      trace.paths.push_back(reader_.path() != nullptr ? *reader_.path() : PathPiece{});
+    }
+  }
+  [[nodiscard]] int tails() const { return tails_; }
+
+ private:
+  [[nodiscard]] bool is_before_tail() {
+    const TimePiece* next = reader_.look_ahead(1);
+    if (next == nullptr) return true;
+    if (!next->is_tail || (reader_.piece() != nullptr && reader_.piece()->is_tail)) return false;
+    for (std::size_t i = 2;; ++i) {
+      const TimePiece* later = reader_.look_ahead(i);
+      if (later == nullptr) return true;
+      if (later->window != next->window) return later->is_from_rest;
+    }
+  }
+
+  MotionReader reader_;
+  int tails_ = 0;
+};
+
+struct SmoothTrace : Trace {
+  int tails = 0;  ///< pieces of tails that were run
+};
+
+/// Plans `blocks` from `start`; `reads(n)` tells whether the port is read after block n, `dry(n)`
+/// whether the machine then runs into the tail.
+template <class Reads, class Dry>
+SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                        const JointVector& start, const SmoothSettings& settings, Reads reads,
+                        Dry dry) {
+  SmoothTrace trace;
+  SmoothPlanner planner(model);
+  planner.begin(start, model.tool_length_mm, 0, settings);
+  const auto port = std::make_unique<MotionPort>();
+  MotionWriter writer(*port);
+  PatientReader reader(*port);
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    for (int tries = 0; tries < 100000; ++tries) {
+      trace.last = planner.plan(blocks[n], writer);
+      if (trace.last.status != PlanStatus::kNoRoom) break;
+      reader.read(trace, false);
+    }
+    if (trace.last.status != PlanStatus::kOk) break;
+    if (reads(n)) reader.read(trace, dry(n));
+  }
+  reader.read(trace, true);
+  trace.tails = reader.tails();
+  trace.joints = planner.joints();
+  return trace;
+}
+
+inline SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                               const JointVector& start, const SmoothSettings& settings = {}) {
+  return plan_smooth(
+      model, blocks, start, settings, [](std::size_t) { return true; },
+      [](std::size_t) { return false; });
+}
+
+/// Joints of the first block on some branch, the machine's start where no approach is wanted.
+inline JointVector joints_of(const MachineModel& model, const ClBlock& block) {
+  const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis).normalized()};
+  JointVector start{};
+  for (int branch = 0; branch < branch_count(model); ++branch) {
+    const auto at = solve(model, model.tool_length_mm, pose, branch, JointVector{});
+    if (at.status != SolveStatus::kUnreachable && first_joint_outside_travel(model, at.q, 0) < 0) {
+      return at.q;
+    }
+  }
+  return start;
+}
+
+/// Matched distance, in tolerances, of `pose` from the programmed ways about block `sequence`: the
+/// least over poses of the path of the larger of tip and axis.
+inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t sequence,
+                            const ToolPose& pose, double tip_mm, double axis_rad) {
+  constexpr double kBehind_mm = 0.3, kAhead_mm = 2.5;  // a span is named by where it begins
+  const auto least_on = [&](const PathPiece& way) {
+    const auto at = [&](double x) {
+      const ToolPose p = pose_at(way, x * way.length);
+      return std::max((p.tip - pose.tip).norm() / tip_mm,
+                      angle_between(p.axis, pose.axis) / axis_rad);
+    };
+    double low = 0, high = 1;
+    for (int n = 0; n < 40; ++n) {
+      const double a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
+      (at(a) < at(b) ? high : low) = at(a) < at(b) ? b : a;
+    }
+    return std::min({at(0.5 * (low + high)), at(0.0), at(1.0)});
+  };
+  double least = least_on(ways[sequence]);
+  double length = 0;
+  for (std::size_t n = sequence; n-- > 0 && length < kBehind_mm; length += ways[n].length) {
+    if (ways[n].length > 0) least = std::min(least, least_on(ways[n]));
+  }
+  length = 0;
+  for (std::size_t n = sequence + 1; n < ways.size() && length < kAhead_mm; ++n) {
+    if (ways[n].length > 0) least = std::min(least, least_on(ways[n]));
+    length += ways[n].length;
+  }
+  return least;
+}
+
+}  // namespace meridian::test
