@@ -31,7 +31,6 @@ struct Options {
 
 /// Threads that libraries start get small stacks too: locked memory is resident.
 void make_stacks_small() {
-  constexpr std::size_t kStack_bytes = 512 * 1024;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, kStack_bytes);

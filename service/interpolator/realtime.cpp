@@ -17,8 +17,6 @@
 namespace meridian::interpolator {
 namespace {
 
-/// Small, because locked memory is resident: 512 kB hold the deepest planner call many times over.
-constexpr std::size_t kStack_bytes = 512 * 1024;
 /// Touched by every thread before its work begins.
 constexpr std::size_t kPrefault_bytes = 128 * 1024;
 

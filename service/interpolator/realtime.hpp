@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
@@ -21,6 +22,14 @@ class StartError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Stack of every thread of the service. Small, because locked memory is resident: 512 kB hold the
+/// deepest planner call many times over. The thread sanitizer keeps its own data there too.
+#if defined(__SANITIZE_THREAD__)
+inline constexpr std::size_t kStack_bytes = 8 * 1024 * 1024;
+#else
+inline constexpr std::size_t kStack_bytes = 512 * 1024;
+#endif
 
 /// A thread with a name, a small stack and a place in the schedule.
 struct ThreadPlan {

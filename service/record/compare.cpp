@@ -108,6 +108,14 @@ class Comparison {
   RecordingRow last_a_, last_b_;
 };
 
+/// How far `a` is ahead of `b` in the program: by plan time, and at one plan time, which is a rest,
+/// by block. Only the sign counts; 0: the same place.
+[[nodiscard]] double lead(const RecordingRow& a, const RecordingRow& b) noexcept {
+  const double ahead = a.plan_time_s - b.plan_time_s;
+  if (std::abs(ahead) > kSamePlanTime_s) return ahead;
+  return a.sequence == b.sequence ? 0 : (a.sequence < b.sequence ? -1 : 1);
+}
+
 [[nodiscard]] std::optional<RecordError> merge(Motion& a, Motion& b, Comparison& comparison,
                                                ComparisonReport& report) {
   const auto only = [&report](std::uint64_t& count, bool is_explained) {
@@ -115,9 +123,9 @@ class Comparison {
     if (!is_explained) ++report.unexplained;
   };
   while (a.is_there && b.is_there) {
-    const double ahead = a.row.plan_time_s - b.row.plan_time_s;
+    const double ahead = lead(a.row, b.row);
     std::optional<RecordError> error;
-    if (std::abs(ahead) <= kSamePlanTime_s) {
+    if (ahead == 0) {
       comparison.match(a.row, b.row);
       error = a.next();
       if (!error) error = b.next();

@@ -2,6 +2,7 @@
 #include "integration/plant.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -78,9 +79,15 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
 }
 
 Process::~Process() {
-  if (exit_code_) return;
-  send_signal(SIGKILL);
-  (void)wait(milliseconds(5000));
+  if (!exit_code_) {
+    send_signal(SIGKILL);
+    (void)wait(milliseconds(5000));
+  }
+  // Where the program was built under a sanitizer, what that found is a failure of this test.
+  const std::string all = said();
+  for (const char* finding : {"Sanitizer: ", "runtime error: "}) {
+    EXPECT_EQ(all.find(finding), std::string::npos) << all;
+  }
 }
 
 void Process::send_signal(int signal) const {

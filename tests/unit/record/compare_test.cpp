@@ -78,6 +78,23 @@ TEST_F(Compare, LetsARestBeLonger) {
   EXPECT_TRUE(report.is_same()) << to_text(report, "a", "b", model);
 }
 
+TEST_F(Compare, MatchesARestWithTheRestOfItsOwnBlock) {
+  std::size_t rest = 20;
+  while (live[rest].setpoint.line != 3) ++rest;
+  // Block 3 begins at the plan time at which block 2 ended; evaluated anew, a joint differs by
+  // rounding.
+  for (auto* run : {&records, &live}) {
+    (*run)[rest].plan_time_s = (*run)[rest - 1].plan_time_s;
+    (*run)[rest].joints = (*run)[rest - 1].joints;
+    (*run)[rest].joints[0] = std::nextafter((*run)[rest].joints[0], 1e9);
+  }
+  const std::vector<CycleRecord> waiting(40, live[rest - 1]);
+  live.insert(live.begin() + static_cast<std::ptrdiff_t>(rest), waiting.begin(), waiting.end());
+  for (std::size_t i = 0; i < live.size(); ++i) live[i].setpoint.cycle = i;
+  const ComparisonReport report = run();
+  EXPECT_TRUE(report.is_same()) << to_text(report, "a", "b", model);
+}
+
 TEST_F(Compare, SeesOneBit) {
   double& value = live[100].joints[1];
   value = std::nextafter(value, std::numeric_limits<double>::infinity());
