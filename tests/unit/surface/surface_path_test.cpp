@@ -80,7 +80,7 @@ double distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b)
   return (p - a - share * (b - a)).norm();
 }
 
-/// Largest distance of exact contact and tip from the straight blocks, by 400 places in each.
+/// Largest distance of exact contact and tip from the straight blocks, by 99 places in each.
 double dense_error(const ContactRule& rule, const SurfacePath& path) {
   std::vector<Contact> way;
   for (const SurfacePath::Line& line : path.lines) {
@@ -90,8 +90,8 @@ double dense_error(const ContactRule& rule, const SurfacePath& path) {
   double worst = 0;
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Contact &a = way[i - 1], &b = way[i];
-    for (int k = 1; k < 400; ++k) {
-      const double share = k / 400.0;
+    for (int k = 1; k < 100; ++k) {
+      const double share = k / 100.0;
       const auto c = find_contact(rule, a.u + share * (b.u - a.u), a.v + share * (b.v - a.v));
       worst = std::max({worst, distance_to_segment(c->shape.at, a.shape.at, b.shape.at),
                         distance_to_segment(c->pose.tip, a.pose.tip, b.pose.tip)});
@@ -221,13 +221,13 @@ double distance_to_pass(const ContactRule& rule, const CoverOptions& options, co
   };
   const auto [begin, end] = options.range_u;
   double best = begin;
-  for (int i = 0; i <= 200; ++i) {
-    const double u = begin + (end - begin) * i / 200;
+  for (int i = 0; i <= 100; ++i) {
+    const double u = begin + (end - begin) * i / 100;
     if (distance(u) < distance(best)) best = u;
   }
-  double low = std::max(begin, best - (end - begin) / 200);
-  double high = std::min(end, best + (end - begin) / 200);
-  for (int i = 0; i < 60; ++i) {
+  double low = std::max(begin, best - (end - begin) / 100);
+  double high = std::min(end, best + (end - begin) / 100);
+  for (int i = 0; i < 30; ++i) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
     (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
   }
@@ -235,7 +235,7 @@ double distance_to_pass(const ContactRule& rule, const CoverOptions& options, co
 }
 
 TEST(Scallop, LeavesNothingHigherThanItsBoundOnAWavyPatch) {
-  for (unsigned seed = 1; seed <= 4; ++seed) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
     const NurbsSurface surface = wavy(seed);
     const ContactRule rule = ball_on(surface, 3);
     CoverOptions options = with_scallop(surface, 0.05);
@@ -244,7 +244,7 @@ TEST(Scallop, LeavesNothingHigherThanItsBoundOnAWavyPatch) {
     std::mt19937_64 draw(seed);
     std::uniform_real_distribution<double> any(0, 1);
     double highest = 0;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 24; ++i) {
       const std::size_t line = 1 + draw() % (path->lines.size() - 1);
       const double a = path->lines[line - 1].place, b = path->lines[line].place;
       // Away from the ends of the lines, where material beside them is not this pass's.
