@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/surface/surface_path.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <utility>
 
+#include "meridian/units.hpp"
 #include "service/surface/stepping.hpp"
 
 namespace meridian::surface {
@@ -31,6 +34,13 @@ std::string place(double u, double v) {
   return text;
 }
 
+std::string crease_text(bool is_u, double knot, double turn_rad) {
+  char text[120];
+  std::snprintf(text, sizeof text, "the surface has a crease of %.4g deg at %c = %.6g",
+                units::deg_from_rad(turn_rad), is_u ? 'u' : 'v', knot);
+  return text;
+}
+
 /// Finds contacts and lays lines; the first fault is kept.
 class Cover {
  public:
@@ -43,6 +53,9 @@ class Cover {
   }
 
   Expected<SurfacePath, PathFault> run() {
+    find_crease(along_breaks_, true);
+    find_crease(across_breaks_, false);
+    if (fault_) return tl::make_unexpected(std::move(*fault_));
     SurfacePath path;
     path.is_zigzag = options_.is_zigzag;
     const std::vector<double> rows = line_places();
@@ -75,6 +88,29 @@ class Cover {
                          "keep clear of it: path.range_u or path.range_v"};
     }
     return found;
+  }
+
+  /// Faults a knot at which the normals of both sides differ: a cutter cannot follow them there.
+  void find_crease(const std::vector<double>& breaks, bool is_along) {
+    constexpr double kBeside = 1e-7, kCrease_rad = 1e-4;
+    constexpr std::size_t kPlaces = 33;
+    const double beside = kBeside * (breaks.back() - breaks.front());
+    for (std::size_t i = 1; i + 1 < breaks.size() && !fault_; ++i) {
+      for (const double other : even_places(is_along ? across_ : along_, kPlaces)) {
+        const auto shape = [&](double at) {
+          const bool is_u = is_along == rule_.runs_along_u;
+          return shape_at(*rule_.surface, is_u ? at : other, is_u ? other : at, rule_.is_flipped);
+        };
+        const auto before = shape(breaks[i] - beside), behind = shape(breaks[i] + beside);
+        if (!before || !behind) continue;
+        const double turn = std::atan2(before->normal.cross(behind->normal).norm(),
+                                       before->normal.dot(behind->normal));
+        if (turn < kCrease_rad || fault_) continue;
+        fault_ = PathFault{crease_text(is_along == rule_.runs_along_u, breaks[i], turn),
+                           "write a patch for each side, or cover one side: path.range_u or "
+                           "path.range_v"};
+      }
+    }
   }
 
   void refuse_count() {

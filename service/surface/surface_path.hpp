@@ -42,8 +42,8 @@ struct PathFault {
   std::string remedy;
 };
 
-/// Covers the patch. Faults: a place without normal, a bound that this cutter cannot keep, more
-/// than kMostContacts. Source: docs/surface.md, chapter 3. Proof:
+/// Covers the patch. Faults: a place without normal, a crease, a bound that this cutter cannot
+/// keep, more than kMostContacts. Source: docs/surface.md, chapter 3. Proof:
 /// tests/unit/surface/surface_path_test.cpp.
 [[nodiscard]] Expected<SurfacePath, PathFault> cover(const ContactRule& rule,
                                                      const CoverOptions& options);
