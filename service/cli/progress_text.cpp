@@ -24,8 +24,7 @@ std::string progress_text(const stream::ProgressView& view) {
   std::array<char, 160> buffer{};
   std::string text = "block " + std::to_string(view.block);
   if (view.block_count > 0) text += " of " + std::to_string(view.block_count);
-  const bool is_rapid = view.feed_programmed_mm_per_min <= 0;
-  if (is_rapid) {
+  if (view.is_rapid) {
     std::snprintf(buffer.data(), buffer.size(), ", line %u, rapid at %.0f mm/min", view.line,
                   view.feed_achieved_mm_per_min);
   } else {

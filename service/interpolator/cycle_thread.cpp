@@ -80,7 +80,11 @@ void CycleThread::show() noexcept {
   view_.rapid_override = state_.rapid_override;
   const TimePiece* piece = motion_.piece();
   const PathPiece* path = motion_.path();
-  view_.feed_mm_per_s = piece != nullptr ? piece->feed_mm_per_s : 0;
+  if (piece == nullptr) {
+    view_.feed_mm_per_s = 0;
+  } else if (piece->kind == TimeKind::kMove) {  // a rest between two motions has no feed of its own
+    view_.feed_mm_per_s = piece->feed_mm_per_s;
+  }
   view_.branch = path != nullptr ? path->branch : view_.branch;
   view_.is_at_pole = path != nullptr && path->kind == PathKind::kTurn;
   ++view_.cycles_run;

@@ -18,6 +18,7 @@ struct ProgressView {
   std::uint64_t block_count = 0;  ///< 0: not known
   std::uint32_t line = 0;
   double feed_programmed_mm_per_min = 0, feed_achieved_mm_per_min = 0;
+  bool is_rapid = false;            ///< no feed is programmed for the motion
   bool is_under_way = false;        ///< from the approach to the last block, stops on the way too
   double fraction = 0;              ///< of the program's ideal time, 0 to 1
   std::optional<double> to_go_s{};  ///< once enough has run to tell
@@ -43,6 +44,9 @@ class ProgressMeter {
                       .line = status.line,
                       .feed_programmed_mm_per_min = status.feed_programmed_mm_per_min,
                       .feed_achieved_mm_per_min = status.feed_achieved_mm_per_min};
+    view.is_rapid =
+        status.motion == MotionKind::kRapid ||
+        (status.motion == MotionKind::kApproach && !(status.feed_programmed_mm_per_min > 0));
     view.is_under_way = is_under_way(status.state);
     if (times_.total_s() > 0) view.fraction = done_s / times_.total_s();
     constexpr double kEnough = 0.005;

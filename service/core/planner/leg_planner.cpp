@@ -190,6 +190,12 @@ double LegPlanner::find_feed_velocity(const Leg& leg, double share_rate) const n
   return velocity;
 }
 
+double LegPlanner::find_tip_feed(const Leg& leg) const noexcept {
+  if (!(leg.share_per_s > 0)) return leg.feed_mm_per_s;
+  const double feed = leg.share_per_s * tip_length_;
+  return leg.feed_mm_per_s > 0 ? std::min(feed, leg.feed_mm_per_s) : feed;
+}
+
 void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg,
                             const JointCaps& caps) noexcept {
   const CellTable& table = by_azimuth ? azimuth_cells_ : cells_;
@@ -278,7 +284,7 @@ bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const Motio
   time.path_index = piece.index;
   time.sequence = piece.sequence;
   time.line = piece.line;
-  time.feed_mm_per_s = leg.feed_mm_per_s;
+  time.feed_mm_per_s = find_tip_feed(leg);
   const AuthorityTable authority(cells, offset, caps_, fault_caps_, choice);
   const ProfilePhases phases = phases_of(choice.profile, piece.length);
   for (int n = 0; n < phases.count; ++n) {

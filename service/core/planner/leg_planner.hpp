@@ -56,6 +56,8 @@ class LegPlanner {
   [[nodiscard]] PathFault measure(const Leg& leg, JointVector& joints) noexcept;
   void find_fastest_runs(const Leg& leg, const JointCaps& caps) noexcept;
   void relax_from(int first, bool by_azimuth, const Leg& leg, const JointCaps& caps) noexcept;
+  /// The tip feed that is programmed, also by inverse time.
+  [[nodiscard]] double find_tip_feed(const Leg& leg) const noexcept;
   [[nodiscard]] double find_feed_velocity(const Leg& leg, double share_rate) const noexcept;
   [[nodiscard]] PathFault stage_run(const Leg& leg, const Node& from, const Node& to, Staging& out,
                                     JointVector& joints) noexcept;

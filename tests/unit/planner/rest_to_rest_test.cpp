@@ -296,6 +296,9 @@ TEST(RestToRest, KeepsInverseTimeAndTipFeed) {
   ASSERT_EQ(bench.plan_and_take(inverse).status, PlanStatus::kOk);
   EXPECT_GT(bench.duration(), 2.0);
   EXPECT_LT(bench.duration(), 2.2);
+  for (const TimePiece& time : bench.times) {
+    EXPECT_NEAR(time.feed_mm_per_s, 5, 1e-9) << "10 mm in two seconds";
+  }
   bench.forget();
   ASSERT_EQ(bench.plan_and_take(cut(2, {60, 0, 20}, tilted(0.35, 0.2), 20)).status,
             PlanStatus::kOk);

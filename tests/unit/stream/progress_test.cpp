@@ -85,6 +85,19 @@ TEST(Progress, IsUnderWayFromTheApproachToTheLastBlockAndInStopsOnTheWay) {
   }
 }
 
+TEST(Progress, CallsRapidWhatIsAndNoCut) {
+  ProgressMeter meter(TimeTable{});
+  dds::Status seen = status(State::kRunning, 3);
+  seen.motion = MotionKind::kCut;
+  EXPECT_FALSE(meter.look(seen, 0).is_rapid) << "of no tip feed: the axis alone turns";
+  seen.motion = MotionKind::kRapid;
+  EXPECT_TRUE(meter.look(seen, 0).is_rapid);
+  seen.motion = MotionKind::kApproach;
+  EXPECT_TRUE(meter.look(seen, 0).is_rapid);
+  seen.feed_programmed_mm_per_min = 1000;
+  EXPECT_FALSE(meter.look(seen, 0).is_rapid) << "down to the part at approach feed";
+}
+
 TEST(Progress, SaysNothingAboutTimeBeforeAnythingRan) {
   ProgressMeter meter(TimeTable{});
   EXPECT_FALSE(meter.look(status(State::kLoaded, 0), 0).to_go_s);
