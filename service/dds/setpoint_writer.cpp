@@ -100,4 +100,10 @@ bool SetpointWriter::write(const SetpointSample& sample) noexcept {
   return writer_.write(sample);
 }
 
+std::uint64_t SetpointWriter::lease_losses() const noexcept {
+  dds_liveliness_lost_status_t lost{};
+  (void)dds_get_liveliness_lost_status(writer_.handle(), &lost);
+  return lost.total_count;
+}
+
 }  // namespace meridian::dds

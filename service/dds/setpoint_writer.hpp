@@ -19,6 +19,10 @@ namespace meridian::dds {
 /// were received end up there too, and are reallocated when a setpoint does not fit into them; a
 /// pool that another thread has emptied means malloc. So this writer serializes a few setpoints
 /// once, keeps them, and overwrites their bytes in place whenever Cyclone has let go of them.
+///
+/// One exception: after a pause longer than the liveliness lease (100 ms, when drives that bridge a
+/// few cycles have long stopped) the next write makes one heap call. It announces the writer anew,
+/// and Cyclone does that by way of its garbage collector.
 /// Proof: tests/unit/dds/setpoint_writer_test.cpp, tests/integration/counters_test.cpp.
 class SetpointWriter {
  public:
@@ -30,6 +34,8 @@ class SetpointWriter {
   /// False: not sent. One thread writes at a time.
   [[nodiscard]] bool write(const SetpointSample& sample) noexcept;
   [[nodiscard]] int matched_readers() const noexcept { return writer_.matched_readers(); }
+  /// How often the lease ran out between two writes.
+  [[nodiscard]] std::uint64_t lease_losses() const noexcept;
   /// Samples that were written the ordinary way because Cyclone still held all moulds.
   [[nodiscard]] std::uint64_t written_without_mould() const noexcept { return without_mould_; }
 
