@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kColumns = 1500;
 constexpr int kWhiskers = 160;  ///< lines along the tool axis, over the whole cut
-constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
+constexpr const char* kRateLabels[] = {"velocity", "accel.", "jerk"};
 constexpr const char* kColours[kMaxJoints] = {"#1f5fa8", "#2a9d5c", "#e08214",
                                               "#c22f4f", "#7b4fa3", "#444444"};
 
@@ -145,8 +145,8 @@ void print_joints(std::FILE* out, const MachineModel& model, bool is_rotary) {
 }
 
 void print_velocities(std::FILE* out, const MachineModel& model) {
-  std::fputs("set ylabel 'velocity, % of limit'\nset yrange [0:115]\nset ytics 50\n", out);
-  std::fputs("plot 100 lw 2 lc '#cc3333' title 'limit'", out);
+  std::fputs("set ylabel 'velocity, %'\nset yrange [0:115]\nset ytics 50\n", out);
+  std::fputs("plot 100 lw 2 lc '#cc3333' title 'limit, 100 %'", out);
   for (int i = 0; i < model.joint_count; ++i) {
     std::fprintf(out, ", $columns using 1:(100*$%d) with lines lw 1.5 lc '%s' title %s",
                  column_of(i) + 2, kColours[i], quoted(model.joints[i].name).c_str());
@@ -157,11 +157,11 @@ void print_velocities(std::FILE* out, const MachineModel& model) {
 /// Of all joints the largest share of acceleration or jerk.
 void print_largest(std::FILE* out, const MachineModel& model, int order) {
   const int column = column_of(model.joint_count) + order;
-  std::fprintf(out, "set ylabel '%s, %% of limit'\n", kRateNames[order]);
+  std::fprintf(out, "set ylabel '%s, %%'\n", kRateLabels[order]);
   std::fprintf(out,
-               "plot 100 lw 2 lc '#cc3333' title 'limit', $columns using 1:(100*$%d) with "
+               "plot 100 lw 2 lc '#cc3333' title 'limit, 100 %%', $columns using 1:(100*$%d) with "
                "filledcurves y1=0 fs transparent solid 0.35 lc '#1f5fa8' notitle, $columns using "
-               "1:(100*$%d) with lines lw 1 lc '#1f5fa8' title 'largest of joints'\n",
+               "1:(100*$%d) with lines lw 1 lc '#1f5fa8' title 'largest joint'\n",
                column, column);
 }
 
@@ -199,7 +199,7 @@ void print_space(std::FILE* out, const PictureData& data) {
   print_ranges(out, data);
   std::fputs(
       "set grid lc '#dddddd'\nset border lc '#555555'\n"
-      "set origin 0,0\nset size 0.52,0.95\nset view equal xyz\nset view 58,35,1.25\n"
+      "set origin 0,0\nset size 0.52,0.95\nset view equal xyz\nset view 58,33,1.28\n"
       "set ticslevel 0\nset xyplane relative 0\n"
       "set xlabel 'x, mm'\nset ylabel 'y, mm'\nset zlabel 'z' offset 2,0\n"
       "set key at screen 0.03,0.93 left top reverse Left samplen 2\n"
@@ -222,7 +222,8 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
   print_space(out, data);
   std::fputs(
       "unset view\nset key outside right top noreverse Right samplen 1.5\nunset zlabel\n"
-      "set xlabel\nset autoscale\nset lmargin 10\nset rmargin 17\nset bmargin 0.8\n"
+      "set xlabel\nset ytics font ',12'\nset autoscale\nset lmargin 10\nset rmargin 17\nset "
+      "bmargin 0.8\n"
       "set tmargin 0.8\nset format x ''\n",
       out);
   std::fprintf(out, "set xrange [0:%.7g]\n", data.columns.back().time_s);
