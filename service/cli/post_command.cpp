@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <regex>
@@ -43,6 +44,12 @@ bool write_whole(const std::string& output, const std::string& text) {
 int run(Options options) {
   const MachineModel model = load_machine(options.machine);
   const ToolTable tools = load_tools(options.machine);
+  const std::map<std::string, post::Dialect> dialects = {
+      {"joints", post::Dialect::kJoints},
+      {"fanuc", post::Dialect::kFanuc},
+      {"siemens", post::Dialect::kSiemens},
+      {"heidenhain", post::Dialect::kHeidenhain}};
+  options.post.dialect = dialects.at(options.dialect);
   if (options.axis_deg) options.post.axis_rad = units::rad_from_deg(*options.axis_deg);
   if (options.rapid_feed_mm_per_min) {
     options.post.rapid_feed_mm_per_s = units::per_s_from_per_min(*options.rapid_feed_mm_per_min);
@@ -105,8 +112,8 @@ void add_post_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--dialect", options->dialect,
                    "joints: joint words and feed in inverse time, for controllers without "
-                   "tool-centre control")
-      ->check(CLI::IsMember({"joints"}))
+                   "tool-centre control; fanuc: G43.4; siemens: TRAORI; heidenhain: FUNCTION TCPM")
+      ->check(CLI::IsMember({"joints", "fanuc", "siemens", "heidenhain"}))
       ->capture_default_str();
   command
       ->add_option("--chord-mm", options->post.chord_mm,
@@ -134,6 +141,16 @@ void add_post_command(CLI::App& app, int& exit_code) {
       ->add_option("--through-coolant", options->post.through_coolant,
                    "The machine's word for coolant through the tool, such as M88")
       ->check(matches("M[0-9]{1,3}", "an M word"));
+  command->add_flag("--vector", options->post.has_vectors,
+                    "fanuc: G43.5 and I J K instead of G43.4 and rotary words");
+  command
+      ->add_option("--offset-number", options->post.offset_number,
+                   "fanuc: H of the tool in the spindle, for programs that call none")
+      ->check(CLI::Range(1, 9999));
+  command
+      ->add_option("--program-number", options->post.program_number,
+                   "fanuc: O word; without it none is written")
+      ->check(CLI::Range(1, 99999999));
   command->add_flag("--line-words", options->post.has_line_words,
                     "N words: the line of the CL file that a block comes from");
   add_cl_file_options(*command, options->cl);

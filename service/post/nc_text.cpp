@@ -31,7 +31,7 @@ double rounded(double value, int decimals) {
 
 std::string fixed_down(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
-  return fixed(std::floor(value * scale * (1 + 1e-15)) / scale, decimals);
+  return fixed(std::floor(value * scale * (1 + 1e-12)) / scale, decimals);
 }
 
 std::string harmless(std::string_view text) {

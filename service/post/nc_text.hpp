@@ -13,7 +13,8 @@ namespace meridian::post {
 /// The number that fixed() writes.
 [[nodiscard]] double rounded(double value, int decimals);
 
-/// As fixed(), but never above `value`: a feed that is written is not faster than the one meant.
+/// As fixed(), but above `value` by rounding of the last bits at most: a feed that is written is
+/// not faster than the one meant.
 [[nodiscard]] std::string fixed_down(double value, int decimals);
 
 /// `text` for a comment of any controller: letters, digits, space and . , + - / = only, everything

@@ -10,46 +10,55 @@
 #include <utility>
 #include <vector>
 
-#include "meridian/path/build_piece.hpp"
-#include "meridian/path/pose_at.hpp"
+#include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
 #include "service/post/nc_text.hpp"
+#include "service/post/piece_writer.hpp"
 #include "service/post/planned_way.hpp"
 #include "service/post/program.hpp"
+#include "service/post/tip_frame.hpp"
 
 namespace meridian::post {
 namespace {
 
-constexpr double kLongestBlock_s = 30;  // keeps four digits of a feed in inverse time
 constexpr double kMostDwell_s = 24 * 3600;
-
-/// Nothing, or why not.
-using Refusal = std::optional<PostError>;
 
 [[nodiscard]] PathTolerance tolerance_of(const MachineModel& model, const PostOptions& options) {
   return {options.chord_mm ? *options.chord_mm : model.tolerances.tip_mm,
           options.axis_rad ? *options.axis_rad : model.tolerances.axis_rad};
 }
 
+[[nodiscard]] std::unique_ptr<Program> make_program(const ProgramParts& parts) {
+  switch (parts.options.dialect) {
+    case Dialect::kFanuc:
+      return make_fanuc_program(parts);
+    case Dialect::kSiemens:
+      return make_siemens_program(parts);
+    case Dialect::kHeidenhain:
+      return make_heidenhain_program(parts);
+    case Dialect::kJoints:
+      break;
+  }
+  return make_joint_program(parts);
+}
+
 /// One program on its way from CL blocks to NC blocks.
 class Post {
  public:
-  Post(const MachineModel& model, const ToolTable& tools, const PostOptions& options,
-       const AxisWords& words)
-      : model_(model),
-        options_(options),
-        words_(words),
-        sense_(retract_sense(model, words)),
-        can_retract_(options.retract ? true : sense_ != 0),
-        program_(make_joint_program({model, words, options, sense_})),
-        way_(model, tools),
-        cutter_(model, words, program_->motion(), tolerance_of(model, options)) {}
+  Post(const ToolTable& tools, const ProgramParts& parts)
+      : model_(parts.model),
+        options_(parts.options),
+        can_retract_(options_.retract || options_.dialect != Dialect::kJoints ||
+                     parts.retract_sense != 0),
+        program_(make_program(parts)),
+        way_(model_, tools),
+        writer_(parts, tolerance_of(model_, options_), *program_),
+        name_(parts.name) {}
 
-  void begin(const std::string& name) {
+  void begin() {
     const PathTolerance tolerance = tolerance_of(model_, options_);
     program_->begin(
-        {"MERIDIAN POST " MERIDIAN_VERSION,
-         "SOURCE " + std::filesystem::path(name).filename().string(),
+        {"MERIDIAN POST " MERIDIAN_VERSION, "SOURCE " + name_,
          "MACHINE " + model_.name + (model_.version.empty() ? "" : " VERSION " + model_.version),
          "TOOL LENGTH AT THE START " + fixed(model_.tool_length_mm, 3) + " MM",
          "CHORD " + fixed(tolerance.chord_mm, 4) + " MM, AXIS " +
@@ -97,12 +106,6 @@ class Post {
     is_retracted_ = true;
   }
 
-  [[nodiscard]] Target target_of(const BlockEnd& end, const PathPiece& piece) const {
-    const ToolPose pose = pose_at(piece, end.share * piece.length);
-    const Eigen::Matrix3d& r = model_.frame_rotation;
-    return {end.joints, {r * pose.tip, r * pose.axis}, 0, 0};
-  }
-
   [[nodiscard]] Refusal take_motion(const ClBlock& block) {
     ++motion_blocks_;
     const JointVector before = way_.joints();
@@ -113,14 +116,27 @@ class Post {
       ++feeds_limited_;
     }
     std::size_t first = 0;
-    if (needs_start_) first = start(*pieces, before);
+    if (needs_start_) {
+      if (const std::string missing = program_->missing(); !missing.empty()) {
+        return PostError{block.line, missing};
+      }
+      first = start(*pieces, before);
+    }
     double way = 0;
     for (std::size_t n = first; n < pieces->size(); ++n) {
       const PathPiece& piece = (*pieces)[n].piece;
       if (piece.motion != MotionKind::kApproach) way += way_length(piece);
     }
+    const bool is_whole = program_->motion() == BlockMotion::kTipAndAxis && !block.is_arc;
     for (std::size_t n = first; n < pieces->size(); ++n) {
-      Refusal refusal = take_piece((*pieces)[n], block, way);
+      const PathPiece& piece = (*pieces)[n].piece;
+      // Straight with the axis on one great circle: the end says all, the controller does the rest.
+      const bool is_last = n + 1 == pieces->size() || (*pieces)[n + 1].piece.motion != piece.motion;
+      if (is_whole && (!is_last || piece.kind == PathKind::kTurn)) {
+        writer_.skip(piece);
+        continue;
+      }
+      Refusal refusal = writer_.write((*pieces)[n], block, way);
       if (refusal) return refusal;
     }
     return {};
@@ -132,7 +148,8 @@ class Post {
     is_retracted_ = false;
     const auto to = [this](const JointVector& joints) {
       Target target;
-      target.joints = joint_words_ = words_.as_written(joints);
+      target.joints = writer_.stand_at(joints);
+      target.pose = in_program(model_, forward(model_, way_.tool_length_mm(), joints));
       return target;
     };
     if (!can_retract_) {
@@ -148,53 +165,6 @@ class Post {
     }
     program_->start(to(over));
     return first;
-  }
-
-  [[nodiscard]] Refusal take_piece(const WayPiece& way_piece, const ClBlock& block, double way) {
-    const PathPiece& piece = way_piece.piece;
-    const bool is_rapid = way_piece.feed_mm_per_s == 0;
-    if (piece.kind == PathKind::kJoint) {
-      Target target;
-      target.joints = joint_words_ = words_.as_written(piece.joints_end);
-      program_->rapid(target);
-      return {};
-    }
-    const double feed = is_rapid ? options_.rapid_feed_mm_per_s : way_piece.feed_mm_per_s;
-    double piece_s = feed > 0 ? tip_length(piece) / feed : 0;
-    if (block.feed_meaning == FeedMeaning::kInverseTime && way > 0 &&
-        piece.motion != MotionKind::kApproach) {
-      piece_s = std::max(piece_s, way_length(piece) / way / block.feed);
-    }
-    const auto duration = [&](const BlockEnd& from, const BlockEnd& to) {
-      double longest = piece_s * (to.share - from.share);
-      for (int i = 0; i < model_.joint_count; ++i) {
-        longest = std::max(
-            longest, std::abs(to.joints[i] - from.joints[i]) / model_.joints[i].limits.velocity);
-      }
-      return longest;
-    };
-    const bool is_g0 = is_rapid && options_.rapid_feed_mm_per_s == 0;
-    BlockEnd from{0, joint_words_};
-    const auto is_short_enough = [&](const BlockEnd& a, const BlockEnd& b) {
-      return is_g0 || duration(a, b) <= kLongestBlock_s;
-    };
-    const auto write = [&](const BlockEnd& to) {
-      Target target = target_of(to, piece);
-      target.duration_s = duration(from, to);
-      target.feed_mm_per_s = feed;
-      if (is_g0) {
-        program_->rapid(target);
-      } else if (target.duration_s > 0) {
-        program_->cut(target);
-      }
-      from = to;
-    };
-    const bool is_cut = cutter_.cut(piece, joint_words_, is_short_enough, write);
-    joint_words_ = from.joints;
-    if (is_cut) return {};
-    return PostError{block.line,
-                     "the tolerance cannot be kept by blocks with these decimals; raise --chord-mm "
-                     "or --axis-deg"};
   }
 
   [[nodiscard]] Refusal take_action(const ClBlock& block) {
@@ -242,13 +212,11 @@ class Post {
 
   const MachineModel& model_;
   const PostOptions& options_;
-  const AxisWords& words_;
-  int sense_;
   bool can_retract_;
   std::unique_ptr<Program> program_;
   PlannedWay way_;
-  Subdivider cutter_;
-  JointVector joint_words_{};  ///< where the program stands
+  PieceWriter writer_;
+  std::string name_;
   bool needs_start_ = true, is_retracted_ = false, is_ended_ = false;
   std::uint64_t motion_blocks_ = 0, feeds_limited_ = 0;
 };
@@ -260,8 +228,23 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
                                         const PostOptions& options) {
   const auto words = AxisWords::of(model);
   if (!words) return tl::make_unexpected(words.error());
-  Post post(model, tools, options, *words);
-  post.begin(name);
+  ProgramParts parts{model, *words, options, std::filesystem::path(name).filename().string(),
+                     0,     {}};
+  if (options.dialect == Dialect::kJoints) {
+    if (has_stage(model)) {
+      return tl::make_unexpected(
+          PostError{0, "machine " + model.name +
+                           " has a stage between joints and drives; joint words would not say "
+                           "what its drives do, and a straight way of the drives is another"});
+    }
+    parts.retract_sense = retract_sense(model, *words);
+  } else {
+    const auto zero = find_program_zero(model, *words);
+    if (!zero) return tl::make_unexpected(zero.error());
+    parts.zero = *zero;
+  }
+  Post post(tools, parts);
+  post.begin();
   while (true) {
     const auto block = reader.next();
     if (!block) {

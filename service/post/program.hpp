@@ -30,6 +30,9 @@ class Program {
  public:
   virtual ~Program() = default;
 
+  /// What keeps the first motion from being written; empty: nothing.
+  [[nodiscard]] virtual std::string missing() const { return ""; }
+
   /// How the controller moves between the targets that it is given.
   [[nodiscard]] virtual BlockMotion motion() const noexcept = 0;
 
@@ -77,6 +80,8 @@ class Program {
     ++blocks_;
   }
 
+  [[nodiscard]] std::uint32_t cl_line() const noexcept { return cl_line_; }
+
   bool has_line_words_ = false;
 
  private:
@@ -90,9 +95,14 @@ struct ProgramParts {
   const MachineModel& model;
   const AxisWords& words;
   const PostOptions& options;
-  int retract_sense = 0;  ///< retract_sense()
+  std::string name;       ///< of the CL file
+  int retract_sense = 0;  ///< retract_sense(); joint words
+  JointVector zero{};     ///< find_program_zero(); tool-centre words
 };
 
 [[nodiscard]] std::unique_ptr<Program> make_joint_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_fanuc_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_siemens_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_heidenhain_program(const ProgramParts& parts);
 
 }  // namespace meridian::post

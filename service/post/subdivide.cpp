@@ -48,7 +48,7 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
     by[i] = to.end.joints[i] - from.end.joints[i];
     (model_.joints[i].is_rotary ? turn : slide) += std::abs(by[i]);
   }
-  if (turn > kMostTurn_rad) return false;
+  if (motion_ != BlockMotion::kTipAndAxis && turn > kMostTurn_rad) return false;
   const double share = to.end.share - from.end.share;
   const double sweep = piece.arc_sweep * share, axis_turn = piece.axis_turn * share;
   const double path_bend = to_vector(piece.arc_x).norm() * sweep * sweep;

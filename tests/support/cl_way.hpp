@@ -18,12 +18,8 @@ struct ClWay {
   ClBlock block;
 
   [[nodiscard]] ToolPose at(double share) const {
-    ToolPose pose;
-    pose.axis = cl::turn_towards(begin.axis, end.axis, share);
-    if (!block.is_arc) {
-      pose.tip = begin.tip + share * (end.tip - begin.tip);
-      return pose;
-    }
+    const Vector3 axis = cl::turn_towards(begin.axis, end.axis, share);
+    if (!block.is_arc) return {begin.tip + share * (end.tip - begin.tip), axis};
     const Vector3 centre = to_vector(block.centre_mm), normal = to_vector(block.normal);
     const Vector3 arm = begin.tip - centre;
     const Vector3 rise = normal * normal.dot(arm), x = arm - rise;
@@ -33,8 +29,7 @@ struct ClWay {
     const Vector3 last = centre + std::cos(block.sweep_rad) * x +
                          std::sin(block.sweep_rad) * normal.cross(x) + rise +
                          normal * normal.dot(end.tip - begin.tip);
-    pose.tip = ideal + share * (end.tip - last);  // what the rounded centre leaves open
-    return pose;
+    return {ideal + share * (end.tip - last), axis};  // what the rounded centre leaves open
   }
 
   [[nodiscard]] double length() const { return cl::tip_length(begin.tip, block); }
@@ -72,7 +67,7 @@ struct ClWay {
 /// The ways of the motion blocks behind the first, which only says where the path begins.
 [[nodiscard]] inline std::vector<ClWay> ways_of(const std::vector<ClBlock>& blocks) {
   std::vector<ClWay> ways;
-  ToolPose last;
+  ToolPose last{Vector3::Zero(), Vector3::UnitZ()};
   bool has_last = false;
   for (const ClBlock& block : blocks) {
     if (!is_motion(block.kind)) continue;

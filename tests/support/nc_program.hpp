@@ -111,6 +111,9 @@ inline bool is_axis(const std::string& address) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
     ++number;
+    if (const auto mark = line.find("; CL "); mark != std::string::npos) {
+      state.cl_line = static_cast<std::uint32_t>(std::atoi(line.c_str() + mark + 5));
+    }
     line = nc::without_comment(line);
     if (line.empty() || line == "%") continue;
     out.lines.push_back(line);

@@ -17,12 +17,9 @@
 namespace meridian {
 namespace {
 
-constexpr double kNoTip_mm = 1e-9;      // shorter ways are no motion
-constexpr double kNoTurn_rad = 1e-12;   // smaller turns of the axis are none
-constexpr double kSameFree_rad = 1e-9;  // azimuths that differ less need no turn on the pole
-constexpr int kMostTurns = 4;           // windings tried either way
-
-bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
+constexpr double kNoTip_mm = 1e-9;     // shorter ways are no motion
+constexpr double kNoTurn_rad = 1e-12;  // smaller turns of the axis are none
+constexpr int kMostTurns = 4;          // windings tried either way
 
 }  // namespace
 
@@ -118,7 +115,7 @@ PathFault Router::run_lift(const PathPiece& path, const Job& job, PlanCursor& cu
                            Staging& out) noexcept {
   const int free = free_joint(model_);
   return free >= 0 ? run_held(path, cursor.joints[free], job, 1.0, cursor, out)
-                   : run_solved(path, job, cursor, out);
+                   : run_solved(path, job, 1.0, cursor, out);
 }
 
 /// The branch that gives `joints` back at `pose`.
@@ -148,102 +145,11 @@ Solution<double> Router::solve_near(const ToolPose& pose, const JointVector& joi
   return solve(model_, tool_length_mm, pose, branch_of(pose, joints, tool_length_mm), joints);
 }
 
-PathFault Router::run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
+PathFault Router::run_solved(PathPiece path, const Job& job, double share, PlanCursor& cursor,
                              Staging& out) noexcept {
   path.branch = static_cast<std::uint8_t>(
       branch_of(pose_at(path, 0.0), cursor.joints, cursor.tool_length_mm));
-  return run(path, job, 1.0, cursor, out);
-}
-
-PathFault Router::turn_free(const ToolPose& pose, double free_end, const Job& job,
-                            PlanCursor& cursor, Staging& out) noexcept {
-  const double free = cursor.joints[free_joint(model_)];
-  if (std::abs(free_end - free) < kSameFree_rad) return {};
-  return run(make_turn(pose, free, free_end), job, 0, cursor, out);
-}
-
-PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
-                             PlanCursor& cursor, Staging& out) noexcept {
-  const Ways ways = find_ways(end, cursor);
-  const int free = free_joint(model_);
-  PathFault first{PathFault::Kind::kUnreachable, -1, 0};
-  if (ways.count == 0) {
-    const auto at = solve(model_, cursor.tool_length_mm, end, 0, cursor.joints);
-    const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
-    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
-  }
-  for (int n = 0; n < ways.count; ++n) {
-    PlanCursor trial = cursor;
-    const Staging::Mark mark = out.mark();
-    const double free_end = ways.way[n].joints[free];
-    PathFault fault = turn_free(pose_at(path, 0.0), free_end, job, trial, out);
-    if (!is_fault(fault)) fault = run_held(path, trial.joints[free], job, 1.0, trial, out);
-    if (!is_fault(fault)) {
-      cursor = trial;
-      return {};
-    }
-    out.go_back(mark);
-    if (n == 0) first = fault;
-  }
-  return first;
-}
-
-bool Router::is_straight_passage(const PathPiece& path, double free_end,
-                                 const PlanCursor& cursor) noexcept {
-  PathPiece held = path;
-  held.is_free_driven = true;
-  held.free_begin = cursor.joints[free_joint(model_)];
-  held.free_end = free_end;
-  held.tool_length_mm = cursor.tool_length_mm;
-  constexpr int kSamples = 64;
-  double largest = 0;
-  for (int n = 0; n <= kSamples; ++n) {
-    const double s = held.length * n / kSamples;
-    const auto at = joints_at(model_, held, s, cursor.joints);
-    const Vector3 axis = forward(model_, held.tool_length_mm, at.q).axis;
-    largest = std::max(largest, angle_between(axis, pose_at(held, s).axis));
-  }
-  if (largest > kPoleEase_rad) return false;
-  deviation_rad_ = std::max(deviation_rad_, largest);
-  return true;
-}
-
-PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double share,
-                            const Job& job, PlanCursor& cursor, Staging& out) noexcept {
-  const Ways ways = find_ways(end, cursor);
-  const int free = free_joint(model_);
-  for (int n = 0; n < ways.count; ++n) {
-    const double free_end = ways.way[n].joints[free];
-    if (!is_straight_passage(path, free_end, cursor)) continue;
-    PlanCursor trial = cursor;
-    const Staging::Mark mark = out.mark();
-    const PathFault fault = run_held(path, free_end, job, 1.0, trial, out);
-    if (!is_fault(fault)) {
-      cursor = trial;
-      return {};
-    }
-    out.go_back(mark);
-  }
-  // Over the pole itself, where the free joint may be turned at rest.
-  const Vector3 begin_axis = to_vector(path.axis_begin);
-  const Vector3 pole = find_nearest_pole(model_, begin_axis);
-  deviation_rad_ = std::max(deviation_rad_, find_passage(path, pole).offset);
-  const PathPiece there = with_axes(cut_piece(path, 0, share), begin_axis, pole);
-  const PathPiece back = with_axes(cut_piece(path, share, 1), pole, end.axis);
-  const Staging::Mark mark = out.mark();
-  PlanCursor trial = cursor;
-  PathFault fault = run_held(there, cursor.joints[free], job, share, trial, out);
-  if (!is_fault(fault)) {
-    Job rest = job;
-    rest.share_per_s = job.share_per_s / (1 - share);
-    fault = leave_pole(back, end, rest, trial, out);
-  }
-  if (is_fault(fault)) {
-    out.go_back(mark);
-    return fault;
-  }
-  cursor = trial;
-  return {};
+  return run(path, job, share, cursor, out);
 }
 
 PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
@@ -264,17 +170,17 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
     return fault;
   }
   if (free < 0) {
-    fault = run_solved(path, job, cursor, out);
+    fault = run_solved(path, job, 1.0, cursor, out);
   } else if (is_at_pole(cursor.pose.axis)) {
     fault = leave_pole(path, end, job, cursor, out);
   } else if (is_at_pole(end.axis)) {
-    fault = run_held(path, cursor.joints[free], job, 1.0, cursor, out);
+    fault = enter_pole(path, job, 1.0, cursor, out);
   } else {
     const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
     const double share = passage.nearest_turn / path.axis_turn;
     const bool passes = passage.offset < kPoleEase_rad && share > 0 && share < 1;
-    fault =
-        passes ? pass_pole(path, end, share, job, cursor, out) : run_solved(path, job, cursor, out);
+    fault = passes ? pass_pole(path, end, share, job, cursor, out)
+                   : run_solved(path, job, 1.0, cursor, out);
   }
   cursor.pose = end;
   return fault;

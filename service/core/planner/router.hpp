@@ -83,8 +83,17 @@ class Router {
   /// The joints of `pose` nearest to `joints`, the free joint held where the machine has one.
   [[nodiscard]] Solution<double> solve_near(const ToolPose& pose, const JointVector& joints,
                                             double tool_length_mm) const noexcept;
-  [[nodiscard]] PathFault run_solved(PathPiece path, const Job& job, PlanCursor& cursor,
-                                     Staging& out) noexcept;
+  [[nodiscard]] PathFault run_solved(PathPiece path, const Job& job, double share,
+                                     PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` ends on the pole.
+  [[nodiscard]] PathFault enter_pole(const PathPiece& path, const Job& job, double share,
+                                     PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` begins on the pole and ends at `end`: turn the free joint at rest, then go.
+  [[nodiscard]] PathFault leave_pole_by(const PathPiece& path, const JointVector& end,
+                                        const Job& job, PlanCursor& cursor, Staging& out) noexcept;
+  /// The free joint at `share` of `path`, followed back from the joints at its end.
+  [[nodiscard]] double follow_back(PathPiece path, const JointVector& end, double share,
+                                   double tool_length_mm) const noexcept;
   [[nodiscard]] PathFault turn_free(const ToolPose& pose, double free_end, const Job& job,
                                     PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,

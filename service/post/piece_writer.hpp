@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "service/post/planned_way.hpp"
+#include "service/post/program.hpp"
+#include "service/post/subdivide.hpp"
+
+namespace meridian::post {
+
+/// Nothing, or why not.
+using Refusal = std::optional<PostError>;
+
+/// From the pieces of a block's way to blocks of a program: cut by the tolerance, with the time or
+/// the feed that each block takes. It knows where the program stands.
+class PieceWriter {
+ public:
+  /// `program` and what `parts` refers to outlive it.
+  PieceWriter(const ProgramParts& parts, const PathTolerance& tolerance, Program& program)
+      : parts_(parts),
+        program_(program),
+        cutter_(parts.model, parts.words, program.motion(), tolerance) {}
+
+  /// `way` is the length of all pieces of the block, which shares of its time are measured by.
+  [[nodiscard]] Refusal write(const WayPiece& way_piece, const ClBlock& block, double way);
+
+  /// The controller finds the way over `piece` by itself.
+  void skip(const PathPiece& piece) { (void)stand_at(piece.joints_end); }
+
+  /// The program stands at `joints`; returns them as its words say them.
+  JointVector stand_at(const JointVector& joints) {
+    return stands_at_ = parts_.words.as_written(joints);
+  }
+
+ private:
+  const ProgramParts parts_;
+  Program& program_;
+  Subdivider cutter_;
+  JointVector stands_at_{};
+};
+
+}  // namespace meridian::post
