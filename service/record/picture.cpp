@@ -199,7 +199,7 @@ void print_space(std::FILE* out, const PictureData& data) {
   print_ranges(out, data);
   std::fputs(
       "set grid lc '#dddddd'\nset border lc '#555555'\n"
-      "set origin 0,0\nset size 0.52,0.95\nset view equal xyz\nset view 58,33,1.28\n"
+      "set origin 0.015,0\nset size 0.52,0.95\nset view equal xyz\nset view 58,33,1.28\n"
       "set ticslevel 0\nset xyplane relative 0\n"
       "set xlabel 'x, mm'\nset ylabel 'y, mm'\nset zlabel 'z' offset 2,0\n"
       "set key at screen 0.03,0.93 left top reverse Left samplen 2\n"
