@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,41 @@ TEST_F(Tool, LeavesAPipeThatIsSilentWhenItIsInterrupted) {
   stream.send_signal(SIGINT);
   EXPECT_EQ(stream.wait(kShort), 1) << stream.said();
   EXPECT_NE(stream.said().find("interrupted"), std::string::npos) << stream.said();
+}
+
+/// The lines of docs/operating.md that begin with `meridian ctl`, as words.
+std::vector<std::vector<std::string>> documented_ctl_lines() {
+  std::ifstream page(std::string(MERIDIAN_SOURCE_DIR) + "/docs/operating.md");
+  std::vector<std::vector<std::string>> lines;
+  for (std::string text; std::getline(page, text);) {
+    if (text.rfind("meridian ctl ", 0) != 0) continue;
+    std::istringstream in(text);
+    std::string word;
+    in >> word;
+    lines.emplace_back();
+    while (in >> word && word != "#") lines.back().push_back(word);
+  }
+  return lines;
+}
+
+TEST_F(Tool, DoesWhatTheOperatingPageShowsInItsOrder) {
+  const auto lines = documented_ctl_lines();
+  ASSERT_GE(lines.size(), 9U);
+  plant.start_service();
+  plant.start_drives();
+  for (const auto& words : lines) {
+    if (words[1] == "start") {
+      ASSERT_TRUE(plant.stream(small_program(12, 2000, 8), [&](const stream::Station& station) {
+        return station.state() == stream::StationState::kComplete &&
+               plant.status().state == State::kLoaded;
+      })) << plant.station().message();
+    }
+    if (words[1] == "hold") {
+      ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.service().said();
+    }
+    Process tool = run(words);
+    EXPECT_EQ(tool.wait(kLong), 0) << words[1] << ": " << tool.said() << plant.service().said();
+  }
 }
 
 TEST_F(Tool, RefusesInputBeforeTheMachineSeesIt) {
