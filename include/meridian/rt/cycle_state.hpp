@@ -75,6 +75,7 @@ struct SentSetpoint {
 struct StopInProgress {
   bool is_active = false;
   bool is_off_path = false;  ///< joints = begin + direction · law instead of the path
+  bool is_by_rate = false;   ///< along the plan, its rate going down to zero, instead of `law`
   StopLaw law;               ///< path length; off the path: seconds at the speed of the begin
   double time = 0;           ///< since it began
   double passed = 0;         ///< path length of the path pieces left behind since it began

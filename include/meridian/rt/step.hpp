@@ -126,7 +126,7 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
 /// Rate of plan time in force: of a stop, its speed in shares of the planned one.
 [[nodiscard]] inline double rate_of(const CycleState& state) noexcept {
   const StopInProgress& stop = state.stop;
-  if (!stop.is_active) return state.rate.rate();
+  if (!stop.is_active || stop.is_by_rate) return state.rate.rate();
   return stop.speed_begin > 0 ? stop.rate_begin * state.on_path.ds / stop.speed_begin : 0;
 }
 

@@ -24,6 +24,8 @@ enum class StopKind : std::uint8_t { kHold, kFault };
 ///     A = (1 - x²) A₀ + x² A₁, at most A₁/x
 ///     J = (1 - y) J₀ + y J₁,   y = max(P/P₁, x³); (A₁, J₁) where y > 1
 ///
+/// A piece may have no authority for a hold (0): the stop then goes along the plan.
+///
 /// A need not be more than the stop will use, sqrt(J v + a²/2): less of it leaves more jerk.
 /// RT: cycle. Proof: tests/property/rt/stop_authority_test.cpp.
 [[nodiscard]] inline StopAuthority authority_of(const TimePiece& piece, StopKind kind,

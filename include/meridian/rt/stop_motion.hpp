@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/on_path.hpp"
 #include "meridian/rt/stop_authority.hpp"
 
@@ -18,7 +19,8 @@ namespace meridian {
 inline constexpr double kReturnShare = 0.2;
 
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
-/// at once. A stop that was going on is laid out anew with the authority of `kind`.
+/// at once. A stop that was going on is laid out anew with the authority of `kind`. A hold from a
+/// piece without authority goes on along the plan, for whose rate every plan leaves room.
 inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   StopInProgress& stop = c.state.stop;
   const double rate = stop.is_active && stop.speed_begin > 0
@@ -33,8 +35,14 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     authority = authority_of(piece, kind, begin);
     authority = {authority.accel * share, authority.jerk * share};
   }
+  const bool was_by_rate = stop.is_by_rate;
   stop = {};
   stop.is_active = true;
+  if (authority.accel == 0 && kind == StopKind::kHold && begin.ds > 0) {
+    stop.is_by_rate = true;
+    if (!was_by_rate) c.state.rate.aim(0);
+    return;
+  }
   stop.law = StopLaw(begin, authority);
   stop.speed_begin = begin.ds;
   stop.rate_begin = rate;
@@ -71,7 +79,7 @@ inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
 }
 
 [[nodiscard]] inline bool is_stop_over(const StopInProgress& stop) noexcept {
-  return !stop.is_active || stop.time >= duration_of(stop);
+  return !stop.is_active || (!stop.is_by_rate && stop.time >= duration_of(stop));
 }
 
 /// Adds what is left of the deviation from the path: 1 - 10x³ + 15x⁴ - 6x⁵ of it.
@@ -104,9 +112,44 @@ inline void end_stop_here(Cycle& c) noexcept {
   c.state.stop.begin = c.state.joints;
 }
 
+/// One period of a stop along the plan. False where the plan rests before its rate does.
+[[nodiscard]] inline bool slow_down_one_period(Cycle& c) noexcept {
+  c.state.piece_time += c.state.rate.advance(c.dt);
+  for (int n = 0; n < kMostPieces; ++n) {
+    const TimePiece& piece = *c.reader.piece();
+    const double beyond = c.state.piece_time - piece.duration;
+    if (beyond < 0) return c.state.rate.rate() > 0 || !c.state.rate.is_settled();
+    if (!settle_at_end(c, state_at(piece, piece.duration))) return false;
+    if (!next_piece(c) || !is_on_move(c) || is_plan_at_rest(c)) return false;
+    c.state.piece_time = beyond;
+  }
+  return true;
+}
+
+/// Goes on with a stop along the plan by the periods of this cycle.
+[[nodiscard]] inline bool follow_stop_by_rate(Cycle& c) noexcept {
+  StopInProgress& stop = c.state.stop;
+  bool goes_on = true;
+  for (int n = 0; n < c.periods && goes_on; ++n) {
+    stop.time += c.dt;
+    goes_on = slow_down_one_period(c);
+  }
+  if (is_on_move(c) && !put_at_plan_time(c)) return false;
+  stop.stopping_distance += c.state.on_path.ds * c.elapsed;
+  if (goes_on) return true;
+  const double time = stop.time;
+  rest(c);
+  stop.is_by_rate = false;
+  stop.begin = c.state.joints;
+  stop.stopping_time = time;
+  stop.time = 0;  // the law has no duration: it is over
+  return true;
+}
+
 /// Goes on with the stop by the periods of this cycle. False if the path cannot be evaluated.
 [[nodiscard]] inline bool follow_stop(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
+  if (stop.is_by_rate) return follow_stop_by_rate(c);
   for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
   if (stop.is_off_path) {
     put_off_path(c);

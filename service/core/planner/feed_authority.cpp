@@ -17,6 +17,11 @@ constexpr int kLeastSamples = 16, kMostSamples = 96;
 constexpr double kRounding_mm = 1e-9;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
+/// The plan's state at another rate of plan time.
+PathState slowed(const PathState& state, double rate) noexcept {
+  return {state.s, rate * state.ds, rate * rate * state.dds, 0};
+}
+
 }  // namespace
 
 FeedAuthority::FeedAuthority(const MachineModel& model) noexcept : count_(model.joint_count) {
@@ -36,7 +41,7 @@ void FeedAuthority::begin(const CellGrid& grid, std::int64_t rest_cell) noexcept
   rest_cell_ = rest_cell;
 }
 
-double FeedAuthority::grant(const FeedPiece& piece, TimePiece& time) noexcept {
+void FeedAuthority::grant(const FeedPiece& piece, TimePiece& time) noexcept {
   const double offset = (*grid_)[piece.cell].x;
   PathState begin = state_at(time, 0), end = state_at(time, time.duration);
   begin.s -= offset;
@@ -44,11 +49,10 @@ double FeedAuthority::grant(const FeedPiece& piece, TimePiece& time) noexcept {
   StopAuthority stop, fault;
   const double use = find(hold_, piece, begin, end, stop);
   (void)find(fault_, piece, begin, end, fault);
-  time.stop_accel = stop.accel;
-  time.stop_jerk = stop.jerk;
+  time.stop_accel = use <= 1 ? stop.accel : 0;
+  time.stop_jerk = use <= 1 ? stop.jerk : 0;
   time.fault_accel = fault.accel;
   time.fault_jerk = fault.jerk;
-  return use;
 }
 
 double FeedAuthority::find(Ladder& ladder, const FeedPiece& piece, const PathState& begin,
@@ -65,13 +69,17 @@ double FeedAuthority::find(Ladder& ladder, const FeedPiece& piece, const PathSta
     return StopAuthority{top.accel * std::pow(kStepDown, at.accel),
                          top.jerk * std::pow(kStepDown, at.jerk)};
   };
+  const PathState states[] = {begin, end, slowed(begin, 0.6), slowed(end, 0.25)};
   double least = kNever;
   Rung best = ladder.last;
   const auto passes = [&](const Rung& at) {
     if (at.accel < 0 || at.jerk < 0 || at.accel >= kAccels || at.jerk >= kJerks) return false;
     const StopAuthority authority = rung_of(at);
-    double use = use_of(ladder.caps, piece.cell, begin, authority, least);
-    if (use < least) use = std::max(use, use_of(ladder.caps, piece.cell, end, authority, least));
+    double use = 0;
+    for (const PathState& state : states) {
+      use = std::max(use, use_of(ladder.caps, piece.cell, state, authority, least));
+      if (use >= least) break;
+    }
     if (use < least) {
       least = use;
       best = at;

@@ -24,9 +24,9 @@ class FeedAuthority {
   /// The pieces to come lie in cells of `grid` before `rest_cell`, where the plan rests.
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 
-  /// Fills in the authority of `time`, made of `piece`. Returns the largest use of a limit by the
-  /// stops of a hold: above 1 there was none that passed, and the least harmful one was taken.
-  double grant(const FeedPiece& piece, TimePiece& time) noexcept;
+  /// Fills in the authority of `time`, made of `piece`: none for a hold where no stop passes, the
+  /// least harmful one for a FaultStop.
+  void grant(const FeedPiece& piece, TimePiece& time) noexcept;
 
  private:
   static constexpr int kAccels = 10, kJerks = 10;

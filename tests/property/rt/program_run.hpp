@@ -58,11 +58,16 @@ struct Draw {
 };
 
 /// The machine on its way through one program: planned as far as the port takes it, cycle by cycle.
-class ProgramRun {
+template <class Planner>
+class PlannedRun {
  public:
-  ProgramRun(const MachineModel& machine, const std::vector<ClBlock>& blocks,
-             const JointVector& start)
-      : world(machine, start), planner_(world.machine), writer_(*world.port), blocks_(blocks) {
+  PlannedRun(const MachineModel& machine, const std::vector<ClBlock>& blocks,
+             const JointVector& start, std::size_t blocks_before_start = ~std::size_t{0})
+      : most_blocks(blocks_before_start),
+        world(machine, start),
+        planner_(world.machine),
+        writer_(*world.port),
+        blocks_(blocks) {
     is_started_ = world.enable();
     planner_.begin(start, machine.tool_length_mm, world.state.epoch);
     plan();
@@ -78,29 +83,36 @@ class ProgramRun {
     plan();
     return world.run();
   }
+  /// A cycle in which the planner does not get to its work.
+  const CycleRecord& run_unplanned() { return world.run(); }
   const CycleRecord& command(Verb verb, double argument = 0) {
     plan();
     return world.command(verb, argument);
   }
 
+  std::size_t most_blocks;  ///< that come between two cycles
   CycleWorld world;
 
  private:
   void plan() {
-    while (next_ < blocks_.size() && !is_refused_) {
+    const std::size_t last =
+        std::min(blocks_.size(), next_ + std::min(most_blocks, blocks_.size()));
+    while (next_ < last && !is_refused_) {
       const PlanResult result = planner_.plan(blocks_[next_], writer_);
       if (result.status == PlanStatus::kNoRoom) return;
       is_refused_ = result.status == PlanStatus::kRefused;
       next_ += is_refused_ ? 0 : 1;
     }
+    if constexpr (requires { planner_.advance(writer_); }) planner_.advance(writer_);
   }
 
-  RestToRestPlanner planner_;
+  Planner planner_;
   MotionWriter writer_;
   std::vector<ClBlock> blocks_;
   std::size_t next_ = 0;
   bool is_refused_ = false, is_started_ = false;
 };
+using ProgramRun = PlannedRun<RestToRestPlanner>;
 
 /// Largest shares of the joints' limits by differences of setpoints, rounding (8 ulp(q)/Tⁿ) taken
 /// off.

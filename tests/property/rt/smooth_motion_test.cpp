@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "property/path/hostile_path.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "property/rt/program_run.hpp"
+
+/// Smooth plans in the cycle: holds, overrides, FaultStops at any instant, and blocks that come
+/// late. The machine keeps to its path and every joint to its limits.
+namespace meridian {
+namespace {
+
+using test::LimitShares;
+using SmoothRunning = test::PlannedRun<SmoothPlanner>;
+
+constexpr double kLimit = 1 + 1e-6;
+constexpr double kMostSeconds = 15;  // of motion per program
+
+std::vector<ClBlock> hostile(std::uint32_t seed, int sections = 6) {
+  auto blocks = test::HostilePath(seed).make(sections);
+  for (ClBlock& block : blocks) block.feed = std::max(block.feed, 20.0);
+  ClBlock end;
+  end.kind = BlockKind::kEnd;
+  end.sequence = blocks.size();
+  blocks.push_back(end);
+  return blocks;
+}
+
+/// Largest matched distance from the programmed path, in tolerances, of every eleventh setpoint
+/// that moves.
+double largest_distance(const MachineModel& machine, const std::vector<ClBlock>& blocks,
+                        const std::vector<CycleRecord>& records) {
+  const auto ways = test::programmed_ways(blocks);
+  double largest = 0;
+  for (std::size_t n = 0; n < records.size(); n += 11) {
+    const CycleRecord& record = records[n];
+    if ((record.setpoint.flags & kSetpointMoving) == 0) continue;
+    if (record.motion == MotionKind::kApproach) continue;
+    const ToolPose pose = forward(machine, machine.tool_length_mm, record.joints);
+    const double off = test::distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
+                                           machine.tolerances.axis_rad);
+    largest = std::max(largest, off);
+  }
+  return largest;
+}
+
+TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
+  LimitShares worst;
+  double seconds = 0, worst_off = 0;
+  int holds = 0, done = 0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    test::RandomPrograms random(seed);
+    const MachineModel machine = seed % 2 == 0 ? test::bench_machine() : test::lai_machine();
+    const auto blocks = hostile(seed);
+    SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
+    ASSERT_TRUE(run.is_started()) << "seed " << seed;
+    double next = 0, t = 0;
+    const double dt = run.world.dt();
+    for (; t < kMostSeconds && !run.is_over(); t += dt) {
+      if (t < next) {
+        run.run();
+        continue;
+      }
+      next = t + random.log_uniform(0.01, 1.0);
+      const double what = random.uniform(0, 1);
+      if (run.world.now() == State::kHeld) {
+        run.command(Verb::kResume);
+      } else if (what < 0.5) {
+        run.command(Verb::kHold);
+        ++holds;
+      } else if (what < 0.8) {
+        run.command(Verb::kFeedOverride, random.uniform(0.1, 1.5));
+      }
+    }
+    done += run.is_over();
+    seconds += t;
+    const LimitShares shares = test::shares_of_limits(run.world, 0, false);
+    EXPECT_LE(std::max({shares.v, shares.a, shares.j}), kLimit)
+        << "seed " << seed << " v " << shares.v << " a " << shares.a << " j " << shares.j;
+    worst.take(shares);
+    EXPECT_EQ(run.world.count(EventCode::kAlarm), 0) << "seed " << seed;
+    worst_off = std::max(worst_off, largest_distance(machine, blocks, run.world.records));
+  }
+  std::printf(
+      "%d of 6 programs to the end, %.0f s, %d holds; worst v %.6f a %.6f j %.6f; "
+      "%.3f tolerances\n",
+      done, seconds, holds, worst.v, worst.a, worst.j, worst_off);
+  EXPECT_GT(seconds, 40);
+  EXPECT_GT(holds, 20);
+  EXPECT_LE(worst_off, 1 + 1e-6);
+}
+
+TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
+  LimitShares worst;
+  std::uint64_t dry = 0;
+  for (std::uint32_t seed = 21; seed <= 22; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    test::RandomPrograms random(seed);
+    MachineModel machine = test::lai_machine();
+    machine.starve_auto_resume_s = 100;
+    const auto blocks = hostile(seed, 20);
+    SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]), blocks.size() / 2);
+    ASSERT_TRUE(run.is_started());
+    run.most_blocks = 1;
+    for (double t = 0; t < 200 && !run.is_over(); t += run.world.dt()) {
+      if (random.chance(0.004)) {
+        run.run();
+      } else {
+        run.run_unplanned();
+      }
+    }
+    EXPECT_TRUE(run.is_over());
+    dry += run.world.state.starvations;
+    const LimitShares shares = test::shares_of_limits(run.world, 0, false);
+    EXPECT_LE(std::max({shares.v, shares.a, shares.j}), kLimit);
+    worst.take(shares);
+    EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
+    EXPECT_LE(largest_distance(machine, blocks, run.world.records), 1 + 1e-6);
+    const ToolPose end = forward(machine, machine.tool_length_mm, run.world.records.back().joints);
+    EXPECT_LE((end.tip - to_vector(blocks[blocks.size() - 2].tip_mm)).norm(), 2e-6);
+  }
+  std::printf("%llu times dry; worst v %.6f a %.6f j %.6f\n", static_cast<unsigned long long>(dry),
+              worst.v, worst.a, worst.j);
+  EXPECT_GT(dry, 4U);
+}
+
+TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
+  LimitShares worst;
+  double worst_off = 0, longest = 0;
+  int stops = 0, over = 0;
+  for (std::uint32_t n = 0; n < 24; ++n) {
+    test::RandomPrograms random(9000 + n);
+    const MachineModel machine = test::bench_machine();
+    const auto blocks = hostile(1 + n % 6);
+    SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
+    ASSERT_TRUE(run.is_started());
+    const double until = random.uniform(0.2, 3);
+    for (double t = 0; t < until && !run.is_over(); t += run.world.dt()) run.run();
+    if (run.is_over()) continue;
+    run.world.in.feedback.fault_mask = 1;
+    const std::size_t first = run.world.records.size();
+    ASSERT_TRUE(run.world.run_until(State::kFault, 10));
+    ++stops;
+    const LimitShares shares = test::shares_of_limits(run.world, first, true);
+    over += std::max({shares.v, shares.a, shares.j}) > kLimit ? 1 : 0;
+    worst.take(shares);
+    longest =
+        std::max(longest, static_cast<double>(run.world.records.size() - first) * run.world.dt());
+    const std::vector<CycleRecord> records(run.world.records.begin() + static_cast<long>(first),
+                                           run.world.records.end());
+    worst_off = std::max(worst_off, largest_distance(machine, blocks, records));
+  }
+  std::printf("%d FaultStops, %d over a limit, worst v %.4f a %.4f j %.4f, longest %.3f s\n", stops,
+              over, worst.v, worst.a, worst.j, longest);
+  EXPECT_GT(stops, 15);
+  EXPECT_EQ(over, 0);
+  EXPECT_LE(worst_off, 1 + 1e-6);
+}
+
+}  // namespace
+}  // namespace meridian
