@@ -18,7 +18,7 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string file, record, events, start_from, auxiliary = "ignore";
+  std::string file, record, events, start_from, auxiliary = "ignore", transition;
   bool stops_at_optional = false;
   MachineOptions machine;
   ClFileOptions cl;
@@ -58,7 +58,9 @@ int exit_code_of(simulate::Outcome outcome) {
 }
 
 int run(const Options& options) {
-  const MachineModel model = load_machine(options.machine);
+  MachineModel model = load_machine(options.machine);
+  if (options.transition == "smooth") model.transition = Transition::kSmooth;
+  if (options.transition == "exact_stop") model.transition = Transition::kExactStop;
   const ToolTable tools = load_tools(options.machine);
   simulate::SimulateOptions simulation;
   simulation.stops_at_optional = options.stops_at_optional;
@@ -126,6 +128,10 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
                    "Action words: ignore (done at once), refuse (as a service without action peer)")
       ->check(CLI::IsMember({"ignore", "refuse"}))
       ->capture_default_str();
+  command
+      ->add_option("--transition", options->transition,
+                   "Instead of the machine file's: smooth (on through blocks) or exact_stop")
+      ->check(CLI::IsMember({"smooth", "exact_stop"}));
   command->add_flag("--optional-stops", options->stops_at_optional, "Optional stops stop");
   add_cl_file_options(*command, options->cl);
   command->callback([options, &exit_code] { exit_code = run(*options); });

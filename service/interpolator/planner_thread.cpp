@@ -19,7 +19,10 @@ void PlannerThread::run() noexcept {
 bool PlannerThread::work() noexcept {
   if (!is_in_step()) return false;
   const QueuedBlock* queued = ports_.blocks.peek(0);
-  if (queued == nullptr) return false;
+  if (queued == nullptr) {
+    if (has_begun_ && !is_refused_) planner_.advance(writer_);
+    return false;
+  }
   if (is_refused_) {
     pop();
     return true;

@@ -5,7 +5,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
-#include "meridian/planner/rest_to_rest.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "service/interpolator/ports.hpp"
 
 namespace meridian::interpolator {
@@ -32,7 +32,7 @@ class PlannerThread {
 
   Ports& ports_;
   MotionWriter writer_;
-  RestToRestPlanner planner_;
+  SmoothPlanner planner_;
   CycleView view_;
   std::uint64_t voided_ = 0;       ///< newest of Ports::voided that was followed
   std::uint64_t popped_ = 0;       ///< blocks taken from the queue, ever

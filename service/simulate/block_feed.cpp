@@ -48,6 +48,7 @@ bool BlockFeed::take_block() {
 }
 
 void BlockFeed::fill() {
+  planner_.advance(writer_);
   while (!is_over_) {
     if (!block_ && !take_block()) {
       is_over_ = true;

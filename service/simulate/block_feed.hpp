@@ -6,7 +6,7 @@
 #include <string>
 
 #include "meridian/kinematics/tool_table.hpp"
-#include "meridian/planner/rest_to_rest.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/stream/block_judge.hpp"
 
@@ -39,7 +39,7 @@ class BlockFeed {
   const MachineModel& model_;
   stream::BlockJudge judge_;
   stream::ActionPeer actions_;
-  RestToRestPlanner planner_;
+  SmoothPlanner planner_;
   MotionWriter writer_;
   std::optional<ClBlock> block_;  ///< judged, not planned yet
   std::string refusal_;

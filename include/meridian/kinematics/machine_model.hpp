@@ -46,6 +46,12 @@ enum class PolePolicy : std::uint8_t {
   kTurn  ///< stop on the pole and turn the free joint alone, tip and axis fixed
 };
 
+/// How the cuts of a program join.
+enum class Transition : std::uint8_t {
+  kExactStop,  ///< rest at the end of every block
+  kSmooth      ///< on through blocks, corners rounded inside the tolerances
+};
+
 /// Deviation that smoothing and pole easing may use together, measured from the programmed path.
 struct Tolerances {
   double tip_mm = 0.01;
@@ -70,6 +76,7 @@ struct MachineModel {
       Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics
   Vector3 frame_origin_mm = Vector3::Zero();
   Tolerances tolerances;
+  Transition transition = Transition::kExactStop;  ///< of programs that do not ask for another
   PolePolicy pole_policy = PolePolicy::kTurn;
   double clearance_mm = 50;  ///< retract of an approach along the tool axis
   double approach_feed_mm_per_s = 10;

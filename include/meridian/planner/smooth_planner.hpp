@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/machine_model.hpp"
@@ -13,14 +14,9 @@
 
 namespace meridian {
 
-/// How a program's cuts join.
-enum class Transition : std::uint8_t {
-  kSmooth,    ///< on through blocks, corners rounded inside the tolerances
-  kExactStop  ///< rest at the end of every block
-};
-
+/// What a program may ask for instead of what the machine's file says.
 struct SmoothSettings {
-  Transition transition = Transition::kSmooth;
+  std::optional<Transition> transition;
   double tip_tolerance_mm = 0;    ///< 0: the machine's
   double axis_tolerance_rad = 0;  ///< 0: the machine's
 };

@@ -93,7 +93,8 @@ TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
     const JointVector start = joints_of(model, blocks[0]);
     std::mt19937 engine(seed);
     const auto trace = plan_smooth(
-        model, blocks, start, {}, [&](std::size_t) { return engine() % 5 == 0; },
+        model, blocks, start, {Transition::kSmooth, 0, 0},
+        [&](std::size_t) { return engine() % 5 == 0; },
         [&](std::size_t) { return engine() % 4 == 0; });
     judge(model, trace, blocks, start, peaks);
     tails += trace.tails;
@@ -110,8 +111,8 @@ TEST(SmoothPlanner, PublishesTheSameHoweverTheBlocksArrive) {
     const auto eager = plan_smooth(model, blocks, start);
     std::mt19937 engine(seed);
     const auto lazy = plan_smooth(
-        model, blocks, start, {}, [&](std::size_t) { return engine() % 50 == 0; },
-        [](std::size_t) { return false; });
+        model, blocks, start, {Transition::kSmooth, 0, 0},
+        [&](std::size_t) { return engine() % 50 == 0; }, [](std::size_t) { return false; });
     ASSERT_EQ(eager.times.size(), lazy.times.size()) << "seed " << seed;
     for (std::size_t n = 0; n < eager.times.size(); ++n) {
       const TimePiece &a = eager.times[n], &b = lazy.times[n];

@@ -75,7 +75,8 @@ SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& b
 }
 
 inline SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& blocks,
-                               const JointVector& start, const SmoothSettings& settings = {}) {
+                               const JointVector& start,
+                               const SmoothSettings& settings = {Transition::kSmooth, 0, 0}) {
   return plan_smooth(
       model, blocks, start, settings, [](std::size_t) { return true; },
       [](std::size_t) { return false; });

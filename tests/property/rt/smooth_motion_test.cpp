@@ -54,7 +54,8 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
   int holds = 0, done = 0;
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     test::RandomPrograms random(seed);
-    const MachineModel machine = seed % 2 == 0 ? test::bench_machine() : test::lai_machine();
+    MachineModel machine = seed % 2 == 0 ? test::bench_machine() : test::lai_machine();
+    machine.transition = Transition::kSmooth;
     const auto blocks = hostile(seed);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started()) << "seed " << seed;
@@ -102,6 +103,7 @@ TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
     test::RandomPrograms random(seed);
     MachineModel machine = test::lai_machine();
     machine.starve_auto_resume_s = 100;
+    machine.transition = Transition::kSmooth;
     const auto blocks = hostile(seed, 20);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]), blocks.size() / 2);
     ASSERT_TRUE(run.is_started());
@@ -134,7 +136,8 @@ TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
   int stops = 0, over = 0;
   for (std::uint32_t n = 0; n < 24; ++n) {
     test::RandomPrograms random(9000 + n);
-    const MachineModel machine = test::bench_machine();
+    MachineModel machine = test::bench_machine();
+    machine.transition = Transition::kSmooth;
     const auto blocks = hostile(1 + n % 6);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started());
