@@ -105,7 +105,8 @@ TEST(Live, CutsAWholeFileOfTheCorpusAsTheSimulationDoes) {
   const std::string service = (plant.folder() / "service.toml").string();
   std::ofstream(tools) << "[[tool]]\nnumber = 1\nlength_mm = 110\nradius_mm = 5\n"
                           "[[tool]]\nnumber = 45\nlength_mm = 110\nradius_mm = 5\n";
-  std::ofstream(service) << "[service]\ntools = \"tools.toml\"\n";
+  std::ofstream(service) << "[service]\nmachine = \"" << machine_file()
+                         << "\"\ntools = \"tools.toml\"\n";
   const std::string frame = "--frame=20,-30,50";
   LiveRun live;
   live.service = {"--service", service, frame};
