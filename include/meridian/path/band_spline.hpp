@@ -30,6 +30,12 @@ struct BandTuning {
   double radius = 0.92;  ///< of the band at the samples, in tolerances
 };
 
+/// The programmed tool axis at a place: between two of them it lies on their great circle.
+struct AxisMark {
+  double u = 0;
+  Array3 axis{};  ///< unit
+};
+
 /// What the spline did since its construction.
 struct BandStatistics {
   std::uint64_t windows = 0;
@@ -79,6 +85,11 @@ class BandSpline {
 
   /// The ends of blocks on the span that next() returned last, one per call, in order.
   [[nodiscard]] std::optional<BlockEnd> next_block_end() noexcept;
+
+  /// The next corner of the programmed axis, in order and ahead of the spans; nullopt: no more yet.
+  /// To be called until then after every push() and next(); corners that were not asked for are
+  /// lost.
+  [[nodiscard]] std::optional<AxisMark> next_axis() noexcept;
 
   /// Whether finish() was called and the last span was handed out.
   [[nodiscard]] bool is_done() const noexcept;

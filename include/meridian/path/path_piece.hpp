@@ -24,6 +24,9 @@ enum class PathKind : std::uint8_t {
 /// (mm), d = 3..5 O (the tool axis is O/|O|).
 using PoseQuartic = std::array<std::array<double, 5>, 6>;
 
+/// Values of a quintic in Bernstein form: of the free joint over a kSpline piece, rad.
+using FreeQuintic = std::array<double, 6>;
+
 /// What the operator sees the machine do on a piece; the `kind` column of a recording.
 enum class MotionKind : std::uint8_t { kApproach, kCut, kRapid, kPoleTurn };
 
@@ -38,7 +41,8 @@ struct PathPiece {
   MotionKind motion = MotionKind::kCut;
   std::uint8_t branch = 0;      ///< solution of the inverse kinematics that is followed
   bool is_free_driven = false;  ///< the free rotary joint runs evenly from `free_begin` to
-                                ///< `free_end` and the tilt follows it; kTurn always does
+                                ///< `free_end`, on kSpline as `free_quintic`, and the tilt follows
+                                ///< it; kTurn always does
   bool is_azimuthal = false;    ///< beside the pole: not the turn of the axis but its azimuth about
                                 ///< the pole grows evenly with s, see below
   std::uint16_t epoch = 0;      ///< as in TimePiece
@@ -64,6 +68,8 @@ struct PathPiece {
   double azimuth_from = 0;  ///< atan2(o sin, cos) at azimuth_begin
   PoseQuartic spline{};  ///< kSpline: quartics in s; s is the parameter u of the spline, which is
                          ///< nearly, not exactly, the length named above
+  /// kSpline where `is_free_driven`: the free joint over [0, length].
+  FreeQuintic free_quintic{};
   JointVector
       joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve
   JointVector joints_end{};  ///< joints at s = length, windings included

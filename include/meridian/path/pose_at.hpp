@@ -43,6 +43,18 @@ template <class S>
   return out;
 }
 
+/// Returns the quintic with Bernstein values `values` at the share `t` in [0, 1] of its range, by
+/// de Casteljau: no power of a small length, nothing cancels. RT: cycle.
+template <class S>
+[[nodiscard]] inline S quintic_at(const FreeQuintic& values, const S& t) noexcept {
+  std::array<S, 6> level;
+  for (std::size_t n = 0; n < 6; ++n) level[n] = S(values[n]);
+  for (std::size_t left = 5; left > 0; --left) {
+    for (std::size_t n = 0; n < left; ++n) level[n] += (level[n + 1] - level[n]) * t;
+  }
+  return level[0];
+}
+
 /// Returns the tool pose of `piece` at path length `s` in [0, length].
 ///
 /// A kJoint piece has no path of its own in W: its pose at the begin is returned, and joints_at()

@@ -29,6 +29,10 @@ template <class S>
     return out;
   }
   const Pose<S> pose = pose_at(piece, s);
+  if (piece.kind == PathKind::kSpline && piece.is_free_driven) {
+    return solve_held(model, piece.tool_length_mm, pose,
+                      quintic_at(piece.free_quintic, S(s / piece.length)));
+  }
   if (piece.is_free_driven || piece.kind == PathKind::kTurn) {
     const double by = piece.free_end - piece.free_begin;
     const S free =

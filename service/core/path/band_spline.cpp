@@ -40,7 +40,7 @@ struct BandSpline::Workspace {
     first = 1;
     checked = 4;
     next_span = committed = 4;
-    point_segment = block_end = 0;
+    point_segment = block_end = axis_mark = 0;
     is_last = has_failed = false;
   }
 
@@ -167,7 +167,7 @@ struct BandSpline::Workspace {
   std::int64_t checked = 4;    ///< spans before this one are bounded
   std::int64_t next_span = 4;  ///< to be handed out
   std::int64_t committed = 4;  ///< spans before this one are final
-  std::int64_t point_segment = 0, block_end = 0;
+  std::int64_t point_segment = 0, block_end = 0, axis_mark = 0;
   bool is_last = false;  ///< the last window is done
   bool has_failed = false;
 };
@@ -207,6 +207,14 @@ std::optional<BlockEnd> BandSpline::next_block_end() noexcept {
     return BlockEnd{vertex.u, vertex.sequence, vertex.line, vertex.block_feed_mm_per_s};
   }
   return std::nullopt;
+}
+
+std::optional<AxisMark> BandSpline::next_axis() noexcept {
+  Workspace& w = *workspace_;
+  w.axis_mark = std::max(w.axis_mark, w.line.first());
+  if (w.axis_mark > w.line.last()) return std::nullopt;
+  const BandVertex& vertex = w.line[w.axis_mark++];
+  return AxisMark{vertex.u, {vertex.x[3], vertex.x[4], vertex.x[5]}};
 }
 
 bool BandSpline::is_done() const noexcept {

@@ -47,29 +47,31 @@ CellGrid::CellGrid(const MachineModel& model, const FeedLimits& limits,
   finer_.reserve(kDrafts);
 }
 
-void CellGrid::begin(const JointVector& joints, int branch, double tool_length_mm) noexcept {
+void CellGrid::begin(const JointVector& joints, double tool_length_mm) noexcept {
   waiting_count_ = 0;
   drafts_.clear();
   next_span_ = 0;
   first_ = last_ = 0;
   last_h_ = 0;
   joints_ = joints;
-  branch_ = branch;
   tool_length_mm_ = tool_length_mm;
   is_finished_ = false;
   fault_ = {};
 }
 
-PathFault CellGrid::take_sample(const BandSpan& span, double x, JointVector& reference,
+PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& reference,
                                 CellSample& out) const noexcept {
-  const auto pose = pose_on(span.c, Jet<3>::variable(x));
-  const auto at = solve(model_, tool_length_mm_, pose, branch_, reference);
+  const auto pose = pose_on(span.band.c, Jet<3>::variable(x));
+  const auto at = span.is_free_driven
+                      ? solve_held(model_, tool_length_mm_, pose,
+                                   quintic_at(span.free, Jet<3>::variable(x) / span.band.length))
+                      : solve(model_, tool_length_mm_, pose, span.branch, reference);
   if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
   double tip_speed = 0;
   for (int i = 0; i < 3; ++i) tip_speed += square(pose.tip[i].derivative(1));
   const double share = square(settings_.feed_share);
-  double b = std::min(1 / kNone, share * square(span.u_speed_mm_per_s));
-  b = std::min(b, share * square(span.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
+  double b = std::min(1 / kNone, share * square(span.band.u_speed_mm_per_s));
+  b = std::min(b, share * square(span.band.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
   for (int i = 0; i < limits_.count; ++i) {
     reference[i] = value_of(at.q[i]);
     const double d1 = out.d1[i] = at.q[i].derivative(1);
@@ -85,7 +87,7 @@ PathFault CellGrid::take_sample(const BandSpan& span, double x, JointVector& ref
   return {};
 }
 
-double CellGrid::time_per_u(const BandSpan& span, double x) const noexcept {
+double CellGrid::time_per_u(const JointSpan& span, double x) const noexcept {
   JointVector reference = joints_;
   CellSample at;
   if (take_sample(span, x, reference, at).kind != PathFault::Kind::kNone) return 0;
@@ -98,15 +100,16 @@ double CellGrid::time_per_u(const BandSpan& span, double x) const noexcept {
   return slowest;
 }
 
-void CellGrid::draft_cells(const BandSpan& span) noexcept {
+void CellGrid::draft_cells(const JointSpan& span) noexcept {
   constexpr int kProbes = 4;
   double time = 0;
-  for (int k = 0; k < kProbes; ++k) time += time_per_u(span, span.length * (k + 0.5) / kProbes);
-  time *= span.length / kProbes;
+  for (int k = 0; k < kProbes; ++k)
+    time += time_per_u(span, span.band.length * (k + 0.5) / kProbes);
+  time *= span.band.length / kProbes;
   const double wanted = std::ceil(std::min(time / settings_.cell_s, 1.0 * kMostPerSpan));
   const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
   const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMostPerSpan));
-  const double h = span.length / cells;
+  const double h = span.band.length / cells;
   for (int k = 0; k < cells; ++k) drafts_.push_back({waiting_count_ - 1, k * h, h});
 }
 
@@ -133,9 +136,9 @@ void CellGrid::halve(double left, double ratio, int rounds) noexcept {
   }
 }
 
-PathFault CellGrid::push(const BandSpan& span) noexcept {
+PathFault CellGrid::push(const JointSpan& span) noexcept {
   if (fault_.kind != PathFault::Kind::kNone) return fault_;
-  if (!(span.length > 0)) return {};
+  if (!(span.band.length > 0)) return {};
   waiting_[static_cast<std::size_t>(waiting_count_++)] = span;
   draft_cells(span);
   halve(last_ > 0 ? last_h_ : std::numeric_limits<double>::infinity(), kRatio, kRounds);
@@ -173,7 +176,7 @@ PathFault CellGrid::make_cells() noexcept {
 }
 
 PathFault CellGrid::make_cell(const Draft& draft) noexcept {
-  const BandSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
+  const JointSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
   FeedCell& cell = (*this)[last_];
   cell.span = next_span_ + static_cast<std::uint64_t>(draft.waiting);
   cell.x = draft.x;
@@ -203,7 +206,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   joints_ = reference;
   cell.tight = 1;
   for (const double x : {draft.x, draft.x + draft.h}) {
-    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.c, x)));
+    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.band.c, x)));
   }
   last_h_ = cell.h;
   ++last_;

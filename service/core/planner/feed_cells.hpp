@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "meridian/path/band_span.hpp"
 #include "service/core/planner/feed_limits.hpp"
 #include "service/core/planner/joint_cells.hpp"
+#include "service/core/planner/joint_span.hpp"
 
 /// The grid of the feed planner: short cells of the path with the joints' derivatives by the path
 /// parameter u. Cell boundaries lie on every end of a span, so that derivatives are smooth inside a
@@ -49,8 +49,8 @@ class CellGrid {
 
   CellGrid(const MachineModel& model, const FeedLimits& limits, const CellSettings& settings);
 
-  /// Starts a path from `joints`, on `branch` of the inverse kinematics.
-  void begin(const JointVector& joints, int branch, double tool_length_mm) noexcept;
+  /// Starts a path from `joints`.
+  void begin(const JointVector& joints, double tool_length_mm) noexcept;
 
   /// Whether another span may be pushed.
   [[nodiscard]] bool has_room() const noexcept {
@@ -58,7 +58,7 @@ class CellGrid {
   }
 
   /// Takes the next span; a fault ends the path, cells before it stay valid.
-  [[nodiscard]] PathFault push(const BandSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
 
   /// No more spans: makes the last cells, as far as there is room for them.
   [[nodiscard]] PathFault finish() noexcept;
@@ -99,10 +99,10 @@ class CellGrid {
     double x = 0, h = 0;
   };
 
-  [[nodiscard]] PathFault take_sample(const BandSpan& span, double x, JointVector& reference,
+  [[nodiscard]] PathFault take_sample(const JointSpan& span, double x, JointVector& reference,
                                       CellSample& out) const noexcept;
-  [[nodiscard]] double time_per_u(const BandSpan& span, double x) const noexcept;
-  void draft_cells(const BandSpan& span) noexcept;
+  [[nodiscard]] double time_per_u(const JointSpan& span, double x) const noexcept;
+  void draft_cells(const JointSpan& span) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
@@ -111,14 +111,13 @@ class CellGrid {
   FeedLimits limits_;
   CellSettings settings_;
   std::vector<FeedCell> cells_;
-  std::array<BandSpan, kWaiting> waiting_;
+  std::array<JointSpan, kWaiting> waiting_;
   int waiting_count_ = 0;
   std::vector<Draft> drafts_, finer_;
   std::uint64_t next_span_ = 0;  ///< number of waiting_[0]
   std::int64_t first_ = 0, last_ = 0;
   double last_h_ = 0;  ///< length of the last cell made
   JointVector joints_{};
-  int branch_ = 0;
   double tool_length_mm_ = 0;
   bool is_finished_ = false;
   PathFault fault_;

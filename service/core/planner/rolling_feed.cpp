@@ -48,14 +48,15 @@ RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings
 }
 
 void RollingFeed::begin(const JointVector& joints, int branch, double tool_length_mm) noexcept {
-  grid_.begin(joints, branch, tool_length_mm);
+  grid_.begin(joints, tool_length_mm);
+  branch_ = branch;
   next_ = 0;
   is_at_rest_ = true;
   old_.first = old_.end = 0;
   window_ = {};
 }
 
-PathFault RollingFeed::push(const BandSpan& span) noexcept { return grid_.push(span); }
+PathFault RollingFeed::push(const JointSpan& span) noexcept { return grid_.push(span); }
 
 PathFault RollingFeed::finish() noexcept { return grid_.finish(); }
 

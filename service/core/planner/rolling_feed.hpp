@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "meridian/path/band_span.hpp"
 #include "service/core/planner/feed_cells.hpp"
 #include "service/core/planner/feed_piece.hpp"
 #include "service/core/planner/feed_rest.hpp"
 #include "service/core/planner/jerk_step.hpp"
+#include "service/core/planner/joint_span.hpp"
 
 namespace meridian {
 
@@ -60,7 +60,14 @@ class RollingFeed {
   /// Whether push() would take another span.
   [[nodiscard]] bool has_room() const noexcept { return grid_.has_room(); }
   /// Takes the next span. A fault (travel, reach) ends the path: nothing of the span is planned.
-  [[nodiscard]] PathFault push(const BandSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+  /// A span on the branch of begin().
+  [[nodiscard]] PathFault push(const BandSpan& span) noexcept {
+    JointSpan on_branch;
+    on_branch.band = span;
+    on_branch.branch = branch_;
+    return push(on_branch);
+  }
   /// The path ends with the last span, at rest.
   [[nodiscard]] PathFault finish() noexcept;
 
@@ -105,6 +112,7 @@ class RollingFeed {
   FeedLimits limits_;   ///< what plans are checked against
   FeedLimits planned_;  ///< what they are made for
   CellGrid grid_;
+  int branch_ = 0;
   JerkStep solver_;
   std::int64_t next_ = 0;  ///< first cell that is not committed
   bool is_at_rest_ = true;

@@ -17,22 +17,8 @@
 namespace meridian {
 namespace {
 
-/// Blocks whose axis comes nearer to the pole than this share of the axis tolerance are done from
-/// rest to rest: the smoothed axis, up to half of it away, could pass on the other side.
-constexpr double kPoleShare = 0.6;
-
-/// Least distance of the axis on the great circle from `begin` to `end` to the pole.
-double least_pole_distance(const MachineModel& model, const PathPiece& way, const Vector3& begin,
-                           const Vector3& end) noexcept {
-  const double at_ends = std::min(pole_distance(model, begin), pole_distance(model, end));
-  for (const double side : {1.0, -1.0}) {
-    const PolePassage passage = find_passage(way, side * pole_direction(model));
-    if (passage.nearest_turn > 0 && passage.nearest_turn < way.axis_turn) {
-      return std::min(at_ends, passage.offset);
-    }
-  }
-  return at_ends;
-}
+/// Nearer to the pole than this share of the axis tolerance the axis counts as on it.
+constexpr double kOnPoleShare = 0.2;
 
 }  // namespace
 
@@ -53,6 +39,7 @@ struct SmoothPlanner::Workspace {
 
   /// `block` as it can be run on through, or nothing where it is done at rest.
   [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
+  [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
   void begin_run() noexcept;
   void end_run() noexcept;
   [[nodiscard]] PlanResult refuse() noexcept;
@@ -66,6 +53,7 @@ struct SmoothPlanner::Workspace {
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
   JointVector joints{};
   bool is_running = false;
+  bool is_run_on_pole = false;
   bool is_refused = false;
   PlanResult refusal;
 };
@@ -85,13 +73,20 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
     axis = find_nearest_pole(model, axis);
   }
   block.axis = to_array(axis);
-  if (axis == pose.axis) return block;
+  // On the pole the free joint is held. Runs go through it, or stay on it all the way; what starts
+  // from it or lingers on it is done at rest, where the free joint can turn.
+  const bool starts_on_pole = is_on_pole(pose.axis);
+  if (axis == pose.axis) {
+    return !starts_on_pole || !is_running || is_run_on_pole ? std::optional(block) : std::nullopt;
+  }
   if (!find_great_circle(pose.axis, axis).is_unique) return {};
-  if (free_joint(model) < 0) return block;
-  const PathPiece way = make_line(pose, {to_vector(block.tip_mm), axis});
-  const double least = kPoleShare * tolerance().axis_rad;
-  if (least_pole_distance(model, way, pose.axis, axis) < least) return {};
+  if (is_running && is_run_on_pole) return {};
+  if (starts_on_pole && (!is_running || is_on_pole(axis))) return {};
   return block;
+}
+
+bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
+  return free_joint(model) >= 0 && pole_distance(model, axis) < kOnPoleShare * tolerance().axis_rad;
 }
 
 void SmoothPlanner::Workspace::begin_run() noexcept {
@@ -116,7 +111,8 @@ void SmoothPlanner::Workspace::begin_run() noexcept {
       start.branch = branch;
     }
   }
-  run.begin(start, tolerance());
+  start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis);
+  run.begin(start, tolerance(), tolerance().axis_rad);
   is_running = true;
 }
 

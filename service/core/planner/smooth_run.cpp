@@ -17,18 +17,21 @@ bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault:
 }  // namespace
 
 SmoothRun::SmoothRun(const MachineModel& model)
-    : model_(model), feed_(model, {}), authority_(model), spans_(kSpans) {}
+    : model_(model), corridor_(model), feed_(model, {}), authority_(model), spans_(kSpans) {}
 
-void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance) noexcept {
+void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
+                      double pole_tolerance_rad) noexcept {
   start_ = start;
   band_.begin(start.pose, tolerance);
+  corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
+                   pole_tolerance_rad, start.is_on_pole});
   feed_.begin(start.joints, start.branch, start.tool_length_mm);
   spans_.clear();
   staged_spans_ = 0;
   span_joints_ = start.joints;
   window_ = start.window;
   open_.fill({});
-  has_window_ = is_feed_finished_ = false;
+  has_window_ = is_band_finished_ = is_feed_finished_ = false;
   fault_ = {};
   faulty_block_ = {};
 }
@@ -74,16 +77,16 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
     if (is_feed_finished_ && feed_.is_done()) return Status::kDone;
     if (!feed_.has_room()) return Status::kNeedsBlocks;
     PathFault fault;
-    std::uint64_t sequence = spans_.end_index() > 0 ? spans_.back().sequence : 0;
-    std::uint32_t line = spans_.end_index() > 0 ? spans_.back().line : 0;
-    if (const BandSpan* span = band_.next()) {
+    std::uint64_t sequence = spans_.end_index() > 0 ? spans_.back().band.sequence : 0;
+    std::uint32_t line = spans_.end_index() > 0 ? spans_.back().band.line : 0;
+    if (const JointSpan* span = next_span()) {
       spans_.push(*span);
-      sequence = span->sequence;
-      line = span->line;
+      sequence = span->band.sequence;
+      line = span->band.line;
       fault = feed_.push(*span);
     } else if (band_.has_failed()) {
       fault = {PathFault::Kind::kTooLong, -1, 0};
-    } else if (band_.is_done() && !is_feed_finished_) {
+    } else if (is_band_finished_ && !is_feed_finished_) {
       is_feed_finished_ = true;
       fault = feed_.finish();
     } else {
@@ -92,6 +95,25 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
     if (is_fault(fault)) {
       fail(fault, sequence, line);
       return Status::kFailed;
+    }
+  }
+}
+
+const JointSpan* SmoothRun::next_span() noexcept {
+  for (;;) {
+    if (const JointSpan* span = corridor_.next()) return span;
+    if (is_band_finished_) return nullptr;
+    const BandSpan* band = band_.next();
+    while (const auto mark = band_.next_axis()) {
+      if (mark->u > 0) corridor_.mark(mark->u, to_vector(mark->axis));
+    }
+    if (band != nullptr) {
+      corridor_.push(*band);
+    } else if (band_.is_done()) {
+      is_band_finished_ = true;
+      corridor_.finish();
+    } else {
+      return nullptr;
     }
   }
 }
@@ -134,14 +156,13 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
 
 bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
   for (; staged_spans_ < until; ++staged_spans_) {
-    const BandSpan& span = spans_[static_cast<std::int64_t>(staged_spans_)];
+    const JointSpan& span = spans_[static_cast<std::int64_t>(staged_spans_)];
     PathPiece piece = make_spline(span);
     piece.index = start_.path_index + staged_spans_;
     piece.epoch = start_.epoch;
-    piece.branch = static_cast<std::uint8_t>(start_.branch);
     piece.tool_length_mm = start_.tool_length_mm;
     piece.joints_begin = joints_at(model_, piece, 0.0, span_joints_).q;
-    piece.joints_end = joints_at(model_, piece, span.length, piece.joints_begin).q;
+    piece.joints_end = joints_at(model_, piece, piece.length, piece.joints_begin).q;
     span_joints_ = piece.joints_end;
     if (!writer.stage(piece)) return false;
   }
@@ -149,7 +170,7 @@ bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept 
 }
 
 bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool is_tail) noexcept {
-  const BandSpan& span = spans_[static_cast<std::int64_t>(piece.span)];
+  const BandSpan& span = spans_[static_cast<std::int64_t>(piece.span)].band;
   TimePiece time;
   time.kind = TimeKind::kMove;
   time.is_tail = is_tail;

@@ -10,6 +10,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed_authority.hpp"
+#include "service/core/planner/pole_corridor.hpp"
 #include "service/core/planner/rolling_feed.hpp"
 
 namespace meridian {
@@ -19,6 +20,8 @@ struct RunStart {
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
   JointVector joints{};
   int branch = 0;
+  /// The axis stays on the pole all the way: the free joint is held, nothing is sought about it.
+  bool is_on_pole = false;
   double tool_length_mm = 0;
   std::uint16_t epoch = 0;
   std::uint64_t path_index = 0;  ///< of the next path piece
@@ -39,7 +42,9 @@ class SmoothRun {
 
   explicit SmoothRun(const MachineModel& model);
 
-  void begin(const RunStart& start, const BandTolerance& tolerance) noexcept;
+  /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
+  void begin(const RunStart& start, const BandTolerance& tolerance,
+             double pole_tolerance_rad) noexcept;
 
   /// Takes a cut. Only where publish() has said kNeedsBlocks.
   void take(const ClBlock& block) noexcept;
@@ -68,6 +73,8 @@ class SmoothRun {
   };
 
   [[nodiscard]] Status prepare() noexcept;
+  /// The next span that joints follow, nullptr where there is none yet.
+  [[nodiscard]] const JointSpan* next_span() noexcept;
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(const MotionWriter& writer) noexcept;
@@ -78,16 +85,17 @@ class SmoothRun {
 
   const MachineModel& model_;
   BandSpline band_;
+  PoleCorridor corridor_;
   RollingFeed feed_;
   FeedAuthority authority_;
-  IndexRing<BandSpan> spans_;  ///< by number, as far back as a window may go
+  IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
   RunStart start_;
   std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
   JointVector span_joints_{};       ///< at the end of the last of them
   std::uint32_t window_ = 0;
   std::array<OpenWindow, 4> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
-  bool is_feed_finished_ = false;
+  bool is_band_finished_ = false, is_feed_finished_ = false;
   PathFault fault_;
   BlockReject faulty_block_;
 };

@@ -176,9 +176,9 @@ TEST(RollingFeed, RunsAtEveryRateThatTheFilterGivesInsideTheLimits) {
 double bound_s(const FeedPath& path, const FeedSettings& settings) {
   const FeedLimits limits = make_feed_limits(path.model, settings.reserve);
   CellGrid grid(path.model, limits, settings.cells);
-  grid.begin(path.start, path.branch, path.model.tool_length_mm);
+  grid.begin(path.start, path.model.tool_length_mm);
   for (const BandSpan& span : path.spans) {
-    EXPECT_EQ(grid.push(span).kind, PathFault::Kind::kNone);
+    EXPECT_EQ(grid.push({span, path.branch, false, {}, 0}).kind, PathFault::Kind::kNone);
   }
   EXPECT_EQ(grid.finish().kind, PathFault::Kind::kNone);
   EXPECT_TRUE(grid.is_complete());

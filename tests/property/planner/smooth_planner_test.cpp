@@ -83,6 +83,59 @@ TEST(SmoothPlanner, KeepsLimitsFeedAndTolerancesOnHostilePrograms) {
   }
 }
 
+/// 60 mm straight, the axis in 1 deg steps to `distance` from the pole and on, bent there by
+/// `bend`.
+std::vector<ClBlock> past_the_pole(double distance_rad, double bend_rad) {
+  std::vector<ClBlock> blocks;
+  for (int n = 0; n <= 30; ++n) {
+    const double along = units::rad_from_deg(n - 15.0), turn = n > 15 ? bend_rad : 0;
+    const Vector3 flat(std::cos(turn) * std::sin(along) - std::sin(turn) * distance_rad,
+                       std::sin(turn) * std::sin(along) + std::cos(turn) * distance_rad,
+                       std::cos(along));
+    ClBlock block;
+    block.sequence = blocks.size();
+    block.tip_mm = {2.0 * n - 30, 20, 30};
+    block.axis = to_array(flat.normalized());
+    block.feed = 100;
+    block.feed_meaning = FeedMeaning::kTip;
+    blocks.push_back(block);
+  }
+  ClBlock end;
+  end.kind = BlockKind::kEnd;
+  end.sequence = blocks.size();
+  blocks.push_back(end);
+  return blocks;
+}
+
+TEST(SmoothPlanner, RunsThroughThePoleInsideTheTolerance) {
+  for (const MachineModel& model : {bench_machine(), lai_machine()}) {
+    for (const double bend_deg : {0.0, 60.0}) {
+      double straight_s = 0;
+      for (const double distance_deg : {0.0, 1e-6, 0.01, 0.05}) {
+        SCOPED_TRACE(testing::Message() << model.name << " at " << distance_deg << " deg, bend "
+                                        << bend_deg << " deg");
+        const auto blocks =
+            past_the_pole(units::rad_from_deg(distance_deg), units::rad_from_deg(bend_deg));
+        const JointVector start = joints_of(model, blocks[0]);
+        const SmoothTrace trace = plan_smooth(model, blocks, start);
+        Peaks peaks;
+        judge(model, trace, blocks, start, peaks);
+        if (HasFatalFailure()) return;
+        std::printf("%s, bend %.0f deg, at %.0e deg: %.3f s, j %.4f, %.3f tolerances\n",
+                    model.name.c_str(), bend_deg, distance_deg, peaks.duration_s, peaks.j,
+                    peaks.off);
+        if (distance_deg == 0) straight_s = peaks.duration_s;
+        EXPECT_LT(peaks.duration_s, 1.15 * straight_s) << "the free joint was turned";
+        for (std::size_t n = 1; n < trace.times.size(); ++n) {
+          const bool is_inside = trace.times[n].sequence > 2 && trace.times[n].sequence < 29;
+          EXPECT_FALSE(is_inside && trace.times[n].v == 0)
+              << "rest at block " << trace.times[n].sequence;
+        }
+      }
+    }
+  }
+}
+
 TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
   const MachineModel model = lai_machine();
   Peaks peaks;

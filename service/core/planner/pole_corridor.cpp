@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/pole_corridor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kNear_rad = 0.05;        // minima farther off turn the free joint gently
+constexpr double kZoneTolerances = 2.5;   // minima farther off leave a zone no room
+constexpr double kDwellTolerances = 0.2;  // nearer, the path counts as on the pole
+constexpr double kOtherTolerances = 3;    // another minimum nearer than that bounds the reach
+constexpr double kReachShare = 0.98, kHalf = 0.49;
+constexpr double kLeastReach_mm = 1e-3;
+constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
+constexpr double kLeastPart_mm = 1e-6;
+/// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
+/// of axis, so a zone beside them still has half of its reach.
+constexpr double kOutOfReach_rad = 0.5 * PoleCorridor::kReach_mm / kAxisLength_mm_per_rad;
+
+/// `span` from x = `from` on, `length` long.
+BandSpan part_of_span(const BandSpan& span, double from, double length) noexcept {
+  BandSpan out = span;
+  out.u0 = span.u0 + from;
+  out.length = length;
+  for (auto& c : out.c) {  // Taylor shift
+    for (int round = 0; round < 4; ++round) {
+      for (int k = 3; k >= round; --k) c[k] += from * c[k + 1];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+PoleCorridor::PoleCorridor(const MachineModel& model)
+    : model_(model), held_(kHeld), pending_(kPending) {}
+
+void PoleCorridor::begin(const Start& start) noexcept {
+  has_pole_ = free_joint(model_) >= 0 && !start.is_on_pole;
+  tool_length_mm_ = start.tool_length_mm;
+  tolerance_rad_ = std::max(start.tolerance_rad, kPoleEase_rad);
+  programmed_.begin(start.axis);
+  held_.clear();
+  scan_ = 0;
+  emitted_x_ = known_u_ = 0;
+  known_ = start.joints;
+  branch_ = out_branch_ = start.branch;
+  pending_.clear();
+  cut_count_ = 0;
+  is_finished_ = false;
+  zones_ = 0;
+}
+
+void PoleCorridor::push(const BandSpan& span) noexcept {
+  Held held;
+  held.band = span;
+  if (has_pole_) {
+    for (int k = 0; k < kProbes; ++k) {
+      const ToolPose pose = pose_on(span.c, span.length * k / kProbes);
+      held.distance[static_cast<std::size_t>(k)] = pole_distance(model_, pose.axis);
+    }
+  }
+  held_.push(held);
+}
+
+const BandSpan& PoleCorridor::span_at(double u) const noexcept {
+  std::int64_t low = held_.begin_index(), high = held_.end_index();
+  while (high - low > 1) {
+    const std::int64_t middle = (low + high) / 2;
+    (held_[middle].band.u0 <= u ? low : high) = middle;
+  }
+  return held_[low].band;
+}
+
+double PoleCorridor::u_of(Place place) const noexcept {
+  const BandSpan& span = held_[place / kProbes].band;
+  return span.u0 + span.length * static_cast<double>(place % kProbes) / kProbes;
+}
+
+double PoleCorridor::distance_of(Place place) const noexcept {
+  return held_[place / kProbes].distance[static_cast<std::size_t>(place % kProbes)];
+}
+
+double PoleCorridor::distance_at(double u) const noexcept {
+  const BandSpan& span = span_at(u);
+  return pole_distance(model_, pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length)).axis);
+}
+
+double PoleCorridor::end_u() const noexcept {
+  return held_.back().band.u0 + held_.back().band.length;
+}
+
+double PoleCorridor::find_nearest(Place place) const noexcept {
+  double a = place > held_.begin_index() * kProbes ? u_of(place - 1) : u_of(place);
+  double b = place + 1 < end_place() ? u_of(place + 1) : end_u();
+  for (int n = 0; n < 60; ++n) {
+    const double x = a + 0.382 * (b - a), y = a + 0.618 * (b - a);
+    if (distance_at(x) < distance_at(y)) {
+      b = y;
+    } else {
+      a = x;
+    }
+  }
+  return 0.5 * (a + b);
+}
+
+double PoleCorridor::find_room_behind(Place from, double core_end) const noexcept {
+  double room = std::min(kReach_mm, kReachShare * (end_u() - core_end));
+  for (Place n = from + 2; n + 1 < end_place() && u_of(n) < core_end + 2 * kReach_mm; ++n) {
+    const double here = distance_of(n);
+    const bool is_minimum = here < distance_of(n - 1) && here < distance_of(n + 1);
+    if (is_minimum && here < kOtherTolerances * tolerance_rad_) {
+      return std::min(room, kHalf * (u_of(n) - core_end));
+    }
+  }
+  return room;
+}
+
+void PoleCorridor::add_cut(double u) noexcept {
+  if (cut_count_ == kCuts || u <= emitted_u()) return;
+  const auto end = cuts_.begin() + static_cast<std::ptrdiff_t>(cut_count_++);
+  *end = u;
+  std::rotate(std::upper_bound(cuts_.begin(), end, u), end, end + 1);
+}
+
+void PoleCorridor::add_cuts(double nearest) noexcept {
+  // The free joint turns over a width of distance/|d axis/du|.
+  const BandSpan& span = span_at(nearest);
+  const auto pose =
+      pose_on(span.c, Jet<1>::variable(std::clamp(nearest - span.u0, 0.0, span.length)));
+  double rate = 0;
+  for (int i = 0; i < 3; ++i) rate += pose.axis[i].derivative(1) * pose.axis[i].derivative(1);
+  const double width = distance_at(nearest) / std::max(std::sqrt(rate), 1e-9);
+  add_cut(nearest);
+  double off = kFirstCut * std::max(width, 1e-5);
+  for (int n = 0; n < 28 && off < kFarthestCut_mm; ++n, off *= kCutGrowth) {
+    add_cut(nearest - off);
+    add_cut(nearest + off);
+  }
+}
+
+JointVector PoleCorridor::follow_to(double u) const noexcept {
+  JointVector joints = known_;
+  double at = known_u_;
+  while (at < u) {
+    const BandSpan& span = span_at(at);
+    at = std::min(u, at + std::max(span.length / kProbes, 1e-6));
+    const BandSpan& there = span_at(at);
+    const auto pose = pose_on(there.c, std::clamp(at - there.u0, 0.0, there.length));
+    const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
+    if (solved.status != SolveStatus::kUnreachable) joints = solved.q;
+  }
+  return joints;
+}
+
+bool PoleCorridor::decide(Place place) noexcept {
+  const double nearest = find_nearest(place);
+  PolePlace around;
+  around.core_begin = around.core_end = nearest;
+  around.branch = branch_;
+  Place last = place;
+  const auto dwells = [this](Place n) {
+    return distance_of(n) < kDwellTolerances * tolerance_rad_;
+  };
+  if (dwells(place)) {
+    Place first = place;
+    while (first > held_.begin_index() * kProbes && dwells(first - 1)) --first;
+    while (last + 1 < end_place() && dwells(last + 1)) ++last;
+    around.is_start = first == 0;
+    around.is_dwelling = around.is_start || last > first || distance_at(nearest) < kPoleEase_rad;
+    around.core_begin = std::min(nearest, u_of(first));
+    around.core_end = std::max(nearest, u_of(last));
+  }
+  if (is_finished_ && last + 1 == end_place() &&
+      distance_at(end_u()) < kDwellTolerances * tolerance_rad_) {
+    around.is_end = around.is_dwelling = true;
+    around.core_end = end_u();
+  }
+  const bool has_all =
+      is_finished_ || held_.is_full() || end_u() > around.core_end + 2 * kReach_mm + 1;
+  if (!has_all) return false;
+  scan_ = last + 1;
+  const double left = pending_.begin_index() == pending_.end_index()
+                          ? emitted_u()
+                          : std::max(emitted_u(), pending_.back().end);
+  if (around.is_start ? pending_.end_index() > 0 : around.core_begin <= left) return true;
+  around.reach = kReach_mm;
+  if (!around.is_start) around.reach = kReachShare * (around.core_begin - left);
+  if (!around.is_end) {
+    around.reach = std::min(around.reach, find_room_behind(last, around.core_end));
+  }
+  const bool has_room = !pending_.is_full() && around.reach > kLeastReach_mm &&
+                        distance_at(nearest) < kZoneTolerances * tolerance_rad_;
+  PoleZone zone;
+  if (has_room) {
+    around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
+    zone = find_pole_zone({model_, *this, programmed_, tool_length_mm_, tolerance_rad_}, around);
+  }
+  if (zone.end > zone.begin) {
+    take(zone);
+  } else {
+    add_cuts(nearest);
+  }
+  return true;
+}
+
+void PoleCorridor::take(const PoleZone& zone) noexcept {
+  pending_.push(zone);
+  ++zones_;
+  branch_ = zone.branch_after;
+  known_u_ = zone.end;
+  JointVector reference{};
+  if (const int free = free_joint(model_); free >= 0) reference[free] = zone.free.back();
+  const BandSpan& span = span_at(zone.end);
+  const auto pose = pose_on(span.c, std::clamp(zone.end - span.u0, 0.0, span.length));
+  known_ = solve(model_, tool_length_mm_, pose, branch_, reference).q;
+}
+
+bool PoleCorridor::may_emit() const noexcept {
+  const Held& front = held_[held_.begin_index()];
+  if (!has_pole_) return true;
+  if (is_finished_ && scan_ >= end_place()) return true;
+  const double end = front.band.u0 + front.band.length;
+  const double judged = u_of(std::min(scan_, end_place() - 1));
+  if (end > judged) return false;
+  const bool is_out_of_reach = *std::min_element(front.distance.begin(), front.distance.end()) >
+                               kOutOfReach_rad + front.band.length / kAxisLength_mm_per_rad;
+  return is_out_of_reach || held_.is_full() || end <= judged - kReach_mm;
+}
+
+void PoleCorridor::emit() noexcept {
+  const BandSpan& span = held_[held_.begin_index()].band;
+  const double begin = span.u0 + emitted_x_, last = span.u0 + span.length;
+  double end = last;
+  const auto cut_at = [&](double u) {
+    if (u > begin && u < end) end = u;
+  };
+  const bool has_zone = pending_.begin_index() != pending_.end_index();
+  const PoleZone zone = has_zone ? pending_[pending_.begin_index()] : PoleZone{};
+  if (has_zone) {
+    cut_at(zone.begin);
+    cut_at(zone.end);
+  }
+  std::size_t passed = 0;
+  while (passed < cut_count_ && cuts_[passed] < begin + kLeastPart_mm) ++passed;
+  std::move(cuts_.begin() + static_cast<std::ptrdiff_t>(passed),
+            cuts_.begin() + static_cast<std::ptrdiff_t>(cut_count_), cuts_.begin());
+  cut_count_ -= passed;
+  if (cut_count_ > 0 && cuts_[0] < end - kLeastPart_mm) cut_at(cuts_[0]);
+
+  const bool is_rest = end == last;
+  const double length = is_rest ? span.length - emitted_x_ : end - begin;
+  const bool is_whole = is_rest && emitted_x_ == 0;
+  out_ = {};
+  out_.band = is_whole ? span : part_of_span(span, emitted_x_, length);
+  out_.branch = out_branch_;
+  const double middle = begin + 0.5 * length;
+  if (has_zone && middle > zone.begin && middle < zone.end) {
+    const double h = zone.end - zone.begin;
+    out_.is_free_driven = true;
+    out_.free = part_of(zone.free, begin <= zone.begin ? 0 : (begin - zone.begin) / h,
+                        end >= zone.end ? 1 : (end - zone.begin) / h);
+    out_.axis_deviation_rad = zone.deviation_rad;
+  }
+  if (has_zone && end >= zone.end) {
+    out_branch_ = zone.branch_after;
+    pending_.drop_before(pending_.begin_index() + 1);
+  }
+  if (has_pole_ && end > known_u_) {
+    known_ = follow_to(end);
+    known_u_ = end;
+  }
+  emitted_x_ += length;
+  if (is_rest) {
+    emitted_x_ = 0;
+    held_.drop_before(held_.begin_index() + 1);
+  }
+}
+
+const JointSpan* PoleCorridor::next() noexcept {
+  if (has_pole_) scan();
+  if (held_.begin_index() == held_.end_index() || !may_emit()) return nullptr;
+  emit();
+  return &out_;
+}
+
+void PoleCorridor::scan() noexcept {
+  if (held_.begin_index() == held_.end_index()) return;
+  scan_ = std::max(scan_, held_.begin_index() * kProbes);
+  while (scan_ < end_place()) {
+    const bool is_last = scan_ + 1 == end_place();
+    if (is_last && !is_finished_ && !held_.is_full()) return;
+    const Place before = std::max(scan_ - 1, held_.begin_index() * kProbes);
+    const double here = distance_of(scan_);
+    const double behind = is_last ? distance_at(end_u()) : distance_of(scan_ + 1);
+    const bool dwells = here < kDwellTolerances * tolerance_rad_;
+    const bool is_start = scan_ == 0 && dwells;
+    const bool is_end = is_last && is_finished_ && behind < kDwellTolerances * tolerance_rad_;
+    const bool is_minimum =
+        is_start || is_end ||
+        (before < scan_ && here < kNear_rad && here <= distance_of(before) && here < behind);
+    if (is_minimum) {
+      if (!decide(scan_)) return;
+    } else {
+      ++scan_;
+    }
+  }
+}
+
+}  // namespace meridian

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "service/core/path/index_ring.hpp"
+#include "service/core/planner/joint_span.hpp"
+#include "service/core/planner/pole_zone.hpp"
+
+namespace meridian {
+
+/// From spans of the path to spans that joints follow: finds the places where the path comes close
+/// to the pole, lets the free joint take a shorter way there inside the axis tolerance, and follows
+/// branch and winding behind it.
+///
+///     push(span) ... finish() ─▶ next() ... next() until it returns nullptr
+///
+/// Where the axis is within 11.5° of the pole, spans are held back by up to 61 mm of u, until it
+/// is known how close they come. What comes out depends on the spans alone, not on when they came.
+/// A machine without a pole gets its spans as they are. Where no zone helps, spans are cut about
+/// the nearest point, so that cells of the feed are as short as the free joint's turn is sharp.
+/// Fixed store. Units: mm, rad. Context: planner thread. Source: docs/motion.md, section 10.
+/// Proof: tests/property/planner/smooth_planner_test.cpp.
+class PoleCorridor : private SpanLookup {
+ public:
+  static constexpr double kReach_mm = 20;  ///< of a zone to either side
+
+  explicit PoleCorridor(const MachineModel& model);
+
+  /// Where a path starts, at rest.
+  struct Start {
+    JointVector joints{};
+    int branch = 0;
+    double tool_length_mm = 0;
+    Vector3 axis = Vector3::UnitZ();  ///< programmed there
+    double tolerance_rad = 0;         ///< of the axis from the programmed one, smoothing included
+    bool is_on_pole = false;          ///< all of the path: spans are handed on as they are
+  };
+  void begin(const Start& start) noexcept;
+
+  /// The axis programmed at `u`, in order: on a great circle between two of them. Ahead of spans.
+  void mark(double u, const Vector3& axis) noexcept { programmed_.add(u, axis); }
+
+  /// Takes the next span. Only after next() returned nullptr.
+  void push(const BandSpan& span) noexcept;
+  /// No more spans.
+  void finish() noexcept { is_finished_ = true; }
+
+  /// Returns the next span, nullptr where more are needed; valid until the next call.
+  [[nodiscard]] const JointSpan* next() noexcept;
+
+  /// Zones since begin(), and the farthest that any moved the axis from the programmed one.
+  [[nodiscard]] int zones() const noexcept { return zones_; }
+
+ private:
+  static constexpr int kProbes = 6;  ///< of the distance to the pole, per span
+  static constexpr std::size_t kHeld = 4096;
+  static constexpr std::size_t kCuts = 128;
+  static constexpr std::size_t kPending = 64;
+
+  struct Held {
+    BandSpan band;
+    std::array<double, kProbes> distance{};  ///< to the pole, at equal steps from its begin
+  };
+  /// A place among the probes: span number times kProbes plus probe.
+  using Place = std::int64_t;
+
+  [[nodiscard]] const BandSpan& span_at(double u) const noexcept override;
+  [[nodiscard]] double u_of(Place place) const noexcept;
+  [[nodiscard]] double distance_of(Place place) const noexcept;
+  [[nodiscard]] double distance_at(double u) const noexcept;
+  [[nodiscard]] Place end_place() const noexcept { return held_.end_index() * kProbes; }
+  [[nodiscard]] double end_u() const noexcept;
+  [[nodiscard]] double emitted_u() const noexcept {
+    return held_[held_.begin_index()].band.u0 + emitted_x_;
+  }
+
+  /// Looks at probes as far as enough of what follows is there.
+  void scan() noexcept;
+  /// A local minimum of the distance. False: more spans are needed to decide.
+  [[nodiscard]] bool decide(Place place) noexcept;
+  [[nodiscard]] double find_nearest(Place place) const noexcept;
+  [[nodiscard]] double find_room_behind(Place from, double core_end) const noexcept;
+  void add_cuts(double nearest) noexcept;
+  void add_cut(double u) noexcept;
+  /// Joints of the exact way at `u`, the windings followed from where they are known.
+  [[nodiscard]] JointVector follow_to(double u) const noexcept;
+  void take(const PoleZone& zone) noexcept;
+  [[nodiscard]] bool may_emit() const noexcept;
+  void emit() noexcept;
+
+  const MachineModel& model_;
+  bool has_pole_ = false;  ///< one that matters
+  double tool_length_mm_ = 0, tolerance_rad_ = 0;
+  ProgrammedAxis programmed_;
+  IndexRing<Held> held_;
+  Place scan_ = 0;        ///< first probe that is not judged
+  double emitted_x_ = 0;  ///< of the first span held, what is out already
+  double known_u_ = 0;    ///< winding and branch behind all zones are known there
+  JointVector known_{};
+  int branch_ = 0;      ///< behind all zones
+  int out_branch_ = 0;  ///< where spans are handed out
+  IndexRing<PoleZone> pending_;
+  std::array<double, kCuts> cuts_{};  ///< ascending
+  std::size_t cut_count_ = 0;
+  bool is_finished_ = false;
+  int zones_ = 0;
+  JointSpan out_;
+};
+
+}  // namespace meridian

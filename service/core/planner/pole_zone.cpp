@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/pole_zone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/path/pose_at.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr int kWidths = 24;
+constexpr double kLeastShare = 1e-3;  // narrowest half width over the widest
+constexpr double kSkews[] = {0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6};
+constexpr int kSamples = 96;
+constexpr double kToleranceShare = 0.99;  // samples are not everywhere
+constexpr double kMostBend = 1e3;         // rad: φ'' h² at an end, beyond it the end is no guide
+constexpr double kLeastGain_s = 1e-3;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kTravelMargin = 1e-9;
+constexpr double kLeastPart_mm = 1e-4;
+
+template <class S>
+Pose<S> pose_of(const PoleTask& task, double u) noexcept {
+  const BandSpan& span = task.spans.span_at(u);
+  const double x = std::clamp(u - span.u0, 0.0, span.length);
+  if constexpr (std::is_same_v<S, double>) {
+    return pose_on(span.c, x);
+  } else {
+    return pose_on(span.c, S::variable(x));
+  }
+}
+
+/// Time per u at which the joints can follow, seconds per mm.
+double slowness(const PoleTask& task, double u, const Joints<Jet<3>>& q) noexcept {
+  const BandSpan& span = task.spans.span_at(u);
+  const auto pose = pose_on(span.c, Jet<1>::variable(std::clamp(u - span.u0, 0.0, span.length)));
+  double tip = 0;
+  for (int i = 0; i < 3; ++i) tip += pose.tip[i].derivative(1) * pose.tip[i].derivative(1);
+  double most = std::max(std::sqrt(tip) / span.feed_mm_per_s, 1 / span.u_speed_mm_per_s);
+  for (int i = 0; i < task.model.joint_count; ++i) {
+    const JointLimits& limits = task.model.joints[i].limits;
+    most = std::max({most, std::abs(q[i].derivative(1)) / limits.velocity,
+                     std::sqrt(std::abs(q[i].derivative(2)) / limits.acceleration),
+                     std::cbrt(std::abs(q[i].derivative(3)) / limits.jerk)});
+  }
+  return most;
+}
+
+/// Time of the exact way on one side of the core, from the reach inwards to a distance `d`.
+class OutsideTime {
+ public:
+  OutsideTime(const PoleTask& task, const PolePlace& place, double side) noexcept
+      : reach_(place.reach) {
+    const double core = side < 0 ? place.core_begin : place.core_end;
+    for (int k = 0; k < kNodes; ++k) {
+      const double far = distance(k), near = distance(k + 1);
+      const auto at = solve(task.model, task.tool_length_mm,
+                            pose_of<Jet<3>>(task, core + side * 0.5 * (far + near)), place.branch,
+                            JointVector{});
+      const double time = (far - near) * slowness(task, core + side * 0.5 * (far + near), at.q);
+      sum_[k + 1] = sum_[k] + (std::isfinite(time) ? time : 0);
+    }
+  }
+
+  [[nodiscard]] double to(double d) const noexcept {
+    const double place = std::clamp(std::log(d / reach_) / std::log(kRatio), 0.0, 1.0 * kNodes);
+    const int k = std::min(static_cast<int>(place), kNodes - 1);
+    return sum_[k] + (place - k) * (sum_[k + 1] - sum_[k]);
+  }
+  [[nodiscard]] double whole() const noexcept { return sum_[kNodes]; }
+  [[nodiscard]] double innermost() const noexcept { return distance(kNodes); }
+
+ private:
+  static constexpr int kNodes = 64;
+  static constexpr double kRatio = 0.87;  // 0.87^64 = 1.3e-4
+  [[nodiscard]] double distance(int k) const noexcept { return reach_ * std::pow(kRatio, k); }
+  double reach_;
+  std::array<double, kNodes + 1> sum_{};
+};
+
+class Search {
+ public:
+  Search(const PoleTask& task, const PolePlace& place) noexcept
+      : task_(task),
+        place_(place),
+        free_(free_joint(task.model)),
+        before_(task, place, -1),
+        behind_(task, place, 1) {}
+
+  PoleZone run() noexcept {
+    const int branches = branch_count(task_.model);
+    best_time_ = place_.is_dwelling ? kNever : exact_time() - kLeastGain_s;
+    for (int n = 0; n < kWidths; ++n) {
+      const double width = place_.reach * std::pow(kLeastShare, 1.0 * n / (kWidths - 1));
+      for (const double skew : kSkews) {
+        if (skew != 0 && (place_.is_start || place_.is_end)) continue;
+        const double before = width * (1 - skew) / (1 + std::abs(skew));
+        const double behind = width * (1 + skew) / (1 + std::abs(skew));
+        PoleZone zone;
+        zone.begin = place_.is_start ? place_.core_begin : snapped(place_.core_begin - before);
+        zone.end = place_.is_end ? place_.core_end : snapped(place_.core_end + behind);
+        const double outside =
+            (place_.is_start ? 0 : before_.to(before)) + (place_.is_end ? 0 : behind_.to(behind));
+        for (int branch = 0; branch < branches; ++branch) {
+          zone.branch_after = branch;
+          try_zone(zone, outside);
+        }
+      }
+    }
+    return best_;
+  }
+
+ private:
+  /// `u`, or the end of a span that is so close that the part between would be none.
+  [[nodiscard]] double snapped(double u) const noexcept {
+    const BandSpan& span = task_.spans.span_at(u);
+    if (std::abs(u - span.u0) < kLeastPart_mm) return span.u0;
+    const double end = span.u0 + span.length;
+    return std::abs(end - u) < kLeastPart_mm ? end : u;
+  }
+
+  void try_zone(PoleZone zone, double outside) noexcept {
+    if (!fit(zone) || !is_inside(zone, kSamples / 8)) return;
+    const double time = outside + time_on(zone);
+    if (!(time < best_time_) || !is_inside(zone, kSamples)) return;
+    best_time_ = time;
+    best_ = zone;
+  }
+
+  /// The quintic through both ends.
+  bool fit(PoleZone& zone) const noexcept {
+    const double h = zone.end - zone.begin;
+    JointVector reference = place_.joints;
+    double from = reference[free_], a1 = 0, a2 = 0;  // a start: at rest where it is
+    if (!place_.is_start) {
+      const auto in = solve(task_.model, task_.tool_length_mm, pose_of<Jet<2>>(task_, zone.begin),
+                            place_.branch, place_.joints);
+      if (in.status != SolveStatus::kOk) return false;
+      for (int i = 0; i < kMaxJoints; ++i) reference[i] = value_of(in.q[i]);
+      from = reference[free_];
+      a1 = in.q[free_].derivative(1) * h;
+      a2 = in.q[free_].derivative(2) * h * h;
+    }
+    double to = from + 0.5 * a1, b1 = 0, b2 = 0;  // an end: comes to rest
+    if (place_.is_end) {
+      zone.branch_after = place_.branch;
+    } else {
+      const auto out = solve(task_.model, task_.tool_length_mm, pose_of<Jet<2>>(task_, zone.end),
+                             zone.branch_after, reference);
+      if (out.status != SolveStatus::kOk) return false;
+      to = value_of(out.q[free_]);
+      b1 = out.q[free_].derivative(1) * h;
+      b2 = out.q[free_].derivative(2) * h * h;
+    }
+    if (!(std::abs(a2) < kMostBend) || !(std::abs(b2) < kMostBend)) return false;
+    zone.free = {
+        from, from + a1 / 5, from + 0.4 * a1 + a2 / 20, to - 0.4 * b1 + b2 / 20, to - b1 / 5, to};
+    return true;
+  }
+
+  /// Tolerance and travel at `samples` places.
+  bool is_inside(PoleZone& zone, int samples) const noexcept {
+    for (int k = 0; k <= samples; ++k) {
+      const double t = 1.0 * k / samples;
+      const double u = zone.begin + t * (zone.end - zone.begin);
+      const auto at = solve_held(task_.model, task_.tool_length_mm, pose_of<double>(task_, u),
+                                 quintic_at(zone.free, t));
+      if (at.status == SolveStatus::kUnreachable) return false;
+      if (first_joint_outside_travel(task_.model, at.q, kTravelMargin) >= 0) return false;
+      const Vector3 axis = forward(task_.model, task_.tool_length_mm, at.q).axis;
+      const double off = task_.programmed.angle_to(u, axis);
+      if (!(off <= kToleranceShare * task_.tolerance_rad)) return false;
+      zone.deviation_rad = std::max(zone.deviation_rad, off);
+    }
+    return true;
+  }
+
+  [[nodiscard]] double time_on(const PoleZone& zone) const noexcept {
+    constexpr int kSteps = kSamples / 2;
+    const double h = zone.end - zone.begin;
+    double sum = 0;
+    for (int k = 0; k < kSteps; ++k) {
+      const double t = (k + 0.5) / kSteps, u = zone.begin + t * h;
+      const auto held = solve_held(task_.model, task_.tool_length_mm, pose_of<Jet<3>>(task_, u),
+                                   quintic_at(zone.free, Jet<3>::with_derivative(t, 1 / h)));
+      sum += h / kSteps * slowness(task_, u, held.q);
+    }
+    return sum;
+  }
+
+  /// Of the way without a zone: at the core the free joint turns from one side to the other.
+  [[nodiscard]] double exact_time() const noexcept {
+    const auto free_at = [this](double u) {
+      return solve(task_.model, task_.tool_length_mm, pose_of<double>(task_, u), place_.branch, {})
+          .q[free_];
+    };
+    const double turn = free_at(place_.core_end + behind_.innermost()) -
+                        free_at(place_.core_begin - before_.innermost());
+    return before_.whole() + behind_.whole() +
+           std::abs(std::remainder(turn, 2 * std::numbers::pi)) /
+               task_.model.joints[free_].limits.velocity;
+  }
+
+  const PoleTask& task_;
+  const PolePlace& place_;
+  int free_;
+  OutsideTime before_, behind_;
+  double best_time_ = 0;
+  PoleZone best_;
+};
+
+}  // namespace
+
+PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept {
+  return Search(task, place).run();
+}
+
+FreeQuintic part_of(const FreeQuintic& whole, double from, double to) noexcept {
+  const auto split = [](const FreeQuintic& values, double t, bool is_left) {
+    FreeQuintic level = values, left{}, right{};
+    for (std::size_t n = 0; n < 6; ++n) {
+      left[n] = level[0];
+      right[5 - n] = level[5 - n];
+      for (std::size_t k = 0; k + n < 5; ++k) level[k] += (level[k + 1] - level[k]) * t;
+    }
+    return is_left ? left : right;
+  };
+  const FreeQuintic left = to < 1 ? split(whole, to, true) : whole;
+  return from > 0 ? split(left, from / to, false) : left;
+}
+
+}  // namespace meridian

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "meridian/geometry/vector3.hpp"
+
+namespace meridian {
+
+/// The tool axis that was programmed, as a function of the path parameter u: great circles between
+/// the ends of blocks. Ends closer than kLeastGap are merged, and the largest angle that hides is
+/// told. Fixed store: what is too long ago is forgotten. Units: mm, rad. Frame: W.
+class ProgrammedAxis {
+ public:
+  static constexpr int kCapacity = 32768;
+  static constexpr double kLeastGap_mm = 0.01;
+
+  ProgrammedAxis() : marks_(kCapacity) {}
+
+  /// Starts with `axis` at u = 0.
+  void begin(const Vector3& axis) noexcept;
+
+  /// The axis at the end of a block; `u` grows.
+  void add(double u, const Vector3& axis) noexcept;
+
+  /// Angle between `axis` and the programmed one at `u`, with what merging may hide; infinite where
+  /// it is not known.
+  [[nodiscard]] double angle_to(double u, const Vector3& axis) const noexcept;
+
+ private:
+  struct Mark {
+    double u = 0;
+    Array3 axis{};
+    double hidden_rad = 0;  ///< between the mark before and this one
+  };
+  [[nodiscard]] const Mark& mark(std::int64_t n) const noexcept {
+    return marks_[static_cast<std::size_t>(n % kCapacity)];
+  }
+  std::vector<Mark> marks_;
+  std::int64_t first_ = 0, last_ = 0;  ///< marks from first_ to last_ - 1
+};
+
+}  // namespace meridian
