@@ -153,6 +153,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   read_tolerances(file.section("tolerances"), model);
   Section pole = file.section("pole");
   model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"turn"}));
+  model.tolerances.pole_axis_rad = units::rad_from_deg(pole.number_or("axis_deg", 0, {0, 10}));
   pole.finish();
   read_frame(file.section_or("frame"), model);
   file.finish();

@@ -161,7 +161,12 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
                                          const MachineModel& model, const CheckOptions& wanted) {
   CheckOptions options = wanted;
   if (!(options.tip_tolerance_mm > 0)) options.tip_tolerance_mm = model.tolerances.tip_mm;
-  if (!(options.axis_tolerance_rad > 0)) options.axis_tolerance_rad = model.tolerances.axis_rad;
+  if (options.axis_tolerance_rad > 0) {
+    options.pole_tolerance_rad = options.axis_tolerance_rad;
+  } else {
+    options.axis_tolerance_rad = model.tolerances.axis_rad;
+    options.pole_tolerance_rad = model.tolerances.axis_beside_pole_rad();
+  }
   CheckReport report;
   report.tip_tolerance_mm = options.tip_tolerance_mm;
   report.axis_tolerance_rad = options.axis_tolerance_rad;

@@ -17,6 +17,7 @@ namespace meridian::record {
 struct CheckOptions {
   double tip_tolerance_mm = 0;    ///< 0: the machine's
   double axis_tolerance_rad = 0;  ///< 0: the machine's
+  double pole_tolerance_rad = 0;  ///< of the axis beside the pole; set by check()
   std::uint64_t max_missing = 0;  ///< cycles that may be missing
   double feed_factor = 1;         ///< highest feed override in the run
   bool allow_unfinished = false;  ///< the run was ended before the path was

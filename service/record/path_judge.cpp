@@ -84,7 +84,9 @@ void PathJudge::sample(const JointVector& joints, const Place& place, bool is_se
     tip_over_.worst.raise(here_.tip_mm, place.cycle, place.line);
     tip_over_.count += is_setpoint ? 1 : 0;
   }
-  if (here_.axis_rad > axis_tolerance_ * (1 + kRelative)) {
+  const bool is_beside_pole = pole_distance(model_, pose.axis) < kPoleReach_rad;
+  const double allowed = is_beside_pole ? options_.pole_tolerance_rad : axis_tolerance_;
+  if (here_.axis_rad > allowed * (1 + kRelative)) {
     axis_over_.worst.raise(here_.axis_rad, place.cycle, place.line);
     axis_over_.count += is_setpoint ? 1 : 0;
   }

@@ -56,7 +56,16 @@ enum class Transition : std::uint8_t {
 struct Tolerances {
   double tip_mm = 0.01;
   double axis_rad = 0.0017453292519943296;
+  double pole_axis_rad = 0;  ///< within kPoleReach_rad of the pole in place of axis_rad, if larger
+
+  /// The larger of both axis tolerances.
+  [[nodiscard]] double axis_beside_pole_rad() const noexcept {
+    return pole_axis_rad > axis_rad ? pole_axis_rad : axis_rad;
+  }
 };
+
+/// Farther from the pole than this the free joint is never eased.
+inline constexpr double kPoleReach_rad = 0.4;
 
 /// Everything that is known about a machine before it moves: built and checked once by
 /// config::load_machine, immutable after. Rotation of the workpiece frame is orthonormal.

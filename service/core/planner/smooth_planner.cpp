@@ -112,7 +112,7 @@ void SmoothPlanner::Workspace::begin_run() noexcept {
     }
   }
   start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis);
-  run.begin(start, tolerance(), tolerance().axis_rad);
+  run.begin(start, tolerance(), std::max(tolerance().axis_rad, model.tolerances.pole_axis_rad));
   is_running = true;
 }
 
