@@ -29,6 +29,9 @@ class PathFollower {
  public:
   PathFollower(const CheckedPath& path, double tip_tolerance_mm, double axis_tolerance_rad);
 
+  /// The axis tolerance of the matches from here on.
+  void set_axis_tolerance(double rad) noexcept { axis_tolerance_ = rad; }
+
   /// The match of the next pose. Poses come in the order of time, tips of the tool in force.
   [[nodiscard]] PoseMatch follow(const ToolPose& pose);
 

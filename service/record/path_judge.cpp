@@ -59,6 +59,9 @@ std::uint32_t PathJudge::vertex_line(std::size_t index) const noexcept {
 /// behind which another tool goes on, the new tool is taken as soon as it fits as well.
 PoseMatch PathJudge::match(const JointVector& joints, ToolPose& pose) {
   pose = forward(model_, tool_length_, joints);
+  const bool is_beside_pole = pole_distance(model_, pose.axis) < kPoleReach_rad;
+  allowed_axis_ = is_beside_pole ? options_.pole_tolerance_rad : axis_tolerance_;
+  follower_.set_axis_tolerance(allowed_axis_);
   const PoseMatch with_old = follower_.follow(pose);
   const auto& elements = path_.elements();
   const std::size_t next = with_old.element + 1;
@@ -84,9 +87,7 @@ void PathJudge::sample(const JointVector& joints, const Place& place, bool is_se
     tip_over_.worst.raise(here_.tip_mm, place.cycle, place.line);
     tip_over_.count += is_setpoint ? 1 : 0;
   }
-  const bool is_beside_pole = pole_distance(model_, pose.axis) < kPoleReach_rad;
-  const double allowed = is_beside_pole ? options_.pole_tolerance_rad : axis_tolerance_;
-  if (here_.axis_rad > allowed * (1 + kRelative)) {
+  if (here_.axis_rad > allowed_axis_ * (1 + kRelative)) {
     axis_over_.worst.raise(here_.axis_rad, place.cycle, place.line);
     axis_over_.count += is_setpoint ? 1 : 0;
   }

@@ -48,6 +48,7 @@ class PathJudge {
   const CheckedPath& path_;
   CheckOptions options_;
   double tip_tolerance_, axis_tolerance_, period_;
+  double allowed_axis_ = 0;  ///< at the last sample
   PathFollower follower_;
   double tool_length_;
   std::array<Place, 4> places_{};  ///< newest last
