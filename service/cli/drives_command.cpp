@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "meridian/kinematics/limited.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
@@ -25,7 +26,7 @@ struct DrivesOptions {
   std::vector<std::string> injections;
 };
 
-/// Reads KIND@SECONDS or KIND@SECONDS:JOINT.
+/// Reads KIND@SECONDS or KIND@SECONDS:DRIVE.
 drives::Injection parse_injection(const std::string& text, const MachineModel& model) {
   using Kind = drives::Injection::Kind;
   static const std::map<std::string, Kind> kKinds{{"fault", Kind::kFault},
@@ -41,16 +42,16 @@ drives::Injection parse_injection(const std::string& text, const MachineModel& m
   if (kind == kKinds.end() || !is_number || !(after_s >= 0)) {
     throw CLI::ValidationError("--inject", "'" + text +
                                                "' is not fault, blocked, silence or emergency "
-                                               "@SECONDS, then :JOINT");
+                                               "@SECONDS, then :DRIVE");
   }
   drives::Injection injection{kind->second, after_s, 0};
   if (colon == std::string::npos) return injection;
   const std::string joint = text.substr(colon + 1);
-  while (injection.drive < model.joint_count && model.joints[injection.drive].name != joint) {
+  while (injection.drive < model.joint_count && drive_spec(model, injection.drive).name != joint) {
     ++injection.drive;
   }
   if (injection.drive == model.joint_count) {
-    throw CLI::ValidationError("--inject", "machine " + model.name + " has no joint " + joint);
+    throw CLI::ValidationError("--inject", "machine " + model.name + " has no drive " + joint);
   }
   return injection;
 }
@@ -74,7 +75,7 @@ void run_drives(const DrivesOptions& options) {
        .machine = options.partition.empty() ? model.name : options.partition,
        .transport =
            simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback});
-  std::printf("drives of machine %s in DDS domain %u: %d joints, cycle %.3f ms%s\n",
+  std::printf("drives of machine %s in DDS domain %u: %d drives, cycle %.3f ms%s\n",
               model.name.c_str(), options.domain, model.joint_count,
               static_cast<double>(model.cycle_ns) * 1e-6,
               simulated.is_action_peer ? ", answers actions" : "");
@@ -122,7 +123,7 @@ void add_drives_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 3600.0));
   command
       ->add_option("--inject", options->injections,
-                   "Something that goes wrong, KIND@SECONDS[:JOINT] after operation is enabled; "
+                   "Something that goes wrong, KIND@SECONDS[:DRIVE] after operation is enabled; "
                    "KIND: fault, blocked, silence, emergency. May be repeated")
       ->type_name("WHAT");
   command->add_flag("-q,--quiet", options->is_quiet, "Say only begin and end");

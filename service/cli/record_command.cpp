@@ -29,7 +29,7 @@ struct Options {
       .count();
 }
 
-/// The names and units of the joints, and the cycle: all that a recording of the wire needs.
+/// The names and units of the drives, and the cycle: all that a recording of the wire needs.
 [[nodiscard]] MachineModel model_of(const dds::MachineInfo& machine) {
   MachineModel model;
   model.name = machine.name;
@@ -38,6 +38,12 @@ struct Options {
   for (std::uint32_t i = 0; i < machine.joint_count; ++i) {
     model.joints[i].name = machine.joints[i].name;
     model.joints[i].is_rotary = machine.joints[i].is_rotary;
+  }
+  for (std::uint32_t i = 0; i < machine.stage_drive_count; ++i) {
+    const dds::JointInfo& drive = machine.stage_drives[i];
+    if (drive.drive >= machine.joint_count) continue;
+    model.joints[drive.drive].name = drive.name;
+    model.joints[drive.drive].is_rotary = drive.is_rotary;
   }
   return model;
 }

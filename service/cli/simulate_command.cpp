@@ -29,8 +29,8 @@ int refuse(const std::string& message) {
   return kInputRefused;
 }
 
-/// Joints of the first enabled row.
-[[nodiscard]] Expected<JointVector, record::RecordError> first_joints(const std::string& file,
+/// Where the drives are in the first enabled row.
+[[nodiscard]] Expected<JointVector, record::RecordError> first_drives(const std::string& file,
                                                                       const MachineModel& model) {
   auto reader = record::RecordingReader::open(file, model);
   if (!reader) return tl::make_unexpected(reader.error());
@@ -42,7 +42,7 @@ int refuse(const std::string& message) {
       return tl::make_unexpected(
           record::RecordError{file, 0, "the drives are never enabled in it", "name another"});
     }
-    if ((row.flags & kSetpointEnabled) != 0) return row.joints;
+    if ((row.flags & kSetpointEnabled) != 0) return drives_at(model, row.places);
   }
 }
 
@@ -74,9 +74,9 @@ int run(const Options& options) {
     simulation.events = std::move(*events);
   }
   if (!options.start_from.empty()) {
-    const auto joints = first_joints(options.start_from, model);
-    if (!joints) return refuse(joints.error().text());
-    simulation.start = *joints;
+    const auto drives = first_drives(options.start_from, model);
+    if (!drives) return refuse(drives.error().text());
+    simulation.start = *drives;
   }
   std::ifstream file;
   if (options.file != "-") {
@@ -121,7 +121,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->add_option("--events", options->events,
                       "Replay operator events: rows cycle,verb,argument (docs/recordings.md)");
   command->add_option("--start-from", options->start_from,
-                      "Start at the joints at which the drives were enabled in this recording "
+                      "Start where the drives were enabled in this recording "
                       "instead of the machine's home");
   command
       ->add_option("--auxiliary", options->auxiliary,

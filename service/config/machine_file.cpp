@@ -9,6 +9,7 @@
 #include "meridian/units.hpp"
 #include "service/config/kinematics_file.hpp"
 #include "service/config/section.hpp"
+#include "service/config/stage_file.hpp"
 
 namespace meridian::config {
 namespace {
@@ -85,7 +86,7 @@ bool is_nc_word(std::string_view word) {
 
 }  // namespace
 
-void read_joint(Section section, JointSpec& joint) {
+void read_limits(Section& section, JointSpec& joint) {
   const JointKeys keys(joint.is_rotary ? "deg" : "mm");
   const double unit = joint.is_rotary ? units::kDegree_rad : 1.0;
   constexpr Range kRate{1e-3, 1e9};
@@ -98,16 +99,6 @@ void read_joint(Section section, JointSpec& joint) {
   limits.fault_acceleration = section.number(keys.fault_acceleration, kRate) * unit;
   limits.fault_jerk = section.number(keys.fault_jerk, kRate) * unit;
   limits.following_error = section.number(keys.following_error, {1e-6, 1e4}) * unit;
-  joint.home = section.number(keys.home, {-1e5, 1e5}) * unit;
-  joint.nc_word = section.text_or("nc_word", "");
-  if (!joint.nc_word.empty() && !is_nc_word(joint.nc_word)) {
-    section.refuse(
-        "nc_word",
-        "one of X Y Z A B C U V W, or a letter with one or two digits; - before it where "
-        "the controller counts against the joint",
-        "write the address that the controller has for this joint");
-  }
-
   if (limits.fault_acceleration < limits.acceleration) {
     section.refuse(keys.fault_acceleration, "at least " + keys.acceleration,
                    "a FaultStop may not be softer than a stop");
@@ -115,6 +106,22 @@ void read_joint(Section section, JointSpec& joint) {
   if (limits.fault_jerk < limits.jerk) {
     section.refuse(keys.fault_jerk, "at least " + keys.jerk,
                    "a FaultStop may not be softer than a stop");
+  }
+}
+
+void read_joint(Section section, JointSpec& joint) {
+  const JointKeys keys(joint.is_rotary ? "deg" : "mm");
+  const JointLimits& limits = joint.limits;
+  read_limits(section, joint);
+  joint.home =
+      section.number(keys.home, {-1e5, 1e5}) * (joint.is_rotary ? units::kDegree_rad : 1.0);
+  joint.nc_word = section.text_or("nc_word", "");
+  if (!joint.nc_word.empty() && !is_nc_word(joint.nc_word)) {
+    section.refuse(
+        "nc_word",
+        "one of X Y Z A B C U V W, or a letter with one or two digits; - before it where "
+        "the controller counts against the joint",
+        "write the address that the controller has for this joint");
   }
   if (!joint.is_endless && (joint.home < limits.travel_min || joint.home > limits.travel_max)) {
     section.refuse(keys.home, "inside " + keys.travel, "move home into travel");
@@ -150,6 +157,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   Section joints = file.section("joints");
   read_kinematics(file.section("kinematics"), joints, model);
   joints.finish();
+  read_stage(file.section_or("stage"), model);
   read_tolerances(file.section("tolerances"), model);
   Section pole = file.section("pole");
   model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"turn"}));

@@ -404,6 +404,42 @@ void from_wire(const meridian_wire_Status& wire, Status& message) {
   message.message = text_of(wire.message);
 }
 
+namespace {
+
+void to_wire(const JointInfo& from, meridian_wire_Joint& to) noexcept {
+  copy_text(from.name, to.name);
+  to.is_rotary = from.is_rotary ? 1 : 0;
+  to.is_endless = from.is_endless ? 1 : 0;
+  to.drive = from.drive;
+  to.travel_min = from.limits.travel_min;
+  to.travel_max = from.limits.travel_max;
+  to.velocity = from.limits.velocity;
+  to.acceleration = from.limits.acceleration;
+  to.jerk = from.limits.jerk;
+  to.fault_acceleration = from.limits.fault_acceleration;
+  to.fault_jerk = from.limits.fault_jerk;
+  to.following_error = from.limits.following_error;
+  to.home = from.home;
+}
+
+void from_wire(const meridian_wire_Joint& from, JointInfo& to) {
+  to.name = text_of(from.name);
+  to.is_rotary = from.is_rotary != 0;
+  to.is_endless = from.is_endless != 0;
+  to.drive = from.drive;
+  to.limits.travel_min = from.travel_min;
+  to.limits.travel_max = from.travel_max;
+  to.limits.velocity = from.velocity;
+  to.limits.acceleration = from.acceleration;
+  to.limits.jerk = from.jerk;
+  to.limits.fault_acceleration = from.fault_acceleration;
+  to.limits.fault_jerk = from.fault_jerk;
+  to.limits.following_error = from.following_error;
+  to.home = from.home;
+}
+
+}  // namespace
+
 void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   wire.service_id = message.service_id;
   wire.started_ns = message.started_ns;
@@ -418,22 +454,10 @@ void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   wire.cycle_ns = message.cycle_ns;
   wire.bridge_cycles = message.bridge_cycles;
   wire.joint_count = message.joint_count;
-  for (std::size_t i = 0; i < kMaxJoints; ++i) {
-    const JointInfo& from = message.joints[i];
-    meridian_wire_Joint& to = wire.joints[i];
-    copy_text(from.name, to.name);
-    to.is_rotary = from.is_rotary ? 1 : 0;
-    to.is_endless = from.is_endless ? 1 : 0;
-    to.drive = from.drive;
-    to.travel_min = from.limits.travel_min;
-    to.travel_max = from.limits.travel_max;
-    to.velocity = from.limits.velocity;
-    to.acceleration = from.limits.acceleration;
-    to.jerk = from.limits.jerk;
-    to.fault_acceleration = from.limits.fault_acceleration;
-    to.fault_jerk = from.limits.fault_jerk;
-    to.following_error = from.limits.following_error;
-    to.home = from.home;
+  for (std::size_t i = 0; i < kMaxJoints; ++i) to_wire(message.joints[i], wire.joints[i]);
+  wire.stage_drive_count = message.stage_drive_count;
+  for (std::size_t i = 0; i < kStageDrives; ++i) {
+    to_wire(message.stage_drives[i], wire.stage_drives[i]);
   }
   wire.max_feed_mm_per_min = message.max_feed_mm_per_min;
   wire.tip_tolerance_mm = message.tip_tolerance_mm;
@@ -459,22 +483,10 @@ void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
   message.cycle_ns = wire.cycle_ns;
   message.bridge_cycles = wire.bridge_cycles;
   message.joint_count = std::min<std::uint32_t>(wire.joint_count, kMaxJoints);
-  for (std::size_t i = 0; i < kMaxJoints; ++i) {
-    const meridian_wire_Joint& from = wire.joints[i];
-    JointInfo& to = message.joints[i];
-    to.name = text_of(from.name);
-    to.is_rotary = from.is_rotary != 0;
-    to.is_endless = from.is_endless != 0;
-    to.drive = from.drive;
-    to.limits.travel_min = from.travel_min;
-    to.limits.travel_max = from.travel_max;
-    to.limits.velocity = from.velocity;
-    to.limits.acceleration = from.acceleration;
-    to.limits.jerk = from.jerk;
-    to.limits.fault_acceleration = from.fault_acceleration;
-    to.limits.fault_jerk = from.fault_jerk;
-    to.limits.following_error = from.following_error;
-    to.home = from.home;
+  for (std::size_t i = 0; i < kMaxJoints; ++i) from_wire(wire.joints[i], message.joints[i]);
+  message.stage_drive_count = std::min<std::uint32_t>(wire.stage_drive_count, kStageDrives);
+  for (std::size_t i = 0; i < kStageDrives; ++i) {
+    from_wire(wire.stage_drives[i], message.stage_drives[i]);
   }
   message.max_feed_mm_per_min = wire.max_feed_mm_per_min;
   message.tip_tolerance_mm = wire.tip_tolerance_mm;

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meridian/kinematics/limited.hpp"
+
 namespace meridian::drives {
 
 DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag)
     : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9), bridge_cycles_(model.bridge_cycles) {
   for (int i = 0; i < model.joint_count; ++i) {
-    drives_.emplace_back(model.joints[i].limits, model.joints[i].home, lag);
+    drives_.emplace_back(drive_spec(model, i).limits, drive_spec(model, i).home, lag);
   }
 }
 

@@ -28,7 +28,7 @@ struct Injection {
 /// fresh by their cycle number, not by their clock. Proof: tests/unit/drives/drive_group_test.cpp.
 class DriveGroup {
  public:
-  /// Drives stand at the joints' home positions.
+  /// Drives stand where the joints are at home.
   DriveGroup(const MachineModel& model, const ServoLag& lag);
 
   void take(const dds::DriveCommand& command) noexcept;

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "meridian/kinematics/limited.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/writer.hpp"
@@ -63,7 +64,7 @@ class StateTeller {
       if (drive.error() != kErrorNone) {
         std::snprintf(error, sizeof error, " (error %04Xh)", drive.error());
       }
-      say_("drive " + model_.joints[place].name + ": " + name_of(drive.state()) + error);
+      say_("drive " + drive_spec(model_, i).name + ": " + name_of(drive.state()) + error);
     }
   }
 

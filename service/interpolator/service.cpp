@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "interpolator_version.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::interpolator {
@@ -26,6 +27,12 @@ namespace {
   return chosen.empty() ? parts.model.name : chosen;
 }
 
+[[nodiscard]] const char* word_of(const MachineModel& model) {
+  if (model.family == MachineFamily::kChain) return "chain";
+  if (model.family == MachineFamily::kRobot) return model.joint_count == 6 ? "robot6" : "robot5";
+  return "lai";
+}
+
 [[nodiscard]] dds::MachineInfo machine_info(const ServiceParts& parts, std::uint64_t service_id) {
   const MachineModel& model = parts.model;
   std::array<char, 64> host{};
@@ -40,7 +47,7 @@ namespace {
   info.service_version = kVersion;
   info.host = host.data();
   info.pid = static_cast<std::uint32_t>(::getpid());
-  info.kinematics = "lai";
+  info.kinematics = word_of(model);
   info.cycle_ns = model.cycle_ns;
   info.bridge_cycles = static_cast<std::uint32_t>(model.bridge_cycles);
   info.joint_count = static_cast<std::uint32_t>(model.joint_count);
@@ -50,6 +57,15 @@ namespace {
     info.joints[i] = {spec.name,       spec.is_rotary,
                       spec.is_endless, static_cast<std::uint16_t>(joint),
                       spec.limits,     spec.home};
+  }
+  info.stage_drive_count = has_stage(model) ? kStageDrives : 0;
+  for (int i = model.joint_count; i < limited_count(model); ++i) {
+    const JointSpec& spec = limited_spec(model, i);
+    const auto k = static_cast<std::size_t>(i - model.joint_count);
+    const int place = k == 0 ? model.stage.linear_joint : model.stage.rotary_joint;
+    info.stage_drives[k] = {spec.name,       spec.is_rotary,
+                            spec.is_endless, static_cast<std::uint16_t>(place),
+                            spec.limits,     spec.home};
   }
   info.max_feed_mm_per_min = units::per_min_from_per_s(model.max_feed_mm_per_s);
   info.tip_tolerance_mm = model.tolerances.tip_mm;

@@ -32,8 +32,8 @@ class Survey {
     if (!begins_.empty() && !has_moved && begins_.back().cycle == last_.cycle) {
       begins_.back().cycle = row.cycle;  // still at rest there
     }
-    for (int i = 0; i < model_.joint_count; ++i) {
-      largest_[i] = std::max(largest_[i], std::abs(row.joints[i]));
+    for (int i = 0; i < limited_count(model_); ++i) {
+      largest_[i] = std::max(largest_[i], std::abs(row.places[i]));
     }
     if (path_.has_begin()) find_ends(row, has_moved);
     last_ = row;
@@ -88,7 +88,7 @@ class Survey {
                options.tip_tolerance_mm + kMmPerRad * options.axis_tolerance_rad;
   }
 
-  [[nodiscard]] const JointVector& largest() const noexcept { return largest_; }
+  [[nodiscard]] const LimitedVector& largest() const noexcept { return largest_; }
 
  private:
   void judge_grid(const RecordingRow& row) {
@@ -138,7 +138,7 @@ class Survey {
     std::uint64_t cycle;  ///< the last one at rest there
   };
   std::deque<Begin> begins_;  ///< nearer and nearer to the path's begin, all as near as the last
-  JointVector largest_{};
+  LimitedVector largest_{};
 };
 
 /// Calls `use(row)` for every row in the range of the options.

@@ -94,6 +94,8 @@ std::string_view word(Finding::Kind kind) noexcept {
       return "travel";
     case Finding::Kind::kSentVelocity:
       return "sent_velocity";
+    case Finding::Kind::kStage:
+      return "stage";
   }
   return "unknown";
 }
@@ -134,6 +136,10 @@ std::string to_text(const CheckReport& report) {
     append(text, "%-10s %8.6f     %8.6f %8.6f  %12.4f .. %.4f %s\n", report.joint_names[i].c_str(),
            use.velocity.value, use.acceleration.value, use.jerk.value, at_edge(report, i, use.low),
            at_edge(report, i, use.high), report.is_rotary[i] ? "deg" : "mm");
+  }
+  if (report.has_stage) {
+    append(text, "stage      least determinant %.3f mm/rad, drives fit their joints to %.3g mm\n",
+           report.stage.determinant_mm, report.stage.apart_mm.value);
   }
   if (report.fault_stop_cycles > 0) {
     append(text, "FaultStop  %llu cycles, judged by the FaultStop limits\n",
@@ -176,6 +182,10 @@ std::string to_json(const CheckReport& report) {
   append_peak(text, "feed_use", report.feed);
   append_peak(text, "tip_speed_mm_per_min", report.tip_speed_mm_per_s,
               units::per_min_from_per_s(1.0));
+  if (report.has_stage) {
+    append(text, "  \"stage_determinant_mm_per_rad\": %.9g,\n", report.stage.determinant_mm);
+    append_peak(text, "stage_apart_mm", report.stage.apart_mm);
+  }
   append(text, "  \"fault_stop_cycles\": %llu,\n  \"joints\": [",
          static_cast<Count>(report.fault_stop_cycles));
   for (int i = 0; i < report.joint_count; ++i) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 
 namespace meridian::record {
 
@@ -27,6 +27,12 @@ struct JointUse {
   double low = 0, high = 0;  ///< extreme positions, mm or rad
 };
 
+/// How the recording stands to the machine's actuator stage.
+struct StageUse {
+  Peak apart_mm;              ///< recorded drives from those of the recorded joints
+  double determinant_mm = 0;  ///< least |d(u1, u2)/d(s, φ)|, mm/rad: distance from a dead point
+};
+
 /// Something that must not be, once for each kind with the number of cycles it was seen in.
 struct Finding {
   enum class Kind : std::uint8_t {
@@ -44,7 +50,8 @@ struct Finding {
     kAcceleration,
     kJerk,
     kTravel,
-    kSentVelocity
+    kSentVelocity,
+    kStage
   };
   Kind kind{};
   std::string text;         ///< a sentence with value, place and bound
@@ -75,10 +82,12 @@ struct CheckReport {
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows
   std::uint64_t fault_stop_cycles = 0;
-  int joint_count = 0;
-  std::array<std::string, kMaxJoints> joint_names;
-  std::array<bool, kMaxJoints> is_rotary{};
-  std::array<JointUse, kMaxJoints> joints;
+  bool has_stage = false;
+  StageUse stage;
+  int joint_count = 0;  ///< the drives of the stage are counted
+  std::array<std::string, kMaxLimited> joint_names;
+  std::array<bool, kMaxLimited> is_rotary{};
+  std::array<JointUse, kMaxLimited> joints;
   std::vector<Finding> findings;
 
   [[nodiscard]] bool passed() const noexcept { return findings.empty(); }

@@ -85,17 +85,17 @@ class Comparison {
  private:
   void judge(const RecordingRow& a, const RecordingRow& b) {
     bool is_different = false;
-    for (int i = 0; i < model_.joint_count; ++i) {
-      if (is_same_bits(a.joints[i], b.joints[i])) continue;
+    for (int i = 0; i < limited_count(model_); ++i) {
+      if (is_same_bits(a.places[i], b.places[i])) continue;
       report_.largest_difference =
-          std::max(report_.largest_difference, std::abs(a.joints[i] - b.joints[i]));
+          std::max(report_.largest_difference, std::abs(a.places[i] - b.places[i]));
       if (!is_different && report_.different == 0) {
         report_.first_difference_a = a.cycle;
         report_.first_difference_b = b.cycle;
         report_.first_line = a.line;
         report_.first_joint = i;
-        report_.first_a = a.joints[i];
-        report_.first_b = b.joints[i];
+        report_.first_a = a.places[i];
+        report_.first_b = b.places[i];
         report_.first_plan_time_s = a.plan_time_s;
       }
       is_different = true;
@@ -207,8 +207,8 @@ std::string to_text(const ComparisonReport& report, const std::string& name_a,
         "A, %.17g in B; largest difference %.3g\n",
         static_cast<Count>(report.first_difference_a),
         static_cast<Count>(report.first_difference_b), report.first_plan_time_s, report.first_line,
-        position_column(model.joints[report.first_joint]).c_str(), report.first_a, report.first_b,
-        report.largest_difference);
+        position_column(limited_spec(model, report.first_joint)).c_str(), report.first_a,
+        report.first_b, report.largest_difference);
     text += line;
   }
   if (report.unexplained > 0) {

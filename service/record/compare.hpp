@@ -16,7 +16,7 @@ struct ComparisonReport {
   std::uint64_t compared = 0;            ///< rows of A and B at the same plan time
   std::uint64_t only_a = 0, only_b = 0;  ///< plan times that the other one has not sent
   std::uint64_t gaps_a = 0, gaps_b = 0;  ///< cycles missing in each
-  std::uint64_t different = 0;           ///< compared rows whose joints differ in any bit
+  std::uint64_t different = 0;           ///< compared rows whose joints or drives differ
   /// Plan times of one that lie neither on the other's nor in a gap of the other's cycles.
   std::uint64_t unexplained = 0;
   std::uint64_t first_difference_a = 0, first_difference_b = 0;  ///< cycles

@@ -14,6 +14,7 @@ namespace {
 constexpr double kRelative = 1e-6;
 constexpr double kRoundings = 8;
 constexpr double kTravelMargin = 1e-9;
+constexpr double kStageFit_mm = 1e-9;  // rounding there and back is 1e-12
 constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
 
 [[nodiscard]] double spacing(double value) noexcept {
@@ -22,9 +23,9 @@ constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
 
 }  // namespace
 
-JointJudge::JointJudge(const MachineModel& model, const JointVector& largest)
+JointJudge::JointJudge(const MachineModel& model, const LimitedVector& largest)
     : model_(model), period_(static_cast<double>(model.cycle_ns) * 1e-9) {
-  for (int i = 0; i < model.joint_count; ++i) ulp_[i] = spacing(std::abs(largest[i]));
+  for (int i = 0; i < limited_count(model); ++i) ulp_[i] = spacing(std::abs(largest[i]));
 }
 
 void JointJudge::note(Excess& excess, double use, bool is_over) const {
@@ -34,8 +35,8 @@ void JointJudge::note(Excess& excess, double use, bool is_over) const {
 }
 
 void JointJudge::judge_rates(int joint) {
-  const auto q = [this, joint](int back) { return rows_[kDepth - 1 - back].joints[joint]; };
-  const JointLimits& limits = model_.joints[joint].limits;
+  const auto q = [this, joint](int back) { return rows_[kDepth - 1 - back].places[joint]; };
+  const JointLimits& limits = limited_spec(model_, joint).limits;
   // Differences reach back over `order` rows; a FaultStop among them has its own limits.
   bool is_fault = false;
   double power = 1;
@@ -68,16 +69,30 @@ void JointJudge::judge_velocity(int joint) {
   const RecordingRow& before = rows_[kDepth - 3];
   const RecordingRow& middle = rows_[kDepth - 2];
   const RecordingRow& after = rows_[kDepth - 1];
-  const JointLimits& limits = model_.joints[joint].limits;
+  const JointLimits& limits = limited_spec(model_, joint).limits;
   const bool is_fault = ((before.flags | middle.flags | after.flags) & kSetpointFaultStop) != 0;
   const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
-  const double central = (after.joints[joint] - before.joints[joint]) / (2 * period_);
+  const double central = (after.places[joint] - before.places[joint]) / (2 * period_);
   const double error = std::abs(middle.velocity[joint] - central);
   const double bound = jerk * period_ * period_ / 6;
   const double allowed =
       bound * (1 + kRelative) + kRoundings * ulp_[joint] / period_ + 1e-9 * std::abs(central);
   sent_peak_.raise(error / bound, middle.cycle, middle.line);
   note(sent_[joint], error / bound, error > allowed);
+}
+
+/// The recorded drives are those of the recorded joints, to rounding; how near a dead point was.
+void JointJudge::judge_stage(const RecordingRow& row) {
+  const LimitedVector wanted = limited_of(model_, row.joints);
+  double apart = 0;
+  for (int i = model_.joint_count; i < limited_count(model_); ++i) {
+    apart = std::max(apart, std::abs(row.places[i] - wanted[i]));
+  }
+  stage_use_.apart_mm.raise(apart, row.cycle, row.line);
+  note(unfit_, apart, !(apart <= kStageFit_mm));
+  const double determinant = std::abs(stage::determinant(model_.stage, row.joints));
+  stage_use_.determinant_mm =
+      has_row_ ? std::min(stage_use_.determinant_mm, determinant) : determinant;
 }
 
 void JointJudge::add(const RecordingRow& row, bool has_velocity) {
@@ -87,13 +102,14 @@ void JointJudge::add(const RecordingRow& row, bool has_velocity) {
   rows_.back() = row;
   run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;
   if ((row.flags & kSetpointFaultStop) != 0) ++fault_rows_;
-  for (int i = 0; i < model_.joint_count; ++i) {
-    const double q = row.joints[i];
+  if (has_stage(model_)) judge_stage(row);
+  for (int i = 0; i < limited_count(model_); ++i) {
+    const double q = row.places[i];
+    const JointSpec& spec = limited_spec(model_, i);
     use_[i].low = has_row_ ? std::min(use_[i].low, q) : q;
     use_[i].high = has_row_ ? std::max(use_[i].high, q) : q;
-    const JointLimits& limits = model_.joints[i].limits;
-    if (!model_.joints[i].is_endless && is_enabled) {
-      const double beyond = std::max(limits.travel_min - q, q - limits.travel_max);
+    if (!spec.is_endless && is_enabled) {
+      const double beyond = std::max(spec.limits.travel_min - q, q - spec.limits.travel_max);
       note(outside_[i], beyond, beyond > kTravelMargin);
     }
     judge_rates(i);
@@ -104,11 +120,19 @@ void JointJudge::add(const RecordingRow& row, bool has_velocity) {
 
 void JointJudge::finish(CheckReport& report) const {
   char text[256];
-  report.joint_count = model_.joint_count;
+  report.joint_count = limited_count(model_);
+  report.has_stage = has_stage(model_);
+  report.stage = stage_use_;
+  if (unfit_.count > 0) {
+    std::snprintf(text, sizeof text, "the drives are up to %.6g mm from where the joints put them",
+                  unfit_.use.value);
+    report.findings.push_back(
+        {Finding::Kind::kStage, text, unfit_.use.cycle, unfit_.use.line, unfit_.count});
+  }
   report.fault_stop_cycles = fault_rows_;
   report.sent_velocity = sent_peak_;
-  for (int i = 0; i < model_.joint_count; ++i) {
-    const JointSpec& joint = model_.joints[i];
+  for (int i = 0; i < report.joint_count; ++i) {
+    const JointSpec& joint = limited_spec(model_, i);
     report.joint_names[i] = joint.name;
     report.is_rotary[i] = joint.is_rotary;
     report.joints[i] = use_[i];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/record/recording_reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -18,7 +19,7 @@ enum class Field : std::uint8_t {
   kDue,
   kLine,
   kKind,
-  kJoint,
+  kPlace,
   kVelocity,
   kSequence,
   kState,
@@ -32,7 +33,7 @@ enum class Field : std::uint8_t {
 
 struct Column {
   Field field = Field::kSkip;
-  int joint = 0;
+  int place = 0;  ///< in limited.hpp
   std::string name;
 };
 
@@ -53,9 +54,10 @@ struct Column {
   for (const auto& [known, field] : kNames) {
     if (name == known) return {field, 0, std::string(name)};
   }
-  for (int i = 0; i < model.joint_count; ++i) {
-    if (name == position_column(model.joints[i])) return {Field::kJoint, i, std::string(name)};
-    if (name == velocity_column(model.joints[i])) return {Field::kVelocity, i, std::string(name)};
+  for (int i = 0; i < limited_count(model); ++i) {
+    const JointSpec& spec = limited_spec(model, i);
+    if (name == position_column(spec)) return {Field::kPlace, i, std::string(name)};
+    if (name == velocity_column(spec)) return {Field::kVelocity, i, std::string(name)};
   }
   return {Field::kSkip, 0, std::string(name)};
 }
@@ -87,10 +89,10 @@ template <class Word>
       return parse(text, row.line);
     case Field::kKind:
       return take(find_motion_kind(text), row.kind);
-    case Field::kJoint:
-      return parse(text, row.joints[column.joint]);
+    case Field::kPlace:
+      return parse(text, row.places[column.place]);
     case Field::kVelocity:
-      return parse(text, row.velocity[column.joint]);
+      return parse(text, row.velocity[column.place]);
     case Field::kSequence:
       return parse(text, row.sequence);
     case Field::kState:
@@ -139,6 +141,27 @@ class RecordingReader::Impl {
   std::string_view first_row;
   std::uint64_t line = 1;
   bool has_velocity = false, has_plan_time = false;
+  ActuatorStage stage;
+  int joint_count = 0;
+  bool has_joints = true, has_drives = true;  ///< columns of the stage's joints, of its drives
+
+  /// Fills in joints from drives, or drives from joints.
+  void complete(RecordingRow& row) const noexcept {
+    std::copy_n(row.places.begin(), joint_count, row.joints.begin());
+    if (stage.kind == StageKind::kIdentity) return;
+    double* const drives = row.places.data() + joint_count;
+    if (!has_joints) {
+      JointVector u = row.joints;
+      u[stage.linear_joint] = drives[0];
+      u[stage.rotary_joint] = drives[1];
+      row.joints = stage::joints_of(stage, u);
+      std::copy_n(row.joints.begin(), joint_count, row.places.begin());
+    } else if (!has_drives) {
+      const JointVector u = stage::drives_of(stage, row.joints);
+      drives[0] = u[stage.linear_joint];
+      drives[1] = u[stage.rotary_joint];
+    }
+  }
 
   [[nodiscard]] RecordError error(std::uint64_t at, std::string message, std::string remedy) const {
     return {path, at, std::move(message), std::move(remedy)};
@@ -156,15 +179,24 @@ class RecordingReader::Impl {
       has_cycle |= column.field == Field::kCycle;
       has_due |= column.field == Field::kDue;
       has_plan_time |= column.field == Field::kPlanTime;
-      if (column.field == Field::kJoint) positions |= 1U << column.joint;
-      if (column.field == Field::kVelocity) velocities |= 1U << column.joint;
+      if (column.field == Field::kPlace) positions |= 1U << column.place;
+      if (column.field == Field::kVelocity) velocities |= 1U << column.place;
     }
     const std::string remedy =
         "name a recording of machine '" + model.name + "' (docs/recordings.md)";
     if (!has_cycle || !has_due) {
       return error(1, "no recording: the header has no column 'cycle' or 'due_ns'", remedy);
     }
-    const std::uint32_t all = (1U << model.joint_count) - 1U;
+    const std::uint32_t all = (1U << limited_count(model)) - 1U;
+    const std::uint32_t joints = (1U << model.joint_count) - 1U;
+    joint_count = model.joint_count;
+    if (has_stage(model)) {
+      stage = model.stage;
+      has_drives = (positions & ~joints) == (all & ~joints);
+      const std::uint32_t carried = (1U << stage.linear_joint) | (1U << stage.rotary_joint);
+      has_joints = (positions & carried) == carried;
+      if (has_drives) positions |= carried;
+    }
     for (int i = 0; i < model.joint_count; ++i) {
       if ((positions & (1U << i)) != 0) continue;
       return error(1, "the header has no column '" + position_column(model.joints[i]) + "'",
@@ -213,6 +245,7 @@ Expected<bool, RecordError> RecordingReader::next(RecordingRow& row) {
                                             "the row has not as many columns as the header",
                                             "the recording was cut off or edited: record again"));
   }
+  impl_->complete(row);
   return true;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "meridian/expected.hpp"
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "service/record/record_error.hpp"
 
@@ -30,14 +30,18 @@ struct RecordingRow {
   double plan_time_s = 0;
   double rate = 1;
   JointVector joints{};
-  JointVector velocity{};
+  /// Joints, then the drives of the stage; of a recording without their columns as they must be.
+  LimitedVector places{};
+  LimitedVector velocity{};
 };
 
 /// Reads a recording row by row, as often as wanted, in constant memory (the file is mapped).
 ///
 /// Needs the columns cycle, due_ns and one `<joint>_mm` or `<joint>_rad` per joint of the machine,
 /// in any order; the other columns of RecordingWriter are taken where they are, unknown ones are
-/// skipped. Every number is judged. Not thread-safe. Proof: tests/unit/record/recording_test.cpp.
+/// skipped. Of a machine with a stage the columns of its drives do instead of those of the joints
+/// that they carry, as in a recording of the wire. Every number is judged. Not thread-safe.
+/// Proof: tests/unit/record/recording_test.cpp.
 class RecordingReader {
  public:
   [[nodiscard]] static Expected<RecordingReader, RecordError> open(const std::string& path,

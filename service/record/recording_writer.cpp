@@ -8,11 +8,11 @@ namespace {
 
 [[nodiscard]] std::string header(const MachineModel& model) {
   std::string text = "cycle,due_ns,line,kind";
-  for (int i = 0; i < model.joint_count; ++i) {
-    text.append(",").append(position_column(model.joints[i]));
+  for (int i = 0; i < limited_count(model); ++i) {
+    text.append(",").append(position_column(limited_spec(model, i)));
   }
-  for (int i = 0; i < model.joint_count; ++i) {
-    text.append(",").append(velocity_column(model.joints[i]));
+  for (int i = 0; i < limited_count(model); ++i) {
+    text.append(",").append(velocity_column(limited_spec(model, i)));
   }
   text += ",sequence,state,plan_time_s,rate,epoch,flags,lateness_ns,computation_ns\n";
   return text;
@@ -25,7 +25,7 @@ Expected<RecordingWriter, RecordError> RecordingWriter::create(const std::string
   auto file = CsvFile::create(path);
   if (!file) return tl::make_unexpected(std::move(file.error()));
   (void)file->append(header(model));
-  return RecordingWriter(std::move(*file), model.joint_count);
+  return RecordingWriter(std::move(*file), model);
 }
 
 bool RecordingWriter::write(const CycleRecord& record) noexcept {
@@ -35,8 +35,14 @@ bool RecordingWriter::write(const CycleRecord& record) noexcept {
   CsvRow row(at);
   row.put_integer(setpoint.cycle).put(',').put_integer(setpoint.due_ns);
   row.put(',').put_integer(setpoint.line).put(',').put(word(record.motion));
-  for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(record.joints[i]);
-  for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(setpoint.velocity[i]);
+  const auto put = [&](const JointVector& joints, const JointVector& drives) {
+    for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(joints[i]);
+    if (!has_stage_) return;
+    row.put(',').put_real(drives[stage_.linear_joint]);
+    row.put(',').put_real(drives[stage_.rotary_joint]);
+  };
+  put(record.joints, setpoint.position);
+  put(stage::joint_velocity_of(stage_, record.joints, setpoint.velocity), setpoint.velocity);
   row.put(',').put_integer(record.sequence).put(',').put(word(record.state));
   row.put(',').put_real(record.plan_time_s).put(',').put_real(record.rate);
   row.put(',').put_integer(setpoint.epoch).put(',').put_integer(setpoint.flags);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "meridian/expected.hpp"
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "service/record/csv_file.hpp"
 #include "service/record/record_error.hpp"
@@ -17,6 +17,8 @@ namespace meridian::record {
 ///
 ///     cycle,due_ns,line,kind,<joint>_mm|_rad ...,<joint>_mm_per_s|_rad_per_s ...,
 ///     sequence,state,plan_time_s,rate,epoch,flags,lateness_ns,computation_ns
+///
+/// Behind the joints come the drives of an actuator stage, where the machine has one.
 ///
 /// Numbers carry 17 significant digits, so that a reader gets the very same doubles. Memory is
 /// fixed after create(): rows gather in a buffer that goes to the file when it is full. A full disk
@@ -40,12 +42,17 @@ class RecordingWriter {
   [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
 
  private:
-  RecordingWriter(CsvFile file, int joint_count)
-      : file_(std::move(file)), joint_count_(joint_count) {}
+  RecordingWriter(CsvFile file, const MachineModel& model)
+      : file_(std::move(file)),
+        stage_(model.stage),
+        joint_count_(model.joint_count),
+        has_stage_(has_stage(model)) {}
 
   CsvFile file_;
   std::uint64_t rows_ = 0;
+  ActuatorStage stage_;
   int joint_count_ = 0;
+  bool has_stage_ = false;
 };
 
 }  // namespace meridian::record

@@ -10,8 +10,8 @@ namespace meridian::simulate {
 
 void LimitMeter::add(const CycleRecord& record, double tool_length_mm, double feed_mm_per_s,
                      LimitShares& shares) {
-  std::rotate(joints_.begin(), joints_.begin() + 1, joints_.end());
-  joints_.back() = record.joints;
+  std::rotate(places_.begin(), places_.begin() + 1, places_.end());
+  places_.back() = limited_of(model_, record.joints, record.setpoint.position);
   known_ = std::min(known_ + 1, 4);
   const Vector3 tip = forward(model_, tool_length_mm, record.joints).tip;
   const Vector3 step = tip - tip_;
@@ -27,9 +27,9 @@ void LimitMeter::add(const CycleRecord& record, double tool_length_mm, double fe
     nearest = &count;
   };
   if (feed_mm_per_s > 0) weigh(step.norm() / (period * feed_mm_per_s), shares.feed);
-  for (int i = 0; i < model_.joint_count; ++i) {
-    const auto q = [&](int back) { return joints_[3 - back][i]; };
-    const JointLimits& limits = model_.joints[i].limits;
+  for (int i = 0; i < limited_count(model_); ++i) {
+    const auto q = [&](int back) { return places_[3 - back][i]; };
+    const JointLimits& limits = limited_spec(model_, i).limits;
     auto& counts = shares.joints[i];
     weigh(std::abs(q(0) - q(1)) / (period * limits.velocity), counts[0]);
     weigh(std::abs(q(0) - 2 * q(1) + q(2)) / (period * period * limits.acceleration), counts[1]);

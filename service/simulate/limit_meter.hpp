@@ -4,7 +4,7 @@
 #include <array>
 
 #include "meridian/geometry/vector3.hpp"
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "service/simulate/simulate_report.hpp"
@@ -22,7 +22,7 @@ class LimitMeter {
 
  private:
   const MachineModel& model_;
-  std::array<JointVector, 4> joints_{};  ///< newest last
+  std::array<LimitedVector, 4> places_{};  ///< newest last
   Vector3 tip_ = Vector3::Zero();
   int known_ = 0;
 };

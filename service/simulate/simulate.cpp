@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/step.hpp"
 #include "service/simulate/block_feed.hpp"
@@ -26,8 +27,8 @@ class Run {
         motion_(*port_),
         feed_(reader, model, tools, *port_, options.has_action_peer),
         meter_(model) {
-    for (int i = 0; i < model.joint_count; ++i) joints_[i] = model.joints[i].home;
-    if (options.start) joints_ = *options.start;
+    for (int i = 0; i < model.joint_count; ++i) drives_[i] = drive_spec(model, i).home;
+    if (options.start) drives_ = *options.start;
     in_.session = 1;
     in_.stops_at_optional = options.stops_at_optional;
   }
@@ -37,11 +38,11 @@ class Run {
       if (feed_.has_begun()) feed_.fill();
       prepare();
       step(model_, state_, motion_, in_, out_);
-      joints_ = out_.record.joints;
+      drives_ = out_.record.setpoint.position;
       take(out_.record);
       keep_books(report);
       if (state_.state == State::kReady && !feed_.has_begun()) {
-        feed_.begin(joints_, state_.epoch);
+        feed_.begin(out_.record.joints, state_.epoch);
       }
     }
     report.cycles = in_.cycle;
@@ -63,7 +64,7 @@ class Run {
     const bool is_on = is_enabled(state_.state);
     in_.feedback = {.arrival_ns = in_.now_ns,
                     .cycle_seen = in_.cycle - 1,
-                    .position = joints_,
+                    .position = drives_,
                     .joint_mask = all,
                     .enabled_mask = is_on ? all : 0,
                     .fault_mask = 0,
@@ -192,7 +193,7 @@ class Run {
   CycleState state_;
   CycleInputs in_;
   StepOutput out_;
-  JointVector joints_{};
+  JointVector drives_{};  ///< where they are
   std::optional<std::uint64_t> start_cycle_;
   std::size_t next_event_ = 0;
   std::uint64_t request_ = 0, rested_ = 0;

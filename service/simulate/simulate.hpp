@@ -16,7 +16,7 @@
 namespace meridian::simulate {
 
 struct SimulateOptions {
-  std::optional<JointVector> start;   ///< joints when the drives are enabled; nothing: home
+  std::optional<JointVector> start;   ///< where the drives are when enabled; nothing: home
   std::vector<OperatorEvent> events;  ///< replayed
   bool has_action_peer = true;        ///< false: programs with action words are refused
   bool stops_at_optional = false;     ///< optional stops stop

@@ -26,9 +26,10 @@ constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
 void append_shares(std::string& text, const LimitShares& shares, const MachineModel& model) {
   std::vector<std::pair<std::uint64_t, std::string>> all{{shares.feed, "feed"},
                                                          {shares.none, "none above half"}};
-  for (int i = 0; i < model.joint_count; ++i) {
+  for (int i = 0; i < limited_count(model); ++i) {
     for (int order = 0; order < 3; ++order) {
-      all.emplace_back(shares.joints[i][order], model.joints[i].name + " " + kRateNames[order]);
+      all.emplace_back(shares.joints[i][order],
+                       limited_spec(model, i).name + " " + kRateNames[order]);
     }
   }
   std::stable_sort(all.begin(), all.end(),

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/path/block_reject.hpp"
 #include "meridian/rt/cycle_data.hpp"
 
@@ -21,11 +21,11 @@ enum class Outcome : std::uint8_t {
   kFault     ///< the cycle raised an alarm
 };
 
-/// Which limit was nearest while the program ran: cycles in which the tip's feed, or a joint's
-/// velocity, acceleration or jerk took the largest share of what it may.
+/// Which limit was nearest while the program ran: cycles in which the tip's feed, or velocity,
+/// acceleration or jerk of a joint or drive took the largest share of what it may.
 struct LimitShares {
   std::uint64_t feed = 0;
-  std::array<std::array<std::uint64_t, 3>, kMaxJoints> joints{};
+  std::array<std::array<std::uint64_t, 3>, kMaxLimited> joints{};
   std::uint64_t none = 0;  ///< nothing above half its limit
   std::uint64_t cycles = 0;
 };

@@ -9,10 +9,10 @@
 namespace meridian::telemetry {
 
 void MotionWatch::see(const CycleRecord& record, double tool_length_mm) noexcept {
-  // Without an actuator stage drive velocities are joint velocities.
+  const JointVector velocity = joint_velocity_of(model_, record.joints, record.setpoint.velocity);
   Joints<Jet<1>> joints;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    joints[i] = Jet<1>::with_derivative(record.joints[i], record.setpoint.velocity[i]);
+    joints[i] = Jet<1>::with_derivative(record.joints[i], velocity[i]);
   }
   const Pose<Jet<1>> pose = forward(model_, tool_length_mm, joints);
   feed_mm_per_s_ =
@@ -20,19 +20,20 @@ void MotionWatch::see(const CycleRecord& record, double tool_length_mm) noexcept
 
   consecutive_ = record.setpoint.cycle == last_cycle_ + 1 ? consecutive_ + 1 : 0;
   last_cycle_ = record.setpoint.cycle;
-  judge(record, static_cast<double>(model_.cycle_ns) * 1e-9);
+  judge(limited_of(model_, velocity, record.setpoint.velocity),
+        static_cast<double>(model_.cycle_ns) * 1e-9);
 }
 
-void MotionWatch::judge(const CycleRecord& record, double period_s) noexcept {
+void MotionWatch::judge(const LimitedVector& velocities, double period_s) noexcept {
   const auto take = [this](double share, int joint) {
     if (share <= largest_share_) return;
     largest_share_ = share;
     joint_ = joint;
   };
-  for (int joint = 0; joint < model_.joint_count; ++joint) {
+  for (int joint = 0; joint < limited_count(model_); ++joint) {
     const auto i = static_cast<std::size_t>(joint);
-    const JointLimits& limits = model_.joints[i].limits;
-    const double velocity = record.setpoint.velocity[i];
+    const JointLimits& limits = limited_spec(model_, joint).limits;
+    const double velocity = velocities[i];
     const double acceleration = (velocity - velocity_[i]) / period_s;
     take(std::abs(velocity) / limits.velocity, joint);
     if (consecutive_ >= 1) take(std::abs(acceleration) / limits.acceleration, joint);
@@ -41,7 +42,7 @@ void MotionWatch::judge(const CycleRecord& record, double period_s) noexcept {
     }
     acceleration_[i] = acceleration;
   }
-  velocity_ = record.setpoint.velocity;
+  velocity_ = velocities;
 }
 
 void MotionWatch::reset() noexcept {

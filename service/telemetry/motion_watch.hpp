@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/cycle_data.hpp"
 
 namespace meridian::telemetry {
@@ -21,8 +21,8 @@ class MotionWatch {
 
   /// Tip speed in the workpiece frame at the newest record, mm/s.
   [[nodiscard]] double feed_mm_per_s() const noexcept { return feed_mm_per_s_; }
-  /// The joint that used the largest share of its velocity, acceleration or jerk; -1 where no joint
-  /// came beyond kLimiting of any.
+  /// The joint, or drive of the stage, that used the largest share of its velocity, acceleration or
+  /// jerk; -1 where no joint came beyond kLimiting of any.
   [[nodiscard]] int limiting_joint() const noexcept {
     return largest_share_ >= kLimiting ? joint_ : -1;
   }
@@ -31,12 +31,11 @@ class MotionWatch {
   static constexpr double kLimiting = 0.5;
 
  private:
-  void judge(const CycleRecord& record, double period_s) noexcept;
+  void judge(const LimitedVector& velocities, double period_s) noexcept;
 
   const MachineModel& model_;
-  JointVector velocity_{};  ///< of the newest record
-
-  JointVector acceleration_{};
+  LimitedVector velocity_{};  ///< of the newest record
+  LimitedVector acceleration_{};
   std::uint64_t last_cycle_ = 0;
   int consecutive_ = 0;
   double feed_mm_per_s_ = 0;

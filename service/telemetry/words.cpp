@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
 
@@ -10,16 +11,16 @@ namespace meridian::telemetry {
 namespace {
 
 [[nodiscard]] bool is_joint(int joint, const MachineModel& model) {
-  return joint >= 0 && joint < model.joint_count;
+  return joint >= 0 && joint < limited_count(model);
 }
 
 [[nodiscard]] std::string joint_name(int joint, const MachineModel& model) {
-  return is_joint(joint, model) ? model.joints[static_cast<std::size_t>(joint)].name : "?";
+  return is_joint(joint, model) ? limited_spec(model, joint).name : "?";
 }
 
 /// A joint's position or distance with its unit, as people read it.
 [[nodiscard]] std::string quantity(double value, int joint, const MachineModel& model) {
-  if (is_joint(joint, model) && model.joints[static_cast<std::size_t>(joint)].is_rotary) {
+  if (is_joint(joint, model) && limited_spec(model, joint).is_rotary) {
     return fmt::format("{:.6g} deg", units::deg_from_rad(value));
   }
   return fmt::format("{:.6g} mm", value);
@@ -129,8 +130,7 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
           "drive {} lags by {} (allowed {}); look for a blocked axis or a weak drive", name,
           measured,
           is_joint(joint, model)
-              ? quantity(model.joints[static_cast<std::size_t>(joint)].limits.following_error,
-                         joint, model)
+              ? quantity(limited_spec(model, joint).limits.following_error, joint, model)
               : "?");
       break;
     case Alarm::kEmergencyStop:

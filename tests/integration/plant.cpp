@@ -124,13 +124,14 @@ std::string cl_text(const std::vector<ClBlock>& blocks, std::size_t begin) {
   return text.str();
 }
 
-std::string machine_file() {
-  return std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/lai.toml";
+std::string machine_file(const std::string& machine) {
+  return std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/" + machine + ".toml";
 }
 
-Plant::Plant()
-    : folder_(std::filesystem::temp_directory_path() / ("meridian-plant-" + domain())),
-      participant_({.domain = domain_.id(), .machine = "lai"}),
+Plant::Plant(std::string machine)
+    : machine_(std::move(machine)),
+      folder_(std::filesystem::temp_directory_path() / ("meridian-plant-" + domain())),
+      participant_({.domain = domain_.id(), .machine = machine_}),
       statuses_(participant_),
       commands_(participant_),
       replies_(participant_),
@@ -149,8 +150,9 @@ Plant::~Plant() {
 }
 
 Process& Plant::start_service(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"meridiand", "--machine", machine_file(), "--domain",
-                                        domain(),    "--record",  recording(),    "--best-effort"};
+  std::vector<std::string> arguments = {"meridiand", "--machine",    machine_file(machine_),
+                                        "--domain",  domain(),       "--record",
+                                        recording(), "--best-effort"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   status_.reset();
   service_ = std::make_unique<Process>(arguments, folder_ / "service.log");
@@ -158,8 +160,8 @@ Process& Plant::start_service(const std::vector<std::string>& more) {
 }
 
 Process& Plant::start_drives(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"meridian",     "drives",   "--machine",
-                                        machine_file(), "--domain", domain()};
+  std::vector<std::string> arguments = {"meridian", "drives", "--machine", machine_file(machine_),
+                                        "--domain", domain()};
   arguments.insert(arguments.end(), more.begin(), more.end());
   drives_ = std::make_unique<Process>(arguments, folder_ / "drives.log");
   return *drives_;
@@ -167,8 +169,8 @@ Process& Plant::start_drives(const std::vector<std::string>& more) {
 
 std::unique_ptr<Process> Plant::another_service() {
   return std::make_unique<Process>(
-      std::vector<std::string>{"meridiand", "--machine", machine_file(), "--domain", domain(),
-                               "--best-effort"},
+      std::vector<std::string>{"meridiand", "--machine", machine_file(machine_), "--domain",
+                               domain(), "--best-effort"},
       folder_ / "second.log");
 }
 
@@ -267,8 +269,9 @@ bool Plant::stream_on(const std::function<bool(const stream::Station&)>& until,
       patience);
 }
 
-std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min, double step_mm) {
-  const MachineModel model = config::load_machine(machine_file());
+std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min, double step_mm,
+                                   const std::string& machine) {
+  const MachineModel model = config::load_machine(machine_file(machine));
   JointVector home{};
   for (int i = 0; i < model.joint_count; ++i) {
     home[static_cast<std::size_t>(i)] = model.joints[static_cast<std::size_t>(i)].home;

@@ -68,10 +68,11 @@ class Process {
 /// Service and drives as processes on a private domain, with the test as operator and station.
 class Plant {
  public:
-  Plant();
+  /// `machine`: one of deploy/machines.
+  explicit Plant(std::string machine = "lai");
   ~Plant();
 
-  /// Start meridiand (best effort, Lai machine, recording on) or the drives, `more` on the command
+  /// Start meridiand (best effort, recording on) or the drives, `more` on the command
   /// line.
   Process& start_service(const std::vector<std::string>& more = {});
   Process& start_drives(const std::vector<std::string>& more = {});
@@ -105,6 +106,7 @@ class Plant {
  private:
   void look();
 
+  std::string machine_;
   support::PrivateDomain domain_;
   std::filesystem::path folder_;
   dds::Participant participant_;
@@ -122,11 +124,12 @@ class Plant {
 
 /// A small five-axis program near home: zigzag cuts at `feed_mm_per_min` with tilting axis.
 [[nodiscard]] std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min,
-                                                 double step_mm = 2);
+                                                 double step_mm = 2,
+                                                 const std::string& machine = "lai");
 
 /// `blocks` from place `begin` on as statements of a CL file, without head and end.
 [[nodiscard]] std::string cl_text(const std::vector<ClBlock>& blocks, std::size_t begin = 0);
 
-[[nodiscard]] std::string machine_file();
+[[nodiscard]] std::string machine_file(const std::string& machine = "lai");
 
 }  // namespace meridian::test

@@ -16,7 +16,7 @@ class CycleWorld {
  public:
   explicit CycleWorld(const MachineModel& model, const JointVector& at = {})
       : machine(model), port(std::make_unique<MotionPort>()), reader(*port) {
-    in.feedback.position = at;
+    in.feedback.position = drives_of(model, at);
     in.feedback.joint_mask = all_joints(machine);
     in.feedback.referenced_mask = all_joints(machine);
     in.session = 1;

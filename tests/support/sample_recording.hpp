@@ -83,8 +83,15 @@ class SampleRun {
     record.setpoint.cycle = 100 + records.size();
     record.setpoint.due_ns =
         5'000'000'000 + static_cast<std::int64_t>(records.size()) * model_.cycle_ns;
-    record.setpoint.position = joints;
-    record.setpoint.velocity = velocity;
+    Joints<Jet<1>> moving;
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      moving[i] = Jet<1>::with_derivative(joints[i], velocity[i]);
+    }
+    const Joints<Jet<1>> drives = drives_of(model_, moving);
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      record.setpoint.position[i] = value_of(drives[i]);
+      record.setpoint.velocity[i] = drives[i].derivative(1);
+    }
     record.setpoint.line = line;
     record.setpoint.flags = kSetpointEnabled;
     record.joints = joints;

@@ -55,6 +55,19 @@ template <class S>
   return out;
 }
 
+/// The same where the drive coordinates `u` of the joints are known already.
+[[nodiscard]] inline LimitedVector limited_of(const MachineModel& model, const JointVector& q,
+                                              const JointVector& u) noexcept {
+  LimitedVector out{};
+  for (std::size_t i = 0; i < q.size(); ++i) out[i] = q[i];
+  if (has_stage(model)) {
+    const auto first = static_cast<std::size_t>(model.joint_count);
+    out[first] = u[static_cast<std::size_t>(model.stage.linear_joint)];
+    out[first + 1] = u[static_cast<std::size_t>(model.stage.rotary_joint)];
+  }
+  return out;
+}
+
 /// Returns quantity `i` where the joints are `q`.
 [[nodiscard]] inline double limited_value(const MachineModel& model, const JointVector& q,
                                           int i) noexcept {
@@ -68,10 +81,30 @@ template <class S>
   return stage::drives_of(model.stage, q);
 }
 
+/// Drive coordinates of limited_of() values. RT: cycle.
+[[nodiscard]] inline JointVector drives_at(const MachineModel& model,
+                                           const LimitedVector& all) noexcept {
+  JointVector u{};
+  for (int i = 0; i < model.joint_count; ++i) {
+    u[static_cast<std::size_t>(i)] = all[static_cast<std::size_t>(i)];
+  }
+  if (!has_stage(model)) return u;
+  const auto first = static_cast<std::size_t>(model.joint_count);
+  u[static_cast<std::size_t>(model.stage.linear_joint)] = all[first];
+  u[static_cast<std::size_t>(model.stage.rotary_joint)] = all[first + 1];
+  return u;
+}
+
 /// The joints of drive coordinates `u`; not finite where there are none. RT: cycle.
 [[nodiscard]] inline JointVector joints_of(const MachineModel& model,
                                            const JointVector& u) noexcept {
   return stage::joints_of(model.stage, u);
+}
+
+/// Returns the velocity of the joints `q` whose drives move with `u_velocity`.
+[[nodiscard]] inline JointVector joint_velocity_of(const MachineModel& model, const JointVector& q,
+                                                   const JointVector& u_velocity) noexcept {
+  return stage::joint_velocity_of(model.stage, q, u_velocity);
 }
 
 /// Name, kind and limits of drive `i` in drive order.

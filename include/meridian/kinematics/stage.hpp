@@ -103,6 +103,24 @@ template <class S>
   return q;
 }
 
+/// Returns the velocity of the joints `q` that drive velocities make, the inverse of the derivative
+/// of drives_of(). Not finite at a dead point.
+[[nodiscard]] inline JointVector joint_velocity_of(const ActuatorStage& g, const JointVector& q,
+                                                   const JointVector& velocity) noexcept {
+  if (g.kind == StageKind::kIdentity) return velocity;
+  Joints<Jet<1>> turning;
+  for (int i = 0; i < kMaxJoints; ++i) turning[i] = Jet<1>(q[i]);
+  turning[g.rotary_joint] = Jet<1>::variable(q[g.rotary_joint]);
+  const Joints<Jet<1>> u = drives_of(g, turning);
+  const double by1 = u[g.linear_joint].derivative(1), by2 = u[g.rotary_joint].derivative(1);
+  const double u1 = velocity[g.linear_joint], u2 = velocity[g.rotary_joint];
+  const double turn = (u2 - u1) / (by2 - by1);
+  JointVector out = velocity;
+  out[g.linear_joint] = g.sign_s * (u1 - by1 * turn);
+  out[g.rotary_joint] = turn;
+  return out;
+}
+
 /// Determinant of d(u1, u2)/d(s, φ), mm/rad: how far the stage is from a dead point, eq. 3.3.
 [[nodiscard]] inline double determinant(const ActuatorStage& g, const JointVector& q) noexcept {
   if (g.kind == StageKind::kIdentity) return 1.0;

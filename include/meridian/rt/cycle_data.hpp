@@ -48,7 +48,7 @@ struct CycleRecord {
 struct Feedback {
   std::int64_t arrival_ns = 0;        ///< receiver's own clock; 0: never
   std::uint64_t cycle_seen = 0;       ///< newest setpoint cycle that the drives took
-  JointVector position{};             ///< drive coordinates, machine order after conversion
+  JointVector position{};             ///< drive coordinates in drive order
   std::uint32_t joint_mask = 0;       ///< joints that report
   std::uint32_t enabled_mask = 0;     ///< drives in operation enabled
   std::uint32_t fault_mask = 0;       ///< drives in fault
@@ -74,7 +74,8 @@ enum class EventCode : std::uint16_t {
   kEpochAdvanced,  ///< a: new epoch; queues of the old one are void
   kPeriodsLost,    ///< a: how many
   kStopped,        ///< hold, abort or FaultStop came to rest; a: stopping time ns, x: distance mm
-  kAlarm,          ///< a: Alarm, b: joint or 0, x: measured value, line of the block in `line`
+  kAlarm,  ///< a: Alarm, b: place in limited.hpp or 0, x: measured value, line of the block in
+           ///< `line`
 };
 
 /// Why the cycle took the machine to FaultStop, or refused to send a setpoint.

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/time_law.hpp"
@@ -68,6 +69,8 @@ struct SentSetpoint {
   double bridged = 0;  ///< s that the drives had to go on by its velocity, periods being lost
   JointVector position{};
   JointVector velocity{};
+  JointVector drive_position{};  ///< drive coordinates, only where the machine has a stage
+  JointVector drive_velocity{};
 };
 
 /// A stop that is going on: on the path, or with every joint on its own line where the path cannot
@@ -111,8 +114,9 @@ struct CycleState {
   PathState on_path{};  ///< s in the path piece in force; ṡ, s̈ as they are, override included
   StopInProgress stop;
 
-  JointVector joints{};    ///< last commanded
-  JointVector velocity{};  ///< its time derivative
+  JointVector joints{};                            ///< last commanded
+  JointVector velocity{};                          ///< its time derivative
+  JointVector latched_joints{}, latched_drives{};  ///< of a stage: feedback that was taken over
   MotionKind motion = MotionKind::kApproach;
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
@@ -133,11 +137,20 @@ struct Cycle {
   MotionReader& reader;
   const CycleInputs& in;
   StepOutput& out;
-  double dt;             ///< s per period
-  int periods;           ///< that motion goes on by: 1 and those that were lost
-  JointVector previous;  ///< where the joints were before: last setpoint, or feedback
-  double elapsed;        ///< s since `previous`
+  double dt;                    ///< s per period
+  int periods;                  ///< that motion goes on by: 1 and those that were lost
+  JointVector previous;         ///< where the joints were before: last setpoint, or feedback
+  double elapsed;               ///< s since `previous`
+  const JointVector& feedback;  ///< position of in.feedback as joints
 };
+
+/// The joints are where the drives are.
+inline void take_over_feedback(Cycle& c) noexcept {
+  c.state.joints = c.feedback;
+  if (!has_stage(c.machine)) return;
+  c.state.latched_joints = c.feedback;
+  c.state.latched_drives = c.in.feedback.position;
+}
 
 /// Adds an event; cycle, line and epoch are filled in. RT: cycle.
 inline void tell(const Cycle& c, EventCode code, std::uint64_t a = 0, std::uint64_t b = 0,

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/rt/cycle_data.hpp"
 
@@ -11,7 +12,7 @@ namespace meridian {
 /// What is wrong with a setpoint; kNone: it may be sent.
 struct GuardVerdict {
   Alarm alarm = Alarm::kNone;
-  int joint = 0;
+  int joint = 0;     ///< place in limited.hpp
   double value = 0;  ///< the offending position or step
 };
 
@@ -19,9 +20,28 @@ inline constexpr double kGuardTravel =
     1e-9;                                   ///< mm or rad; rounding of a pose on the travel's edge
 inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solve, 1000x margin
 
+/// The drives of a stage, judged like joints.
+[[nodiscard, gnu::noinline]] inline GuardVerdict judge_stage(const MachineModel& machine,
+                                                             const JointVector& next,
+                                                             const JointVector& previous,
+                                                             double elapsed) noexcept {
+  const LimitedVector now = limited_of(machine, next), before = limited_of(machine, previous);
+  for (int i = machine.joint_count; i < limited_count(machine); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const JointLimits& limits = limited_spec(machine, i).limits;
+    const double u = now[n], step = u - before[n];
+    if (!std::isfinite(u)) return {Alarm::kNotFinite, i, u};
+    if (u < limits.travel_min - kGuardTravel || u > limits.travel_max + kGuardTravel) {
+      return {Alarm::kTravel, i, u};
+    }
+    if (!(std::abs(step) <= limits.velocity * elapsed + kGuardStep)) return {Alarm::kStep, i, step};
+  }
+  return {};
+}
+
 /// Judges the next joint setpoint, the last thing before it is sent: finite, inside travel, and no
-/// farther from `previous` (sent `elapsed` seconds ago) than the joint's velocity limit reaches.
-/// RT: cycle. Proof: tests/unit/rt/guard_test.cpp.
+/// farther from `previous` (sent `elapsed` seconds ago) than the velocity limits of joints and
+/// drives reach. RT: cycle. Proof: tests/unit/rt/guard_test.cpp, stage_cycle_test.cpp.
 [[nodiscard]] inline GuardVerdict judge(const MachineModel& machine, const JointVector& next,
                                         const JointVector& velocity, const JointVector& previous,
                                         double elapsed) noexcept {
@@ -38,7 +58,7 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
       return {Alarm::kStep, i, step};
     }
   }
-  return {};
+  return has_stage(machine) ? judge_stage(machine, next, previous, elapsed) : GuardVerdict{};
 }
 
 }  // namespace meridian

@@ -61,7 +61,7 @@ inline void resume(Cycle& c) noexcept {
 inline void go(Cycle& c, State next) noexcept {
   switch (next) {
     case State::kEnabling:
-      c.state.joints = c.in.feedback.position;
+      take_over_feedback(c);
       c.previous = c.state.joints;
       break;
     case State::kDisabling:

@@ -33,7 +33,7 @@ inline void mark_bridged(Cycle& c) noexcept {
 
 /// Drives are off: the setpoint is where they are.
 inline void follow_feedback(Cycle& c) noexcept {
-  if (is_feedback_there(c)) c.state.joints = c.in.feedback.position;
+  if (is_feedback_there(c)) take_over_feedback(c);
   rest(c);
   c.previous = c.state.joints;
 }
@@ -130,6 +130,22 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
   return stop.speed_begin > 0 ? stop.rate_begin * state.on_path.ds / stop.speed_begin : 0;
 }
 
+/// Takes the setpoint through the stage: what is sent are drive coordinates. Joints that still are
+/// those of the feedback go out as the drives reported them, bit for bit.
+[[gnu::noinline]] inline void put_through_stage(const Cycle& c, Setpoint& setpoint) noexcept {
+  const CycleState& state = c.state;
+  Joints<Jet<1>> q;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    q[i] = Jet<1>::with_derivative(state.joints[i], state.velocity[i]);
+  }
+  const Joints<Jet<1>> u = drives_of(c.machine, q);
+  const bool is_latched = state.joints == state.latched_joints;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    setpoint.position[i] = is_latched ? state.latched_drives[i] : value_of(u[i]);
+    setpoint.velocity[i] = u[i].derivative(1);
+  }
+}
+
 inline void write_record(Cycle& c) noexcept {
   CycleState& state = c.state;
   CycleRecord& out = c.out.record;
@@ -154,7 +170,15 @@ inline void write_record(Cycle& c) noexcept {
   out.motion = state.motion;
   out.lateness_ns = static_cast<std::int32_t>(c.in.now_ns - c.in.due_ns);
   out.computation_ns = c.in.computation_ns;
-  state.sent[c.in.cycle % kSentCycles] = {c.in.cycle, 0, state.joints, state.velocity};
+  SentSetpoint& sent = state.sent[c.in.cycle % kSentCycles];
+  sent.cycle = c.in.cycle;
+  sent.bridged = 0;
+  sent.position = state.joints;
+  sent.velocity = state.velocity;
+  if (!has_stage(c.machine)) return;
+  put_through_stage(c, out.setpoint);
+  sent.drive_position = out.setpoint.position;
+  sent.drive_velocity = out.setpoint.velocity;
 }
 
 /// Computes one setpoint: takes in what is known, obeys, moves, guards, and tells.
@@ -167,7 +191,13 @@ inline void step(const MachineModel& machine, CycleState& state, MotionReader& r
                  const CycleInputs& in, StepOutput& out) noexcept {
   const double dt = static_cast<double>(machine.cycle_ns) * 1e-9;
   const int periods = 1 + static_cast<int>(in.lost_periods);
-  Cycle c{machine, state, reader, in, out, dt, periods, state.joints, dt * periods};
+  JointVector converted;
+  if (has_stage(machine)) converted = joints_of(machine, in.feedback.position);
+  Cycle c{machine,      state,
+          reader,       in,
+          out,          dt,
+          periods,      state.joints,
+          dt * periods, has_stage(machine) ? converted : in.feedback.position};
   const JointVector last_velocity = state.velocity;
   out.event_count = 0;
   out.events_dropped = 0;

@@ -51,6 +51,31 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   stop.begin = c.state.joints;
 }
 
+/// Lessens `authority` so that the drives of a stage stop inside their FaultStop limits too, the
+/// joints running along `direction` from `joints`: where the curvature of the stage alone takes
+/// most of a limit, a quarter of it.
+[[nodiscard, gnu::noinline]] inline StopAuthority authority_beside_stage(
+    const MachineModel& machine, const JointVector& joints, const JointVector& direction,
+    StopAuthority authority) noexcept {
+  Joints<Jet<3>> moving;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    moving[i] = Jet<3>::with_derivative(joints[i], direction[i]);
+  }
+  const Limited<Jet<3>> all = limited_of(machine, moving);
+  for (int i = machine.joint_count; i < limited_count(machine); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const JointLimits& limits = limited_spec(machine, i).limits;
+    const double d1 = std::abs(all[n].derivative(1)), d2 = std::abs(all[n].derivative(2)),
+                 d3 = std::abs(all[n].derivative(3));
+    const double accel = std::max(limits.fault_acceleration - d2, 0.25 * limits.fault_acceleration);
+    if (accel < authority.accel * d1) authority.accel = accel / d1;
+    const double jerk =
+        std::max(limits.fault_jerk - d3 - 3 * d2 * authority.accel, 0.25 * limits.fault_jerk);
+    if (jerk < authority.jerk * d1) authority.jerk = jerk / d1;
+  }
+  return authority;
+}
+
 /// Begins a stop of every joint along its last velocity, all in the same time: the last resort
 /// where the path gives no setpoint that may be sent.
 inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
@@ -69,6 +94,9 @@ inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
     authority.accel = std::min(authority.accel, limits.fault_acceleration / speed);
     authority.jerk = std::min(authority.jerk, limits.fault_jerk / speed);
     is_moving = true;
+  }
+  if (is_moving && has_stage(c.machine)) {
+    authority = authority_beside_stage(c.machine, joints, stop.direction, authority);
   }
   stop.law = StopLaw({0, is_moving ? 1.0 : 0.0, 0, 0}, authority);
 }

@@ -21,12 +21,12 @@ namespace meridian {
   return (1U << static_cast<unsigned>(machine.joint_count)) - 1U;
 }
 
-/// Whether every joint reports a finite position and the report is fresh. Time that the host
-/// stalled does not count against the drives.
+/// Whether every drive reports a finite position, joints have them, and the report is fresh. Time
+/// that the host stalled does not count against the drives.
 [[nodiscard]] inline bool is_feedback_there(const Cycle& c) noexcept {
   const Feedback& f = c.in.feedback;
   const double age = static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9;
-  for (const double q : f.position) {
+  for (const double q : c.feedback) {
     if (!std::isfinite(q)) return false;
   }
   return f.arrival_ns != 0 && (f.joint_mask & all_joints(c.machine)) == all_joints(c.machine) &&
@@ -51,18 +51,40 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
   enter(c, State::kFaultStop);
 }
 
-/// The joint whose feedback is farther from the setpoint that it saw than its limit; -1: none.
+/// Whether feedback is farther from the setpoint that it saw than the joint or drive `spec` may be,
+/// and the way that drives bridged by its velocity.
+[[nodiscard]] inline bool is_behind(const JointSpec& spec, double error, double velocity,
+                                    double bridged) noexcept {
+  return !(std::abs(error) <= spec.limits.following_error + std::abs(velocity) * bridged);
+}
+
+/// first_joint_behind() for the drives of a stage.
+[[nodiscard, gnu::noinline]] inline int first_stage_drive_behind(const Cycle& c,
+                                                                 const SentSetpoint& sent,
+                                                                 double& error) noexcept {
+  const LimitedVector seen = limited_of(c.machine, {}, c.in.feedback.position);
+  const LimitedVector position = limited_of(c.machine, {}, sent.drive_position);
+  const LimitedVector velocity = limited_of(c.machine, {}, sent.drive_velocity);
+  for (int i = c.machine.joint_count; i < limited_count(c.machine); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    error = seen[n] - position[n];
+    if (is_behind(limited_spec(c.machine, i), error, velocity[n], sent.bridged)) return i;
+  }
+  return -1;
+}
+
+/// The joint, or drive of the stage, whose feedback is farther from the setpoint that it saw than
+/// its limit; -1: none.
 [[nodiscard]] inline int first_joint_behind(const Cycle& c, double& error) noexcept {
   const Feedback& f = c.in.feedback;
   const SentSetpoint& sent = c.state.sent[f.cycle_seen % kSentCycles];
   if (sent.cycle != f.cycle_seen || f.cycle_seen == 0) return -1;
   for (int i = 0; i < c.machine.joint_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    error = f.position[n] - sent.position[n];
-    const double bridged = std::abs(sent.velocity[n]) * sent.bridged;
-    if (!(std::abs(error) <= c.machine.joints[n].limits.following_error + bridged)) return i;
+    error = c.feedback[n] - sent.position[n];
+    if (is_behind(c.machine.joints[n], error, sent.velocity[n], sent.bridged)) return i;
   }
-  return -1;
+  return has_stage(c.machine) ? first_stage_drive_behind(c, sent, error) : -1;
 }
 
 [[nodiscard]] inline int first_bit(std::uint32_t mask) noexcept {
@@ -110,17 +132,35 @@ inline void judge_drives(Cycle& c) noexcept {
 
 /// How long joints that are `deviation` beside the path take back to it with kReturnShare of their
 /// limits. 1.875, 5.774 and 60 are the largest derivatives of the polynomial of add_deviation().
-[[nodiscard]] inline double time_to_return(const MachineModel& machine,
+[[nodiscard]] inline double time_to_return(const JointLimits& limits, double deviation) noexcept {
+  const double d = std::abs(deviation) / kReturnShare;
+  return std::max({1.875 * d / limits.velocity, std::sqrt(5.774 * d / limits.fault_acceleration),
+                   std::cbrt(60 * d / limits.fault_jerk)});
+}
+
+/// The same for the drives of a stage between `joints` and the joints `deviation` beside them. They
+/// are not linear in between: twice the way bounds that.
+[[nodiscard, gnu::noinline]] inline double time_for_stage_to_return(
+    const MachineModel& machine, const JointVector& joints, const JointVector& deviation) noexcept {
+  JointVector beside = joints;
+  for (std::size_t i = 0; i < beside.size(); ++i) beside[i] += deviation[i];
+  const LimitedVector from = limited_of(machine, joints), to = limited_of(machine, beside);
+  double time = 0;
+  for (int i = machine.joint_count; i < limited_count(machine); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    time = std::max(time, time_to_return(limited_spec(machine, i).limits, 2 * (to[n] - from[n])));
+  }
+  return time;
+}
+
+[[nodiscard]] inline double time_to_return(const MachineModel& machine, const JointVector& joints,
                                            const JointVector& deviation) noexcept {
   double time = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
-    const JointLimits& limits = machine.joints[i].limits;
-    const double d = std::abs(deviation[i]) / kReturnShare;
-    time = std::max({time, 1.875 * d / limits.velocity,
-                     std::sqrt(5.774 * d / limits.fault_acceleration),
-                     std::cbrt(60 * d / limits.fault_jerk)});
+    time = std::max(time, time_to_return(machine.joints[i].limits, deviation[i]));
   }
-  return time;
+  if (!has_stage(machine)) return time;
+  return std::max(time, time_for_stage_to_return(machine, joints, deviation));
 }
 
 /// More periods were lost than the drives bridge: they have gone on with the last velocity and then
@@ -129,7 +169,7 @@ inline void judge_drives(Cycle& c) noexcept {
 inline void stop_from_feedback(Cycle& c) noexcept {
   raise(c, Alarm::kPeriodsLost, 0, static_cast<double>(c.in.lost_periods));
   if (!is_feedback_there(c) || !is_on_move(c) || c.state.stop.is_off_path) return;
-  const JointVector position = c.in.feedback.position;
+  const JointVector position = c.feedback;
   const double ramp_time =
       c.dt * (c.in.lost_periods - static_cast<double>(c.machine.bridge_cycles));
   double passed = 0;
@@ -148,7 +188,7 @@ inline void stop_from_feedback(Cycle& c) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
     c.state.stop.deviation[i] = position[i] - c.state.joints[i];
   }
-  c.state.stop.deviation_time = time_to_return(c.machine, c.state.stop.deviation);
+  c.state.stop.deviation_time = time_to_return(c.machine, c.state.joints, c.state.stop.deviation);
   c.previous = position;
   c.elapsed = c.dt;
   c.periods = 1;

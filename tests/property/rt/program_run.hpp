@@ -42,6 +42,11 @@ struct Draw {
   explicit Draw(std::uint64_t seed) : random(seed), machine(draw_machine(random)) {
     blocks = draw_program(random, machine, 5);
   }
+  /// With `model` and a cycle time of 125 µs to 4 ms.
+  Draw(std::uint64_t seed, const MachineModel& model) : random(seed), machine(model) {
+    machine.cycle_ns = static_cast<std::int64_t>(random.log_uniform(125e3, 4e6));
+    blocks = draw_program(random, machine, 5);
+  }
 
   /// Joints on the first block, so that nothing is to be approached; one program in ten approaches.
   [[nodiscard]] JointVector start() {
@@ -114,8 +119,8 @@ class PlannedRun {
 };
 using ProgramRun = PlannedRun<RestToRestPlanner>;
 
-/// Largest shares of the joints' limits by differences of setpoints, rounding (8 ulp(q)/Tⁿ) taken
-/// off.
+/// Largest shares of the limits of joints and drives by differences of setpoints, rounding (8
+/// ulp(q)/Tⁿ) taken off.
 struct LimitShares {
   double v = 0, a = 0, j = 0;
   void take(const LimitShares& other) {
@@ -131,12 +136,16 @@ inline LimitShares shares_of_limits(const CycleWorld& world, std::size_t first, 
   const auto& r = world.records;
   const double dt = world.dt();
   for (std::size_t n = std::max<std::size_t>(first, 3); n < r.size(); ++n) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(world.machine.joint_count); ++i) {
-      const JointLimits& limits = world.machine.joints[i].limits;
+    LimitedVector at[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const CycleRecord& record = r[n - 3 + k];
+      at[k] = limited_of(world.machine, record.joints, record.setpoint.position);
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(limited_count(world.machine)); ++i) {
+      const JointLimits& limits = limited_spec(world.machine, static_cast<int>(i)).limits;
       const double accel = is_fault ? limits.fault_acceleration : limits.acceleration;
       const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
-      const double q0 = r[n - 3].joints[i], q1 = r[n - 2].joints[i], q2 = r[n - 1].joints[i],
-                   q3 = r[n].joints[i];
+      const double q0 = at[0][i], q1 = at[1][i], q2 = at[2][i], q3 = at[3][i];
       const double most = std::max(std::abs(q0), std::abs(q3));
       const double ulp = 8 * (std::nextafter(most, 1e300) - most);
       out.take({(std::abs(q3 - q2) - ulp) / dt / limits.velocity,

@@ -34,8 +34,8 @@ TEST_P(Documented, HasEveryKeyOfTheShippedFile) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Documented,
                          testing::Values("machines/lai.toml", "machines/bench.toml",
-                                         "machines/nutating-head.toml", "machines/robot-5r.toml", "tools.toml",
-                                         "service.toml"));
+                                         "machines/lai-hybrid.toml", "machines/nutating-head.toml",
+                                         "machines/robot-5r.toml", "tools.toml", "service.toml"));
 
 }  // namespace
 }  // namespace meridian::config

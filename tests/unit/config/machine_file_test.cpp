@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "support/machines.hpp"
 #include "support/text_file.hpp"
@@ -76,6 +77,45 @@ TEST(MachineFile, EveryShippedMachineLoads) {
     ++count;
   }
   EXPECT_GE(count, 2);
+}
+
+TEST(MachineFile, GivesTheStageOfTheHybridMachine) {
+  const MachineModel model = load_machine(kMachines / "lai-hybrid.toml");
+  ASSERT_TRUE(has_stage(model));
+  EXPECT_EQ(model.stage.kind, StageKind::kTwoSlider);
+  EXPECT_EQ(model.stage.linear_joint, 1);
+  EXPECT_EQ(model.stage.rotary_joint, 3);
+  EXPECT_EQ(model.stage.sign_s, -1);
+  EXPECT_EQ(model.stage.sign_phi, -1);
+  EXPECT_EQ(model.stage.offset_s_mm, 60);
+  EXPECT_EQ(model.stage.side1, 1);
+  EXPECT_EQ(model.stage.side2, 1);
+  EXPECT_DOUBLE_EQ(model.stage.phi_max_rad, std::numbers::pi / 3);
+  EXPECT_EQ(limited_spec(model, 5).name, "u1");
+  EXPECT_EQ(limited_spec(model, 6).limits.jerk, 80000);
+  EXPECT_FALSE(limited_spec(model, 6).is_rotary);
+  EXPECT_DOUBLE_EQ(model.stage_drives[0].home, -300) << "s = 0, φ = 0, d = 0: the rod's length";
+}
+
+TEST(MachineFile, HasNoStageWhereNoneIsDescribedOrEveryJointHasItsDrive) {
+  EXPECT_FALSE(has_stage(load_machine(kMachines / "lai.toml")));
+  const std::string text = test::read_text(kMachines / "lai.toml");
+  EXPECT_FALSE(has_stage(parse_machine(text + "\n[stage]\nkind = \"identity\"\n", "identity")));
+}
+
+TEST(MachineFile, TakesAPinSlotWithoutRods) {
+  std::string text = test::read_text(kMachines / "lai-hybrid.toml");
+  const auto put = [&text](std::string_view from, std::string_view to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("kind = \"trailing\"", "kind = \"pin-slot\"");
+  put("radius_mm = 150", "#");
+  put("rod_mm = 300", "#");
+  put("rods = \"ahead\"", "#");
+  const MachineModel model = parse_machine(text, "pin-slot");
+  EXPECT_EQ(model.stage.kind, StageKind::kPinSlot);
+  EXPECT_EQ(model.stage.rail_mm, 150);
+  EXPECT_NEAR(model.stage_drives[0].home, 0, 1e-12);
 }
 
 TEST(MachineFile, TakesFrameUnitAndCycleTime) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
 #include <vector>
 
 #include "service/config/machine_file.hpp"
@@ -20,6 +22,7 @@ struct Mistake {
   const char* value;
   const char* allowed;
   const char* remedy;
+  const char* file = "lai";  ///< shipped machine that is changed
 };
 
 void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
@@ -28,7 +31,8 @@ class WrongMachineFile : public testing::TestWithParam<Mistake> {};
 
 TEST_P(WrongMachineFile, IsRefusedWithLineKeyValueRangeAndRemedy) {
   const Mistake& mistake = GetParam();
-  std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
+  std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/" +
+                                     std::string(mistake.file) + ".toml");
   const std::size_t at = text.find(mistake.good);
   ASSERT_NE(at, std::string::npos);
   text.replace(at, std::string(mistake.good).size(), mistake.bad);
@@ -58,6 +62,76 @@ TEST_P(WrongMachineFile, IsRefusedWithLineKeyValueRangeAndRemedy) {
       EXPECT_NE(what.find(part), std::string::npos) << what;
     }
   }
+}
+
+/// Of the actuator stage.
+const Mistake kStageMistakes[] = {
+    {"StageKind", "kind = \"trailing\"", "kind = \"hexapod\"", "stage.kind", "hexapod",
+     "\"trailing\", \"scissor\", \"pin-slot\"", "choose", "lai-hybrid"},
+    {"StageOfNoJoint", "linear = \"b2\"", "linear = \"x\"", "stage.linear", "x",
+     "a linear joint of the machine: b3 b2 b4", "name the linear joint", "lai-hybrid"},
+    {"StageTurnsASlide", "rotary = \"theta1\"", "rotary = \"b4\"", "stage.rotary", "b4",
+     "theta1 theta2", "name the rotary joint", "lai-hybrid"},
+    {"StageSignZero", "turn_sign = -1", "turn_sign = 0", "stage.turn_sign", "0", "1 or -1",
+     "grow together", "lai-hybrid"},
+    {"StageOffsetTooFar", "slide_offset_mm = 60", "slide_offset_mm = 1e6", "stage.slide_offset_mm",
+     "1000000", "-100000 to 100000", "number", "lai-hybrid"},
+    {"StageWithoutRadius", "radius_mm = 150", "radius_mm = 0", "stage.radius_mm", "0",
+     "0.001 to 100000", "number", "lai-hybrid"},
+    {"StageRailBelow", "rail_mm = 150", "rail_mm = -1", "stage.rail_mm", "-1", "0 to 100000",
+     "distance", "lai-hybrid"},
+    {"StageRodTooShort", "rod_mm = 300", "rod_mm = 75", "stage.rod_mm", "75", "above 78.75 mm",
+     "square to its rail", "lai-hybrid"},
+    {"StageRods", "rods = \"ahead\"", "rods = \"up\"", "stage.rods", "up", "\"ahead\", \"behind\"",
+     "choose", "lai-hybrid"},
+    {"StageTurnsTooFar", "turn_max_deg = 60", "turn_max_deg = 88", "stage.turn_max_deg", "88",
+     "below 87.", "dead point", "lai-hybrid"},
+    {"StageTurnsLessThanTheJoint", "turn_max_deg = 60", "turn_max_deg = 59", "stage.turn_max_deg",
+     "59", "at least 60 deg, the travel of theta1", "travel_deg", "lai-hybrid"},
+    {"StageDriveNamedLikeAJoint", "drives = [\"u1\", \"u2\"]", "drives = [\"u1\", \"b3\"]",
+     "stage.drives", "b3", "two names that nothing else has", "sliders", "lai-hybrid"},
+    {"StageOneDrive", "drives = [\"u1\", \"u2\"]", "drives = [\"u1\"]", "stage.drives", "u1", "2",
+     "sliders", "lai-hybrid"},
+    {"StageDriveWithoutLimits", "[stage.u1]", "[stage.u3]", "stage.u1", "", "", "", "lai-hybrid"},
+    {"StageDriveNotAtHome", "travel_mm = [-625, 45]", "travel_mm = [-200, 45]",
+     "stage.u1.travel_mm", "-200", "holds -300 mm", "home", "lai-hybrid"},
+    {"StageDriveOfHome", "travel_mm = [-625, 45]", "travel_mm = [-625, 45]\nhome_mm = 0",
+     "stage.u1.home_mm", "0", "", "", "lai-hybrid"},
+    {"StageDriveFasterThanAnything", "jerk_mm_per_s3 = 80000", "jerk_mm_per_s3 = 0",
+     "stage.u1.jerk_mm_per_s3", "0", "0.001", "number", "lai-hybrid"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Stage, WrongMachineFile, testing::ValuesIn(kStageMistakes),
+                         [](const auto& mistake) { return std::string(mistake.param.name); });
+
+/// The fault of lai-hybrid.toml where the first `from` is `to` instead.
+ConfigFault fault_of_hybrid(const std::vector<std::array<std::string, 2>>& changes) {
+  std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml");
+  for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
+  try {
+    (void)parse_machine(text, "hybrid");
+  } catch (const ConfigError& error) {
+    return error.fault();
+  }
+  return {};
+}
+
+TEST(WrongMachineFile, AScissorOnOneRailTurnsAsFarAsItsDeadPoint) {
+  const ConfigFault fault = fault_of_hybrid(
+      {{"kind = \"trailing\"", "kind = \"scissor\""}, {"turn_max_deg = 60", "turn_max_deg = 75"}});
+  EXPECT_EQ(fault.key, "stage.turn_max_deg");
+  EXPECT_NE(fault.allowed.find("below 6"), std::string::npos) << fault.allowed;
+}
+
+TEST(WrongMachineFile, AStageOfAJointThatTurnsWithoutEndIsRefused) {
+  const ConfigFault fault = fault_of_hybrid({{"travel_deg = [-60, 60]", "endless = true"}});
+  EXPECT_EQ(fault.key, "stage.rotary");
+  EXPECT_NE(fault.remedy.find("give theta1 travel_deg"), std::string::npos) << fault.remedy;
+}
+
+TEST(WrongMachineFile, GeometryOfAStageThatIsNoneIsRefused) {
+  const ConfigFault fault = fault_of_hybrid({{"kind = \"trailing\"", "kind = \"identity\""}});
+  EXPECT_EQ(fault.key.find("stage."), 0U) << fault.key;
 }
 
 const Mistake kMistakes[] = {
@@ -177,9 +251,11 @@ TEST(WrongMachineFile, ThatIsBinaryOrEmptyIsRefused) {
 TEST(WrongMachineFile, IsRefusedAtEveryKeyThatIsTakenAway) {
   // Keys that have a default may be missing; every other line of the file is needed.
   const std::vector<std::string> optional = {
-      "version",       "default_unit", "starve_auto_resume_s",
-      "bridge_cycles", "origin_mm",    "rotation_deg"};
-  const std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
+      "version",         "default_unit", "starve_auto_resume_s",
+      "bridge_cycles",   "origin_mm",    "rotation_deg",
+      "turn_offset_deg", "rods",         "slide_sign",
+      "slide_offset_mm", "turn_sign"};
+  const std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml");
   int needed = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;

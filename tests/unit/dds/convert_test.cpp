@@ -91,9 +91,9 @@ TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
   EXPECT_EQ((lost_bytes<Action, meridian_wire_Action>()), 4);          // 3 padding, 1 text
   EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
   EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 15);  // 9 padding, 3 flags, 3 texts
-  EXPECT_EQ(
-      (lost_bytes<MachineInfo, meridian_wire_Machine>()),
-      58);  // 3 padding, 1 flag, 4 clamped count, 8 texts; per joint 4 padding, 2 flags, 1 text
+  EXPECT_EQ((lost_bytes<MachineInfo, meridian_wire_Machine>()),
+            76);  // 3 padding, 1 flag, 8 clamped counts, 8 texts; per joint or drive 4 padding, 2
+                  // flags, 1 text
 }
 
 TEST(Convert, CutsLongTextsAndEndsEndlessOnes) {

@@ -84,6 +84,21 @@ TEST(Stage, JetsOfTheDrivesAreTheirDerivatives) {
   }
 }
 
+TEST(Stage, JointVelocitiesComeBackFromThoseOfTheDrives) {
+  for (const MachineModel& model : staged_machines()) {
+    const JointVector q{1, 70, 2, -35 * kDegree, 0.3}, velocity{3, -40, 5, 0.7, 0.1};
+    Joints<Jet<1>> moving;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      moving[i] = Jet<1>::with_derivative(q[i], velocity[i]);
+    }
+    const Joints<Jet<1>> u = drives_of(model, moving);
+    JointVector u_velocity{};
+    for (std::size_t i = 0; i < q.size(); ++i) u_velocity[i] = u[i].derivative(1);
+    const JointVector back = joint_velocity_of(model, q, u_velocity);
+    for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(back[i], velocity[i], 1e-12);
+  }
+}
+
 TEST(Stage, TheDeterminantIsThatOfItsDerivatives) {
   for (const MachineModel& model : staged_machines()) {
     for (const double turn : {-55.0, -10.0, 0.0, 35.0, 60.0}) {
