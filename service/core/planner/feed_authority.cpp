@@ -24,9 +24,9 @@ PathState slowed(const PathState& state, double rate) noexcept {
 
 }  // namespace
 
-FeedAuthority::FeedAuthority(const MachineModel& model) noexcept : count_(model.joint_count) {
+FeedAuthority::FeedAuthority(const MachineModel& model) noexcept : count_(limited_count(model)) {
   for (int i = 0; i < count_; ++i) {
-    const JointLimits& limits = model.joints[i].limits;
+    const JointLimits& limits = limited_spec(model, i).limits;
     hold_.caps.velocity[i] = fault_.caps.velocity[i] = 1 / limits.velocity;
     hold_.caps.acceleration[i] = 1 / (kShare * limits.acceleration);
     hold_.caps.jerk[i] = 1 / (kShare * limits.jerk);

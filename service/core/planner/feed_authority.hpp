@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/time_piece.hpp"
 #include "meridian/rt/stop_law.hpp"
 #include "service/core/planner/feed_cells.hpp"
@@ -33,7 +33,7 @@ class FeedAuthority {
 
   /// One over the limits.
   struct Caps {
-    JointVector velocity{}, acceleration{}, jerk{};
+    LimitedVector velocity{}, acceleration{}, jerk{};
   };
   /// A place in the ladder.
   struct Rung {

@@ -72,15 +72,22 @@ PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& re
   const double share = square(settings_.feed_share);
   double b = std::min(1 / kNone, share * square(span.band.u_speed_mm_per_s));
   b = std::min(b, share * square(span.band.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
-  for (int i = 0; i < limits_.count; ++i) {
-    reference[i] = value_of(at.q[i]);
-    const double d1 = out.d1[i] = at.q[i].derivative(1);
-    const double d2 = out.d2[i] = at.q[i].derivative(2);
-    const double d3 = out.d3[i] = at.q[i].derivative(3);
+  const auto take = [&](int i, const Jet<3>& q) {
+    const double d1 = out.d1[i] = q.derivative(1);
+    const double d2 = out.d2[i] = q.derivative(2);
+    const double d3 = out.d3[i] = q.derivative(3);
     b = std::min(b, square(limits_.velocity[i] / std::max(std::abs(d1), kNone)));
     b = std::min(b, limits_.acceleration[i] / std::max(std::abs(d2), kNone));
     // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
     b = std::min(b, 4 * std::pow(limits_.jerk[i] / std::max(std::abs(d3), kNone), 2.0 / 3.0));
+  };
+  for (int i = 0; i < model_.joint_count; ++i) {
+    reference[i] = value_of(at.q[i]);
+    take(i, at.q[i]);
+  }
+  if (has_stage(model_)) {
+    const Limited<Jet<3>> all = limited_of(model_, at.q);
+    for (int i = model_.joint_count; i < limits_.count; ++i) take(i, all[i]);
   }
   if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
   out.most_b = b;
@@ -194,9 +201,9 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     cell.most_b = std::min(cell.most_b, at.most_b);
     if (const int joint = first_joint_outside_travel(model_, reference, kTravelMargin);
         joint >= 0) {
-      return {PathFault::Kind::kTravel, joint, reference[joint]};
+      return {PathFault::Kind::kTravel, joint, limited_value(model_, reference, joint)};
     }
-    for (int i = 0; i < limits_.count; ++i) {
+    for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];
       if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
         return {PathFault::Kind::kJump, i, jump};

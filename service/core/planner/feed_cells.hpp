@@ -15,10 +15,10 @@
 /// cell. Units: mm, rad, s. Source: docs/motion.md, section 8.
 namespace meridian {
 
-/// Derivatives of the joints by u at one place, and the largest u̇² that feed, velocity, and the
-/// curvature terms of acceleration and jerk allow there.
+/// Derivatives of joints and drives by u at one place, and the largest u̇² that feed, velocity, and
+/// the curvature terms of acceleration and jerk allow there.
 struct CellSample {
-  JointVector d1{}, d2{}, d3{};
+  LimitedVector d1{}, d2{}, d3{};
   double most_b = 0;
 };
 

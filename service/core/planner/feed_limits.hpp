@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/rate_limits.hpp"
 
 namespace meridian {
@@ -12,12 +12,13 @@ struct RateReserve {
   double curvature = kRateCurvature_per_s2;
 };
 
-/// What a plan of the feed may use of every joint: the machine's limits less what the rate filter
-/// may add. With |q̈| + slope |q̇| <= acceleration and |q⃛| <= jerk every run of the plan at a rate
-/// in [0, 1] stays inside the machine's limits (docs/motion.md, eq. 8.3). Units: mm, rad, s.
+/// What a plan of the feed may use of every joint and drive of the stage: the machine's limits less
+/// what the rate filter may add. With |q̈| + slope |q̇| <= acceleration and |q⃛| <= jerk every run of
+/// the plan at a rate in [0, 1] stays inside the machine's limits (docs/motion.md, eq. 8.3). Units:
+/// mm, rad, s.
 struct FeedLimits {
   int count = 0;
-  JointVector velocity{}, acceleration{}, jerk{};
+  LimitedVector velocity{}, acceleration{}, jerk{};
   double slope = 0;  ///< of the rate, 1/s
 
   /// Every limit times a share.

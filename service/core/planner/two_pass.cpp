@@ -17,7 +17,7 @@ struct Row {
 };
 
 struct Rows {
-  std::array<Row, 4 * kMaxJoints> row;
+  std::array<Row, 4 * kMaxLimited> row;
   int count = 0;
 
   Rows(const FeedCell& cell, const FeedLimits& limits) noexcept {

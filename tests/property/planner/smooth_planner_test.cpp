@@ -150,6 +150,29 @@ TEST(SmoothPlanner, EasesTheAxisAsFarAsThePoleHasATolerance) {
   EXPECT_LT(eased.duration_s(), 1);
 }
 
+/// The hostile program with its axes drawn into what a stage reaches, and weak sliders.
+TEST(SmoothPlanner, KeepsTheLimitsOfJointsAndDrivesBehindAStage) {
+  MachineModel model = hybrid_machine();
+  model.joints[4].limits.travel_max = 1.5;
+  for (JointSpec& drive : model.stage_drives) {
+    drive.limits.velocity = 60;
+    drive.limits.acceleration = 500;
+    drive.limits.jerk = 15000;
+  }
+  Peaks peaks;
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    auto blocks = hostile(seed, 8);
+    for (ClBlock& block : blocks) {
+      const Vector3 leaning = 0.25 * to_vector(block.axis) + Vector3(0.5, 0, 0.7);
+      if (is_motion(block.kind)) block.axis = to_array(leaning.normalized());
+    }
+    const JointVector start = joints_of(model, blocks[0]);
+    judge(model, plan_smooth(model, blocks, start), blocks, start, peaks);
+  }
+  print("behind a stage", peaks);
+}
+
 TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
   const MachineModel model = lai_machine();
   Peaks peaks;
