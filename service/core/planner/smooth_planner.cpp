@@ -60,8 +60,7 @@ struct SmoothPlanner::Workspace {
 
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
   if (settings.transition.value_or(model.transition) != Transition::kSmooth) return {};
-  if (block.kind != BlockKind::kCut) return {};
-  if (has_stage(model) || plain.junction().is_first) return {};
+  if (block.kind != BlockKind::kCut || plain.junction().is_first) return {};
   if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return {};
   const auto unit = UnitVector3::near_unit(to_vector(block.axis));
   if (!unit || !to_vector(block.tip_mm).allFinite()) return {};

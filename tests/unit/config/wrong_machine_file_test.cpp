@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -105,9 +104,15 @@ INSTANTIATE_TEST_SUITE_P(Stage, WrongMachineFile, testing::ValuesIn(kStageMistak
                          [](const auto& mistake) { return std::string(mistake.param.name); });
 
 /// The fault of lai-hybrid.toml where the first `from` is `to` instead.
-ConfigFault fault_of_hybrid(const std::vector<std::array<std::string, 2>>& changes) {
+struct Change {
+  const char* from;
+  const char* to;
+};
+ConfigFault fault_of_hybrid(const std::vector<Change>& changes) {
   std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml");
-  for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
+  for (const Change& change : changes) {
+    text.replace(text.find(change.from), std::string(change.from).size(), change.to);
+  }
   try {
     (void)parse_machine(text, "hybrid");
   } catch (const ConfigError& error) {

@@ -92,7 +92,7 @@ TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
   EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
   EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 15);  // 9 padding, 3 flags, 3 texts
   EXPECT_EQ((lost_bytes<MachineInfo, meridian_wire_Machine>()),
-            76);  // 3 padding, 1 flag, 8 clamped counts, 8 texts; per joint or drive 4 padding, 2
+            80);  // 7 padding, 1 flag, 8 clamped counts, 8 texts; per joint or drive 4 padding, 2
                   // flags, 1 text
 }
 
