@@ -22,6 +22,12 @@ int main(int argc, char** argv) {
   std::uint64_t checksum = 0;
   if (workload == "inverse_kinematics") {
     checksum = meridian::bench::run_inverse_kinematics(count);
+  } else if (workload == "inverse_kinematics_chain") {
+    checksum = meridian::bench::run_chain(count);
+  } else if (workload == "inverse_kinematics_robot_5r") {
+    checksum = meridian::bench::run_robot_5r(count);
+  } else if (workload == "inverse_kinematics_robot_6r") {
+    checksum = meridian::bench::run_robot_6r(count);
   } else if (workload == "cycle") {
     checksum = meridian::bench::run_cycle(count);
   } else if (workload == "planner") {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "support/family_machines.hpp"
 #include "support/machines.hpp"
 
 /// One workload for the benchmark that measures time and for the gate that counts instructions.
@@ -34,11 +35,10 @@ inline constexpr int kPoses = 1024;
   return poses.data();
 }
 
-/// Solves the inverse kinematics of the Lai machine `n` times along the path, branch and winding
-/// followed from the solve before. Returns a checksum of the joints, so that nothing is optimised
-/// away and two builds can be compared.
-[[nodiscard]] inline std::uint64_t run_inverse_kinematics(int n) noexcept {
-  static const MachineModel model = test::lai_machine();
+/// Solves the inverse kinematics of `model` `n` times along the path, branch and winding followed
+/// from the solve before. Returns a checksum of the joints, so that nothing is optimised away and
+/// two builds can be compared.
+[[nodiscard]] inline std::uint64_t solve_path(const MachineModel& model, int n) noexcept {
   const ToolPose* poses = path_poses();
   JointVector q{};
   std::uint64_t sum = 0;
@@ -49,6 +49,25 @@ inline constexpr int kPoses = 1024;
     sum += bits;
   }
   return sum;
+}
+
+/// The machine of Lai et al.
+[[nodiscard]] inline std::uint64_t run_inverse_kinematics(int n) noexcept {
+  static const MachineModel model = test::lai_machine();
+  return solve_path(model, n);
+}
+/// A trunnion by the closed form of any chain.
+[[nodiscard]] inline std::uint64_t run_chain(int n) noexcept {
+  static const MachineModel model = test::trunnion_machine();
+  return solve_path(model, n);
+}
+[[nodiscard]] inline std::uint64_t run_robot_5r(int n) noexcept {
+  static const MachineModel model = test::robot_machine(false);
+  return solve_path(model, n);
+}
+[[nodiscard]] inline std::uint64_t run_robot_6r(int n) noexcept {
+  static const MachineModel model = test::robot_machine(true);
+  return solve_path(model, n);
 }
 
 }  // namespace meridian::bench

@@ -63,6 +63,15 @@ void expect_within_budget(const std::string& workload, int calls) {
 }
 
 TEST(InstructionGate, InverseKinematics) { expect_within_budget("inverse_kinematics", 4096); }
+TEST(InstructionGate, InverseKinematicsOfAnyChain) {
+  expect_within_budget("inverse_kinematics_chain", 4096);
+}
+TEST(InstructionGate, InverseKinematicsOfRobot5R) {
+  expect_within_budget("inverse_kinematics_robot_5r", 4096);
+}
+TEST(InstructionGate, InverseKinematicsOfRobot6R) {
+  expect_within_budget("inverse_kinematics_robot_6r", 4096);
+}
 TEST(InstructionGate, Cycle) { expect_within_budget("cycle", 8000); }
 TEST(InstructionGate, Planner) { expect_within_budget("planner", 100); }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "meridian/geometry/atan2.hpp"
 #include "meridian/geometry/jet.hpp"
 #include "meridian/geometry/vector3.hpp"
 
@@ -13,7 +14,7 @@ namespace meridian {
 /// arc cosine). Their lengths do not matter; a zero vector gives 0. Unit: rad.
 /// Proof: tests/unit/geometry/great_circle_test.cpp.
 [[nodiscard]] inline double angle_between(const Vector3& a, const Vector3& b) noexcept {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// The way of the tool axis from one block to the next: axis(φ) = cos(φ) begin + sin(φ) normal for
@@ -35,7 +36,7 @@ struct GreatCircle {
   // direction.
   const Vector3 pole = begin.cross(Vector3(end - begin));
   const double sine = pole.norm();
-  const double turn = std::atan2(sine, begin.dot(end));
+  const double turn = atan2(sine, begin.dot(end));
   Vector3 normal = pole.cross(begin);
   const double length = normal.norm();
   if (length < 1e-9 && begin.dot(end) < 0) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "meridian/geometry/atan2.hpp"
+
 namespace meridian {
 
 /// A number with its first `N` derivatives by one variable: the truncated Taylor arithmetic that
@@ -178,7 +180,7 @@ template <int N>
 /// Angle of the point (x, y) from its derivative (x y' - y x')/(x² + y²).
 template <int N>
 [[nodiscard]] inline Jet<N> atan2(const Jet<N>& y, const Jet<N>& x) noexcept {
-  Jet<N> out(std::atan2(y.c[0], x.c[0]));
+  Jet<N> out(atan2(y.c[0], x.c[0]));
   const Jet<N> square = x * x + y * y;
   for (int k = 0; k < N; ++k) {  // (k+1) out[k+1] is coefficient k of the derivative
     double sum = 0;

@@ -47,6 +47,8 @@ struct ChainKinematics {
   };
   Rotary a, b;
   std::array<Linear, 3> linear;
+  int group = -1;  ///< of all three linear joints; -1: rotary joints stand between them
+  Eigen::Matrix3d place = Eigen::Matrix3d::Identity();  ///< inverse of the linear directions
 
   Vector3 azimuth_sin, azimuth_cos;  ///< of K about a, from b: dot products, eq. 4.7
   Vector3 tilt_sin, tilt_cos;        ///< of the axis about b, from k0: dot products, eq. 4.11
@@ -168,6 +170,33 @@ template <class S>
   return t;
 }
 
+/// What the linear joints have to add for the tip to come to `tip`, in the frame where they stand:
+/// eq. 4.9 of a machine whose linear joints are neighbours.
+template <class S>
+[[nodiscard]] inline Vec3<S> way_of_slides(const ChainKinematics& k, double tool_length_mm,
+                                           const Vec3<S>& tip, const SinCos<S>& a,
+                                           const SinCos<S>& b) noexcept {
+  const Vector3 a_to_b = k.b.point_mm - k.a.point_mm;
+  const Vector3 from_b = k.gauge_mm - tool_length_mm * k.home_axis - k.b.point_mm;
+  Vec3<S> way{tip[0] - k.a.point_mm[0], tip[1] - k.a.point_mm[1], tip[2] - k.a.point_mm[2]};
+  Vec3<S> there;
+  if (k.group == 2) {
+    way = turn<S>(k.a.axis, SinCos<S>{-a.sin, a.cos}, way);
+    for (int i = 0; i < 3; ++i) way[i] -= a_to_b[i];
+    way = turn<S>(k.b.axis, SinCos<S>{-b.sin, b.cos}, way);
+    there = {S(from_b[0]), S(from_b[1]), S(from_b[2])};
+  } else {
+    there = turn<S>(k.b.axis, b, from_b);
+    for (int i = 0; i < 3; ++i) there[i] += a_to_b[i];
+    if (k.group == 0) {
+      there = turn<S>(k.a.axis, a, there);
+    } else {
+      way = turn<S>(k.a.axis, SinCos<S>{-a.sin, a.cos}, way);
+    }
+  }
+  return {way[0] - there[0], way[1] - there[1], way[2] - there[2]};
+}
+
 /// The linear joints that put the tip on `tip` with the rotary joints as given, eq. 4.9. Returns
 /// whether the linear directions span space there.
 template <class S>
@@ -175,6 +204,14 @@ template <class S>
                                     const Vec3<S>& tip, const SinCos<S>& a, const SinCos<S>& b,
                                     Joints<S>& q) noexcept {
   constexpr double kLeastVolume = 1e-9;
+  if (k.group >= 0) {
+    const Vec3<S> way = way_of_slides(k, tool_length_mm, tip, a, b);
+    for (int i = 0; i < 3; ++i) {
+      q[k.linear[i].joint] =
+          k.place(i, 0) * way[0] + k.place(i, 1) * way[1] + k.place(i, 2) * way[2];
+    }
+    return true;
+  }
   const Vec3<S> start = unmoved_tip(k, tool_length_mm, a, b);
   const Vec3<S> way{tip[0] - start[0], tip[1] - start[1], tip[2] - start[2]};
   const std::array<Vec3<S>, 3> d{column(k, 0, a, b), column(k, 1, a, b), column(k, 2, a, b)};
@@ -191,7 +228,6 @@ template <class S>
 template <class S>
 [[nodiscard]] inline bool solve(const ChainKinematics& k, double tool_length_mm,
                                 const Pose<S>& pose, double branch_sign, Joints<S>& q) noexcept {
-  using std::atan2;
   const Triangle<S> t = triangle(k, pose.axis);
   if (!t.is_reachable) return false;
   const S twice_root = (2.0 * branch_sign) * t.root;
@@ -216,7 +252,6 @@ template <class S>
 template <class S>
 [[nodiscard]] inline bool solve_held(const ChainKinematics& k, double tool_length_mm,
                                      const Pose<S>& pose, const S& free, Joints<S>& q) noexcept {
-  using std::atan2;
   const SinCos<S> a = sin_cos(S(k.a.sign * free));
   const SinCos<S> back{-a.sin, a.cos};
   const Vec3<S> z = turn<S>(k.a.axis, back, pose.axis);

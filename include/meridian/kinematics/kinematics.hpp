@@ -117,7 +117,7 @@ template <class S>
     case MachineFamily::kLai:
       break;
   }
-  return std::atan2(hypot(k[0], k[1]), std::abs(k[2]));
+  return atan2(hypot(k[0], k[1]), std::abs(k[2]));
 }
 
 namespace detail {

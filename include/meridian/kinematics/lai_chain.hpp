@@ -43,7 +43,6 @@ template <class S>
 [[nodiscard]] inline Joints<S> solve(const LaiKinematics& constants, double length,
                                      const Pose<S>& pose, double branch_sign,
                                      const S& radius) noexcept {
-  using std::atan2;
   const S x = branch_sign * pose.axis[0];
   const S y = branch_sign * pose.axis[1];
   const S r = branch_sign * radius;
@@ -62,7 +61,6 @@ template <class S>
 template <class S>
 [[nodiscard]] inline Joints<S> solve_held(const LaiKinematics& constants, double length,
                                           const Pose<S>& pose, const S& theta1) noexcept {
-  using std::atan2;
   const SinCos<S> turn = sin_cos(theta1);
   const S along = pose.axis[0] * turn.cos + pose.axis[1] * turn.sin;
   const S per_norm = 1.0 / hypot(along, pose.axis[2]);

@@ -97,7 +97,6 @@ template <class S>
 [[nodiscard]] inline ArmSolution<S> solve_arm(const RobotKinematics& k, double tool_length_mm,
                                               const Pose<S>& pose, const BranchSigns& sign,
                                               const JointVector& reference, Joints<S>& q) noexcept {
-  using std::atan2;
   using std::sqrt;
   const double d = k.wrist_mm + tool_length_mm;
   const double b = k.upper_arm_mm, c = k.forearm_mm, span = b + c;
@@ -143,7 +142,6 @@ template <class S>
 [[nodiscard]] inline bool solve(const RobotKinematics& k, double tool_length_mm,
                                 const Pose<S>& pose, int branch, const JointVector& reference,
                                 Joints<S>& q, bool& is_held) noexcept {
-  using std::atan2;
   q = {};
   const BranchSigns sign = signs_of(branch);
   const ArmSolution<S> arm = solve_arm(k, tool_length_mm, pose, sign, reference, q);

@@ -86,16 +86,16 @@ template <class S>
   const double u1 = u[g.linear_joint], u2 = u[g.rotary_joint], r = g.radius_mm, h = g.rail_mm;
   double s = 0.5 * (u1 + u2), phi = 0;
   if (g.kind == StageKind::kPinSlot) {
-    phi = std::atan2(u2 - u1, 2.0 * h);
+    phi = atan2(u2 - u1, 2.0 * h);
   } else if (g.side1 == g.side2) {
     const double x = (u2 - u1) / (2.0 * r);
-    phi = std::atan2(x, std::sqrt((1.0 - x) * (1.0 + x)));
+    phi = atan2(x, std::sqrt((1.0 - x) * (1.0 + x)));
     const double d = r * std::cos(phi) - h;
     s += g.side1 * std::sqrt((g.rod_mm - d) * (g.rod_mm + d));
   } else {
     const double d = 0.5 * g.side1 * (u2 - u1);
     const double n = (d * d + r * r + h * h - g.rod_mm * g.rod_mm) / (2.0 * r);
-    phi = g.side1 * (std::atan2(d, h) - std::atan2(std::sqrt(d * d + h * h - n * n), n));
+    phi = g.side1 * (atan2(d, h) - std::atan2(std::sqrt(d * d + h * h - n * n), n));
   }
   JointVector q = u;
   q[g.linear_joint] = (s - g.offset_s_mm) * g.sign_s;

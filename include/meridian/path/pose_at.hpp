@@ -15,7 +15,6 @@ namespace meridian {
 /// RT: cycle.
 template <class S>
 [[nodiscard]] inline S fraction_at(const PathPiece& piece, const S& s) noexcept {
-  using std::atan2;
   const S share = s / piece.length;
   if (!piece.is_azimuthal) return share;
   const auto [sine, cosine] =

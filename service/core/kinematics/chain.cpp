@@ -13,7 +13,7 @@ namespace {
 constexpr double kNominal = 1e-12;
 
 double angle_between(const Vector3& a, const Vector3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// A sine or cosine that is nominally zero is zero: poles and reach of orthogonal machines exact.
@@ -73,6 +73,12 @@ void work_out_constants(ChainKinematics& k) {
   const double norm = std::hypot(x, y);
   k.b0_sin = snapped(y / norm);
   k.b0_cos = snapped(x / norm);
+  const bool are_neighbours =
+      k.linear[0].group == k.linear[1].group && k.linear[1].group == k.linear[2].group;
+  k.group = are_neighbours ? k.linear[0].group : -1;
+  Eigen::Matrix3d directions;
+  for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
+  k.place = directions.inverse();
 }
 
 }  // namespace

@@ -143,13 +143,13 @@ PathPiece cut_piece(const PathPiece& piece, double from, double to) noexcept {
 
 PolePassage find_passage(const PathPiece& piece, const Vector3& pole) noexcept {
   const Vector3 begin = to_vector(piece.axis_begin), normal = to_vector(piece.axis_normal);
-  return {std::atan2(normal.dot(pole), begin.dot(pole)), std::abs(begin.cross(normal).dot(pole))};
+  return {atan2(normal.dot(pole), begin.dot(pole)), std::abs(begin.cross(normal).dot(pole))};
 }
 
 PathPiece cut_by_azimuth(const PathPiece& piece, const PolePassage& passage, double from,
                          double to) noexcept {
   const auto turn_at = [&passage](double azimuth) {
-    return std::atan2(passage.offset * std::sin(azimuth), std::cos(azimuth));
+    return atan2(passage.offset * std::sin(azimuth), std::cos(azimuth));
   };
   const double first = turn_at(from), last = turn_at(to);
   PathPiece part = piece;

@@ -106,7 +106,7 @@ void LegPlanner::place_nodes(const PathPiece& path) noexcept {
   if (node_count_ == 2) return;
   for (int n = 0; n < node_count_; ++n) {
     const double u = nodes_[n].turn - passage_.nearest_turn;
-    nodes_[n].azimuth = std::atan2(std::sin(u), passage_.offset * std::cos(u));
+    nodes_[n].azimuth = atan2(std::sin(u), passage_.offset * std::cos(u));
     nodes_[n].has_azimuth = std::abs(nodes_[n].azimuth) < kLargestAzimuth_rad;
   }
 }
