@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -72,7 +73,8 @@ class MutatedRecording : public testing::Test {
       CycleRecord record;
       record.setpoint.cycle = row.cycle;
       record.setpoint.due_ns = row.due_ns;
-      record.setpoint.velocity = row.velocity;
+      std::copy_n(row.velocity.begin(), record.setpoint.velocity.size(),
+                  record.setpoint.velocity.begin());
       record.setpoint.line = row.line;
       record.setpoint.flags = row.flags;
       record.joints = row.joints;

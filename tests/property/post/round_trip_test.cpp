@@ -265,9 +265,12 @@ TEST_P(PostRoundTrip, ToolCentreWordsGiveTheClPathBackInEveryDialect) {
   }
 }
 
+/// All but those with a stage, which the postprocessor refuses: its joint words are not what drives
+/// do.
 std::vector<std::string> shipped_machines() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+    if (has_stage(config::load_machine(entry.path().string()))) continue;
     names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
