@@ -20,10 +20,10 @@ bool write_sample(std::string_view name, std::ostream& out);
 /// `blossom`: a rose of three petals cut into a dome of 100 mm radius, ball-end tool along the
 /// normal.
 ///
-/// With signed radius r = R cos 3φ the rose runs through its middle three times straight on, so that
-/// a machine with its C axis through the dome's top turns C once slowly by half a turn while the
-/// head swings through vertical to 35° either way: simultaneous five-axis motion through the pole.
-/// Frame: W at the dome's top, z up. Units: mm.
+/// With signed radius r = R cos 3φ the rose runs through its middle three times straight on, so
+/// that a machine with its C axis through the dome's top turns C once slowly by half a turn while
+/// the head swings through vertical to 35° either way: simultaneous five-axis motion through the
+/// pole. Frame: W at the dome's top, z up. Units: mm.
 [[nodiscard]] std::vector<ClBlock> blossom();
 
 }  // namespace meridian::surface

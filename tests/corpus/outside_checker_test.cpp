@@ -51,9 +51,9 @@ class OutsideChecker : public testing::Test {
     std::snprintf(options, sizeof options,
                   " --l %.17g --e %.17g --h %.17g --cycle-ns %lld --tip-tolerance %g "
                   "--axis-tolerance-deg %g",
-                  model.lai.pivot_mm + model.tool_length_mm, model.lai.e_mm,
-                  model.lai.h_mm, static_cast<long long>(model.cycle_ns),
-                  test::kTipTolerance_mm, test::kAxisTolerance_deg);
+                  model.lai.pivot_mm + model.tool_length_mm, model.lai.e_mm, model.lai.h_mm,
+                  static_cast<long long>(model.cycle_ns), test::kTipTolerance_mm,
+                  test::kAxisTolerance_deg);
     return std::system((python + "'" + checker_.string() + "' '" + simulated.recording().string() +
                         "' '" + dense + "' --limits '" + (scratch_ / "limits.json").string() + "'" +
                         options)

@@ -98,8 +98,8 @@ inline void wait_at_barrier(Cycle& c) noexcept {
   }
 }
 
-/// At a rest of the plan: the override of the piece that begins is in force at once. Returns the plan
-/// time that `beyond` at the old rate is at the new one, never more than a period of it.
+/// At a rest of the plan: the override of the piece that begins is in force at once. Returns the
+/// plan time that `beyond` at the old rate is at the new one, never more than a period of it.
 [[nodiscard]] inline double take_up_override(Cycle& c, double beyond) noexcept {
   const double old_rate = c.state.rate.rate();
   aim_rate(c);
