@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/inspect/machine_picture.hpp"
 
-#include <sys/wait.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,15 +10,12 @@
 #include <numbers>
 #include <vector>
 
+#include "service/plot/gnuplot.hpp"
+
 namespace meridian::inspect {
 namespace {
 
-/// gnuplot's single-quoted string.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
+using plot::quoted;
 
 void print(std::FILE* out, const Vector3& p) {
   std::fprintf(out, "%.6g %.6g %.6g", p[0], p[1], p[2]);
@@ -222,25 +217,15 @@ void print_views(std::FILE* out, const Scene& scene) {
 
 std::optional<std::string> draw(const MachineModel& model, const Skeleton& skeleton,
                                 const std::string& file) {
-  const bool is_svg = file.ends_with(".svg");
-  if (!is_svg && !file.ends_with(".png")) {
-    return file + ": no picture format that is known; end the name in .png or .svg";
-  }
-  std::FILE* gnuplot = ::popen("gnuplot", "w");
-  if (gnuplot == nullptr) return file + ": gnuplot cannot be started; install gnuplot-nox";
   const Scene scene(model, skeleton);
-  print_scene(gnuplot, scene);
   const char* where = model.family == MachineFamily::kRobot ? "at home" : "every joint at zero";
-  std::fprintf(gnuplot,
-               "set terminal %s size 1200,1000 background '#ffffff' font 'sans,%d' noenhanced\n"
-               "set output %s\nset multiplot title %s\nset border lc '#888888'\n",
-               is_svg ? "svg" : "pngcairo", is_svg ? 14 : 10, quoted(file).c_str(),
-               quoted(model.name + ", " + where + "; arrows: positive motion").c_str());
-  print_views(gnuplot, scene);
-  std::fputs("unset multiplot\nset output\n", gnuplot);
-  const int status = ::pclose(gnuplot);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return std::nullopt;
-  return file + ": gnuplot failed; install gnuplot-nox; is the folder writable?";
+  const std::string title = model.name + ", " + where + "; arrows: positive motion";
+  const auto error = plot::draw(file, {1200, 1000, 14, 10}, [&](std::FILE* out) {
+    print_scene(out, scene);
+    std::fprintf(out, "set multiplot title %s\nset border lc '#888888'\n", quoted(title).c_str());
+    print_views(out, scene);
+  });
+  return error ? std::optional(error->text()) : std::nullopt;
 }
 
 }  // namespace meridian::inspect

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/record/picture.hpp"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 #include "meridian/units.hpp"
+#include "service/plot/gnuplot.hpp"
 #include "service/record/picture_data.hpp"
 
 namespace meridian::record {
@@ -21,12 +19,7 @@ constexpr const char* kRateLabels[] = {"velocity", "accel.", "jerk"};
 constexpr const char* kColours[kMaxJoints] = {"#1f5fa8", "#2a9d5c", "#e08214",
                                               "#c22f4f", "#7b4fa3", "#444444"};
 
-/// gnuplot's single-quoted string.
-[[nodiscard]] std::string quoted(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
+using plot::quoted;
 
 [[nodiscard]] double at_edge(const JointSpec& joint, double value) {
   return joint.is_rotary ? units::deg_from_rad(value) : value;
@@ -212,12 +205,8 @@ void print_space(std::FILE* out, const PictureData& data) {
 }
 
 void print_script(std::FILE* out, const PictureData& data, const MachineModel& model,
-                  const std::string& title, const std::string& file, bool is_svg) {
+                  const std::string& title) {
   print_data(out, data, model);
-  std::fprintf(out,
-               "set terminal %s size 1800,1260 background '#ffffff' font 'sans,%d' noenhanced\n",
-               is_svg ? "svg" : "pngcairo", is_svg ? 18 : 15);
-  std::fprintf(out, "set output %s\n", quoted(file).c_str());
   std::fprintf(out, "set multiplot title %s font ',20'\n", quoted(title).c_str());
   print_space(out, data);
   std::fputs(
@@ -248,7 +237,6 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
   std::fputs("set xlabel 'time, s' offset 0,0.6\nset format x '%g'\nset bmargin at screen 0.065\n",
              out);
   print_largest(out, model, 2);
-  std::fputs("unset multiplot\nset output\n", out);
 }
 
 }  // namespace
@@ -256,23 +244,16 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
 std::optional<RecordError> draw(RecordingReader& recording, const CheckedPath& path,
                                 const MachineModel& model, const std::string& title,
                                 const std::string& file) {
-  const bool is_svg = file.ends_with(".svg");
-  if (!is_svg && !file.ends_with(".png")) {
-    return RecordError{file, 0, "no picture format that is known", "end the name in .png or .svg"};
-  }
   PictureData data;
   if (auto error = gather(recording, path, model, kColumns, data)) return error;
-  std::FILE* gnuplot = ::popen("gnuplot", "w");
-  if (gnuplot == nullptr) {
-    return RecordError{file, 0, "gnuplot cannot be started", "install gnuplot-nox"};
-  }
   char behind[160];
   std::snprintf(behind, sizeof behind, "machine %s, %.1f s", model.name.c_str(),
                 data.columns.back().time_s);
-  print_script(gnuplot, data, model, title.empty() ? behind : title + ", " + behind, file, is_svg);
-  const int status = ::pclose(gnuplot);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return std::nullopt;
-  return RecordError{file, 0, "gnuplot failed", "install gnuplot-nox; is the folder writable?"};
+  const std::string whole = title.empty() ? behind : title + ", " + behind;
+  const auto error = plot::draw(file, {1800, 1260, 18, 15},
+                                [&](std::FILE* out) { print_script(out, data, model, whole); });
+  if (!error) return std::nullopt;
+  return RecordError{error->file, 0, error->message, error->remedy};
 }
 
 }  // namespace meridian::record

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/surface/surface_picture.hpp"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <vector>
 
+#include "service/plot/gnuplot.hpp"
 #include "service/surface/surface_report.hpp"
 
 namespace meridian::surface {
@@ -16,13 +15,6 @@ constexpr int kMesh = 40;           // pieces of the drawn surface, either way
 constexpr std::size_t kAxes = 150;  // drawn at most
 constexpr double kMicrometre_mm = 1e-3;
 constexpr double kMetre_mm = 1e3;
-
-/// gnuplot's single-quoted string.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
 
 std::vector<const Contact*> in_order(const SurfacePath& path) {
   std::vector<const Contact*> out;
@@ -89,15 +81,10 @@ void print_path(std::FILE* out, const PatchJob& job, const SurfacePath& path, do
   std::fputs("EOD\n", out);
 }
 
-void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path,
-                  const std::string& file, bool is_svg) {
+void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path) {
   print_surface(out, job);
   print_path(out, job, path, 0.06 * job.surface->size_mm());
-  std::fprintf(out,
-               "set terminal %s size 1500,850 background '#ffffff' font 'sans,%d' noenhanced\n"
-               "set output %s\nset multiplot title %s\n",
-               is_svg ? "svg" : "pngcairo", is_svg ? 14 : 11, quoted(file).c_str(),
-               quoted(job.name).c_str());
+  std::fprintf(out, "set multiplot title %s\n", plot::quoted(job.name).c_str());
   std::fputs(
       "set grid lc '#dddddd'\nset border lc '#555555'\nset size ratio 0\n"
       "set origin 0,0\nset size 0.6,0.95\nset view equal xyz\nset view 58,35,1.38\n"
@@ -122,8 +109,7 @@ void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path,
       "unset title\nunset view\nunset colorbox\n"
       "set xrange [*:*]\nset origin 0.62,0.03\nset size 0.37,0.37\nset xlabel 'block'\n"
       "set ylabel 'chord error, um'\nset yrange [0:*]\n"
-      "plot $chords using 1:2 with impulses lc '#1f5fa8' notitle\n"
-      "unset multiplot\nset output\n",
+      "plot $chords using 1:2 with impulses lc '#1f5fa8' notitle\n",
       out);
 }
 
@@ -131,16 +117,9 @@ void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path,
 
 std::optional<std::string> draw(const PatchJob& job, const SurfacePath& path,
                                 const std::string& file) {
-  const bool is_svg = file.ends_with(".svg");
-  if (!is_svg && !file.ends_with(".png")) {
-    return file + ": no picture format that is known; end the name in .png or .svg";
-  }
-  std::FILE* gnuplot = ::popen("gnuplot", "w");
-  if (gnuplot == nullptr) return file + ": gnuplot cannot be started; install gnuplot-nox";
-  print_script(gnuplot, job, path, file, is_svg);
-  const int status = ::pclose(gnuplot);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return std::nullopt;
-  return file + ": gnuplot failed; install gnuplot-nox; is the folder writable?";
+  const auto error =
+      plot::draw(file, {1500, 850, 14, 11}, [&](std::FILE* out) { print_script(out, job, path); });
+  return error ? std::optional(error->text()) : std::nullopt;
 }
 
 }  // namespace meridian::surface
