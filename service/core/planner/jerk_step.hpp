@@ -59,7 +59,7 @@ class JerkStep {
 
  private:
   static constexpr int kLanes = 4;
-  static constexpr int kPacks = (8 * kMaxJoints + 2 + kLanes - 1) / kLanes;
+  static constexpr int kPacks = (8 * kMaxLimited + 2 + kLanes - 1) / kLanes;
   using Pack = Eigen::Array<double, kLanes, 1>;
   using Values = std::vector<double>;
 
