@@ -75,18 +75,10 @@ class JointProgram final : public Program {
   }
 
   void dwell(double seconds) override { block({"G4 P", fixed(seconds, 3)}); }
-  void spindle_off() override { block({"M5"}); }
-  void spindle_on(bool is_clockwise, double rev_per_min) override {
-    block({"S", fixed(rev_per_min, 0), is_clockwise ? " M3" : " M4"});
-  }
-  void coolant(const std::string& word) override { block({word}); }
   void change_tool(int number) override { block({"T", std::to_string(number), " M6"}); }
-  void stop(bool is_optional) override { block({is_optional ? "M1" : "M0"}); }
   void end() override {
     block({"G94"});
-    block({"M5"});
-    block({"M9"});
-    block({"M30"});
+    all_off();
     line({"%"});
   }
 

@@ -51,13 +51,15 @@ class Program {
   virtual void cut(const Target& to) = 0;
 
   virtual void dwell(double seconds) = 0;
-  virtual void spindle_off() = 0;
-  virtual void spindle_on(bool is_clockwise, double rev_per_min) = 0;
-  /// M7, M8, M9 or the machine's own word.
-  virtual void coolant(const std::string& word) = 0;
   virtual void change_tool(int number) = 0;
-  virtual void stop(bool is_optional) = 0;
   virtual void end() = 0;
+
+  /// In the words of ISO 6983 where a dialect has none of its own.
+  virtual void spindle_off();
+  virtual void spindle_on(bool is_clockwise, double rev_per_min);
+  /// M7, M8, M9 or the machine's own word.
+  virtual void coolant(const std::string& word);
+  virtual void stop(bool is_optional);
 
   /// Blocks from here on come from this line of the CL file: their N word where it is wanted.
   void at_line(std::uint32_t cl_line) noexcept { cl_line_ = cl_line; }
@@ -79,6 +81,9 @@ class Program {
     line(parts);
     ++blocks_;
   }
+
+  /// The end of a program: spindle and coolant off, M30.
+  void all_off();
 
   [[nodiscard]] std::uint32_t cl_line() const noexcept { return cl_line_; }
 
