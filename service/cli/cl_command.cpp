@@ -18,9 +18,7 @@ void add_cl_command(CLI::App& app, int& exit_code) {
       "cl",
       "A CL file as plain points, one `x y z i j k feed` a line (mm, mm/min; feed of the block "
       "that ends there, 0 for rapid; arcs as chords), or a summary of what was read");
-  command
-      ->add_option("file", options->run.file, "CL file (APT or CLDATA text); - is standard input")
-      ->required();
+  add_cl_file(*command, options->run.file);
   command->add_option("-o,--output", options->run.output, "Write to this file");
   command->add_flag("-s,--summary", options->run.summary, "Tell what was read, no points");
   command

@@ -1,10 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cli/cl_options.hpp"
 
+#include <iostream>
+
 #include "meridian/units.hpp"
 #include "service/config/machine_file.hpp"
 
 namespace meridian::cli {
+
+void add_cl_file(CLI::App& command, std::string& name) {
+  command.add_option("file", name, "CL file (APT or CLDATA text); - is standard input")->required();
+}
+
+std::istream* open_cl_file(const std::string& name, std::ifstream& file) {
+  if (name == "-") return &std::cin;
+  file.open(name, std::ios::binary);
+  return file ? &file : nullptr;
+}
+
+void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings) {
+  for (const cl::ClWarning& warning : warnings) {
+    std::cerr << name << ":" << warning.line << ": warning: " << warning.message << "\n";
+  }
+}
 
 void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
   command

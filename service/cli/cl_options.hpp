@@ -2,10 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <fstream>
+#include <istream>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "service/cl/cl_error.hpp"
 #include "service/cl/cl_options.hpp"
 
 namespace meridian::cli {
@@ -19,6 +22,15 @@ struct ClFileOptions {
   std::vector<std::string> allow_unknown;
   bool allow_no_end = false;
 };
+
+/// Adds the file itself; - is standard input.
+void add_cl_file(CLI::App& command, std::string& name);
+
+/// Standard input for "-", else `file`, opened; null where that fails.
+[[nodiscard]] std::istream* open_cl_file(const std::string& name, std::ifstream& file);
+
+/// What the reader found odd and took nevertheless, a line each on standard error.
+void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings);
 
 /// Adds --units, --feed, --allow-unknown, --allow-no-end and --arc-sense to `command`.
 void add_cl_file_options(CLI::App& command, ClFileOptions& options);

@@ -55,16 +55,11 @@ int run(Options options) {
     options.post.rapid_feed_mm_per_s = units::per_s_from_per_min(*options.rapid_feed_mm_per_min);
   }
   std::ifstream file;
-  if (options.file != "-") {
-    file.open(options.file, std::ios::binary);
-    if (!file) return refuse(options.file + ": cannot be opened");
-  }
-  cl::ClReader reader(options.file == "-" ? std::cin : file, options.file,
-                      reader_options(options.cl, model));
+  std::istream* const input = open_cl_file(options.file, file);
+  if (input == nullptr) return refuse(options.file + ": cannot be opened");
+  cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
   const auto program = post::write_nc(reader, options.file, model, tools, options.post);
-  for (const cl::ClWarning& warning : reader.warnings()) {
-    std::cerr << options.file << ":" << warning.line << ": warning: " << warning.message << "\n";
-  }
+  print_warnings(options.file, reader.warnings());
   if (!program) {
     const post::PostError& error = program.error();
     return refuse(options.file + (error.line > 0 ? ":" + std::to_string(error.line) : "") + ": " +
@@ -105,8 +100,7 @@ void add_post_command(CLI::App& app, int& exit_code) {
       "Write the NC program of a CL file. Branch, winding and poles as the service decides them; "
       "what cannot be expressed is refused with its line, and nothing is written then "
       "(docs/postprocessor.md)");
-  command->add_option("file", options->file, "CL file (APT or CLDATA text); - is standard input")
-      ->required();
+  add_cl_file(*command, options->file);
   add_machine_options(*command, options->machine, true);
   command->add_option("-o,--output", options->output, "Write to this file; else standard output");
   command

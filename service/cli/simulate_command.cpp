@@ -79,12 +79,9 @@ int run(const Options& options) {
     simulation.start = *drives;
   }
   std::ifstream file;
-  if (options.file != "-") {
-    file.open(options.file, std::ios::binary);
-    if (!file) return refuse(options.file + ": cannot be opened");
-  }
-  cl::ClReader reader(options.file == "-" ? std::cin : file, options.file,
-                      reader_options(options.cl, model));
+  std::istream* const input = open_cl_file(options.file, file);
+  if (input == nullptr) return refuse(options.file + ": cannot be opened");
+  cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
   std::optional<record::RecordingWriter> writer;
   if (!options.record.empty()) {
     auto created = record::RecordingWriter::create(options.record, model);
@@ -95,9 +92,7 @@ int run(const Options& options) {
       reader, options.file, model, tools, simulation, [&writer](const CycleRecord& row) {
         if (writer) (void)writer->write(row);
       });
-  for (const cl::ClWarning& warning : reader.warnings()) {
-    std::cerr << options.file << ":" << warning.line << ": warning: " << warning.message << "\n";
-  }
+  print_warnings(options.file, reader.warnings());
   std::cout << to_text(report, model);
   if (writer && !writer->close()) {
     return refuse(options.record + ": " + std::strerror(writer->error_number()));
@@ -114,8 +109,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "A CL file through planner and cycle as the service runs it, without DDS and clock: "
       "traversal "
       "time, nearest limits, recording. Actions (tool, spindle, coolant) are done at once");
-  command->add_option("file", options->file, "CL file (APT or CLDATA text); - is standard input")
-      ->required();
+  add_cl_file(*command, options->file);
   add_machine_options(*command, options->machine, true);
   command->add_option("-r,--record", options->record, "Write every cycle to this recording (CSV)");
   command->add_option("--events", options->events,

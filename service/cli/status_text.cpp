@@ -5,42 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::cli {
 
+using text::append;
+using text::Count;
+using text::json_quoted;
+
 namespace {
-
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-  char buffer[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  text += buffer;
-}
-
-unsigned long long big(std::uint64_t value) { return value; }
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (code < 0x20) {
-      append(out, "\\u%04x", code);
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
 
 std::size_t joint_count(const dds::MachineInfo& machine) {
   return std::min<std::size_t>(machine.joint_count, kMaxJoints);
@@ -76,15 +52,15 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
   if (!status.message.empty()) append(text, "message   %s\n", status.message.c_str());
   if (status.session != 0) {
     append(text, "program   %s from station %s\n", status.program.c_str(), status.station.c_str());
-    append(text, "block     %llu", big(status.block));
-    if (status.block_count > 0) append(text, " of %llu", big(status.block_count));
+    append(text, "block     %llu", Count{status.block});
+    if (status.block_count > 0) append(text, " of %llu", Count{status.block_count});
     append(text, ", line %u\n", status.line);
   }
   append(text, "feed      %.1f of %.1f mm/min, override %.0f %%, rapid override %.0f %%\n",
          status.feed_achieved_mm_per_min, status.feed_programmed_mm_per_min,
          status.feed_override * 100, status.rapid_override * 100);
   append(text, "buffer    %u blocks, %u pieces, %.2f s planned; starved %llu times\n",
-         status.blocks_queued, status.pieces_queued, status.planned_s, big(status.starvations));
+         status.blocks_queued, status.pieces_queued, status.planned_s, Count{status.starvations});
   append(text, "joints   ");
   for (std::size_t i = 0; i < joint_count(machine); ++i) {
     const dds::JointInfo& joint = machine.joints[i];
@@ -92,29 +68,29 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
            joint.is_rotary ? units::deg_from_rad(status.joints[i]) : status.joints[i],
            joint.is_rotary ? "deg" : "mm");
   }
-  append(text, "\ncycles    %llu run, %llu lost; %s, %s\n", big(status.cycles_run),
-         big(status.periods_lost),
+  append(text, "\ncycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
+         Count{status.periods_lost},
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "real time" : "best effort",
          status.is_secured ? "secured" : "open");
   if (status.is_auxiliary_ignored) append(text, "actions   ignored (auxiliary = \"ignore\")\n");
-  append(text, "batches   %llu dropped, %llu asked for again\n", big(status.batches_dropped),
-         big(status.batches_lost));
+  append(text, "batches   %llu dropped, %llu asked for again\n", Count{status.batches_dropped},
+         Count{status.batches_lost});
   return text;
 }
 
 std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) {
   std::string text = "{";
-  append(text, "\"machine\":%s,", quoted(machine.name).c_str());
+  append(text, "\"machine\":%s,", json_quoted(machine.name).c_str());
   append(text, "\"state\":\"%s\",\"alarm\":%d,\"epoch\":%u,\"status_sequence\":%llu,",
          text_of(status.state), static_cast<int>(status.alarm), status.epoch,
-         big(status.status_sequence));
-  append(text, "\"program\":%s,", quoted(status.program).c_str());
-  append(text, "\"station\":%s,", quoted(status.station).c_str());
+         Count{status.status_sequence});
+  append(text, "\"program\":%s,", json_quoted(status.program).c_str());
+  append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,
          "\"block\":%llu,\"block_count\":%llu,\"line\":%u,\"blocks_received\":%llu,"
          "\"blocks_done\":%llu,\"blocks_queued\":%u,\"planned_s\":%.3f,",
-         big(status.block), big(status.block_count), status.line, big(status.blocks_received),
-         big(status.blocks_done), status.blocks_queued, status.planned_s);
+         Count{status.block}, Count{status.block_count}, status.line, Count{status.blocks_received},
+         Count{status.blocks_done}, status.blocks_queued, status.planned_s);
   append(text,
          "\"feed_programmed_mm_per_min\":%.6g,\"feed_achieved_mm_per_min\":%.6g,"
          "\"feed_override\":%.6g,\"rapid_override\":%.6g,\"plan_time_s\":%.6f,",
@@ -124,9 +100,9 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          "\"cycles_run\":%llu,\"periods_lost\":%llu,\"starvations\":%llu,"
          "\"batches_dropped\":%llu,\"batches_lost\":%llu,\"records_overrun\":%llu,"
          "\"setpoints_overrun\":%llu,",
-         big(status.cycles_run), big(status.periods_lost), big(status.starvations),
-         big(status.batches_dropped), big(status.batches_lost), big(status.records_overrun),
-         big(status.setpoints_overrun));
+         Count{status.cycles_run}, Count{status.periods_lost}, Count{status.starvations},
+         Count{status.batches_dropped}, Count{status.batches_lost}, Count{status.records_overrun},
+         Count{status.setpoints_overrun});
   append(text, "\"realtime\":\"%s\",\"secured\":%s,",
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "enforced" : "best_effort",
          status.is_secured ? "true" : "false");
@@ -134,7 +110,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
     append(text, "\"%s_%s\":%.17g,", machine.joints[i].name.c_str(),
            machine.joints[i].is_rotary ? "rad" : "mm", status.joints[i]);
   }
-  append(text, "\"message\":%s}", quoted(status.message).c_str());
+  append(text, "\"message\":%s}", json_quoted(status.message).c_str());
   return text;
 }
 

@@ -76,10 +76,7 @@ bool pass_preflight(StreamCommandOptions& options,
                     const std::optional<stream::PreflightMachine>& machine) {
   stream::PreflightReport report =
       stream::preflight(options.stream.file, options.stream.reader, machine);
-  for (const auto& warning : report.warnings) {
-    std::fprintf(stderr, "%s:%u: warning: %s\n", options.stream.file.c_str(), warning.line,
-                 warning.message.c_str());
-  }
+  print_warnings(options.stream.file, report.warnings);
   if (!report.refusal.empty()) {
     std::fprintf(stderr, "meridian: %s\n", report.refusal.c_str());
     return false;

@@ -1,46 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/record/check_report.hpp"
 
-#include <cstdarg>
-#include <cstdio>
 #include <string_view>
 
 #include "meridian/units.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::record {
+
+using text::append;
+using text::Count;
+using text::json_quoted;
+
 namespace {
-
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-  char line[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-}
-
-using Count = unsigned long long;  // what printf calls std::uint64_t
 
 [[nodiscard]] std::string place(const Peak& peak) {
   std::string text;
   append(text, "cycle %llu, line %u", static_cast<Count>(peak.cycle), peak.line);
   return text;
-}
-
-[[nodiscard]] std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (code < 0x20) {
-      append(out, "\\u%04x", code);
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
 }
 
 void append_peak(std::string& text, const char* name, const Peak& peak, double scale = 1) {
@@ -159,8 +136,8 @@ std::string to_text(const CheckReport& report) {
 
 std::string to_json(const CheckReport& report) {
   std::string text = "{\n";
-  text += "  \"recording\": " + quoted(report.recording) + ",\n";
-  text += "  \"path\": " + quoted(report.path_name) + ",\n";
+  text += "  \"recording\": " + json_quoted(report.recording) + ",\n";
+  text += "  \"path\": " + json_quoted(report.path_name) + ",\n";
   append(text, "  \"passed\": %s,\n", report.passed() ? "true" : "false");
   append(text, "  \"cycles_sent\": %llu,\n  \"cycles_missing\": %llu,\n  \"longest_gap\": %llu,\n",
          static_cast<Count>(report.rows), static_cast<Count>(report.missing),
@@ -192,7 +169,7 @@ std::string to_json(const CheckReport& report) {
     const JointUse& use = report.joints[i];
     const char* unit = report.is_rotary[i] ? "deg" : "mm";
     append(text, "%s\n    {\"name\": %s, \"velocity_use\": %.9g, \"acceleration_use\": %.9g, ",
-           i > 0 ? "," : "", quoted(report.joint_names[i]).c_str(), use.velocity.value,
+           i > 0 ? "," : "", json_quoted(report.joint_names[i]).c_str(), use.velocity.value,
            use.acceleration.value);
     append(text, "\"jerk_use\": %.9g, \"low_%s\": %.9g, \"high_%s\": %.9g}", use.jerk.value, unit,
            at_edge(report, i, use.low), unit, at_edge(report, i, use.high));
@@ -204,7 +181,7 @@ std::string to_json(const CheckReport& report) {
            is_first ? "" : ",", static_cast<int>(word(finding.kind).size()),
            word(finding.kind).data(), static_cast<Count>(finding.cycle), finding.line,
            static_cast<Count>(finding.count));
-    text += "\"text\": " + quoted(finding.text) + "}";
+    text += "\"text\": " + json_quoted(finding.text) + "}";
     is_first = false;
   }
   return text + (is_first ? "]\n}\n" : "\n  ]\n}\n");

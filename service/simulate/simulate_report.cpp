@@ -2,26 +2,19 @@
 #include "service/simulate/simulate_report.hpp"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::simulate {
+
+using text::append;
+using text::Count;
+
 namespace {
 
-using Count = unsigned long long;  // what printf calls std::uint64_t
 constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
-
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-  char line[512];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-}
 
 void append_shares(std::string& text, const LimitShares& shares, const MachineModel& model) {
   std::vector<std::pair<std::uint64_t, std::string>> all{{shares.feed, "feed"},

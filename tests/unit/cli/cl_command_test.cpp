@@ -1,115 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <string>
 
+#include "support/command_output.hpp"
 #include "support/text_file.hpp"
 
 namespace {
 
-struct Outcome {
-  int exit_code;
-  std::string output;
-};
-
-/// Runs `meridian arguments` with what `input` prints on its standard input.
-Outcome run(const std::string& arguments, const std::string& input = "true") {
-  const std::string command =
-      input + " | " + std::string(MERIDIAN_BINARY_DIR) + "/bin/meridian " + arguments + " 2>&1";
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return {-1, {}};
-  std::string output;
-  char buffer[4096];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) output.append(buffer, n);
-  return {WEXITSTATUS(pclose(pipe)), output};
-}
+using meridian::test::CommandOutput;
+using meridian::test::run_tool;
 
 const std::string kPart = MERIDIAN_SOURCE_DIR "/deploy/parts/blossom.apt";
 
 TEST(ClCommand, GivesOnePointALineForEveryMotionBlock) {
-  const Outcome outcome = run("cl " + kPart);
+  const CommandOutput outcome = run_tool("cl " + kPart);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 148);
   EXPECT_EQ(outcome.output.substr(0, outcome.output.find('\n')).substr(0, 5), "79.8 ");
 }
 
 TEST(ClCommand, PutsPointsOutInTheFrameAroundTheWorkpiece) {
-  const Outcome outcome =
-      run("cl --frame 100,0,0,0,0,90 -", "printf 'UNITS/MM\\nFEDRAT/60\\nGOTO/1,2,3\\n'");
+  const CommandOutput outcome =
+      run_tool("cl --frame 100,0,0,0,0,90 -", "printf 'UNITS/MM\\nFEDRAT/60\\nGOTO/1,2,3\\n'");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.output.find("98 1 3 0 0 1 60"), std::string::npos) << outcome.output;
 }
 
 TEST(ClCommand, TellsASummary) {
-  const Outcome outcome = run("cl --summary " + kPart);
+  const CommandOutput outcome = run_tool("cl --summary " + kPart);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.output.find("MERIDIAN BLOSSOM"), std::string::npos);
 }
 
 TEST(ClCommand, RefusesWithExitCodeThree) {
-  EXPECT_EQ(run("cl /no/such/file").exit_code, 3);
-  const Outcome outcome = run("cl -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'");
+  EXPECT_EQ(run_tool("cl /no/such/file").exit_code, 3);
+  const CommandOutput outcome = run_tool("cl -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_NE(outcome.output.find("--units mm"), std::string::npos);
-  EXPECT_EQ(run("cl --units mm -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'").exit_code, 0);
-  EXPECT_EQ(run("cl --units mm --feed 60 -", "printf 'GOTO/1,2,3'").exit_code, 0);
+  EXPECT_EQ(run_tool("cl --units mm -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'").exit_code, 0);
+  EXPECT_EQ(run_tool("cl --units mm --feed 60 -", "printf 'GOTO/1,2,3'").exit_code, 0);
 }
 
 TEST(ClCommand, PassesEachWordThatIsAllowed) {
   const std::string program = "printf 'UNITS/MM\\nFEDRAT/60\\nFOO/1\\nBAR\\nGOTO/1,2,3\\nFINI\\n'";
-  EXPECT_EQ(run("cl -", program).exit_code, 3);
-  EXPECT_EQ(run("cl --allow-unknown FOO -", program).exit_code, 3);
-  EXPECT_EQ(run("cl --allow-unknown FOO --allow-unknown BAR -", program).exit_code, 0);
+  EXPECT_EQ(run_tool("cl -", program).exit_code, 3);
+  EXPECT_EQ(run_tool("cl --allow-unknown FOO -", program).exit_code, 3);
+  EXPECT_EQ(run_tool("cl --allow-unknown FOO --allow-unknown BAR -", program).exit_code, 0);
 }
 
 TEST(ClCommand, KnowsUsage) {
-  EXPECT_EQ(run("cl").exit_code, 2);
-  EXPECT_EQ(run("cl --units furlong " + kPart).exit_code, 2);
-  EXPECT_EQ(run("cl --help").exit_code, 0);
+  EXPECT_EQ(run_tool("cl").exit_code, 2);
+  EXPECT_EQ(run_tool("cl --units furlong " + kPart).exit_code, 2);
+  EXPECT_EQ(run_tool("cl --help").exit_code, 0);
 }
 
 TEST(SurfaceCommand, WritesASampleByItsName) {
   const std::string file = testing::TempDir() + "surface_command.apt";
-  EXPECT_EQ(run("surface --sample blossom -o " + file).exit_code, 0);
+  EXPECT_EQ(run_tool("surface --sample blossom -o " + file).exit_code, 0);
   EXPECT_TRUE(std::ifstream(file).good());
-  EXPECT_EQ(run("surface --sample nothing").exit_code, 2);
-  EXPECT_EQ(run("surface --sample blossom -o /no/such/place/x").exit_code, 3);
-  EXPECT_EQ(run("surface --help").exit_code, 0);
+  EXPECT_EQ(run_tool("surface --sample nothing").exit_code, 2);
+  EXPECT_EQ(run_tool("surface --sample blossom -o /no/such/place/x").exit_code, 3);
+  EXPECT_EQ(run_tool("surface --help").exit_code, 0);
 }
 
 const std::string kPatch = MERIDIAN_SOURCE_DIR "/deploy/parts/reference-patch.toml";
 
 TEST(SurfaceCommand, CoversAPatchAndReportsBesideIt) {
   const std::string file = testing::TempDir() + "surface_patch.apt";
-  const Outcome to_file = run("surface " + kPatch + " -o " + file);
+  const CommandOutput to_file = run_tool("surface " + kPatch + " -o " + file);
   EXPECT_EQ(to_file.exit_code, 0);
   EXPECT_NE(to_file.output.find("21 lines, 441 contacts"), std::string::npos) << to_file.output;
-  EXPECT_EQ(run("cl " + file).exit_code, 0);
+  EXPECT_EQ(run_tool("cl " + file).exit_code, 0);
   const std::string picture = testing::TempDir() + "surface.svg";
-  EXPECT_EQ(run("surface " + kPatch + " -o /dev/null --picture " + picture).exit_code, 0);
+  EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --picture " + picture).exit_code, 0);
   EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
-  const Outcome finer = run("surface " + kPatch + " --points 5 --lines 3 -o " + file);
+  const CommandOutput finer = run_tool("surface " + kPatch + " --points 5 --lines 3 -o " + file);
   EXPECT_NE(finer.output.find("3 lines, 15 contacts"), std::string::npos) << finer.output;
-  EXPECT_EQ(run("surface " + kPatch + " 2>/dev/null | head -1").output, "PARTNO REFERENCE PATCH\n");
+  EXPECT_EQ(run_tool("surface " + kPatch + " 2>/dev/null | head -1").output,
+            "PARTNO REFERENCE PATCH\n");
 }
 
 TEST(SurfaceCommand, SaysNoToACutterThatGougesAndToWhatItCannotTake) {
   std::string text = meridian::test::read_text(kPatch);
   text.replace(text.find("diameter_mm = 10"), 16, "diameter_mm = 560");
   const meridian::test::TextFile large(text);
-  const Outcome outcome = run("surface " + large.path().string() + " -o /dev/null");
+  const CommandOutput outcome = run_tool("surface " + large.path().string() + " -o /dev/null");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("WARNING"), std::string::npos);
-  EXPECT_EQ(run("surface " + kPatch + " -o /no/such/place/x").exit_code, 3);
-  EXPECT_EQ(run("surface /no/such/patch.toml").exit_code, 3);
-  EXPECT_EQ(run("surface").exit_code, 2);
-  EXPECT_EQ(run("surface " + kPatch + " --sample blossom").exit_code, 2);
-  EXPECT_EQ(run("surface " + kPatch + " --points 5 --chord-error-mm 1").exit_code, 2);
-  EXPECT_EQ(run("surface " + kPatch + " -o /dev/null --picture /tmp/x.bmp").exit_code, 3);
+  EXPECT_EQ(run_tool("surface " + kPatch + " -o /no/such/place/x").exit_code, 3);
+  EXPECT_EQ(run_tool("surface /no/such/patch.toml").exit_code, 3);
+  EXPECT_EQ(run_tool("surface").exit_code, 2);
+  EXPECT_EQ(run_tool("surface " + kPatch + " --sample blossom").exit_code, 2);
+  EXPECT_EQ(run_tool("surface " + kPatch + " --points 5 --chord-error-mm 1").exit_code, 2);
+  EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --picture /tmp/x.bmp").exit_code, 3);
 }
 
 const std::string kMachine = MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml";
@@ -117,20 +104,20 @@ const std::string kMachine = MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.t
 TEST(MachineCommand, TellsDrawsAndWritesAPattern) {
   const std::string picture = testing::TempDir() + "machine.svg";
   const std::string pattern = testing::TempDir() + "pattern.apt";
-  const Outcome outcome =
-      run("machine " + kMachine + " --picture " + picture + " --pattern " + pattern);
+  const CommandOutput outcome =
+      run_tool("machine " + kMachine + " --picture " + picture + " --pattern " + pattern);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("workpiece - C - A - X - Y - Z - tool"), std::string::npos);
   EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
-  EXPECT_EQ(run("cl " + pattern).exit_code, 0);
+  EXPECT_EQ(run_tool("cl " + pattern).exit_code, 0);
 }
 
 TEST(MachineCommand, SaysNoToASlipAndToWhatItCannotTake) {
-  EXPECT_EQ(run("machine " + kMachine + " --frame 0,9000,0").exit_code, 1);
-  EXPECT_EQ(run("machine /no/such/machine.toml").exit_code, 3);
-  EXPECT_EQ(run("machine " + kMachine + " --picture x.bmp").exit_code, 3);
-  EXPECT_EQ(run("machine " + kMachine + " --pattern /no/such/place/x").exit_code, 3);
-  EXPECT_EQ(run("machine").exit_code, 2);
+  EXPECT_EQ(run_tool("machine " + kMachine + " --frame 0,9000,0").exit_code, 1);
+  EXPECT_EQ(run_tool("machine /no/such/machine.toml").exit_code, 3);
+  EXPECT_EQ(run_tool("machine " + kMachine + " --picture x.bmp").exit_code, 3);
+  EXPECT_EQ(run_tool("machine " + kMachine + " --pattern /no/such/place/x").exit_code, 3);
+  EXPECT_EQ(run_tool("machine").exit_code, 2);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +8,8 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/command_output.hpp"
 
 /// The command lines of README and docs against what the programs take.
 namespace {
@@ -57,11 +58,9 @@ std::string help_of(const std::string& command) {
   static std::map<std::string, std::string> known;
   if (const auto found = known.find(command); found != known.end()) return found->second;
   std::string& text = known[command];
-  std::FILE* pipe = popen((MERIDIAN_BINARY_DIR "/bin/" + command + " --help 2>&1").c_str(), "r");
-  if (pipe == nullptr) return text;
-  char buffer[4096];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
-  if (WEXITSTATUS(pclose(pipe)) != 0) text.clear();
+  const auto run =
+      meridian::test::run_command(MERIDIAN_BINARY_DIR "/bin/" + command + " --help 2>&1");
+  if (run.exit_code == 0) text = run.output;
   return text;
 }
 

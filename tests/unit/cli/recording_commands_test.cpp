@@ -1,31 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdio>
 #include <string>
 
+#include "support/command_output.hpp"
 #include "support/text_file.hpp"
 
 namespace {
 
+using meridian::test::CommandOutput;
+using meridian::test::run_tool;
 using meridian::test::TextFile;
-
-struct Outcome {
-  int exit_code;
-  std::string output;
-};
-
-Outcome run(const std::string& arguments) {
-  const std::string command =
-      std::string(MERIDIAN_BINARY_DIR) + "/bin/meridian " + arguments + " 2>&1";
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return {-1, {}};
-  std::string output;
-  char buffer[4096];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) output.append(buffer, n);
-  return {WEXITSTATUS(pclose(pipe)), output};
-}
 
 const std::string kMachine = " --machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml ";
 constexpr const char* kPart =
@@ -42,73 +28,75 @@ class RecordingCommands : public testing::Test {
 };
 
 TEST_F(RecordingCommands, SimulateThenCheckIsFine) {
-  const Outcome simulated = run("simulate " + part() + kMachine + "--record " + recording());
+  const CommandOutput simulated =
+      run_tool("simulate " + part() + kMachine + "--record " + recording());
   EXPECT_EQ(simulated.exit_code, 0) << simulated.output;
   EXPECT_NE(simulated.output.find("DONE"), std::string::npos) << simulated.output;
-  const Outcome checked = run("check " + recording() + " " + part() + kMachine +
-                              "--tip-tolerance-mm 0.001 --axis-tolerance-deg 0.001");
+  const CommandOutput checked = run_tool("check " + recording() + " " + part() + kMachine +
+                                         "--tip-tolerance-mm 0.001 --axis-tolerance-deg 0.001");
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
-  const Outcome same = run("check --same " + recording() + " " + recording() + kMachine);
+  const CommandOutput same = run_tool("check --same " + recording() + " " + recording() + kMachine);
   EXPECT_EQ(same.exit_code, 0) << same.output;
   EXPECT_NE(same.output.find("SAME"), std::string::npos) << same.output;
 }
 
 TEST_F(RecordingCommands, CheckSaysNoWhereTheMotionIsNotThatOfTheFile) {
-  ASSERT_EQ(run("simulate " + part() + kMachine + "--record " + recording()).exit_code, 0);
+  ASSERT_EQ(run_tool("simulate " + part() + kMachine + "--record " + recording()).exit_code, 0);
   const TextFile other(
       "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -40, 20\n"
       "GOTO / 90, -35.002, 20\nFINI\n",
       ".apt");
   const std::string arguments = "check " + recording() + " " + other.path().string() + kMachine;
-  EXPECT_EQ(run(arguments).exit_code, 0) << "inside the machine's tolerance";
-  const Outcome judged = run(arguments + "--tip-tolerance-mm 0.001 --json");
+  EXPECT_EQ(run_tool(arguments).exit_code, 0) << "inside the machine's tolerance";
+  const CommandOutput judged = run_tool(arguments + "--tip-tolerance-mm 0.001 --json");
   EXPECT_EQ(judged.exit_code, 1) << judged.output;
   EXPECT_NE(judged.output.find("\"kind\": \"tip\""), std::string::npos) << judged.output;
   const TextFile nothing("", ".csv");
-  const Outcome shifted =
-      run("simulate " + part() + kMachine + "--frame 0,0,1 --record " + nothing.path().string());
+  const CommandOutput shifted = run_tool("simulate " + part() + kMachine +
+                                         "--frame 0,0,1 --record " + nothing.path().string());
   ASSERT_EQ(shifted.exit_code, 0) << shifted.output;
-  const Outcome same =
-      run("check --same " + recording() + " " + nothing.path().string() + kMachine);
+  const CommandOutput same =
+      run_tool("check --same " + recording() + " " + nothing.path().string() + kMachine);
   EXPECT_EQ(same.exit_code, 1) << same.output;
   EXPECT_NE(same.output.find("DIFFERENT"), std::string::npos) << same.output;
 }
 
 TEST_F(RecordingCommands, WrongInputIsRefusedByName) {
-  EXPECT_EQ(run("check" + kMachine).exit_code, 2);
-  EXPECT_EQ(run("simulate " + part()).exit_code, 2) << "no machine";
-  const Outcome no_file = run("simulate /no/such/part.apt" + kMachine);
+  EXPECT_EQ(run_tool("check" + kMachine).exit_code, 2);
+  EXPECT_EQ(run_tool("simulate " + part()).exit_code, 2) << "no machine";
+  const CommandOutput no_file = run_tool("simulate /no/such/part.apt" + kMachine);
   EXPECT_EQ(no_file.exit_code, 3);
   EXPECT_NE(no_file.output.find("/no/such/part.apt"), std::string::npos) << no_file.output;
-  const Outcome no_recording = run("check " + part() + " " + part() + kMachine);
+  const CommandOutput no_recording = run_tool("check " + part() + " " + part() + kMachine);
   EXPECT_EQ(no_recording.exit_code, 3);
   EXPECT_NE(no_recording.output.find("no recording"), std::string::npos) << no_recording.output;
-  const Outcome unitless =
-      run("simulate " + TextFile("GOTO/1,2,3\nFINI\n", ".apt").path().string() + kMachine);
+  const CommandOutput unitless =
+      run_tool("simulate " + TextFile("GOTO/1,2,3\nFINI\n", ".apt").path().string() + kMachine);
   EXPECT_EQ(unitless.exit_code, 3);
   const TextFile events("5,dance\n", ".csv");
-  const Outcome bad_events =
-      run("simulate " + part() + kMachine + "--events " + events.path().string());
+  const CommandOutput bad_events =
+      run_tool("simulate " + part() + kMachine + "--events " + events.path().string());
   EXPECT_EQ(bad_events.exit_code, 3);
   EXPECT_NE(bad_events.output.find("'dance' is no verb"), std::string::npos) << bad_events.output;
-  EXPECT_EQ(run("simulate " + part() + kMachine + "--record /no/such/folder/r.csv").exit_code, 3);
+  EXPECT_EQ(run_tool("simulate " + part() + kMachine + "--record /no/such/folder/r.csv").exit_code,
+            3);
 }
 
 TEST_F(RecordingCommands, SimulateReplaysEventsAndStartsFromARecording) {
   const TextFile events("100,hold\n1500,resume\n", ".csv");
   const TextFile started("", ".csv");
-  const Outcome held = run("simulate " + part() + kMachine + "--events " + events.path().string() +
-                           " --record " + recording());
+  const CommandOutput held = run_tool("simulate " + part() + kMachine + "--events " +
+                                      events.path().string() + " --record " + recording());
   EXPECT_EQ(held.exit_code, 0) << held.output;
   EXPECT_NE(held.output.find("Approaching -> Holding"), std::string::npos) << held.output;
-  const Outcome again = run("simulate " + part() + kMachine + "--start-from " + recording() +
-                            " --record " + started.path().string());
+  const CommandOutput again = run_tool("simulate " + part() + kMachine + "--start-from " +
+                                       recording() + " --record " + started.path().string());
   EXPECT_EQ(again.exit_code, 0) << again.output;
 }
 
 TEST(RecordCommand, WithoutAServiceThereIsNoPeer) {
-  const Outcome outcome =
-      run("record /tmp/never.csv --machine-name nobody --timeout 0.2 --domain 229");
+  const CommandOutput outcome =
+      run_tool("record /tmp/never.csv --machine-name nobody --timeout 0.2 --domain 229");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
 }
 

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+/// Reports for people and programs, put together from printf formats.
+namespace meridian::text {
+
+/// What printf's %llu calls std::uint64_t.
+using Count = unsigned long long;
+
+/// Adds `format` with its arguments to `text`. At most 511 characters; what is longer is cut off.
+[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...);
+
+/// `text` as a JSON string, its quotes included.
+[[nodiscard]] std::string json_quoted(const std::string& text);
+
+}  // namespace meridian::text
