@@ -109,20 +109,22 @@ void read_limits(Section& section, JointSpec& joint) {
   }
 }
 
+void read_nc_word(Section& section, JointSpec& joint) {
+  joint.nc_word = section.text_or("nc_word", "");
+  if (joint.nc_word.empty() || is_nc_word(joint.nc_word)) return;
+  section.refuse("nc_word",
+                 "one of X Y Z A B C U V W, or a letter with one or two digits; - before it where "
+                 "the controller counts against the joint",
+                 "write the address that the controller has for this joint");
+}
+
 void read_joint(Section section, JointSpec& joint) {
   const JointKeys keys(joint.is_rotary ? "deg" : "mm");
   const JointLimits& limits = joint.limits;
   read_limits(section, joint);
   joint.home =
       section.number(keys.home, {-1e5, 1e5}) * (joint.is_rotary ? units::kDegree_rad : 1.0);
-  joint.nc_word = section.text_or("nc_word", "");
-  if (!joint.nc_word.empty() && !is_nc_word(joint.nc_word)) {
-    section.refuse(
-        "nc_word",
-        "one of X Y Z A B C U V W, or a letter with one or two digits; - before it where "
-        "the controller counts against the joint",
-        "write the address that the controller has for this joint");
-  }
+  read_nc_word(section, joint);
   if (!joint.is_endless && (joint.home < limits.travel_min || joint.home > limits.travel_max)) {
     section.refuse(keys.home, "inside " + keys.travel, "move home into travel");
   }

@@ -28,7 +28,7 @@ std::string number(double value) {
   return text;
 }
 
-/// The joint that `key` names, linear or rotary as asked for.
+/// The joint that `key` names, linear or rotary as asked for. Programs call its drives instead.
 int find_joint(Section& table, const char* key, bool is_rotary, const MachineModel& model) {
   const std::string kind = is_rotary ? "rotary" : "linear";
   const std::string remedy = "name the " + kind + " joint that the stage carries";
@@ -37,6 +37,11 @@ int find_joint(Section& table, const char* key, bool is_rotary, const MachineMod
   for (int i = 0; i < model.joint_count; ++i) {
     const JointSpec& joint = model.joints[static_cast<std::size_t>(i)];
     if (joint.is_rotary != is_rotary) continue;
+    if (joint.name == name && !joint.nc_word.empty()) {
+      table.refuse(
+          key, "a joint without nc_word",
+          "programs call the two drives: move nc_word from joints." + name + " into their tables");
+    }
     if (joint.name == name) return i;
     allowed += " " + joint.name;
   }
@@ -127,6 +132,7 @@ void read_drives(Section& table, MachineModel& model) {
     if (is_taken) table.refuse("drives", "two names that nothing else has", remedy);
     Section section = table.section(names[k]);
     read_limits(section, drive);
+    read_nc_word(section, drive);
     drive.home = at_home[static_cast<std::size_t>(model.joint_count) + k];
     if (drive.home < drive.limits.travel_min || drive.home > drive.limits.travel_max) {
       section.refuse("travel_mm", "travel that holds " + number(drive.home) + " mm",

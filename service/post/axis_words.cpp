@@ -17,22 +17,28 @@ constexpr std::string_view kLetters = "XYZABCUVW";
   return text.size() == 1 && kLetters.find(text[0]) != std::string_view::npos;
 }
 
+/// Whether the stage's sliders stand in the place of joint `i`.
+[[nodiscard]] bool is_carried(const MachineModel& model, int i) {
+  return has_stage(model) && (i == model.stage.linear_joint || i == model.stage.rotary_joint);
+}
+
 }  // namespace
 
 Expected<AxisWords, PostError> AxisWords::of(const MachineModel& model) {
   AxisWords words;
   words.count_ = model.joint_count;
   for (int i = 0; i < model.joint_count; ++i) {
-    const JointSpec& joint = model.joints[i];
+    const JointSpec& spec = drive_spec(model, i);
     Axis& axis = words.axes_[i];
-    axis.is_rotary = joint.is_rotary;
-    axis.address = joint.nc_word.empty() ? joint.name : joint.nc_word;
-    if (joint.nc_word.empty() && !is_axis_letter(joint.name)) {
+    axis.is_rotary = spec.is_rotary;
+    axis.address = spec.nc_word.empty() ? spec.name : spec.nc_word;
+    if (spec.nc_word.empty() && !is_axis_letter(spec.name)) {
+      const char* const table = is_carried(model, i) ? "stage." : "joints.";
       return tl::make_unexpected(
-          PostError{0, "joint " + joint.name + " of machine " + model.name +
+          PostError{0, "joint " + spec.name + " of machine " + model.name +
                            " has no NC word; write nc_word = \"X\" (its address; \"-X\" where the "
-                           "controller counts against the joint) into [joints." +
-                           joint.name + "] of the machine file"});
+                           "controller counts against the joint) into [" +
+                           table + spec.name + "] of the machine file"});
     }
     if (axis.address[0] == '-') {
       axis.sign = -1;
@@ -40,8 +46,8 @@ Expected<AxisWords, PostError> AxisWords::of(const MachineModel& model) {
     }
     for (int k = 0; k < i; ++k) {
       if (words.axes_[k].address != axis.address) continue;
-      return tl::make_unexpected(PostError{0, "joints " + model.joints[k].name + " and " +
-                                                  joint.name + " of machine " + model.name +
+      return tl::make_unexpected(PostError{0, "joints " + drive_spec(model, k).name + " and " +
+                                                  spec.name + " of machine " + model.name +
                                                   " have the same NC word " + axis.address});
     }
   }
@@ -55,20 +61,20 @@ int AxisWords::find(std::string_view address) const noexcept {
   return -1;
 }
 
-double AxisWords::value(int i, double q) const {
+double AxisWords::value(int i, double at) const {
   const Axis& axis = axes_[i];
-  return axis.is_rotary ? rounded(axis.sign * units::deg_from_rad(q), kRotaryDecimals)
-                        : rounded(axis.sign * q, kLinearDecimals);
+  return axis.is_rotary ? rounded(axis.sign * units::deg_from_rad(at), kRotaryDecimals)
+                        : rounded(axis.sign * at, kLinearDecimals);
 }
 
-double AxisWords::joint(int i, double value) const noexcept {
+double AxisWords::axis(int i, double value) const noexcept {
   const Axis& axis = axes_[i];
   return axis.sign * (axis.is_rotary ? units::rad_from_deg(value) : value);
 }
 
-JointVector AxisWords::as_written(const JointVector& q) const {
+JointVector AxisWords::as_written(const JointVector& at) const {
   JointVector out{};
-  for (int i = 0; i < count_; ++i) out[i] = joint(i, value(i, q[i]));
+  for (int i = 0; i < count_; ++i) out[i] = axis(i, value(i, at[i]));
   return out;
 }
 
@@ -81,7 +87,7 @@ std::string AxisWords::word(int i, double value) const {
 
 int retract_sense(const MachineModel& model, const AxisWords& words) {
   const int z = words.find("Z");
-  if (z < 0 || words.is_rotary(z)) return 0;
+  if (z < 0 || words.is_rotary(z) || is_carried(model, z)) return 0;
   JointVector home{};
   for (int i = 0; i < model.joint_count; ++i) home[i] = model.joints[i].home;
   const Vector3 axis = forward(model, model.tool_length_mm, home).axis;

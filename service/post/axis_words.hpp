@@ -15,24 +15,26 @@ namespace meridian::post {
 inline constexpr int kLinearDecimals = 4;  ///< of a millimetre
 inline constexpr int kRotaryDecimals = 5;  ///< of a degree: 0.09 µm at 1 m
 
-/// The words of a machine's joints: by which address a program calls each, and which way it counts.
+/// The words of a machine's axes: by which address a program calls each, and which way it counts.
+/// Axes are the drives in drive order: the joints, or behind a stage its two sliders in the places
+/// of the joints that they carry.
 ///
-/// An address is the joint's `nc_word` in the machine file, or its name where that is one of the
-/// letters X Y Z A B C U V W. Nothing else is guessed. An address with digits is written with `=`.
+/// An address is the `nc_word` in the machine file, or the name where that is one of the letters
+/// X Y Z A B C U V W. Nothing else is guessed. An address with digits is written with `=`.
 class AxisWords {
  public:
   [[nodiscard]] static Expected<AxisWords, PostError> of(const MachineModel& model);
 
-  /// Joint that is called `address`; -1 where none is.
+  /// Axis that is called `address`; -1 where none is.
   [[nodiscard]] int find(std::string_view address) const noexcept;
 
-  /// What the word of joint `i` says for the joint at `q` (mm or rad): mm or deg, as rounded as it
+  /// What the word of axis `i` says for the axis at `at` (mm or rad): mm or deg, as rounded as it
   /// is written.
-  [[nodiscard]] double value(int i, double q) const;
-  /// The joint at which the word says `value()`.
-  [[nodiscard]] double joint(int i, double value) const noexcept;
-  /// `q` as the words say it.
-  [[nodiscard]] JointVector as_written(const JointVector& q) const;
+  [[nodiscard]] double value(int i, double at) const;
+  /// Where the axis is for which the word says `value()`.
+  [[nodiscard]] double axis(int i, double value) const noexcept;
+  /// The axes `at` as the words say them.
+  [[nodiscard]] JointVector as_written(const JointVector& at) const;
 
   /// "X12.3000", "A1=-90.00000".
   [[nodiscard]] std::string word(int i, double value) const;
@@ -53,7 +55,8 @@ class AxisWords {
 };
 
 /// Which way joint Z has to go to take the tool off the part: the sign of dz along the tool axis
-/// per joint at home. 0 where the machine has no linear Z along the tool axis of its home.
+/// per joint at home. 0 where the machine has no linear Z along the tool axis of its home that
+/// moves alone.
 [[nodiscard]] int retract_sense(const MachineModel& model, const AxisWords& words);
 
 }  // namespace meridian::post

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/post/nc_text.hpp"
 #include "service/post/program.hpp"
@@ -21,12 +22,19 @@ class JointProgram final : public Program {
     has_line_words_ = parts.options.has_line_words;
   }
 
-  [[nodiscard]] BlockMotion motion() const noexcept override { return BlockMotion::kJoints; }
+  [[nodiscard]] BlockMotion motion() const noexcept override { return BlockMotion::kDrives; }
 
   void begin(const std::vector<std::string>& notes) override {
     line({"%"});
     for (const std::string& note : notes) comment(note);
     comment("JOINT WORDS - THE WORK OFFSET HOLDS THE ZEROS OF THE JOINTS");
+    if (has_stage(parts_.model)) {
+      const ActuatorStage& stage = parts_.model.stage;
+      comment(parts_.words.address(stage.linear_joint) + " AND " +
+              parts_.words.address(stage.rotary_joint) +
+              " ARE THE SLIDERS OF A STAGE - NEVER MOVE ONE ALONE");
+      comment("RAPIDS MUST RUN STRAIGHT");
+    }
     comment("TOOL LENGTH IS IN THEM - ROTARY WORDS COUNT ON THROUGH TURNS");
     block({"G17 G21 G40 G49 G80 G90 G94"});
     block({parts_.options.work_offset});
@@ -40,10 +48,10 @@ class JointProgram final : public Program {
       return;
     }
     const int z = parts_.words.find("Z");
-    const JointLimits& limits = parts_.model.joints[z].limits;
+    const JointLimits& limits = drive_spec(parts_.model, z).limits;
     const double top = parts_.retract_sense > 0 ? limits.travel_max : limits.travel_min;
     Target up;
-    up.joints[z] = parts_.words.joint(z, parts_.words.value(z, top));
+    up.axes[z] = top;
     go("G0", up, 1U << static_cast<unsigned>(z), "");
   }
 
@@ -52,8 +60,17 @@ class JointProgram final : public Program {
     const unsigned all = (1U << static_cast<unsigned>(parts_.words.count())) - 1U;
     const unsigned last = z >= 0 ? 1U << static_cast<unsigned>(z) : 0;
     forget();
-    go("G0", over, all & ~last, "");
-    if (last != 0) go("G0", over, last, "");
+    const double feed = parts_.options.rapid_feed_mm_per_s;
+    if (has_stage(parts_.model) && feed > 0) {  // no G0: it might run the sliders one by one
+      std::string word = " F";
+      word += fixed_down(units::per_min_from_per_s(feed), 3);
+      block({"G94"});
+      go("G1", over, all & ~last, word);
+      if (last != 0) go("G1", over, last, "");
+    } else {
+      go("G0", over, all & ~last, "");
+      if (last != 0) go("G0", over, last, "");
+    }
     block({"G93"});
   }
 
@@ -88,12 +105,12 @@ class JointProgram final : public Program {
   void comment(const std::string& text) { line({"(", harmless(text), ")"}); }
   void forget() { written_ = {}; }
 
-  /// One block to `to` with the words of `joints` (bits) that changed; none where none did.
-  void go(std::string_view code, const Target& to, unsigned joints, std::string_view feed) {
+  /// One block to `to` with the words of `axes` (bits) that changed; none where none did.
+  void go(std::string_view code, const Target& to, unsigned axes, std::string_view feed) {
     std::string words;
     for (int i = 0; i < parts_.words.count(); ++i) {
-      if ((joints >> static_cast<unsigned>(i) & 1U) == 0) continue;
-      const double value = parts_.words.value(i, to.joints[i]);
+      if ((axes >> static_cast<unsigned>(i) & 1U) == 0) continue;
+      const double value = parts_.words.value(i, to.axes[i]);
       if (written_[i] == value) continue;
       written_[i] = value;
       words.append(" ").append(parts_.words.word(i, value));

@@ -6,14 +6,58 @@
 
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "service/post/drive_line.hpp"
 #include "service/post/tip_frame.hpp"
 
 namespace meridian::post {
 namespace {
 
+constexpr double kLeastStep = 1e-6;     // of a joint move
 constexpr double kLongestBlock_s = 30;  // keeps four digits of a feed in inverse time
 
 }  // namespace
+
+double PieceWriter::least_time(const JointVector& a, const JointVector& b) const {
+  const MachineModel& model = parts_.model;
+  const DriveLine line = bound_drive_line(model, a, b);
+  double longest = 0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    longest = std::max({longest, line.rate[i] / model.joints[i].limits.velocity,
+                        std::abs(b[i] - a[i]) / drive_spec(model, i).limits.velocity});
+  }
+  return longest;
+}
+
+void PieceWriter::write_joint_move(const PathPiece& piece) {
+  const MachineModel& model = parts_.model;
+  const auto axes_at = [&](double share) {
+    JointVector q = piece.joints_begin;
+    for (int i = 0; i < model.joint_count; ++i) q[i] += share * (piece.joints_end[i] - q[i]);
+    return parts_.words.as_written(drives_of(model, q));
+  };
+  const auto keeps = [&](const JointVector& a, const JointVector& b) {
+    const DriveLine line = bound_drive_line(model, a, b);
+    for (int i = 0; i < model.joint_count; ++i) {
+      const double allowed = model.joints[i].is_rotary ? tolerance_.axis_rad : tolerance_.chord_mm;
+      if (!line.is_known || line.bend[i] / 8 > allowed) return false;
+    }
+    return true;
+  };
+  double step = 1;
+  for (double share = 0; share < 1;) {
+    step = std::min(step, 1 - share);
+    const JointVector next = axes_at(share + step);
+    if (step > kLeastStep && !keeps(stands_at_, next)) {
+      step /= 2;
+      continue;
+    }
+    share += step;
+    step *= 2;
+    Target target;
+    target.axes = stands_at_ = next;
+    program_.rapid(target);
+  }
+}
 
 Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, double way) {
   const PathPiece& piece = way_piece.piece;
@@ -23,9 +67,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
   }
   const bool is_rapid = way_piece.feed_mm_per_s == 0;
   if (piece.kind == PathKind::kJoint) {
-    Target target;
-    target.joints = stand_at(piece.joints_end);
-    program_.rapid(target);
+    write_joint_move(piece);
     return {};
   }
   const double feed = is_rapid ? parts_.options.rapid_feed_mm_per_s : way_piece.feed_mm_per_s;
@@ -36,12 +78,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
     piece_s = std::max(piece_s, way_length(piece) / way / block.feed);
   }
   const auto duration = [&](const BlockEnd& from, const BlockEnd& to) {
-    double longest = piece_s * (to.share - from.share);
-    for (int i = 0; i < parts_.model.joint_count; ++i) {
-      longest = std::max(longest, std::abs(to.joints[i] - from.joints[i]) /
-                                      parts_.model.joints[i].limits.velocity);
-    }
-    return longest;
+    return std::max(piece_s * (to.share - from.share), least_time(from.axes, to.axes));
   };
   const bool has_mm_per_min = parts_.options.dialect != Dialect::kJoints;
   const bool is_timed = block.feed_meaning == FeedMeaning::kInverseTime && !is_rapid;
@@ -60,7 +97,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
   };
   const auto write = [&](const BlockEnd& to) {
     Target target;
-    target.joints = to.joints;
+    target.axes = to.axes;
     target.pose = in_program(parts_.model, pose_at(piece, to.share * piece.length));
     target.duration_s = duration(from, to);
     target.feed_mm_per_s = tip_feed;
@@ -72,7 +109,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
     from = to;
   };
   const bool is_cut = cutter_.cut(piece, stands_at_, is_short_enough, write);
-  stands_at_ = from.joints;
+  stands_at_ = from.axes;
   if (is_cut) return {};
   return PostError{block.line,
                    "the tolerance cannot be kept by blocks with these decimals; raise --chord-mm "

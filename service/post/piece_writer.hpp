@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "meridian/kinematics/limited.hpp"
 #include "service/post/planned_way.hpp"
 #include "service/post/program.hpp"
 #include "service/post/subdivide.hpp"
@@ -19,6 +20,7 @@ class PieceWriter {
   /// `program` and what `parts` refers to outlive it.
   PieceWriter(const ProgramParts& parts, const PathTolerance& tolerance, Program& program)
       : parts_(parts),
+        tolerance_(tolerance),
         program_(program),
         cutter_(parts.model, parts.words, program.motion(), tolerance) {}
 
@@ -28,16 +30,22 @@ class PieceWriter {
   /// The controller finds the way over `piece` by itself.
   void skip(const PathPiece& piece) { (void)stand_at(piece.joints_end); }
 
-  /// The program stands at `joints`; returns them as its words say them.
+  /// The program stands at `joints`; returns its drives as the words say them.
   JointVector stand_at(const JointVector& joints) {
-    return stands_at_ = parts_.words.as_written(joints);
+    return stands_at_ = parts_.words.as_written(drives_of(parts_.model, joints));
   }
 
  private:
+  /// Straight in the joints: behind a stage, rapids along which drives and joints stay together.
+  void write_joint_move(const PathPiece& piece);
+  /// Least time from `a` to `b` that joints and drives need.
+  [[nodiscard]] double least_time(const JointVector& a, const JointVector& b) const;
+
   const ProgramParts parts_;
+  const PathTolerance tolerance_;
   Program& program_;
   Subdivider cutter_;
-  JointVector stands_at_{};
+  JointVector stands_at_{};  ///< drives
 };
 
 }  // namespace meridian::post

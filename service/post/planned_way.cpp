@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/units.hpp"
 
@@ -19,8 +20,8 @@ namespace {
 
 /// "C at 400 deg leaves its travel of -360 to 360 deg".
 [[nodiscard]] std::string travel_text(const BlockReject& reject, const MachineModel& model) {
-  if (reject.joint < 0 || reject.joint >= model.joint_count) return "a joint leaves its travel";
-  const JointSpec& joint = model.joints[reject.joint];
+  if (reject.joint < 0 || reject.joint >= limited_count(model)) return "a joint leaves its travel";
+  const JointSpec& joint = limited_spec(model, reject.joint);
   const auto shown = [&joint](double value) {
     return number(joint.is_rotary ? units::deg_from_rad(value) : value);
   };

@@ -148,7 +148,7 @@ class Post {
     is_retracted_ = false;
     const auto to = [this](const JointVector& joints) {
       Target target;
-      target.joints = writer_.stand_at(joints);
+      target.axes = writer_.stand_at(joints);
       target.pose = in_program(model_, forward(model_, way_.tool_length_mm(), joints));
       return target;
     };
@@ -231,13 +231,15 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
   ProgramParts parts{model, *words, options, std::filesystem::path(name).filename().string(),
                      0,     {}};
   if (options.dialect == Dialect::kJoints) {
-    if (has_stage(model)) {
-      return tl::make_unexpected(
-          PostError{0, "machine " + model.name +
-                           " has a stage between joints and drives; joint words would not say "
-                           "what its drives do, and a straight way of the drives is another"});
-    }
     parts.retract_sense = retract_sense(model, *words);
+  } else if (has_stage(model)) {
+    return tl::make_unexpected(PostError{
+        0,
+        "machine " + model.name + " has a stage: its sliders " + model.stage_drives[0].name +
+            " and " + model.stage_drives[1].name + " carry joints " +
+            model.joints[model.stage.linear_joint].name + " and " +
+            model.joints[model.stage.rotary_joint].name +
+            " together, which no tool-centre control knows; --dialect joints writes its drives"});
   } else {
     const auto zero = find_program_zero(model, *words);
     if (!zero) return tl::make_unexpected(zero.error());

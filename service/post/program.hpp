@@ -17,7 +17,7 @@ namespace meridian::post {
 
 /// The end of one NC block. Units: mm, rad, s.
 struct Target {
-  JointVector joints{};  ///< as the words say them
+  JointVector axes{};  ///< drive coordinates as the words say them
   ToolPose pose{Vector3::Zero(),
                 Vector3::UnitZ()};  ///< origin of W, axes parallel to the machine's
   double duration_s = 0;            ///< cuts: what the block takes at its feed

@@ -8,6 +8,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
+#include "service/post/drive_line.hpp"
 
 namespace meridian::post {
 namespace {
@@ -30,8 +31,8 @@ Subdivider::Place Subdivider::place_at(const PathPiece& piece, double share,
   const auto at = joints_at(model_, piece, share * piece.length, reference);
   place.is_reachable = at.status != SolveStatus::kUnreachable;
   place.exact = at.q;
-  place.end = {share, words_.as_written(at.q)};
-  if (motion_ == BlockMotion::kJoints) {
+  place.end = {share, words_.as_written(drives_of(model_, at.q))};
+  if (motion_ == BlockMotion::kDrives) {
     const Jacobian j = jacobian(model_, piece.tool_length_mm, at.q);
     for (int i = 0; i < model_.joint_count; ++i) {
       if (model_.joints[i].is_rotary)
@@ -42,38 +43,45 @@ Subdivider::Place Subdivider::place_at(const PathPiece& piece, double share,
 }
 
 bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& to) const {
-  double turn = 0, slide = 0;
-  JointVector by{};
+  const DriveLine line = bound_drive_line(model_, from.end.axes, to.end.axes);
+  if (!line.is_known) return false;
+  double turn = 0, slide = 0, turn_bend = 0, slide_bend = 0;
   for (int i = 0; i < model_.joint_count; ++i) {
-    by[i] = to.end.joints[i] - from.end.joints[i];
-    (model_.joints[i].is_rotary ? turn : slide) += std::abs(by[i]);
+    const bool is_rotary = model_.joints[i].is_rotary;
+    (is_rotary ? turn : slide) += line.rate[i];
+    (is_rotary ? turn_bend : slide_bend) += line.bend[i];
   }
   if (motion_ != BlockMotion::kTipAndAxis && turn > kMostTurn_rad) return false;
   const double share = to.end.share - from.end.share;
   const double sweep = piece.arc_sweep * share, axis_turn = piece.axis_turn * share;
   const double path_bend = to_vector(piece.arc_x).norm() * sweep * sweep;
   double tip_bend = path_bend, axis_bend = axis_turn * axis_turn;
-  if (motion_ == BlockMotion::kJoints) {
+  if (motion_ == BlockMotion::kDrives) {
     // Between the ends the tip comes no farther from an axis than reach + (turn reach + slide)/2.
     const double reach =
         (std::max(from.reach, to.reach) + slide / 2) / (1 - std::min(turn, kMostTurn_rad) / 2);
-    tip_bend += turn * turn * reach + 2 * turn * slide;
+    tip_bend += (turn * turn + turn_bend) * reach + 2 * turn * slide + slide_bend;
   }
-  axis_bend += motion_ == BlockMotion::kTipAndAxis ? axis_turn * axis_turn : turn * turn;
+  axis_bend +=
+      motion_ == BlockMotion::kTipAndAxis ? axis_turn * axis_turn : turn * turn + turn_bend;
 
-  const ToolPose begin = forward(model_, piece.tool_length_mm, from.end.joints);
-  const ToolPose end = forward(model_, piece.tool_length_mm, to.end.joints);
+  const auto pose_of = [this, &piece](const JointVector& axes) {
+    return forward(model_, piece.tool_length_mm, joints_of(model_, axes));
+  };
+  const ToolPose begin = pose_of(from.end.axes), end = pose_of(to.end.axes);
   double tip_off = 0, axis_off = 0;
   for (int n = 0; n <= kPlaces; ++n) {
     const double u = static_cast<double>(n) / kPlaces;
     const ToolPose path = pose_at(piece, (from.end.share + u * share) * piece.length);
     ToolPose pose = between(begin, end, u);
     if (motion_ != BlockMotion::kTipAndAxis) {
-      JointVector q = from.end.joints;
-      for (int i = 0; i < model_.joint_count; ++i) q[i] += u * by[i];
-      const ToolPose moved = forward(model_, piece.tool_length_mm, q);
+      JointVector axes = from.end.axes;
+      for (int i = 0; i < model_.joint_count; ++i) {
+        axes[i] += u * (to.end.axes[i] - from.end.axes[i]);
+      }
+      const ToolPose moved = pose_of(axes);
       pose.axis = moved.axis;
-      if (motion_ == BlockMotion::kJoints) pose.tip = moved.tip;
+      if (motion_ == BlockMotion::kDrives) pose.tip = moved.tip;
     }
     tip_off = std::max(tip_off, (pose.tip - path.tip).norm());
     axis_off = std::max(axis_off, (pose.axis - path.axis).norm());
@@ -87,7 +95,7 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
 bool Subdivider::cut(const PathPiece& piece, const JointVector& begin, const Judge& is_short_enough,
                      const Take& take) const {
   Place from = place_at(piece, 0, piece.joints_begin);
-  from.end.joints = begin;
+  from.end.axes = begin;
   double step = 1;
   while (from.end.share < 1) {
     const double rest = 1 - from.end.share;

@@ -13,7 +13,7 @@ namespace meridian::post {
 
 /// How a controller moves between two blocks.
 enum class BlockMotion : std::uint8_t {
-  kJoints,        ///< every joint evenly
+  kDrives,        ///< every drive evenly
   kTipAndRotary,  ///< tip straight, rotary joints evenly
   kTipAndAxis     ///< tip straight, tool axis on the great circle
 };
@@ -24,20 +24,20 @@ struct PathTolerance {
   double axis_rad = 0.0017;
 };
 
-/// Where an NC block ends. `joints` as the words say them, windings included; share of the piece.
+/// Where an NC block ends: the drives as the words say them, windings included; share of the piece.
 struct BlockEnd {
   double share = 0;
-  JointVector joints{};
+  JointVector axes{};
 };
 
-/// Cuts `piece`, which begins at `begin` (joints as written), into NC blocks, as few as a search by
+/// Cuts `piece`, which begins at `begin` (drives as written), into NC blocks, as few as a search by
 /// halves and doubles finds, and gives the end of each to `take`.
 ///
 /// Between two ends the controller's motion is compared with the CL path at kPlaces places by
 /// forward kinematics, and what can lie between the places is bounded: there the deviation e obeys
-/// |e| <= max at the places + |e''|/(8 n²), and |e''| <= Ω² ρ + 2 Ω L + what the path bends, with Ω
-/// the turn of all rotary joints, L the way of all linear ones, ρ the largest distance of the tip
-/// from a rotary axis (docs/postprocessor.md). Rounded words are what is compared.
+/// |e| <= max at the places + |e''|/(8 n²), and |e''| <= Ω² ρ + 2 Ω L + what joints and path bend,
+/// with Ω the turn of all rotary joints, L the way of all linear ones, ρ the largest distance of
+/// the tip from a rotary axis (docs/postprocessor.md). Rounded words are what is compared.
 ///
 /// `is_short_enough(from, to)` may refuse a step for other reasons. False where the tolerance
 /// cannot be kept: it is finer than the decimals of the words. Proof: tests/property/post.

@@ -56,7 +56,7 @@ class TipWords {
     std::string out;
     for (int i = 0; i < parts_.words.count(); ++i) {
       if (!parts_.words.is_rotary(i)) continue;
-      const double value = parts_.words.value(i, to.joints[i]);
+      const double value = parts_.words.value(i, to.axes[i]);
       if (joints_[i] == value) continue;
       joints_[i] = value;
       std::string address = parts_.words.address(i);
@@ -71,7 +71,7 @@ class TipWords {
     std::string out;
     for (const char* const address : {"X", "Y"}) {
       const int i = parts_.words.find(address);
-      append(out, address, parts_.words.value(i, to.joints[i] - parts_.zero[i]), kLinearDecimals);
+      append(out, address, parts_.words.value(i, to.axes[i] - parts_.zero[i]), kLinearDecimals);
     }
     return out;
   }

@@ -43,7 +43,7 @@ TEST_P(PostCorpus, EveryPointOfARealFileIsFoundAgain) {
       JointVector q{};
       for (int i = 0; i < model.joint_count; ++i) {
         const auto word = move.at.find(words.address(i));
-        if (word != move.at.end()) q[i] = words.joint(i, word->second);
+        if (word != move.at.end()) q[i] = words.axis(i, word->second);
       }
       const ToolPose pose = forward(model, model.tool_length_mm, q);
       return (pose.tip - to_vector(b.tip_mm)).norm() < kPointTip_mm &&

@@ -10,9 +10,18 @@
 #include <string>
 #include <vector>
 
+#include "meridian/kinematics/joints.hpp"
+
 /// A reader of the NC programs that the postprocessor writes, as a controller would: modal words,
 /// comments left out. It knows the four dialects by their words and nothing of their writer.
 namespace meridian::test {
+
+/// Where drives are that go evenly from `a` to `b`.
+[[nodiscard]] inline JointVector between(const JointVector& a, const JointVector& b, double share) {
+  JointVector out{};
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = a[i] + share * (b[i] - a[i]);
+  return out;
+}
 
 /// One motion block with everything that is in force behind it.
 struct NcMove {

@@ -58,28 +58,28 @@ std::vector<ClBlock> blocks_of(const std::string& text) {
   return blocks;
 }
 
-/// A program that is read back: joints of every block by its words.
+/// A program that is read back: drives of every block by its words, joints by its drives.
 struct ReadBack {
   const MachineModel& model;
   post::AxisWords words;
   test::NcProgramRead nc;
   post::PostOptions options;
 
-  [[nodiscard]] JointVector joints(const test::NcMove& move) const {
-    JointVector q{};
+  [[nodiscard]] JointVector drives(const test::NcMove& move) const {
+    JointVector u{};
     for (int i = 0; i < model.joint_count; ++i) {
       const auto at = move.at.find(words.address(i));
-      if (at != move.at.end()) q[i] = words.joint(i, at->second);
+      if (at != move.at.end()) u[i] = words.axis(i, at->second);
     }
-    return q;
+    return u;
   }
-  [[nodiscard]] ToolPose pose(const JointVector& q) const {
-    return forward(model, model.tool_length_mm, q);
+  [[nodiscard]] ToolPose pose(const JointVector& u) const {
+    return forward(model, model.tool_length_mm, joints_of(model, u));
   }
 
   /// Where the block ends, as its dialect says it.
   [[nodiscard]] ToolPose end_of(const test::NcMove& move) const {
-    if (options.dialect == post::Dialect::kJoints) return pose(joints(move));
+    if (options.dialect == post::Dialect::kJoints) return pose(drives(move));
     const auto vector = [&move](const char* x, const char* y, const char* z) {
       const auto word = [&move](const char* address) {
         const auto at = move.at.find(address);
@@ -91,7 +91,7 @@ struct ReadBack {
     const Vector3 tip = from_machine * vector("X", "Y", "Z");
     switch (options.dialect) {
       case post::Dialect::kFanuc:
-        if (!options.has_vectors) return {tip, pose(joints(move)).axis};
+        if (!options.has_vectors) return {tip, pose(drives(move)).axis};
         return {tip, from_machine * vector("I", "J", "K")};
       case post::Dialect::kSiemens:
         return {tip, from_machine * vector("A3", "B3", "C3")};
@@ -102,14 +102,12 @@ struct ReadBack {
 
   /// Between two blocks, as the controller moves.
   [[nodiscard]] ToolPose between(const test::NcMove& from, const test::NcMove& to, double u) const {
-    const JointVector a = joints(from), b = joints(to);
-    JointVector q = a;
-    for (int i = 0; i < kMaxJoints; ++i) q[i] += u * (b[i] - a[i]);
-    if (options.dialect == post::Dialect::kJoints) return pose(q);
+    const JointVector at = test::between(drives(from), drives(to), u);
+    if (options.dialect == post::Dialect::kJoints) return pose(at);
     const ToolPose begin = end_of(from), end = end_of(to);
     const Vector3 tip = begin.tip + u * (end.tip - begin.tip);
     if (options.dialect == post::Dialect::kFanuc && !options.has_vectors)
-      return {tip, pose(q).axis};
+      return {tip, pose(at).axis};
     return {tip, cl::turn_towards(begin.axis.normalized(), end.axis.normalized(), u)};
   }
 };
@@ -118,11 +116,19 @@ bool is_at(const ToolPose& a, const ToolPose& b) {
   return (a.tip - b.tip).norm() < kPointTip_mm && test::angle_of(a.axis, b.axis) < kPointAxis_rad;
 }
 
-/// Largest share of a joint's velocity that a way of `seconds` between `a` and `b` takes.
-double joint_time(const MachineModel& model, const JointVector& a, const JointVector& b) {
+/// Least time in which the drives go evenly from `a` to `b` with no joint and no drive too fast.
+double least_time(const MachineModel& model, const JointVector& a, const JointVector& b) {
+  constexpr int kParts = 16;
   double longest = 0;
-  for (int i = 0; i < model.joint_count; ++i) {
-    longest = std::max(longest, std::abs(b[i] - a[i]) / model.joints[i].limits.velocity);
+  LimitedVector last = limited_of(model, joints_of(model, a));
+  for (int n = 1; n <= kParts; ++n) {
+    const double share = static_cast<double>(n) / kParts;
+    const LimitedVector at = limited_of(model, joints_of(model, test::between(a, b, share)));
+    for (int i = 0; i < limited_count(model); ++i) {
+      const double rate = kParts * std::abs(at[i] - last[i]);
+      longest = std::max(longest, rate / limited_spec(model, i).limits.velocity);
+    }
+    last = at;
   }
   return longest;
 }
@@ -155,8 +161,8 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
     }
     ASSERT_TRUE(move.is_inverse && move.has_feed) << "NC line " << move.line;
     const double seconds = 60 / move.feed;
-    const double by_joints = joint_time(model, read.joints(before), read.joints(move));
-    EXPECT_GE(seconds, by_joints * (1 - 1e-9)) << "a joint is too fast, NC line " << move.line;
+    const double by_joints = least_time(model, read.drives(before), read.drives(move));
+    EXPECT_GE(seconds, by_joints * (1 - 1e-6)) << "a joint is too fast, NC line " << move.line;
     EXPECT_LE(length, feed * seconds * (1 + 1e-9) + kDigits_mm) << "NC line " << move.line;
     if (way.block.is_arc || way.block.feed_meaning != FeedMeaning::kTip) return;
     if (seconds > 1.01 * by_joints + 1e-3 && length > 0.1) {
@@ -252,7 +258,8 @@ TEST_P(PostRoundTrip, JointWordsGiveTheClPathBackWithinTheTolerancesAndAtTheFeed
 }
 
 TEST_P(PostRoundTrip, ToolCentreWordsGiveTheClPathBackInEveryDialect) {
-  if (model.family == MachineFamily::kRobot) return;  // have no X Y Z: refused, see tests/unit/post
+  // Robots have no X Y Z, and no control knows a stage: refused, see tests/unit/post.
+  if (model.family == MachineFamily::kRobot || has_stage(model)) return;
   post::PostOptions options;
   options.dialect = post::Dialect::kFanuc;
   run(options, kPrograms / 2);
@@ -265,12 +272,9 @@ TEST_P(PostRoundTrip, ToolCentreWordsGiveTheClPathBackInEveryDialect) {
   }
 }
 
-/// All but those with a stage, which the postprocessor refuses: its joint words are not what drives
-/// do.
 std::vector<std::string> shipped_machines() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    if (has_stage(config::load_machine(entry.path().string()))) continue;
     names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());

@@ -96,6 +96,10 @@ const Mistake kStageMistakes[] = {
      "stage.u1.travel_mm", "-200", "holds -300 mm", "home", "lai-hybrid"},
     {"StageDriveOfHome", "travel_mm = [-625, 45]", "travel_mm = [-625, 45]\nhome_mm = 0",
      "stage.u1.home_mm", "0", "", "", "lai-hybrid"},
+    {"StageWordOfACarriedJoint", "[joints.b2]", "[joints.b2]\nnc_word = \"Y\"", "stage.linear", "b2",
+     "without nc_word", "move nc_word from joints.b2", "lai-hybrid"},
+    {"StageDriveWord", "nc_word = \"U\"", "nc_word = \"U123\"", "stage.u1.nc_word", "U123",
+     "one of X Y Z A B C U V W", "address", "lai-hybrid"},
     {"StageDriveFasterThanAnything", "jerk_mm_per_s3 = 80000", "jerk_mm_per_s3 = 0",
      "stage.u1.jerk_mm_per_s3", "0", "0.001", "number", "lai-hybrid"},
 };
