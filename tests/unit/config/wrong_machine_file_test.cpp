@@ -96,8 +96,6 @@ const Mistake kStageMistakes[] = {
      "stage.u1.travel_mm", "-200", "holds -300 mm", "home", "lai-hybrid"},
     {"StageDriveOfHome", "travel_mm = [-625, 45]", "travel_mm = [-625, 45]\nhome_mm = 0",
      "stage.u1.home_mm", "0", "", "", "lai-hybrid"},
-    {"StageWordOfACarriedJoint", "[joints.b2]", "[joints.b2]\nnc_word = \"Y\"", "stage.linear", "b2",
-     "without nc_word", "move nc_word from joints.b2", "lai-hybrid"},
     {"StageDriveWord", "nc_word = \"U\"", "nc_word = \"U123\"", "stage.u1.nc_word", "U123",
      "one of X Y Z A B C U V W", "address", "lai-hybrid"},
     {"StageDriveFasterThanAnything", "jerk_mm_per_s3 = 80000", "jerk_mm_per_s3 = 0",
@@ -136,6 +134,12 @@ TEST(WrongMachineFile, AStageOfAJointThatTurnsWithoutEndIsRefused) {
   const ConfigFault fault = fault_of_hybrid({{"travel_deg = [-60, 60]", "endless = true"}});
   EXPECT_EQ(fault.key, "stage.rotary");
   EXPECT_NE(fault.remedy.find("give theta1 travel_deg"), std::string::npos) << fault.remedy;
+}
+
+TEST(WrongMachineFile, AWordOfAJointThatAStageCarriesIsRefused) {
+  const ConfigFault fault = fault_of_hybrid({{"[joints.b2]", "[joints.b2]\nnc_word = \"Y\""}});
+  EXPECT_EQ(fault.key, "stage.linear");
+  EXPECT_NE(fault.remedy.find("move nc_word from joints.b2"), std::string::npos) << fault.remedy;
 }
 
 TEST(WrongMachineFile, GeometryOfAStageThatIsNoneIsRefused) {
@@ -263,7 +267,7 @@ TEST(WrongMachineFile, IsRefusedAtEveryKeyThatIsTakenAway) {
       "version",         "default_unit", "starve_auto_resume_s",
       "bridge_cycles",   "origin_mm",    "rotation_deg",
       "turn_offset_deg", "rods",         "slide_sign",
-      "slide_offset_mm", "turn_sign"};
+      "slide_offset_mm", "turn_sign",    "nc_word"};
   const std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml");
   int needed = 0;
   for (std::size_t begin = 0; begin < text.size();) {
