@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integration/live_run.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "service/config/machine_file.hpp"
+#include "service/record/compare.hpp"
+
+namespace meridian::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+[[nodiscard]] Words joined(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// How the part is read and on which machine it is judged.
+[[nodiscard]] Words judged(const LiveRun& live) {
+  return joined(joined({"--machine", machine_file(live.machine)}, live.reader), live.simulate);
+}
+
+}  // namespace
+
+void write_cl_file(const std::string& path, int blocks, const std::string& machine) {
+  const auto program = small_program(blocks, 4000, 2, machine);
+  const std::size_t half = program.size() / 2;
+  const std::vector<ClBlock> first(program.begin(), program.begin() + static_cast<long>(half));
+  std::ofstream file(path);
+  file << "PARTNO SMALL PROGRAM\nUNITS/MM\nSPINDL/8000,RPM,CLW\nFEDRAT/4000,MMPM\n"
+       << cl_text(first) << "DELAY/0.3\nCOOLNT/FLOOD\n"
+       << cl_text(program, half) << "FINI\n";
+}
+
+void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
+  plant.start_service(live.service);
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  Process station(joined({"meridian", "stream", part, "--domain", plant.domain(), "--machine-name",
+                          live.machine, "--wait-end"},
+                         live.reader),
+                  plant.folder() / "station.log");
+  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << station.said();
+  if (live.operate) {
+    ASSERT_NO_FATAL_FAILURE(live.operate());
+  } else {
+    const auto start = plant.say(Verb::kStart);
+    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  }
+  ASSERT_TRUE(eventually(
+      [&] {
+        live.watch();
+        return station.wait(milliseconds(0)).has_value();
+      },
+      live.patience))
+      << station.said() << plant.service().said();
+  ASSERT_EQ(station.wait(milliseconds(0)), 0) << station.said() << plant.service().said();
+  plant.service().send_signal(SIGTERM);
+  ASSERT_EQ(plant.service().wait(milliseconds(5000)), 0) << plant.service().said();
+}
+
+std::string simulate_part(const Plant& plant, const std::string& part, const LiveRun& live,
+                          const Words& more) {
+  const std::string simulated = plant.folder() / "simulated.csv";
+  Process simulate(
+      joined(joined({"meridian", "simulate", part, "--record", simulated}, judged(live)), more),
+      plant.folder() / "simulate.log");
+  EXPECT_EQ(simulate.wait(milliseconds(60'000)), 0) << simulate.said();
+  return simulated;
+}
+
+void expect_same(const Plant& plant, const std::string& simulated, const LiveRun& live) {
+  const MachineModel model = config::load_machine(machine_file(live.machine));
+  auto is = record::RecordingReader::open(plant.recording(), model);
+  auto wanted = record::RecordingReader::open(simulated, model);
+  ASSERT_TRUE(is && wanted);
+  const auto report = record::compare(*is, *wanted, model);
+  ASSERT_TRUE(report) << report.error().text();
+  std::printf("%s\n", record::to_text(*report, "live", "simulated", model).c_str());
+  EXPECT_TRUE(report->is_same());
+}
+
+void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live) {
+  Process check(joined({"meridian", "check", plant.recording(), part, "--max-missing", "1000000"},
+                       judged(live)),
+                plant.folder() / "check.log");
+  EXPECT_EQ(check.wait(milliseconds(60'000)), 0) << check.said();
+  std::printf("%s\n", check.said().c_str());
+}
+
+void run_and_judge(Plant& plant, const std::string& part, const LiveRun& live) {
+  const std::string simulated = simulate_part(plant, part, live);
+  ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated, live));
+  expect_checked(plant, part, live);
+}
+
+}  // namespace meridian::test

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "integration/plant.hpp"
+
+/// One program cut live by service, drives, station and operator, and judged by the simulation.
+/// Failures are those of GoogleTest.
+namespace meridian::test {
+
+/// What the programs of a live run are told beside the part.
+struct LiveRun {
+  std::string machine = "lai";          ///< one of deploy/machines, that of the plant
+  std::vector<std::string> service;     ///< meridiand
+  std::vector<std::string> reader;      ///< how the part is read: stream, simulate and check
+  std::vector<std::string> simulate;    ///< machine and workpiece: simulate and check
+  std::function<void()> operate;        ///< instead of a plain start
+  std::function<void()> watch = [] {};  ///< called again and again while the part is cut
+  milliseconds patience{60'000};
+};
+
+/// The small program as a CL file, with a dwell and an action in it.
+void write_cl_file(const std::string& path, int blocks, const std::string& machine = "lai");
+
+/// Cuts `part` from enabling to the end of the service.
+void run_live(Plant& plant, const std::string& part, const LiveRun& live);
+
+/// Simulates `part`, with `more` on the command line: the recording's name.
+[[nodiscard]] std::string simulate_part(const Plant& plant, const std::string& part,
+                                        const LiveRun& live,
+                                        const std::vector<std::string>& more = {});
+
+/// The recording of the plant and `simulated` hold the same motion.
+void expect_same(const Plant& plant, const std::string& simulated, const LiveRun& live);
+
+/// The recording of the plant is `part`, inside limits and tolerances.
+void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live);
+
+/// All of that without an operator's doing.
+void run_and_judge(Plant& plant, const std::string& part, const LiveRun& live);
+
+}  // namespace meridian::test
