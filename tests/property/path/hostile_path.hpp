@@ -9,6 +9,7 @@
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "support/program_end.hpp"
 
 namespace meridian::test {
 
@@ -33,6 +34,13 @@ class HostilePath {
       add_section(static_cast<int>(uniform(0, 11)));
     }
     return blocks_;
+  }
+
+  /// The same with its end.
+  [[nodiscard]] std::vector<ClBlock> make_program(int sections) {
+    auto blocks = make(sections);
+    end_program(blocks);
+    return blocks;
   }
 
  private:

@@ -11,6 +11,7 @@
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "support/machines.hpp"
+#include "support/program_end.hpp"
 
 namespace meridian::test {
 namespace {
@@ -18,12 +19,7 @@ namespace {
 constexpr double kLimit = 1 + 1e-6;
 
 std::vector<ClBlock> hostile(std::uint32_t seed, int sections) {
-  auto blocks = HostilePath(seed).make(sections);
-  ClBlock end;
-  end.kind = BlockKind::kEnd;
-  end.sequence = blocks.size();
-  blocks.push_back(end);
-  return blocks;
+  return HostilePath(seed).make_program(sections);
 }
 
 struct Peaks {
@@ -107,10 +103,7 @@ std::vector<ClBlock> past_the_pole(double distance_rad, double bend_rad) {
     block.feed_meaning = FeedMeaning::kTip;
     blocks.push_back(block);
   }
-  ClBlock end;
-  end.kind = BlockKind::kEnd;
-  end.sequence = blocks.size();
-  blocks.push_back(end);
+  end_program(blocks);
   return blocks;
 }
 

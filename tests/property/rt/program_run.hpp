@@ -10,6 +10,7 @@
 #include "property/planner/random_programs.hpp"
 #include "support/cycle_world.hpp"
 #include "support/machines.hpp"
+#include "support/program_end.hpp"
 
 /// Random programs through the real planner, port and cycle.
 namespace meridian::test {
@@ -22,11 +23,7 @@ inline std::vector<ClBlock> draw_program(RandomPrograms& random, const MachineMo
     if (block.feed_meaning == FeedMeaning::kTip) block.feed = std::max(block.feed, 20.0);
     if (block.feed_meaning == FeedMeaning::kInverseTime) block.feed = std::max(block.feed, 2.0);
   }
-  ClBlock end;
-  end.kind = BlockKind::kEnd;
-  end.sequence = blocks.size();
-  end.line = 10 * static_cast<std::uint32_t>(end.sequence) + 7;
-  blocks.push_back(end);
+  end_program(blocks);
   return blocks;
 }
 

@@ -7,7 +7,7 @@
 
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "property/rt/program_run.hpp"
+#include "property/rt/operated_run.hpp"
 
 /// Smooth plans in the cycle: holds, overrides, FaultStops at any instant, and blocks that come
 /// late. The machine keeps to its path and every joint to its limits.
@@ -21,77 +21,50 @@ constexpr double kLimit = 1 + 1e-6;
 constexpr double kMostSeconds = 15;  // of motion per program
 
 std::vector<ClBlock> hostile(std::uint32_t seed, int sections = 6) {
-  auto blocks = test::HostilePath(seed).make(sections);
+  auto blocks = test::HostilePath(seed).make_program(sections);
   for (ClBlock& block : blocks) block.feed = std::max(block.feed, 20.0);
-  ClBlock end;
-  end.kind = BlockKind::kEnd;
-  end.sequence = blocks.size();
-  blocks.push_back(end);
   return blocks;
 }
 
 /// Largest matched distance from the programmed path, in tolerances, of every eleventh setpoint
 /// that moves.
 double largest_distance(const MachineModel& machine, const std::vector<ClBlock>& blocks,
-                        const std::vector<CycleRecord>& records) {
+                        const std::vector<CycleRecord>& records, std::size_t first = 0) {
   const auto ways = test::programmed_ways(blocks);
   double largest = 0;
-  for (std::size_t n = 0; n < records.size(); n += 11) {
-    const CycleRecord& record = records[n];
-    if ((record.setpoint.flags & kSetpointMoving) == 0) continue;
-    if (record.motion == MotionKind::kApproach) continue;
-    const ToolPose pose = forward(machine, machine.tool_length_mm, record.joints);
+  test::for_each_cut(machine, records, first, 11, [&](const auto& record, const auto& pose) {
     const double off = test::distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
                                            machine.tolerances.axis_rad);
     largest = std::max(largest, off);
-  }
+  });
   return largest;
 }
 
 TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
   LimitShares worst;
   double seconds = 0, worst_off = 0;
-  int holds = 0, done = 0;
+  int done = 0;
+  test::Operator random_operator{.least_override = 0.1, .turns_rapids = false};
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
     test::RandomPrograms random(seed);
     MachineModel machine = seed % 2 == 0 ? test::bench_machine() : test::lai_machine();
     machine.transition = Transition::kSmooth;
     const auto blocks = hostile(seed);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
-    ASSERT_TRUE(run.is_started()) << "seed " << seed;
-    double next = 0, t = 0;
-    const double dt = run.world.dt();
-    for (; t < kMostSeconds && !run.is_over(); t += dt) {
-      if (t < next) {
-        run.run();
-        continue;
-      }
-      next = t + random.log_uniform(0.01, 1.0);
-      const double what = random.uniform(0, 1);
-      if (run.world.now() == State::kHeld) {
-        run.command(Verb::kResume);
-      } else if (what < 0.5) {
-        run.command(Verb::kHold);
-        ++holds;
-      } else if (what < 0.8) {
-        run.command(Verb::kFeedOverride, random.uniform(0.1, 1.5));
-      }
-    }
+    ASSERT_TRUE(run.is_started());
+    seconds += random_operator.operate(run, random, kMostSeconds);
     done += run.is_over();
-    seconds += t;
-    const LimitShares shares = test::shares_of_limits(run.world, 0, false);
-    EXPECT_LE(std::max({shares.v, shares.a, shares.j}), kLimit)
-        << "seed " << seed << " v " << shares.v << " a " << shares.a << " j " << shares.j;
-    worst.take(shares);
-    EXPECT_EQ(run.world.count(EventCode::kAlarm), 0) << "seed " << seed;
+    test::expect_within_limits(run.world, 0, false, worst);
+    EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
     worst_off = std::max(worst_off, largest_distance(machine, blocks, run.world.records));
   }
   std::printf(
       "%d of 6 programs to the end, %.0f s, %d holds; worst v %.6f a %.6f j %.6f; "
       "%.3f tolerances\n",
-      done, seconds, holds, worst.v, worst.a, worst.j, worst_off);
+      done, seconds, random_operator.holds, worst.v, worst.a, worst.j, worst_off);
   EXPECT_GT(seconds, 40);
-  EXPECT_GT(holds, 20);
+  EXPECT_GT(random_operator.holds, 20);
   EXPECT_LE(worst_off, 1 + 1e-6);
 }
 
@@ -117,9 +90,7 @@ TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
     }
     EXPECT_TRUE(run.is_over());
     dry += run.world.state.starvations;
-    const LimitShares shares = test::shares_of_limits(run.world, 0, false);
-    EXPECT_LE(std::max({shares.v, shares.a, shares.j}), kLimit);
-    worst.take(shares);
+    test::expect_within_limits(run.world, 0, false, worst);
     EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
     EXPECT_LE(largest_distance(machine, blocks, run.world.records), 1 + 1e-6);
     const ToolPose end = forward(machine, machine.tool_length_mm, run.world.records.back().joints);
@@ -142,9 +113,7 @@ TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started());
     const double until = random.uniform(0.2, 3);
-    for (double t = 0; t < until && !run.is_over(); t += run.world.dt()) run.run();
-    if (run.is_over()) continue;
-    run.world.in.feedback.fault_mask = 1;
+    if (!test::run_into_fault(run, until)) continue;
     const std::size_t first = run.world.records.size();
     ASSERT_TRUE(run.world.run_until(State::kFault, 10));
     ++stops;
@@ -153,9 +122,7 @@ TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
     worst.take(shares);
     longest =
         std::max(longest, static_cast<double>(run.world.records.size() - first) * run.world.dt());
-    const std::vector<CycleRecord> records(run.world.records.begin() + static_cast<long>(first),
-                                           run.world.records.end());
-    worst_off = std::max(worst_off, largest_distance(machine, blocks, records));
+    worst_off = std::max(worst_off, largest_distance(machine, blocks, run.world.records, first));
   }
   std::printf("%d FaultStops, %d over a limit, worst v %.4f a %.4f j %.4f, longest %.3f s\n", stops,
               over, worst.v, worst.a, worst.j, longest);

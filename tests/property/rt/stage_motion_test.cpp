@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "property/rt/program_run.hpp"
+#include "property/rt/operated_run.hpp"
 
 /// The cycle of a machine whose stage stands between two joints and their drives: holds, overrides
 /// and FaultStops at any instant keep the limits of joints and drives, and what is sent are drive
@@ -18,7 +18,6 @@ using test::LimitShares;
 using test::ProgramRun;
 
 constexpr std::uint64_t kSeed = 20240911;
-constexpr double kLimit = 1 + 1e-6;
 
 /// Every setpoint is the stage of its joints, and its velocity the derivative of its position.
 void expect_drive_coordinates(const test::CycleWorld& world) {
@@ -43,37 +42,21 @@ void expect_drive_coordinates(const test::CycleWorld& world) {
 TEST(StageMotion, HoldsAndOverridesKeepTheLimitsOfJointsAndDrives) {
   constexpr int kPrograms = 40;
   LimitShares worst;
-  int holds = 0, done = 0;
+  int done = 0;
+  test::Operator random_operator;
   for (int n = 0; n < kPrograms; ++n) {
+    SCOPED_TRACE(testing::Message() << "program " << n);
     Draw draw(kSeed + static_cast<std::uint64_t>(n), test::hybrid_machine());
     ProgramRun run(draw.machine, draw.blocks, draw.start());
     if (!run.is_started()) continue;
-    double next = 0;
-    for (double t = 0; t < 30 && !run.is_over(); t += run.world.dt()) {
-      if (t < next) {
-        run.run();
-        continue;
-      }
-      next = t + draw.random.log_uniform(0.01, 1.0);
-      if (run.world.now() == State::kHeld) {
-        run.command(Verb::kResume);
-      } else if (draw.random.chance(0.5)) {
-        run.command(Verb::kHold);
-        ++holds;
-      } else {
-        run.command(Verb::kFeedOverride, draw.random.uniform(0, 1.5));
-      }
-    }
+    (void)random_operator.operate(run, draw.random, 30);
     done += run.is_over();
-    EXPECT_EQ(run.world.count(EventCode::kAlarm), 0) << "program " << n;
-    const LimitShares shares = test::shares_of_limits(run.world, 0, false);
-    EXPECT_LE(std::max({shares.v, shares.a, shares.j}), kLimit)
-        << "program " << n << " v " << shares.v << " a " << shares.a << " j " << shares.j;
-    worst.take(shares);
+    EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
+    test::expect_within_limits(run.world, 0, false, worst);
     expect_drive_coordinates(run.world);
   }
   std::printf("%d of %d programs to the end, %d holds; worst v %.6f a %.6f j %.6f\n", done,
-              kPrograms, holds, worst.v, worst.a, worst.j);
+              kPrograms, random_operator.holds, worst.v, worst.a, worst.j);
   EXPECT_GT(done, kPrograms / 4);
 }
 
@@ -81,20 +64,16 @@ TEST(StageMotion, FaultStopsKeepTheFaultLimitsOfJointsAndDrives) {
   LimitShares worst;
   int stops = 0;
   for (int n = 0; n < 150; ++n) {
+    SCOPED_TRACE(testing::Message() << "program " << n);
     Draw draw(kSeed + 1000 + static_cast<std::uint64_t>(n), test::hybrid_machine());
     ProgramRun run(draw.machine, draw.blocks, draw.start());
     if (!run.is_started()) continue;
     const double until = draw.random.uniform(0.05, 3);
-    for (double t = 0; t < until && !run.is_over(); t += run.world.dt()) run.run();
-    if (run.is_over()) continue;
-    run.world.in.feedback.fault_mask = 1;
+    if (!test::run_into_fault(run, until)) continue;
     const std::size_t first = run.world.records.size();
     ASSERT_TRUE(run.world.run_until(State::kFault, 10));
     ++stops;
-    const LimitShares shares = test::shares_of_limits(run.world, first, true);
-    EXPECT_LE(std::max({shares.v, shares.a, shares.j}), kLimit)
-        << "program " << n << " v " << shares.v << " a " << shares.a << " j " << shares.j;
-    worst.take(shares);
+    test::expect_within_limits(run.world, first, true, worst);
   }
   std::printf("%d FaultStops; worst v %.6f a %.6f j %.6f\n", stops, worst.v, worst.a, worst.j);
   EXPECT_GT(stops, 40);

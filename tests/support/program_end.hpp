@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "meridian/path/cl_block.hpp"
+
+namespace meridian::test {
+
+/// Puts the block behind the last that ends a program.
+inline void end_program(std::vector<ClBlock>& blocks) {
+  ClBlock end;
+  end.kind = BlockKind::kEnd;
+  end.sequence = blocks.size();
+  end.line = 10 * static_cast<std::uint32_t>(end.sequence) + 7;
+  blocks.push_back(end);
+}
+
+}  // namespace meridian::test
