@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -12,6 +13,7 @@
 #include "service/cli/machine_options.hpp"
 #include "service/record/recording_reader.hpp"
 #include "service/record/recording_writer.hpp"
+#include "service/simulate/feed_picture.hpp"
 #include "service/simulate/simulate.hpp"
 
 namespace meridian::cli {
@@ -19,7 +21,8 @@ namespace {
 
 struct Options {
   std::string file, record, events, start_from, auxiliary = "ignore", transition;
-  bool stops_at_optional = false;
+  std::string explain_table, picture;
+  bool stops_at_optional = false, is_explained = false;
   MachineOptions machine;
   ClFileOptions cl;
 };
@@ -45,6 +48,51 @@ int refuse(const std::string& message) {
     if ((row.flags & kSetpointEnabled) != 0) return drives_at(model, row.places);
   }
 }
+
+/// Where the time went, as the options ask for it: told, as a table, as a picture.
+class Explaining {
+ public:
+  Explaining(const Options& options, const MachineModel& model)
+      : options_(options), model_(model), picture_(model) {
+    if (!options.explain_table.empty()) {
+      table_.open(options.explain_table, std::ios::binary);
+      table_ << simulate::explained_header(model);
+    }
+    const bool is_wanted = options.is_explained || table_.is_open() || !options.picture.empty();
+    if (!is_wanted) return;
+    explainer_.emplace(
+        model,
+        [this](const simulate::ExplainedBlock& block) {
+          if (table_.is_open()) table_ << simulate::to_csv(block, model_);
+        },
+        [this](const simulate::ExplainedCycle& cycle) {
+          if (!options_.picture.empty()) picture_.add(cycle);
+        });
+  }
+
+  [[nodiscard]] simulate::Explainer* explainer() { return explainer_ ? &*explainer_ : nullptr; }
+
+  /// Writes what was asked for; a message where that fails.
+  [[nodiscard]] std::string finish() {
+    if (options_.is_explained) std::cout << to_text(explainer_->explanation(), model_);
+    table_.close();
+    if (table_.fail() && !options_.explain_table.empty()) {
+      return options_.explain_table + ": cannot be written";
+    }
+    if (options_.picture.empty()) return "";
+    const std::string title =
+        std::filesystem::path(options_.file).filename().string() + ", machine " + model_.name;
+    const auto error = picture_.draw(options_.picture, title);
+    return error ? error->text() : "";
+  }
+
+ private:
+  const Options& options_;
+  const MachineModel& model_;
+  simulate::FeedPicture picture_;
+  std::ofstream table_;
+  std::optional<simulate::Explainer> explainer_;
+};
 
 int exit_code_of(simulate::Outcome outcome) {
   switch (outcome) {
@@ -88,12 +136,15 @@ int run(const Options& options) {
     if (!created) return refuse(created.error().text());
     writer.emplace(std::move(*created));
   }
+  Explaining explaining(options, model);
+  simulation.explainer = explaining.explainer();
   const simulate::SimulateReport report = simulate::simulate(
       reader, options.file, model, tools, simulation, [&writer](const CycleRecord& row) {
         if (writer) (void)writer->write(row);
       });
   print_warnings(options.file, reader.warnings());
   std::cout << to_text(report, model);
+  if (const std::string failure = explaining.finish(); !failure.empty()) return refuse(failure);
   if (writer && !writer->close()) {
     return refuse(options.record + ": " + std::strerror(writer->error_number()));
   }
@@ -112,6 +163,13 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   add_cl_file(*command, options->file);
   add_machine_options(*command, options->machine, true);
   command->add_option("-r,--record", options->record, "Write every cycle to this recording (CSV)");
+  command->add_flag("--explain", options->is_explained,
+                    "Tell where the time went: by limit and cause, and the blocks that cost most");
+  command->add_option("--explain-table", options->explain_table,
+                      "Write the same of every block to this table (CSV)");
+  command->add_option("--picture", options->picture,
+                      "Draw the feed, programmed and achieved, and what held it to this .png or "
+                      ".svg");
   command->add_option("--events", options->events,
                       "Replay operator events: rows cycle,verb,argument (docs/recordings.md)");
   command->add_option("--start-from", options->start_from,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/simulate/block_feed.hpp"
 
+#include "meridian/path/build_piece.hpp"
+
 namespace meridian::simulate {
 namespace {
 
@@ -15,13 +17,14 @@ namespace {
 }  // namespace
 
 BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
-                     MotionPort& port, bool has_action_peer)
+                     MotionPort& port, bool has_action_peer, Explainer* explainer)
     : reader_(reader),
       model_(model),
       judge_(model, lengths_of(tools)),
       actions_{.is_there = has_action_peer, .is_ignored = false},
       planner_(model, tools),
-      writer_(port) {}
+      writer_(port),
+      explainer_(explainer) {}
 
 void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch) {
   judge_.begin(model_.tool_length_mm);
@@ -37,6 +40,7 @@ bool BlockFeed::take_block() {
     return false;
   }
   if (!*read) return false;
+  const double programmed_feed = (*read)->feed;
   const BlockReject verdict = judge_.judge(**read, actions_);
   if (verdict.code != RejectCode::kNone) {
     refusal_ = stream::describe(verdict, model_);
@@ -44,7 +48,22 @@ bool BlockFeed::take_block() {
   }
   block_ = **read;
   if (is_motion(block_->kind)) ++motion_blocks_;
+  if (explainer_ != nullptr) explain(*block_, programmed_feed);
   return true;
+}
+
+void BlockFeed::explain(const ClBlock& block, double programmed_feed) {
+  double tip_mm = 0, path_mm = 0;
+  if (is_motion(block.kind)) {
+    const ToolPose end{to_vector(block.tip_mm), to_vector(block.axis)};
+    if (pose_) {  // the first one is where the approach ends
+      const PathPiece way = block.is_arc ? make_arc(*pose_, end, block) : make_line(*pose_, end);
+      tip_mm = tip_length(way);
+      path_mm = way.length;
+    }
+    pose_ = end;
+  }
+  explainer_->add_block(block, programmed_feed, tip_mm, path_mm);
 }
 
 void BlockFeed::fill() {
@@ -60,6 +79,9 @@ void BlockFeed::fill() {
       refusal_ = stream::describe(result.reject, model_);
       is_over_ = true;
       return;
+    }
+    if (explainer_ != nullptr && result.axis_deviation_rad > 0) {
+      explainer_->add_ease(block_->sequence, block_->sequence, result.axis_deviation_rad);
     }
     block_.reset();
   }

@@ -8,6 +8,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/planner/smooth_planner.hpp"
 #include "service/cl/cl_reader.hpp"
+#include "service/simulate/explainer.hpp"
 #include "service/stream/block_judge.hpp"
 
 namespace meridian::simulate {
@@ -16,8 +17,9 @@ namespace meridian::simulate {
 /// block in the same order, so that the plan is the same.
 class BlockFeed {
  public:
+  /// `explainer`: is told every block; may be nullptr.
   BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
-            MotionPort& port, bool has_action_peer);
+            MotionPort& port, bool has_action_peer, Explainer* explainer);
 
   /// Starts the program from joints at rest.
   void begin(const JointVector& at_rest, std::uint16_t epoch);
@@ -34,6 +36,7 @@ class BlockFeed {
 
  private:
   [[nodiscard]] bool take_block();
+  void explain(const ClBlock& block, double programmed_feed);
 
   cl::ClReader& reader_;
   const MachineModel& model_;
@@ -41,6 +44,8 @@ class BlockFeed {
   stream::ActionPeer actions_;
   SmoothPlanner planner_;
   MotionWriter writer_;
+  Explainer* explainer_;
+  std::optional<ToolPose> pose_;  ///< end of the last motion block
   std::optional<ClBlock> block_;  ///< judged, not planned yet
   std::string refusal_;
   std::uint64_t motion_blocks_ = 0;

@@ -25,7 +25,7 @@ class Run {
         options_(options),
         port_(std::make_unique<MotionPort>()),
         motion_(*port_),
-        feed_(reader, model, tools, *port_, options.has_action_peer),
+        feed_(reader, model, tools, *port_, options.has_action_peer, options.explainer),
         meter_(model) {
     for (int i = 0; i < model.joint_count; ++i) drives_[i] = drive_spec(model, i).home;
     if (options.start) drives_ = *options.start;
@@ -45,6 +45,7 @@ class Run {
         feed_.begin(out_.record.joints, state_.epoch);
       }
     }
+    if (options_.explainer != nullptr) options_.explainer->finish();
     report.cycles = in_.cycle;
     report.motion_blocks = feed_.motion_blocks();
     report.feeds_limited = feed_.feeds_limited();
@@ -120,6 +121,9 @@ class Run {
     const double length = path != nullptr ? path->tool_length_mm : model_.tool_length_mm;
     const TimePiece* piece = motion_.piece();
     meter_.add(out_.record, length, piece != nullptr ? piece->feed_mm_per_s : 0, report.shares);
+    if (options_.explainer != nullptr && !is_approach) {
+      options_.explainer->add_cycle(out_.record, piece, path, state_.piece_time, length);
+    }
   }
 
   void keep_event(const Event& event, SimulateReport& report) {

@@ -10,6 +10,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "service/cl/cl_reader.hpp"
+#include "service/simulate/explainer.hpp"
 #include "service/simulate/operator_events.hpp"
 #include "service/simulate/simulate_report.hpp"
 
@@ -20,6 +21,7 @@ struct SimulateOptions {
   std::vector<OperatorEvent> events;  ///< replayed
   bool has_action_peer = true;        ///< false: programs with action words are refused
   bool stops_at_optional = false;     ///< optional stops stop
+  Explainer* explainer = nullptr;     ///< follows the program from the end of its approach
 };
 
 /// Runs a CL file through judge, planner and cycle as the service does, without DDS and without a

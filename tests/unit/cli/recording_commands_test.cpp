@@ -27,6 +27,20 @@ class RecordingCommands : public testing::Test {
   TextFile recording_{"", ".csv"};
 };
 
+TEST_F(RecordingCommands, SimulateExplainsWhereTheTimeGoes) {
+  const TextFile table{"", ".csv"}, picture{"", ".svg"};
+  const CommandOutput outcome =
+      run_tool("simulate " + part() + kMachine + "--explain --explain-table " +
+               table.path().string() + " --picture " + picture.path().string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("held by"), std::string::npos) << outcome.output;
+  EXPECT_NE(meridian::test::read_text(table.path()).find("\n1,4,cut,10.000000,1200.000,"),
+            std::string::npos);
+  EXPECT_NE(meridian::test::read_text(picture.path()).find("</svg>"), std::string::npos);
+  EXPECT_EQ(run_tool("simulate " + part() + kMachine + "--explain-table /no/such/x.csv").exit_code,
+            3);
+}
+
 TEST_F(RecordingCommands, SimulateThenCheckIsFine) {
   const CommandOutput simulated =
       run_tool("simulate " + part() + kMachine + "--record " + recording());
