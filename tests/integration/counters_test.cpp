@@ -102,7 +102,8 @@ TEST_F(Counters, AWholeRunCostsCycleAndPublisherNoHeapCallNoPageFaultAndTheCycle
   ASSERT_TRUE(cycle != nullptr && publisher != nullptr) << watch::to_text(change);
   for (const watch::ThreadCounts* const thread : {cycle, publisher}) {
     EXPECT_LE(thread->allocations + thread->frees, load_budget("cycle_heap_calls").allowed())
-        << thread->name;
+        << thread->name << "\n"
+        << watch::callers_text(*thread);
     if (has_locked_memory_) {
       EXPECT_LE(thread->minor_faults + thread->major_faults,
                 load_budget("cycle_page_faults").allowed())

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "support/call_trace.hpp"
 #include "support/watch_slot.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -31,6 +32,10 @@ HeapCalls heap_calls() noexcept {
           slot.frees.load(std::memory_order_relaxed)};
 }
 
+void keep_heap_traces() noexcept { keep_traces(slot_of_this_thread()); }
+
+std::string heap_traces() { return traces_text(slot_of_this_thread()); }
+
 }  // namespace meridian::watch
 
 #if MERIDIAN_HEAP_WATCHED
@@ -48,25 +53,27 @@ void __libc_free(void* block);
 // NOLINTEND(bugprone-reserved-identifier)
 
 namespace {
-void count_allocation() noexcept {
-  meridian::watch::count(meridian::watch::slot_of_this_thread().allocations);
+void count_allocation(const char* what, const void* caller) noexcept {
+  auto& slot = meridian::watch::slot_of_this_thread();
+  meridian::watch::count(slot.allocations);
+  meridian::watch::trace_call(slot, what, caller);
 }
 }  // namespace
 
 extern "C" {
 
 void* malloc(std::size_t size) noexcept {
-  count_allocation();
+  count_allocation("malloc", __builtin_return_address(0));
   return __libc_malloc(size);
 }
 
 void* calloc(std::size_t count, std::size_t size) noexcept {
-  count_allocation();
+  count_allocation("calloc", __builtin_return_address(0));
   return __libc_calloc(count, size);
 }
 
 void* realloc(void* block, std::size_t size) noexcept {
-  count_allocation();
+  count_allocation("realloc", __builtin_return_address(0));
   return __libc_realloc(block, size);
 }
 
@@ -80,7 +87,7 @@ void* reallocarray(void* block, std::size_t count, std::size_t size) noexcept {
 }
 
 void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  count_allocation();
+  count_allocation("memalign", __builtin_return_address(0));
   return __libc_memalign(alignment, size);
 }
 
@@ -108,7 +115,9 @@ void free(void* block) noexcept {
   if (block == nullptr) {
     return;
   }
-  meridian::watch::count(meridian::watch::slot_of_this_thread().frees);
+  auto& slot = meridian::watch::slot_of_this_thread();
+  meridian::watch::count(slot.frees);
+  meridian::watch::trace_call(slot, "free", __builtin_return_address(0));
   __libc_free(block);
 }
 

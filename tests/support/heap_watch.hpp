@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 /// Counts heap calls of the calling thread. A program that links heap_watch.cpp has malloc and its
 /// kin interposed, operator new included; not under sanitizers, which interpose them themselves.
@@ -19,14 +20,21 @@ struct HeapCalls {
 /// All heap calls of the calling thread since it began.
 [[nodiscard]] HeapCalls heap_calls() noexcept;
 
+/// Keeps who makes the calling thread's next few heap calls; heap_traces() tells, one call a line.
+void keep_heap_traces() noexcept;
+[[nodiscard]] std::string heap_traces();
+
 /// Counts from its construction on. Proof: tests/unit/support/heap_watch_test.cpp.
 class HeapWatch {
  public:
-  HeapWatch() noexcept : begin_(heap_calls()) {}
+  HeapWatch() noexcept : begin_(heap_calls()) { keep_heap_traces(); }
   [[nodiscard]] HeapCalls calls() const noexcept {
     const HeapCalls now = heap_calls();
     return {now.allocations - begin_.allocations, now.frees - begin_.frees};
   }
+  /// Who made the first of them, for the message of a test that fails. Of the newest watch of the
+  /// thread alone.
+  [[nodiscard]] static std::string callers() { return heap_traces(); }
 
  private:
   HeapCalls begin_;

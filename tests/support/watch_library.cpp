@@ -6,8 +6,10 @@
 ///
 /// The program gets one more thread, `watch`, that reads labels from the pipe FOLDER/marker, one a
 /// line, and answers each by the file FOLDER/LABEL.tsv: one row per thread of that moment (columns:
-/// see kColumns). The difference of two such files is what each thread did in between; nothing is
-/// measured on the watched threads but the counting itself. watch_report.hpp is the other end.
+/// see kColumns), and FOLDER/LABEL.calls: who made the first heap calls of each thread since the
+/// report before (thread id, tab, callers; see call_trace.hpp). The difference of two such files is
+/// what each thread did in between; nothing is measured on the watched threads but the counting
+/// itself. watch_report.hpp is the other end.
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -19,7 +21,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
+#include <string>
 
+#include "support/call_trace.hpp"
 #include "support/watch_slot.hpp"
 
 namespace {
@@ -84,27 +89,48 @@ void write_row(std::FILE* out, pid_t thread) {
                booked.voluntary, booked.involuntary);
 }
 
-/// Writes FOLDER/LABEL.tsv whole: a reader never sees half of it.
+/// Tells the heap calls that were kept for a thread and makes room for the next.
+void write_calls(std::FILE* out, pid_t thread) {
+  meridian::watch::Slot* const slot = meridian::watch::find_slot(thread);
+  if (slot == nullptr) {
+    return;
+  }
+  std::istringstream calls(meridian::watch::traces_text(*slot));
+  meridian::watch::keep_traces(*slot);
+  for (std::string call; std::getline(calls, call);) {
+    std::fprintf(out, "%d\t%s\n", thread, call.c_str());
+  }
+}
+
+template <class Row>
+void for_each_thread(const Row& row) {
+  DIR* const tasks = opendir("/proc/self/task");
+  if (tasks == nullptr) {
+    return;
+  }
+  while (const dirent* const entry = readdir(tasks)) {
+    if (const pid_t thread = std::atoi(entry->d_name); thread > 0) {
+      row(thread);
+    }
+  }
+  closedir(tasks);
+}
+
+/// Writes FOLDER/LABEL.tsv whole and last: a reader never sees half of it.
 void write_report(const char* folder, const char* label) {
-  char part[4200];
-  char whole[4200];
-  std::snprintf(part, sizeof part, "%s/%s.part", folder, label);
-  std::snprintf(whole, sizeof whole, "%s/%s.tsv", folder, label);
-  std::FILE* const out = std::fopen(part, "w");
+  const std::string path = std::string(folder) + "/" + label;
+  if (std::FILE* const calls = std::fopen((path + ".calls").c_str(), "w"); calls != nullptr) {
+    for_each_thread([calls](pid_t thread) { write_calls(calls, thread); });
+    std::fclose(calls);
+  }
+  std::FILE* const out = std::fopen((path + ".part").c_str(), "w");
   if (out == nullptr) {
     return;
   }
   std::fputs(kColumns, out);
-  if (DIR* const tasks = opendir("/proc/self/task"); tasks != nullptr) {
-    while (const dirent* const entry = readdir(tasks)) {
-      if (const pid_t thread = std::atoi(entry->d_name); thread > 0) {
-        write_row(out, thread);
-      }
-    }
-    closedir(tasks);
-  }
+  for_each_thread([out](pid_t thread) { write_row(out, thread); });
   std::fclose(out);
-  std::rename(part, whole);
+  std::rename((path + ".part").c_str(), (path + ".tsv").c_str());
 }
 
 void* serve_markers(void* folder_argument) {

@@ -27,6 +27,18 @@ bool try_write_line(const std::filesystem::path& pipe, const std::string& line) 
   return is_written;
 }
 
+void read_callers(const std::filesystem::path& path, Report& report) {
+  std::ifstream file(path);
+  pid_t thread_id = 0;
+  for (std::string call; file >> thread_id && file.ignore() && std::getline(file, call);) {
+    for (ThreadCounts& thread : report) {
+      if (thread.thread_id == thread_id) {
+        thread.heap_callers.push_back(call);
+      }
+    }
+  }
+}
+
 Report read_report(const std::filesystem::path& path) {
   Report report;
   std::ifstream file(path);
@@ -71,7 +83,9 @@ Report WatchedProgram::report(const std::string& label,
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  return read_report(answer);
+  Report report = read_report(answer);
+  read_callers(folder_ / (label + ".calls"), report);
+  return report;
 }
 
 Report difference(const Report& begin, const Report& end) {
@@ -113,6 +127,14 @@ std::string to_text(const Report& report) {
          << thread.involuntary_switches << "\n";
   }
   return text.str();
+}
+
+std::string callers_text(const ThreadCounts& thread) {
+  std::string text;
+  for (const std::string& call : thread.heap_callers) {
+    text += "  " + call + "\n";
+  }
+  return text;
 }
 
 }  // namespace meridian::watch

@@ -21,6 +21,8 @@ struct ThreadCounts {
   std::uint64_t locks = 0, contended_locks = 0;
   std::uint64_t minor_faults = 0, major_faults = 0;
   std::uint64_t voluntary_switches = 0, involuntary_switches = 0;
+  /// Who made the first heap calls since the report before: function < caller < its caller ...
+  std::vector<std::string> heap_callers{};
 };
 using Report = std::vector<ThreadCounts>;
 
@@ -47,7 +49,10 @@ class WatchedProgram {
 /// The thread of that name, or null.
 [[nodiscard]] const ThreadCounts* find_thread(const Report& report, const std::string& name);
 
-/// One line per thread, for a test's output.
+/// One line per thread, for a test's output; heap callers are not in it.
 [[nodiscard]] std::string to_text(const Report& report);
+
+/// The heap callers of a thread, one a line.
+[[nodiscard]] std::string callers_text(const ThreadCounts& thread);
 
 }  // namespace meridian::watch

@@ -30,7 +30,7 @@ Slot& slot_of_this_thread() noexcept {
   return *own_slot;
 }
 
-const Slot* find_slot(pid_t thread_id) noexcept {
+Slot* find_slot(pid_t thread_id) noexcept {
   const std::size_t taken = std::min(slots_taken.load(std::memory_order_relaxed), kSlotCount);
   for (std::size_t i = taken; i-- > 0;) {  // newest first: the kernel hands out ids again
     if (slots[i].thread_id.load(std::memory_order_acquire) == thread_id) {

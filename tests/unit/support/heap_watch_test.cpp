@@ -76,6 +76,17 @@ TEST_F(HeapWatchTest, ReadsZeroWhereNothingIsAllocated) {
   EXPECT_EQ(sum, 499500);
 }
 
+TEST_F(HeapWatchTest, NamesWhoMadeTheFirstCalls) {
+  const HeapWatch watch;
+  EXPECT_EQ(HeapWatch::callers(), "");
+  int* const number = new int(1);
+  keep(number);
+  const std::string told = HeapWatch::callers();
+  EXPECT_EQ(told.rfind("malloc < operator new(", 0), 0U) << told;
+  EXPECT_NE(told.find("support_watch_test+0x"), std::string::npos) << "this very test: " << told;
+  delete number;
+}
+
 TEST_F(HeapWatchTest, CountsOnlyItsOwnThread) {
   HeapCalls other_thread;
   HeapCalls this_thread;

@@ -40,6 +40,12 @@ TEST(WatchReport, CountsAProgramThatWasNotBuiltForIt) {
   ASSERT_NE(idle, nullptr) << to_text(change);
   EXPECT_EQ(busy->allocations, 5U);
   EXPECT_EQ(busy->frees, 5U);
+  ASSERT_EQ(busy->heap_callers.size(), 4U) << "the first of its ten calls";
+  EXPECT_EQ(busy->heap_callers[0].rfind("malloc < operator new(", 0), 0U) << busy->heap_callers[0];
+  EXPECT_NE(busy->heap_callers[0].find("watched_program+0x"), std::string::npos)
+      << callers_text(*busy);
+  EXPECT_EQ(busy->heap_callers[1].rfind("free < ", 0), 0U) << busy->heap_callers[1];
+  EXPECT_TRUE(idle->heap_callers.empty());
   EXPECT_EQ(busy->locks, 3U);
   EXPECT_EQ(busy->contended_locks, 0U);
   EXPECT_GE(busy->minor_faults, 1U);
