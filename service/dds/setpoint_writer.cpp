@@ -9,6 +9,8 @@
 #include <type_traits>
 
 #include "service/dds/convert.hpp"
+#include "service/dds/entity.hpp"
+#include "service/dds/warm_pools.hpp"
 
 namespace meridian::dds {
 namespace {
@@ -18,6 +20,7 @@ using Wire = meridian_wire_Setpoint;
 /// Serialized, a setpoint is the bytes of its struct: natural alignment, no padding between fields.
 constexpr std::size_t kPayload_bytes = 124;
 constexpr std::size_t kHeader_bytes = 4;
+constexpr const char* kMoulds = "meridian/setpoint_mould";
 static_assert(std::is_trivially_copyable_v<Wire>);
 static_assert(offsetof(Wire, sent_minus_due_ns) + sizeof(Wire::sent_minus_due_ns) ==
               kPayload_bytes);
@@ -27,24 +30,10 @@ std::uint32_t references(const ddsi_serdata& sample) noexcept {
   return ddsrt_atomic_ld32(&sample.refc);
 }
 
-/// Entities that exist only while the moulds are made.
-class Entity {
- public:
-  explicit Entity(dds_entity_t handle) : handle_(handle) {
-    if (handle < 0) throw DdsError(std::string("setpoints: ") + dds_strretcode(-handle));
-  }
-  ~Entity() { dds_delete(handle_); }
-  Entity(const Entity&) = delete;
-  Entity& operator=(const Entity&) = delete;
-  [[nodiscard]] dds_entity_t handle() const noexcept { return handle_; }
-
- private:
-  dds_entity_t handle_;
-};
-
 }  // namespace
 
 SetpointWriter::SetpointWriter(Participant& participant) : writer_(participant) {
+  warm_pools(participant);
   writer_.register_instance({});
   make_moulds(participant);
 }
@@ -58,10 +47,12 @@ SetpointWriter::~SetpointWriter() {
 /// A writer and a reader of this process on a topic of the same type: what the reader takes is the
 /// very sample that Cyclone serialized, with a reference that is ours.
 void SetpointWriter::make_moulds(Participant& participant) {
-  const Entity topic(dds_create_topic(participant.handle(), &meridian_wire_Setpoint_desc,
-                                      "meridian/setpoint_mould", nullptr, nullptr));
-  const Entity reader(dds_create_reader(participant.handle(), topic.handle(), nullptr, nullptr));
-  const Entity writer(dds_create_writer(participant.handle(), topic.handle(), nullptr, nullptr));
+  const Entity topic(kMoulds, dds_create_topic(participant.handle(), &meridian_wire_Setpoint_desc,
+                                               kMoulds, nullptr, nullptr));
+  const Entity reader(kMoulds,
+                      dds_create_reader(participant.handle(), topic.handle(), nullptr, nullptr));
+  const Entity writer(kMoulds,
+                      dds_create_writer(participant.handle(), topic.handle(), nullptr, nullptr));
   SetpointSample pattern;
   pattern.setpoint.cycle = 0x0123456789abcdefULL;
   pattern.setpoint.position.fill(1.25);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "support/watch_slot.hpp"
@@ -16,8 +17,8 @@ void keep_traces(Slot& slot) noexcept;
 /// function `what`, whose caller is at `caller`. No heap call.
 void trace_call(Slot& slot, const char* what, const void* caller) noexcept;
 
-/// The kept calls, one a line: function and its callers, innermost first. An address that no
-/// dynamic symbol covers reads FILE+OFFSET: `addr2line -Cfe FILE OFFSET`.
-[[nodiscard]] std::string traces_text(const Slot& slot);
+/// The kept calls, at most so many, one a line: function and its callers, innermost first. An
+/// address that no dynamic symbol covers reads FILE+OFFSET: `addr2line -Cfe FILE OFFSET`.
+[[nodiscard]] std::string traces_text(const Slot& slot, std::size_t at_most = Slot::kTraces);
 
 }  // namespace meridian::watch

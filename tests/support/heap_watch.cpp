@@ -34,7 +34,9 @@ HeapCalls heap_calls() noexcept {
 
 void keep_heap_traces() noexcept { keep_traces(slot_of_this_thread()); }
 
-std::string heap_traces() { return traces_text(slot_of_this_thread()); }
+std::string heap_traces(HeapCalls calls) {
+  return traces_text(slot_of_this_thread(), calls.allocations + calls.frees);
+}
 
 }  // namespace meridian::watch
 

@@ -20,9 +20,10 @@ struct HeapCalls {
 /// All heap calls of the calling thread since it began.
 [[nodiscard]] HeapCalls heap_calls() noexcept;
 
-/// Keeps who makes the calling thread's next few heap calls; heap_traces() tells, one call a line.
+/// Keeps who makes the calling thread's next few heap calls.
 void keep_heap_traces() noexcept;
-[[nodiscard]] std::string heap_traces();
+/// Who made the first `calls` of those that were kept, one call a line.
+[[nodiscard]] std::string heap_traces(HeapCalls calls);
 
 /// Counts from its construction on. Proof: tests/unit/support/heap_watch_test.cpp.
 class HeapWatch {
@@ -32,9 +33,9 @@ class HeapWatch {
     const HeapCalls now = heap_calls();
     return {now.allocations - begin_.allocations, now.frees - begin_.frees};
   }
-  /// Who made the first of them, for the message of a test that fails. Of the newest watch of the
-  /// thread alone.
-  [[nodiscard]] static std::string callers() { return heap_traces(); }
+  /// Who made the first of `calls`, for the message of a test that fails. Of the newest watch of
+  /// the thread alone.
+  [[nodiscard]] static std::string callers(HeapCalls calls) { return heap_traces(calls); }
 
  private:
   HeapCalls begin_;
