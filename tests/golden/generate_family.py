@@ -11,29 +11,17 @@ where its rod, or its slot, closes, found by Newton's method on the distance bet
 differentiated numerically. 50 digits; inputs are short decimals, outputs have 17 significant digits. Debian:
 python3-mpmath.
 """
-import pathlib
 import random
-import sys
 
-try:
-    from mpmath import mp, mpf, matrix
-except ImportError:
-    print("python3-mpmath is not installed")
-    sys.exit(77)
+from golden_files import table, write_or_check
+from mpmath import mp, mpf, matrix
 
 mp.dps = 50
-HERE = pathlib.Path(__file__).resolve().parent
 POSE = ["x_mm", "y_mm", "z_mm", "i", "j", "k"]
 
 
 def text_of(x):
     return x if isinstance(x, str) else mp.nstr(mpf(x), 17, strip_zeros=True)
-
-
-def table(name, comments, columns, rows):
-    lines = ["# " + c for c in comments] + [",".join(columns)]
-    lines += [",".join(text_of(x) for x in row) for row in rows]
-    return name, "\n".join(lines) + "\n"
 
 
 def decimal(draw, low, high, digits):
@@ -178,29 +166,13 @@ def files():
                 ["Chains of random joints from the workpiece to the tool; q in mm or rad. Directions are to be normalised.",
                  "k: tool axis at home, g: gauge point at home; then the pose in the workpiece."],
                 [f"{x}{n}" for n in range(1, 6) for x in joint] + ["kx", "ky", "kz", "gx_mm", "gy_mm", "gz_mm", "tool_mm"] + POSE,
-                chains(draw))
+                chains(draw), text_of)
     yield table("robot_pose.csv", ["Articulated robots with five or six joints, elbow up and down."],
-                ["joints", "a_mm", "b_mm", "c_mm", "wrist_mm", "tool_mm"] + [f"q{n}_rad" for n in range(1, 7)] + POSE, robots(draw))
+                ["joints", "a_mm", "b_mm", "c_mm", "wrist_mm", "tool_mm"] + [f"q{n}_rad" for n in range(1, 7)] + POSE, robots(draw), text_of)
     yield table("stage_pose.csv", ["Actuator stages; side: of the first rod, +1 ahead of its slider.",
                                    "det = d(u1, u2)/d(s, phi), mm/rad."],
-                ["kind", "radius_mm", "rail_mm", "rod_mm", "side", "s_mm", "phi_rad", "u1_mm", "u2_mm", "det"], stages(draw))
-
-
-def main():
-    check = sys.argv[1:] == ["--check"]
-    bad = 0
-    for name, text in files():
-        path = HERE / name
-        if not check:
-            path.write_text(text)
-            print("wrote", name, len(text.splitlines()), "lines")
-        elif not path.exists() or path.read_text() != text:
-            print(name, "is not what the generator writes: run generate_family.py and review the difference")
-            bad = 1
-        else:
-            print(name, "is as generated")
-    sys.exit(bad)
+                ["kind", "radius_mm", "rail_mm", "rod_mm", "side", "s_mm", "phi_rad", "u1_mm", "u2_mm", "det"], stages(draw), text_of)
 
 
 if __name__ == "__main__":
-    main()
+    write_or_check(files())

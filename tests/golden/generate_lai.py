@@ -11,18 +11,12 @@ numerically, and inverse solutions are found by Newton's method on the matrix pr
 digits. Inputs are doubles, taken exactly; outputs are printed with 17 significant digits. Debian:
 python3-mpmath.
 """
-import pathlib
 import random
-import sys
 
-try:
-    from mpmath import mp, mpf, matrix
-except ImportError:
-    print("python3-mpmath is not installed")
-    sys.exit(77)
+from golden_files import table, write_or_check
+from mpmath import mp, mpf, matrix
 
 mp.dps = 60
-HERE = pathlib.Path(__file__).resolve().parent
 CONSTANTS = ["b1", "a2", "a3", "l3", "l4", "b5", "l5", "lt"]
 JOINTS = ["b3_mm", "b2_mm", "b4_mm", "theta1_rad", "theta2_rad"]
 POSE = ["x_mm", "y_mm", "z_mm", "i", "j", "k"]
@@ -102,15 +96,11 @@ def solve(c, want, q, slope=None):
 
 
 def number(x):
+    if isinstance(x, str):
+        return x
     if not isinstance(x, float) and abs(x) < mpf(10)**-30:  # a zero that was differentiated
         return "0.0"
     return repr(x) if isinstance(x, float) else mp.nstr(x, 17, strip_zeros=False, min_fixed=-3, max_fixed=6)
-
-
-def table(name, comment, header, rows):
-    lines = ["# " + line for line in comment] + [",".join(header)]
-    lines += [",".join(x if isinstance(x, str) else number(x) for x in row) for row in rows]
-    return name, "\n".join(lines) + "\n"
 
 
 def exact(values):
@@ -184,31 +174,15 @@ def files():
     yield table("lai_pose.csv",
                 ["Poses of the Lai machine; alt_ is the solution on the other branch (random rows).",
                  "near: theta2 within 1e-1 .. 1e-12 rad of the pole; pole: theta2 = 0."],
-                ["kind"] + constants + JOINTS + POSE + ["alt_" + x for x in JOINTS], poses(draw))
+                ["kind"] + constants + JOINTS + POSE + ["alt_" + x for x in JOINTS], poses(draw), number)
     yield table("lai_jacobian.csv", ["Jacobian, row-major: rows x y z i j k, columns " + " ".join(JOINTS) + "; measure."],
-                constants + JOINTS + [f"j{r}{n}" for r in range(6) for n in range(5)] + ["measure"], jacobians(draw))
+                constants + JOINTS + [f"j{r}{n}" for r in range(6) for n in range(5)] + ["measure"], jacobians(draw), number)
     yield table("lai_path.csv",
                 ["Joints and three derivatives by s at s = 0 of tip = (x, y, z) + (vx, vy, vz) s and",
                  "axis = cos(turn s) (i, j, k) + sin(turn s) (ni, nj, nk), on `branch`."],
                 constants + POSE + ["vx", "vy", "vz", "ni", "nj", "nk", "turn_rad_per_mm", "branch"] + JOINTS
-                + [f"d{order}_{x}" for order in (1, 2, 3) for x in JOINTS], paths(draw))
-
-
-def main():
-    check = sys.argv[1:] == ["--check"]
-    bad = 0
-    for name, text in files():
-        path = HERE / name
-        if not check:
-            path.write_text(text)
-            print("wrote", name, len(text.splitlines()), "lines")
-        elif not path.exists() or path.read_text() != text:
-            print(name, "is not what the generator writes: run generate_lai.py and review the difference")
-            bad = 1
-        else:
-            print(name, "is as generated")
-    sys.exit(bad)
+                + [f"d{order}_{x}" for order in (1, 2, 3) for x in JOINTS], paths(draw), number)
 
 
 if __name__ == "__main__":
-    main()
+    write_or_check(files())

@@ -12,18 +12,12 @@ plane: of all points of the corner circle the one that lies deepest along the no
 digits. Inputs are doubles, taken exactly; outputs are printed with 17 significant digits. Debian:
 python3-mpmath.
 """
-import pathlib
 import random
-import sys
 
-try:
-    from mpmath import mp, mpf
-except ImportError:
-    print("python3-mpmath is not installed")
-    sys.exit(77)
+from golden_files import table, write_or_check
+from mpmath import mp, mpf
 
 mp.dps = 60
-HERE = pathlib.Path(__file__).resolve().parent
 DEGREE_U, DEGREE_V = 3, 2
 KNOTS_U = [0.0, 0.0, 0.0, 0.0, 0.375, 0.75, 0.75, 2.0, 2.0, 2.0, 2.0]
 KNOTS_V = [-1.0, -0.5, 0.0, 0.5, 1.25, 1.5, 2.0]  # not clamped: the domain is 0 to 1.25
@@ -126,31 +120,17 @@ def number(x):
     return repr(x) if isinstance(x, float) else mp.nstr(x, 17, strip_zeros=False, min_fixed=-3, max_fixed=6)
 
 
-def text():
+def files():
     places = [a + b for a in ("s", "du", "dv", "duu", "duv", "dvv", "n") for b in "xyz"]
-    header = (["u", "v"] + places + ["k1", "k2", "lead", "tilt", "diameter", "corner"]
-              + ["i", "j", "k", "tipx", "tipy", "tipz"])
-    lines = ["# A rational surface of degree 3 x 2: point, derivatives, unit normal, principal curvatures (1/mm);",
-             "# axis leant by lead and tilt (rad) from it, feed along u; tip of the cutter that touches. mm.",
-             "# net: " + ";".join(",".join(repr(x) for x in p) for row in NET for p in row),
-             "# knots_u: " + ",".join(repr(x) for x in KNOTS_U),
-             "# knots_v: " + ",".join(repr(x) for x in KNOTS_V), ",".join(header)]
-    lines += [",".join(number(x) for x in row) for row in rows()]
-    return "\n".join(lines) + "\n"
-
-
-def main():
-    path = HERE / "surface_patch.csv"
-    made = text()
-    if sys.argv[1:] != ["--check"]:
-        path.write_text(made)
-        print("wrote", path.name, len(made.splitlines()), "lines")
-    elif not path.exists() or path.read_text() != made:
-        print(path.name, "is not what the generator writes: run generate_surface.py and review the difference")
-        sys.exit(1)
-    else:
-        print(path.name, "is as generated")
+    columns = (["u", "v"] + places + ["k1", "k2", "lead", "tilt", "diameter", "corner"]
+               + ["i", "j", "k", "tipx", "tipy", "tipz"])
+    comments = ["A rational surface of degree 3 x 2: point, derivatives, unit normal, principal curvatures (1/mm);",
+                "axis leant by lead and tilt (rad) from it, feed along u; tip of the cutter that touches. mm.",
+                "net: " + ";".join(",".join(repr(x) for x in p) for row in NET for p in row),
+                "knots_u: " + ",".join(repr(x) for x in KNOTS_U),
+                "knots_v: " + ",".join(repr(x) for x in KNOTS_V)]
+    yield table("surface_patch.csv", comments, columns, rows(), number)
 
 
 if __name__ == "__main__":
-    main()
+    write_or_check(files())
