@@ -89,6 +89,8 @@ class Interpreter {
   Result prepare_motion(std::uint32_t line);
   Result set_axis(const double* ijk, const Statement& s);
   Result point_of(const double* xyz, std::uint32_t line, Vector3& tip) const;
+  /// Tip and, of six numbers, the tool axis.
+  Result take_pose(const Statement& s, Vector3& tip);
   Result move_to(const Vector3& tip, std::uint32_t line, Blocks& out);
   Result arc_to(const Vector3& tip, std::uint32_t line, Blocks& out);
   Result feed_into(ClBlock& block, std::uint32_t line);

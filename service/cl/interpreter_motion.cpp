@@ -59,6 +59,16 @@ Interpreter::Result Interpreter::point_of(const double* xyz, std::uint32_t line,
   return {};
 }
 
+Interpreter::Result Interpreter::take_pose(const Statement& s, Vector3& tip) {
+  const std::array<double, 3> xyz = {s.arguments[0].number, s.arguments[1].number,
+                                     s.arguments[2].number};
+  if (auto done = point_of(xyz.data(), s.line, tip); !done) return done;
+  if (s.argument_count != 6) return {};
+  const std::array<double, 3> ijk = {s.arguments[3].number, s.arguments[4].number,
+                                     s.arguments[5].number};
+  return set_axis(ijk.data(), s);
+}
+
 Interpreter::Result Interpreter::take_goto(const Statement& s, Blocks& out) {
   const std::size_t n = s.argument_count;
   if (!s.all_numbers() || (n != 3 && n != 6)) {
@@ -66,18 +76,9 @@ Interpreter::Result Interpreter::take_goto(const Statement& s, Blocks& out) {
                               (s.all_numbers() ? "" : " and something that is no number"));
   }
   if (auto done = prepare_motion(s.line); !done) return done;
-  const std::array<double, 3> xyz = {s.arguments[0].number, s.arguments[1].number,
-                                     s.arguments[2].number};
   Vector3 tip;
-  if (auto done = point_of(xyz.data(), s.line, tip); !done) return done;
-  if (n == 6) {
-    const std::array<double, 3> ijk = {s.arguments[3].number, s.arguments[4].number,
-                                       s.arguments[5].number};
-    if (auto done = set_axis(ijk.data(), s); !done) return done;
-    ++summary_.goto_six;
-  } else {
-    ++summary_.goto_three;
-  }
+  if (auto done = take_pose(s, tip); !done) return done;
+  ++(n == 6 ? summary_.goto_six : summary_.goto_three);
   return arc_.form == ArcForm::kNone ? move_to(tip, s.line, out) : arc_to(tip, s.line, out);
 }
 
@@ -124,15 +125,8 @@ Interpreter::Result Interpreter::take_from(const Statement& s) {
     });
   }
   if (auto done = prepare_motion(s.line); !done) return done;
-  const std::array<double, 3> xyz = {s.arguments[0].number, s.arguments[1].number,
-                                     s.arguments[2].number};
   Vector3 tip;
-  if (auto done = point_of(xyz.data(), s.line, tip); !done) return done;
-  if (n == 6) {
-    const std::array<double, 3> ijk = {s.arguments[3].number, s.arguments[4].number,
-                                       s.arguments[5].number};
-    if (auto done = set_axis(ijk.data(), s); !done) return done;
-  }
+  if (auto done = take_pose(s, tip); !done) return done;
   tip_ = tip;
   axis_before_ = axis_;
   has_position_ = true;

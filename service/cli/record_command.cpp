@@ -11,6 +11,7 @@
 #include "service/cli/peer_options.hpp"
 #include "service/dds/reader.hpp"
 #include "service/record/wire_recording.hpp"
+#include "service/stream/steady_ns.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -22,12 +23,6 @@ struct Options {
   std::int64_t max_missing = -1;
   PeerOptions peer;
 };
-
-[[nodiscard]] std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 /// The names and units of the drives, and the cycle: all that a recording of the wire needs.
 [[nodiscard]] MachineModel model_of(const dds::MachineInfo& machine) {
@@ -62,7 +57,7 @@ class Tap {
       : reader_(participant, [this](dds::Reader<Message>& reader) {
           Arrived<Message> arrived;
           while (reader.take(arrived.message)) {
-            arrived.arrival_ns = now_ns();
+            arrived.arrival_ns = stream::steady_ns();
             if (!ring_.try_push(arrived)) overrun_.fetch_add(1, std::memory_order_relaxed);
           }
         }) {}

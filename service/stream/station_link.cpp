@@ -4,17 +4,9 @@
 #include <algorithm>
 #include <thread>
 
+#include "service/stream/steady_ns.hpp"
+
 namespace meridian::stream {
-
-namespace {
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
 
 StationLink::StationLink(dds::Participant& participant, Station& station)
     : station_(station),
@@ -34,10 +26,10 @@ bool StationLink::has_service() const noexcept {
 
 void StationLink::work(std::chrono::milliseconds timeout) {
   dds::Credit credit;
-  while (credits_.take(credit)) station_.on_credit(credit, monotonic_ns());
+  while (credits_.take(credit)) station_.on_credit(credit, steady_ns());
   // Asked before the service knows this station, the answer could pass it by.
   if (station_.state() != StationState::kOpening || has_service()) {
-    if (const auto request = station_.due_request(monotonic_ns())) {
+    if (const auto request = station_.due_request(steady_ns())) {
       static_cast<void>(requests_.write(*request));
     }
   } else {
@@ -46,7 +38,7 @@ void StationLink::work(std::chrono::milliseconds timeout) {
   }
   constexpr int kBatchesAtOnce = 32;
   int sent = 0;
-  while (sent < kBatchesAtOnce && station_.next_batch(monotonic_ns(), batch_)) {
+  while (sent < kBatchesAtOnce && station_.next_batch(steady_ns(), batch_)) {
     ++sent;
     if (batches_.write(batch_)) continue;
     station_.on_not_sent();

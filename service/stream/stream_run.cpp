@@ -13,16 +13,11 @@
 #include "service/stream/source_pump.hpp"
 #include "service/stream/station.hpp"
 #include "service/stream/station_link.hpp"
+#include "service/stream/steady_ns.hpp"
 
 namespace meridian::stream {
 
 namespace {
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 std::string file_name(const std::string& path) {
   const std::size_t slash = path.find_last_of('/');
@@ -100,7 +95,7 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
 
   constexpr std::chrono::milliseconds kIdle{50};
   constexpr std::int64_t kPatience_ns = 5'000'000'000;
-  std::int64_t heard_ns = monotonic_ns();
+  std::int64_t heard_ns = steady_ns();
   while (!station.is_over()) {
     if (station.state() == StationState::kComplete && !options.is_waiting_for_end) break;
     if (is_stopping.load()) {
@@ -110,7 +105,7 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
     }
     link.work(kIdle);
     news.station(station.message());
-    const std::int64_t now_ns = monotonic_ns();
+    const std::int64_t now_ns = steady_ns();
     if (const auto status = link.take_status()) {
       heard_ns = now_ns;
       const bool is_ours = status->session == request.session;

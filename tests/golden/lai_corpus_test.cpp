@@ -32,6 +32,15 @@ class LaiCorpus : public testing::Test {
   }
 };
 
+/// `want` lead to `pose`, and on their branch back.
+void expect_both_ways(const GoldenMachine& machine, const ToolPose& pose, const JointVector& want) {
+  expect_pose(forward(machine.model, machine.tool_length_mm, want), pose);
+  const auto s = solve(machine.model, machine.tool_length_mm, pose, branch_of(want), want);
+  for (int j = 0; j < 5; ++j) {
+    EXPECT_NEAR(s.q[j], want[j], j < 3 ? kLinearTolerance_mm : kAngleTolerance_rad) << j;
+  }
+}
+
 TEST_F(LaiCorpus, ForwardAndInverseAgreeWithA_fkik) {
   const GoldenTable table(kFolder / "A_fkik.csv");
   ASSERT_EQ(table.size(), 304u);
@@ -41,11 +50,7 @@ TEST_F(LaiCorpus, ForwardAndInverseAgreeWithA_fkik) {
     const ToolPose pose = pose_of(table.numbers(row, "Px", 6));
     for (const char* first : {"b3", "b3_alt"}) {
       const JointVector want = joints_of(table.numbers(row, first, 5));
-      expect_pose(forward(machine.model, machine.tool_length_mm, want), pose);
-      const auto s = solve(machine.model, machine.tool_length_mm, pose, branch_of(want), want);
-      for (int j = 0; j < 5; ++j) {
-        EXPECT_NEAR(s.q[j], want[j], j < 3 ? kLinearTolerance_mm : kAngleTolerance_rad) << j;
-      }
+      expect_both_ways(machine, pose, want);
     }
   }
 }
@@ -58,11 +63,7 @@ TEST_F(LaiCorpus, EveryConstantHasTheSignOfA_params) {
     const GoldenMachine machine(table, row, "");
     const JointVector want = joints_of(table.numbers(row, "b3", 5));
     const ToolPose pose = pose_of(table.numbers(row, "Px", 6));
-    expect_pose(forward(machine.model, machine.tool_length_mm, want), pose);
-    const auto s = solve(machine.model, machine.tool_length_mm, pose, branch_of(want), want);
-    for (int j = 0; j < 5; ++j) {
-      EXPECT_NEAR(s.q[j], want[j], j < 3 ? kLinearTolerance_mm : kAngleTolerance_rad) << j;
-    }
+    expect_both_ways(machine, pose, want);
   }
 }
 

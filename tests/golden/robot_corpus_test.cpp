@@ -9,6 +9,7 @@
 
 #include "golden/golden_table.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "support/machines.hpp"
 
 namespace meridian {
 namespace {
@@ -96,15 +97,7 @@ TEST(StageCorpusMachine, TheLaiMachineOnATrailingStageGivesItsSliders) {
   MachineModel model;
   model.lai =
       lai_from_table({.b1 = 120, .a2 = 450, .a3 = 35, .l3 = 80, .l4 = 60, .b5 = 25, .l5 = 140});
-  model.stage = {.kind = StageKind::kTwoSlider,
-                 .linear_joint = 1,
-                 .rotary_joint = 3,
-                 .sign_s = -1,
-                 .sign_phi = -1,
-                 .radius_mm = 150,
-                 .rail_mm = 150,
-                 .rod_mm = 300,
-                 .phi_max_rad = 1.5};
+  model.stage = test::trailing_stage(1.5);
   const GoldenTable table(file);
   ASSERT_EQ(table.size(), 100u);
   for (std::size_t row = 0; row < table.size(); ++row) {

@@ -56,20 +56,27 @@ namespace meridian::test {
   return model;
 }
 
+/// Two trailing sliders that carry slide b2 and table theta1 of the Lai machine.
+[[nodiscard]] inline ActuatorStage trailing_stage(double phi_max_rad) {
+  ActuatorStage stage;
+  stage.kind = StageKind::kTwoSlider;
+  stage.linear_joint = 1;
+  stage.rotary_joint = 3;
+  stage.sign_s = -1;
+  stage.sign_phi = -1;
+  stage.radius_mm = 150;
+  stage.rail_mm = 150;
+  stage.rod_mm = 300;
+  stage.phi_max_rad = phi_max_rad;
+  return stage;
+}
+
 /// lai_machine() with two sliders that carry slide b2 and table theta1, which turns 60° either way.
 /// The table carries the workpiece, so slide and turn of the stage run against the joints.
 [[nodiscard]] inline MachineModel hybrid_machine() {
   MachineModel model = lai_machine();
   model.name = "lai-hybrid";
-  model.stage = {.kind = StageKind::kTwoSlider,
-                 .linear_joint = 1,
-                 .rotary_joint = 3,
-                 .sign_s = -1,
-                 .sign_phi = -1,
-                 .radius_mm = 150,
-                 .rail_mm = 150,
-                 .rod_mm = 300,
-                 .phi_max_rad = units::rad_from_deg(60)};
+  model.stage = trailing_stage(units::rad_from_deg(60));
   model.joints[3].limits.travel_min = units::rad_from_deg(-60);
   model.joints[3].limits.travel_max = units::rad_from_deg(60);
   for (std::size_t i = 0; i < kStageDrives; ++i) {

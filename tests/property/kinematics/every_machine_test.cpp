@@ -7,6 +7,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/config/machine_file.hpp"
+#include "support/shipped_machines.hpp"
 
 namespace meridian {
 namespace {
@@ -16,20 +17,9 @@ constexpr double kAxis = 1e-12;
 constexpr int kPoses = 10'000;
 constexpr unsigned kSeed = 20261121;
 
-const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/deploy/machines";
-
-std::vector<std::string> shipped_machines() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class EveryMachine : public testing::TestWithParam<std::string> {
  protected:
-  MachineModel model = config::load_machine(kFolder / (GetParam() + ".toml"));
+  MachineModel model = config::load_machine(test::shipped_file(GetParam()));
   std::mt19937_64 random{kSeed};
 
   double draw(double low, double high) {
@@ -106,12 +96,8 @@ TEST_P(EveryMachine, SomeBranchGivesTheJointsBack) {
   EXPECT_EQ(found, regular);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, EveryMachine, testing::ValuesIn(shipped_machines()),
-                         [](const auto& machine) {
-                           std::string name = machine.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryMachine, testing::ValuesIn(test::shipped_machines()),
+                         test::test_name);
 
 }  // namespace
 }  // namespace meridian

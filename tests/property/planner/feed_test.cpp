@@ -9,6 +9,7 @@
 #include "meridian/rt/rate_filter.hpp"
 #include "property/planner/feed_paths.hpp"
 #include "service/core/planner/two_pass.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::test {
@@ -18,12 +19,7 @@ constexpr double kLimit = 1 + 1e-6;
 constexpr double kCycle_s = 250e-6;
 const auto kNever = [](int) { return false; };
 
-/// Sanitizers make a program run ten times as long: there, fewer draws.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kPaths = 6, kFailingPaths = 3;
-#else
-constexpr int kPaths = 60, kFailingPaths = 12;
-#endif
+constexpr int kPaths = draws(60), kFailingPaths = draws(12);
 
 MachineModel draw_machine(RandomPrograms& draw) {
   MachineModel model = draw.chance(0.5) ? lai_machine() : bench_machine();

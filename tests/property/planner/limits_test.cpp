@@ -6,6 +6,7 @@
 
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::test {
@@ -137,12 +138,11 @@ MachineModel draw_hybrid(RandomPrograms& draw) {
 
 template <class DrawMachine>
 void judge_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any) {
-  const int kPrograms = programs;
   int refusals = 0;
   Peaks peaks;
   std::size_t pieces = 0;
   double motion_s = 0;
-  for (int n = 0; n < kPrograms; ++n) {
+  for (int n = 0; n < programs; ++n) {
     const auto seed = first_seed + static_cast<std::uint64_t>(n);
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomPrograms draw(seed);
@@ -167,17 +167,17 @@ void judge_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any
   std::printf(
       "%d programs, %zu time pieces, %.0f s of motion; largest use v %.7f a %.7f j %.7f, feed "
       "%.7f, tip %.2e mm, axis %.2e deg; refused: %d\n",
-      kPrograms, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
+      programs, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
       units::deg_from_rad(peaks.axis_rad), refusals);
-  EXPECT_LT(refusals, kPrograms / 4) << "hardly anything was judged";
+  EXPECT_LT(refusals, programs / 4) << "hardly anything was judged";
 }
 
 TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
-  judge_programs(10000, 7000000, draw_machine);
+  judge_programs(draws(10'000), 7000000, draw_machine);
 }
 
 TEST(RestToRest, KeepsEveryLimitOfJointsAndDrivesBehindAnyStage) {
-  judge_programs(2000, 7200000, draw_hybrid);
+  judge_programs(draws(2000), 7200000, draw_hybrid);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "meridian/rt/rate_filter.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 
 /// The reserve that every plan keeps for the rate at which the cycle runs through it.
@@ -15,7 +16,7 @@ namespace meridian::test {
 namespace {
 
 TEST(RateReserve, HoldsEveryLimitUnderRandomOverrides) {
-  constexpr int kPrograms = 250;
+  constexpr int kPrograms = draws(250);
   LimitUse peaks;
   double motion_s = 0;
   for (int n = 0; n < kPrograms; ++n) {

@@ -10,6 +10,7 @@
 
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
@@ -66,12 +67,7 @@ void print(const char* what, const Peaks& peaks) {
               peaks.duration_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.off);
 }
 
-/// Sanitizers make a program run ten times as long: there, fewer draws.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint32_t kPrograms = 1;
-#else
-constexpr std::uint32_t kPrograms = 4;
-#endif
+constexpr std::uint32_t kPrograms = draws(4);
 
 TEST(SmoothPlanner, KeepsLimitsFeedAndTolerancesOnHostilePrograms) {
   for (const MachineModel& model : {bench_machine(), lai_machine()}) {
@@ -161,7 +157,7 @@ TEST(SmoothPlanner, KeepsTheLimitsOfJointsAndDrivesBehindAStage) {
   }
   Peaks peaks;
   int splines = 0;
-  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint32_t seed = 1; seed <= draws(3); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     auto blocks = hostile(seed, 8);
     for (ClBlock& block : blocks) {
@@ -173,7 +169,7 @@ TEST(SmoothPlanner, KeepsTheLimitsOfJointsAndDrivesBehindAStage) {
     judge(model, trace, blocks, start, peaks);
     for (const PathPiece& path : trace.paths) splines += path.kind == PathKind::kSpline;
   }
-  EXPECT_GT(splines, 200);
+  EXPECT_GT(splines, draws(200));
   print("behind a stage", peaks);
 }
 
@@ -181,7 +177,7 @@ TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
   const MachineModel model = lai_machine();
   Peaks peaks;
   int tails = 0;
-  for (std::uint32_t seed = 11; seed <= 14; ++seed) {
+  for (std::uint32_t seed = 11; seed < 11 + draws(4); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const auto blocks = hostile(seed, 12);
     const JointVector start = joints_of(model, blocks[0]);
@@ -193,7 +189,7 @@ TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
     judge(model, trace, blocks, start, peaks);
     tails += trace.tails;
   }
-  EXPECT_GT(tails, 50);
+  EXPECT_GT(tails, draws(50));
   print("run dry", peaks);
 }
 

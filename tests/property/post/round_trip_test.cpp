@@ -17,6 +17,7 @@
 #include "service/post/post.hpp"
 #include "support/cl_way.hpp"
 #include "support/nc_program.hpp"
+#include "support/shipped_machines.hpp"
 
 namespace meridian {
 namespace {
@@ -29,11 +30,9 @@ constexpr double kPointTip_mm = 3e-3;    // words have 1e-4 mm and 1e-5 deg; 1.5
 constexpr double kPointAxis_rad = 2e-5;  // easing onto the pole and a rounded angle
 constexpr double kRounding = 1e-6;       // of a tolerance
 
-const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/deploy/machines";
-
 /// Where the part lies so that the machine reaches it.
 MachineModel machine_of(const std::string& name) {
-  MachineModel model = config::load_machine(kFolder / (name + ".toml"));
+  MachineModel model = config::load_machine(test::shipped_file(name));
   if (model.family == MachineFamily::kRobot) {
     config::place_workpiece(model, config::parse_frame("850,0,250"));
   }
@@ -272,21 +271,8 @@ TEST_P(PostRoundTrip, ToolCentreWordsGiveTheClPathBackInEveryDialect) {
   }
 }
 
-std::vector<std::string> shipped_machines() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shipped, PostRoundTrip, testing::ValuesIn(shipped_machines()),
-                         [](const auto& machine) {
-                           std::string name = machine.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Shipped, PostRoundTrip, testing::ValuesIn(test::shipped_machines()),
+                         test::test_name);
 
 }  // namespace
 }  // namespace meridian

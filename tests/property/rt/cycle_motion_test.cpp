@@ -9,6 +9,7 @@
 
 #include "property/planner/plan_trace.hpp"
 #include "property/rt/operated_run.hpp"
+#include "support/draws.hpp"
 
 /// Holds, overrides and FaultStops at any instant of random programs: the machine keeps to its path
 /// and every joint to its limits, third differences included.
@@ -20,7 +21,7 @@ using test::LimitShares;
 using test::ProgramRun;
 
 constexpr std::uint64_t kSeed = 20240620;
-constexpr int kPrograms = 60;
+constexpr int kPrograms = test::draws(60);
 constexpr double kMostSeconds = 40;                 // of motion per program
 constexpr double kTip_mm = 1e-6, kAxis_rad = 1e-9;  // rounding of the matched pose
 // Beside the pole the axis is eased (kPoleEase_rad), and matching trades axis for tip at this rate.

@@ -8,6 +8,7 @@
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/rt/operated_run.hpp"
+#include "support/draws.hpp"
 
 /// Smooth plans in the cycle: holds, overrides, FaultStops at any instant, and blocks that come
 /// late. The machine keeps to its path and every joint to its limits.
@@ -45,7 +46,7 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
   double seconds = 0, worst_off = 0;
   int done = 0;
   test::Operator random_operator{.least_override = 0.1, .turns_rapids = false};
-  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint32_t seed = 1; seed <= test::draws(6); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     test::RandomPrograms random(seed);
     MachineModel machine = seed % 2 == 0 ? test::bench_machine() : test::lai_machine();
@@ -60,18 +61,18 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
     worst_off = std::max(worst_off, largest_distance(machine, blocks, run.world.records));
   }
   std::printf(
-      "%d of 6 programs to the end, %.0f s, %d holds; worst v %.6f a %.6f j %.6f; "
+      "%d programs to the end, %.0f s, %d holds; worst v %.6f a %.6f j %.6f; "
       "%.3f tolerances\n",
       done, seconds, random_operator.holds, worst.v, worst.a, worst.j, worst_off);
-  EXPECT_GT(seconds, 40);
-  EXPECT_GT(random_operator.holds, 20);
+  EXPECT_GT(seconds, test::draws(40));
+  EXPECT_GT(random_operator.holds, test::draws(20));
   EXPECT_LE(worst_off, 1 + 1e-6);
 }
 
 TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
   LimitShares worst;
   std::uint64_t dry = 0;
-  for (std::uint32_t seed = 21; seed <= 22; ++seed) {
+  for (std::uint32_t seed = 21; seed < 21 + test::draws(2); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     test::RandomPrograms random(seed);
     MachineModel machine = test::lai_machine();
@@ -98,14 +99,14 @@ TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
   }
   std::printf("%llu times dry; worst v %.6f a %.6f j %.6f\n", static_cast<unsigned long long>(dry),
               worst.v, worst.a, worst.j);
-  EXPECT_GT(dry, 4U);
+  EXPECT_GT(dry, static_cast<unsigned>(test::draws(2)) * 2U);
 }
 
 TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
   LimitShares worst;
   double worst_off = 0, longest = 0;
   int stops = 0, over = 0;
-  for (std::uint32_t n = 0; n < 16; ++n) {
+  for (std::uint32_t n = 0; n < test::draws(16); ++n) {
     test::RandomPrograms random(9000 + n);
     MachineModel machine = test::bench_machine();
     machine.transition = Transition::kSmooth;
@@ -126,7 +127,7 @@ TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
   }
   std::printf("%d FaultStops, %d over a limit, worst v %.4f a %.4f j %.4f, longest %.3f s\n", stops,
               over, worst.v, worst.a, worst.j, longest);
-  EXPECT_GT(stops, 10);
+  EXPECT_GT(16 * stops, 10 * test::draws(16));
   EXPECT_EQ(over, 0);
   EXPECT_LE(worst_off, 1 + 1e-6);
 }

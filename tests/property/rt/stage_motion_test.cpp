@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "property/rt/operated_run.hpp"
+#include "support/draws.hpp"
 
 /// The cycle of a machine whose stage stands between two joints and their drives: holds, overrides
 /// and FaultStops at any instant keep the limits of joints and drives, and what is sent are drive
@@ -40,7 +41,7 @@ void expect_drive_coordinates(const test::CycleWorld& world) {
 }
 
 TEST(StageMotion, HoldsAndOverridesKeepTheLimitsOfJointsAndDrives) {
-  constexpr int kPrograms = 40;
+  constexpr int kPrograms = test::draws(40);
   LimitShares worst;
   int done = 0;
   test::Operator random_operator;
@@ -63,7 +64,7 @@ TEST(StageMotion, HoldsAndOverridesKeepTheLimitsOfJointsAndDrives) {
 TEST(StageMotion, FaultStopsKeepTheFaultLimitsOfJointsAndDrives) {
   LimitShares worst;
   int stops = 0;
-  for (int n = 0; n < 150; ++n) {
+  for (int n = 0; n < test::draws(150); ++n) {
     SCOPED_TRACE(testing::Message() << "program " << n);
     Draw draw(kSeed + 1000 + static_cast<std::uint64_t>(n), test::hybrid_machine());
     ProgramRun run(draw.machine, draw.blocks, draw.start());
@@ -76,7 +77,7 @@ TEST(StageMotion, FaultStopsKeepTheFaultLimitsOfJointsAndDrives) {
     test::expect_within_limits(run.world, first, true, worst);
   }
   std::printf("%d FaultStops; worst v %.6f a %.6f j %.6f\n", stops, worst.v, worst.a, worst.j);
-  EXPECT_GT(stops, 40);
+  EXPECT_GT(stops, test::draws(40));
 }
 
 }  // namespace

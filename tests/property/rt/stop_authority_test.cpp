@@ -9,13 +9,15 @@
 #include <iostream>
 #include <random>
 
+#include "support/draws.hpp"
+
 /// Between rest and the planned speed: whatever the joints' derivatives along the path are, the
 /// authority keeps what they may do.
 namespace meridian {
 namespace {
 
 constexpr unsigned kSeed = 20240630;
-constexpr int kDraws = 20000;
+constexpr int kDraws = test::draws(20000);
 
 struct Row {
   double d1, d2, d3;  // |q'|, |q''|, |q'''|
@@ -75,7 +77,7 @@ TEST(StopAuthority, KeepsEveryJointBetweenRestAndThePlannedSpeed) {
     EXPECT_GE(got.jerk, piece.stop_jerk * (1 - 1e-9));
     used += got.jerk > 1.01 * piece.stop_jerk;
   }
-  EXPECT_GT(used, 100);
+  EXPECT_GT(used, test::draws(100));
 }
 
 TEST(StopAuthority, IsWhatThePlanSaysAtThePlannedSpeedOrWhereNothingIsKnown) {

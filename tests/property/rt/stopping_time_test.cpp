@@ -9,6 +9,7 @@
 
 #include "property/rt/program_run.hpp"
 #include "property/rt/stop_oracle.hpp"
+#include "support/draws.hpp"
 
 /// Holds at any instant of random programs against the least time that the path allows.
 namespace meridian {
@@ -18,8 +19,8 @@ using test::Draw;
 using test::ProgramRun;
 
 constexpr std::uint64_t kSeed = 20240620;
-constexpr int kPrograms = 60;        // or as many as MERIDIAN_HOLD_PROGRAMS says
-constexpr double kMostSeconds = 40;  // of motion per program
+constexpr int kPrograms = test::draws(60);  // or as many as MERIDIAN_HOLD_PROGRAMS says
+constexpr double kMostSeconds = 40;         // of motion per program
 
 /// First seed and number of programs: those of CI, or a longer run on other seeds.
 std::uint64_t number_of(const char* name, std::uint64_t otherwise) {

@@ -12,25 +12,15 @@
 #include "service/inspect/inspection.hpp"
 #include "service/inspect/joint_pattern.hpp"
 #include "service/inspect/skeleton.hpp"
+#include "support/shipped_machines.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::inspect {
 namespace {
 
-const std::string kFolder = MERIDIAN_SOURCE_DIR "/deploy/machines/";
-
-std::vector<std::string> shipped() {
-  std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    if (entry.path().extension() == ".toml") out.push_back(entry.path().stem());
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 /// A shipped machine file with `from` replaced.
 MachineModel machine_with(const std::string& name, const std::string& from, const std::string& to) {
-  std::string text = test::read_text(kFolder + name + ".toml");
+  std::string text = test::read_text(test::shipped_file(name));
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return config::parse_machine(text.replace(at, from.size(), to), name);
@@ -38,7 +28,7 @@ MachineModel machine_with(const std::string& name, const std::string& from, cons
 
 class EveryShipped : public testing::TestWithParam<std::string> {
  protected:
-  const MachineModel model_ = config::load_machine(kFolder + GetParam() + ".toml");
+  const MachineModel model_ = config::load_machine(test::shipped_file(GetParam()));
 };
 
 /// The tool where the joints are `q`, from the skeleton alone: screws one after the other.
@@ -137,15 +127,11 @@ TEST_P(EveryShipped, HasAPatternThatReadsBack) {
   EXPECT_TRUE(reader.warnings().empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Machine, EveryShipped, testing::ValuesIn(shipped()),
-                         [](const testing::TestParamInfo<std::string>& test) {
-                           std::string name = test.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Machine, EveryShipped, testing::ValuesIn(test::shipped_machines()),
+                         test::test_name);
 
 TEST(Inspection, TellsWhatAJointDoesAsTheWorkpieceSeesIt) {
-  const MachineModel model = config::load_machine(kFolder + "head-table-bc.toml");
+  const MachineModel model = config::load_machine(test::shipped_file("head-table-bc"));
   const std::string text = to_text(inspect(model), model);
   EXPECT_NE(text.find("workpiece - C - X - Y - Z - B - tool"), std::string::npos) << text;
   EXPECT_NE(text.find("+ moves the table towards +x"), std::string::npos) << text;
@@ -182,7 +168,7 @@ TEST(Slips, AreFoundInDirectionsPivotsTravelLimitsAndFrame) {
       "to its full velocity"));
   EXPECT_TRUE(is_warned(machine_with(machine, "origin_mm = [0, 0, 0]", "origin_mm = [0, 5000, 0]"),
                         "out of reach"));
-  MachineModel far = config::load_machine(kFolder + "trunnion-ac.toml");
+  MachineModel far = config::load_machine(test::shipped_file("trunnion-ac"));
   far.joints[0].limits.travel_min = 5;
   far.joints[0].home = 10;
   EXPECT_TRUE(is_warned(far, "cannot stand at zero"));
