@@ -3,103 +3,102 @@
 #include "service/dds/wire_fields.hpp"
 
 namespace meridian::dds {
+namespace {
+
+template <class Way, class Message, class Wire>
+void setpoint_sample_fields(Way way, Message& message, Wire& wire) {
+  way(message.setpoint.cycle, wire.cycle);
+  way(message.setpoint.due_ns, wire.due_ns);
+  way(message.setpoint.position, wire.position);
+  way(message.setpoint.velocity, wire.velocity);
+  way(message.setpoint.line, wire.line);
+  way(message.setpoint.epoch, wire.epoch);
+  way(message.setpoint.flags, wire.flags);
+  way(message.sent_minus_due_ns, wire.sent_minus_due_ns);
+}
+
+template <class Way, class Message, class Wire>
+void drive_command_fields(Way way, Message& message, Wire& wire) {
+  way(message.drive, wire.drive);
+  way(message.controlword, wire.controlword);
+  way(message.mode, wire.mode);
+  way(message.epoch, wire.epoch);
+  way(message.service_id, wire.service_id);
+  way(message.sample, wire.sample);
+}
+
+template <class Way, class Message, class Wire>
+void drive_feedback_fields(Way way, Message& message, Wire& wire) {
+  way(message.drive_group, wire.drive_group);
+  way(message.joint_mask, wire.joint_mask);
+  way(message.sample, wire.sample);
+  way(message.cycle_seen, wire.cycle_seen);
+  way(message.position, wire.position);
+  way(message.statusword, wire.statusword);
+  way(message.error, wire.error);
+  way(message.referenced_mask, wire.referenced_mask);
+  way(message.is_emergency_stop, wire.is_emergency_stop);
+}
+
+template <class Way, class Message, class Wire>
+void action_fields(Way way, Message& message, Wire& wire) {
+  way(message.id, wire.id);
+  way(message.service_id, wire.service_id);
+  way(message.sequence, wire.block);
+  way(message.line, wire.line);
+  way(message.kind, wire.kind);
+  way(message.value, wire.value);
+  way(message.text, wire.text);
+}
+
+template <class Way, class Message, class Wire>
+void action_done_fields(Way way, Message& message, Wire& wire) {
+  way(message.id, wire.id);
+  way(message.service_id, wire.service_id);
+  way(message.is_done, wire.is_done);
+  way(message.text, wire.text);
+}
+
+}  // namespace
 
 void to_wire(const SetpointSample& message, meridian_wire_Setpoint& wire) noexcept {
-  wire.cycle = message.setpoint.cycle;
-  wire.due_ns = message.setpoint.due_ns;
-  copy_array(message.setpoint.position, wire.position);
-  copy_array(message.setpoint.velocity, wire.velocity);
-  wire.line = message.setpoint.line;
-  wire.epoch = message.setpoint.epoch;
-  wire.flags = message.setpoint.flags;
-  wire.sent_minus_due_ns = message.sent_minus_due_ns;
+  setpoint_sample_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_Setpoint& wire, SetpointSample& message) noexcept {
-  message.setpoint.cycle = wire.cycle;
-  message.setpoint.due_ns = wire.due_ns;
-  copy_array(wire.position, message.setpoint.position);
-  copy_array(wire.velocity, message.setpoint.velocity);
-  message.setpoint.line = wire.line;
-  message.setpoint.epoch = wire.epoch;
-  message.setpoint.flags = wire.flags;
-  message.sent_minus_due_ns = wire.sent_minus_due_ns;
+  setpoint_sample_fields(FromWire(), message, wire);
 }
 
 void to_wire(const DriveCommand& message, meridian_wire_DriveCommand& wire) noexcept {
-  wire.drive = message.drive;
-  wire.controlword = message.controlword;
-  wire.mode = message.mode;
-  wire.epoch = message.epoch;
-  wire.service_id = message.service_id;
-  wire.sample = message.sample;
+  drive_command_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_DriveCommand& wire, DriveCommand& message) noexcept {
-  message.drive = wire.drive;
-  message.controlword = wire.controlword;
-  message.mode = wire.mode;
-  message.epoch = wire.epoch;
-  message.service_id = wire.service_id;
-  message.sample = wire.sample;
+  drive_command_fields(FromWire(), message, wire);
 }
 
 void to_wire(const DriveFeedback& message, meridian_wire_Feedback& wire) noexcept {
-  wire.drive_group = message.drive_group;
-  wire.joint_mask = message.joint_mask;
-  wire.sample = message.sample;
-  wire.cycle_seen = message.cycle_seen;
-  copy_array(message.position, wire.position);
-  copy_array(message.statusword, wire.statusword);
-  copy_array(message.error, wire.error);
-  wire.referenced_mask = message.referenced_mask;
-  wire.is_emergency_stop = message.is_emergency_stop ? 1 : 0;
+  drive_feedback_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_Feedback& wire, DriveFeedback& message) noexcept {
-  message.drive_group = wire.drive_group;
-  message.joint_mask = wire.joint_mask;
-  message.sample = wire.sample;
-  message.cycle_seen = wire.cycle_seen;
-  copy_array(wire.position, message.position);
-  copy_array(wire.statusword, message.statusword);
-  copy_array(wire.error, message.error);
-  message.referenced_mask = wire.referenced_mask;
-  message.is_emergency_stop = wire.is_emergency_stop != 0;
+  drive_feedback_fields(FromWire(), message, wire);
 }
 
 void to_wire(const Action& message, meridian_wire_Action& wire) noexcept {
-  wire.id = message.id;
-  wire.service_id = message.service_id;
-  wire.block = message.sequence;
-  wire.line = message.line;
-  wire.kind = octet(message.kind);
-  wire.value = message.value;
-  copy_text(message.text, wire.text);
+  action_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_Action& wire, Action& message) {
-  message.id = wire.id;
-  message.service_id = wire.service_id;
-  message.sequence = wire.block;
-  message.line = wire.line;
-  message.kind = static_cast<ActionKind>(wire.kind);
-  message.value = wire.value;
-  message.text = text_of(wire.text);
+  action_fields(FromWire(), message, wire);
 }
 
 void to_wire(const ActionDone& message, meridian_wire_ActionDone& wire) noexcept {
-  wire.id = message.id;
-  wire.service_id = message.service_id;
-  wire.is_done = message.is_done ? 1 : 0;
-  copy_text(message.text, wire.text);
+  action_done_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_ActionDone& wire, ActionDone& message) {
-  message.id = wire.id;
-  message.service_id = wire.service_id;
-  message.is_done = wire.is_done != 0;
-  message.text = text_of(wire.text);
+  action_done_fields(FromWire(), message, wire);
 }
 
 }  // namespace meridian::dds

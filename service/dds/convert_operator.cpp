@@ -3,69 +3,67 @@
 #include "service/dds/wire_fields.hpp"
 
 namespace meridian::dds {
+namespace {
+
+template <class Way, class Message, class Wire>
+void command_request_fields(Way way, Message& message, Wire& wire) {
+  way(message.request, wire.request);
+  way(message.operator_id, wire.operator_id);
+  way(message.operator_name, wire.operator_name);
+  way(message.verb, wire.verb);
+  way(message.epoch_seen, wire.epoch_seen);
+  way(message.status_seen, wire.status_seen);
+  way(message.service_id_seen, wire.service_id_seen);
+  way(message.argument, wire.argument);
+}
+
+template <class Way, class Message, class Wire>
+void reply_fields(Way way, Message& message, Wire& wire) {
+  way(message.request, wire.request);
+  way(message.operator_id, wire.operator_id);
+  way(message.service_id, wire.service_id);
+  way(message.verb, wire.verb);
+  way(message.is_accepted, wire.is_accepted);
+  way(message.refusal, wire.refusal);
+  way(message.state, wire.state);
+  way(message.epoch, wire.epoch);
+  way(message.text, wire.text);
+}
+
+template <class Way, class Message, class Wire>
+void jog_fields(Way way, Message& message, Wire& wire) {
+  way(message.operator_id, wire.operator_id);
+  way(message.sample, wire.sample);
+  way(message.epoch_seen, wire.epoch_seen);
+  way(message.joint, wire.joint);
+  way(message.velocity, wire.velocity);
+  way(message.dead_man_ns, wire.dead_man_ns);
+}
+
+}  // namespace
 
 void to_wire(const CommandRequest& message, meridian_wire_Command& wire) noexcept {
-  wire.request = message.request;
-  wire.operator_id = message.operator_id;
-  copy_text(message.operator_name, wire.operator_name);
-  wire.verb = octet(message.verb);
-  wire.epoch_seen = message.epoch_seen;
-  wire.status_seen = message.status_seen;
-  wire.service_id_seen = message.service_id_seen;
-  wire.argument = message.argument;
+  command_request_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_Command& wire, CommandRequest& message) {
-  message.request = wire.request;
-  message.operator_id = wire.operator_id;
-  message.operator_name = text_of(wire.operator_name);
-  message.verb = static_cast<Verb>(wire.verb);
-  message.epoch_seen = wire.epoch_seen;
-  message.status_seen = wire.status_seen;
-  message.service_id_seen = wire.service_id_seen;
-  message.argument = wire.argument;
+  command_request_fields(FromWire(), message, wire);
 }
 
 void to_wire(const Reply& message, meridian_wire_Reply& wire) noexcept {
-  wire.request = message.request;
-  wire.operator_id = message.operator_id;
-  wire.service_id = message.service_id;
-  wire.verb = octet(message.verb);
-  wire.is_accepted = message.is_accepted ? 1 : 0;
-  wire.refusal = octet(message.refusal);
-  wire.state = octet(message.state);
-  wire.epoch = message.epoch;
-  copy_text(message.text, wire.text);
+  reply_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_Reply& wire, Reply& message) {
-  message.request = wire.request;
-  message.operator_id = wire.operator_id;
-  message.service_id = wire.service_id;
-  message.verb = static_cast<Verb>(wire.verb);
-  message.is_accepted = wire.is_accepted != 0;
-  message.refusal = static_cast<Refusal>(wire.refusal);
-  message.state = static_cast<State>(wire.state);
-  message.epoch = wire.epoch;
-  message.text = text_of(wire.text);
+  reply_fields(FromWire(), message, wire);
 }
 
 void to_wire(const Jog& message, meridian_wire_Jog& wire) noexcept {
-  wire.operator_id = message.operator_id;
-  wire.sample = message.sample;
-  wire.epoch_seen = message.epoch_seen;
-  wire.joint = message.joint;
-  wire.velocity = message.velocity;
-  wire.dead_man_ns = message.dead_man_ns;
+  jog_fields(ToWire(), message, wire);
 }
 
 void from_wire(const meridian_wire_Jog& wire, Jog& message) noexcept {
-  message.operator_id = wire.operator_id;
-  message.sample = wire.sample;
-  message.epoch_seen = wire.epoch_seen;
-  message.joint = wire.joint;
-  message.velocity = wire.velocity;
-  message.dead_man_ns = wire.dead_man_ns;
+  jog_fields(FromWire(), message, wire);
 }
 
 }  // namespace meridian::dds

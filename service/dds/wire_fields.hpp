@@ -2,39 +2,66 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
-#include <iterator>
 #include <string>
 #include <type_traits>
 
-/// Fields of wire types: enumerations, arrays and texts of fixed length. Used by convert_*.cpp
-/// alone.
+/// Every message has one list of its fields, way(core field, wire field), that serves both ways.
+/// Enumerations and truth values are octets on the wire, texts have a fixed length there. Used by
+/// convert_*.cpp alone.
 namespace meridian::dds {
 
-template <class Enum>
-[[nodiscard]] std::uint8_t octet(Enum value) noexcept {
-  static_assert(sizeof(Enum) == 1);
-  return static_cast<std::uint8_t>(value);
-}
+struct ToWire {
+  template <class From, class To>
+  requires std::is_arithmetic_v<From>
+  void operator()(const From& from, To& to) const noexcept { to = from; }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void operator()(const Enum& from, std::uint8_t& to) const noexcept {
+    static_assert(sizeof(Enum) == 1);
+    to = static_cast<std::uint8_t>(from);
+  }
+  void operator()(const bool& from, std::uint8_t& to) const noexcept { to = from ? 1 : 0; }
+  template <class T, std::size_t N>
+  void operator()(const std::array<T, N>& from, T (&to)[N]) const noexcept {
+    std::copy(from.begin(), from.end(), to);
+  }
+  template <std::size_t N>
+  void operator()(const char (&from)[N], char (&to)[N]) const noexcept {
+    std::memcpy(to, from, N);
+  }
+  template <std::size_t N>
+  void operator()(const std::string& from, char (&to)[N]) const noexcept {
+    const std::size_t length = std::min(from.size(), N - 1);
+    std::memcpy(to, from.data(), length);
+    std::memset(to + length, 0, N - length);
+  }
+};
 
-/// Between a std::array and a wire array of the same length, either way.
-template <class From, class To>
-void copy_array(const From& from, To& to) noexcept {
-  static_assert(std::size(From{}) == std::extent_v<To> || std::extent_v<From> == std::size(To{}));
-  std::copy(std::begin(from), std::end(from), std::begin(to));
-}
-
-template <std::size_t N>
-void copy_text(const std::string& from, char (&to)[N]) noexcept {
-  const std::size_t length = std::min(from.size(), N - 1);
-  std::memcpy(to, from.data(), length);
-  std::memset(to + length, 0, N - length);
-}
-
-template <std::size_t N>
-[[nodiscard]] std::string text_of(const char (&from)[N]) {
-  return {from, ::strnlen(from, N)};
-}
+struct FromWire {
+  template <class To, class From>
+  requires std::is_arithmetic_v<From>
+  void operator()(To& to, const From& from) const noexcept { to = from; }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void operator()(Enum& to, const std::uint8_t& from) const noexcept {
+    to = static_cast<Enum>(from);
+  }
+  void operator()(bool& to, const std::uint8_t& from) const noexcept { to = from != 0; }
+  template <class T, std::size_t N>
+  void operator()(std::array<T, N>& to, const T (&from)[N]) const noexcept {
+    std::copy(from, from + N, to.begin());
+  }
+  template <std::size_t N>
+  void operator()(char (&to)[N], const char (&from)[N]) const noexcept {
+    std::memcpy(to, from, N);
+  }
+  template <std::size_t N>
+  void operator()(std::string& to, const char (&from)[N]) const {
+    to.assign(from, ::strnlen(from, N));
+  }
+};
 
 }  // namespace meridian::dds
