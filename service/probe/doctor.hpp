@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/dds/messages.hpp"
+#include "service/probe/finding.hpp"
+#include "service/probe/host_files.hpp"
+
+/// What is wrong with a host and how to mend it. Nothing is changed.
+namespace meridian::probe {
+
+/// What this process was allowed when it tried.
+struct Rights {
+  bool has_priority = false;  ///< a thread at FIFO 80
+  bool has_locked_memory = false;
+  bool has_dma_latency = false;  ///< /dev/cpu_dma_latency can be written
+  int cpus = 1;                  ///< that this process may use
+};
+[[nodiscard]] Rights try_rights();
+
+/// Rights, and the limits that stand behind them: control groups, throttling.
+[[nodiscard]] Findings examine_rights(const HostFiles& host, const Rights& rights);
+/// Processors: isolation, clock frequency, sleep states, threads of one core, stolen time.
+[[nodiscard]] Findings examine_processors(const HostFiles& host, const Rights& rights);
+/// Kernel flavour, timers, memory, what else wakes up.
+[[nodiscard]] Findings examine_kernel(const HostFiles& host);
+/// Socket buffers and the DDS configuration; `cyclone_uri` is CYCLONEDDS_URI, empty where unset.
+[[nodiscard]] Findings examine_network(const HostFiles& host, const std::string& cyclone_uri);
+/// Who answers in the DDS domain, seen from `host_name` with this `version`.
+[[nodiscard]] Findings examine_peers(const std::vector<dds::MachineInfo>& machines,
+                                     const std::string& host_name, const std::string& version);
+
+}  // namespace meridian::probe
