@@ -7,6 +7,7 @@
 #include <sys/mman.h>
 
 #include <cstdio>
+#include <latch>
 #include <mutex>
 #include <semaphore>
 #include <thread>
@@ -14,9 +15,11 @@
 int main() {
   std::counting_semaphore<8> go(0);
   std::counting_semaphore<8> done(0);
+  std::latch named(2);  // a report tells threads by their names
   std::mutex mutex;
   std::thread busy([&] {
     pthread_setname_np(pthread_self(), "busy");
+    named.count_down();
     for (;;) {
       go.acquire();
       for (int i = 0; i < 5; ++i) {
@@ -34,10 +37,12 @@ int main() {
       done.release();
     }
   });
-  std::thread idle([] {
+  std::thread idle([&named] {
     pthread_setname_np(pthread_self(), "idle");
+    named.count_down();
     std::binary_semaphore(0).acquire();
   });
+  named.wait();
   std::puts("ready");
   std::fflush(stdout);
   char line[8];
