@@ -12,8 +12,9 @@ Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim)
 }
 
 bool Lease::goes_before_us(const dds::MachineInfo& other) const noexcept {
-  return other.is_serving || std::tie(other.started_ns, other.service_id) <
-                                 std::tie(claim_.started_ns, claim_.service_id);
+  const bool is_older =
+      std::tie(other.started_ns, other.service_id) < std::tie(claim_.started_ns, claim_.service_id);
+  return claim_.is_serving ? other.is_serving && is_older : other.is_serving || is_older;
 }
 
 void Lease::hold() {
@@ -29,6 +30,12 @@ void Lease::look() {
     holder_ = Holder{info, sample.source};
   }
   if (holder_ && !reader_.has_source(holder_->source)) holder_.reset();
+}
+
+std::optional<dds::MachineInfo> Lease::find_older() {
+  look();
+  if (!holder_) return std::nullopt;
+  return holder_->info;
 }
 
 std::optional<dds::MachineInfo> Lease::find_holder(std::chrono::milliseconds start_window,

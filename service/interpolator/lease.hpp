@@ -11,7 +11,8 @@
 namespace meridian::interpolator {
 
 /// One service per machine: each publishes its claim on the machine topic. One that serves already
-/// keeps the machine, whatever the clocks say; of two that start together the later gives way.
+/// keeps the machine, whatever the clocks say; of two that start together, or that both serve
+/// because neither heard the other in time, the later gives way. One thread.
 /// Proof: tests/integration/lease_test.cpp.
 class Lease {
  public:
@@ -25,6 +26,9 @@ class Lease {
                                                             std::chrono::milliseconds patience);
   /// The machine is ours: others hear it.
   void hold();
+  /// Another service that serves the machine and has the older claim, where a busy host let us hear
+  /// of it only after hold().
+  [[nodiscard]] std::optional<dds::MachineInfo> find_older();
 
  private:
   struct Holder {

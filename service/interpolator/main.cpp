@@ -92,8 +92,9 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   service->start();
   log->info("answering in Off");
 
+  constexpr timespec kLeasePeriod{.tv_sec = 0, .tv_nsec = 100'000'000};
   int signal = 0;
-  sigwait(&signals, &signal);
+  while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) service->keep_lease();
   log->info("{}: stopping", signal == SIGINT ? "interrupted" : "asked to end");
   constexpr auto kPatience = std::chrono::seconds(10);
   if (!service->switch_off(kPatience)) {

@@ -96,6 +96,12 @@ namespace {
   return lengths;
 }
 
+StartError served_already(const dds::MachineInfo& holder) {
+  return StartError("machine '" + holder.name + "' is served already by meridiand on host " +
+                    holder.host + ", process " + std::to_string(holder.pid) +
+                    "; end that one first, or choose another --domain");
+}
+
 }  // namespace
 
 Service::Service(const ServiceParts& parts, const Realtime& realtime,
@@ -140,9 +146,12 @@ void Service::take_lease() {
     lease_.hold();
     return;
   }
-  throw StartError("machine '" + parts_.model.name + "' is served already by meridiand on host " +
-                   holder->host + ", process " + std::to_string(holder->pid) +
-                   "; end that one first, or choose another --domain");
+  throw served_already(*holder);
+}
+
+void Service::keep_lease() {
+  if (ports_.state != State::kOff) return;
+  if (const auto holder = lease_.find_older()) throw served_already(*holder);
 }
 
 void Service::start() {

@@ -48,6 +48,9 @@ class Service {
   Service& operator=(const Service&) = delete;
 
   void start();
+  /// In Off, the thread that made the service: throws StartError where an older service of the same
+  /// machine was heard of only now. A machine that is on goes on; drives obey one service.
+  void keep_lease();
   /// Brings the machine to rest and to Off; false where it is not there within `patience`.
   [[nodiscard]] bool switch_off(std::chrono::milliseconds patience);
   /// Ends all threads and closes the recording.

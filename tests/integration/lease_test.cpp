@@ -31,6 +31,22 @@ TEST(Lease, LetsExactlyOneOfTwoThatStartTogetherServe) {
                                                                 << other->said();
 }
 
+TEST(Lease, EndsTheLaterOfTwoServicesThatDidNotHearOfEachOtherInTime) {
+  Plant plant;
+  Process& first = plant.start_service();
+  ASSERT_GT(plant.status().service_id, 0U) << first.said();
+  first.send_signal(SIGSTOP);
+  const auto second = plant.another_service();
+  EXPECT_TRUE(
+      eventually([&] { return second->said().find("answering in Off") != std::string::npos; },
+                 milliseconds(6000)))
+      << second->said();
+  first.send_signal(SIGCONT);
+  EXPECT_EQ(second->wait(milliseconds(6000)), 1);
+  EXPECT_NE(second->said().find("'lai' is served already"), std::string::npos) << second->said();
+  EXPECT_FALSE(first.wait(milliseconds(500))) << "the first goes on: " << first.said();
+}
+
 TEST(Lease, GivesTheMachineToANewServiceOnceAKilledOneIsForgotten) {
   Plant plant;
   Process& first = plant.start_service();

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "service/dds/messages.hpp"
@@ -86,6 +87,20 @@ TEST(Exchange, KeepsMachinesOfOneDomainApart) {
   Status status;
   EXPECT_TRUE(eventually([&] { return same.take(status); }));
   EXPECT_FALSE(other.take(status));
+}
+
+TEST(Exchange, KeepsTheClaimsOfTwoServicesApartThoughNobodyLooksInBetween) {
+  const support::PrivateDomain domain;
+  Participant here({.domain = domain.id(), .machine = "m"});
+  Reader<MachineInfo> reader(here);
+  Writer<MachineInfo> first(here);
+  Writer<MachineInfo> second(here);
+  ASSERT_TRUE(first.write({.service_id = 1, .is_serving = true}));
+  ASSERT_TRUE(second.write({.service_id = 2}));
+  std::set<std::uint64_t> claims;
+  MachineInfo machine;
+  while (reader.take(machine)) claims.insert(machine.service_id);
+  EXPECT_EQ(claims, (std::set<std::uint64_t>{1, 2}));
 }
 
 TEST(Exchange, TellsThatAWriterHasGone) {
