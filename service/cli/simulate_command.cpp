@@ -20,8 +20,9 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string file, record, events, start_from, auxiliary = "ignore", transition;
+  std::string file, record, events, start_from, auxiliary = "ignore", transition, pole_policy;
   std::string explain_table, picture;
+  double override_ramp_s = 0;
   bool stops_at_optional = false, is_explained = false;
   MachineOptions machine;
   ClFileOptions cl;
@@ -109,6 +110,9 @@ int run(const Options& options) {
   MachineModel model = load_machine(options.machine);
   if (options.transition == "smooth") model.transition = Transition::kSmooth;
   if (options.transition == "exact_stop") model.transition = Transition::kExactStop;
+  if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
+  if (options.pole_policy == "exact") model.pole_policy = PolePolicy::kExact;
+  if (options.override_ramp_s > 0) model.override_ramp_s = options.override_ramp_s;
   const ToolTable tools = load_tools(options.machine);
   simulate::SimulateOptions simulation;
   simulation.stops_at_optional = options.stops_at_optional;
@@ -184,6 +188,14 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       ->add_option("--transition", options->transition,
                    "Instead of the machine file's: smooth (on through blocks) or exact_stop")
       ->check(CLI::IsMember({"smooth", "exact_stop"}));
+  command
+      ->add_option("--pole-policy", options->pole_policy,
+                   "Instead of the machine file's: ease (inside the axis tolerance) or exact")
+      ->check(CLI::IsMember({"ease", "exact"}));
+  command
+      ->add_option("--override-ramp-s", options->override_ramp_s,
+                   "Instead of the machine file's: time of the override from 100 % to 0")
+      ->check(CLI::Range(1.0, 1000.0));
   command->add_flag("--optional-stops", options->stops_at_optional, "Optional stops stop");
   add_cl_file_options(*command, options->cl);
   command->callback([options, &exit_code] { exit_code = run(*options); });

@@ -39,6 +39,7 @@ void read_machine(Section machine, MachineModel& model) {
   model.starve_auto_resume_s = machine.number_or("starve_auto_resume_s", 2.0, {0, 3600});
   model.bridge_cycles = machine.integer_or("bridge_cycles", 3, 0, 1000);
   model.tool_length_mm = machine.number("tool_length_mm", {0, 1e4});
+  model.override_ramp_s = machine.number_or("override_ramp_s", 1.0, {1, 1000});
   machine.finish();
 }
 
@@ -162,7 +163,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   read_stage(file.section_or("stage"), model);
   read_tolerances(file.section("tolerances"), model);
   Section pole = file.section("pole");
-  model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"turn"}));
+  model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"ease", "exact"}));
   model.tolerances.pole_axis_rad = units::rad_from_deg(pole.number_or("axis_deg", 0, {0, 10}));
   pole.finish();
   read_frame(file.section_or("frame"), model);

@@ -25,7 +25,7 @@ void push_or_count(SpscRing<Item, N>& ring, const Item& item,
 
 CycleThread::CycleThread(const MachineModel& model, const CycleOptions& options,
                          Ports& ports) noexcept
-    : model_(model), ports_(ports), state_(options), motion_(ports.motion) {}
+    : model_(model), ports_(ports), state_(options, rate_bounds(model)), motion_(ports.motion) {}
 
 void CycleThread::run() noexcept {
   motion_.set_epoch(state_.epoch);

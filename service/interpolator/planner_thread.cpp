@@ -21,6 +21,7 @@ bool PlannerThread::work() noexcept {
   const QueuedBlock* queued = ports_.blocks.peek(0);
   if (queued == nullptr) {
     if (has_begun_ && !is_refused_) planner_.advance(writer_);
+    tell_eases();
     return false;
   }
   if (is_refused_) {
@@ -57,6 +58,7 @@ bool PlannerThread::is_in_step() noexcept {
 bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   if (!announce_action(queued.block)) return false;
   const PlanResult result = planner_.plan(queued.block, writer_);
+  tell_eases();
   switch (result.status) {
     case PlanStatus::kNoRoom:
       return false;
@@ -72,6 +74,10 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   }
   pop();
   return true;
+}
+
+void PlannerThread::tell_eases() noexcept {
+  for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
 }
 
 bool PlannerThread::announce_action(const ClBlock& block) noexcept {

@@ -27,6 +27,7 @@ class PlannerThread {
   /// Follows the epochs of cycle and intake; false while blocks of an old one may be about.
   [[nodiscard]] bool is_in_step() noexcept;
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
+  void tell_eases() noexcept;
   [[nodiscard]] bool announce_action(const ClBlock& block) noexcept;
   void pop() noexcept;
 

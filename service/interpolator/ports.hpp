@@ -7,6 +7,7 @@
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/pole_ease.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/latest_value.hpp"
@@ -72,6 +73,7 @@ struct Ports {
   SpscRing<SessionReject, 64> rejects;
   SpscRing<PlannedAction, 1024> actions;
   MotionPort motion;
+  SpscRing<PoleEase, 256> eases;  ///< planner to telemetry
 
   SpscRing<Command, 64> commands;
   LatestValue<Feedback> feedback;

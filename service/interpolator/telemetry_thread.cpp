@@ -59,6 +59,8 @@ void TelemetryThread::drain() {
     recorder_.take(event);
     tell(event);
   }
+  PoleEase ease;
+  while (ports_.eases.try_pop(ease)) log_->info("{}", telemetry::describe(ease));
   CycleRecord record;
   const double tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
   while (ports_.records.try_pop(record)) {

@@ -165,11 +165,12 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
     options.pole_tolerance_rad = options.axis_tolerance_rad;
   } else {
     options.axis_tolerance_rad = model.tolerances.axis_rad;
-    options.pole_tolerance_rad = model.tolerances.axis_beside_pole_rad();
+    options.pole_tolerance_rad = axis_tolerance_beside_pole(model);
   }
   CheckReport report;
   report.tip_tolerance_mm = options.tip_tolerance_mm;
   report.axis_tolerance_rad = options.axis_tolerance_rad;
+  report.pole_tolerance_rad = options.pole_tolerance_rad;
   report.recording = recording.path();
   report.motion_blocks = path.motion_block_count();
   report.tip_length_mm = path.tip_length_mm();

@@ -32,7 +32,7 @@ void append_peak(std::string& text, const char* name, const Peak& peak, double s
 
 void append_deviation(std::string& text, const char* name, const Peak& at, const Peak& between,
                       double scale, const char* unit, double tolerance) {
-  append(text, "%-10s %.6f %s at the setpoints (%s), %.6f %s between; tolerance %.6g %s\n", name,
+  append(text, "%-10s %.6f %s at the setpoints (%s), %.6f %s between; tolerance %.6g %s", name,
          at.value * scale, unit, place(at).c_str(), between.value * scale, unit, tolerance * scale,
          unit);
 }
@@ -95,8 +95,14 @@ std::string to_text(const CheckReport& report) {
     if (report.has_later_program) text += "           a later program follows and is not judged\n";
     append_deviation(text, "tip", report.tip_mm, report.tip_between_mm, 1e3, "um",
                      report.tip_tolerance_mm);
+    text += "\n";
     append_deviation(text, "axis", report.axis_rad, report.axis_between_rad,
                      units::deg_from_rad(1.0), "deg", report.axis_tolerance_rad);
+    if (report.pole_tolerance_rad > report.axis_tolerance_rad) {
+      append(text, ", %.6g deg within %.3g deg of the pole",
+             units::deg_from_rad(report.pole_tolerance_rad), units::deg_from_rad(kPoleReach_rad));
+    }
+    text += "\n";
     append(text, "vertices   %llu passed, the farthest by %.6f um (line %u)",
            static_cast<Count>(report.vertices), report.vertex_mm.value * 1e3,
            report.vertex_mm.line);
@@ -149,6 +155,8 @@ std::string to_json(const CheckReport& report) {
          report.tip_length_mm);
   append(text, "  \"tip_tolerance_mm\": %.9g,\n  \"axis_tolerance_deg\": %.9g,\n",
          report.tip_tolerance_mm, units::deg_from_rad(report.axis_tolerance_rad));
+  append(text, "  \"pole_axis_tolerance_deg\": %.9g,\n",
+         units::deg_from_rad(report.pole_tolerance_rad));
   append_peak(text, "tip_mm", report.tip_mm);
   append_peak(text, "tip_between_mm", report.tip_between_mm);
   append_peak(text, "axis_deg", report.axis_rad, units::deg_from_rad(1.0));

@@ -74,6 +74,7 @@ struct CheckReport {
   std::uint64_t motion_blocks = 0;
   double tip_length_mm = 0;
   double tip_tolerance_mm = 0, axis_tolerance_rad = 0;
+  double pole_tolerance_rad = 0;          ///< of the axis within kPoleReach_rad of the pole
   Peak tip_mm, axis_rad;                  ///< at the setpoints
   Peak tip_between_mm, axis_between_rad;  ///< at three places between neighbouring setpoints
   Peak vertex_mm;                         ///< `line`: of the block that ends there

@@ -88,6 +88,7 @@ void PathJudge::sample(const JointVector& joints, const Place& place, bool is_se
     tip_over_.count += is_setpoint ? 1 : 0;
   }
   if (here_.axis_rad > allowed_axis_ * (1 + kRelative)) {
+    if (here_.axis_rad > axis_over_.worst.value) exceeded_axis_ = allowed_axis_;
     axis_over_.worst.raise(here_.axis_rad, place.cycle, place.line);
     axis_over_.count += is_setpoint ? 1 : 0;
   }
@@ -221,8 +222,7 @@ void PathJudge::finish(CheckReport& report) {
   }
   if (axis_over_.worst.value > 0) {
     std::snprintf(text, sizeof text, "tool axis is %.6f deg off the path, tolerance %.6g deg",
-                  units::deg_from_rad(axis_over_.worst.value),
-                  units::deg_from_rad(axis_tolerance_));
+                  units::deg_from_rad(axis_over_.worst.value), units::deg_from_rad(exceeded_axis_));
     find(Finding::Kind::kAxis, axis_over_);
   }
   if (feed_over_.count > 0) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/simulate/block_feed.hpp"
 
+#include <algorithm>
+
 #include "meridian/path/build_piece.hpp"
 
 namespace meridian::simulate {
@@ -66,22 +68,33 @@ void BlockFeed::explain(const ClBlock& block, double programmed_feed) {
   explainer_->add_block(block, programmed_feed, tip_mm, path_mm);
 }
 
+void BlockFeed::take_eases() {
+  PoleEase ease;
+  while (planner_.take_ease(ease)) {
+    ++eases_.count;
+    eases_.largest_rad = std::max(eases_.largest_rad, ease.deviation_rad);
+    if (eases_.first.size() < kMostEases) eases_.first.push_back(ease);
+    if (explainer_ != nullptr) {
+      explainer_->add_ease(ease.first_sequence, ease.last_sequence, ease.deviation_rad);
+    }
+  }
+}
+
 void BlockFeed::fill() {
   planner_.advance(writer_);
+  take_eases();
   while (!is_over_) {
     if (!block_ && !take_block()) {
       is_over_ = true;
       return;
     }
     const PlanResult result = planner_.plan(*block_, writer_);
+    take_eases();
     if (result.status == PlanStatus::kNoRoom) return;
     if (result.status == PlanStatus::kRefused) {
       refusal_ = stream::describe(result.reject, model_);
       is_over_ = true;
       return;
-    }
-    if (explainer_ != nullptr && result.axis_deviation_rad > 0) {
-      explainer_->add_ease(block_->sequence, block_->sequence, result.axis_deviation_rad);
     }
     block_.reset();
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/planner/smooth_planner.hpp"
@@ -31,6 +32,15 @@ class BlockFeed {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
   /// Why the last block was refused, one sentence; empty where none was.
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
+  /// Stretches beside the pole on which the axis was moved: the first kMostEases, how many there
+  /// were, the farthest.
+  struct Eases {
+    std::vector<PoleEase> first;
+    std::uint64_t count = 0;
+    double largest_rad = 0;
+  };
+  static constexpr std::size_t kMostEases = 100;
+  [[nodiscard]] const Eases& eases() const noexcept { return eases_; }
   [[nodiscard]] std::uint64_t motion_blocks() const noexcept { return motion_blocks_; }
   [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return judge_.feeds_limited(); }
 
@@ -47,7 +57,10 @@ class BlockFeed {
   Explainer* explainer_;
   std::optional<ToolPose> pose_;  ///< end of the last motion block
   std::optional<ClBlock> block_;  ///< judged, not planned yet
+  void take_eases();
+
   std::string refusal_;
+  Eases eases_;
   std::uint64_t motion_blocks_ = 0;
   bool has_begun_ = false, is_over_ = false;
 };

@@ -31,7 +31,9 @@ struct Parts {
 }  // namespace
 
 LimitMap::LimitMap(const MachineModel& model)
-    : model_(model), smooth_(make_feed_limits(model, {})) {}
+    : model_(model),
+      rates_(rate_limits(model.override_ramp_s)),
+      smooth_(make_feed_limits(model, {rates_.slope_per_s, rates_.curvature_per_s2})) {}
 
 LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double piece_time,
                          const JointVector& joints, double feed_share) const {
@@ -70,7 +72,7 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
     const auto n = static_cast<std::size_t>(i);
     const double uses[3] = {
         velocity / (is_smooth ? smooth_.velocity[n] : own.velocity),
-        (accel + kRateSlope_per_s * velocity) /
+        (accel + (is_smooth ? rates_.slope_per_s : kRateSlope_per_s) * velocity) /
             (is_smooth ? smooth_.acceleration[n] : own.acceleration),
         is_smooth
             ? jerk / smooth_.jerk[n]

@@ -43,6 +43,7 @@ class LimitMap {
 
  private:
   const MachineModel& model_;
+  RateLimits rates_;
   FeedLimits smooth_;  ///< what a smooth plan may use
 };
 

@@ -26,7 +26,8 @@ class Run {
         port_(std::make_unique<MotionPort>()),
         motion_(*port_),
         feed_(reader, model, tools, *port_, options.has_action_peer, options.explainer),
-        meter_(model) {
+        meter_(model),
+        state_(CycleOptions{}, rate_bounds(model)) {
     for (int i = 0; i < model.joint_count; ++i) drives_[i] = drive_spec(model, i).home;
     if (options.start) drives_ = *options.start;
     in_.session = 1;
@@ -49,6 +50,9 @@ class Run {
     report.cycles = in_.cycle;
     report.motion_blocks = feed_.motion_blocks();
     report.feeds_limited = feed_.feeds_limited();
+    report.eases = feed_.eases().first;
+    report.ease_count = feed_.eases().count;
+    report.largest_ease_rad = feed_.eases().largest_rad;
     if (report.outcome == Outcome::kDone || report.outcome == Outcome::kStarved) {
       if (!feed_.refusal().empty()) report.outcome = Outcome::kRefused;
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
+#include "meridian/units.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::simulate {
@@ -36,6 +37,27 @@ void append_shares(std::string& text, const LimitShares& shares, const MachineMo
     separator = ", ";
   }
   text += "\n";
+}
+
+/// The stretches that were eased, the farthest first where there are many.
+void append_eases(std::string& text, const SimulateReport& report) {
+  constexpr std::size_t kMostTold = 12;
+  append(text, "pole       axis eased in %llu stretches, at most %.4f deg\n",
+         static_cast<Count>(report.ease_count), units::deg_from_rad(report.largest_ease_rad));
+  std::vector<PoleEase> told = report.eases;
+  if (told.size() > kMostTold) {
+    std::stable_sort(told.begin(), told.end(), [](const PoleEase& a, const PoleEase& b) {
+      return a.deviation_rad > b.deviation_rad;
+    });
+    told.resize(kMostTold);
+  }
+  for (const PoleEase& ease : told) {
+    append(text, "  lines %u to %u: %.4f deg, %s\n", ease.first_line, ease.last_line,
+           units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
+  }
+  if (report.ease_count > told.size()) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.ease_count - told.size()));
+  }
 }
 
 void append_happening(std::string& text, const Happening& happening) {
@@ -86,6 +108,7 @@ std::string to_text(const SimulateReport& report, const MachineModel& model) {
          report.program_s, report.approach_s, report.waiting_s);
   append(text, "           the cuts alone at the programmed feed: %.3f s\n", report.at_feed_s);
   if (report.shares.cycles > 0) append_shares(text, report.shares, model);
+  if (report.ease_count > 0) append_eases(text, report);
   append(text, "cycles     %llu of %.6g ms, computed in %.2f s\n",
          static_cast<Count>(report.cycles), report.cycle_s * 1e3, report.computing_s);
   if (!report.happenings.empty()) text += "events\n";

@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/path/block_reject.hpp"
+#include "meridian/planner/pole_ease.hpp"
 #include "meridian/rt/cycle_data.hpp"
 
 namespace meridian::simulate {
@@ -51,6 +52,9 @@ struct SimulateReport {
   std::uint64_t blocks = 0, motion_blocks = 0, blocks_done = 0;
   std::uint64_t feeds_limited = 0;  ///< blocks above the machine's highest feed
   double computing_s = 0;           ///< of this host
+  std::vector<PoleEase> eases;      ///< beside the pole: the first ones
+  std::uint64_t ease_count = 0;
+  double largest_ease_rad = 0;
   LimitShares shares;
   std::vector<Happening> happenings;  ///< the first kMostHappenings: state changes, alarms
   std::uint64_t happenings_dropped = 0;

@@ -190,4 +190,9 @@ std::string describe(Verb verb, Refusal refusal, State state) {
   return fmt::format("{} refused: {}", name_of(verb), why);
 }
 
+std::string describe(const PoleEase& ease) {
+  return fmt::format("lines {} to {}: tool axis eased by {:.4f} deg, {}", ease.first_line,
+                     ease.last_line, units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
+}
+
 }  // namespace meridian::telemetry

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/planner/pole_ease.hpp"
 #include "meridian/rt/cycle_data.hpp"
 
 /// What the cycle tells in numbers, in words for operators and the log.
@@ -18,6 +19,8 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 /// An alarm with its joint and measured value, what it means and what to do.
 [[nodiscard]] std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
                                    const MachineModel& model);
+/// Where the tool axis will be moved beside the pole, by how much and why.
+[[nodiscard]] std::string describe(const PoleEase& ease);
 /// Answer to an operator whose verb was accepted; `state` is the one it led to.
 [[nodiscard]] std::string describe(Verb verb, State state);
 /// Answer to an operator whose verb was refused in `state`, with the remedy.

@@ -15,7 +15,10 @@ namespace meridian::test {
 class CycleWorld {
  public:
   explicit CycleWorld(const MachineModel& model, const JointVector& at = {})
-      : machine(model), port(std::make_unique<MotionPort>()), reader(*port) {
+      : machine(model),
+        port(std::make_unique<MotionPort>()),
+        reader(*port),
+        state({}, rate_bounds(model)) {
     in.feedback.position = drives_of(model, at);
     in.feedback.joint_mask = all_joints(machine);
     in.feedback.referenced_mask = all_joints(machine);

@@ -41,9 +41,11 @@ enum class MachineFamily : std::uint8_t {
   kRobot   ///< articulated, 5R or 6R
 };
 
-/// What the planner does where the path runs into the pole of the free rotary joint.
+/// What the planner does beside the pole of the free rotary joint. Where the azimuth differs on
+/// leaving the pole itself, the free joint turns at rest, tip and axis fixed, whatever the policy.
 enum class PolePolicy : std::uint8_t {
-  kTurn  ///< stop on the pole and turn the free joint alone, tip and axis fixed
+  kEase,  ///< the free joint may take a shorter way that moves the axis inside its tolerance
+  kExact  ///< the joints follow the path, which slows down as the free joint needs it
 };
 
 /// How the cuts of a program join.
@@ -86,7 +88,7 @@ struct MachineModel {
   Vector3 frame_origin_mm = Vector3::Zero();
   Tolerances tolerances;
   Transition transition = Transition::kExactStop;  ///< of programs that do not ask for another
-  PolePolicy pole_policy = PolePolicy::kTurn;
+  PolePolicy pole_policy = PolePolicy::kEase;
   double clearance_mm = 50;  ///< retract of an approach along the tool axis
   double approach_feed_mm_per_s = 10;
   double max_feed_mm_per_s = 0;  ///< programmed feeds above it are limited and reported
@@ -95,6 +97,15 @@ struct MachineModel {
   bool default_unit_inch = false;
   double starve_auto_resume_s = 2.0;
   int bridge_cycles = 3;  ///< lost periods that the drives bridge
+  /// Least time that the feed override, a resume or a hold along the plan takes between 100 % and
+  /// 0, s. Every plan keeps room in the joints' limits for it; the longer, the less.
+  double override_ramp_s = 1.0;
 };
+
+/// Deviation of the axis that is allowed within kPoleReach_rad of the pole.
+[[nodiscard]] inline double axis_tolerance_beside_pole(const MachineModel& model) noexcept {
+  return model.pole_policy == PolePolicy::kExact ? model.tolerances.axis_rad
+                                                 : model.tolerances.axis_beside_pole_rad();
+}
 
 }  // namespace meridian

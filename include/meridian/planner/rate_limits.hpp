@@ -16,4 +16,14 @@ namespace meridian {
 inline constexpr double kRateSlope_per_s = 1.0;
 inline constexpr double kRateCurvature_per_s2 = 10.0;
 
+/// Both for a machine whose override takes longer: MachineModel::override_ramp_s, at least 1 s.
+struct RateLimits {
+  double slope_per_s = kRateSlope_per_s;
+  double curvature_per_s2 = kRateCurvature_per_s2;
+};
+[[nodiscard]] constexpr RateLimits rate_limits(double override_ramp_s) noexcept {
+  const double ramp_s = override_ramp_s > 1 ? override_ramp_s : 1.0;
+  return {kRateSlope_per_s / ramp_s, kRateCurvature_per_s2 / ramp_s};
+}
+
 }  // namespace meridian

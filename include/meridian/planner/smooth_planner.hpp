@@ -10,6 +10,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 
 namespace meridian {
@@ -53,6 +54,10 @@ class SmoothPlanner {
   /// Publishes what is ready, without a new block: where the port was full, or the machine ran dry
   /// and has to be sent on. A refusal found on the way is told by the next plan().
   void advance(MotionWriter& writer) noexcept;
+
+  /// Takes the oldest stretch beside the pole on which the axis was moved, of what was planned so
+  /// far; false if there is none. At most 256 wait, then the oldest go.
+  [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
 
   /// Joints and tool length at the end of the last motion that was published to its end.
   [[nodiscard]] const JointVector& joints() const noexcept;

@@ -10,6 +10,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/rate_limits.hpp"
 #include "meridian/planner/time_law.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/rate_filter.hpp"
@@ -93,6 +94,12 @@ struct StopInProgress {
 
 /// What the action peer said about the action that the cycle waits for.
 enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
+
+/// How fast the rate filter of this machine may change the rate.
+[[nodiscard]] inline RateBounds rate_bounds(const MachineModel& machine) noexcept {
+  const RateLimits rates = rate_limits(machine.override_ramp_s);
+  return {rates.slope_per_s, rates.curvature_per_s2};
+}
 
 /// State of the cycle between two step() calls. Built once, no allocation afterwards.
 struct CycleState {

@@ -154,6 +154,16 @@ inline void end_stop_here(Cycle& c) noexcept {
   return true;
 }
 
+/// From a stop along the plan to one of its own, where the piece in force has authority for it.
+inline void try_stop_by_law(Cycle& c) noexcept {
+  const StopInProgress along = c.state.stop;
+  const StopAuthority authority = authority_of(*c.reader.piece(), StopKind::kHold, c.state.on_path);
+  if (!(authority.accel > 0) || !(c.state.on_path.ds > 0)) return;
+  begin_stop(c, StopKind::kHold);
+  c.state.stop.stopping_time += along.time;
+  c.state.stop.stopping_distance += along.stopping_distance;
+}
+
 /// Goes on with a stop along the plan by the periods of this cycle.
 [[nodiscard]] inline bool follow_stop_by_rate(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
@@ -164,7 +174,10 @@ inline void end_stop_here(Cycle& c) noexcept {
   }
   if (is_on_move(c) && !put_at_plan_time(c)) return false;
   stop.stopping_distance += c.state.on_path.ds * c.elapsed;
-  if (goes_on) return true;
+  if (goes_on) {
+    if (is_on_move(c)) try_stop_by_law(c);
+    return true;
+  }
   const double time = stop.time;
   rest(c);
   stop.is_by_rate = false;

@@ -3,6 +3,7 @@
 
 #include "meridian/path/band_span.hpp"
 #include "meridian/path/path_piece.hpp"
+#include "meridian/planner/pole_ease.hpp"
 
 namespace meridian {
 
@@ -14,6 +15,7 @@ struct JointSpan {
   bool is_free_driven = false;    ///< the free joint is a quintic of x, the tilt follows
   FreeQuintic free{};             ///< Bernstein values over [0, length], rad
   double axis_deviation_rad = 0;  ///< largest angle by which driving the free joint moves the axis
+  EaseReason reason = EaseReason::kBeside;  ///< why, where driven
 };
 
 /// The piece that the cycle runs on `span`. Joints and names are filled in by the planner.

@@ -44,7 +44,8 @@ PoleCorridor::PoleCorridor(const MachineModel& model)
 void PoleCorridor::begin(const Start& start) noexcept {
   has_pole_ = free_joint(model_) >= 0 && !start.is_on_pole;
   tool_length_mm_ = start.tool_length_mm;
-  tolerance_rad_ = std::max(start.tolerance_rad, kPoleEase_rad);
+  is_exact_ = model_.pole_policy == PolePolicy::kExact;
+  tolerance_rad_ = is_exact_ ? kPoleEase_rad : std::max(start.tolerance_rad, kPoleEase_rad);
   programmed_.begin(start.axis);
   held_.clear();
   scan_ = 0;
@@ -200,7 +201,8 @@ bool PoleCorridor::decide(Place place) noexcept {
   PoleZone zone;
   if (has_room) {
     around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
-    zone = find_pole_zone({model_, *this, programmed_, tool_length_mm_, tolerance_rad_}, around);
+    zone = find_pole_zone({model_, *this, programmed_, tool_length_mm_, tolerance_rad_, is_exact_},
+                          around);
   }
   if (zone.end > zone.begin) {
     take(zone);
@@ -267,6 +269,9 @@ void PoleCorridor::emit() noexcept {
     out_.free = part_of(zone.free, begin <= zone.begin ? 0 : (begin - zone.begin) / h,
                         end >= zone.end ? 1 : (end - zone.begin) / h);
     out_.axis_deviation_rad = zone.deviation_rad;
+    out_.reason = zone.branch_after != zone.branch_before ? EaseReason::kThrough
+                  : zone.deviation_rad < kPoleEase_rad    ? EaseReason::kOnPole
+                                                          : EaseReason::kBeside;
   }
   if (has_zone && end >= zone.end) {
     out_branch_ = zone.branch_after;

@@ -93,6 +93,7 @@ class PoleCorridor : private SpanLookup {
 
   const MachineModel& model_;
   bool has_pole_ = false;  ///< one that matters
+  bool is_exact_ = false;  ///< of the policies the one that never eases
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
   ProgrammedAxis programmed_;
   IndexRing<Held> held_;

@@ -16,8 +16,8 @@ constexpr int kWidths = 24;
 constexpr double kLeastShare = 1e-3;  // narrowest half width over the widest
 constexpr double kSkews[] = {0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6};
 constexpr int kSamples = 96;
-constexpr double kToleranceShare = 0.99;  // samples are not everywhere
-constexpr double kMostBend = 1e3;         // rad: φ'' h² at an end, beyond it the end is no guide
+constexpr double kToleranceShare = 0.998;  // samples are not everywhere
+constexpr double kMostBend = 1e3;          // rad: φ'' h² at an end, beyond it the end is no guide
 constexpr double kLeastGain_s = 1e-3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTravelMargin = 1e-9;
@@ -32,6 +32,14 @@ Pose<S> pose_of(const PoleTask& task, double u) noexcept {
   } else {
     return pose_on(span.c, S::variable(x));
   }
+}
+
+/// Largest value that a smooth function may have about the middle of three samples: there, or at
+/// the top of the parabola through them.
+double top_of(double left, double middle, double right) noexcept {
+  const double bend = 2 * middle - left - right;
+  if (!(bend > 0) || middle < left || middle < right) return middle;
+  return middle + (right - left) * (right - left) / (8 * bend);
 }
 
 /// Time per u at which the joints can follow, seconds per mm.
@@ -101,6 +109,7 @@ class Search {
         const double before = width * (1 - skew) / (1 + std::abs(skew));
         const double behind = width * (1 + skew) / (1 + std::abs(skew));
         PoleZone zone;
+        zone.branch_before = place_.branch;
         zone.begin = place_.is_start ? place_.core_begin : snapped(place_.core_begin - before);
         zone.end = place_.is_end ? place_.core_end : snapped(place_.core_end + behind);
         const double outside =
@@ -164,17 +173,22 @@ class Search {
 
   /// Tolerance and travel at `samples` places.
   bool is_inside(PoleZone& zone, int samples) const noexcept {
+    double before = 0, last = 0;  // deviations
     for (int k = 0; k <= samples; ++k) {
       const double t = 1.0 * k / samples;
       const double u = zone.begin + t * (zone.end - zone.begin);
-      const auto at = solve_held(task_.model, task_.tool_length_mm, pose_of<double>(task_, u),
-                                 quintic_at(zone.free, t));
+      const ToolPose pose = pose_of<double>(task_, u);
+      const auto at = solve_held(task_.model, task_.tool_length_mm, pose, quintic_at(zone.free, t));
       if (at.status == SolveStatus::kUnreachable) return false;
       if (first_joint_outside_travel(task_.model, at.q, kTravelMargin) >= 0) return false;
       const Vector3 axis = forward(task_.model, task_.tool_length_mm, at.q).axis;
-      const double off = task_.programmed.angle_to(u, axis);
-      if (!(off <= kToleranceShare * task_.tolerance_rad)) return false;
-      zone.deviation_rad = std::max(zone.deviation_rad, off);
+      const double off =
+          task_.is_exact ? angle_between(pose.axis, axis) : task_.programmed.angle_to(u, axis);
+      const double most = std::max(off, k < 2 ? 0.0 : top_of(before, last, off));
+      if (!(most <= kToleranceShare * task_.tolerance_rad)) return false;
+      zone.deviation_rad = std::max(zone.deviation_rad, most);
+      before = last;
+      last = off;
     }
     return true;
   }

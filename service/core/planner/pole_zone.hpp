@@ -13,7 +13,7 @@ namespace meridian {
 struct PoleZone {
   double begin = 0, end = 0;  ///< u
   FreeQuintic free{};         ///< Bernstein values over [begin, end]
-  int branch_after = 0;
+  int branch_before = 0, branch_after = 0;
   double deviation_rad = 0;  ///< largest angle to the programmed axis
 };
 
@@ -42,6 +42,7 @@ struct PoleTask {
   const ProgrammedAxis& programmed;
   double tool_length_mm = 0;
   double tolerance_rad = 0;  ///< of the resulting axis from the programmed one
+  bool is_exact = false;     ///< from the axis of the spans instead
 };
 
 /// Picks the zone with the least time over the whole reach; begin == end: the exact way has it.

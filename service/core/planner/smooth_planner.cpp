@@ -33,7 +33,8 @@ struct SmoothPlanner::Workspace {
         settings.axis_tolerance_rad > 0 ? settings.axis_tolerance_rad : model.tolerances.axis_rad;
     out.tip_mm = std::max(out.tip_mm, 1e-3);
     out.axis_rad = std::max(out.axis_rad, 1e-4);
-    if (free_joint(model) >= 0) out.pole = to_array(pole_direction(model));
+    const bool eases = free_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
+    if (eases) out.pole = to_array(pole_direction(model));
     return out;
   }
 
@@ -56,6 +57,7 @@ struct SmoothPlanner::Workspace {
   bool is_run_on_pole = false;
   bool is_refused = false;
   PlanResult refusal;
+  PoleEase plain_ease;  ///< of the last block from rest to rest; no deviation: none
 };
 
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
@@ -173,6 +175,9 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
     } else if (result.status == PlanStatus::kOk) {
       w.pose = w.plain.junction().pose;
       w.joints = w.plain.joints();
+      w.plain_ease = {
+          block.sequence,     block.sequence, block.line, block.line, result.axis_deviation_rad,
+          EaseReason::kOnPole};
     }
     return result;
   }
@@ -186,6 +191,15 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
 void SmoothPlanner::advance(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.is_running && !w.is_refused) (void)w.publish(writer);
+}
+
+bool SmoothPlanner::take_ease(PoleEase& out) noexcept {
+  Workspace& w = *workspace_;
+  if (w.run.take_ease(out)) return true;
+  if (!(w.plain_ease.deviation_rad > 0)) return false;
+  out = w.plain_ease;
+  w.plain_ease.deviation_rad = 0;
+  return true;
 }
 
 const JointVector& SmoothPlanner::joints() const noexcept { return workspace_->joints; }

@@ -11,13 +11,27 @@ namespace {
 
 /// More spans than the feed keeps cells: every cell lies in one span.
 constexpr std::size_t kSpans = 2048;
+constexpr std::size_t kEases = 256;  // that wait to be taken; the oldest go
+
+/// What the feed leaves to the rate filter of this machine's cycle.
+FeedSettings feed_settings(const MachineModel& model) noexcept {
+  const RateLimits rates = rate_limits(model.override_ramp_s);
+  FeedSettings settings;
+  settings.reserve = {rates.slope_per_s, rates.curvature_per_s2};
+  return settings;
+}
 
 bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
 
 }  // namespace
 
 SmoothRun::SmoothRun(const MachineModel& model)
-    : model_(model), corridor_(model), feed_(model, {}), authority_(model), spans_(kSpans) {}
+    : model_(model),
+      corridor_(model),
+      feed_(model, feed_settings(model)),
+      authority_(model),
+      spans_(kSpans),
+      eases_(kEases) {}
 
 void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
                       double pole_tolerance_rad) noexcept {
@@ -31,6 +45,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   span_joints_ = start.joints;
   window_ = start.window;
   open_.fill({});
+  is_easing_ = false;
   has_window_ = is_band_finished_ = is_feed_finished_ = false;
   fault_ = {};
   faulty_block_ = {};
@@ -81,6 +96,7 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
     std::uint32_t line = spans_.end_index() > 0 ? spans_.back().band.line : 0;
     if (const JointSpan* span = next_span()) {
       spans_.push(*span);
+      note_ease(span);
       sequence = span->band.sequence;
       line = span->band.line;
       fault = feed_.push(*span);
@@ -88,6 +104,7 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
       fault = {PathFault::Kind::kTooLong, -1, 0};
     } else if (is_band_finished_ && !is_feed_finished_) {
       is_feed_finished_ = true;
+      note_ease(nullptr);
       fault = feed_.finish();
     } else {
       return Status::kNeedsBlocks;
@@ -97,6 +114,32 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
       return Status::kFailed;
     }
   }
+}
+
+void SmoothRun::note_ease(const JointSpan* span) noexcept {
+  if (span != nullptr && is_easing_) {  // as far as the begin of a span that is exact again
+    ease_.last_sequence = span->band.sequence;
+    ease_.last_line = span->band.line;
+  }
+  if (span != nullptr && span->is_free_driven) {
+    if (!is_easing_) {
+      ease_ = {span->band.sequence, span->band.sequence, span->band.line, span->band.line, 0,
+               span->reason};
+    }
+    ease_.deviation_rad = std::max(ease_.deviation_rad, span->axis_deviation_rad);
+    is_easing_ = true;
+  } else if (is_easing_) {
+    is_easing_ = false;
+    if (eases_.is_full()) eases_.drop_before(eases_.begin_index() + 1);
+    eases_.push(ease_);
+  }
+}
+
+bool SmoothRun::take_ease(PoleEase& out) noexcept {
+  if (eases_.begin_index() == eases_.end_index()) return false;
+  out = eases_[eases_.begin_index()];
+  eases_.drop_before(eases_.begin_index() + 1);
+  return true;
 }
 
 const JointSpan* SmoothRun::next_span() noexcept {

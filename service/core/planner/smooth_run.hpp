@@ -8,6 +8,7 @@
 #include "meridian/path/band_spline.hpp"
 #include "meridian/path/block_reject.hpp"
 #include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/pole_ease.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed_authority.hpp"
 #include "service/core/planner/pole_corridor.hpp"
@@ -58,6 +59,9 @@ class SmoothRun {
   /// The block that the fault is on; its code is left to the caller.
   [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
 
+  /// Takes the oldest stretch beside the pole on which the axis was moved; false if there is none.
+  [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
+
   /// Names for what follows the run, and the joints at its end.
   [[nodiscard]] std::uint64_t next_path_index() const noexcept {
     return start_.path_index + staged_spans_;
@@ -75,6 +79,8 @@ class SmoothRun {
   [[nodiscard]] Status prepare() noexcept;
   /// The next span that joints follow, nullptr where there is none yet.
   [[nodiscard]] const JointSpan* next_span() noexcept;
+  /// Keeps account of stretches beside the pole; `span` nullptr: the path ends.
+  void note_ease(const JointSpan* span) noexcept;
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(const MotionWriter& writer) noexcept;
@@ -96,6 +102,9 @@ class SmoothRun {
   std::array<OpenWindow, 4> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false, is_feed_finished_ = false;
+  PoleEase ease_;  ///< going on where is_easing_
+  bool is_easing_ = false;
+  IndexRing<PoleEase> eases_;
   PathFault fault_;
   BlockReject faulty_block_;
 };

@@ -45,6 +45,7 @@ class PatientReader {
 
 struct SmoothTrace : Trace {
   int tails = 0;  ///< pieces of tails that were run
+  std::vector<PoleEase> eases;
 };
 
 /// Plans `blocks` from `start`; `reads(n)` tells whether the port is read after block n, `dry(n)`
@@ -65,6 +66,7 @@ SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& b
       if (trace.last.status != PlanStatus::kNoRoom) break;
       reader.read(trace, false);
     }
+    for (PoleEase ease; planner.take_ease(ease);) trace.eases.push_back(ease);
     if (trace.last.status != PlanStatus::kOk) break;
     if (reads(n)) reader.read(trace, dry(n));
   }

@@ -69,6 +69,39 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
   EXPECT_LE(worst_off, 1 + 1e-6);
 }
 
+/// A plan with all of the limits in it leaves the rate next to no room. A hold then stops where the
+/// plan gives it authority, at the latest at the plan's next rest.
+TEST(SmoothMotion, HoldsWherePlansKeepNothingForTheOverride) {
+  LimitShares worst;
+  double longest = 0;
+  int holds = 0;
+  for (std::uint32_t n = 0; n < 16; ++n) {
+    SCOPED_TRACE(testing::Message() << "hold " << n);
+    test::RandomPrograms random(7000 + n);
+    MachineModel machine = test::bench_machine();
+    machine.transition = Transition::kSmooth;
+    machine.override_ramp_s = 1000;
+    const auto blocks = hostile(1 + n % 6);
+    SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
+    ASSERT_TRUE(run.is_started());
+    const double until = random.uniform(0.2, 3);
+    for (double t = 0; t < until && !run.is_over(); t += run.world.dt()) run.run();
+    if (run.is_over()) continue;
+    run.command(Verb::kHold);
+    double t = 0;
+    for (; t < 10 && run.world.now() != State::kHeld; t += run.world.dt()) run.run();
+    EXPECT_EQ(run.world.now(), State::kHeld);
+    longest = std::max(longest, t);
+    ++holds;
+    test::expect_within_limits(run.world, 0, false, worst);
+  }
+  std::printf("%d holds, the longest %.3f s; worst v %.6f a %.6f j %.6f\n", holds, longest, worst.v,
+              worst.a, worst.j);
+  EXPECT_GT(holds, 10);
+  EXPECT_LT(longest, 1.5);
+  EXPECT_GT(worst.j, 0.9) << "the reserve was kept";
+}
+
 TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
   LimitShares worst;
   std::uint64_t dry = 0;

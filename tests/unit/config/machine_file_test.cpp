@@ -25,7 +25,8 @@ TEST(MachineFile, GivesTheConstantsOfTheLaiMachine) {
   EXPECT_FALSE(model.default_unit_mm || model.default_unit_inch);
   EXPECT_DOUBLE_EQ(model.max_feed_mm_per_s, 500);
   EXPECT_DOUBLE_EQ(model.tolerances.axis_rad, units::rad_from_deg(0.1));
-  EXPECT_EQ(model.pole_policy, PolePolicy::kTurn);
+  EXPECT_EQ(model.pole_policy, PolePolicy::kEase);
+  EXPECT_EQ(model.override_ramp_s, 1);
   EXPECT_EQ(model.frame_rotation, Eigen::Matrix3d::Identity());
 }
 
@@ -116,6 +117,18 @@ TEST(MachineFile, TakesAPinSlotWithoutRods) {
   EXPECT_EQ(model.stage.kind, StageKind::kPinSlot);
   EXPECT_EQ(model.stage.rail_mm, 150);
   EXPECT_NEAR(model.stage_drives[0].home, 0, 1e-12);
+}
+
+TEST(MachineFile, TakesThePolesPolicyAndTheOverridesRamp) {
+  std::string text = test::read_text(kMachines / "lai.toml");
+  const auto put = [&text](std::string_view from, std::string_view to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("policy = \"ease\"", "policy = \"exact\"");
+  put("[machine]\n", "[machine]\noverride_ramp_s = 20\n");
+  const MachineModel model = parse_machine(text, "exact");
+  EXPECT_EQ(model.pole_policy, PolePolicy::kExact);
+  EXPECT_EQ(model.override_ramp_s, 20);
 }
 
 TEST(MachineFile, TakesFrameUnitAndCycleTime) {

@@ -223,7 +223,7 @@ const Mistake kMistakes[] = {
     {"ToleranceZero", "tip_mm = 0.01", "tip_mm = 0", "tolerances.tip_mm", "0", "1e-06 to 10", ""},
     {"ToleranceInRadian", "axis_deg = 0.1", "axis_rad = 0.1", "tolerances.axis_deg", "", "1e-06",
      "add it"},
-    {"UnknownPolicy", "policy = \"turn\"", "policy = \"jump\"", "pole.policy", "jump", "\"turn\"",
+    {"UnknownPolicy", "policy = \"ease\"", "policy = \"jump\"", "pole.policy", "jump", "\"ease\"",
      "choose"},
     {"FrameOfTwo", "origin_mm = [0, 0, 0]", "origin_mm = [0, 0]", "frame.origin_mm", "0",
      "[x, y, z]", "three numbers"},
@@ -231,7 +231,7 @@ const Mistake kMistakes[] = {
      "361", "-360 to 360", ""},
     {"UnknownTable", "[tolerances]", "[tolerance]\n[tolerances]", "tolerance", "table",
      "tolerances", "did you mean tolerances?"},
-    {"TableIsANumber", "[pole]\npolicy = \"turn\"", "[pole2]\npolicy = \"turn\"", "pole", "",
+    {"TableIsANumber", "[pole]\npolicy = \"ease\"", "[pole2]\npolicy = \"ease\"", "pole", "",
      "a table [pole]", "add it"},
 };
 

@@ -128,6 +128,34 @@ TEST(ExplainSmooth, NamesTheJointThatTurnsBesideThePole) {
   EXPECT_EQ(out.whole.worst.front().first_line, 5U);
 }
 
+/// Five blocks whose axis passes the pole at 0.05 deg, in the third.
+constexpr const char* kPastThePole =
+    "UNITS/MM\nMULTAX/ON\nFEDRAT/3000,MMPM\n"
+    "GOTO/-30,0,0,-0.2,0.000872665,0.979795508\nGOTO/-15,0,0,-0.1,0.000872665,0.994987055\n"
+    "GOTO/-5,0,0,-0.03,0.000872665,0.999549519\nGOTO/5,0,0,0.03,0.000872665,0.999549519\n"
+    "GOTO/15,0,0,0.1,0.000872665,0.994987055\nGOTO/30,0,0,0.2,0.000872665,0.979795508\nFINI\n";
+
+TEST(ExplainSmooth, TellsTheBlocksWhoseAxisWasEasedBesideThePoleAndWhy) {
+  MachineModel model = machine(Transition::kSmooth);
+  const Explained out = explain(kPastThePole, model);
+  const SimulateReport& report = out.run.report;
+  ASSERT_EQ(report.ease_count, 1U);
+  const PoleEase& ease = report.eases[0];
+  EXPECT_LE(ease.first_line, 7U);
+  EXPECT_GE(ease.last_line, 7U);
+  EXPECT_NEAR(units::deg_from_rad(ease.deviation_rad), 0.05, 0.002);
+  EXPECT_EQ(ease.reason, EaseReason::kThrough);
+  EXPECT_EQ(out.at_line(7).eased_rad, ease.deviation_rad);
+  EXPECT_EQ(out.at_line(5).eased_rad, 0);
+  EXPECT_NE(to_text(report, model).find("deg, through the pole"), std::string::npos)
+      << to_text(report, model);
+
+  model.pole_policy = PolePolicy::kExact;
+  const Explained exact = explain(kPastThePole, model);
+  EXPECT_EQ(exact.run.report.ease_count, 0U);
+  EXPECT_GT(exact.run.report.program_s, report.program_s + 1);
+}
+
 TEST(ExplainExactStop, NamesRests) {
   std::string text = kHead;
   for (int n = 0; n < 6; ++n) {

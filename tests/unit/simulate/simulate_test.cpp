@@ -64,6 +64,19 @@ TEST_F(Simulate, CutsTheWholePathInsideEveryLimit) {
   EXPECT_NEAR(report.cut_s, run.report.program_s, 0.01);
 }
 
+TEST_F(Simulate, IsJudgedByThePolesToleranceWhichTheVerdictNames) {
+  MachineModel bench = test::bench_machine();
+  bench.tolerances.pole_axis_rad = units::rad_from_deg(1.5);
+  const SimulatedRun run = run_simulation(kPart, bench);
+  const CheckReport wide = check_records(run.records, path_of(kPart, bench), bench, {}, recording);
+  EXPECT_NE(to_text(wide).find("tolerance 0.1 deg, 1.5 deg within 22.9 deg of the pole"),
+            std::string::npos)
+      << to_text(wide);
+  bench.pole_policy = PolePolicy::kExact;
+  const CheckReport exact = check_records(run.records, path_of(kPart, bench), bench, {}, recording);
+  EXPECT_EQ(to_text(exact).find("of the pole"), std::string::npos) << to_text(exact);
+}
+
 TEST_F(Simulate, GivesTheSameBitsEveryTime) {
   const SimulatedRun one = run_simulation(kPart, model), two = run_simulation(kPart, model);
   ASSERT_EQ(one.records.size(), two.records.size());

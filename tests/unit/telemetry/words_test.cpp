@@ -6,6 +6,7 @@
 #include <set>
 
 #include "meridian/rt/state_table.hpp"
+#include "meridian/units.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::telemetry {
@@ -25,6 +26,11 @@ TEST(Words, NameJointLineValueAndRemedyOfAnAlarm) {
   EXPECT_NE(text.find("line 41"), std::string::npos) << text;
   EXPECT_NE(text.find("look for"), std::string::npos) << text;
   EXPECT_EQ(weight_of(event), Weight::kError);
+}
+
+TEST(Words, TellWhereTheAxisIsEasedByHowMuchAndWhy) {
+  const PoleEase ease{7, 9, 41, 43, units::rad_from_deg(0.05), EaseReason::kThrough};
+  EXPECT_EQ(describe(ease), "lines 41 to 43: tool axis eased by 0.0500 deg, through the pole");
 }
 
 TEST(Words, SayEveryAlarmDifferently) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+namespace meridian {
+
+/// Why the tool axis was moved off the programmed one beside the pole.
+enum class EaseReason : std::uint8_t {
+  kThrough,  ///< straight through the pole, out on the other branch: the free joint hardly turns
+  kBeside,   ///< past it on the same branch, the free joint on a shorter way
+  kOnPole    ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
+};
+
+/// A stretch of path on which the axis was moved beside the pole, by blocks.
+struct PoleEase {
+  std::uint64_t first_sequence = 0, last_sequence = 0;
+  std::uint32_t first_line = 0, last_line = 0;
+  double deviation_rad = 0;  ///< largest, from the programmed axis, smoothing included
+  EaseReason reason = EaseReason::kOnPole;
+};
+static_assert(std::is_trivially_copyable_v<PoleEase>);
+
+/// In words, after "axis eased by ...: ".
+[[nodiscard]] constexpr const char* name_of(EaseReason reason) noexcept {
+  switch (reason) {
+    case EaseReason::kThrough:
+      return "through the pole";
+    case EaseReason::kBeside:
+      return "past the pole";
+    case EaseReason::kOnPole:
+      return "on the pole";
+  }
+  return "";
+}
+
+}  // namespace meridian

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <cstdlib>
+
+#include "corpus/simulated_file.hpp"
+#include "support/simulated_run.hpp"
+#include "support/text_file.hpp"
+
+/// The benchmark paths of ../shared/bench on deploy/machines/bench.toml: time from the first to the
+/// last block, approach left out, every limit and tolerance judged.
+namespace meridian {
+namespace {
+
+struct BenchRun {
+  const char* path;
+  PolePolicy policy;
+  double override_ramp_s;  ///< 1 is the default; 1000 keeps next to nothing for the override
+  double most_s;           ///< time allowed
+};
+
+std::string name_of(const BenchRun& run) {
+  std::string name = run.path;
+  if (run.policy == PolePolicy::kExact) name += "_exact";
+  if (run.override_ramp_s > 1) name += "_without_reserve";
+  return name;
+}
+
+void PrintTo(const BenchRun& run, std::ostream* out) { *out << name_of(run); }
+
+class BenchPaths : public testing::TestWithParam<BenchRun> {
+ protected:
+  static void SetUpTestSuite() {
+    const auto maker = test::shared_folder() / "bench" / "paths.py";
+    if (!std::filesystem::exists(maker)) return;
+    folder_ =
+        std::filesystem::temp_directory_path() / ("meridian-bench-" + std::to_string(::getpid()));
+    const std::string command =
+        "/usr/bin/python3 '" + maker.string() + "' '" + folder_.string() + "' >/dev/null 2>&1";
+    if (std::system(command.c_str()) != 0) TearDownTestSuite();
+  }
+  static void TearDownTestSuite() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+    folder_.clear();
+  }
+  static std::filesystem::path folder_;
+};
+
+std::filesystem::path BenchPaths::folder_;
+
+TEST_P(BenchPaths, IsCutInTimeInsideEveryLimitAndTolerance) {
+  if (folder_.empty()) GTEST_SKIP() << "../shared/bench/paths.py or python3-numpy is not here";
+  const BenchRun& bench = GetParam();
+  MachineModel model =
+      config::load_machine(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/bench.toml");
+  model.pole_policy = bench.policy;
+  model.override_ramp_s = bench.override_ramp_s;
+  const std::string text = test::read_text(folder_ / (bench.path + std::string(".apt")));
+  const test::SimulatedRun run = test::run_simulation(text, model);
+  ASSERT_EQ(run.report.outcome, simulate::Outcome::kDone) << run.report.reason;
+  const test::TextFile recording{"", ".csv"};
+  const record::CheckReport verdict = test::check_records(run.records, test::path_of(text, model),
+                                                          model, {}, recording.path().string());
+  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+  std::printf("%-26s %8.3f s of %.2f; eased %llu times, at most %.4f deg; computed in %.2f s\n",
+              name_of(bench).c_str(), run.report.program_s, bench.most_s,
+              static_cast<unsigned long long>(run.report.ease_count),
+              units::deg_from_rad(run.report.largest_ease_rad), run.report.computing_s);
+  EXPECT_LE(run.report.program_s, bench.most_s);
+}
+
+constexpr auto kEase = PolePolicy::kEase, kExact = PolePolicy::kExact;
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, BenchPaths,
+    testing::Values(BenchRun{"dome", kEase, 1, 63.5}, BenchRun{"blade", kEase, 1, 28.4},
+                    BenchRun{"blade", kEase, 1000, 27.3}, BenchRun{"fan", kEase, 1, 2.15},
+                    BenchRun{"fan", kEase, 1000, 2.15}, BenchRun{"near_pole", kEase, 1, 1.60},
+                    BenchRun{"near_pole_coarse", kEase, 1, 1.70},
+                    BenchRun{"near_pole_rim", kEase, 1, 1.65},
+                    BenchRun{"near_pole", kExact, 1, 4.15},
+                    BenchRun{"near_pole_coarse", kExact, 1, 4.15},
+                    BenchRun{"near_pole_rim", kExact, 1, 4.45}),
+    [](const auto& run) { return name_of(run.param); });
+
+}  // namespace
+}  // namespace meridian
