@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace meridian {
+
+inline constexpr double kAnyVelocity = std::numeric_limits<double>::infinity();
 
 enum class TimeKind : std::uint8_t {
   kMove,          ///< s(t) on the path piece `path_index`
@@ -44,9 +47,13 @@ struct TimePiece {
   /// FaultStop limits).
   double stop_accel = 0, stop_jerk = 0;
   double fault_accel = 0, fault_jerk = 0;
-  /// The same where ṡ stays next to nothing; `authority_velocity` is the ṡ up to which the former
-  /// hold. A machine that is slower than planned (override, resume) may use what lies between:
-  /// rt/stop_authority.hpp. 0: nothing is known.
+  /// They hold from states with no more ṡ than that, what it grows by while s̈ > 0 is let go
+  /// included. Only where a smooth plan bends as sharply as its speed allows are they bounded.
+  double stop_velocity = kAnyVelocity, fault_velocity = kAnyVelocity;
+  /// For a machine that is slower than planned (override, resume). Where `slow_velocity` is set,
+  /// slow_* hold as they stand up to it. Where `authority_velocity` is set, they hold next to rest,
+  /// the former up to that ṡ, and what lies between may be used: rt/stop_authority.hpp.
+  double slow_velocity = 0;
   double authority_velocity = 0;
   double slow_stop_accel = 0, slow_stop_jerk = 0;
   double slow_fault_accel = 0, slow_fault_jerk = 0;

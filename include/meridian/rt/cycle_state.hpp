@@ -79,12 +79,14 @@ struct SentSetpoint {
 struct StopInProgress {
   bool is_active = false;
   bool is_off_path = false;  ///< joints = begin + direction · law instead of the path
-  bool is_by_rate = false;   ///< along the plan, its rate going down to zero, instead of `law`
-  StopLaw law;               ///< path length; off the path: seconds at the speed of the begin
-  double time = 0;           ///< since it began
-  double passed = 0;         ///< path length of the path pieces left behind since it began
-  double rate_begin = 0;     ///< rate of plan time when it began, for the record
-  double speed_begin = 0;    ///< ṡ when it began
+  /// Along the plan, its rate going down to zero, until there is authority for `law`.
+  bool is_by_rate = false;
+  bool is_fault = false;   ///< by the FaultStop limits
+  StopLaw law;             ///< path length; off the path: seconds at the speed of the begin
+  double time = 0;         ///< since it or its law began
+  double passed = 0;       ///< path length of the path pieces left behind since it began
+  double rate_begin = 0;   ///< rate of plan time when it began, for the record
+  double speed_begin = 0;  ///< ṡ when it began
   double stopping_time = 0, stopping_distance = 0;  ///< as laid out, for the report
   JointVector begin{};                              ///< joints when it began
   JointVector direction{};                          ///< is_off_path: joint velocity when it began

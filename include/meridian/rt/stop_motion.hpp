@@ -18,9 +18,22 @@ namespace meridian {
 /// way back to it.
 inline constexpr double kReturnShare = 0.2;
 
+/// Lays out the stop in progress with `authority`, from `begin` on the path in force.
+inline void lay_out_stop(Cycle& c, const PathState& begin,
+                         const StopAuthority& authority) noexcept {
+  StopInProgress& stop = c.state.stop;
+  stop.law = StopLaw(begin, authority);
+  stop.speed_begin = begin.ds;
+  stop.stopping_time = stop.time + stop.law.duration();
+  stop.stopping_distance += stop.law.distance();
+  stop.time = 0;
+  stop.is_by_rate = false;
+  stop.begin = c.state.joints;
+}
+
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
-/// at once. A stop that was going on is laid out anew with the authority of `kind`. A hold from a
-/// piece without authority goes on along the plan, for whose rate every plan leaves room.
+/// at once. A stop that was going on is laid out anew with the authority of `kind`. Without
+/// authority it goes on as it was, or along the plan, for whose rate every plan leaves room.
 inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   StopInProgress& stop = c.state.stop;
   const double rate = stop.is_active && stop.speed_begin > 0
@@ -35,20 +48,22 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     authority = authority_of(piece, kind, begin);
     authority = {authority.accel * share, authority.jerk * share};
   }
-  const bool was_by_rate = stop.is_by_rate;
+  const bool was_by_rate = stop.is_active && stop.is_by_rate;
+  const bool has_authority = authority.jerk > 0 || !(begin.ds > 0);
+  if (!has_authority && stop.is_active && !was_by_rate && !stop.is_off_path && share == 1.0) return;
+  const StopInProgress before = stop;
   stop = {};
   stop.is_active = true;
-  if (authority.accel == 0 && kind == StopKind::kHold && begin.ds > 0) {
-    stop.is_by_rate = true;
-    if (!was_by_rate) c.state.rate.aim(0);
-    return;
-  }
-  stop.law = StopLaw(begin, authority);
-  stop.speed_begin = begin.ds;
+  stop.is_fault = kind == StopKind::kFault;
   stop.rate_begin = rate;
-  stop.stopping_time = stop.law.duration();
-  stop.stopping_distance = stop.law.distance();
-  stop.begin = c.state.joints;
+  if (has_authority) return lay_out_stop(c, begin, authority);
+  stop.is_by_rate = true;
+  if (was_by_rate) {
+    stop.time = before.time;
+    stop.stopping_distance = before.stopping_distance;
+  } else {
+    c.state.rate.aim(0);
+  }
 }
 
 /// Lessens `authority` so that the drives of a stage stop inside their FaultStop limits too, the
@@ -154,14 +169,15 @@ inline void end_stop_here(Cycle& c) noexcept {
   return true;
 }
 
-/// From a stop along the plan to one of its own, where the piece in force has authority for it.
-inline void try_stop_by_law(Cycle& c) noexcept {
-  const StopInProgress along = c.state.stop;
-  const StopAuthority authority = authority_of(*c.reader.piece(), StopKind::kHold, c.state.on_path);
-  if (!(authority.accel > 0) || !(c.state.on_path.ds > 0)) return;
-  begin_stop(c, StopKind::kHold);
-  c.state.stop.stopping_time += along.time;
-  c.state.stop.stopping_distance += along.stopping_distance;
+/// Leaves the plan for a law of its own where there is authority for one by now.
+inline void leave_plan(Cycle& c) noexcept {
+  StopInProgress& stop = c.state.stop;
+  if (!is_on_move(c) || !(c.state.on_path.ds > 0)) return;
+  const StopKind kind = stop.is_fault ? StopKind::kFault : StopKind::kHold;
+  const StopAuthority authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
+  if (!(authority.jerk > 0)) return;
+  stop.rate_begin = c.state.rate.rate();
+  lay_out_stop(c, c.state.on_path, authority);
 }
 
 /// Goes on with a stop along the plan by the periods of this cycle.
@@ -174,10 +190,7 @@ inline void try_stop_by_law(Cycle& c) noexcept {
   }
   if (is_on_move(c) && !put_at_plan_time(c)) return false;
   stop.stopping_distance += c.state.on_path.ds * c.elapsed;
-  if (goes_on) {
-    if (is_on_move(c)) try_stop_by_law(c);
-    return true;
-  }
+  if (goes_on) return true;
   const double time = stop.time;
   rest(c);
   stop.is_by_rate = false;
@@ -190,6 +203,7 @@ inline void try_stop_by_law(Cycle& c) noexcept {
 /// Goes on with the stop by the periods of this cycle. False if the path cannot be evaluated.
 [[nodiscard]] inline bool follow_stop(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
+  if (stop.is_by_rate) leave_plan(c);
   if (stop.is_by_rate) return follow_stop_by_rate(c);
   for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
   if (stop.is_off_path) {

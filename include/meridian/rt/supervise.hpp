@@ -179,8 +179,11 @@ inline void stop_from_feedback(Cycle& c) noexcept {
     const TimePiece& piece = *c.reader.piece();
     c.state.piece_time = time_at(piece, begin.s, c.state.piece_time);
     const double ramped = begin.ds - piece.fault_accel * ramp_time;
-    begin.ds = std::clamp(ramped, 0.0, state_at(piece, c.state.piece_time).ds);
+    const double planned = state_at(piece, c.state.piece_time).ds;
+    begin.ds = std::clamp(ramped, 0.0, planned);
     begin.dds = -piece.fault_accel * (1 - kReturnShare);
+    // The rate that this is, should the stop have to go along the plan.
+    if (planned > 0) c.state.rate.reset(begin.ds / planned);
     if (!put_on_path(c, begin.s, 0)) return;
   }
   c.state.on_path = begin;

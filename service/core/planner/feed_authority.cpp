@@ -3,31 +3,47 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "meridian/planner/rate_limits.hpp"
+#include "meridian/planner/stop_product.hpp"
 #include "meridian/planner/time_law.hpp"
-#include "meridian/rt/stop_law.hpp"
 
 namespace meridian {
 namespace {
 
-constexpr double kShare = 0.995;    // of the limits
-constexpr double kStepDown = 0.75;  // of the ladder
-constexpr int kLeastSamples = 16, kMostSamples = 96;
+constexpr double kShare = 0.99;     // of the limits
+constexpr double kGrowth = 1.25;    // of the authority from piece to piece, at most
+constexpr double kLess = 0.98;      // of what would just do
+constexpr int kRounds = 8;          // of lessening
+constexpr double kHopeless = 0.02;  // of what the piece's own cell allows
+constexpr double kEasing = 0.9;     // of the deceleration that there is: a stop may ease off to it
 constexpr double kRounding_mm = 1e-9;
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kTiny = 1e-12;
+constexpr int kSteps = 24;          // of a stop
+constexpr double kBetween = 1.001;  // on ṡ² between the steps
+constexpr double kFast = 1.0015;    // on ṡ² that feed and velocity allow, kBetween included
+constexpr double kSlow = 0.6;       // rate of plan time below which slow_* may be used
+/// Rates of plan time at which authority is sought where there is none at the full rate.
+constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
+
+double square(double x) noexcept { return x * x; }
 
 /// The plan's state at another rate of plan time.
-PathState slowed(const PathState& state, double rate) noexcept {
-  return {state.s, rate * state.ds, rate * rate * state.dds, 0};
+PathState slowed(const PathState& p, double rate) noexcept {
+  return {p.s, rate * p.ds, rate * rate * p.dds, 0};
+}
+
+/// Deepest deceleration of a stop that nothing but its jerk bounds.
+double depth_of(const PathState& p, double jerk) noexcept {
+  return std::sqrt(jerk * p.ds + 0.5 * p.dds * p.dds);
 }
 
 }  // namespace
 
-FeedAuthority::FeedAuthority(const MachineModel& model) noexcept : count_(limited_count(model)) {
+FeedAuthority::FeedAuthority(const MachineModel& model) noexcept
+    : count_(limited_count(model)), slope_(rate_limits(model.override_ramp_s).slope_per_s) {
   for (int i = 0; i < count_; ++i) {
     const JointLimits& limits = limited_spec(model, i).limits;
-    hold_.caps.velocity[i] = fault_.caps.velocity[i] = 1 / limits.velocity;
     hold_.caps.acceleration[i] = 1 / (kShare * limits.acceleration);
     hold_.caps.jerk[i] = 1 / (kShare * limits.jerk);
     fault_.caps.acceleration[i] =
@@ -39,110 +55,146 @@ FeedAuthority::FeedAuthority(const MachineModel& model) noexcept : count_(limite
 void FeedAuthority::begin(const CellGrid& grid, std::int64_t rest_cell) noexcept {
   grid_ = &grid;
   rest_cell_ = rest_cell;
+  hold_.last = fault_.last = {};  // what is granted follows from the window alone
 }
 
 void FeedAuthority::grant(const FeedPiece& piece, TimePiece& time) noexcept {
-  const double offset = (*grid_)[piece.cell].x;
   PathState begin = state_at(time, 0), end = state_at(time, time.duration);
-  begin.s -= offset;
-  end.s -= offset;
-  StopAuthority stop, fault;
-  const double use = find(hold_, piece, begin, end, stop);
-  (void)find(fault_, piece, begin, end, fault);
-  time.stop_accel = use <= 1 ? stop.accel : 0;
-  time.stop_jerk = use <= 1 ? stop.jerk : 0;
-  time.fault_accel = fault.accel;
-  time.fault_jerk = fault.jerk;
+  begin.s -= (*grid_)[piece.cell].x;
+  end.s -= (*grid_)[piece.cell].x;
+  const Grant hold = find(hold_, piece.cell, {begin, end});
+  time.stop_accel = hold.authority.accel;
+  time.stop_jerk = hold.authority.jerk;
+  time.stop_velocity = hold.velocity;
+  const Grant fault = find(fault_, piece.cell, {begin, end});
+  time.fault_accel = fault.authority.accel;
+  time.fault_jerk = fault.authority.jerk;
+  time.fault_velocity = fault.velocity;
+  const Ends slow{slowed(begin, kSlow), slowed(end, kSlow)};
+  const StopAuthority slow_hold = find(hold_.caps, piece.cell, slow);
+  time.slow_stop_accel = slow_hold.accel;
+  time.slow_stop_jerk = slow_hold.jerk;
+  const StopAuthority slow_fault = find(fault_.caps, piece.cell, slow);
+  time.slow_fault_accel = slow_fault.accel;
+  time.slow_fault_jerk = slow_fault.jerk;
+  time.slow_velocity = std::min(slow.begin.ds, slow.end.ds);
 }
 
-double FeedAuthority::find(Ladder& ladder, const FeedPiece& piece, const PathState& begin,
-                           const PathState& end, StopAuthority& out) noexcept {
-  const FeedCell& cell = (*grid_)[piece.cell];
-  StopAuthority top{kNever, kNever};
+StopAuthority FeedAuthority::most_in(const Caps& caps, std::int64_t cell) const noexcept {
+  const CellBound& bound = (*grid_)[cell].bound;
+  double accel = kTiny, jerk = kTiny;
   for (int i = 0; i < count_; ++i) {
-    double rate = 1e-12;
-    for (const CellSample& at : cell.at) rate = std::max(rate, std::abs(at.d1[i]));
-    top.accel = std::min(top.accel, 1 / (ladder.caps.acceleration[i] * rate));
-    top.jerk = std::min(top.jerk, 1 / (ladder.caps.jerk[i] * rate));
+    const double rate = std::max(bound.d1.up[i], bound.d1.down[i]);
+    accel = std::max(accel, rate * caps.acceleration[i]);
+    jerk = std::max(jerk, rate * caps.jerk[i]);
   }
-  const auto rung_of = [&](const Rung& at) {
-    return StopAuthority{top.accel * std::pow(kStepDown, at.accel),
-                         top.jerk * std::pow(kStepDown, at.jerk)};
-  };
-  const PathState states[] = {begin, end, slowed(begin, 0.6), slowed(end, 0.25)};
-  double least = kNever;
-  Rung best = ladder.last;
-  const auto passes = [&](const Rung& at) {
-    if (at.accel < 0 || at.jerk < 0 || at.accel >= kAccels || at.jerk >= kJerks) return false;
-    const StopAuthority authority = rung_of(at);
-    double use = 0;
-    for (const PathState& state : states) {
-      use = std::max(use, use_of(ladder.caps, piece.cell, state, authority, least));
-      if (use >= least) break;
-    }
-    if (use < least) {
-      least = use;
-      best = at;
-    }
-    return use <= 1;
-  };
-  const Rung last = ladder.last;
-  if (passes(last)) {  // perhaps a sharper one does too
-    const Rung sharper[] = {
-        {last.accel - 1, last.jerk - 1}, {last.accel, last.jerk - 1}, {last.accel - 1, last.jerk}};
-    for (const Rung& at : sharper) {
-      least = kNever;
-      if (passes(at)) break;
-      least = 1;
-      best = last;
-    }
-  } else {
-    bool is_found = false;
-    for (int sum = 0; sum <= kAccels + kJerks - 2 && !is_found; ++sum) {
-      for (int a = std::max(0, sum - kJerks + 1); a <= std::min(sum, kAccels - 1) && !is_found;
-           ++a) {
-        is_found = passes({a, sum - a});
-      }
-    }
-  }
-  ladder.last = best;
-  out = rung_of(best);
-  return least;
+  return {1 / accel, 1 / jerk};
 }
 
-double FeedAuthority::use_of(const Caps& caps, std::int64_t cell, PathState begin,
-                             const StopAuthority& authority, double enough) const noexcept {
-  const StopLaw law(begin, authority);
-  double from = 0;  // begin of `cell`, counted from the begin of the first
-  int cells = 1;
-  for (double s = (*grid_)[cell].h; s < law.at(law.duration()).s; ++cells) {
-    if (cell + cells >= rest_cell_) {
-      if (s + kRounding_mm < law.at(law.duration()).s) return kNever;
-      break;
-    }
-    s += (*grid_)[cell + cells].h;
+StopAuthority FeedAuthority::find(const Caps& caps, std::int64_t cell,
+                                  const Ends& ends) const noexcept {
+  const StopAuthority most = most_in(caps, cell);
+  return lessen(caps, cell, ends, most, most);
+}
+
+FeedAuthority::Grant FeedAuthority::find(Search& search, std::int64_t cell,
+                                         const Ends& ends) const noexcept {
+  const StopAuthority most = most_in(search.caps, cell);
+  StopAuthority got;
+  if (search.last.jerk > 0) {
+    const StopAuthority start{std::min(most.accel, kGrowth * search.last.accel),
+                              std::min(most.jerk, kGrowth * search.last.jerk)};
+    got = lessen(search.caps, cell, ends, start, most);
   }
-  const int samples = std::clamp(3 * cells, kLeastSamples, kMostSamples);
-  double use = 0;
-  for (int n = 0; n <= samples; ++n) {
-    const PathState p = law.at(law.duration() * n / samples);
-    while (p.s > from + (*grid_)[cell].h && cell + 1 < rest_cell_) from += (*grid_)[cell++].h;
-    const FeedCell& here = (*grid_)[cell];
-    const double place = std::clamp((p.s - from) / here.h, 0.0, 1.0) * FeedCell::kSteps;
-    const auto k = static_cast<std::size_t>(std::min(place, FeedCell::kSteps - 1.0));
-    for (const CellSample* at : {&here.at[k], &here.at[k + 1]}) {
-      for (int i = 0; i < count_; ++i) {
-        const double v = at->d1[i] * p.ds;
-        const double a = at->d1[i] * p.dds + at->d2[i] * p.ds * p.ds;
-        const double j =
-            at->d1[i] * p.ddds + 3 * at->d2[i] * p.ds * p.dds + at->d3[i] * p.ds * p.ds * p.ds;
-        use = std::max({use, std::abs(v) * caps.velocity[i], std::abs(a) * caps.acceleration[i],
-                        std::abs(j) * caps.jerk[i]});
-      }
-    }
-    if (use > enough) return use;
+  if (!(got.jerk > 0)) got = lessen(search.caps, cell, ends, most, most);
+  search.last = got;
+  if (got.jerk > 0) return {got, kAnyVelocity};
+  for (const double rate : kRates) {
+    const Ends slower{slowed(ends.begin, rate), slowed(ends.end, rate)};
+    got = lessen(search.caps, cell, slower, most, most);
+    if (got.jerk > 0) return {got, std::min(slower.begin.ds, slower.end.ds)};
   }
-  return use;
+  return {};
+}
+
+StopAuthority FeedAuthority::lessen(const Caps& caps, std::int64_t cell, const Ends& from,
+                                    StopAuthority now, const StopAuthority& most) const noexcept {
+  for (int round = 0; round < kRounds; ++round) {
+    const double depth = std::max(depth_of(from.begin, now.jerk), depth_of(from.end, now.jerk));
+    now.accel = std::min(now.accel, 1.02 * depth);
+    Use use;
+    if (!add_use(caps, cell, StopLaw(from.begin, now), now, use)) break;
+    if (!add_use(caps, cell, StopLaw(from.end, now), now, use)) break;
+    if (use.is_too_fast || use.by_speed >= 1) break;  // too fast whatever the stop does
+    if (use.acceleration <= 1 && use.jerk <= 1) return now;
+    if (use.acceleration > 1) now.accel *= kLess / std::min(use.acceleration, 2.0);
+    if (use.jerk > 1) {
+      const double rest = use.jerk - use.by_speed, room = 1 - use.by_speed;
+      const double by = std::max(0.3, kLess * room / rest);
+      now.jerk *= by;
+      if (use.by_depth > 0.3 * rest) now.accel *= by;
+    }
+    if (now.jerk < kHopeless * most.jerk || now.accel < kHopeless * most.accel) break;
+    if (now.accel < kEasing * std::max(-from.begin.dds, -from.end.dds)) break;
+  }
+  return {};
+}
+
+bool FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const StopLaw& law,
+                            const StopAuthority& authority, Use& use) const noexcept {
+  const PathState begin = law.at(0);
+  const double rest = begin.s + law.distance();
+  const double deepest = begin.ds + 0.5 * begin.dds * begin.dds / authority.jerk;
+  const double most = largest_stop_product(deepest, authority.accel, authority.jerk);
+  PathState from = begin, to = begin;
+  double s = 0;  // begin of the cell
+  int n = 0;
+  for (std::int64_t k = cell; s + kRounding_mm < rest; ++k) {
+    if (k >= rest_cell_) return false;
+    const FeedCell& here = (*grid_)[k];
+    while (to.s <= s && n < kSteps) {
+      from = to;
+      to = law.at(law.duration() * ++n / kSteps);
+    }
+    const double x = to.s > from.s ? std::clamp((s - from.s) / (to.s - from.s), 0.0, 1.0) : 0.0;
+    double v2 = kBetween * (from.ds * from.ds + x * (to.ds * to.ds - from.ds * from.ds));
+    const double by_rate = k == cell ? slope_ * from.ds : 0;  // of slower states
+    const double rising = std::max(from.dds, 0.0) + by_rate;
+    if (from.dds > 0) {
+      v2 = std::max(v2, square(from.ds + 0.5 * from.dds * from.dds / authority.jerk));
+    }
+    if (k > cell && v2 > kFast * here.most_b) {
+      use.is_too_fast = true;
+      return true;
+    }
+    const double speed = std::sqrt(v2), v3 = v2 * speed;
+    const double sinking =
+        3 * std::min(most, speed * std::max(authority.accel, by_rate - from.dds));
+    add_use(caps, here.bound, authority, {v2, v3, rising, sinking, 3 * speed * rising}, use);
+    s += here.h;
+  }
+  return true;
+}
+
+void FeedAuthority::add_use(const Caps& caps, const CellBound& at, const StopAuthority& authority,
+                            const Motion& m, Use& use) const noexcept {
+  for (int i = 0; i < count_; ++i) {
+    const double up1 = at.d1.up[i], down1 = at.d1.down[i];
+    const double up = up1 * m.rising + down1 * authority.accel + at.d2.up[i] * m.v2;
+    const double down = down1 * m.rising + up1 * authority.accel + at.d2.down[i] * m.v2;
+    use.acceleration = std::max(use.acceleration, std::max(up, down) * caps.acceleration[i]);
+    const double depth_up = at.d2.down[i] * m.sinking_v + at.d2.up[i] * m.rising_v;
+    const double depth_down = at.d2.up[i] * m.sinking_v + at.d2.down[i] * m.rising_v;
+    const double bend_up = depth_up + at.d3.up[i] * m.v3;
+    const double bend_down = depth_down + at.d3.down[i] * m.v3;
+    const double j =
+        (std::max(up1, down1) * authority.jerk + std::max(bend_up, bend_down)) * caps.jerk[i];
+    if (j > use.jerk) {
+      use.jerk = j;
+      use.by_depth = (bend_up > bend_down ? depth_up : depth_down) * caps.jerk[i];
+      use.by_speed = (bend_up > bend_down ? at.d3.up[i] : at.d3.down[i]) * m.v3 * caps.jerk[i];
+    }
+  }
 }
 
 }  // namespace meridian

@@ -12,11 +12,14 @@
 namespace meridian {
 
 /// Authority to stop on a planned feed: with which acceleration and jerk along the path a hold or a
-/// FaultStop from a piece keeps every joint's limits all the way, and ends before the plan does.
+/// FaultStop keeps every joint's limits all the way, and ends before the plan does. It holds for
+/// every state of the piece, at whatever rate of plan time up to the one that it is granted for.
 ///
-/// Where the path bends as sharply as the plan's speed allows there is no formula for it, so stops
-/// are run through: of a ladder of accelerations and jerks the sharpest whose stops from both ends
-/// of the piece pass. The search starts at what the piece before got.
+/// The stops from both ends of the piece are run through the cells ahead; one that starts slower is
+/// nowhere faster. Every cell has bounds of the joints' derivatives, so the most that stops may use
+/// there is a sum. What they use too much of is lessened until all cells pass; where nothing is
+/// left it is sought for slower rates (docs/motion.md, section 9).
+/// Proof: tests/property/planner/smooth_stop_test.cpp.
 class FeedAuthority {
  public:
   explicit FeedAuthority(const MachineModel& model) noexcept;
@@ -24,34 +27,58 @@ class FeedAuthority {
   /// The pieces to come lie in cells of `grid` before `rest_cell`, where the plan rests.
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 
-  /// Fills in the authority of `time`, made of `piece`: none for a hold where no stop passes, the
-  /// least harmful one for a FaultStop.
+  /// Fills in the authority of `time`, made of `piece`: at the full rate or the next one that has
+  /// some, and for slow motions; 0 where there is none.
   void grant(const FeedPiece& piece, TimePiece& time) noexcept;
 
  private:
-  static constexpr int kAccels = 10, kJerks = 10;
-
   /// One over the limits.
   struct Caps {
-    LimitedVector velocity{}, acceleration{}, jerk{};
+    LimitedVector acceleration{}, jerk{};
   };
-  /// A place in the ladder.
-  struct Rung {
-    int accel = 0, jerk = 0;
-  };
-  struct Ladder {
+  /// What stops of one kind may use, and what the piece before got.
+  struct Search {
     Caps caps;
-    Rung last;
+    StopAuthority last;
+  };
+  /// Largest use of limits by stops: 1 is all.
+  struct Use {
+    double acceleration = 0, jerk = 0;
+    double by_depth = 0, by_speed = 0;  ///< of `jerk`: by deceleration on bends, by bends alone
+    bool is_too_fast = false;           ///< for feed or velocity
   };
 
-  [[nodiscard]] double find(Ladder& ladder, const FeedPiece& piece, const PathState& begin,
-                            const PathState& end, StopAuthority& out) noexcept;
-  /// Largest use of a limit by the stop from `begin` in `cell`, or some use above `enough`.
-  [[nodiscard]] double use_of(const Caps& caps, std::int64_t cell, PathState begin,
-                              const StopAuthority& authority, double enough) const noexcept;
+  /// States at both ends of a piece, s counted from the begin of its cell.
+  struct Ends {
+    PathState begin, end;
+  };
+  /// What stops may use that start with no more than `velocity`.
+  struct Grant {
+    StopAuthority authority;
+    double velocity = 0;
+  };
+
+  [[nodiscard]] Grant find(Search& search, std::int64_t cell, const Ends& ends) const noexcept;
+  [[nodiscard]] StopAuthority find(const Caps& caps, std::int64_t cell,
+                                   const Ends& ends) const noexcept;
+  /// What the cell allows next to rest.
+  [[nodiscard]] StopAuthority most_in(const Caps& caps, std::int64_t cell) const noexcept;
+  /// `now` or less of it, that all stops from `from` may use; 0: there is none.
+  [[nodiscard]] StopAuthority lessen(const Caps& caps, std::int64_t cell, const Ends& from,
+                                     StopAuthority now, const StopAuthority& most) const noexcept;
+  /// Bounds of what stops do in a cell: ṡ², ṡ³, s̈ > 0, 3 ṡ|s̈| where s̈ < 0 and where s̈ > 0.
+  struct Motion {
+    double v2 = 0, v3 = 0, rising = 0, sinking_v = 0, rising_v = 0;
+  };
+  /// Adds the use of all stops under `law`. False: it ends behind the plan.
+  [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const StopLaw& law,
+                             const StopAuthority& authority, Use& use) const noexcept;
+  void add_use(const Caps& caps, const CellBound& at, const StopAuthority& authority,
+               const Motion& motion, Use& use) const noexcept;
 
   int count_ = 0;
-  Ladder hold_, fault_;
+  double slope_ = 0;  ///< of the rate, 1/s
+  Search hold_, fault_;
   const CellGrid* grid_ = nullptr;
   std::int64_t rest_cell_ = 0;
 };

@@ -38,6 +38,28 @@ double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
   return std::max(share, kLeastTight);
 }
 
+/// The range of the samples, and an eighth of it either side for what lies between.
+CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexcept {
+  constexpr double kBetween = 0.125;
+  CellBound out;
+  const auto bound = [&](LimitedVector CellSample::*d, CellBound::Sides& sides) {
+    for (std::size_t i = 0; i < kMaxLimited; ++i) {
+      double low = (at[0].*d)[i], high = low;
+      for (const CellSample& sample : at) {
+        low = std::min(low, (sample.*d)[i]);
+        high = std::max(high, (sample.*d)[i]);
+      }
+      const double beyond = kBetween * (high - low);
+      sides.up[i] = std::max(0.0, high + beyond);
+      sides.down[i] = std::max(0.0, beyond - low);
+    }
+  };
+  bound(&CellSample::d1, out.d1);
+  bound(&CellSample::d2, out.d2);
+  bound(&CellSample::d3, out.d3);
+  return out;
+}
+
 }  // namespace
 
 CellGrid::CellGrid(const MachineModel& model, const FeedLimits& limits,
@@ -211,6 +233,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     }
   }
   joints_ = reference;
+  cell.bound = bound_of(cell.at);
   cell.tight = 1;
   for (const double x : {draft.x, draft.x + draft.h}) {
     cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.band.c, x)));

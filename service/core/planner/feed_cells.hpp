@@ -22,6 +22,14 @@ struct CellSample {
   double most_b = 0;
 };
 
+/// Bounds of the derivatives in a cell: that much above zero (`up`) and below (`down`), both >= 0.
+struct CellBound {
+  struct Sides {
+    LimitedVector up{}, down{};
+  };
+  Sides d1, d2, d3;
+};
+
 struct FeedCell {
   static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included
 
@@ -30,6 +38,7 @@ struct FeedCell {
   double h = 0;            ///< length
   double most_b = 0;       ///< least of the samples', lowered where a plan overshot the feed
   double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot
+  CellBound bound;
   std::array<CellSample, kSteps + 1> at;
 };
 

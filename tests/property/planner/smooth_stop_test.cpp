@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// The authority that smooth plans grant to stops: at any instant, at any rate of plan time, no
+/// hold and no FaultStop exceeds its limits, and most stop in nearly the least time.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "meridian/rt/rate_filter.hpp"
+#include "meridian/rt/stop_authority.hpp"
+#include "property/path/hostile_path.hpp"
+#include "property/planner/random_programs.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "property/rt/stop_oracle.hpp"
+#include "support/machines.hpp"
+
+namespace meridian::test {
+namespace {
+
+constexpr double kLimit = 1 + 1e-6;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kPrograms = 1;
+#else
+constexpr int kPrograms = 6;
+#endif
+
+/// First seed or number of programs of a longer run, which anyone may start.
+int number_of(const char* name, int otherwise) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
+std::vector<ClBlock> hostile(std::uint32_t seed) {
+  auto blocks = HostilePath(seed).make_program(6);
+  for (ClBlock& block : blocks) block.feed = std::max(block.feed, 20.0);
+  return blocks;
+}
+
+/// A machine on a plan: the time piece, the plan time since its begin, and the rate of plan time.
+struct OnPlan {
+  std::size_t piece = 0;
+  double time = 0, rate = 1, slope = 0;
+
+  [[nodiscard]] PathState state(const Trace& trace) const {
+    const PathState p = state_at(trace.times[piece], time);
+    return {p.s, p.ds * rate, p.dds * rate * rate + p.ds * slope, 0};
+  }
+};
+
+bool is_move(const Trace& trace, std::size_t n) {
+  return n < trace.times.size() && trace.times[n].kind == TimeKind::kMove;
+}
+
+/// Goes along the plan as the cycle does, its rate falling, until there is authority for a stop.
+/// The time that it takes.
+double wait_for_authority(const Trace& trace, StopKind kind, OnPlan& at, StopAuthority& authority) {
+  constexpr double kCycle_s = 1e-3;
+  RateFilter rate;
+  double waited = 0;
+  authority = authority_of(trace.times[at.piece], kind, at.state(trace));
+  if (authority.jerk > 0) return 0;
+  rate.reset(at.rate);
+  rate.aim(0);
+  while (!(authority.jerk > 0)) {
+    waited += kCycle_s;
+    at.time += rate.advance(kCycle_s);
+    at.rate = rate.rate();
+    at.slope = rate.slope();
+    while (is_move(trace, at.piece) && at.time >= trace.times[at.piece].duration) {
+      at.time -= trace.times[at.piece++].duration;
+    }
+    if (!is_move(trace, at.piece) || rate.is_settled()) break;
+    authority = authority_of(trace.times[at.piece], kind, at.state(trace));
+  }
+  return waited;
+}
+
+/// Largest share of the limits that a stop along `law` from time piece `piece` uses, by derivatives
+/// of the joints on the path; 99 where it passes the end of the plan.
+double use_of(const MachineModel& model, const Trace& trace, std::size_t piece, const StopLaw& law,
+              StopKind kind) {
+  double use = 0, passed = 0;
+  const PathPiece* path = &trace.paths[piece];
+  JointVector reference = path->joints_begin;
+  const int steps = std::max(8, static_cast<int>(law.duration() / 4e-4));
+  for (int n = 0; n <= steps; ++n) {
+    const PathState p = law.at(law.duration() * n / steps * (1 - 1e-12));
+    while (p.s - passed > path->length + 1e-12) {
+      std::size_t next = piece;
+      while (is_move(trace, next) && trace.paths[next].index == path->index) ++next;
+      if (!is_move(trace, next)) {
+        if (p.s - passed > path->length + 1e-6) return 99;
+        break;
+      }
+      passed += path->length;
+      path = &trace.paths[piece = next];
+    }
+    const double s = std::clamp(p.s - passed, 0.0, path->length);
+    const auto q = joints_at(model, *path, Jet<3>::variable(s), reference).q;
+    for (int i = 0; i < model.joint_count; ++i) {
+      reference[i] = value_of(q[i]);
+      const double d1 = q[i].derivative(1), d2 = q[i].derivative(2), d3 = q[i].derivative(3);
+      const JointLimits& limits = model.joints[i].limits;
+      const bool is_fault = kind == StopKind::kFault;
+      const double accel = is_fault ? limits.fault_acceleration : limits.acceleration;
+      const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
+      const double bend = d3 * p.ds * p.ds * p.ds + 3 * d2 * p.ds * p.dds;
+      use = std::max({use, std::abs(d1 * p.ds) / limits.velocity,
+                      std::abs(d1 * p.dds + d2 * p.ds * p.ds) / accel,
+                      std::abs(d1 * p.ddds + bend) / jerk});
+    }
+  }
+  return use;
+}
+
+/// The machine with its FaultStop limits for limits.
+MachineModel by_fault_limits(MachineModel model) {
+  for (JointSpec& joint : model.joints) {
+    joint.limits.acceleration = joint.limits.fault_acceleration;
+    joint.limits.jerk = joint.limits.fault_jerk;
+  }
+  return model;
+}
+
+/// Any instant and any rate of plan time that the rate filter can give.
+OnPlan draw_state(RandomPrograms& random, const Trace& trace, std::size_t piece) {
+  OnPlan at;
+  at.piece = piece;
+  at.time = random.uniform(0, trace.times[piece].duration);
+  if (random.chance(0.6)) return at;
+  at.rate = random.uniform(0.05, 1);
+  const double most = std::min(1.0, std::sqrt(20 * (1 - at.rate)));
+  if (random.chance(0.5)) at.slope = random.uniform(-std::min(1.0, std::sqrt(20 * at.rate)), most);
+  return at;
+}
+
+struct Stops {
+  int count = 0, over = 0;
+  double worst = 0, longest_wait = 0;
+  std::vector<double> ratios;  ///< time over the least time
+
+  void print(const char* what) {
+    std::sort(ratios.begin(), ratios.end());
+    const auto share = [&](double x) { return ratios[static_cast<std::size_t>(x * (count - 1))]; };
+    const auto slow = ratios.end() - std::upper_bound(ratios.begin(), ratios.end(), 1.25);
+    std::printf(
+        "%d %s, %d over a limit, worst %.4f; (time - 2 cycles)/least: median %.3f, 90 %% %.3f, "
+        "%.1f %% above 1.25; longest way along the plan %.3f s\n",
+        count, what, over, worst, share(0.5), share(0.9), 100.0 * static_cast<double>(slow) / count,
+        longest_wait);
+  }
+};
+
+void stop_from(const MachineModel& model, const Trace& trace, OnPlan at, StopKind kind,
+               Stops& stops) {
+  const PathState begin = at.state(trace);
+  if (begin.ds <= 1e-3) return;
+  const double least =
+      least_stopping_time(kind == StopKind::kFault ? by_fault_limits(model) : model,
+                          trace.paths[at.piece], begin, trace.paths[at.piece].joints_begin);
+  StopAuthority authority;
+  double time = wait_for_authority(trace, kind, at, authority);
+  stops.longest_wait = std::max(stops.longest_wait, time);
+  if (authority.jerk > 0) {
+    const StopLaw law(at.state(trace), authority);
+    const double use = use_of(model, trace, at.piece, law, kind);
+    stops.over += use > kLimit;
+    stops.worst = std::max(stops.worst, use);
+    time += law.duration();
+  }
+  ++stops.count;
+  stops.ratios.push_back(std::max(0.0, time - 2e-3) / least);
+}
+
+/// A longer run: MERIDIAN_STOP_SEED=100 MERIDIAN_STOP_PROGRAMS=200
+/// build/dev/bin/smooth_property_test --gtest_filter='SmoothStop*'
+TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
+  const int first = number_of("MERIDIAN_STOP_SEED", 1);
+  const int programs = number_of("MERIDIAN_STOP_PROGRAMS", kPrograms);
+  Stops holds, faults;
+  for (int seed = first; seed < first + programs; ++seed) {
+    RandomPrograms random(static_cast<std::uint64_t>(seed));
+    MachineModel model = seed % 2 == 0 ? bench_machine() : lai_machine();
+    const auto blocks = hostile(static_cast<std::uint32_t>(seed));
+    const auto trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+    ASSERT_EQ(trace.last.status, PlanStatus::kOk) << "seed " << seed;
+    for (std::size_t n = 0; n < trace.times.size(); ++n) {
+      if (!is_move(trace, n) || trace.paths[n].kind != PathKind::kSpline) continue;
+      if (!random.chance(0.1)) continue;
+      stop_from(model, trace, draw_state(random, trace, n), StopKind::kHold, holds);
+      stop_from(model, trace, draw_state(random, trace, n), StopKind::kFault, faults);
+    }
+  }
+  holds.print("holds");
+  faults.print("FaultStops");
+  EXPECT_GT(holds.count, 100);
+  EXPECT_EQ(holds.over, 0);
+  EXPECT_EQ(faults.over, 0);
+  EXPECT_LT(holds.longest_wait, 0.5);
+  EXPECT_LT(holds.ratios[holds.ratios.size() / 2], 1.05);
+  EXPECT_LT(faults.ratios[faults.ratios.size() * 3 / 4], 1.1);
+}
+
+}  // namespace
+}  // namespace meridian::test
