@@ -4,6 +4,7 @@
 #include "service/cl/foreign.hpp"
 #include "service/cl/interpreter.hpp"
 #include "service/cl/line_source.hpp"
+#include "service/cl/restart.hpp"
 #include "service/cl/statement.hpp"
 
 namespace meridian::cl {
@@ -12,9 +13,56 @@ class ClReader::Impl {
  public:
   template <class Input>
   Impl(Input& input, const std::string& name, ClReaderOptions options)
-      : lines_(input), statements_(lines_), interpreter_(name, std::move(options)) {}
+      : lines_(input),
+        statements_(lines_),
+        first_line_(options.first_line),
+        interpreter_(name, std::move(options)) {}
 
   Expected<std::optional<ClBlock>, ClError> next() {
+    if (first_line_ > 0 && !has_restarted_) {
+      if (auto begun = restart(); !begun) return tl::make_unexpected(begun.error());
+    }
+    if (restored_given_ < restored_.size()) return numbered(restored_[restored_given_++]);
+    auto block = read_block();
+    if (!block || !*block) return block;
+    return numbered(**block);
+  }
+
+ private:
+  /// Reads up to the first line that is wanted; what leads there is in restored_ then.
+  Interpreter::Result restart() {
+    Restart before;
+    has_restarted_ = true;
+    for (;;) {
+      auto block = read_block();
+      if (!block) return tl::make_unexpected(block.error());
+      if (!*block || (*block)->kind == BlockKind::kEnd) {
+        Interpreter::Result refusal = interpreter_.refuse(
+            first_line_, "the program has no block from this line on to begin with");
+        error_ = refusal.error();
+        return refusal;
+      }
+      if ((*block)->line >= first_line_) {
+        restored_ = before.state();
+        restored_.push_back(**block);
+        break;
+      }
+      before.pass(**block);
+    }
+    if (before.vendor_line() > 0) {
+      interpreter_.add_warning("restart", before.vendor_line(),
+                               "vendor words in front of the first line are not repeated; see "
+                               "that the machine is as they would leave it");
+    }
+    return {};
+  }
+
+  [[nodiscard]] std::optional<ClBlock> numbered(ClBlock block) {
+    block.sequence = sequence_++;
+    return block;
+  }
+
+  Expected<std::optional<ClBlock>, ClError> read_block() {
     if (error_) return tl::make_unexpected(*error_);
     while (given_ == blocks_.size()) {
       if (done_) return std::optional<ClBlock>{};
@@ -28,6 +76,7 @@ class ClReader::Impl {
     return std::optional<ClBlock>{blocks_[given_++]};
   }
 
+ public:
   ClSummary& summary() {
     ClSummary& summary = interpreter_.summary();
     summary.bytes = lines_.bytes();
@@ -75,10 +124,15 @@ class ClReader::Impl {
 
   LineSource lines_;
   StatementReader statements_;
+  std::uint32_t first_line_ = 0;
   Interpreter interpreter_;
   Statement statement_;
   std::vector<ClBlock> blocks_;  ///< of the last statement
   std::size_t given_ = 0;
+  std::vector<ClBlock> restored_;  ///< what a restart begins with
+  std::size_t restored_given_ = 0;
+  std::uint64_t sequence_ = 0;
+  bool has_restarted_ = false;
   bool started_ = false;
   bool done_ = false;
   std::optional<ClError> error_;

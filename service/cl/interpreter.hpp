@@ -41,6 +41,8 @@ class Interpreter {
 
   [[nodiscard]] tl::unexpected<ClError> refuse(std::uint32_t line, std::string message,
                                                std::string remedy = {}) const;
+  /// A remark that is not made again under the same `key`.
+  void add_warning(std::string_view key, std::uint32_t line, std::string message);
 
  private:
   enum class FeedUnit : std::uint8_t {
@@ -70,7 +72,6 @@ class Interpreter {
   void action(BlockKind kind, ActionKind what, double value, std::uint32_t line, Blocks& out);
   void vendor_word(const Statement& s, Blocks& out);
   bool is_new_warning(std::string_view key) const;
-  void add_warning(std::string_view key, std::uint32_t line, std::string message);
   /// One warning for each key; `message` is only called for the first.
   template <class Message>
   void warn_once(std::string_view key, std::uint32_t line, Message&& message) {

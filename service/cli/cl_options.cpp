@@ -45,6 +45,11 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
                   "right, left")
       ->check(CLI::IsMember({"form", "right", "left"}))
       ->capture_default_str();
+  command
+      .add_option("--from-line", options.first_line,
+                  "Begin with the first block from this line on; tool, spindle and coolant are set "
+                  "and the place before it is approached first")
+      ->check(CLI::PositiveNumber);
 }
 
 void add_frame_option(CLI::App& command, ClFileOptions& options) {
@@ -64,6 +69,7 @@ cl::ClReaderOptions reader_options(const ClFileOptions& options) {
   }
   out.allowed_words = options.allow_unknown;
   out.allow_no_end = options.allow_no_end;
+  out.first_line = options.first_line;
   if (!options.frame.empty()) {
     const config::Frame frame = config::parse_frame(options.frame);
     out.frame = cl::Frame{frame.rotation, frame.origin_mm};

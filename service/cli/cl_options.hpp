@@ -21,6 +21,7 @@ struct ClFileOptions {
   std::optional<double> feed_mm_per_min;
   std::vector<std::string> allow_unknown;
   bool allow_no_end = false;
+  std::uint32_t first_line = 0;
 };
 
 /// Adds the file itself; - is standard input.
@@ -32,7 +33,7 @@ void add_cl_file(CLI::App& command, std::string& name);
 /// What the reader found odd and took nevertheless, a line each on standard error.
 void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings);
 
-/// Adds --units, --feed, --allow-unknown, --allow-no-end and --arc-sense to `command`.
+/// Adds --units, --feed, --allow-unknown, --allow-no-end, --arc-sense and --from-line to `command`.
 void add_cl_file_options(CLI::App& command, ClFileOptions& options);
 
 /// Adds --frame, for commands that put out points in the frame of the kinematics.

@@ -12,7 +12,7 @@
 /// meridian_command(X rooms...) in this folder's CMakeLists.txt makes it part of the tool.
 namespace meridian::cli {
 
-/// Exit codes of the tool (DESIGN section 1, `meridian --help`).
+/// Exit codes of the tool (`meridian --help`).
 enum ExitCode : int {
   kFine = 0,
   kVerdictNo = 1,       ///< the command ran; what it judged is not in order

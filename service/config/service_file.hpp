@@ -24,7 +24,7 @@ enum class AuxiliaryPolicy : std::uint8_t {
   kIgnore  ///< pass them over; the status shows it
 };
 
-/// Threads of the service, DESIGN section "Threads". Priorities are FIFO.
+/// Threads of the service, docs/realtime.md. Priorities are FIFO.
 struct RealtimeConfig {
   RealtimeMode mode = RealtimeMode::kEnforce;
   int cpu = -1;  ///< of cycle and publisher; -1: the last that the service may use

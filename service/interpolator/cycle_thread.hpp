@@ -11,7 +11,7 @@
 namespace meridian::interpolator {
 
 /// The fixed-rate loop: sleep, step(), hand over. Never calls DDS, allocates, locks or logs; its
-/// system calls are the sleep and the publisher's wake. Proof: tests/integration/rules_test.cpp.
+/// system calls are the sleep and the publisher's wake. Proof: tests/integration/counters_test.cpp.
 class CycleThread {
  public:
   CycleThread(const MachineModel& model, const CycleOptions& options, Ports& ports) noexcept;

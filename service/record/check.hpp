@@ -37,7 +37,7 @@ struct CheckOptions {
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.
 ///
-/// Reads the recording twice, in memory that grows with the path alone. Source: DESIGN section 6.
+/// Reads the recording twice, in memory that grows with the path alone. Source: docs/recordings.md.
 /// Proof: tests/unit/record/check_test.cpp (every kind of finding provoked).
 [[nodiscard]] Expected<CheckReport, RecordError> check(RecordingReader& recording,
                                                        const CheckedPath& path,

@@ -24,7 +24,7 @@ struct PoseMatch {
 ///
 /// Where several are as good (a path that runs back on itself), the one is taken that lies as far
 /// along as the commanded pose has moved. It looks ahead by ten times that distance.
-/// Proof: tests/unit/record/path_follower_test.cpp.
+/// Proof: tests/unit/record/check_test.cpp.
 class PathFollower {
  public:
   PathFollower(const CheckedPath& path, double tip_tolerance_mm, double axis_tolerance_rad);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <ostream>
+#include <regex>
 
 namespace meridian::fences {
 namespace {
@@ -27,9 +29,24 @@ std::vector<SourceFile> project_files(const std::vector<std::string>& endings) {
 TEST(TextFence, HoldsForTheProject) {
   auto files = project_files({".hpp", ".cpp", ".h", ".c", ".idl", ".txt", ".md", ".toml", ".xml",
                               ".py", ".cmake", "/build", "/demo", "/test"});
-  files.push_back(read_file(MERIDIAN_SOURCE_DIR, "CMakeLists.txt"));
+  for (const char* const file :
+       {"CMakeLists.txt", "README.md", ".ci/run", "deploy/install_packages"}) {
+    files.push_back(read_file(MERIDIAN_SOURCE_DIR, file));
+  }
   EXPECT_GT(files.size(), 30U) << "the fence saw hardly any file";
   EXPECT_EQ(to_text(find_forbidden_text(files, project_rules())), "");
+}
+
+TEST(TextFence, ProofsThatAreNamedAreThere) {
+  static const std::regex kTest(R"(tests/[A-Za-z0-9_/]+\.(cpp|py))");
+  for (const SourceFile& file : project_files({".hpp", ".cpp"})) {
+    for (const std::string& line : file.lines) {
+      for (std::sregex_iterator at(line.begin(), line.end(), kTest), end; at != end; ++at) {
+        EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(MERIDIAN_SOURCE_DIR) / at->str()))
+            << file.path << " names " << at->str();
+      }
+    }
+  }
 }
 
 TEST(TextFence, EverySourceStartsWithItsLicenceLine) {
@@ -55,6 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
     Samples, TextFenceCatches,
     testing::Values(BadLine{"docs/a.md", "see /home/somebody/meridian"},
                     BadLine{"service/cl/a.cpp", "// TODO later"},
+                    BadLine{"include/meridian/rt/a.hpp", "/// Source: MOTION 9.4."},
                     BadLine{"include/meridian/rt/a.hpp", "auto t = steady_clock::now();"},
                     BadLine{"service/core/planner/a.cpp", "throw 1;"},
                     BadLine{"include/meridian/rt/a.hpp", "std::vector<double> v;"},

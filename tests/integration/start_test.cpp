@@ -8,12 +8,10 @@
 #include <string>
 
 #include "integration/plant.hpp"
+#include "support/budgets.hpp"
 
 namespace meridian::test {
 namespace {
-
-constexpr int kMostResident_MiB = 64;  // DESIGN budgets: memory
-constexpr double kMostStart_s = 3;
 
 [[nodiscard]] double resident_mib(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/status");
@@ -35,9 +33,9 @@ TEST(Service, AnswersInOffWithinThreeSecondsAndStaysSmall) {
   const double resident = resident_mib(service.pid());
   std::printf("answering in Off after %.3f s, %.1f MiB resident\n", took_s, resident);
   EXPECT_GT(plant.status().service_id, 0U) << service.said();
-  EXPECT_LE(took_s, kMostStart_s);
+  EXPECT_LE(took_s, support::load_budget("start_time").allowed());
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  EXPECT_LE(resident, kMostResident_MiB);
+  EXPECT_LE(resident, support::load_budget("resident_memory").allowed());
 #endif
 }
 

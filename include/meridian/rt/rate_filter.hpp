@@ -25,8 +25,8 @@ struct RateBounds {
 /// points the wrong way the first phase turns it round. Targets in [0, 1] keep w in [0, 1]: at any
 /// time full braking would end between the targets so far.
 ///
-/// Phases may end inside a cycle; plan time is the exact integral of w. Source: MOTION 9.4.
-/// RT: cycle. Proof: tests/property/rt/rate_filter_test.cpp.
+/// Phases may end inside a cycle; plan time is the exact integral of w. Source: docs/motion.md,
+/// section 3. RT: cycle. Proof: tests/property/rt/rate_filter_test.cpp.
 class RateFilter {
  public:
   explicit RateFilter(const RateBounds& bounds = {}) noexcept : bounds_(bounds) {}

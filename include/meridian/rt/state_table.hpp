@@ -43,7 +43,7 @@ inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisab
 // clang-format off
 /// One row per state in the order of State, one column per verb in the order of Verb. Conditions
 /// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
-/// checked after it, in rt/commands.hpp, and can only refuse more.
+/// checked after it, in rt/obey.hpp, and can only refuse more.
 inline constexpr std::array<Row, kStateCount> kTable{{
     //            enable   disable  start                    hold              resume  abort    reset            overrides
     /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},

@@ -9,6 +9,7 @@
 
 #include "property/rt/program_run.hpp"
 #include "property/rt/stop_oracle.hpp"
+#include "support/budgets.hpp"
 #include "support/draws.hpp"
 
 /// Holds at any instant of random programs against the least time that the path allows.
@@ -32,6 +33,7 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
   const std::uint64_t seed = number_of("MERIDIAN_HOLD_SEED", kSeed + 1000);
   const auto programs = static_cast<int>(number_of("MERIDIAN_HOLD_PROGRAMS", kPrograms));
   std::cout << "seed " << seed << "\n";
+  const support::Budget budget = support::load_budget("stop_time");  // in cycles
   std::vector<double> ratios;
   for (int n = 0; n < programs; ++n) {
     Draw draw(seed + static_cast<std::uint64_t>(n));
@@ -54,8 +56,8 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
       run.command(Verb::kResume);
       if (begin.ds <= 1e-3 || path.kind == PathKind::kJoint) continue;
       const double least = test::least_stopping_time(draw.machine, path, begin, joints);
-      ratios.push_back((taken - 2 * dt) / least);
-      if (ratios.back() > 1.25) {
+      ratios.push_back((taken - budget.plus * dt) / least);
+      if (ratios.back() > budget.factor) {
         std::printf("program %d: %.4f s, least %.4f s, v %.3f a %.1f s %.3f of %.3f kind %d\n", n,
                     taken, least, begin.ds, begin.dds, begin.s, path.length,
                     static_cast<int>(path.kind));
@@ -67,7 +69,7 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
   std::printf("%zu stops, (time - 2 cycles)/least: median %.3f, 99 %% %.3f, worst %.3f\n",
               ratios.size(), ratios[ratios.size() / 2], ratios[ratios.size() * 99 / 100],
               ratios.back());
-  EXPECT_LE(ratios.back(), 1.25);
+  EXPECT_LE(ratios.back(), budget.factor);
 }
 
 }  // namespace

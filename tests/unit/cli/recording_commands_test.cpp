@@ -41,6 +41,16 @@ TEST_F(RecordingCommands, SimulateExplainsWhereTheTimeGoes) {
             3);
 }
 
+TEST_F(RecordingCommands, BeginInTheMiddleWhereTheyAreToldTo) {
+  const std::string from = "--from-line 5 ";
+  const CommandOutput simulated =
+      run_tool("simulate " + part() + kMachine + from + "--record " + recording());
+  EXPECT_EQ(simulated.exit_code, 0) << simulated.output;
+  const std::string check = "check " + recording() + " " + part() + kMachine;
+  EXPECT_EQ(run_tool(check + from).exit_code, 0);
+  EXPECT_EQ(run_tool(check).exit_code, 1) << "the begin of the file was not cut";
+}
+
 TEST_F(RecordingCommands, SimulateThenCheckIsFine) {
   const CommandOutput simulated =
       run_tool("simulate " + part() + kMachine + "--record " + recording());
