@@ -12,9 +12,11 @@
 namespace meridian {
 namespace {
 
-TEST(RestToRest, PlansWithoutAHeapCall) {
+class RestToRestHeap : public testing::TestWithParam<MachineModel (*)()> {};
+
+TEST_P(RestToRestHeap, PlansWithoutAHeapCall) {
   if (!watch::is_heap_watched()) GTEST_SKIP() << "sanitizers watch the heap themselves";
-  const MachineModel model = test::lai_machine();
+  const MachineModel model = GetParam()();
   RestToRestPlanner planner(model);
   const auto port = std::make_unique<MotionPort>();
   MotionWriter writer(*port);
@@ -37,8 +39,12 @@ TEST(RestToRest, PlansWithoutAHeapCall) {
     calls.frees += heap.calls().frees;
   }
   EXPECT_EQ(calls, watch::HeapCalls{}) << calls.allocations << " allocations";
-  EXPECT_GT(planned, 1000) << refused << " refused";
+  EXPECT_GT(planned, 500) << refused << " refused";
 }
+
+INSTANTIATE_TEST_SUITE_P(Machines, RestToRestHeap,
+                         testing::Values(&test::lai_machine, &test::hybrid_machine),
+                         [](const auto& of) { return of.index == 0 ? "Plain" : "Stage"; });
 
 TEST(RollingFeed, PlansWithoutAHeapCall) {
   if (!watch::is_heap_watched()) GTEST_SKIP() << "sanitizers watch the heap themselves";

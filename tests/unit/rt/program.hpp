@@ -16,8 +16,9 @@ inline const PathLimits kLimits{100, 1500, 30000};
 
 /// A machine in Ready (or Off) and a plan for it that tests write piece by piece.
 struct Program {
-  explicit Program(State begin = State::kReady) : plan(machine, *world.port, kBegin) {
-    world.in.feedback.position = plan.joints();
+  explicit Program(State begin = State::kReady, const MachineModel& of = lai_machine())
+      : machine(of), plan(machine, *world.port, kBegin) {
+    world.in.feedback.position = drives_of(machine, plan.joints());
     if (begin == State::kReady) {
       EXPECT_TRUE(world.enable());
     }
@@ -30,7 +31,7 @@ struct Program {
     world.run_for(seconds);
   }
 
-  MachineModel machine = lai_machine();
+  MachineModel machine;
   CycleWorld world{machine};
   MadePlan plan;
 };

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// The cycle makes no heap call, takes no lock and meets no page fault, on every path: program,
-/// hold and resume, override, abort, each fault, lost periods, barriers. Counted per thread around
-/// step() and its world, whose own storage is sized before.
+/// hold and resume, override, abort, each fault, lost periods, barriers; and with every family of
+/// machines and a stage. Counted per thread around step() and its world, whose own storage is sized
+/// before.
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <ostream>
+#include <tuple>
 
+#include "support/family_machines.hpp"
 #include "support/heap_watch.hpp"
 #include "support/kernel_account.hpp"
 #include "support/lock_watch.hpp"
@@ -108,31 +111,25 @@ const Scenario kScenarios[] = {
      State::kFault},
 };
 
-class StepWatch : public testing::TestWithParam<Scenario> {
- protected:
-  /// A machine in Ready with a plan: two cuts with a dwell between them.
-  static void prepare(Program& p) {
-    p.world.records.resize(20'000);  // touched once, so that the test's own rows cost nothing
-    p.world.records.clear();
-    p.world.events.resize(1'000);
-    p.world.events.clear();
-    p.plan.cut({20, 0, 0}, kLimits);
-    p.plan.barrier(TimeKind::kDwell, 0.05);
-    p.plan.cut({20, 0, 0}, kLimits);
-  }
-};
+/// A machine in Ready with a plan: two cuts with a dwell between them.
+void prepare(Program& p) {
+  p.world.records.resize(20'000);  // touched once, so that the test's own rows cost nothing
+  p.world.records.clear();
+  p.world.events.resize(1'000);
+  p.world.events.clear();
+  p.plan.cut({20, 0, 0}, kLimits);
+  p.plan.barrier(TimeKind::kDwell, 0.05);
+  p.plan.cut({20, 0, 0}, kLimits);
+}
 
-TEST_P(StepWatch, CountsNothing) {
-  if (!watch::is_heap_watched()) {
-    GTEST_SKIP() << "the sanitizer owns malloc";
-  }
+void count_nothing(const Scenario& scenario, const MachineModel& machine) {
   for (const bool is_warm : {false, true}) {  // the first run maps the code of this path
-    Program p;
+    Program p(State::kReady, machine);
     prepare(p);
     const watch::HeapWatch heap;
     const watch::LockWatch locks;
     const watch::KernelAccount begin = watch::kernel_account();
-    GetParam().run(p);
+    scenario.run(p);
     const watch::KernelAccount account = watch::kernel_account() - begin;
     EXPECT_EQ(heap.calls(), (watch::HeapCalls{0, 0}));
     EXPECT_EQ(locks.calls().locks, 0U);
@@ -140,12 +137,57 @@ TEST_P(StepWatch, CountsNothing) {
       EXPECT_EQ(account.minor_faults, 0);
       EXPECT_EQ(account.major_faults, 0);
     }
-    EXPECT_EQ(p.world.now(), GetParam().end) << "the scenario went another way";
+    EXPECT_EQ(p.world.now(), scenario.end) << "the scenario went another way";
   }
+}
+
+class StepWatch : public testing::TestWithParam<Scenario> {};
+
+TEST_P(StepWatch, CountsNothing) {
+  if (!watch::is_heap_watched()) GTEST_SKIP() << "the sanitizer owns malloc";
+  count_nothing(GetParam(), test::lai_machine());
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, StepWatch, testing::ValuesIn(kScenarios),
                          [](const auto& of) { return std::string(of.param.name); });
+
+struct Family {
+  const char* name;
+  MachineModel (*machine)();
+};
+void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
+
+/// `model` with limits that its plan keeps.
+MachineModel limited(MachineModel model) {
+  const MachineModel bench = test::bench_machine();
+  for (JointSpec& joint : model.joints) joint.limits = bench.joints[joint.is_rotary ? 3 : 0].limits;
+  model.max_feed_mm_per_s = bench.max_feed_mm_per_s;
+  return model;
+}
+
+const Family kFamilies[] = {
+    {"Stage", [] { return test::hybrid_machine(); }},
+    {"Chain", [] { return limited(test::trunnion_machine()); }},
+    {"Robot5", [] { return limited(test::robot_machine(false)); }},
+    {"Robot6", [] { return limited(test::robot_machine(true)); }},
+};
+
+class FamilyWatch : public testing::TestWithParam<std::tuple<Family, Scenario>> {};
+
+TEST_P(FamilyWatch, CountsNothing) {
+  if (!watch::is_heap_watched()) GTEST_SKIP() << "the sanitizer owns malloc";
+  const auto& [family, scenario] = GetParam();
+  count_nothing(scenario, family.machine());
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, FamilyWatch,
+                         testing::Combine(testing::ValuesIn(kFamilies),
+                                          testing::Values(kScenarios[1], kScenarios[2],
+                                                          kScenarios[8])),
+                         [](const auto& of) {
+                           return std::string(std::get<0>(of.param).name) +
+                                  std::get<1>(of.param).name;
+                         });
 
 }  // namespace
 }  // namespace meridian

@@ -6,8 +6,10 @@
 #include <Eigen/Geometry>
 #include <functional>
 
+#include "service/surface/cutter.hpp"
 #include "service/surface/spline_basis.hpp"
 #include "service/surface/surface_shape.hpp"
+#include "support/heap_watch.hpp"
 #include "support/surfaces.hpp"
 
 namespace meridian::surface {
@@ -77,6 +79,28 @@ TEST(NurbsSurface, HasTheDerivativesThatDifferencesGive) {
       }
     }
   }
+}
+
+TEST(NurbsSurface, IsEvaluatedAndTouchedWithoutAHeapCall) {
+  if (!watch::is_heap_watched()) GTEST_SKIP() << "sanitizers watch the heap themselves";
+  std::mt19937_64 draw(11);
+  const NurbsSurface surface = test::surface_of(test::wavy(draw));
+  const auto [low_u, high_u] = surface.domain_u();
+  const auto [low_v, high_v] = surface.domain_v();
+  const Cutter cutter{10, 2};
+  double sum = 0;
+  const watch::HeapWatch heap;
+  for (int n = 0; n < 1000; ++n) {
+    const double share = n / 999.0;
+    const auto shape = shape_at(surface, low_u + share * (high_u - low_u),
+                                high_v - share * (high_v - low_v), false);
+    if (!shape) continue;
+    const Vector3 axis = leant_axis(shape->normal, shape->tangent_u, 0.1, 0.05);
+    sum += touching(cutter, shape->at, shape->normal, axis).tip.z() +
+           clearance_curvature(cutter, *shape, axis);
+  }
+  EXPECT_EQ(heap.calls(), watch::HeapCalls{});
+  EXPECT_TRUE(std::isfinite(sum) && sum != 0);
 }
 
 TEST(NurbsSurface, HasANormalThatIsUnitAndSquareToBothDerivatives) {
