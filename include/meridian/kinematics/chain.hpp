@@ -74,6 +74,11 @@ namespace chain {
 /// How far a half-angle sine may fall below zero by rounding before the axis is out of reach.
 inline constexpr double kReachMargin_rad = 1e-12;
 
+/// Volume of the linear directions below which they do not span space.
+inline constexpr double kLeastVolume = 1e-9;
+/// Below this one, Cramer's rule would cost the tip digits by itself.
+inline constexpr double kRefinedVolume = 0.1;
+
 template <class S>
 [[nodiscard]] inline S dot(const Vector3& a, const Vec3<S>& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -198,12 +203,13 @@ template <class S>
 }
 
 /// The linear joints that put the tip on `tip` with the rotary joints as given, eq. 4.9. Returns
-/// whether the linear directions span space there.
+/// whether the linear directions span space there. Where they nearly lie in one plane, what
+/// rounding has left of the way is solved for again: the tip stays exact, the joints are as far off
+/// as the measure says.
 template <class S>
 [[nodiscard]] inline bool place_tip(const ChainKinematics& k, double tool_length_mm,
                                     const Vec3<S>& tip, const SinCos<S>& a, const SinCos<S>& b,
                                     Joints<S>& q) noexcept {
-  constexpr double kLeastVolume = 1e-9;
   if (k.group >= 0) {
     const Vec3<S> way = way_of_slides(k, tool_length_mm, tip, a, b);
     for (int i = 0; i < 3; ++i) {
@@ -220,6 +226,13 @@ template <class S>
   if (!(std::abs(value_of(volume)) > kLeastVolume)) return false;
   const S per_volume = 1.0 / volume;
   for (int i = 0; i < 3; ++i) q[k.linear[i].joint] = scalar_product(dual[i], way) * per_volume;
+  if (std::abs(value_of(volume)) < kRefinedVolume) {
+    Vec3<S> rest = way;
+    for (int i = 0; i < 3; ++i) {
+      for (int row = 0; row < 3; ++row) rest[row] -= d[i][row] * q[k.linear[i].joint];
+    }
+    for (int i = 0; i < 3; ++i) q[k.linear[i].joint] += scalar_product(dual[i], rest) * per_volume;
+  }
   return true;
 }
 

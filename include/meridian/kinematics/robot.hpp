@@ -36,6 +36,10 @@ inline constexpr int kBranchCount = 8;
 /// wrist point follows the axis asked for, so the tip is off by up to this angle times the tool.
 inline constexpr double kWristHold_rad = 1e-12;
 
+/// Nearer to the base axis than this the wrist point leaves the yaw free, which is held: the tip is
+/// off by up to this distance. Above it the yaw is what rounding makes of it, and the tip exact.
+inline constexpr double kShoulderHold_mm = 5e-10;
+
 /// The signs β, ε, f of a branch.
 struct BranchSigns {
   double front, elbow, flip;
@@ -105,7 +109,7 @@ template <class S>
   ArmSolution<S> out;
   const double radius2 = value_of(w[0]) * value_of(w[0]) + value_of(w[1]) * value_of(w[1]);
   S rho;
-  if (radius2 < 1e-18 * span * span) {
+  if (radius2 < kShoulderHold_mm * kShoulderHold_mm) {
     q[kYaw] = S(reference[kYaw]);
     out.frame.yaw = sin_cos(q[kYaw]);
     rho = out.frame.to_arm(w)[0];
