@@ -103,7 +103,8 @@ TEST_P(FamilyCorpus, ChainAgreesForwardAndInverse) {
     EXPECT_LT((pose.axis - want.axis).norm(), kAxis);
     JointVector q;
     const ToolPose there{want.tip + machine.workpiece_mm, want.axis.normalized()};
-    ASSERT_TRUE(chain::solve(k, machine.tool_length_mm, there, want.tau, q));
+    ASSERT_TRUE(chain::solve(k, machine.tool_length_mm, there.tip, chain::in_frame_a(k, there.axis),
+                             want.tau, q));
     const double angle = is_skew ? 1e-12 : kAngle_rad, linear = is_skew ? 1e-8 : kTip_mm;
     EXPECT_LT(turned(q[k.a.joint], want.q[k.a.joint]), angle);
     EXPECT_LT(turned(q[k.b.joint], want.q[k.b.joint]), angle);
@@ -125,8 +126,10 @@ TEST(FamilyCorpusReach, IsExactlyTheInterval) {
     SCOPED_TRACE(row);
     const GoldenChain machine = chain_of(table.word(row, "machine"));
     const Vector3 axis(table.number(row, "Kx"), table.number(row, "Ky"), table.number(row, "Kz"));
-    EXPECT_EQ(chain::triangle<double>(machine.chain, axis.normalized()).is_reachable,
-              table.number(row, "n") > 0);
+    EXPECT_EQ(
+        chain::triangle(machine.chain, chain::in_frame_a(machine.chain, Vector3(axis.normalized())))
+            .is_reachable,
+        table.number(row, "n") > 0);
     const auto reach = chain::reach(machine.chain);
     EXPECT_NEAR(reach.least_rad, table.number(row, "lo"), 1e-14);
     EXPECT_NEAR(reach.largest_rad, table.number(row, "hi"), 1e-14);

@@ -61,7 +61,7 @@ TEST(FamilyGolden, AnyChainAgreesForwardAndInverse) {
     double nearest_mm = 1e9, nearest_rad = 1e9;
     for (const double tau : {1.0, -1.0}) {
       JointVector q;
-      ASSERT_TRUE(chain::solve(*k, tool, pose, tau, q));
+      ASSERT_TRUE(chain::solve(*k, tool, pose.tip, chain::in_frame_a(*k, pose.axis), tau, q));
       double off_mm = 0, off_rad = 0;
       for (std::size_t n = 0; n < joints.size(); ++n) {
         double& off = joints[n].is_rotary ? off_rad : off_mm;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -48,15 +49,24 @@ struct ChainKinematics {
   Rotary a, b;
   std::array<Linear, 3> linear;
   int group = -1;  ///< of all three linear joints; -1: rotary joints stand between them
-  Eigen::Matrix3d place = Eigen::Matrix3d::Identity();  ///< inverse of the linear directions
 
-  Vector3 azimuth_sin, azimuth_cos;  ///< of K about a, from b: dot products, eq. 4.7
-  Vector3 tilt_sin, tilt_cos;        ///< of the axis about b, from k0: dot products, eq. 4.11
-  double b0_sin = 0, b0_cos = 1;     ///< azimuth of k0 about b, from a
-  double m_sin = 0, m_cos = 1;       ///< m = (angle(b, k0) - angle(a, b)) / 2
-  double p_sin = 0, p_cos = 1;       ///< p = (angle(b, k0) + angle(a, b)) / 2
-  bool has_pole = false;             ///< K = a leaves joint a free
-  bool has_opposite_pole = false;    ///< so does K = -a
+  /// Frame of joint a: z along a, b in the half plane of z and +x; rows are its directions. The
+  /// frame of joint b is this one turned about y, so that z runs along b.
+  Eigen::Matrix3d frame_a = Eigen::Matrix3d::Identity();
+  double psi_sin = 1, psi_cos = 0;         ///< angle between a and b
+  Vector3 origin_a = Vector3::Zero();      ///< point of a, in the frame of a
+  Vector3 a_to_b = Vector3::Zero();        ///< from there to the point of b, in the frame of a
+  Vector3 b_to_gauge = Vector3::Zero();    ///< on to the gauge point at home, in the frame of b
+  Vector3 home_axis_b = Vector3::UnitZ();  ///< k0 in the frame of b
+  Eigen::Matrix3d place =
+      Eigen::Matrix3d::Identity();  ///< inverse of the linear directions in the frame of a, or b
+
+  Vector3 tilt_sin, tilt_cos;      ///< of the axis about b, from k0: dot products, eq. 4.11
+  double b0_sin = 0, b0_cos = 1;   ///< azimuth of k0 about b, from a, over sin ψ sin χ: eq. 4.8
+  double m_sin = 0, m_cos = 1;     ///< m = (angle(b, k0) - angle(a, b)) / 2
+  double p_sin = 0, p_cos = 1;     ///< p = (angle(b, k0) + angle(a, b)) / 2
+  bool has_pole = false;           ///< K = a leaves joint a free
+  bool has_opposite_pole = false;  ///< so does K = -a
 };
 
 /// Returns the chain with its constants worked out, or the reason why it cannot work: the five
@@ -144,60 +154,78 @@ template <class S>
   return out;
 }
 
+/// `v` in the frame of joint a.
+template <class S>
+[[nodiscard]] inline Vec3<S> in_frame_a(const ChainKinematics& k, const Vec3<S>& v) noexcept {
+  const Eigen::Matrix3d& f = k.frame_a;
+  return {f(0, 0) * v[0] + f(0, 1) * v[1] + f(0, 2) * v[2],
+          f(1, 0) * v[0] + f(1, 1) * v[1] + f(1, 2) * v[2],
+          f(2, 0) * v[0] + f(2, 1) * v[1] + f(2, 2) * v[2]};
+}
+
 /// The spherical triangle of the two rotary axes and the tool axis by its half-angle formulas,
-/// eq. 4.5 and 4.6. The axis must be unit.
+/// eq. 4.5 and 4.6. `z` is the tool axis in the frame of joint a, unit.
 template <class S>
 struct Triangle {
   S n1, n2, n3, n4;
-  S root;  ///< sqrt(n1 n2 n3 n4): half the orientation part of the measure, eq. 4.10
+  S sine2;  ///< of the angle between the tool axis and a, squared
+  S root;   ///< sqrt(n1 n2 n3 n4): half the orientation part of the measure, eq. 4.10
   bool is_reachable;
 };
 
 template <class S>
-[[nodiscard]] inline Triangle<S> triangle(const ChainKinematics& k, const Vec3<S>& axis) noexcept {
-  const Vec3<S> apart{axis[0] - k.a.axis[0], axis[1] - k.a.axis[1], axis[2] - k.a.axis[2]};
-  const Vec3<S> along{axis[0] + k.a.axis[0], axis[1] + k.a.axis[1], axis[2] + k.a.axis[2]};
+[[nodiscard]] inline Triangle<S> triangle(const ChainKinematics& k, const Vec3<S>& z) noexcept {
   using std::sqrt;
-  const S half_sin = 0.5 * sqrt(scalar_product(apart, apart));
-  const S half_cos = 0.5 * sqrt(scalar_product(along, along));
+  const S sine2 = z[0] * z[0] + z[1] * z[1];
+  const S apart = 1.0 - z[2], along = 1.0 + z[2];
+  const S half_sin = 0.5 * sqrt(sine2 + apart * apart);
+  const S half_cos = 0.5 * sqrt(sine2 + along * along);
   Triangle<S> t{half_sin * k.m_cos + half_cos * k.m_sin,
                 half_sin * k.m_cos - half_cos * k.m_sin,
                 half_cos * k.p_sin - half_sin * k.p_cos,
                 half_cos * k.p_sin + half_sin * k.p_cos,
+                sine2,
                 S(0.0),
                 true};
-  for (S* n : {&t.n1, &t.n2, &t.n3, &t.n4}) {
-    if (value_of(*n) >= 0) continue;
-    if (!(value_of(*n) >= -kReachMargin_rad)) t.is_reachable = false;
-    *n = S(0.0);
+  const double least =
+      std::min(std::min(value_of(t.n1), value_of(t.n2)), std::min(value_of(t.n3), value_of(t.n4)));
+  if (!(least >= 0)) {
+    t.is_reachable = least >= -kReachMargin_rad;
+    for (S* n : {&t.n1, &t.n2, &t.n3, &t.n4}) {
+      if (!(value_of(*n) >= 0)) *n = S(0.0);
+    }
   }
   t.root = sqrt((t.n1 * t.n2) * (t.n3 * t.n4));
   return t;
 }
 
-/// What the linear joints have to add for the tip to come to `tip`, in the frame where they stand:
-/// eq. 4.9 of a machine whose linear joints are neighbours.
+/// `v` turned by `angle` about z.
+template <class S>
+[[nodiscard]] inline Vec3<S> turn_about_z(const SinCos<S>& angle, const Vec3<S>& v) noexcept {
+  return {angle.cos * v[0] - angle.sin * v[1], angle.sin * v[0] + angle.cos * v[1], v[2]};
+}
+
+/// What the linear joints have to add for the tip to come to `tip`, in the frame of a, or of b
+/// where they stand behind it: eq. 4.9 of a machine whose linear joints are neighbours.
 template <class S>
 [[nodiscard]] inline Vec3<S> way_of_slides(const ChainKinematics& k, double tool_length_mm,
                                            const Vec3<S>& tip, const SinCos<S>& a,
                                            const SinCos<S>& b) noexcept {
-  const Vector3 a_to_b = k.b.point_mm - k.a.point_mm;
-  const Vector3 from_b = k.gauge_mm - tool_length_mm * k.home_axis - k.b.point_mm;
-  Vec3<S> way{tip[0] - k.a.point_mm[0], tip[1] - k.a.point_mm[1], tip[2] - k.a.point_mm[2]};
+  const double s = k.psi_sin, c = k.psi_cos;
+  Vec3<S> way = in_frame_a(k, tip);
+  for (int i = 0; i < 3; ++i) way[i] -= k.origin_a[i];
   Vec3<S> there;
+  for (int i = 0; i < 3; ++i) there[i] = S(k.b_to_gauge[i] - tool_length_mm * k.home_axis_b[i]);
+  if (k.group != 0) way = turn_about_z(SinCos<S>{-a.sin, a.cos}, way);
   if (k.group == 2) {
-    way = turn<S>(k.a.axis, SinCos<S>{-a.sin, a.cos}, way);
-    for (int i = 0; i < 3; ++i) way[i] -= a_to_b[i];
-    way = turn<S>(k.b.axis, SinCos<S>{-b.sin, b.cos}, way);
-    there = {S(from_b[0]), S(from_b[1]), S(from_b[2])};
+    for (int i = 0; i < 3; ++i) way[i] -= k.a_to_b[i];
+    way = {c * way[0] - s * way[2], way[1], s * way[0] + c * way[2]};
+    way = turn_about_z(SinCos<S>{-b.sin, b.cos}, way);
   } else {
-    there = turn<S>(k.b.axis, b, from_b);
-    for (int i = 0; i < 3; ++i) there[i] += a_to_b[i];
-    if (k.group == 0) {
-      there = turn<S>(k.a.axis, a, there);
-    } else {
-      way = turn<S>(k.a.axis, SinCos<S>{-a.sin, a.cos}, way);
-    }
+    there = turn_about_z(b, there);
+    there = {c * there[0] + s * there[2] + k.a_to_b[0], there[1] + k.a_to_b[1],
+             c * there[2] - s * there[0] + k.a_to_b[2]};
+    if (k.group == 0) there = turn_about_z(a, there);
   }
   return {way[0] - there[0], way[1] - there[1], way[2] - there[2]};
 }
@@ -236,28 +264,25 @@ template <class S>
   return true;
 }
 
-/// Inverse kinematics off the poles, eq. 4.5 to 4.9; `branch_sign` is τ. The axis must be unit.
-/// Returns whether the pose is in reach; windings are the caller's.
+/// Inverse kinematics off the poles, eq. 4.5 to 4.9; `branch_sign` is τ, `z` the tool axis in the
+/// frame of joint a, unit. Returns whether the pose is in reach; windings are the caller's.
 template <class S>
-[[nodiscard]] inline bool solve(const ChainKinematics& k, double tool_length_mm,
-                                const Pose<S>& pose, double branch_sign, Joints<S>& q) noexcept {
-  const Triangle<S> t = triangle(k, pose.axis);
+[[nodiscard]] inline bool solve(const ChainKinematics& k, double tool_length_mm, const Vec3<S>& tip,
+                                const Vec3<S>& z, double branch_sign, Joints<S>& q) noexcept {
+  const Triangle<S> t = triangle(k, z);
   if (!t.is_reachable) return false;
+  // n1 n3 + n2 n4 = sin θ sin ψ and n1 n2 + n3 n4 = sin ψ sin χ: sines and cosines need no norm.
   const S twice_root = (2.0 * branch_sign) * t.root;
-  const S n13 = t.n1 * t.n3, n24 = t.n2 * t.n4, n12 = t.n1 * t.n2, n34 = t.n3 * t.n4;
-  const S at_a = 1.0 / (n13 + n24), at_b = 1.0 / (n12 + n34);
-  const S a_sin = twice_root * at_a, a_cos = (n24 - n13) * at_a;
-  const S b_sin = twice_root * at_b, b_cos = (n34 - n12) * at_b;
-
-  const S k_sin = dot(k.azimuth_sin, pose.axis), k_cos = dot(k.azimuth_cos, pose.axis);
-  const S per_azimuth = 1.0 / hypot(k_sin, k_cos);
-  const SinCos<S> a{(k_sin * a_cos - k_cos * a_sin) * per_azimuth,
-                    (k_cos * a_cos + k_sin * a_sin) * per_azimuth};
-  const SinCos<S> b{-(b_sin * k.b0_cos + b_cos * k.b0_sin), b_cos * k.b0_cos - b_sin * k.b0_sin};
+  const S a_cos = t.n2 * t.n4 - t.n1 * t.n3, b_cos = t.n3 * t.n4 - t.n1 * t.n2;
+  const S per_sines = 1.0 / (k.psi_sin * t.sine2);
+  const SinCos<S> a{(z[1] * a_cos - z[0] * twice_root) * per_sines,
+                    (z[0] * a_cos + z[1] * twice_root) * per_sines};
+  const SinCos<S> b{-(twice_root * k.b0_cos + b_cos * k.b0_sin),
+                    b_cos * k.b0_cos - twice_root * k.b0_sin};
   q = {};
   q[k.a.joint] = k.a.sign * atan2(a.sin, a.cos);
   q[k.b.joint] = k.b.sign * atan2(b.sin, b.cos);
-  return place_tip(k, tool_length_mm, pose.tip, a, b, q);
+  return place_tip(k, tool_length_mm, tip, a, b, q);
 }
 
 /// The joints with rotary joint a given: the tip exact, the axis the nearest that is left,
@@ -275,15 +300,13 @@ template <class S>
   return place_tip(k, tool_length_mm, pose.tip, a, sin_cos(angle), q);
 }
 
-/// Whether the unit vector `axis` is nearer to a pole than `hold_rad`.
-[[nodiscard]] inline bool is_at_pole(const ChainKinematics& k, const Vector3& axis,
+/// Whether the tool axis `z`, unit, in the frame of joint a, is nearer to a pole than `hold_rad`.
+template <class S>
+[[nodiscard]] inline bool is_at_pole(const ChainKinematics& k, const Vec3<S>& z,
                                      double hold_rad) noexcept {
-  const Vector3& a = k.a.axis;
-  const double x = axis[1] * a[2] - axis[2] * a[1], y = axis[2] * a[0] - axis[0] * a[2];
-  const double z = axis[0] * a[1] - axis[1] * a[0];
-  if (x * x + y * y + z * z >= hold_rad * hold_rad) return false;
-  const double along = axis[0] * a[0] + axis[1] * a[1] + axis[2] * a[2];
-  return along > 0 ? k.has_pole : k.has_opposite_pole;
+  const double x = value_of(z[0]), y = value_of(z[1]);
+  if (x * x + y * y >= hold_rad * hold_rad) return false;
+  return value_of(z[2]) > 0 ? k.has_pole : k.has_opposite_pole;
 }
 
 /// Angle from the axis to the nearest pole, in [0, π]; π where the machine has none.

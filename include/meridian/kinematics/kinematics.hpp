@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <type_traits>
 
 #include "meridian/geometry/jet.hpp"
 #include "meridian/geometry/vector3.hpp"
@@ -130,13 +131,22 @@ template <class S>
   return zero == 0.0;
 }
 
-/// `pose` with its axis made exactly unit.
+/// By whether the branch is another than 0: looked up, for a processor cannot guess it.
+inline constexpr std::array<double, 2> kBranchSign{1.0, -1.0};
+
+/// `v` made exactly unit.
 template <class S>
-[[nodiscard]] inline Pose<S> with_unit_axis(const Pose<S>& pose) noexcept {
+[[nodiscard]] inline Vec3<S> made_unit(const Vec3<S>& v) noexcept {
+  constexpr double kNearlyUnit = 1e-8;  // of the square; its own square is below a rounding
   using std::sqrt;
-  const S per_norm = 1.0 / sqrt(S(pose.axis[0] * pose.axis[0] + pose.axis[1] * pose.axis[1] +
-                                  pose.axis[2] * pose.axis[2]));
-  return {pose.tip, {pose.axis[0] * per_norm, pose.axis[1] * per_norm, pose.axis[2] * per_norm}};
+  const S square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  S per_norm;
+  if (std::is_same_v<S, double> && std::abs(value_of(square) - 1.0) < kNearlyUnit) {
+    per_norm = 1.5 - 0.5 * square;
+  } else {
+    per_norm = 1.0 / sqrt(square);
+  }
+  return {v[0] * per_norm, v[1] * per_norm, v[2] * per_norm};
 }
 
 /// The families beside the first stay calls of their own: inlined into solve() they would cost
@@ -161,7 +171,7 @@ template <class S>
     return SolveStatus::kAtPole;
   }
   const S radius = hypot(pose.axis[0], pose.axis[1]);
-  q = lai::solve(model.lai, length, pose, branch == 0 ? 1.0 : -1.0, radius);
+  q = lai::solve(model.lai, length, pose, kBranchSign[branch != 0], radius);
   wind(q, lai::kTheta1, reference);
   wind(q, lai::kTheta2, reference);
   return SolveStatus::kOk;
@@ -170,18 +180,17 @@ template <class S>
 template <class S>
 [[nodiscard, gnu::noinline]] inline SolveStatus solve_chain(const MachineModel& model,
                                                             double tool_length_mm,
-                                                            const Pose<S>& any, int branch,
+                                                            const Pose<S>& pose, int branch,
                                                             const JointVector& reference,
                                                             Joints<S>& q) noexcept {
   const ChainKinematics& k = model.chain;
-  const Pose<S> pose = with_unit_axis(any);
-  const Vector3 axis{value_of(pose.axis[0]), value_of(pose.axis[1]), value_of(pose.axis[2])};
-  if (chain::is_at_pole(k, axis, kPoleHold_rad)) {
+  const Vec3<S> z = made_unit(chain::in_frame_a(k, pose.axis));
+  if (chain::is_at_pole(k, z, kPoleHold_rad)) {
     const bool is_solved = chain::solve_held(k, tool_length_mm, pose, S(reference[k.a.joint]), q);
     wind(q, k.b.joint, reference);
     return is_solved ? SolveStatus::kAtPole : SolveStatus::kUnreachable;
   }
-  const bool is_solved = chain::solve(k, tool_length_mm, pose, branch == 0 ? 1.0 : -1.0, q);
+  const bool is_solved = chain::solve(k, tool_length_mm, pose.tip, z, kBranchSign[branch != 0], q);
   wind(q, k.a.joint, reference);
   wind(q, k.b.joint, reference);
   return is_solved ? SolveStatus::kOk : SolveStatus::kUnreachable;
@@ -193,7 +202,7 @@ template <class S>
                                                             const Pose<S>& any, int branch,
                                                             const JointVector& reference,
                                                             Joints<S>& q) noexcept {
-  const Pose<S> pose = with_unit_axis(any);
+  const Pose<S> pose{any.tip, made_unit(any.axis)};
   bool is_held = false;
   if (!robot::solve(model.robot, tool_length_mm, pose, branch, reference, q, is_held)) {
     return SolveStatus::kUnreachable;

@@ -54,6 +54,27 @@ std::string find_fault(const ChainKinematics& k) {
   return "";
 }
 
+/// Frames of both rotary joints, and what stands in them.
+void work_out_frames(ChainKinematics& k) {
+  const Vector3 y = k.a.axis.cross(k.b.axis).normalized();
+  k.frame_a << y.cross(k.a.axis).transpose(), y.transpose(), k.a.axis.transpose();
+  k.psi_sin = k.a.axis.cross(k.b.axis).norm();
+  k.psi_cos = snapped(k.a.axis.dot(k.b.axis));
+  if (k.psi_cos == 0) k.psi_sin = 1.0;
+  Eigen::Matrix3d frame_b;
+  frame_b << y.cross(k.b.axis).transpose(), y.transpose(), k.b.axis.transpose();
+  k.origin_a = k.frame_a * k.a.point_mm;
+  k.a_to_b = k.frame_a * (k.b.point_mm - k.a.point_mm);
+  k.b_to_gauge = frame_b * (k.gauge_mm - k.b.point_mm);
+  k.home_axis_b = frame_b * k.home_axis;
+  const bool are_neighbours =
+      k.linear[0].group == k.linear[1].group && k.linear[1].group == k.linear[2].group;
+  k.group = are_neighbours ? k.linear[0].group : -1;
+  Eigen::Matrix3d directions;
+  for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
+  k.place = ((k.group == 2 ? frame_b : k.frame_a) * directions).inverse();
+}
+
 void work_out_constants(ChainKinematics& k) {
   const double psi = angle_between(k.a.axis, k.b.axis);
   const double cone = angle_between(k.b.axis, k.home_axis);
@@ -64,21 +85,15 @@ void work_out_constants(ChainKinematics& k) {
   k.p_sin = k.p_cos == 0 ? 1.0 : std::sin(p);
   k.has_pole = k.m_sin == 0;
   k.has_opposite_pole = k.p_cos == 0;
-  k.azimuth_sin = k.a.axis.cross(k.b.axis);
-  k.azimuth_cos = k.b.axis - k.a.axis.dot(k.b.axis) * k.a.axis;
   k.tilt_sin = k.b.axis.cross(k.home_axis);
   k.tilt_cos = k.home_axis - k.b.axis.dot(k.home_axis) * k.b.axis;
   const double y = k.b.axis.dot(k.a.axis.cross(k.home_axis));
   const double x = k.b.axis.cross(k.a.axis).dot(k.tilt_sin);
   const double norm = std::hypot(x, y);
-  k.b0_sin = snapped(y / norm);
-  k.b0_cos = snapped(x / norm);
-  const bool are_neighbours =
-      k.linear[0].group == k.linear[1].group && k.linear[1].group == k.linear[2].group;
-  k.group = are_neighbours ? k.linear[0].group : -1;
-  Eigen::Matrix3d directions;
-  for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
-  k.place = directions.inverse();
+  work_out_frames(k);
+  const double sines = k.psi_sin * k.b.axis.cross(k.home_axis).norm();
+  k.b0_sin = snapped(y / norm) / sines;
+  k.b0_cos = snapped(x / norm) / sines;
 }
 
 }  // namespace
