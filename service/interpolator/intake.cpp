@@ -60,19 +60,22 @@ void Intake::take_events() {
     if (event.code == EventCode::kProgramEnd) {
       publish(judge_.on_program_end(around()));
     } else if (event.b == 1) {
-      ports_.intake_epoch.store(static_cast<std::uint32_t>(event.a), std::memory_order_relaxed);
-      ports_.planner_wake.notify();
+      mark_.epoch = static_cast<std::uint16_t>(event.a);
+      show_mark();
     } else {
-      empty_queue(static_cast<std::uint32_t>(event.a));
+      empty_queue(static_cast<std::uint16_t>(event.a));
       publish(judge_.on_queues_emptied("the operator or a fault ended the program", around()));
     }
   }
 }
 
-void Intake::empty_queue(std::uint32_t epoch) noexcept {
-  ports_.void_until.store(pushed_, std::memory_order_relaxed);
-  ports_.intake_epoch.store(epoch, std::memory_order_relaxed);
-  ports_.voided.fetch_add(1, std::memory_order_release);
+void Intake::empty_queue(std::uint16_t epoch) noexcept {
+  mark_ = {pushed_, epoch};
+  show_mark();
+}
+
+void Intake::show_mark() noexcept {
+  ports_.queue_mark.store(mark_);
   ports_.planner_wake.notify();
 }
 
@@ -98,7 +101,7 @@ void Intake::free_idle_machine() {
   const std::int64_t now_ns = monotonic_ns();
   if (idle_since_ns_ == 0) idle_since_ns_ = now_ns;
   if (now_ns - idle_since_ns_ < kIdle_ns) return;
-  empty_queue(ports_.intake_epoch.load(std::memory_order_relaxed));
+  empty_queue(mark_.epoch);
   publish(judge_.on_queues_emptied("nothing of the program is left to run", around()));
 }
 

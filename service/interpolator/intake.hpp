@@ -50,7 +50,8 @@ class Intake {
   void take_batches();
   void look_for_station();
   void push(const stream::Accepted& accepted);
-  void empty_queue(std::uint32_t epoch) noexcept;
+  void empty_queue(std::uint16_t epoch) noexcept;
+  void show_mark() noexcept;
   void publish(const std::optional<dds::Credit>& credit);
   void forget_old_sessions();
   void show();
@@ -68,6 +69,7 @@ class Intake {
   dds::Waitset waitset_;
 
   std::uint64_t pushed_ = 0;           ///< blocks put into the queue, ever
+  QueueMark mark_;                     ///< newest that was shown
   std::uint64_t refused_session_ = 0;  ///< newest session that was refused while it held
   std::int64_t idle_since_ns_ = 0;
   std::uint64_t station_source_ = 0;

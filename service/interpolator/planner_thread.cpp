@@ -4,7 +4,7 @@
 namespace meridian::interpolator {
 
 PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports)
-    : ports_(ports), writer_(ports.motion), planner_(model, tools) {}
+    : ports_(ports), queue_(ports), writer_(ports.motion), planner_(model, tools) {}
 
 void PlannerThread::run() noexcept {
   // The cycle cannot wake us when it makes room in its rings or comes to Ready: look again.
@@ -17,9 +17,11 @@ void PlannerThread::run() noexcept {
 }
 
 bool PlannerThread::work() noexcept {
-  if (!is_in_step()) return false;
-  const QueuedBlock* queued = ports_.blocks.peek(0);
-  if (queued == nullptr) {
+  const QueueFollower::Look look = queue_.look();
+  if (look.is_emptied || look.is_new_epoch) has_begun_ = false;
+  if (look.is_emptied) is_refused_ = is_action_told_ = false;
+  if (!look.is_in_step) return look.is_emptied;
+  if (look.front == nullptr) {
     if (has_begun_ && !is_refused_) planner_.advance(writer_);
     tell_eases();
     return false;
@@ -29,30 +31,14 @@ bool PlannerThread::work() noexcept {
     return true;
   }
   if (!has_begun_) {
-    if (view_.record.state != State::kReady) return false;
-    planner_.begin(view_.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
-                   view_.epoch);
+    const CycleView& view = queue_.view();
+    if (view.record.state != State::kReady) return false;
+    planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
+                   view.epoch);
     published_before_s_ = writer_.published_s();
     has_begun_ = true;
   }
-  return plan(*queued);
-}
-
-bool PlannerThread::is_in_step() noexcept {
-  if (ports_.planner_view.refresh()) {
-    const std::uint16_t epoch_before = view_.epoch;
-    view_ = ports_.planner_view.latest();
-    if (view_.epoch != epoch_before) has_begun_ = false;
-  }
-  const std::uint64_t voided = ports_.voided.load(std::memory_order_acquire);
-  if (voided != voided_) {
-    voided_ = voided;
-    const std::uint64_t until = ports_.void_until.load(std::memory_order_relaxed);
-    while (popped_ < until) pop();
-    has_begun_ = false;
-    is_refused_ = false;
-  }
-  return ports_.intake_epoch.load(std::memory_order_relaxed) == view_.epoch;
+  return plan(*look.front);
 }
 
 bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
@@ -84,13 +70,12 @@ bool PlannerThread::announce_action(const ClBlock& block) noexcept {
   const bool is_action = block.kind == BlockKind::kAuxiliary || block.kind == BlockKind::kTool ||
                          block.kind == BlockKind::kStop;
   if (!is_action || is_action_told_) return true;
-  is_action_told_ = ports_.actions.try_push({view_.epoch, block});
+  is_action_told_ = ports_.actions.try_push({queue_.view().epoch, block});
   return is_action_told_;
 }
 
 void PlannerThread::pop() noexcept {
-  ports_.blocks.drop(1);
-  ++popped_;
+  queue_.pop();
   is_action_told_ = false;
 }
 

@@ -7,6 +7,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/planner/smooth_planner.hpp"
 #include "service/interpolator/ports.hpp"
+#include "service/interpolator/queue_follower.hpp"
 
 namespace meridian::interpolator {
 
@@ -24,19 +25,15 @@ class PlannerThread {
  private:
   /// Does one piece of work; false if there is none (yet).
   [[nodiscard]] bool work() noexcept;
-  /// Follows the epochs of cycle and intake; false while blocks of an old one may be about.
-  [[nodiscard]] bool is_in_step() noexcept;
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
   void tell_eases() noexcept;
   [[nodiscard]] bool announce_action(const ClBlock& block) noexcept;
   void pop() noexcept;
 
   Ports& ports_;
+  QueueFollower queue_;
   MotionWriter writer_;
   SmoothPlanner planner_;
-  CycleView view_;
-  std::uint64_t voided_ = 0;       ///< newest of Ports::voided that was followed
-  std::uint64_t popped_ = 0;       ///< blocks taken from the queue, ever
   double published_before_s_ = 0;  ///< when the plan was begun
   bool has_begun_ = false;         ///< a plan is being made
   bool is_refused_ = false;        ///< a block was refused: nothing behind it moves

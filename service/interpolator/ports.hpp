@@ -12,6 +12,7 @@
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/latest_value.hpp"
 #include "meridian/rt/spsc_ring.hpp"
+#include "service/interpolator/queue_mark.hpp"
 #include "service/interpolator/wake.hpp"
 
 /// Everything that passes between the threads of the service, each with one writer and one reader.
@@ -95,12 +96,8 @@ struct Ports {
   std::atomic<std::uint64_t> session{0};  ///< that holds the machine
   std::atomic<bool> stops_at_optional{false};
   std::atomic<double> spindle_tool_mm{0};  ///< gauge line to tip of the tool in the spindle
-  /// Intake empties the queue by writing how many blocks it ever pushed into `void_until`, the
-  /// epoch from which new blocks are meant into `intake_epoch`, and then counting `voided` up.
-  std::atomic<std::uint64_t> void_until{0};
-  std::atomic<std::uint32_t> intake_epoch{1};
-  std::atomic<std::uint64_t> voided{0};
-  std::atomic<double> planned_s{0};  ///< plan time of the program that was published
+  QueueMarkWord queue_mark;                ///< intake to planner: what of `blocks` is good
+  std::atomic<double> planned_s{0};        ///< plan time of the program that was published
   std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};
   std::atomic<std::uint64_t> writes_failed{0};
 
