@@ -16,7 +16,8 @@ constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
 constexpr double kTravelMargin = 1e-9;   // rounding of a travel end that is reached exactly
 constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
 constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
-constexpr int kRounds = 16;              // of halving: lengths of a ratio of 60 000
+constexpr double kStep_mm = 1e-5, kStep_rad = 1e-7;  // inside every jerk limit of a cycle
+constexpr int kRounds = 16;                          // of halving: lengths of a ratio of 60 000
 constexpr double kLeastTight = 0.2;
 constexpr double kNone = 1e-12;  // derivative that counts as none
 /// Rounding of a component of the tool axis.
@@ -191,7 +192,10 @@ PathFault CellGrid::make_cells() noexcept {
     const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kLeast;
     if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
     fault_ = make_cell(drafts_[used]);
-    if (fault_.kind != PathFault::Kind::kNone) break;
+    if (fault_.kind != PathFault::Kind::kNone) {
+      faulty_span_ = next_span_ + static_cast<std::uint64_t>(drafts_[used].waiting);
+      break;
+    }
     ++used;
   }
   if (used == 0) return fault_;
@@ -225,8 +229,11 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
         joint >= 0) {
       return {PathFault::Kind::kTravel, joint, limited_value(model_, reference, joint)};
     }
+    const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here
     for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];
+      const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
+      if (is_begin && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
       if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
         return {PathFault::Kind::kJump, i, jump};
       }

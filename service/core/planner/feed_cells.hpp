@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -82,7 +83,13 @@ class CellGrid {
   [[nodiscard]] std::int64_t first() const noexcept { return first_; }
   [[nodiscard]] std::int64_t last() const noexcept { return last_; }
   /// Forgets the cells before `cell`.
-  void drop_before(std::int64_t cell) noexcept { first_ = cell < last_ ? cell : last_; }
+  void drop_before(std::int64_t cell) noexcept {
+    first_ = std::max(first_, cell < last_ ? cell : last_);
+  }
+
+  /// Why the path ends before its time, and the number of the span on which it does.
+  [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
+  [[nodiscard]] std::uint64_t faulty_span() const noexcept { return faulty_span_; }
 
   [[nodiscard]] const FeedCell& operator[](std::int64_t cell) const noexcept {
     return cells_[static_cast<std::size_t>(cell % kCells)];
@@ -130,6 +137,7 @@ class CellGrid {
   double tool_length_mm_ = 0;
   bool is_finished_ = false;
   PathFault fault_;
+  std::uint64_t faulty_span_ = 0;
 };
 
 }  // namespace meridian

@@ -82,7 +82,7 @@ void RollingFeed::resume_from(std::int64_t cell) noexcept {
 
 bool RollingFeed::try_plan() noexcept {
   grid_.drop_before(next_ - kHistory);
-  (void)grid_.make_cells();  // a fault was told by push()
+  (void)grid_.make_cells();  // fault() tells
   if (is_done() || grid_.last() < window_end()) return false;
   ++count_.windows;
   if (!is_failing() && plan_window()) {

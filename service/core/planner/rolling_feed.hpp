@@ -71,6 +71,11 @@ class RollingFeed {
   /// The path ends with the last span, at rest.
   [[nodiscard]] PathFault finish() noexcept;
 
+  /// What push(), finish() or, where cells had to wait for room, try_plan() found.
+  [[nodiscard]] const PathFault& fault() const noexcept { return grid_.fault(); }
+  /// Counts spans from 0 since begin().
+  [[nodiscard]] std::uint64_t faulty_span() const noexcept { return grid_.faulty_span(); }
+
   /// Plans the next window if its cells are there; window() is then valid until the next call.
   [[nodiscard]] bool try_plan() noexcept;
   [[nodiscard]] const FeedWindow& window() const noexcept { return window_; }

@@ -19,6 +19,7 @@ namespace {
 
 /// Nearer to the pole than this share of the axis tolerance the axis counts as on it.
 constexpr double kOnPoleShare = 0.2;
+constexpr double kSamePlace = 1e-9;  // mm and of the unit axis: rounding of joints
 
 }  // namespace
 
@@ -54,6 +55,7 @@ struct SmoothPlanner::Workspace {
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
   JointVector joints{};
   bool is_running = false;
+  bool is_for_plain = false;  ///< the block that waits for room goes from rest to rest
   bool is_run_on_pole = false;
   bool is_refused = false;
   PlanResult refusal;
@@ -119,8 +121,14 @@ void SmoothPlanner::Workspace::begin_run() noexcept {
 
 void SmoothPlanner::Workspace::end_run() noexcept {
   RestToRestPlanner::Junction at = plain.junction();
-  at.pose = pose;
   at.joints = joints = run.joints();
+  // Eased beside the pole, or behind a block too short for a span, the tool is not quite where the
+  // last block put it: what follows starts from where it is.
+  const ToolPose there = forward(model, at.tool_length_mm, joints);
+  if ((there.tip - pose.tip).norm() > kSamePlace || (there.axis - pose.axis).norm() > kSamePlace) {
+    pose = there;
+  }
+  at.pose = pose;
   at.path_index = run.next_path_index();
   at.window = run.next_window();
   plain.continue_at(at);
@@ -149,7 +157,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (w.is_running) w.end_run();  // no index comes twice
   w.plain.begin(at_rest, tool_length_mm, epoch);
   w.settings = settings;
-  w.is_refused = false;
+  w.is_refused = w.is_for_plain = false;
   w.pose = w.plain.junction().pose;
   w.joints = at_rest;
 }
@@ -158,7 +166,9 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
   using Status = SmoothRun::Status;
   Workspace& w = *workspace_;
   if (w.is_refused) return w.refusal;
-  const auto cut = w.smoothable(block);
+  // Decided once: what the answer depends on changes where the port was full meanwhile.
+  const auto cut = w.is_for_plain ? std::nullopt : w.smoothable(block);
+  w.is_for_plain = !cut;
   if (w.is_running) {
     if (!cut) w.run.finish();
     const Status status = w.publish(writer);
@@ -169,6 +179,7 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
   }
   if (!cut) {
     const PlanResult result = w.plain.plan(block, writer);
+    w.is_for_plain = result.status == PlanStatus::kNoRoom;
     if (result.status == PlanStatus::kRefused) {
       w.is_refused = true;
       w.refusal = result;

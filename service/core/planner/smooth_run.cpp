@@ -88,32 +88,35 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
   for (;;) {
     has_window_ = feed_.try_plan();
     if (has_window_) return Status::kNoRoom;
+    if (is_fault(feed_.fault())) fail_on_span();
     if (is_fault(fault_)) return Status::kFailed;
     if (is_feed_finished_ && feed_.is_done()) return Status::kDone;
     if (!feed_.has_room()) return Status::kNeedsBlocks;
-    PathFault fault;
-    std::uint64_t sequence = spans_.end_index() > 0 ? spans_.back().band.sequence : 0;
-    std::uint32_t line = spans_.end_index() > 0 ? spans_.back().band.line : 0;
     if (const JointSpan* span = next_span()) {
+      if (!(span->band.length > 0)) continue;
       spans_.push(*span);
       note_ease(span);
-      sequence = span->band.sequence;
-      line = span->band.line;
-      fault = feed_.push(*span);
+      (void)feed_.push(*span);
     } else if (band_.has_failed()) {
-      fault = {PathFault::Kind::kTooLong, -1, 0};
+      const bool has_span = spans_.end_index() > 0;
+      fail({PathFault::Kind::kTooLong, -1, 0}, has_span ? spans_.back().band.sequence : 0,
+           has_span ? spans_.back().band.line : 0);
     } else if (is_band_finished_ && !is_feed_finished_) {
       is_feed_finished_ = true;
       note_ease(nullptr);
-      fault = feed_.finish();
+      (void)feed_.finish();
     } else {
       return Status::kNeedsBlocks;
     }
-    if (is_fault(fault)) {
-      fail(fault, sequence, line);
-      return Status::kFailed;
-    }
+    if (is_fault(feed_.fault())) fail_on_span();
+    if (is_fault(fault_)) return Status::kFailed;
   }
+}
+
+/// Names the block of the span on which the feed found a fault.
+void SmoothRun::fail_on_span() noexcept {
+  const BandSpan& span = spans_[static_cast<std::int64_t>(feed_.faulty_span())].band;
+  fail(feed_.fault(), span.sequence, span.line);
 }
 
 void SmoothRun::note_ease(const JointSpan* span) noexcept {

@@ -82,6 +82,7 @@ class SmoothRun {
   /// Keeps account of stretches beside the pole; `span` nullptr: the path ends.
   void note_ease(const JointSpan* span) noexcept;
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
+  void fail_on_span() noexcept;
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(const MotionWriter& writer) noexcept;
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;
