@@ -12,7 +12,8 @@
 namespace meridian::support {
 
 /// A DDS domain that no other test of this host uses while it lives: domains are claimed by a file
-/// lock each, from 100 to 220, so that tests run in parallel without seeing each other.
+/// lock each, from 100 to 220 (deploy/demo has 60 to 99), so that tests run in parallel without
+/// seeing each other.
 class PrivateDomain {
  public:
   PrivateDomain() {
