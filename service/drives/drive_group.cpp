@@ -28,8 +28,18 @@ void DriveGroup::take(const dds::DriveCommand& command) noexcept {
     if (service_id_ != 0 && !is_off()) return;
     service_id_ = command.service_id;
     has_setpoint_ = false;
+    for (const Told& told : told_) {
+      if (told.service_id == service_id_) bridge_cycles_ = told.bridge_cycles;
+    }
   }
   drives_[command.drive].take_controlword(command.controlword);
+}
+
+void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
+  if (!machine.is_serving) return;
+  const Told told{machine.service_id, static_cast<int>(machine.bridge_cycles)};
+  told_[told_at_++ % told_.size()] = told;
+  if (service_id_ == 0 || service_id_ == told.service_id) bridge_cycles_ = told.bridge_cycles;
 }
 
 void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {

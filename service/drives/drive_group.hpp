@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -33,7 +34,9 @@ class DriveGroup {
 
   void take(const dds::DriveCommand& command) noexcept;
   void take(const dds::SetpointSample& setpoint) noexcept;
-  void set_bridge_cycles(int cycles) noexcept { bridge_cycles_ = cycles; }
+  /// How many periods are bridged is told by the service that is obeyed, or by one that serves
+  /// where none is obeyed yet.
+  void take(const dds::MachineInfo& machine) noexcept;
   void inject(const Injection& injection) { injections_.push_back(injection); }
 
   /// Works `periods` cycle times (more than 1 after a stall of this process).
@@ -57,6 +60,12 @@ class DriveGroup {
   std::vector<Injection> injections_;
   double cycle_s_;
   int bridge_cycles_;
+  struct Told {
+    std::uint64_t service_id = 0;
+    int bridge_cycles = 0;
+  };
+  std::array<Told, 8> told_{};  ///< newest services, in a ring
+  std::size_t told_at_ = 0;
   std::uint64_t service_id_ = 0;  ///< whom the drives obey; 0: nobody yet
   dds::SetpointSample newest_;
   bool has_setpoint_ = false, is_new_ = false;

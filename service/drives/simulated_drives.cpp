@@ -142,7 +142,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     const std::int64_t now_ns = monotonic_ns();
     const std::int64_t lost = (now_ns - due_ns) / model.cycle_ns;
     due_ns += lost * model.cycle_ns;
-    while (machines.take(machine)) group.set_bridge_cycles(static_cast<int>(machine.bridge_cycles));
+    while (machines.take(machine)) group.take(machine);
     while (commands.take(command)) group.take(command);
     while (setpoints.take(setpoint)) group.take(setpoint);
     group.work(static_cast<int>(lost) + 1);

@@ -8,6 +8,22 @@
 #include "service/dds/waitset.hpp"
 
 namespace meridian::stream {
+namespace {
+
+/// One service per machine: the newest word of the one that serves it. Of two that serve the older
+/// keeps the machine, as between themselves.
+void take(const dds::MachineInfo& info, std::vector<dds::MachineInfo>& found) {
+  const auto same = std::find_if(found.begin(), found.end(), [&](const dds::MachineInfo& other) {
+    return other.name == info.name;
+  });
+  if (same == found.end()) {
+    found.push_back(info);
+  } else if (same->service_id == info.service_id || info.started_ns < same->started_ns) {
+    *same = info;
+  }
+}
+
+}  // namespace
 
 std::vector<dds::MachineInfo> find_machines(std::uint32_t domain, const std::string& machine,
                                             std::chrono::milliseconds timeout) {
@@ -24,11 +40,9 @@ std::vector<dds::MachineInfo> find_machines(std::uint32_t domain, const std::str
     waitset.wait(end - now);
     dds::MachineInfo info;
     while (reader.take(info)) {
+      if (!info.is_serving) continue;  // it waits for another one to leave the machine
       if (found.empty()) end = Clock::now() + (machine.empty() ? kMoment : kMoment / 150);
-      std::erase_if(found, [&](const dds::MachineInfo& other) {
-        return other.name == info.name && other.started_ns <= info.started_ns;
-      });
-      found.push_back(info);
+      take(info, found);
     }
   }
   std::sort(found.begin(), found.end(),

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <cstdint>
+#include <fstream>
 #include <string>
 
 #include "integration/plant.hpp"
@@ -45,6 +47,38 @@ TEST(Lease, EndsTheLaterOfTwoServicesThatDidNotHearOfEachOtherInTime) {
   EXPECT_EQ(second->wait(milliseconds(6000)), 1);
   EXPECT_NE(second->said().find("'lai' is served already"), std::string::npos) << second->said();
   EXPECT_FALSE(first.wait(milliseconds(500))) << "the first goes on: " << first.said();
+}
+
+/// As a service says it that waits for another one to leave the machine, which stands elsewhere.
+dds::MachineInfo claim_like(const dds::MachineInfo& served, std::int64_t later_ns) {
+  dds::MachineInfo claim = served;
+  claim.service_id = served.service_id + 1 + (later_ns > 0 ? 1 : 0);
+  claim.started_ns += later_ns;
+  claim.is_serving = false;
+  claim.frame_origin_mm = {9000, 0, 0};
+  return claim;
+}
+
+TEST(Lease, DoesNotShowAServiceThatOnlyWaitsForTheMachineToStationAndOperator) {
+  Plant plant;
+  Process& service = plant.start_service();
+  ASSERT_GT(plant.status().service_id, 0U) << service.said();
+  dds::Reader<dds::MachineInfo> machines(plant.participant());
+  dds::MachineInfo served;
+  ASSERT_TRUE(eventually([&] { return machines.take(served) && served.is_serving; }));
+  dds::Writer<dds::MachineInfo> claims(plant.participant());
+  ASSERT_TRUE(claims.write(claim_like(served, -1'000'000)));
+  ASSERT_TRUE(claims.write(claim_like(served, 1'000'000)));
+
+  Process status({"meridian", "status", "--json", "--domain", plant.domain()},
+                 plant.folder() / "status.log");
+  EXPECT_EQ(status.wait(milliseconds(10'000)), 0) << status.said();
+  const std::string part = plant.folder() / "part.apt";
+  std::ofstream(part) << "PARTNO/SHORT\nUNITS/MM\nFEDRAT/2000,MMPM\n"
+                      << cl_text(small_program(4, 2000)) << "FINI\n";
+  Process stream({"meridian", "stream", part, "--domain", plant.domain()},
+                 plant.folder() / "stream.log");
+  EXPECT_EQ(stream.wait(milliseconds(10'000)), 0) << stream.said();
 }
 
 TEST(Lease, GivesTheMachineToANewServiceOnceAKilledOneIsForgotten) {

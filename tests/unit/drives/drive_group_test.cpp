@@ -87,6 +87,32 @@ TEST_F(Group, ObeysOneServiceUntilItIsOff) {
   EXPECT_EQ(group_.service_id(), 8u);
 }
 
+dds::MachineInfo service(std::uint64_t id, std::uint32_t bridge_cycles, bool is_serving) {
+  dds::MachineInfo machine;
+  machine.service_id = id;
+  machine.bridge_cycles = bridge_cycles;
+  machine.is_serving = is_serving;
+  return machine;
+}
+
+TEST_F(Group, BridgesAsTheServiceSaysThatItObeysNotOneThatClaimsTheMachine) {
+  const auto periods_until_quick_stop = [this] {
+    enable();
+    int periods = 0;
+    for (send(0); group_.drive(0).state() == DriveState::kOperationEnabled; ++periods) {
+      group_.work(1);
+      if (periods > 100) break;
+    }
+    return periods;
+  };
+  group_.take(service(7, 20, true));
+  group_.take(service(8, 1, false));
+  group_.take(service(8, 2, true));
+  command(0x06);
+  group_.take(service(9, 50, true));
+  EXPECT_NEAR(periods_until_quick_stop(), 20, 3) << "obeys 7";
+}
+
 TEST_F(Group, ARestartedServiceMayCountCyclesAnew) {
   enable();
   send(1);
