@@ -123,21 +123,26 @@ void Intake::take_batches() {
   dds::Batch batch;
   stream::Accepted accepted;
   while (batches_.take(batch)) {
-    const std::optional<dds::Credit> answer = judge_.on_batch(batch, around(), accepted);
-    push(accepted);
+    std::optional<dds::Credit> answer = judge_.on_batch(batch, around(), accepted);
+    if (!push(accepted)) answer = judge_.on_queue_full(around());
     publish(answer);
   }
 }
 
-void Intake::push(const stream::Accepted& accepted) {
-  for (std::size_t i = 0; i < accepted.count; ++i) {
-    // There is room: credits count places. A block that found none would be lost without a word.
-    if (!ports_.blocks.stage({judge_.session(), accepted.blocks[i]})) break;
-    ++pushed_;
+/// There is room: when credit was granted, so many places were free and kReserve more, only this
+/// thread fills places, and size() never tells it too few that are filled. Were it broken, the
+/// session ends, with a message, at the block before the first that was lost.
+bool Intake::push(const stream::Accepted& accepted) {
+  if (accepted.count == 0) return true;
+  std::size_t count = 0;
+  while (count < accepted.count &&
+         ports_.blocks.stage({judge_.session(), accepted.blocks[count]})) {
+    ++count;
   }
-  if (accepted.count == 0) return;
+  pushed_ += count;
   ports_.blocks.publish();
   ports_.planner_wake.notify();
+  return count == accepted.count;
 }
 
 void Intake::look_for_station() {

@@ -49,7 +49,8 @@ class Intake {
   void take_requests();
   void take_batches();
   void look_for_station();
-  void push(const stream::Accepted& accepted);
+  /// False where the queue had no room for all.
+  [[nodiscard]] bool push(const stream::Accepted& accepted);
   void empty_queue(std::uint16_t epoch) noexcept;
   void show_mark() noexcept;
   void publish(const std::optional<dds::Credit>& credit);

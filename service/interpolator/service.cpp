@@ -185,6 +185,8 @@ void Service::stop() {
   threads_.clear();
   recorder_.stop();
   recorder_thread_.join();
+  const std::string complaint = recorder_.complaint();
+  if (!std::exchange(is_stopped_, true) && !complaint.empty()) log_->error("{}", complaint);
 }
 
 }  // namespace meridian::interpolator

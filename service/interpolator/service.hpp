@@ -78,6 +78,7 @@ class Service {
   TelemetryThread telemetry_;
   std::vector<Thread> threads_;
   Thread recorder_thread_;
+  bool is_stopped_ = false;
 };
 
 }  // namespace meridian::interpolator

@@ -91,6 +91,13 @@ void TelemetryThread::tell(const Event& event) {
       status_.alarm_value = event.x;
       has_news_ = true;
       break;
+    case EventCode::kStateChanged:
+      // That of a failed action holds the program, no longer; those of faults end in Off.
+      if (status_.alarm == Alarm::kActionFailed && static_cast<State>(event.a) != State::kHeld) {
+        status_.alarm = Alarm::kNone;
+        has_news_ = true;
+      }
+      break;
     case EventCode::kStopped:
       status_.stop_time_s = 1e-9 * static_cast<double>(event.a);
       status_.stop_distance_mm = event.x;
@@ -160,7 +167,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.starvations = view_.starvations;
   status.setpoints_overrun = ports_.setpoints_overrun + ports_.writes_failed;
   status.records_overrun = ports_.records_overrun + recorder_.rows_lost();
-  status.events_overrun = ports_.events_overrun;
+  status.events_overrun = ports_.events_overrun + recorder_.events_lost();
   if (!session.message.empty() && session.message != session_message_) {
     session_message_ = status.message = session.message;
     log_->info("{}", session.message);

@@ -30,4 +30,11 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
   return file_.flush();
 }
 
+void OperatorEventsWriter::mark_incomplete() noexcept {
+  if (is_marked_) return;
+  is_marked_ = true;
+  (void)file_.append("incomplete\n");
+  (void)file_.flush();
+}
+
 }  // namespace meridian::record

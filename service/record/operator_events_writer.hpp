@@ -23,10 +23,16 @@ class OperatorEventsWriter {
 
   /// Adds the event if it is an accepted verb; others are passed over. False once a write failed.
   bool write(const Event& event) noexcept;
+  /// Says in the file that events are missing, once: `meridian simulate --events` refuses it then.
+  void mark_incomplete() noexcept;
+  /// Flushes and closes; false where anything was lost.
+  bool close() noexcept { return file_.close(); }
+  [[nodiscard]] int error_number() const noexcept { return file_.error_number(); }
 
  private:
   explicit OperatorEventsWriter(CsvFile file) : file_(std::move(file)) {}
   CsvFile file_;
+  bool is_marked_ = false;
 };
 
 }  // namespace meridian::record

@@ -71,7 +71,8 @@ Expected<std::vector<OperatorEvent>, std::string> read_operator_events(std::stri
     const std::string_view row = cut(text, '\n');
     if (row.empty() || row.front() == '#' || row == "cycle,verb,argument") continue;
     OperatorEvent event;
-    std::string fault = read_row(row, event);
+    std::string fault = row == "incomplete" ? "the recorder lost events: they cannot be replayed"
+                                            : read_row(row, event);
     if (fault.empty() && !events.empty() && event.cycle < events.back().cycle) {
       fault = "cycles do not go up";
     }

@@ -196,6 +196,14 @@ std::optional<dds::Credit> IntakeJudge::on_planner_reject(const BlockReject& rej
   return refuse(reject, around);
 }
 
+dds::Credit IntakeJudge::on_queue_full(const Surroundings& around) {
+  is_complete_ = false;
+  return refuse(dds::Verdict::kBeyondCredit,
+                "the block queue is full although credit was kept, a fault of the service: session "
+                "refused",
+                around);
+}
+
 std::optional<dds::Credit> IntakeJudge::on_program_end(const Surroundings& around) {
   if (session_ == 0) return std::nullopt;
   return end_session(Verdict::kRan, "program " + request_.program + " ran to its end", around);

@@ -63,6 +63,9 @@ class IntakeJudge {
   /// The planner refused a block of the session that was accepted before.
   [[nodiscard]] std::optional<dds::Credit> on_planner_reject(const BlockReject& reject,
                                                              const Surroundings& around);
+  /// Blocks that were accepted found no room in the queue, against what credits promise: nothing
+  /// behind them may run.
+  [[nodiscard]] dds::Credit on_queue_full(const Surroundings& around);
   /// The machine executed the program to its end: the machine is free.
   [[nodiscard]] std::optional<dds::Credit> on_program_end(const Surroundings& around);
   /// Queues were emptied at rest (abort, disable, fault) for `reason`: the machine is free.

@@ -2,13 +2,14 @@
 #include "service/telemetry/recorder.hpp"
 
 #include <chrono>
+#include <cstring>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 namespace meridian::telemetry {
 
-Recorder::Recorder(const std::string& path, const MachineModel& model) {
+Recorder::Recorder(const std::string& path, const MachineModel& model) : path_(path) {
   if (path.empty()) return;
   auto writer = record::RecordingWriter::create(path, model);
   if (!writer) throw std::runtime_error(writer.error().text());
@@ -26,7 +27,8 @@ bool Recorder::take(const CycleRecord& record) noexcept {
 }
 
 void Recorder::take(const Event& event) noexcept {
-  if (writer_ && event.code == EventCode::kAccepted) (void)events_.try_push(event);
+  if (!writer_ || event.code != EventCode::kAccepted || events_.try_push(event)) return;
+  events_lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Recorder::run() noexcept {
@@ -38,10 +40,30 @@ void Recorder::run() noexcept {
     while (ring_.try_pop(row)) {
       if (!writer_->write(row)) rows_lost_.fetch_add(1, std::memory_order_relaxed);
     }
-    while (events_.try_pop(event)) (void)events_writer_->write(event);
+    while (events_.try_pop(event)) {
+      if (!events_writer_->write(event)) events_lost_.fetch_add(1, std::memory_order_relaxed);
+    }
+    if (events_lost() > 0) events_writer_->mark_incomplete();
     if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  (void)writer_->close();
+  const bool has_rows = writer_->close(), has_events = events_writer_->close();
+  error_number_ = !has_rows ? writer_->error_number() : events_writer_->error_number();
+  if (!has_rows && rows_lost() == 0) rows_lost_ = 1;
+  if (!has_events && events_lost() == 0) events_lost_ = 1;
+}
+
+std::string Recorder::complaint() const {
+  const std::string why =
+      error_number_ != 0 ? std::string(": ") + std::strerror(error_number_) : std::string();
+  std::string text;
+  if (rows_lost() > 0) {
+    text = "recording " + path_ + " lacks " + std::to_string(rows_lost()) + " rows or more" + why;
+  }
+  if (events_lost() > 0) {
+    text += (text.empty() ? "" : "; ") + record::operator_events_path(path_) + " lacks " +
+            std::to_string(events_lost()) + " events or more and cannot be replayed" + why;
+  }
+  return text;
 }
 
 }  // namespace meridian::telemetry

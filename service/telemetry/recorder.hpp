@@ -23,7 +23,8 @@ class Recorder {
 
   /// Telemetry thread: hands a row over. False: no room, the row is lost.
   [[nodiscard]] bool take(const CycleRecord& record) noexcept;
-  /// Telemetry thread: accepted verbs go into a file of their own, for a replay.
+  /// Telemetry thread: accepted verbs go into a file of their own, for a replay. Where one is lost
+  /// the file says so, and is not replayed.
   void take(const Event& event) noexcept;
   /// Recorder's thread: writes until stop() and everything taken is on disk.
   void run() noexcept;
@@ -31,6 +32,9 @@ class Recorder {
 
   [[nodiscard]] bool is_recording() const noexcept { return writer_.has_value(); }
   [[nodiscard]] std::uint64_t rows_lost() const noexcept { return rows_lost_; }
+  [[nodiscard]] std::uint64_t events_lost() const noexcept { return events_lost_; }
+  /// After run(): what the files lack, empty if nothing.
+  [[nodiscard]] std::string complaint() const;
 
  private:
   std::optional<record::RecordingWriter> writer_;
@@ -38,7 +42,9 @@ class Recorder {
   SpscRing<Event, 256> events_;
   SpscRing<CycleRecord, 8192> ring_;
   std::atomic<bool> is_stopping_{false};
-  std::atomic<std::uint64_t> rows_lost_{0};
+  std::atomic<std::uint64_t> rows_lost_{0}, events_lost_{0};
+  std::string path_;
+  int error_number_ = 0;  ///< of the first write that failed
 };
 
 }  // namespace meridian::telemetry

@@ -23,7 +23,7 @@ class Operator : public testing::Test {
  protected:
   void load(const std::vector<ClBlock>& blocks) {
     plant.start_service();
-    plant.start_drives();
+    plant.start_drives(drives);
     ASSERT_TRUE(plant.enable()) << plant.service().said();
     ASSERT_TRUE(plant.stream(blocks, [](const Station& station) {
       return station.state() == StationState::kComplete;
@@ -50,7 +50,20 @@ class Operator : public testing::Test {
     }
   }
   Plant plant;
+  std::vector<std::string> drives;  ///< command line
 };
+
+/// `blocks` with the spindle started in line 77.
+[[nodiscard]] std::vector<ClBlock> with_spindle(std::vector<ClBlock> blocks) {
+  ClBlock spindle;
+  spindle.kind = BlockKind::kAuxiliary;
+  spindle.action = ActionKind::kSpindleClockwise;
+  spindle.value = 8000;
+  spindle.line = 77;
+  blocks.insert(blocks.begin() + 2, spindle);
+  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].sequence = i;
+  return blocks;
+}
 
 [[nodiscard]] double speed_of(const record::RecordingRow& row) {
   double square = 0;
@@ -58,33 +71,57 @@ class Operator : public testing::Test {
   return std::sqrt(square);
 }
 
+using Rows = std::vector<record::RecordingRow>;
+
+/// Whether the program went at its full rate and an even speed in the ten cycles before `hold`:
+/// then nothing but the hold slows it down.
+[[nodiscard]] bool is_even_before(const Rows& rows, Rows::const_iterator hold) {
+  constexpr int kCycles = 10;
+  if (hold - rows.begin() <= kCycles) return false;
+  for (int i = 1; i <= kCycles; ++i) {
+    if (hold[-i].state != State::kRunning || hold[-i].rate != 1) return false;
+    if (std::abs(speed_of(hold[-i]) / speed_of(hold[-1]) - 1) > 2e-3) return false;
+  }
+  return true;
+}
+
 TEST_F(Operator, HoldsWithinTwoCyclesAndResumesFromThatVeryPoint) {
   load(small_program(30, 800, 20));
   say(Verb::kStart);
   ASSERT_TRUE(plant.wait_for(State::kRunning));
-  std::this_thread::sleep_for(milliseconds(700));
-  say(Verb::kHold);
-  ASSERT_TRUE(plant.wait_for(State::kHeld));
-  EXPECT_TRUE(eventually([&] { return plant.status().stop_time_s > 0; }));
-  say(Verb::kResume);
-  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  for (int i = 0; i < 4; ++i) {
+    std::this_thread::sleep_for(milliseconds(700));
+    say(Verb::kHold);
+    ASSERT_TRUE(plant.wait_for(State::kHeld));
+    EXPECT_TRUE(eventually([&] { return plant.status().stop_time_s > 0; }));
+    say(Verb::kResume);
+    ASSERT_TRUE(plant.wait_for(State::kRunning));
+  }
   std::this_thread::sleep_for(milliseconds(200));
-  const auto recorded = rows();
+  const Rows recorded = rows();
   ASSERT_FALSE(recorded.empty());
 
   const auto is_in = [](State state) {
     return [state](const auto& r) { return r.state == state; };
   };
-  const auto hold = std::find_if(recorded.begin(), recorded.end(), is_in(State::kHolding));
-  const auto held = std::find_if(hold, recorded.end(), is_in(State::kHeld));
-  const auto resumed = std::find_if_not(held, recorded.end(), is_in(State::kHeld));
-  ASSERT_NE(resumed, recorded.end());
-  ASSERT_GT(hold, recorded.begin() + 1);
-  std::printf("speed before, at and after the hold was seen: %.6f %.6f %.6f\n", speed_of(hold[-1]),
-              speed_of(hold[0]), speed_of(hold[1]));
-  EXPECT_LT(speed_of(hold[1]), speed_of(hold[-1])) << "slower in the second cycle at the latest";
-  EXPECT_EQ(speed_of(*held), 0.0);
-  EXPECT_EQ(resumed[-1].joints, held->joints) << "stands still while held";
+  int even = 0;
+  for (auto hold = recorded.begin();;) {
+    hold = std::find_if(hold, recorded.end(), is_in(State::kHolding));
+    if (hold == recorded.end()) break;
+    const auto held = std::find_if(hold, recorded.end(), is_in(State::kHeld));
+    const auto resumed = std::find_if_not(held, recorded.end(), is_in(State::kHeld));
+    ASSERT_NE(resumed, recorded.end());
+    EXPECT_EQ(speed_of(*held), 0.0);
+    EXPECT_EQ(resumed[-1].joints, held->joints) << "stands still while held";
+    if (is_even_before(recorded, hold)) {
+      ++even;
+      std::printf("rate before, at and after the hold was seen: %.9f %.9f %.9f\n", hold[-1].rate,
+                  hold[0].rate, hold[1].rate);
+      EXPECT_LT(std::min(hold[0].rate, hold[1].rate), 1.0) << "slower in the second cycle at last";
+    }
+    hold = resumed;
+  }
+  EXPECT_GT(even, 0) << "no hold fell into even motion";
 }
 
 TEST_F(Operator, SetsTheOverrideAndJointLimitsWin) {
@@ -110,21 +147,43 @@ TEST_F(Operator, AbortsAProgramAndItsSessionWithIt) {
 }
 
 TEST_F(Operator, WaitsForActionsAtRest) {
-  auto blocks = small_program(4, 3000);
-  ClBlock spindle;
-  spindle.kind = BlockKind::kAuxiliary;
-  spindle.action = ActionKind::kSpindleClockwise;
-  spindle.value = 8000;
-  spindle.line = 77;
-  blocks.insert(blocks.begin() + 2, spindle);
-  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].sequence = i;
-  load(blocks);
+  load(with_spindle(small_program(4, 3000)));
   say(Verb::kStart);
   ASSERT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(10000)))
       << plant.service().said();
   EXPECT_EQ(plant.station().state(), StationState::kRan) << plant.station().message();
   EXPECT_NE(plant.service().said().find("waiting for the action of line 77"), std::string::npos)
       << plant.service().said();
+}
+
+TEST_F(Operator, SeesTheAlarmOfAFailedActionUntilTheProgramGoesOnOrIsOver) {
+  drives = {"--no-actions"};
+  dds::Reader<dds::Action> asked(plant.participant());
+  dds::Writer<dds::ActionDone> answers(plant.participant());
+  dds::Action action;
+  const auto is_asked = [&] { return asked.take(action); };
+  const auto answer = [&](bool is_done) {
+    ASSERT_TRUE(
+        answers.write({.id = action.id, .service_id = action.service_id, .is_done = is_done}));
+  };
+  const auto has_alarm = [&](Alarm alarm) {
+    return eventually([&] { return plant.status().alarm == alarm; });
+  };
+  load(with_spindle(small_program(4, 3000)));
+  say(Verb::kStart);
+  ASSERT_TRUE(eventually(is_asked, milliseconds(8000))) << plant.service().said();
+  answer(false);
+  ASSERT_TRUE(plant.wait_for(State::kHeld));
+  EXPECT_TRUE(has_alarm(Alarm::kActionFailed));
+  say(Verb::kResume);
+  ASSERT_TRUE(eventually(is_asked)) << "asked again after a resume";
+  EXPECT_TRUE(has_alarm(Alarm::kNone)) << "it goes on";
+  answer(false);
+  ASSERT_TRUE(plant.wait_for(State::kHeld));
+  EXPECT_TRUE(has_alarm(Alarm::kActionFailed));
+  say(Verb::kAbort);
+  ASSERT_TRUE(plant.wait_for(State::kReady));
+  EXPECT_TRUE(has_alarm(Alarm::kNone)) << "the program is over";
 }
 
 TEST_F(Operator, IsRefusedWhoSawAnOldStatus) {

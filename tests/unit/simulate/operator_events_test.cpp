@@ -35,6 +35,7 @@ TEST(OperatorEvents, AreRefusedWithTheirLine) {
   };
   const Case cases[] = {
       {"x,hold\n", "e.csv:1: 'x' is no cycle number"},
+      {"5,hold\nincomplete\n", "e.csv:2: the recorder lost events"},
       {"5,dance\n", "e.csv:1: 'dance' is no verb"},
       {"5,hold\n4,resume\n", "e.csv:2: cycles do not go up"},
       {"5,feed_override\n", "'feed_override' needs its factor"},

@@ -193,6 +193,17 @@ TEST_F(Intake, BeyondCreditIsJudgedForHugeSequencesToo) {
   EXPECT_EQ(answer->verdict, Verdict::kBeyondCredit);
 }
 
+TEST_F(Intake, AQueueWithoutRoomEndsTheSessionInsteadOfLosingBlocksInSilence) {
+  static_cast<void>(open());
+  EXPECT_FALSE(send(good_batch(kSession, 0, 8)));
+  const Credit answer = judge_.on_queue_full(around_);
+  EXPECT_EQ(answer.verdict, Verdict::kBeyondCredit);
+  EXPECT_EQ(answer.credits, 0u);
+  EXPECT_NE(answer.text.find("the block queue is full"), std::string::npos) << answer.text;
+  static_cast<void>(send(good_batch(kSession, 8, 8)));
+  EXPECT_EQ(accepted_.count, 0u) << "nothing behind the loss may run";
+}
+
 TEST_F(Intake, CreditsNeverGoBack) {
   static_cast<void>(open());
   around_.free_places = 10;

@@ -49,6 +49,42 @@ TEST(Recorder, LosesRowsAndCountsThemWhereTheDiskIsFull) {
   recorder.stop();
   writer.join();
   EXPECT_GT(recorder.rows_lost(), 0U);
+  EXPECT_NE(recorder.complaint().find("No space left on device"), std::string::npos);
+}
+
+TEST(Recorder, SaysInTheEventsFileAndInWordsThatEventsWereLost) {
+  const auto path = temporary_file();
+  const std::string events = record::operator_events_path(path.string());
+  {
+    Recorder recorder(path.string(), test::lai_machine());
+    Event event;
+    event.code = EventCode::kAccepted;
+    for (int i = 0; i < 256; ++i) recorder.take(event);
+    EXPECT_EQ(recorder.events_lost(), 0U);
+    recorder.take(event);
+    EXPECT_EQ(recorder.events_lost(), 1U);
+    recorder.stop();
+    recorder.run();
+    EXPECT_NE(recorder.complaint().find(events + " lacks 1 events"), std::string::npos)
+        << recorder.complaint();
+  }
+  std::ifstream file(events);
+  std::string line, last;
+  while (std::getline(file, line)) last = line;
+  EXPECT_EQ(last, "incomplete");
+  std::filesystem::remove(path);
+  std::filesystem::remove(events);
+}
+
+TEST(Recorder, HasNothingToComplainOfWhereEverythingIsOnDisk) {
+  const auto path = temporary_file();
+  Recorder recorder(path.string(), test::lai_machine());
+  ASSERT_TRUE(recorder.take(CycleRecord{}));
+  recorder.stop();
+  recorder.run();
+  EXPECT_EQ(recorder.complaint(), "");
+  std::filesystem::remove(path);
+  std::filesystem::remove(record::operator_events_path(path.string()));
 }
 
 TEST(Recorder, TakesEverythingForNothingWithoutAPath) {
