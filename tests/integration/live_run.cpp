@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <memory>
 
 #include "service/config/machine_file.hpp"
 #include "service/record/compare.hpp"
@@ -23,6 +24,19 @@ using Words = std::vector<std::string>;
 /// How the part is read and on which machine it is judged.
 [[nodiscard]] Words judged(const LiveRun& live) {
   return joined(joined({"--machine", machine_file(live.machine)}, live.reader), live.simulate);
+}
+
+/// `meridian record` beside the station, listening already.
+[[nodiscard]] std::unique_ptr<Process> listen(const Plant& plant, const LiveRun& live) {
+  auto record = std::make_unique<Process>(
+      Words{"meridian", "record", live.wire, "--until-end", "--max-missing", "1000000", "--domain",
+            plant.domain(), "--machine-name", live.machine},
+      plant.folder() / "record.log");
+  EXPECT_TRUE(
+      eventually([&] { return record->said().find("listening to machine") != std::string::npos; },
+                 milliseconds(8000)))
+      << record->said();
+  return record;
 }
 
 }  // namespace
@@ -46,6 +60,7 @@ void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
                          live.reader),
                   plant.folder() / "station.log");
   ASSERT_TRUE(plant.wait_for(State::kLoaded)) << station.said();
+  const auto record = live.wire.empty() ? nullptr : listen(plant, live);
   if (live.operate) {
     ASSERT_NO_FATAL_FAILURE(live.operate());
   } else {
@@ -60,6 +75,10 @@ void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
       live.patience))
       << station.said() << plant.service().said();
   ASSERT_EQ(station.wait(milliseconds(0)), 0) << station.said() << plant.service().said();
+  if (record) {
+    ASSERT_EQ(record->wait(milliseconds(8000)), 0) << record->said();
+    std::printf("%s\n", record->said().c_str());
+  }
   plant.service().send_signal(SIGTERM);
   ASSERT_EQ(plant.service().wait(milliseconds(5000)), 0) << plant.service().said();
 }
@@ -83,6 +102,32 @@ void expect_same(const Plant& plant, const std::string& simulated, const LiveRun
   ASSERT_TRUE(report) << report.error().text();
   std::printf("%s\n", record::to_text(*report, "live", "simulated", model).c_str());
   EXPECT_TRUE(report->is_same());
+}
+
+void expect_on_wire(const Plant& plant, const LiveRun& live) {
+  const MachineModel model = config::load_machine(machine_file(live.machine));
+  auto wire = record::RecordingReader::open(live.wire, model);
+  auto service = record::RecordingReader::open(plant.recording(), model);
+  ASSERT_TRUE(wire) << wire.error().text();
+  ASSERT_TRUE(service) << service.error().text();
+  record::RecordingRow seen, sent;
+  const auto is_there = [](auto has_row) { return has_row && *has_row; };
+  std::size_t count = 0, moving = 0;
+  while (is_there(wire->next(seen))) {
+    while (sent.cycle < seen.cycle) ASSERT_TRUE(is_there(service->next(sent))) << seen.cycle;
+    if (sent.cycle != seen.cycle) continue;  // the recorder of the service lost it: counted there
+    ++count;
+    moving += (seen.flags & kSetpointMoving) != 0 ? 1U : 0U;
+    ASSERT_EQ(seen.joints, sent.joints) << seen.cycle;
+    ASSERT_EQ(seen.velocity, sent.velocity) << seen.cycle;
+    ASSERT_EQ(seen.due_ns, sent.due_ns) << seen.cycle;
+    ASSERT_EQ(seen.line, sent.line) << seen.cycle;
+    ASSERT_EQ(seen.epoch, sent.epoch) << seen.cycle;
+    ASSERT_EQ(seen.flags, sent.flags) << seen.cycle;
+  }
+  std::printf("%zu cycles on the wire, %zu of them in motion, as the service recorded them\n",
+              count, moving);
+  EXPECT_GT(moving, 1000U);
 }
 
 void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live) {

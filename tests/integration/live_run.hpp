@@ -20,6 +20,7 @@ struct LiveRun {
   std::function<void()> operate;        ///< instead of a plain start
   std::function<void()> watch = [] {};  ///< called again and again while the part is cut
   milliseconds patience{60'000};
+  std::string wire;  ///< file for `meridian record` beside the station; empty: none
 };
 
 /// The small program as a CL file, with a dwell and an action in it.
@@ -35,6 +36,9 @@ void run_live(Plant& plant, const std::string& part, const LiveRun& live);
 
 /// The recording of the plant and `simulated` hold the same motion.
 void expect_same(const Plant& plant, const std::string& simulated, const LiveRun& live);
+
+/// What came over the wire is what the service recorded of those cycles.
+void expect_on_wire(const Plant& plant, const LiveRun& live);
 
 /// The recording of the plant is `part`, inside limits and tolerances.
 void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live);

@@ -17,7 +17,10 @@ TEST(Live, EqualsTheSimulationBitForBitOnEveryCycleThatWasSent) {
   Plant plant;
   const std::string part = (plant.folder() / "part.cls").string();
   write_cl_file(part, 16);
-  run_and_judge(plant, part, {});
+  LiveRun live;
+  live.wire = (plant.folder() / "wire.csv").string();
+  run_and_judge(plant, part, live);
+  expect_on_wire(plant, live);
 }
 
 /// The shortest file of the corpus takes nearly three minutes: for whoever asks for it.

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "integration/plant.hpp"
@@ -141,6 +142,42 @@ TEST_F(Tool, RefusesInputBeforeTheMachineSeesIt) {
   EXPECT_NE(stream.said().find("far.apt: line 5, block 1: b3 at 2000 mm"), std::string::npos)
       << stream.said();
   EXPECT_EQ(plant.status().session, 0u);
+}
+
+struct BadFile {
+  const char* name;
+  std::string text;
+  const char* words;
+};
+
+std::vector<BadFile> bad_files() {
+  const std::string good = kGoodPart;
+  return {{"truncated.apt", good.substr(0, good.find("GOTO/20,20") + 10), "truncated.apt"},
+          {"binary.apt", std::string("PK\x03\x04\0\0\x01\xff", 8), "a ZIP archive"},
+          {"noise.apt", std::string("PARTNO\n\0\x01\x02\0\xfe\0\0", 14), "binary data"},
+          {"empty.apt", "", "the file is empty"},
+          {"unitless.apt", "FEDRAT/6000,MMPM\nGOTO/0,0,150,0,0,1\nFINI\n", "unit"},
+          {"program.nc", "%\nO1000\nN10 G21 G90\nN20 G1 X1. Y2. Z3. F500\nM30\n%\n",
+           "a Fanuc NC program"}};
+}
+
+TEST_F(Tool, RefusesFilesThatAreNoCLFilesInWordsAndWithoutMotion) {
+  plant.start_service();
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  const auto before = plant.status().joints;
+  for (const BadFile& bad : bad_files()) {
+    SCOPED_TRACE(bad.name);
+    Process stream = run({"stream", part(bad.name, bad.text)});
+    EXPECT_EQ(stream.wait(kShort), 3) << stream.said();
+    EXPECT_NE(stream.said().find(bad.words), std::string::npos) << stream.said();
+    EXPECT_NE(stream.said().find(bad.name), std::string::npos) << stream.said();
+  }
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_EQ(plant.status().session, 0U);
+  EXPECT_EQ(plant.status().blocks_received, 0U);
+  EXPECT_EQ(plant.status().state, State::kReady);
+  EXPECT_EQ(plant.status().joints, before);
 }
 
 TEST_F(Tool, TellsWhatTheMachineRefusesWithoutPreflight) {
