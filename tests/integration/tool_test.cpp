@@ -152,11 +152,13 @@ struct BadFile {
 
 std::vector<BadFile> bad_files() {
   const std::string good = kGoodPart;
-  return {{"truncated.apt", good.substr(0, good.find("GOTO/20,20") + 10), "truncated.apt"},
+  return {{"truncated.apt", good.substr(0, good.find("GOTO/20,20") + 10),
+           "truncated.apt:6: GOTO needs 3 or 6 numbers"},
           {"binary.apt", std::string("PK\x03\x04\0\0\x01\xff", 8), "a ZIP archive"},
           {"noise.apt", std::string("PARTNO\n\0\x01\x02\0\xfe\0\0", 14), "binary data"},
           {"empty.apt", "", "the file is empty"},
-          {"unitless.apt", "FEDRAT/6000,MMPM\nGOTO/0,0,150,0,0,1\nFINI\n", "unit"},
+          {"unitless.apt", "FEDRAT/6000,MMPM\nGOTO/0,0,150,0,0,1\nFINI\n",
+           "the file does not say its unit"},
           {"program.nc", "%\nO1000\nN10 G21 G90\nN20 G1 X1. Y2. Z3. F500\nM30\n%\n",
            "a Fanuc NC program"}};
 }
