@@ -24,6 +24,7 @@ struct Walk {
 
 _Unwind_Reason_Code take_frame(_Unwind_Context* context, void* argument) {
   Walk& walk = *static_cast<Walk*>(argument);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the unwinder gives addresses as integers
   const auto* const frame = reinterpret_cast<const void*>(_Unwind_GetIP(context));
   if (walk.depth == 0 && frame != walk.caller) return _URC_NO_REASON;
   walk.trace.frames[walk.depth] = frame;
