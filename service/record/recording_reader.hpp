@@ -47,6 +47,8 @@ class RecordingReader {
   [[nodiscard]] static Expected<RecordingReader, RecordError> open(const std::string& path,
                                                                    const MachineModel& model);
   ~RecordingReader();
+  RecordingReader(const RecordingReader&) = delete;
+  RecordingReader& operator=(const RecordingReader&) = delete;
   RecordingReader(RecordingReader&&) noexcept;
   RecordingReader& operator=(RecordingReader&&) noexcept;
 
