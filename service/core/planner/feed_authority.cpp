@@ -20,8 +20,8 @@ constexpr double kEasing = 0.9;     // of the deceleration that there is: a stop
 constexpr double kRounding_mm = 1e-9;
 constexpr double kTiny = 1e-12;
 constexpr int kSteps = 24;          // of a stop
-constexpr double kBetween = 1.001;  // on ṡ² between the steps
-constexpr double kFast = 1.0015;    // on ṡ² that feed and velocity allow, kBetween included
+constexpr double kBetween = 1.002;  // on ṡ² between the steps
+constexpr double kFast = 1.0025;    // on ṡ² that feed and velocity allow, kBetween included
 constexpr double kSlow = 0.6;       // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
 constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
@@ -62,14 +62,16 @@ void FeedAuthority::grant(const FeedPiece& piece, TimePiece& time) noexcept {
   PathState begin = state_at(time, 0), end = state_at(time, time.duration);
   begin.s -= (*grid_)[piece.cell].x;
   end.s -= (*grid_)[piece.cell].x;
-  const Grant hold = find(hold_, piece.cell, {begin, end});
+  const Grant hold = find(hold_, piece.cell, {begin, end}, !time.is_tail);
   time.stop_accel = hold.authority.accel;
   time.stop_jerk = hold.authority.jerk;
   time.stop_velocity = hold.velocity;
-  const Grant fault = find(fault_, piece.cell, {begin, end});
+  const Grant fault = find(fault_, piece.cell, {begin, end}, !time.is_tail);
   time.fault_accel = fault.authority.accel;
   time.fault_jerk = fault.authority.jerk;
   time.fault_velocity = fault.velocity;
+  time.slow_velocity = kSlow * std::min(begin.ds, end.ds);
+  if (time.is_tail) return;
   const Ends slow{slowed(begin, kSlow), slowed(end, kSlow)};
   const StopAuthority slow_hold = find(hold_.caps, piece.cell, slow);
   time.slow_stop_accel = slow_hold.accel;
@@ -77,18 +79,12 @@ void FeedAuthority::grant(const FeedPiece& piece, TimePiece& time) noexcept {
   const StopAuthority slow_fault = find(fault_.caps, piece.cell, slow);
   time.slow_fault_accel = slow_fault.accel;
   time.slow_fault_jerk = slow_fault.jerk;
-  time.slow_velocity = std::min(slow.begin.ds, slow.end.ds);
 }
 
 StopAuthority FeedAuthority::most_in(const Caps& caps, std::int64_t cell) const noexcept {
-  const CellBound& bound = (*grid_)[cell].bound;
-  double accel = kTiny, jerk = kTiny;
-  for (int i = 0; i < count_; ++i) {
-    const double rate = std::max(bound.d1.up[i], bound.d1.down[i]);
-    accel = std::max(accel, rate * caps.acceleration[i]);
-    jerk = std::max(jerk, rate * caps.jerk[i]);
-  }
-  return {1 / accel, 1 / jerk};
+  const CellBound::Values& rate = (*grid_)[cell].bound.rate;
+  return {1 / std::max(kTiny, (rate * caps.acceleration).maxCoeff()),
+          1 / std::max(kTiny, (rate * caps.jerk).maxCoeff())};
 }
 
 StopAuthority FeedAuthority::find(const Caps& caps, std::int64_t cell,
@@ -97,8 +93,8 @@ StopAuthority FeedAuthority::find(const Caps& caps, std::int64_t cell,
   return lessen(caps, cell, ends, most, most);
 }
 
-FeedAuthority::Grant FeedAuthority::find(Search& search, std::int64_t cell,
-                                         const Ends& ends) const noexcept {
+FeedAuthority::Grant FeedAuthority::find(Search& search, std::int64_t cell, const Ends& ends,
+                                         bool is_slower_good) const noexcept {
   const StopAuthority most = most_in(search.caps, cell);
   StopAuthority got;
   if (search.last.jerk > 0) {
@@ -109,6 +105,7 @@ FeedAuthority::Grant FeedAuthority::find(Search& search, std::int64_t cell,
   if (!(got.jerk > 0)) got = lessen(search.caps, cell, ends, most, most);
   search.last = got;
   if (got.jerk > 0) return {got, kAnyVelocity};
+  if (!is_slower_good) return {};
   for (const double rate : kRates) {
     const Ends slower{slowed(ends.begin, rate), slowed(ends.end, rate)};
     got = lessen(search.caps, cell, slower, most, most);
@@ -123,16 +120,18 @@ StopAuthority FeedAuthority::lessen(const Caps& caps, std::int64_t cell, const E
     const double depth = std::max(depth_of(from.begin, now.jerk), depth_of(from.end, now.jerk));
     now.accel = std::min(now.accel, 1.02 * depth);
     Use use;
-    if (!add_use(caps, cell, StopLaw(from.begin, now), now, use)) break;
-    if (!add_use(caps, cell, StopLaw(from.end, now), now, use)) break;
-    if (use.is_too_fast || use.by_speed >= 1) break;  // too fast whatever the stop does
-    if (use.acceleration <= 1 && use.jerk <= 1) return now;
+    if (!add_use(caps, cell, from.begin, now, use)) break;
+    if (use.is_within() && !add_use(caps, cell, from.end, now, use)) break;
+    if (use.is_within()) return now;
+    if (use.is_too_fast) break;
     if (use.acceleration > 1) now.accel *= kLess / std::min(use.acceleration, 2.0);
     if (use.jerk > 1) {
-      const double rest = use.jerk - use.by_speed, room = 1 - use.by_speed;
-      const double by = std::max(0.3, kLess * room / rest);
+      const Cause cause = cause_of(caps, use);
+      if (cause.by_speed >= 1) break;  // too fast whatever the stop does
+      const double rest = use.jerk - cause.by_speed;
+      const double by = std::max(0.3, kLess * (1 - cause.by_speed) / rest);
       now.jerk *= by;
-      if (use.by_depth > 0.3 * rest) now.accel *= by;
+      if (cause.by_depth > 0.3 * rest) now.accel *= by;
     }
     if (now.jerk < kHopeless * most.jerk || now.accel < kHopeless * most.accel) break;
     if (now.accel < kEasing * std::max(-from.begin.dds, -from.end.dds)) break;
@@ -140,9 +139,9 @@ StopAuthority FeedAuthority::lessen(const Caps& caps, std::int64_t cell, const E
   return {};
 }
 
-bool FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const StopLaw& law,
+bool FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                             const StopAuthority& authority, Use& use) const noexcept {
-  const PathState begin = law.at(0);
+  const StopLaw law(begin, authority);
   const double rest = begin.s + law.distance();
   const double deepest = begin.ds + 0.5 * begin.dds * begin.dds / authority.jerk;
   const double most = largest_stop_product(deepest, authority.accel, authority.jerk);
@@ -170,31 +169,46 @@ bool FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const StopLaw& 
     const double speed = std::sqrt(v2), v3 = v2 * speed;
     const double sinking =
         3 * std::min(most, speed * std::max(authority.accel, by_rate - from.dds));
-    add_use(caps, here.bound, authority, {v2, v3, rising, sinking, 3 * speed * rising}, use);
+    add_use(caps, k, authority, {v2, v3, rising, sinking, 3 * speed * rising}, use);
     s += here.h;
   }
   return true;
 }
 
-void FeedAuthority::add_use(const Caps& caps, const CellBound& at, const StopAuthority& authority,
+void FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const StopAuthority& authority,
                             const Motion& m, Use& use) const noexcept {
+  using Values = CellBound::Values;
+  const CellBound& at = (*grid_)[cell].bound;
+  const Values up = at.d1.up * m.rising + at.d1.down * authority.accel + at.d2.up * m.v2;
+  const Values down = at.d1.down * m.rising + at.d1.up * authority.accel + at.d2.down * m.v2;
+  use.acceleration =
+      std::max(use.acceleration, (up.max(down) * caps.acceleration).eval().maxCoeff());
+  const Values bend_up = at.d2.down * m.sinking_v + at.d2.up * m.rising_v + at.d3.up * m.v3;
+  const Values bend_down = at.d2.up * m.sinking_v + at.d2.down * m.rising_v + at.d3.down * m.v3;
+  const Values jerk = (at.rate * authority.jerk + bend_up.max(bend_down)) * caps.jerk;
+  const double most = jerk.maxCoeff();
+  if (most <= use.jerk) return;
+  use.jerk = most;
+  use.cell = cell;
+  use.motion = m;
+}
+
+FeedAuthority::Cause FeedAuthority::cause_of(const Caps& caps, const Use& use) const noexcept {
+  const CellBound& at = (*grid_)[use.cell].bound;
+  const Motion& m = use.motion;
+  Cause cause;
+  double most = 0;
   for (int i = 0; i < count_; ++i) {
-    const double up1 = at.d1.up[i], down1 = at.d1.down[i];
-    const double up = up1 * m.rising + down1 * authority.accel + at.d2.up[i] * m.v2;
-    const double down = down1 * m.rising + up1 * authority.accel + at.d2.down[i] * m.v2;
-    use.acceleration = std::max(use.acceleration, std::max(up, down) * caps.acceleration[i]);
     const double depth_up = at.d2.down[i] * m.sinking_v + at.d2.up[i] * m.rising_v;
     const double depth_down = at.d2.up[i] * m.sinking_v + at.d2.down[i] * m.rising_v;
-    const double bend_up = depth_up + at.d3.up[i] * m.v3;
-    const double bend_down = depth_down + at.d3.down[i] * m.v3;
-    const double j =
-        (std::max(up1, down1) * authority.jerk + std::max(bend_up, bend_down)) * caps.jerk[i];
-    if (j > use.jerk) {
-      use.jerk = j;
-      use.by_depth = (bend_up > bend_down ? depth_up : depth_down) * caps.jerk[i];
-      use.by_speed = (bend_up > bend_down ? at.d3.up[i] : at.d3.down[i]) * m.v3 * caps.jerk[i];
-    }
+    const double speed_up = at.d3.up[i] * m.v3, speed_down = at.d3.down[i] * m.v3;
+    const bool is_up = depth_up + speed_up > depth_down + speed_down;
+    const double depth = is_up ? depth_up : depth_down, speed = is_up ? speed_up : speed_down;
+    if ((depth + speed) * caps.jerk[i] <= most) continue;
+    most = (depth + speed) * caps.jerk[i];
+    cause = {depth * caps.jerk[i], speed * caps.jerk[i]};
   }
+  return cause;
 }
 
 }  // namespace meridian

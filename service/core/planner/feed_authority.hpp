@@ -31,24 +31,38 @@ class FeedAuthority {
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 
   /// Fills in the authority of `time`, made of `piece`: at the full rate or the next one that has
-  /// some, and for slow motions; 0 where there is none.
+  /// some, and for slow motions; 0 where there is none. In a tail, which comes to rest anyway, at
+  /// the full rate alone.
   void grant(const FeedPiece& piece, TimePiece& time) noexcept;
 
  private:
   /// One over the limits.
   struct Caps {
-    LimitedVector acceleration{}, jerk{};
+    CellBound::Values acceleration = CellBound::Values::Zero();
+    CellBound::Values jerk = CellBound::Values::Zero();
   };
   /// What stops of one kind may use, and what the piece before got.
   struct Search {
     Caps caps;
     StopAuthority last;
   };
+  /// Bounds of what stops do in a cell: ṡ², ṡ³, s̈ > 0, 3 ṡ|s̈| where s̈ < 0 and where s̈ > 0.
+  struct Motion {
+    double v2 = 0, v3 = 0, rising = 0, sinking_v = 0, rising_v = 0;
+  };
   /// Largest use of limits by stops: 1 is all.
   struct Use {
     double acceleration = 0, jerk = 0;
-    double by_depth = 0, by_speed = 0;  ///< of `jerk`: by deceleration on bends, by bends alone
-    bool is_too_fast = false;           ///< for feed or velocity
+    bool is_too_fast = false;  ///< for feed or velocity
+    std::int64_t cell = 0;     ///< where most of the jerk is used, and by what
+    Motion motion;
+    [[nodiscard]] bool is_within() const noexcept {
+      return !is_too_fast && acceleration <= 1 && jerk <= 1;
+    }
+  };
+  /// Shares of the jerk at the worst place: by deceleration on the bend, by the bend alone.
+  struct Cause {
+    double by_depth = 0, by_speed = 0;
   };
 
   /// States at both ends of a piece, s counted from the begin of its cell.
@@ -61,7 +75,8 @@ class FeedAuthority {
     double velocity = 0;
   };
 
-  [[nodiscard]] Grant find(Search& search, std::int64_t cell, const Ends& ends) const noexcept;
+  [[nodiscard]] Grant find(Search& search, std::int64_t cell, const Ends& ends,
+                           bool is_slower_good) const noexcept;
   [[nodiscard]] StopAuthority find(const Caps& caps, std::int64_t cell,
                                    const Ends& ends) const noexcept;
   /// What the cell allows next to rest.
@@ -69,15 +84,12 @@ class FeedAuthority {
   /// `now` or less of it, that all stops from `from` may use; 0: there is none.
   [[nodiscard]] StopAuthority lessen(const Caps& caps, std::int64_t cell, const Ends& from,
                                      StopAuthority now, const StopAuthority& most) const noexcept;
-  /// Bounds of what stops do in a cell: ṡ², ṡ³, s̈ > 0, 3 ṡ|s̈| where s̈ < 0 and where s̈ > 0.
-  struct Motion {
-    double v2 = 0, v3 = 0, rising = 0, sinking_v = 0, rising_v = 0;
-  };
-  /// Adds the use of all stops under `law`. False: it ends behind the plan.
-  [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const StopLaw& law,
+  /// Adds the use of all stops under the one from `begin`. False: it ends behind the plan.
+  [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                              const StopAuthority& authority, Use& use) const noexcept;
-  void add_use(const Caps& caps, const CellBound& at, const StopAuthority& authority,
+  void add_use(const Caps& caps, std::int64_t cell, const StopAuthority& authority,
                const Motion& motion, Use& use) const noexcept;
+  [[nodiscard]] Cause cause_of(const Caps& caps, const Use& use) const noexcept;
 
   int count_ = 0;
   double slope_ = 0;  ///< of the rate, 1/s

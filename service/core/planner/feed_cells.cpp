@@ -51,13 +51,15 @@ CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexc
         high = std::max(high, (sample.*d)[i]);
       }
       const double beyond = kBetween * (high - low);
-      sides.up[i] = std::max(0.0, high + beyond);
-      sides.down[i] = std::max(0.0, beyond - low);
+      const auto n = static_cast<Eigen::Index>(i);
+      sides.up[n] = std::max(0.0, high + beyond);
+      sides.down[n] = std::max(0.0, beyond - low);
     }
   };
   bound(&CellSample::d1, out.d1);
   bound(&CellSample::d2, out.d2);
   bound(&CellSample::d3, out.d3);
+  out.rate = out.d1.up.max(out.d1.down);
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -25,11 +26,14 @@ struct CellSample {
 
 /// Bounds of the derivatives in a cell: that much above zero (`up`) and below (`down`), both >= 0.
 struct CellBound {
+  using Values = Eigen::Array<double, 8, 1>;  ///< as LimitedVector, whole registers of them
   struct Sides {
-    LimitedVector up{}, down{};
+    Values up = Values::Zero(), down = Values::Zero();
   };
   Sides d1, d2, d3;
+  Values rate = Values::Zero();  ///< the larger side of d1
 };
+static_assert(CellBound::Values::SizeAtCompileTime >= kMaxLimited);
 
 struct FeedCell {
   static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included

@@ -150,13 +150,14 @@ bool JerkStep::assemble() noexcept {
     time_ += h_[i] * root;
     for (int t = 0; t < 3; ++t) gradient_[i + t] -= w[t] * slope;
 
-    const CellRows& rows = rows_[i];
+    CellRows& rows = rows_[i];
     Pack m00 = Pack::Zero(), m11 = m00, m22 = m00, m01 = m00, m12 = m00, m02 = m00;
     Pack pull0 = m00, pull1 = m00, pull2 = m00, gap = m00, residual = m00;
     for (int p = 0; p < packs_; ++p) {
       const Pack &a0 = rows.a0[p], &a1 = rows.a1[p], &a2 = rows.a2[p];
       const Pack &s = rows.slack[p], &l = rows.lambda[p];
-      const Pack weight = l / s;
+      const Pack per_slack = 1 / s;
+      const Pack weight = l * per_slack;
       const Pack w0 = weight * a0, w1 = weight * a1;
       m00 += w0 * a0;
       m01 += w0 * a1;
@@ -168,8 +169,10 @@ bool JerkStep::assemble() noexcept {
       pull1 += l * a1;
       pull2 += l * a2;
       gap += l * s;
-      residual =
-          residual.max((a0 * c_[i] + a1 * c_[i + 1] + a2 * c_[i + 2] + s - rows.limit[p]).abs());
+      const Pack off = a0 * c_[i] + a1 * c_[i + 1] + a2 * c_[i + 2] + s - rows.limit[p];
+      residual = residual.max(off.abs());
+      rows.residual[p] = off;
+      rows.inverse[p] = per_slack;
     }
     diagonal_[i] += m00.sum() + curvature * w[0] * w[0];
     diagonal_[i + 1] += m11.sum() + curvature * w[1] * w[1];
@@ -222,17 +225,16 @@ void JerkStep::substitute() noexcept {
 
 void JerkStep::find_step(double centre, bool is_corrector) noexcept {
   const double second_order = is_corrector ? 1 : 0;
+  // What slack times multiplier shall become, over the slack.
+  const auto aim = [&](const CellRows& rows, int p) -> Pack {
+    return (centre - second_order * (rows.step_slack[p] * rows.step_lambda[p])) * rows.inverse[p];
+  };
   std::copy(gradient_.begin(), gradient_.begin() + cells_ + 2, step_.begin());
   for (int i = 0; i < cells_; ++i) {
     const CellRows& rows = rows_[i];
     Pack sum0 = Pack::Zero(), sum1 = sum0, sum2 = sum0;
     for (int p = 0; p < packs_; ++p) {
-      const Pack &s = rows.slack[p], &l = rows.lambda[p];
-      const Pack residual =
-          rows.a0[p] * c_[i] + rows.a1[p] * c_[i + 1] + rows.a2[p] * c_[i + 2] + s - rows.limit[p];
-      const Pack product =
-          l * s - centre + second_order * (rows.step_slack[p] * rows.step_lambda[p]);
-      const Pack t = l + (l * residual - product) / s;
+      const Pack t = rows.lambda[p] * rows.inverse[p] * rows.residual[p] + aim(rows, p);
       sum0 += rows.a0[p] * t;
       sum1 += rows.a1[p] * t;
       sum2 += rows.a2[p] * t;
@@ -242,25 +244,23 @@ void JerkStep::find_step(double centre, bool is_corrector) noexcept {
     step_[i + 2] -= sum2.sum();
   }
   substitute();
-  Pack primal = Pack::Constant(1.0), dual = primal;
+  Pack primal = Pack::Constant(kToTheWall), dual = primal;
   for (int i = 0; i < cells_; ++i) {
     CellRows& rows = rows_[i];
     for (int p = 0; p < packs_; ++p) {
-      const Pack &a0 = rows.a0[p], &a1 = rows.a1[p], &a2 = rows.a2[p];
-      const Pack &s = rows.slack[p], &l = rows.lambda[p];
-      const Pack residual = a0 * c_[i] + a1 * c_[i + 1] + a2 * c_[i + 2] + s - rows.limit[p];
-      const Pack product =
-          l * s - centre + second_order * (rows.step_slack[p] * rows.step_lambda[p]);
-      const Pack ds = -residual - (a0 * step_[i] + a1 * step_[i + 1] + a2 * step_[i + 2]);
-      const Pack dl = -(product + l * ds) / s;
+      const Pack &l = rows.lambda[p], &inverse = rows.inverse[p];
+      const Pack ds = -rows.residual[p] - (rows.a0[p] * step_[i] + rows.a1[p] * step_[i + 1] +
+                                           rows.a2[p] * step_[i + 2]);
+      const Pack share = ds * inverse;
+      const Pack dl = aim(rows, p) - l - l * share;
       rows.step_slack[p] = ds;
       rows.step_lambda[p] = dl;
-      primal = primal.max(-ds / s * (1 / kToTheWall));
-      dual = dual.max(-dl / l * (1 / kToTheWall));
+      primal = primal.max(-share);
+      dual = dual.max(-dl / l);
     }
   }
-  step_primal_ = 1 / primal.maxCoeff();
-  step_dual_ = 1 / dual.maxCoeff();
+  step_primal_ = kToTheWall / primal.maxCoeff();
+  step_dual_ = kToTheWall / dual.maxCoeff();
 }
 
 double JerkStep::gap_after_step() const noexcept {

@@ -66,6 +66,7 @@ class JerkStep {
   /// Rows a·c <= limit of one cell with their slacks and multipliers, four at a time.
   struct CellRows {
     std::array<Pack, kPacks> a0, a1, a2, limit, slack, lambda, step_slack, step_lambda;
+    std::array<Pack, kPacks> residual, inverse;  ///< a·c + slack - limit, and 1/slack
   };
   /// One row while it is being filled in.
   using Coefficients = std::array<double, 3>;
