@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Seeded programs that look for trouble, run smoothly through planner, port and cycle while an
+/// operator turns the override, holds and resumes, blocks come late and drives fault: every limit,
+/// the feed and the tolerances, by the setpoints alone. CI runs a few; all of them:
+///
+///     MERIDIAN_SWEEP_PROGRAMS=2000 rt_motion_test --gtest_filter='SmoothSweep*'
+///
+/// MERIDIAN_SWEEP_SEED is the first seed (1).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "property/path/hostile_path.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "property/rt/operated_run.hpp"
+#include "support/draws.hpp"
+
+namespace meridian::test {
+namespace {
+
+using SmoothRunning = PlannedRun<SmoothPlanner>;
+
+constexpr double kLimit = 1 + 1e-6;
+constexpr double kFeedLimit = 1.0001;
+constexpr double kMostSeconds = 4;  // of motion per program
+constexpr int kPrograms = 24;
+
+std::uint32_t number_of(const char* name, std::uint32_t otherwise) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? otherwise : static_cast<std::uint32_t>(std::atoi(text));
+}
+
+double rounded(double x, double to) { return std::round(x / to) * to; }
+
+/// Corners, reversals, blocks of 0.0001 mm and less; every third program about the pole, at 0 to 5
+/// deg; every fourth as a CAM system rounds it; one feed of 1 to 60 000 mm/min.
+std::vector<ClBlock> draw_blocks(RandomPrograms& random, std::uint32_t seed, int sections) {
+  const bool is_at_pole = seed % 3 == 0, is_rounded = seed % 4 == 1;
+  HostilePath path = is_at_pole ? HostilePath(seed, 0, units::rad_from_deg(5)) : HostilePath(seed);
+  auto blocks = path.make_program(sections);
+  const double feed = random.log_uniform(1.0 / 60, 1000);
+  for (ClBlock& block : blocks) {
+    block.feed = feed;
+    if (!is_rounded) continue;
+    for (double& x : block.tip_mm) x = rounded(x, 1e-3);
+    for (double& x : block.axis) x = rounded(x, 1e-5);
+    if (is_motion(block.kind)) block.axis = to_array(to_vector(block.axis).normalized());
+  }
+  return blocks;
+}
+
+struct Sweep {
+  LimitShares worst, worst_fault;
+  double feed = 0, off = 0, seconds = 0;
+  int programs = 0, refused = 0, faults = 0, bad = 0;
+  std::uint64_t dry = 0;
+  Operator random_operator{.least_override = 0, .turns_rapids = true};
+};
+
+/// Runs with blocks that come late, as far as `most_s` of motion.
+double operate_late(SmoothRunning& run, RandomPrograms& random, double most_s) {
+  double t = 0;
+  run.most_blocks = 1;
+  for (; t < most_s && !run.is_over(); t += run.world.dt()) {
+    if (random.chance(0.004)) {
+      run.run();
+    } else {
+      run.run_unplanned();
+    }
+  }
+  return t;
+}
+
+/// Largest tip speed of cuts over the feed, and distance from the programmed path in tolerances.
+void judge_path(const MachineModel& machine, const std::vector<ClBlock>& blocks,
+                const SmoothRunning& run, Sweep& sweep, double& feed, double& off) {
+  const auto ways = programmed_ways(blocks);
+  const auto& records = run.world.records;
+  const double limit = std::min(blocks.front().feed, machine.max_feed_mm_per_s);
+  std::size_t count = 0;
+  Vector3 last = Vector3::Zero();
+  std::uint64_t last_cycle = 0;
+  for_each_cut(machine, records, 0, 1, [&](const CycleRecord& record, const ToolPose& pose) {
+    if (record.setpoint.cycle == last_cycle + 1 && record.motion == MotionKind::kCut) {
+      constexpr double kRounding_mm = 1e-11;
+      feed = std::max(feed, ((pose.tip - last).norm() - kRounding_mm) / run.world.dt() / limit);
+    }
+    last = pose.tip;
+    last_cycle = record.motion == MotionKind::kCut ? record.setpoint.cycle : 0;
+    if (++count % 61 != 0) return;
+    off = std::max(off, distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
+                                      machine.tolerances.axis_rad));
+  });
+  sweep.feed = std::max(sweep.feed, feed);
+  sweep.off = std::max(sweep.off, off);
+}
+
+void run_program(std::uint32_t seed, Sweep& sweep) {
+  RandomPrograms random(seed);
+  MachineModel machine = seed % 2 == 0 ? bench_machine() : lai_machine();
+  machine.transition = Transition::kSmooth;
+  machine.starve_auto_resume_s = 100;
+  const bool comes_late = random.chance(0.3);
+  const auto blocks = draw_blocks(random, seed, comes_late ? 16 : 4);
+  SmoothRunning run(machine, blocks, joints_of(machine, blocks[0]),
+                    comes_late ? blocks.size() / 3 : blocks.size());
+  ++sweep.programs;
+  if (!run.is_started()) {
+    ++sweep.refused;
+    return;
+  }
+  sweep.seconds += comes_late ? operate_late(run, random, 2 * kMostSeconds)
+                              : sweep.random_operator.operate(run, random, kMostSeconds);
+  if (run.world.now() == State::kHeld) run.command(Verb::kResume);
+  LimitShares shares = shares_of_limits(run.world, 0, false);
+  double feed = 0, off = 0;
+  judge_path(machine, blocks, run, sweep, feed, off);
+  sweep.worst.take(shares);
+  sweep.dry += run.world.state.starvations;
+  bool is_bad = std::max({shares.v, shares.a, shares.j}) > kLimit || feed > kFeedLimit ||
+                off > kLimit || run.world.count(EventCode::kAlarm) != 0;
+  const std::size_t first = run.world.records.size();
+  if (run_into_fault(run, random.uniform(0, 0.5)) && run.world.run_until(State::kFault, 10)) {
+    const LimitShares by_fault = shares_of_limits(run.world, first, true);
+    sweep.worst_fault.take(by_fault);
+    is_bad = is_bad || std::max({by_fault.v, by_fault.a, by_fault.j}) > kLimit;
+    ++sweep.faults;
+  }
+  if (!is_bad) return;
+  ++sweep.bad;
+  ADD_FAILURE() << "seed " << seed << ": v " << shares.v << " a " << shares.a << " j " << shares.j
+                << " feed " << feed << " tolerances " << off << ", FaultStops so far v "
+                << sweep.worst_fault.v << " a " << sweep.worst_fault.a << " j "
+                << sweep.worst_fault.j << ", alarms " << run.world.count(EventCode::kAlarm);
+}
+
+TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
+  const std::uint32_t first = number_of("MERIDIAN_SWEEP_SEED", 1);
+  const std::uint32_t programs =
+      number_of("MERIDIAN_SWEEP_PROGRAMS", static_cast<std::uint32_t>(draws(kPrograms)));
+  Sweep sweep;
+  for (std::uint32_t seed = first; seed < first + programs; ++seed) run_program(seed, sweep);
+  std::printf(
+      "%d programs (%d refused), %.0f s, %d holds, %llu times dry, %d FaultStops: v %.6f a %.6f j "
+      "%.6f feed %.6f of the limits, %.4f tolerances; FaultStops v %.4f a %.4f j %.4f; %d bad\n",
+      sweep.programs, sweep.refused, sweep.seconds, sweep.random_operator.holds,
+      static_cast<unsigned long long>(sweep.dry), sweep.faults, sweep.worst.v, sweep.worst.a,
+      sweep.worst.j, sweep.feed, sweep.off, sweep.worst_fault.v, sweep.worst_fault.a,
+      sweep.worst_fault.j, sweep.bad);
+  EXPECT_LT(sweep.refused, sweep.programs / 4 + 1);
+  EXPECT_GT(sweep.seconds, sweep.programs);
+}
+
+}  // namespace
+}  // namespace meridian::test
