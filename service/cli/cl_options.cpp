@@ -52,6 +52,21 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
       ->check(CLI::PositiveNumber);
 }
 
+void add_join_options(CLI::App& command, JoinOptions& options) {
+  command
+      .add_option("--transition", options.transition,
+                  "Instead of the machine file's: smooth (on through blocks) or exact_stop")
+      ->check(CLI::IsMember({"smooth", "exact_stop"}));
+  command
+      .add_option("--tip-tolerance-mm", options.tip_tolerance_mm,
+                  "Of smoothing, instead of the machine file's")
+      ->check(CLI::Range(1e-6, 10.0));
+  command
+      .add_option("--axis-tolerance-deg", options.axis_tolerance_deg,
+                  "Of smoothing, instead of the machine file's")
+      ->check(CLI::Range(1e-6, 10.0));
+}
+
 void add_frame_option(CLI::App& command, ClFileOptions& options) {
   command.add_option("--frame", options.frame,
                      "Workpiece frame x,y,z[,a,b,c] in mm and deg (Rz(c) Ry(b) Rx(a)): poses are "

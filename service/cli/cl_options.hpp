@@ -36,6 +36,15 @@ void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& w
 /// Adds --units, --feed, --allow-unknown, --allow-no-end, --arc-sense and --from-line to `command`.
 void add_cl_file_options(CLI::App& command, ClFileOptions& options);
 
+/// How the cuts of a program join, where not as the machine's file says.
+struct JoinOptions {
+  std::string transition;       ///< "": the machine's
+  double tip_tolerance_mm = 0;  ///< 0: the machine's
+  double axis_tolerance_deg = 0;
+};
+/// Adds --transition, --tip-tolerance-mm and --axis-tolerance-deg.
+void add_join_options(CLI::App& command, JoinOptions& options);
+
 /// Adds --frame, for commands that put out points in the frame of the kinematics.
 void add_frame_option(CLI::App& command, ClFileOptions& options);
 

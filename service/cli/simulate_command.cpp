@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/machine_options.hpp"
@@ -20,11 +21,12 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string file, record, events, start_from, auxiliary = "ignore", transition, pole_policy;
+  std::string file, record, events, start_from, auxiliary = "ignore", pole_policy;
   std::string explain_table, picture;
   double override_ramp_s = 0;
   bool stops_at_optional = false, is_explained = false;
   MachineOptions machine;
+  JoinOptions join;
   ClFileOptions cl;
 };
 
@@ -108,8 +110,12 @@ int exit_code_of(simulate::Outcome outcome) {
 
 int run(const Options& options) {
   MachineModel model = load_machine(options.machine);
-  if (options.transition == "smooth") model.transition = Transition::kSmooth;
-  if (options.transition == "exact_stop") model.transition = Transition::kExactStop;
+  if (options.join.transition == "smooth") model.transition = Transition::kSmooth;
+  if (options.join.transition == "exact_stop") model.transition = Transition::kExactStop;
+  if (options.join.tip_tolerance_mm > 0) model.tolerances.tip_mm = options.join.tip_tolerance_mm;
+  if (options.join.axis_tolerance_deg > 0) {
+    model.tolerances.axis_rad = units::rad_from_deg(options.join.axis_tolerance_deg);
+  }
   if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
   if (options.pole_policy == "exact") model.pole_policy = PolePolicy::kExact;
   if (options.override_ramp_s > 0) model.override_ramp_s = options.override_ramp_s;
@@ -184,10 +190,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
                    "Action words: ignore (done at once), refuse (as a service without action peer)")
       ->check(CLI::IsMember({"ignore", "refuse"}))
       ->capture_default_str();
-  command
-      ->add_option("--transition", options->transition,
-                   "Instead of the machine file's: smooth (on through blocks) or exact_stop")
-      ->check(CLI::IsMember({"smooth", "exact_stop"}));
+  add_join_options(*command, options->join);
   command
       ->add_option("--pole-policy", options->pole_policy,
                    "Instead of the machine file's: ease (inside the axis tolerance) or exact")

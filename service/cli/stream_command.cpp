@@ -24,6 +24,7 @@ namespace {
 struct StreamCommandOptions {
   PeerOptions peer;
   ClFileOptions file;
+  JoinOptions join;
   stream::StreamOptions stream;
   std::string machine_file, tool_file;
   bool has_no_preflight = false;
@@ -91,6 +92,10 @@ bool pass_preflight(StreamCommandOptions& options,
 
 int run_stream_command(StreamCommandOptions& options) {
   options.stream.reader = reader_options(options.file);
+  options.stream.tip_tolerance_mm = options.join.tip_tolerance_mm;
+  options.stream.axis_tolerance_rad = units::rad_from_deg(options.join.axis_tolerance_deg);
+  if (options.join.transition == "smooth") options.stream.policies = dds::kPolicySmooth;
+  if (options.join.transition == "exact_stop") options.stream.policies = dds::kPolicyExactStop;
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
@@ -144,6 +149,7 @@ void add_stream_command(CLI::App& app, int& exit_code) {
   command->add_option("--station", options->stream.station, "Name of this station, for messages")
       ->capture_default_str();
   add_cl_file_options(*command, options->file);
+  add_join_options(*command, options->join);
   add_frame_option(*command, options->file);
   add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run_stream_command(*options); });

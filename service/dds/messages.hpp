@@ -35,6 +35,8 @@ enum class SessionRequestKind : std::uint8_t { kOpen, kClose };
 
 enum SessionPolicy : std::uint32_t {
   kPolicyContainsActions = 1,  ///< the program has auxiliary, tool or stop blocks
+  kPolicyExactStop = 2,        ///< rest at the end of every block, whatever the machine's file says
+  kPolicySmooth = 4,           ///< on through blocks, whatever it says; not with kPolicyExactStop
 };
 
 /// `cl_session`: a station asks for the machine, or gives it back.

@@ -13,6 +13,16 @@ constexpr std::int64_t kLookForStation_ns = 200'000'000;
 /// A station that asks late still finds its last verdict.
 constexpr std::int64_t kKeepVerdict_ns = 30 * kSecond_ns;
 
+/// What a session asks the planner for.
+SmoothSettings settings_of(const dds::SessionRequest& request) {
+  SmoothSettings settings;
+  if ((request.policies & dds::kPolicyExactStop) != 0) settings.transition = Transition::kExactStop;
+  if ((request.policies & dds::kPolicySmooth) != 0) settings.transition = Transition::kSmooth;
+  settings.tip_tolerance_mm = request.tip_tolerance_mm;
+  settings.axis_tolerance_rad = request.axis_tolerance_rad;
+  return settings;
+}
+
 }  // namespace
 
 Intake::Intake(dds::Participant& participant, const MachineModel& model,
@@ -134,9 +144,10 @@ void Intake::take_batches() {
 /// session ends, with a message, at the block before the first that was lost.
 bool Intake::push(const stream::Accepted& accepted) {
   if (accepted.count == 0) return true;
+  const SmoothSettings settings = settings_of(judge_.request());
   std::size_t count = 0;
   while (count < accepted.count &&
-         ports_.blocks.stage({judge_.session(), accepted.blocks[count]})) {
+         ports_.blocks.stage({judge_.session(), accepted.blocks[count], settings})) {
     ++count;
   }
   pushed_ += count;

@@ -34,7 +34,7 @@ bool PlannerThread::work() noexcept {
     const CycleView& view = queue_.view();
     if (view.record.state != State::kReady) return false;
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
-                   view.epoch);
+                   view.epoch, look.front->settings);
     published_before_s_ = writer_.published_s();
     has_begun_ = true;
   }

@@ -8,6 +8,7 @@
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/latest_value.hpp"
@@ -23,10 +24,11 @@
 ///       └──────────session_events── commands ──┘        └─views─▶ planner, commands, telemetry
 namespace meridian::interpolator {
 
-/// A block with the session that it belongs to.
+/// A block with the session that it belongs to, and how that session wants its cuts joined.
 struct QueuedBlock {
   std::uint64_t session = 0;
   ClBlock block;
+  SmoothSettings settings{};
 };
 
 /// An action block that was planned: what to publish when the cycle comes to it.

@@ -22,7 +22,12 @@ std::string in_hex(std::uint64_t value) {
 
 bool is_tolerance(double value) { return std::isfinite(value) && value >= 0; }
 
-/// Whether the tolerances of `request` are none, or tighter than the machine's.
+bool contradicts_itself(const dds::SessionRequest& request) {
+  constexpr std::uint32_t kBoth = dds::kPolicyExactStop | dds::kPolicySmooth;
+  return (request.policies & kBoth) == kBoth;
+}
+
+/// Whether the tolerances of `request` are none or some.
 bool has_sane_tolerances(const dds::SessionRequest& request) {
   return is_tolerance(request.tip_tolerance_mm) && is_tolerance(request.axis_tolerance_rad);
 }
@@ -63,6 +68,10 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
   if (!has_sane_tolerances(request)) {
     return refused(Verdict::kRefusedProgram,
                    "tolerances of the program are negative or no numbers");
+  }
+  if (contradicts_itself(request)) {
+    return refused(Verdict::kRefusedProgram,
+                   "the program asks for exact stop and for smooth transitions");
   }
   if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
       !around.actions.is_ignored) {

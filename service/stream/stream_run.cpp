@@ -33,9 +33,12 @@ dds::SessionRequest request_of(const StreamOptions& options) {
   request.session = draw_id();
   request.station = options.station;
   request.program = is_pipe(options) ? kStandardInput : file_name(options.file);
+  request.tip_tolerance_mm = options.tip_tolerance_mm;
+  request.axis_tolerance_rad = options.axis_tolerance_rad;
+  request.policies = options.policies;
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
-    if (options.preflight->contains_actions) request.policies = dds::kPolicyContainsActions;
+    if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;
   }
   return request;
 }

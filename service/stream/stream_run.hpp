@@ -20,6 +20,9 @@ struct StreamOptions {
   cl::ClReaderOptions reader;
   std::optional<PreflightReport> preflight;  ///< nothing: not done
   bool is_waiting_for_end = false;           ///< until the machine ran the program
+  double tip_tolerance_mm = 0;               ///< 0: the machine's
+  double axis_tolerance_rad = 0;             ///< 0: the machine's
+  std::uint32_t policies = 0;                ///< dds::SessionPolicy, beside what the file says
 };
 
 enum class StreamEnd : std::uint8_t {

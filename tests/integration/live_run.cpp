@@ -55,9 +55,10 @@ void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
   plant.start_service(live.service);
   plant.start_drives();
   ASSERT_TRUE(plant.enable()) << plant.service().said();
-  Process station(joined({"meridian", "stream", part, "--domain", plant.domain(), "--machine-name",
-                          live.machine, "--wait-end"},
-                         live.reader),
+  Process station(joined(joined({"meridian", "stream", part, "--domain", plant.domain(),
+                                 "--machine-name", live.machine, "--wait-end"},
+                                live.reader),
+                         live.station),
                   plant.folder() / "station.log");
   ASSERT_TRUE(plant.wait_for(State::kLoaded)) << station.said();
   const auto record = live.wire.empty() ? nullptr : listen(plant, live);

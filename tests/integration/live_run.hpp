@@ -16,6 +16,7 @@ struct LiveRun {
   std::string machine = "lai";          ///< one of deploy/machines, that of the plant
   std::vector<std::string> service;     ///< meridiand
   std::vector<std::string> reader;      ///< how the part is read: stream, simulate and check
+  std::vector<std::string> station;     ///< stream
   std::vector<std::string> simulate;    ///< machine and workpiece: simulate and check
   std::function<void()> operate;        ///< instead of a plain start
   std::function<void()> watch = [] {};  ///< called again and again while the part is cut

@@ -23,6 +23,24 @@ TEST(Live, EqualsTheSimulationBitForBitOnEveryCycleThatWasSent) {
   expect_on_wire(plant, live);
 }
 
+/// A session that asks for what the machine's file does not have: on through blocks, other
+/// tolerances. Corners are rounded and the pole is passed; a dwell and an action part the runs.
+TEST(Live, RunsOnThroughBlocksAsItsSessionAsksAndEqualsTheSimulation) {
+  Plant plant;
+  const std::string part = (plant.folder() / "part.cls").string();
+  write_cl_file(part, 24);
+  LiveRun live;
+  live.reader = {"--tip-tolerance-mm", "0.02", "--axis-tolerance-deg", "0.2"};
+  live.station = {"--transition", "smooth"};
+  const std::string simulated = simulate_part(plant, part, live, live.station);
+  ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated, live));
+  expect_checked(plant, part, live);
+  const auto smooth_size = std::filesystem::file_size(simulated);
+  EXPECT_LT(smooth_size, std::filesystem::file_size(simulate_part(plant, part, live)))
+      << "it stopped at every block";
+}
+
 /// The shortest file of the corpus takes nearly three minutes: for whoever asks for it.
 TEST(Live, CutsAWholeFileOfTheCorpusAsTheSimulationDoes) {
   const char* const name = std::getenv("MERIDIAN_LIVE_CORPUS");

@@ -102,6 +102,33 @@ TEST(SmoothMotion, HoldsWherePlansKeepNothingForTheOverride) {
   EXPECT_GT(worst.j, 0.9) << "the reserve was kept";
 }
 
+TEST(SmoothMotion, FaultStopsWherePlansKeepNothingForTheOverride) {
+  LimitShares worst;
+  double longest = 0;
+  int stops = 0;
+  for (std::uint32_t n = 0; n < 10; ++n) {
+    SCOPED_TRACE(testing::Message() << "stop " << n);
+    test::RandomPrograms random(7100 + n);
+    MachineModel machine = test::bench_machine();
+    machine.transition = Transition::kSmooth;
+    machine.override_ramp_s = 1000;
+    const auto blocks = hostile(1 + n % 6);
+    SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
+    ASSERT_TRUE(run.is_started());
+    if (!test::run_into_fault(run, random.uniform(0.2, 3))) continue;
+    const std::size_t first = run.world.records.size();
+    ASSERT_TRUE(run.world.run_until(State::kFault, 10));
+    ++stops;
+    longest =
+        std::max(longest, static_cast<double>(run.world.records.size() - first) * run.world.dt());
+    test::expect_within_limits(run.world, first, true, worst);
+  }
+  std::printf("%d FaultStops, the longest %.3f s; worst v %.6f a %.6f j %.6f\n", stops, longest,
+              worst.v, worst.a, worst.j);
+  EXPECT_GT(stops, 6);
+  EXPECT_LT(longest, 0.5);
+}
+
 TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
   LimitShares worst;
   std::uint64_t dry = 0;

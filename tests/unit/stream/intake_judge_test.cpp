@@ -289,6 +289,14 @@ TEST_F(Intake, AProgramWithActionsIsRefusedWithoutTheirPeer) {
   EXPECT_NE(answer.text.find("auxiliary = \"ignore\""), std::string::npos);
 }
 
+TEST_F(Intake, AProgramThatWantsBothTransitionsIsRefused) {
+  dds::SessionRequest request = open_request();
+  request.policies = dds::kPolicyExactStop | dds::kPolicySmooth;
+  EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kRefusedProgram);
+  request.policies = dds::kPolicySmooth;
+  EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kGood);
+}
+
 TEST_F(Intake, ThePlannersVerdictEndsTheSessionWithTheSameWords) {
   static_cast<void>(open());
   static_cast<void>(send(good_batch(kSession, 0, 10)));
