@@ -83,6 +83,8 @@ class Thread {
   /// StartError where the thread cannot be made.
   Thread(const Realtime& realtime, const ThreadPlan& plan, std::function<void()> body);
   ~Thread() { join(); }
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
   Thread(Thread&& other) noexcept;
   Thread& operator=(Thread&& other) noexcept;
 
