@@ -140,11 +140,14 @@ void Supervisor::take_events() {
       case EventCode::kStateChanged:
         told_state_ = static_cast<State>(event.a);
         break;
+      case EventCode::kAlarm:
+        // Asked again after a resume: what was answered to this time is no answer to that.
+        if (static_cast<Alarm>(event.a) == Alarm::kActionFailed) close_action();
+        break;
       case EventCode::kProgramEnd:
       case EventCode::kEpochAdvanced:
-        is_action_open_ = false;
+        close_action();
         action_ = {};
-        ports_.action_answer.store({});
         // Nothing was planned while the drives were off: what waits in the queue stays good.
         event.b =
             event.code == EventCode::kEpochAdvanced && told_state_ == State::kEnabling ? 1 : 0;
@@ -218,6 +221,11 @@ void Supervisor::take_actions_done() {
     if (!is_action_open_ || done.service_id != service_id_ || done.id != action_id_) continue;
     settle_action(done.is_done);
   }
+}
+
+void Supervisor::close_action() {
+  is_action_open_ = false;
+  ports_.action_answer.store({});
 }
 
 void Supervisor::settle_action(bool is_done) {

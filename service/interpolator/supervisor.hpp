@@ -59,6 +59,8 @@ class Supervisor {
   void publish_action(const Event& event);
   void take_actions_done();
   void settle_action(bool is_done);
+  /// Nobody is waited for; what was answered is forgotten.
+  void close_action();
   void send_delayed_reset();
   void work_on_switching_off();
   void look_for_action_peer();

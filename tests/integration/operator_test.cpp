@@ -136,7 +136,7 @@ TEST_F(Operator, SetsTheOverrideAndJointLimitsWin) {
 TEST_F(Operator, AbortsAProgramAndItsSessionWithIt) {
   load(small_program(40, 500));
   say(Verb::kStart);
-  ASSERT_TRUE(plant.wait_for(State::kRunning));
+  ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.service().said();
   say(Verb::kAbort);
   ASSERT_TRUE(plant.wait_for(State::kReady));
   EXPECT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(3000)));
