@@ -201,6 +201,17 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
   return true;
 }
 
+/// On the pole the free joint is held where it came from: it is followed there, as the cycle does,
+/// which rests where the last of its places led.
+JointVector SmoothRun::joints_at_end(const PathPiece& piece) const noexcept {
+  JointVector joints = piece.joints_begin;
+  for (double left = 0.1; left > 1e-7; left *= 0.1) {
+    const auto near_end = joints_at(model_, piece, (1 - left) * piece.length, joints);
+    if (near_end.status != SolveStatus::kUnreachable) joints = near_end.q;
+  }
+  return joints_at(model_, piece, piece.length, joints).q;
+}
+
 bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
   for (; staged_spans_ < until; ++staged_spans_) {
     const JointSpan& span = spans_[static_cast<std::int64_t>(staged_spans_)];
@@ -209,7 +220,7 @@ bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept 
     piece.epoch = start_.epoch;
     piece.tool_length_mm = start_.tool_length_mm;
     piece.joints_begin = joints_at(model_, piece, 0.0, span_joints_).q;
-    piece.joints_end = joints_at(model_, piece, piece.length, piece.joints_begin).q;
+    piece.joints_end = joints_at_end(piece);
     span_joints_ = piece.joints_end;
     if (!writer.stage(piece)) return false;
   }

@@ -86,6 +86,7 @@ class SmoothRun {
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(const MotionWriter& writer) noexcept;
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;
+  [[nodiscard]] JointVector joints_at_end(const PathPiece& piece) const noexcept;
   [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;
   [[nodiscard]] bool stage_piece(MotionWriter& writer, const FeedPiece& piece,
                                  bool is_tail) noexcept;

@@ -140,6 +140,13 @@ void run_program(std::uint32_t seed, Sweep& sweep) {
                 << sweep.worst_fault.j << ", alarms " << run.world.count(EventCode::kAlarm);
 }
 
+/// Programs that rest exactly on the pole where the run before came from its side.
+TEST(SmoothSweep, GoesOnFromARestOnThePoleWithoutAStepOfC) {
+  Sweep sweep;
+  for (const std::uint32_t seed : {573U, 1551U}) run_program(seed, sweep);
+  EXPECT_EQ(sweep.refused, 0);
+}
+
 TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
   const std::uint32_t first = number_of("MERIDIAN_SWEEP_SEED", 1);
   const std::uint32_t programs =
