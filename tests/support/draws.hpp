@@ -13,4 +13,7 @@ namespace meridian::test {
 #endif
 }
 
+/// Whether times mean anything: not in a build that a sanitizer slows down.
+inline constexpr bool kIsTimed = draws(8) == 8;
+
 }  // namespace meridian::test
