@@ -145,7 +145,9 @@ TEST(SmoothThroughput, ABlockCostsTheSameAtTheEndOfALongProgram) {
         density.step_mm, density.feed_mm_per_s, blocks, 1e6 * cpu / (0.9 * blocks),
         last.per_block() / first.per_block(), 0.9 * blocks / cpu, motion / cpu,
         resident_mib() - memory);
-    if (kIsTimed) EXPECT_LT(last.per_block(), 2.5 * first.per_block());
+    if (kIsTimed) {
+      EXPECT_LT(last.per_block(), 2.5 * first.per_block());
+    }
     EXPECT_LT(resident_mib() - memory, 2);
   }
 }
