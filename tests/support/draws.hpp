@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdlib>
+
 namespace meridian::test {
 
 /// How many of `all` draws of a property test are made. Sanitizers make a program run ten times as
@@ -11,6 +13,13 @@ namespace meridian::test {
 #else
   return all;
 #endif
+}
+
+/// What a longer run is told by the environment, which anyone may start: a seed, a count.
+template <class Number>
+[[nodiscard]] Number number_of(const char* name, Number otherwise) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? otherwise : static_cast<Number>(std::strtoull(text, nullptr, 10));
 }
 
 /// Whether times mean anything: not in a build that a sanitizer slows down.

@@ -24,9 +24,6 @@ class FeedAuthority {
  public:
   explicit FeedAuthority(const MachineModel& model) noexcept;
 
-  /// Forgets what pieces before got: a run's stops do not depend on what ran before it.
-  void restart() noexcept { hold_.last = fault_.last = {}; }
-
   /// The pieces to come lie in cells of `grid` before `rest_cell`, where the plan rests.
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 

@@ -40,7 +40,6 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
                    pole_tolerance_rad, start.is_on_pole});
   feed_.begin(start.joints, start.branch, start.tool_length_mm);
-  authority_.restart();
   spans_.clear();
   staged_spans_ = 0;
   span_joints_ = start.joints;

@@ -24,17 +24,7 @@ namespace {
 
 constexpr double kLimit = 1 + 1e-6;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kPrograms = 1;
-#else
-constexpr int kPrograms = 6;
-#endif
-
-/// First seed or number of programs of a longer run, which anyone may start.
-int number_of(const char* name, int otherwise) {
-  const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : std::atoi(text);
-}
+constexpr int kPrograms = draws(6);
 
 std::vector<ClBlock> hostile(std::uint32_t seed) {
   auto blocks = HostilePath(seed).make_program(6);

@@ -69,6 +69,14 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
   EXPECT_LE(worst_off, 1 + 1e-6);
 }
 
+/// Plans have all of the limits: the override is left next to nothing.
+MachineModel without_reserve() {
+  MachineModel machine = test::bench_machine();
+  machine.transition = Transition::kSmooth;
+  machine.override_ramp_s = 1000;
+  return machine;
+}
+
 /// A plan with all of the limits in it leaves the rate next to no room. A hold then stops where the
 /// plan gives it authority, at the latest at the plan's next rest.
 TEST(SmoothMotion, HoldsWherePlansKeepNothingForTheOverride) {
@@ -78,9 +86,7 @@ TEST(SmoothMotion, HoldsWherePlansKeepNothingForTheOverride) {
   for (std::uint32_t n = 0; n < 16; ++n) {
     SCOPED_TRACE(testing::Message() << "hold " << n);
     test::RandomPrograms random(7000 + n);
-    MachineModel machine = test::bench_machine();
-    machine.transition = Transition::kSmooth;
-    machine.override_ramp_s = 1000;
+    const MachineModel machine = without_reserve();
     const auto blocks = hostile(1 + n % 6);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started());
@@ -109,9 +115,7 @@ TEST(SmoothMotion, FaultStopsWherePlansKeepNothingForTheOverride) {
   for (std::uint32_t n = 0; n < 10; ++n) {
     SCOPED_TRACE(testing::Message() << "stop " << n);
     test::RandomPrograms random(7100 + n);
-    MachineModel machine = test::bench_machine();
-    machine.transition = Transition::kSmooth;
-    machine.override_ramp_s = 1000;
+    const MachineModel machine = without_reserve();
     const auto blocks = hostile(1 + n % 6);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started());

@@ -31,11 +31,6 @@ constexpr double kFeedLimit = 1.0001;
 constexpr double kMostSeconds = 4;  // of motion per program
 constexpr int kPrograms = 24;
 
-std::uint32_t number_of(const char* name, std::uint32_t otherwise) {
-  const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : static_cast<std::uint32_t>(std::atoi(text));
-}
-
 double rounded(double x, double to) { return std::round(x / to) * to; }
 
 /// Corners, reversals, blocks of 0.0001 mm and less; every third program about the pole, at 0 to 5

@@ -23,15 +23,9 @@ constexpr std::uint64_t kSeed = 20240620;
 constexpr int kPrograms = test::draws(60);  // or as many as MERIDIAN_HOLD_PROGRAMS says
 constexpr double kMostSeconds = 40;         // of motion per program
 
-/// First seed and number of programs: those of CI, or a longer run on other seeds.
-std::uint64_t number_of(const char* name, std::uint64_t otherwise) {
-  const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
-
 TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
-  const std::uint64_t seed = number_of("MERIDIAN_HOLD_SEED", kSeed + 1000);
-  const auto programs = static_cast<int>(number_of("MERIDIAN_HOLD_PROGRAMS", kPrograms));
+  const std::uint64_t seed = test::number_of("MERIDIAN_HOLD_SEED", kSeed + 1000);
+  const auto programs = static_cast<int>(test::number_of("MERIDIAN_HOLD_PROGRAMS", kPrograms));
   std::cout << "seed " << seed << "\n";
   const support::Budget budget = support::load_budget("stop_time");  // in cycles
   std::vector<double> ratios;
