@@ -60,7 +60,7 @@ TEST(ServiceFile, BridgesFiftyMillisecondsInBestEffort) {
   EXPECT_EQ(find_bridge_cycles(service, machine), 5);
 }
 
-struct Mistake {
+struct ServiceMistake {
   const char* text;
   int line;
   const char* key;
@@ -68,7 +68,7 @@ struct Mistake {
 };
 
 TEST(ServiceFile, ThatIsWrongIsRefusedWithLineAndKey) {
-  const Mistake mistakes[] = {
+  const ServiceMistake mistakes[] = {
       {"", 0, "service", "table"},
       {"[service]\n", 1, "service.machine", "text"},
       {"[service]\nmachine = 5\n", 2, "service.machine", "text"},
@@ -88,7 +88,7 @@ TEST(ServiceFile, ThatIsWrongIsRefusedWithLineAndKey) {
       {"[service]\nmachine = \"m\"\nmashine = \"m\"\n", 3, "service.mashine", "machine"},
       {"[service]\nmachine = \"m\"\n[dss]\ndomain = 1\n", 3, "dss", "dds"},
   };
-  for (const Mistake& mistake : mistakes) {
+  for (const ServiceMistake& mistake : mistakes) {
     const test::TextFile file(mistake.text);
     try {
       (void)load_service(file.path());

@@ -31,7 +31,7 @@ TEST(ToolFile, ThatIsShippedHasTheToolOfTheLaiMachine) {
   EXPECT_EQ(tools.find(1)->length_mm, lai.tool_length_mm);
 }
 
-struct Mistake {
+struct ToolMistake {
   const char* text;
   int line;
   const char* key;
@@ -39,7 +39,7 @@ struct Mistake {
 };
 
 TEST(ToolFile, ThatIsWrongIsRefusedWithLineAndKey) {
-  const Mistake mistakes[] = {
+  const ToolMistake mistakes[] = {
       {"[[tool]]\nnumber = 1\nlength_mm = -1\nradius_mm = 1\n", 3, "tool[0].length_mm",
        "0 to 10000"},
       {"[[tool]]\nnumber = 0\nlength_mm = 1\nradius_mm = 1\n", 2, "tool[0].number", "1 to"},
@@ -53,7 +53,7 @@ TEST(ToolFile, ThatIsWrongIsRefusedWithLineAndKey) {
       {"[tool]\nnumber = 1\n", 1, "tool", "array of tables"},
       {"[[tools]]\nnumber = 1\n", 1, "tools", "tool"},
   };
-  for (const Mistake& mistake : mistakes) {
+  for (const ToolMistake& mistake : mistakes) {
     const test::TextFile file(mistake.text);
     try {
       (void)load_tools(file.path());

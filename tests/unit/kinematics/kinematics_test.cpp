@@ -11,7 +11,6 @@
 namespace meridian {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTipTolerance_mm = 1e-12;  // reach 1e3 mm * eps = 2e-13
 constexpr double kAngleTolerance_rad = 1e-15;
 
@@ -26,7 +25,7 @@ TEST(Kinematics, PutsAVerticalToolUnderTheHead) {
 
 TEST(Kinematics, TiltsTheToolAboutTheSwivelAxis) {
   const MachineModel model = test::lai_machine();
-  const ToolPose pose = forward(model, 110, JointVector{0, 60, 0, 0, kPi / 6});
+  const ToolPose pose = forward(model, 110, JointVector{0, 60, 0, 0, std::numbers::pi / 6});
   EXPECT_NEAR(pose.tip[0], -250 * 0.5, kTipTolerance_mm);
   EXPECT_NEAR(pose.tip[1], 0, kTipTolerance_mm);
   EXPECT_NEAR(pose.axis[0], 0.5, kAngleTolerance_rad);
@@ -48,7 +47,7 @@ TEST(Kinematics, BranchesTiltOppositeWays) {
   EXPECT_EQ(b.status, SolveStatus::kOk);
   EXPECT_GT(a.q[4], 0);
   EXPECT_NEAR(b.q[4], -a.q[4], kAngleTolerance_rad);
-  EXPECT_NEAR(std::abs(b.q[3] - a.q[3]), kPi, kAngleTolerance_rad);
+  EXPECT_NEAR(std::abs(b.q[3] - a.q[3]), std::numbers::pi, kAngleTolerance_rad);
 }
 
 TEST(Kinematics, FollowsTheWindingOfTheReference) {
@@ -78,7 +77,7 @@ TEST(Kinematics, HoldsNothingJustOutsideThePole) {
   const ToolPose pose{{40, -30, 20}, {0, 1.01e-9, 1}};
   const auto s = solve(model, 110, pose, 0, JointVector{0, 0, 0, 1.1, 0});
   EXPECT_EQ(s.status, SolveStatus::kOk);
-  EXPECT_NEAR(s.q[3], kPi / 2, kAngleTolerance_rad);
+  EXPECT_NEAR(s.q[3], std::numbers::pi / 2, kAngleTolerance_rad);
   EXPECT_NEAR(s.q[4], 1.01e-9, 1e-24);
 }
 
@@ -86,7 +85,8 @@ TEST(Kinematics, TiltOnThePoleTakesTheSignThatFitsTheHeldJoint) {
   const MachineModel model = test::lai_machine();
   const ToolPose pose{{40, -30, 20}, {0.5e-9, 0, 1}};
   EXPECT_NEAR(solve(model, 110, pose, 0, JointVector{}).q[4], 0.5e-9, 1e-24);
-  EXPECT_NEAR(solve(model, 110, pose, 0, JointVector{0, 0, 0, kPi, 0}).q[4], -0.5e-9, 1e-24);
+  EXPECT_NEAR(solve(model, 110, pose, 0, JointVector{0, 0, 0, std::numbers::pi, 0}).q[4], -0.5e-9,
+              1e-24);
 }
 
 TEST(Kinematics, RefusesAPoseThatIsNotANumberOrHasNoAxis) {
@@ -139,7 +139,7 @@ TEST(Kinematics, TurnsTheWorkpieceFrameWithItsRotation) {
   model.frame_origin_mm = {100, 10, 5};
   const ToolPose pose{{7, 3, 2}, {0.6, 0, 0.8}};
   const auto s = solve(model, 110, pose, 0, JointVector{});
-  EXPECT_NEAR(s.q[3], kPi / 2, kAngleTolerance_rad);
+  EXPECT_NEAR(s.q[3], std::numbers::pi / 2, kAngleTolerance_rad);
   const ToolPose back = forward(model, 110, s.q);
   EXPECT_LT((back.tip - pose.tip).norm(), kTipTolerance_mm);
   EXPECT_LT((back.axis - pose.axis).norm(), kAngleTolerance_rad);

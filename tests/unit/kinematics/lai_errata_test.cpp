@@ -13,7 +13,6 @@
 namespace meridian {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTolerance_mm = 1e-10;
 constexpr LaiTable kTable{.b1 = 100, .a2 = 420, .a3 = 10, .l3 = 80, .l4 = 30, .b5 = 20, .l5 = 140};
 constexpr double kTool_mm = 110;
@@ -28,10 +27,12 @@ Eigen::Isometry3d link(double b, double theta, double a, double alpha, double l)
 /// Product of the table; `sign` -1 as corrected, +1 as printed.
 Eigen::Isometry3d product(const JointVector& q, double sign) {
   const auto [b3, b2, b4, theta1, theta2, unused] = q;
-  return link(-kTable.b1, theta1, 0, -kPi / 2, 0) * link(b2, -kPi / 2, kTable.a2, -kPi / 2, 0) *
-         link(b3, kPi / 2, kTable.a3, kPi / 2, kTable.l3) *
-         link(-b4, kPi / 2, 0, -kPi / 2, sign * kTable.l4) *
-         link(-kTable.b5, theta2, 0, kPi / 2, sign * kTable.l5) * link(0, 0, 0, 0, sign * kTool_mm);
+  return link(-kTable.b1, theta1, 0, -std::numbers::pi / 2, 0) *
+         link(b2, -std::numbers::pi / 2, kTable.a2, -std::numbers::pi / 2, 0) *
+         link(b3, std::numbers::pi / 2, kTable.a3, std::numbers::pi / 2, kTable.l3) *
+         link(-b4, std::numbers::pi / 2, 0, -std::numbers::pi / 2, sign * kTable.l4) *
+         link(-kTable.b5, theta2, 0, std::numbers::pi / 2, sign * kTable.l5) *
+         link(0, 0, 0, 0, sign * kTool_mm);
 }
 
 JointVector draw_joints(test::RandomPoses& draw) {
@@ -99,7 +100,7 @@ TEST(LaiErrata, PrintedArcCosineLosesSmallTilts) {
 }
 
 TEST(LaiErrata, TheHorizonIsRegularAndOnlyThePoleIsSingular) {
-  const JointVector horizon{120, -80, 30, 0.7, kPi / 2};
+  const JointVector horizon{120, -80, 30, 0.7, std::numbers::pi / 2};
   EXPECT_NEAR(measure(machine(), horizon), 1, 1e-15);
   const Jacobian j = jacobian(machine(), kTool_mm, horizon);
   EXPECT_NEAR((j.topRows<5>()).determinant(), 0, 1e-10);  // the block without the Kz row

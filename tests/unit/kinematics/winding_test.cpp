@@ -8,8 +8,6 @@
 namespace meridian {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(Winding, TakesTheShortWayAcrossPi) {
   EXPECT_NEAR(unwind(-3.1, 3.1), -3.1 + kTurn_rad, 1e-15);
   EXPECT_NEAR(unwind(3.1, -3.1), 3.1 - kTurn_rad, 1e-15);
@@ -28,7 +26,7 @@ TEST(Winding, FollowsManyTurns) {
 TEST(Winding, IsNeverFartherThanHalfATurn) {
   for (int i = -1000; i <= 1000; ++i) {
     const double reference = 0.0173 * i * 7;
-    EXPECT_LE(std::abs(unwind(2.9, reference) - reference), kPi + 1e-13);
+    EXPECT_LE(std::abs(unwind(2.9, reference) - reference), std::numbers::pi + 1e-13);
   }
 }
 

@@ -17,7 +17,7 @@ using test::CycleWorld;
 
 const ToolPose kBegin{
     {0, 0, 0}, {std::sin(0.3) * std::cos(0.4), std::sin(0.3) * std::sin(0.4), std::cos(0.3)}};
-const PathLimits kLimits{50, 500, 5000};
+const PathLimits kStageLimits{50, 500, 5000};
 constexpr std::size_t kFirst = 1, kSecond = 3;  // where the sliders stand in drive order
 
 /// A machine that cuts along x, `seconds` after its start.
@@ -25,7 +25,7 @@ struct Cut {
   explicit Cut(double seconds) {
     world.in.feedback.position = drives_of(machine, plan.joints());
     EXPECT_TRUE(world.enable());
-    plan.cut({80, 30, 0}, kLimits);
+    plan.cut({80, 30, 0}, kStageLimits);
     EXPECT_TRUE(world.run_until(State::kLoaded, 1));
     world.command(Verb::kStart);
     world.run_for(seconds);

@@ -29,11 +29,11 @@ double deviation_from_path(const Program& p, std::size_t first) {
 }
 
 /// Largest second and third difference of the joints in shares of the FaultStop limits.
-struct Shares {
+struct FaultShares {
   double accel = 0, jerk = 0;
 };
-Shares shares_of_fault_limits(const Program& p, std::size_t first) {
-  Shares worst;
+FaultShares shares_of_fault_limits(const Program& p, std::size_t first) {
+  FaultShares worst;
   const double dt = p.world.dt();
   const auto& r = p.world.records;
   for (std::size_t n = std::max<std::size_t>(first, 3); n < r.size(); ++n) {
@@ -55,7 +55,7 @@ void expect_fault_on_path(Program& p, Alarm alarm) {
   ASSERT_TRUE(p.world.run_until(State::kFault, 2));
   EXPECT_EQ(p.world.state.alarm, alarm);
   EXPECT_LE(deviation_from_path(p, first), 1e-9);
-  const Shares shares = shares_of_fault_limits(p, first);
+  const FaultShares shares = shares_of_fault_limits(p, first);
   EXPECT_LE(shares.accel, 1 + 1e-6);
   EXPECT_LE(shares.jerk, 1 + 1e-6);
   EXPECT_EQ(p.world.records.back().setpoint.flags & kSetpointEnabled, 0);

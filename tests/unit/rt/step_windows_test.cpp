@@ -16,11 +16,11 @@ using test::kLimits;
 using test::Program;
 
 /// Largest second and third difference of the tip's x in shares of the bounds of the plan.
-struct Shares {
+struct BoundShares {
   double accel = 0, jerk = 0;
 };
-Shares shares_of_bounds(const Program& p) {
-  Shares worst;
+BoundShares shares_of_bounds(const Program& p) {
+  BoundShares worst;
   const double dt = p.world.dt();
   std::vector<double> x;
   for (const CycleRecord& record : p.world.records) {
@@ -51,7 +51,7 @@ TEST(StepWindows, AStopGoesOnOverTheSeamOfTwoPathPieces) {
     crossed += before == 0 && after == 1;
     p.world.command(Verb::kResume);
     ASSERT_TRUE(p.world.run_until(State::kReady, 10));
-    const Shares shares = shares_of_bounds(p);
+    const BoundShares shares = shares_of_bounds(p);
     EXPECT_LE(shares.accel, 1 + 1e-6) << k;
     EXPECT_LE(shares.jerk, 1 + 1e-6) << k;
     EXPECT_NEAR(p.world.records.back().joints[0], p.plan.joints()[0], 1e-9);
@@ -67,7 +67,7 @@ TEST(StepWindows, TheTailIsSkippedWhereTheNextWindowIsThereInTime) {
   p.run(0);
   ASSERT_TRUE(p.world.run_until(State::kReady, 10));
   EXPECT_EQ(p.world.state.starvations, 0u);
-  const Shares shares = shares_of_bounds(p);
+  const BoundShares shares = shares_of_bounds(p);
   EXPECT_LE(shares.accel, 1 + 1e-6);
   EXPECT_LE(shares.jerk, 1 + 1e-6);
   EXPECT_NEAR(p.world.records.back().joints[0], p.plan.joints()[0], 1e-9);
@@ -84,7 +84,7 @@ TEST(StepWindows, TheTailIsRunToRestWhereNothingFollowsAndLaterWindowsInMotionAr
   EXPECT_EQ(p.world.records.back().setpoint.flags & kSetpointMoving, 0);
   p.world.run_for(0.5);
   EXPECT_EQ(p.world.now(), State::kStarved);
-  const Shares shares = shares_of_bounds(p);
+  const BoundShares shares = shares_of_bounds(p);
   EXPECT_LE(shares.accel, 1 + 1e-6);
   EXPECT_LE(shares.jerk, 1 + 1e-6);
   const double x =
@@ -101,7 +101,7 @@ TEST(StepWindows, AHoldWhileStarvingStaysInsideTheBounds) {
   p.world.run_for(0.02);
   p.world.command(Verb::kHold);
   ASSERT_TRUE(p.world.run_until(State::kHeld, 1));
-  const Shares shares = shares_of_bounds(p);
+  const BoundShares shares = shares_of_bounds(p);
   EXPECT_LE(shares.accel, 1 + 1e-6);
   EXPECT_LE(shares.jerk, 1 + 1e-6);
 }

@@ -166,13 +166,13 @@ TEST(SurfaceShape, FindsTheFootOfAPointNearby) {
   EXPECT_LT((sphere.evaluate(foot.u, foot.v).at - above * (50.0 / 53)).norm(), 1e-6);
 }
 
-struct Mistake {
+struct NetMistake {
   const char* name;
   NurbsFault::Part part;
   std::function<void(NurbsNet&)> make;
 };
 
-class WrongNet : public testing::TestWithParam<Mistake> {};
+class WrongNet : public testing::TestWithParam<NetMistake> {};
 
 TEST_P(WrongNet, IsRefusedByThePartThatIsWrong) {
   std::mt19937_64 draw(4);
@@ -189,19 +189,19 @@ using Part = NurbsFault::Part;
 INSTANTIATE_TEST_SUITE_P(
     Every, WrongNet,
     testing::Values(
-        Mistake{"degree", Part::kDegree, [](NurbsNet& n) { n.degree_u = 0; }},
-        Mistake{"high_degree", Part::kDegree, [](NurbsNet& n) { n.degree_v = 10; }},
-        Mistake{"zero_weight", Part::kWeights, [](NurbsNet& n) { n.weights[3] = 0; }},
-        Mistake{"negative_weight", Part::kWeights, [](NurbsNet& n) { n.weights[3] = -1; }},
-        Mistake{"endless_weight", Part::kWeights, [](NurbsNet& n) { n.weights[0] = HUGE_VAL; }},
-        Mistake{"few_weights", Part::kWeights, [](NurbsNet& n) { n.weights.pop_back(); }},
-        Mistake{"few_points", Part::kPoints, [](NurbsNet& n) { n.points.pop_back(); }},
-        Mistake{"no_number", Part::kPoints, [](NurbsNet& n) { n.points[1][2] = NAN; }},
-        Mistake{"few_knots", Part::kKnotsU, [](NurbsNet& n) { n.knots_u.pop_back(); }},
-        Mistake{"falling", Part::kKnotsV, [](NurbsNet& n) { n.knots_v[1] = n.knots_v[0] - 1; }},
-        Mistake{"no_domain", Part::kKnotsU,
-                [](NurbsNet& n) { n.knots_u.assign(n.knots_u.size(), 0.5); }}),
-    [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
+        NetMistake{"degree", Part::kDegree, [](NurbsNet& n) { n.degree_u = 0; }},
+        NetMistake{"high_degree", Part::kDegree, [](NurbsNet& n) { n.degree_v = 10; }},
+        NetMistake{"zero_weight", Part::kWeights, [](NurbsNet& n) { n.weights[3] = 0; }},
+        NetMistake{"negative_weight", Part::kWeights, [](NurbsNet& n) { n.weights[3] = -1; }},
+        NetMistake{"endless_weight", Part::kWeights, [](NurbsNet& n) { n.weights[0] = HUGE_VAL; }},
+        NetMistake{"few_weights", Part::kWeights, [](NurbsNet& n) { n.weights.pop_back(); }},
+        NetMistake{"few_points", Part::kPoints, [](NurbsNet& n) { n.points.pop_back(); }},
+        NetMistake{"no_number", Part::kPoints, [](NurbsNet& n) { n.points[1][2] = NAN; }},
+        NetMistake{"few_knots", Part::kKnotsU, [](NurbsNet& n) { n.knots_u.pop_back(); }},
+        NetMistake{"falling", Part::kKnotsV, [](NurbsNet& n) { n.knots_v[1] = n.knots_v[0] - 1; }},
+        NetMistake{"no_domain", Part::kKnotsU,
+                   [](NurbsNet& n) { n.knots_u.assign(n.knots_u.size(), 0.5); }}),
+    [](const testing::TestParamInfo<NetMistake>& test) { return std::string(test.param.name); });
 
 TEST(WrongNet, WithAKnotMoreOftenThanTheDegreeIsRefused) {
   NurbsNet net = test::plane(40, 30);

@@ -62,7 +62,7 @@ TEST(PatchFile, GivesTheOtherKeysToTheirPlaces) {
   EXPECT_NEAR(job.rule.lead_rad, 9 * std::acos(-1.0) / 180, 1e-15);
 }
 
-struct Mistake {
+struct PatchMistake {
   const char* name;
   const char* from;
   const char* to;
@@ -70,7 +70,7 @@ struct Mistake {
   const char* allowed;
 };
 
-class WrongPatchFile : public testing::TestWithParam<Mistake> {};
+class WrongPatchFile : public testing::TestWithParam<PatchMistake> {};
 
 TEST_P(WrongPatchFile, IsRefusedWithPlaceValueAndRange) {
   const std::string text = with(GetParam().from, GetParam().to);
@@ -90,56 +90,57 @@ TEST_P(WrongPatchFile, IsRefusedWithPlaceValueAndRange) {
 INSTANTIATE_TEST_SUITE_P(
     Every, WrongPatchFile,
     testing::Values(
-        Mistake{"zero_weight", "[1, 0.8, 1.1, 1]", "[1, 0, 1.1, 1]", "surface.row[1].weight[1] = 0",
-                "1e-06 to 1000000"},
-        Mistake{"negative_weight", "[1, 0.8, 1.1, 1]", "[1, -0.8, 1.1, 1]",
-                "surface.row[1].weight[1] = -0.8", "1e-06 to"},
-        Mistake{"short_weights", "[1, 0.8, 1.1, 1]", "[1, 0.8, 1.1]", "row[1].weight = 3 numbers",
-                "4 numbers"},
-        Mistake{"short_row", "z_mm = [302, 301.99, 267.99, 284]", "z_mm = [302, 301.99, 284]",
-                "surface.row[2].z_mm = 3 numbers", "4 numbers"},
-        Mistake{"no_number", "z_mm = [302, 301.99,", "z_mm = [302, nan,", "row[2].z_mm[1] = nan",
-                "-100000 to 100000"},
-        Mistake{"word", "z_mm = [302, 301.99,", "z_mm = [302, \"a\",",
-                "row[2].z_mm[1] = ", "-100000 to 100000"},
-        Mistake{"degree", "degree = [3, 3]", "degree = [3, 12]", "surface.degree[1] = 12",
-                "1 to 9"},
-        Mistake{"half_degree", "degree = [3, 3]", "degree = [3, 2.5]",
-                "surface.degree = ", "whole numbers"},
-        Mistake{"few_rows", "degree = [3, 3]", "degree = [4, 3]", "surface.row", "at least 5 rows"},
-        Mistake{"few_knots", "knots_u = [0, 0, 0, 0, 1, 1, 1, 1]",
-                "knots_u = [0, 0, 0, 0, 1, 1, 1]", "surface.knots_u = ", "8 knots"},
-        Mistake{"falling_knots", "knots_v = [0, 0, 0, 0, 1, 1, 1, 1]",
-                "knots_v = [0, 0, 0, 2, 1, 1, 1, 1]",
-                "surface.knots_v = ", "none smaller than the one before"},
-        Mistake{"no_domain", "knots_v = [0, 0, 0, 0, 1, 1, 1, 1]",
-                "knots_v = [0, 0, 0, 1, 1, 1, 1, 1]", "surface.knots_v = ", "a domain"},
-        Mistake{"cutter", "kind = \"ball\"", "kind = \"bull\"", "cutter.kind = 'bull'",
-                "\"ball\", \"toroidal\", \"flat\""},
-        Mistake{"no_corner", "kind = \"ball\"", "kind = \"toroidal\"", "cutter.corner_radius_mm",
-                "0.001 to 5"},
-        Mistake{"corner", "kind = \"ball\"", "kind = \"flat\"\ncorner_radius_mm = 1",
-                "cutter.corner_radius_mm = 1", "only a toroidal cutter"},
-        Mistake{"diameter", "diameter_mm = 10", "diameter_mm = 0", "cutter.diameter_mm = 0",
-                "0.001 to 1000"},
-        Mistake{"lead", "lead_deg = 0", "lead_deg = 90", "cutter.lead_deg = 90", "-80 to 80"},
-        Mistake{"along", "along = \"v\"", "along = \"w\"", "path.along = 'w'", "\"u\", \"v\""},
-        Mistake{"both_steps", "points = 21", "points = 21\nchord_error_mm = 1", "path.points = 21",
-                "either points or chord_error_mm"},
-        Mistake{"no_lines", "lines = 21", "", "path.lines", "either lines or scallop_mm"},
-        Mistake{"one_point", "points = 21", "points = 1", "path.points = 1", "2 to 100000"},
-        Mistake{"range", "lines = 21", "lines = 21\nrange_u = [0, 1.5]",
-                "path.range_u = [ 0, 1.5 ]", "0 to 1"},
-        Mistake{"range_order", "lines = 21", "lines = 21\nrange_v = [0.5, 0.5]",
-                "path.range_v = ", "[minimum, maximum]"},
-        Mistake{"feed", "feed_mm_per_min = 3000", "feed_mm_per_min = 0", "path.feed_mm_per_min = 0",
-                "0.001 to 1000000"},
-        Mistake{"unknown", "clearance_mm = 30", "clearance_mm = 30\nstep_over_mm = 1",
-                "path.step_over_mm = 1", "scallop_mm"},
-        Mistake{"unknown_range", "clearance_mm = 30", "clearance_mm = 30\nrange_w = 1",
-                "path.range_w = 1", "range_v"},
-        Mistake{"no_table", "[path]", "[way]", "path", "a table [path]"}),
-    [](const testing::TestParamInfo<Mistake>& test) { return std::string(test.param.name); });
+        PatchMistake{"zero_weight", "[1, 0.8, 1.1, 1]", "[1, 0, 1.1, 1]",
+                     "surface.row[1].weight[1] = 0", "1e-06 to 1000000"},
+        PatchMistake{"negative_weight", "[1, 0.8, 1.1, 1]", "[1, -0.8, 1.1, 1]",
+                     "surface.row[1].weight[1] = -0.8", "1e-06 to"},
+        PatchMistake{"short_weights", "[1, 0.8, 1.1, 1]", "[1, 0.8, 1.1]",
+                     "row[1].weight = 3 numbers", "4 numbers"},
+        PatchMistake{"short_row", "z_mm = [302, 301.99, 267.99, 284]", "z_mm = [302, 301.99, 284]",
+                     "surface.row[2].z_mm = 3 numbers", "4 numbers"},
+        PatchMistake{"no_number", "z_mm = [302, 301.99,", "z_mm = [302, nan,",
+                     "row[2].z_mm[1] = nan", "-100000 to 100000"},
+        PatchMistake{"word", "z_mm = [302, 301.99,", "z_mm = [302, \"a\",",
+                     "row[2].z_mm[1] = ", "-100000 to 100000"},
+        PatchMistake{"degree", "degree = [3, 3]", "degree = [3, 12]", "surface.degree[1] = 12",
+                     "1 to 9"},
+        PatchMistake{"half_degree", "degree = [3, 3]", "degree = [3, 2.5]",
+                     "surface.degree = ", "whole numbers"},
+        PatchMistake{"few_rows", "degree = [3, 3]", "degree = [4, 3]", "surface.row",
+                     "at least 5 rows"},
+        PatchMistake{"few_knots", "knots_u = [0, 0, 0, 0, 1, 1, 1, 1]",
+                     "knots_u = [0, 0, 0, 0, 1, 1, 1]", "surface.knots_u = ", "8 knots"},
+        PatchMistake{"falling_knots", "knots_v = [0, 0, 0, 0, 1, 1, 1, 1]",
+                     "knots_v = [0, 0, 0, 2, 1, 1, 1, 1]",
+                     "surface.knots_v = ", "none smaller than the one before"},
+        PatchMistake{"no_domain", "knots_v = [0, 0, 0, 0, 1, 1, 1, 1]",
+                     "knots_v = [0, 0, 0, 1, 1, 1, 1, 1]", "surface.knots_v = ", "a domain"},
+        PatchMistake{"cutter", "kind = \"ball\"", "kind = \"bull\"", "cutter.kind = 'bull'",
+                     "\"ball\", \"toroidal\", \"flat\""},
+        PatchMistake{"no_corner", "kind = \"ball\"", "kind = \"toroidal\"",
+                     "cutter.corner_radius_mm", "0.001 to 5"},
+        PatchMistake{"corner", "kind = \"ball\"", "kind = \"flat\"\ncorner_radius_mm = 1",
+                     "cutter.corner_radius_mm = 1", "only a toroidal cutter"},
+        PatchMistake{"diameter", "diameter_mm = 10", "diameter_mm = 0", "cutter.diameter_mm = 0",
+                     "0.001 to 1000"},
+        PatchMistake{"lead", "lead_deg = 0", "lead_deg = 90", "cutter.lead_deg = 90", "-80 to 80"},
+        PatchMistake{"along", "along = \"v\"", "along = \"w\"", "path.along = 'w'", "\"u\", \"v\""},
+        PatchMistake{"both_steps", "points = 21", "points = 21\nchord_error_mm = 1",
+                     "path.points = 21", "either points or chord_error_mm"},
+        PatchMistake{"no_lines", "lines = 21", "", "path.lines", "either lines or scallop_mm"},
+        PatchMistake{"one_point", "points = 21", "points = 1", "path.points = 1", "2 to 100000"},
+        PatchMistake{"range", "lines = 21", "lines = 21\nrange_u = [0, 1.5]",
+                     "path.range_u = [ 0, 1.5 ]", "0 to 1"},
+        PatchMistake{"range_order", "lines = 21", "lines = 21\nrange_v = [0.5, 0.5]",
+                     "path.range_v = ", "[minimum, maximum]"},
+        PatchMistake{"feed", "feed_mm_per_min = 3000", "feed_mm_per_min = 0",
+                     "path.feed_mm_per_min = 0", "0.001 to 1000000"},
+        PatchMistake{"unknown", "clearance_mm = 30", "clearance_mm = 30\nstep_over_mm = 1",
+                     "path.step_over_mm = 1", "scallop_mm"},
+        PatchMistake{"unknown_range", "clearance_mm = 30", "clearance_mm = 30\nrange_w = 1",
+                     "path.range_w = 1", "range_v"},
+        PatchMistake{"no_table", "[path]", "[way]", "path", "a table [path]"}),
+    [](const testing::TestParamInfo<PatchMistake>& test) { return std::string(test.param.name); });
 
 TEST(PatchFile, EveryKeyOfTheShippedOneIsDocumented) {
   const std::string page = test::read_text(MERIDIAN_SOURCE_DIR "/docs/surface.md");
