@@ -6,8 +6,8 @@
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"
 
-/// The benchmark paths of ../shared/bench on deploy/machines/bench.toml: time from the first to the
-/// last block, approach left out, every limit and tolerance judged.
+/// The benchmark paths of the shared folder on deploy/machines/bench.toml: time from the first to
+/// the last block, approach left out, every limit and tolerance judged.
 namespace meridian {
 namespace {
 
@@ -49,7 +49,8 @@ class BenchPaths : public testing::TestWithParam<BenchRun> {
 std::filesystem::path BenchPaths::folder_;
 
 TEST_P(BenchPaths, IsCutInTimeInsideEveryLimitAndTolerance) {
-  if (folder_.empty()) GTEST_SKIP() << "../shared/bench/paths.py or python3-numpy is not here";
+  if (folder_.empty())
+    GTEST_SKIP() << "bench/paths.py of the shared folder or python3-numpy is not here";
   const BenchRun& bench = GetParam();
   MachineModel model =
       config::load_machine(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/bench.toml");

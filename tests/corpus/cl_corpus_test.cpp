@@ -10,6 +10,7 @@
 
 #include "service/cl/cl_points.hpp"
 #include "service/cl/cl_reader.hpp"
+#include "support/shared_folder.hpp"
 
 namespace meridian::cl {
 namespace {
@@ -26,9 +27,7 @@ struct CorpusFile {
   double axis_change_deg;  ///< largest in one block
 };
 
-std::filesystem::path corpus() {
-  return std::filesystem::path(MERIDIAN_SOURCE_DIR).parent_path() / "shared" / "cl_corpus";
-}
+std::filesystem::path corpus() { return test::shared_folder() / "cl_corpus"; }
 
 void PrintTo(const CorpusFile& file, std::ostream* out) { *out << file.name; }
 

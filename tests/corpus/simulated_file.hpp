@@ -18,16 +18,13 @@
 #include "service/record/recording_reader.hpp"
 #include "service/record/recording_writer.hpp"
 #include "service/simulate/simulate.hpp"
+#include "support/shared_folder.hpp"
 
-/// Real CL files beside the checkout, in ../shared, simulated and judged.
+/// Real CL files, in shared_folder(), simulated and judged.
 namespace meridian::test {
 
 inline constexpr double kTipTolerance_mm = 1e-3;  // what the rest-to-rest planner owes
 inline constexpr double kAxisTolerance_deg = 1e-3;
-
-[[nodiscard]] inline std::filesystem::path shared_folder() {
-  return std::filesystem::path(MERIDIAN_SOURCE_DIR).parent_path() / "shared";
-}
 
 /// The machine of deploy/machines/lai.toml with the workpiece at `frame` and its own cycle time.
 [[nodiscard]] inline MachineModel lai_at(const char* frame, std::int64_t cycle_ns) {

@@ -11,13 +11,14 @@
 #include "meridian/kinematics/chain.hpp"
 #include "meridian/kinematics/robot.hpp"
 #include "meridian/kinematics/stage.hpp"
+#include "support/shared_folder.hpp"
 
 namespace meridian {
 namespace {
 
 using test::GoldenTable;
 
-const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/../shared/kinematics/golden";
+const std::filesystem::path kFolder = test::shared_folder() / "kinematics" / "golden";
 
 constexpr double kTip_mm = 1e-10, kAxis = 1e-14, kAngle_rad = 1e-12;
 

@@ -5,13 +5,14 @@
 #include <Eigen/SVD>
 
 #include "golden/lai_machine.hpp"
+#include "support/shared_folder.hpp"
 
 namespace meridian {
 namespace {
 
 using namespace test;
 
-const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/../shared/kinematics/golden";
+const std::filesystem::path kFolder = test::shared_folder() / "kinematics" / "golden";
 
 /// The machine of A_fkik.csv and A_jacobian.csv; their constants stand in a comment line.
 GoldenMachine machine_of_the_folder() {

@@ -10,13 +10,14 @@
 #include "golden/golden_table.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "support/machines.hpp"
+#include "support/shared_folder.hpp"
 
 namespace meridian {
 namespace {
 
 using test::GoldenTable;
 
-const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/../shared/kinematics/golden";
+const std::filesystem::path kFolder = test::shared_folder() / "kinematics" / "golden";
 
 constexpr double kTip_mm = 1e-9, kAxis = 1e-13, kAngle_rad = 1e-12, kLinear_mm = 1e-10;
 constexpr double kTool_mm = 100;

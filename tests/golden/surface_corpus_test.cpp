@@ -8,13 +8,14 @@
 #include "golden/golden_table.hpp"
 #include "meridian/kinematics/robot.hpp"
 #include "service/surface/patch_file.hpp"
+#include "support/shared_folder.hpp"
 
 namespace meridian::surface {
 namespace {
 
 using test::GoldenTable;
 
-const std::filesystem::path kFolder = MERIDIAN_SOURCE_DIR "/../shared/kinematics/golden";
+const std::filesystem::path kFolder = test::shared_folder() / "kinematics" / "golden";
 
 constexpr double kPlace_mm = 1e-11;  // reach 1e3 mm, and what rounds in 16 products of the net
 constexpr double kUnit = 1e-13, kCurvature_per_mm = 1e-15, kAngle_rad = 1e-12;
