@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""dense_points.py POINTS OUT [--step-mm 1] [--turn-deg 1]
+"""dense_points.py POINTS OUT [--step-mm 0.1] [--turn-deg 1]
 
-Puts points on the long lines of a plain path (x y z i j k feed per line, as `meridian cl` writes it): tip on the line, tool
-axis on the great circle. The outside checker of recordings looks for its place at five points of each line, which is too
-coarse for lines of many millimetres: it takes up another line that passes within a few millimetres.
+Puts points on the lines of a plain path (x y z i j k feed per line, as `meridian cl` writes it): tip on the line, tool
+axis on the great circle. The outside checker of recordings looks for its place at five points of each line. Where these
+are farther apart than another line is away it takes up that one: a rapid that passes, or the way there where the way back
+leaves at a sharp angle.
 """
 import argparse
 import math
@@ -27,7 +28,7 @@ def angle_deg(a, b):
 def main():
     ap = argparse.ArgumentParser()
     ap.add_argument("points"), ap.add_argument("out")
-    ap.add_argument("--step-mm", type=float, default=1.0), ap.add_argument("--turn-deg", type=float, default=1.0)
+    ap.add_argument("--step-mm", type=float, default=0.1), ap.add_argument("--turn-deg", type=float, default=1.0)
     arg = ap.parse_args()
     last = None
     with open(arg.points) as points, open(arg.out, "w") as out:

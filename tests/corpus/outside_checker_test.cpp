@@ -11,8 +11,9 @@ namespace {
 
 using test::SimulatedFile;
 
-/// The checker in ../shared/bench shares no code with ours. It takes more than a millisecond a
-/// cycle, so that what is judged here is short; docs/recordings.md says how the whole corpus fares.
+/// The checker in bench/ of the shared folder shares no code with ours. It takes more than a
+/// millisecond a cycle, so that what is judged here is short; docs/recordings.md says how the whole
+/// corpus fares.
 class OutsideChecker : public testing::Test {
  protected:
   void SetUp() override {
@@ -102,13 +103,25 @@ TEST_F(OutsideChecker, PassesTheHeadOfAFiveAxisFile) {
   EXPECT_EQ(judge(SimulatedFile(head, test::lai_at("20,-30,50", kCycle_ns))), 0);
 }
 
+/// Where a line turns back sharply from an arc, two ways run side by side: with points a millimetre
+/// apart on the line and a tenth of that on the arc the checker takes the wrong one, 80 um off.
+TEST_F(OutsideChecker, KeepsItsPlaceWhereALineTurnsBackFromAnArc) {
+  const auto part = scratch_ / "part.apt";
+  std::ofstream(part) << "UNITS / MM\nFEDRAT / 1000, MMPM\nGOTO / 20, 0, 20, 0, 0, 1\n"
+                         "CIRCLE / 0, 0, 20, 0, 0, 1, 20\nGOTO / 0, 20, 20\n"
+                         "GOTO / 17.3205, 10, 20\nFINI\n";
+  EXPECT_EQ(judge(SimulatedFile(part, test::lai_at("0,0,0", kCycle_ns))), 0);
+}
+
 TEST_F(OutsideChecker, PassesTheJointsOfAMachineOnAStage) {
   MachineModel model = config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml");
   model.cycle_ns = kCycle_ns;
   const auto part = scratch_ / "part.apt";
   std::ofstream(part) << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 20, -10, 10, 0, 0, 1\n"
                          "GOTO / 32, 5, 12, 0, 0.28, 0.96\nGOTO / 15, 18, 10, 0.28, 0, 0.96\n"
-                         "GOTO / 0, 0, 20\nGOTO / -8, 0, 14, 0, 0.1908, 0.98163\nFINI\n";
+                         "GOTO / 0, 0, 20\nCIRCLE / 5, 0, 20, 0, 0, 1, 5\n"
+                         "GOTO / 10, 0, 20, 0.28, 0, 0.96\nRAPID\n"
+                         "GOTO / -8, 0, 14, 0, 0.1908, 0.98163\nFINI\n";
   const SimulatedFile simulated(part, model);
   EXPECT_EQ(judge(simulated), 0);
   const auto report = simulated.check();  // the outside checker knows no sliders
