@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "meridian/units.hpp"
 #include "support/machines.hpp"
@@ -20,6 +22,32 @@ constexpr const char* kPart =
     "GOTO / 84, -25, 18, 0, -0.2, 0.979796\nGOTO / 60, -20, 18, 0.3, -0.2, 0.932738\n"
     "RAPID\nGOTO / 80, -25, 40, 0.01, 0, 0.99995\nFINI\n";
 
+/// How often the machine was asked to hold while it ran at a rate, and how often it then came to
+/// rest on the path and stayed where it was.
+struct Holds {
+  int asked = 0, held = 0;
+};
+
+Holds holds_in(const std::vector<CycleRecord>& records) {
+  Holds holds;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const bool begins =
+        records[i].state == State::kHolding && records[i - 1].state != State::kHolding;
+    if (!begins) continue;
+    ++holds.asked;
+    while (i < records.size() && records[i].state == State::kHolding) ++i;
+    if (i == records.size() || records[i].state != State::kHeld) continue;
+    const JointVector rest = records[i].joints;
+    bool is_still = true;
+    for (; i < records.size() && records[i].state == State::kHeld; ++i) {
+      is_still = is_still && records[i].joints == rest && records[i].rate == 0;
+    }
+    holds.held += is_still ? 1 : 0;
+    --i;
+  }
+  return holds;
+}
+
 /// Holds, resumes and overrides at random cycles, several on their way at once: no limit is
 /// exceeded, the path is kept and cut to its end.
 TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
@@ -32,6 +60,8 @@ TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
   };
   const std::string recording =
       ::testing::TempDir() + "hold_" + std::to_string(::getpid()) + ".csv";
+  int held = 0;
+  std::size_t slowed = 0;
   for (int n = 0; n < kRuns; ++n) {
     MachineModel model = test::lai_machine();
     const std::int64_t periods[] = {250'000, 1'000'000, 4'000'000};
@@ -57,6 +87,13 @@ TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
     }
     const test::SimulatedRun run = test::run_simulation(kPart, model, simulation);
     ASSERT_EQ(run.report.outcome, Outcome::kDone) << n << "\n" << to_text(run.report, model);
+    const Holds holds = holds_in(run.records);
+    EXPECT_EQ(holds.held, holds.asked) << "run " << n << ": a hold ends at rest, and rests";
+    held += holds.held;
+    for (const CycleRecord& record : run.records) {
+      EXPECT_GE(record.rate, 0) << "run " << n << " cycle " << record.setpoint.cycle;
+      slowed += record.state == State::kRunning && record.rate > 0 && record.rate < 1 ? 1U : 0U;
+    }
     record::CheckOptions options;
     options.tip_tolerance_mm = 1e-3;
     options.axis_tolerance_rad = units::rad_from_deg(1e-3);
@@ -66,6 +103,9 @@ TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
                                  << to_text(run.report, model) << to_text(report);
   }
   std::remove(recording.c_str());
+  std::printf("%d holds came to rest, %zu cycles ran at an override\n", held, slowed);
+  EXPECT_GT(held, kRuns / 2) << "most runs were held while they ran";
+  EXPECT_GT(slowed, 1000U);
 }
 
 }  // namespace

@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
+#include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "support/command_output.hpp"
 #include "support/private_domain.hpp"
@@ -28,11 +32,72 @@ TEST(Tool, VersionIsFine) {
   EXPECT_EQ(outcome.output.rfind("meridian ", 0), 0u) << outcome.output;
 }
 
-TEST(Tool, EverySubcommandExplainsItself) {
-  for (const char* name : {"ctl", "status", "drives", "stream"}) {
-    EXPECT_EQ(run_tool(std::string(name) + " --help").exit_code, 0) << name;
-    EXPECT_EQ(run_tool(std::string(name) + " --no-such-option").exit_code, 2) << name;
+/// One entry of a help text: what it is about, and what it says about it.
+struct HelpEntry {
+  std::string name;  ///< `-o,--output`, `stream`
+  std::string text;  ///< empty: it explains nothing
+};
+
+/// The entries under the heading `section:` of a help text. An explanation begins in column 30, on
+/// the same line or, where the name with its type is too long, on the next.
+std::vector<HelpEntry> entries_of(const std::string& help, const std::string& section) {
+  constexpr std::size_t kColumn = 30;
+  std::vector<HelpEntry> entries;
+  std::istringstream lines(help);
+  bool is_inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line[0] != ' ') {
+      is_inside = line == section + ":";
+    } else if (is_inside && line.find_first_not_of(' ') == 2) {
+      const std::string name = line.substr(2, line.find(' ', 2) - 2);
+      const std::size_t text = line.find("  ", 2);
+      entries.push_back({name, text == std::string::npos ? "" : line.substr(text)});
+    } else if (is_inside && !entries.empty() && line.find_first_not_of(' ') == kColumn) {
+      entries.back().text += line.substr(kColumn);
+    }
   }
+  for (HelpEntry& entry : entries) {
+    const std::size_t begin = entry.text.find_first_not_of(' ');
+    entry.text = begin == std::string::npos ? "" : entry.text.substr(begin);
+  }
+  return entries;
+}
+
+/// The subcommands that are built, from the list that registers them.
+std::set<std::string> built_commands() {
+  std::ifstream list(MERIDIAN_SOURCE_DIR "/service/cli/CMakeLists.txt");
+  std::set<std::string> names;
+  for (std::string line; std::getline(list, line);) {
+    std::istringstream words(line);
+    std::string word;
+    if (std::getline(words, word, '(') && word == "meridian_command" && words >> word) {
+      names.insert(word);
+    }
+  }
+  return names;
+}
+
+TEST(Tool, EverySubcommandAndEveryOptionOfItExplainsItself) {
+  const auto commands = entries_of(run_tool("--help").output, "Subcommands");
+  std::set<std::string> names;
+  std::size_t options = 0;
+  for (const HelpEntry& command : commands) {
+    SCOPED_TRACE(command.name);
+    names.insert(command.name);
+    EXPECT_GT(command.text.size(), 20U) << command.text;
+    const CommandOutput help = run_tool(command.name + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_EQ(run_tool(command.name + " --no-such-option").exit_code, 2);
+    for (const char* section : {"Positionals", "Options"}) {
+      for (const HelpEntry& entry : entries_of(help.output, section)) {
+        ++options;
+        EXPECT_GT(entry.text.size(), 4U) << entry.name << " is not explained";
+      }
+    }
+    EXPECT_NE(help.output.find("Exit codes:"), std::string::npos);
+  }
+  EXPECT_EQ(names, built_commands());
+  EXPECT_GT(options, 100U) << "are the options still found?";
 }
 
 TEST(Tool, AMissingMachineFileIsRefusedInput) {
