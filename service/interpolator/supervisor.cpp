@@ -82,6 +82,8 @@ void Supervisor::take_command(const dds::CommandRequest& request) {
     reply(request, false, Refusal::kOutOfRange, "this service does not know that verb");
     return;
   }
+  // Whoever saw a status that is younger than the last look at the cycle is not late.
+  if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
   const Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns());
   if (is_switching_off_ || refusal != Refusal::kNone) {
     const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
@@ -156,7 +158,9 @@ void Supervisor::take_events() {
       default:
         break;
     }
-    (void)ports_.told.try_push(event);
+    if (!ports_.told.try_push(event)) {
+      ports_.events_overrun.fetch_add(1, std::memory_order_relaxed);
+    }
   }
   if (has_session_event && tell_intake_) tell_intake_(has_action_peer_);
 }

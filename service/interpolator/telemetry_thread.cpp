@@ -59,6 +59,7 @@ void TelemetryThread::drain() {
     recorder_.take(event);
     tell(event);
   }
+  recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
   PoleEase ease;
   while (ports_.eases.try_pop(ease)) log_->info("{}", telemetry::describe(ease));
   CycleRecord record;

@@ -43,7 +43,7 @@ void Recorder::run() noexcept {
     while (events_.try_pop(event)) {
       if (!events_writer_->write(event)) events_lost_.fetch_add(1, std::memory_order_relaxed);
     }
-    if (events_lost() > 0) events_writer_->mark_incomplete();
+    if (events_lost() + events_missed_ > 0) events_writer_->mark_incomplete();
     if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   const bool has_rows = writer_->close(), has_events = events_writer_->close();
@@ -59,9 +59,9 @@ std::string Recorder::complaint() const {
   if (rows_lost() > 0) {
     text = "recording " + path_ + " lacks " + std::to_string(rows_lost()) + " rows or more" + why;
   }
-  if (events_lost() > 0) {
+  if (const std::uint64_t events = events_lost() + events_missed_; events > 0) {
     text += (text.empty() ? "" : "; ") + record::operator_events_path(path_) + " lacks " +
-            std::to_string(events_lost()) + " events or more and cannot be replayed" + why;
+            std::to_string(events) + " events or more and cannot be replayed" + why;
   }
   return text;
 }

@@ -26,6 +26,9 @@ class Recorder {
   /// Telemetry thread: accepted verbs go into a file of their own, for a replay. Where one is lost
   /// the file says so, and is not replayed.
   void take(const Event& event) noexcept;
+  /// Telemetry thread: `count` events, ever, were lost before they came here. What they were nobody
+  /// knows, so that the file of verbs counts as incomplete.
+  void miss_events(std::uint64_t count) noexcept { events_missed_ = count; }
   /// Recorder's thread: writes until stop() and everything taken is on disk.
   void run() noexcept;
   void stop() noexcept { is_stopping_ = true; }
@@ -42,7 +45,7 @@ class Recorder {
   SpscRing<Event, 256> events_;
   SpscRing<CycleRecord, 8192> ring_;
   std::atomic<bool> is_stopping_{false};
-  std::atomic<std::uint64_t> rows_lost_{0}, events_lost_{0};
+  std::atomic<std::uint64_t> rows_lost_{0}, events_lost_{0}, events_missed_{0};
   std::string path_;
   int error_number_ = 0;  ///< of the first write that failed
 };

@@ -76,6 +76,26 @@ TEST(Recorder, SaysInTheEventsFileAndInWordsThatEventsWereLost) {
   std::filesystem::remove(events);
 }
 
+TEST(Recorder, SaysInTheEventsFileThatEventsWereLostBeforeTheyCame) {
+  const auto path = temporary_file();
+  const std::string events = record::operator_events_path(path.string());
+  {
+    Recorder recorder(path.string(), test::lai_machine());
+    recorder.miss_events(3);
+    EXPECT_EQ(recorder.events_lost(), 0U) << "counted by whoever lost them";
+    recorder.stop();
+    recorder.run();
+    EXPECT_NE(recorder.complaint().find(events + " lacks 3 events"), std::string::npos)
+        << recorder.complaint();
+  }
+  std::ifstream file(events);
+  std::string line, last;
+  while (std::getline(file, line)) last = line;
+  EXPECT_EQ(last, "incomplete");
+  std::filesystem::remove(path);
+  std::filesystem::remove(events);
+}
+
 TEST(Recorder, HasNothingToComplainOfWhereEverythingIsOnDisk) {
   const auto path = temporary_file();
   Recorder recorder(path.string(), test::lai_machine());
