@@ -79,7 +79,7 @@ class EndWatch {
 
   [[nodiscard]] bool is_over() {
     dds::Status status;
-    while (reader_.take(status)) {
+    if (dds::take_newest(reader_, status)) {
       const bool is_idle = status.state == State::kReady || status.state == State::kOff ||
                            status.state == State::kFault;
       has_run_ = has_run_ || status.state == State::kRunning;

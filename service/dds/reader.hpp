@@ -44,4 +44,22 @@ class Reader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Takes everything that came and leaves what was sent last in `message`; false where nothing came.
+/// For topics that are keyed by their service and whose receiver wants the newest whoever it is
+/// from: instances come in any order.
+template <class Message>
+[[nodiscard]] bool take_newest(Reader<Message>& reader, Message& message) {
+  bool has_message = false;
+  std::int64_t newest_ns = 0;
+  Message taken;
+  SampleInfo info;
+  while (reader.take(taken, info)) {
+    if (!info.is_valid || (has_message && info.sent_ns < newest_ns)) continue;
+    newest_ns = info.sent_ns;
+    message = taken;
+    has_message = true;
+  }
+  return has_message;
+}
+
 }  // namespace meridian::dds

@@ -33,13 +33,10 @@ OperatorLink::OperatorLink(dds::Participant& participant, std::string operator_n
 }
 
 bool OperatorLink::take_statuses() {
-  bool is_newer = false;
   dds::Status status;
-  while (statuses_.take(status)) {
-    status_ = status;
-    is_newer = true;
-  }
-  return is_newer;
+  if (!dds::take_newest(statuses_, status)) return false;
+  status_ = status;
+  return true;
 }
 
 bool OperatorLink::wait_for_status(Milliseconds timeout) {

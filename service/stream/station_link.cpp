@@ -50,10 +50,8 @@ void StationLink::work(std::chrono::milliseconds timeout) {
 }
 
 std::optional<dds::Status> StationLink::take_status() {
-  std::optional<dds::Status> newest;
   dds::Status status;
-  while (statuses_.take(status)) newest = status;
-  return newest;
+  return dds::take_newest(statuses_, status) ? std::optional(status) : std::nullopt;
 }
 
 void StationLink::close() {

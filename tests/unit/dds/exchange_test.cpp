@@ -103,6 +103,30 @@ TEST(Exchange, KeepsTheClaimsOfTwoServicesApartThoughNobodyLooksInBetween) {
   EXPECT_EQ(claims, (std::set<std::uint64_t>{1, 2}));
 }
 
+TEST(Exchange, GivesALateJoinerTheStatusOfEveryServiceAndTellsWhichIsNewest) {
+  const support::PrivateDomain domain;
+  Participant here({.domain = domain.id(), .machine = "m"});
+  Reader<Status> beside(here);
+  Writer<Status> first(here);
+  Writer<Status> second(here);
+  for (const std::uint64_t newest : {1U, 2U}) {
+    SCOPED_TRACE(newest);
+    ASSERT_TRUE((newest == 2 ? first : second).write({.service_id = 3 - newest}));
+    ASSERT_TRUE((newest == 2 ? second : first).write({.service_id = newest}));
+    Participant late({.domain = domain.id(), .machine = "m"});
+    Reader<Status> reader(late);
+    std::set<std::uint64_t> services;
+    Status status;
+    EXPECT_TRUE(eventually([&] {
+      while (reader.take(status)) services.insert(status.service_id);
+      return services.size() == 2;
+    }));
+    EXPECT_TRUE(take_newest(beside, status));
+    EXPECT_EQ(status.service_id, newest);
+    EXPECT_FALSE(take_newest(beside, status));
+  }
+}
+
 TEST(Exchange, TellsThatAWriterHasGone) {
   const support::PrivateDomain domain;
   Participant here({.domain = domain.id(), .machine = "m"});
