@@ -57,7 +57,10 @@ void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
 
 void DriveGroup::work(int periods) noexcept {
   const double dt_s = cycle_s_ * periods;
-  periods_without_ = is_new_ ? 0 : periods_without_ + periods;
+  // Who slept through a setpoint did not miss it: periods that this side lost count from the next
+  // one on, when a service that the same host held up has sent again.
+  periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
+  periods_slept_ = is_new_ ? 0 : periods - 1;
   if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
   const bool is_enabled = (newest_.setpoint.flags & kSetpointEnabled) != 0;
   for (std::size_t i = 0; i < drives_.size(); ++i) {

@@ -69,7 +69,8 @@ class DriveGroup {
   std::uint64_t service_id_ = 0;  ///< whom the drives obey; 0: nobody yet
   dds::SetpointSample newest_;
   bool has_setpoint_ = false, is_new_ = false;
-  int periods_without_ = 0;
+  int periods_without_ = 0;  ///< since the newest setpoint
+  int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
   double enabled_s_ = 0;
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
   bool is_silent_ = false, is_emergency_stop_ = false;

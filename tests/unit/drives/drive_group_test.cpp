@@ -87,6 +87,19 @@ TEST_F(Group, ObeysOneServiceUntilItIsOff) {
   EXPECT_EQ(group_.service_id(), 8u);
 }
 
+TEST_F(Group, DoesNotTakeItsOwnStallForSilenceOfTheService) {
+  enable();
+  send(1);
+  group_.work(1);
+  group_.work(60);  // the host held both of them up
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled);
+  send(1);
+  group_.work(1);
+  group_.work(60);
+  group_.work(1);  // awake again, and still nothing: that is silence
+  EXPECT_NE(group_.drive(0).state(), DriveState::kOperationEnabled);
+}
+
 dds::MachineInfo service(std::uint64_t id, std::uint32_t bridge_cycles, bool is_serving) {
   dds::MachineInfo machine;
   machine.service_id = id;
@@ -151,6 +164,7 @@ TEST_F(Group, AStallOfItsOwnCountsAsOneStepOfManyPeriods) {
   EXPECT_EQ(group_.periods_bridged(), 2u);
   EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled);
   group_.work(2);
+  group_.work(1);
   EXPECT_NE(group_.drive(0).state(), DriveState::kOperationEnabled);
 }
 
