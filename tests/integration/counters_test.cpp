@@ -111,6 +111,10 @@ TEST_F(Counters, AWholeRunCostsCycleAndPublisherNoHeapCallNoPageFaultAndTheCycle
     }
   }
   EXPECT_LE(cycle->locks, load_budget("cycle_locks").allowed());
+  EXPECT_GT(publisher->locks, 1000U) << "Cyclone's own: are locks still counted?";
+  EXPECT_LE(static_cast<double>(publisher->contended_locks),
+            load_budget("publisher_lock_waits")
+                .allowed(static_cast<double>(after.cycles_run - before.cycles_run)));
   // One sleep a cycle and no other wait. The status is up to one period of its rate older than the
   // counters.
   constexpr std::uint64_t kStatusAge_cycles = 300;

@@ -22,8 +22,8 @@ using Words = std::vector<std::string>;
 }
 
 /// How the part is read and on which machine it is judged.
-[[nodiscard]] Words judged(const LiveRun& live) {
-  return joined(joined({"--machine", machine_file(live.machine)}, live.reader), live.simulate);
+[[nodiscard]] Words judged(const Plant& plant, const LiveRun& live) {
+  return joined(joined({"--machine", plant.machine()}, live.reader), live.simulate);
 }
 
 /// `meridian record` beside the station, listening already.
@@ -88,14 +88,15 @@ std::string simulate_part(const Plant& plant, const std::string& part, const Liv
                           const Words& more) {
   const std::string simulated = plant.folder() / "simulated.csv";
   Process simulate(
-      joined(joined({"meridian", "simulate", part, "--record", simulated}, judged(live)), more),
+      joined(joined({"meridian", "simulate", part, "--record", simulated}, judged(plant, live)),
+             more),
       plant.folder() / "simulate.log");
   EXPECT_EQ(simulate.wait(milliseconds(60'000)), 0) << simulate.said();
   return simulated;
 }
 
-void expect_same(const Plant& plant, const std::string& simulated, const LiveRun& live) {
-  const MachineModel model = config::load_machine(machine_file(live.machine));
+void expect_same(const Plant& plant, const std::string& simulated) {
+  const MachineModel model = config::load_machine(plant.machine());
   auto is = record::RecordingReader::open(plant.recording(), model);
   auto wanted = record::RecordingReader::open(simulated, model);
   ASSERT_TRUE(is && wanted);
@@ -106,7 +107,7 @@ void expect_same(const Plant& plant, const std::string& simulated, const LiveRun
 }
 
 void expect_on_wire(const Plant& plant, const LiveRun& live) {
-  const MachineModel model = config::load_machine(machine_file(live.machine));
+  const MachineModel model = config::load_machine(plant.machine());
   auto wire = record::RecordingReader::open(live.wire, model);
   auto service = record::RecordingReader::open(plant.recording(), model);
   ASSERT_TRUE(wire) << wire.error().text();
@@ -133,7 +134,7 @@ void expect_on_wire(const Plant& plant, const LiveRun& live) {
 
 void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live) {
   Process check(joined({"meridian", "check", plant.recording(), part, "--max-missing", "1000000"},
-                       judged(live)),
+                       judged(plant, live)),
                 plant.folder() / "check.log");
   EXPECT_EQ(check.wait(milliseconds(60'000)), 0) << check.said();
   std::printf("%s\n", check.said().c_str());
@@ -142,7 +143,7 @@ void expect_checked(const Plant& plant, const std::string& part, const LiveRun& 
 void run_and_judge(Plant& plant, const std::string& part, const LiveRun& live) {
   const std::string simulated = simulate_part(plant, part, live);
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
-  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated, live));
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated));
   expect_checked(plant, part, live);
 }
 

@@ -36,7 +36,7 @@ void run_live(Plant& plant, const std::string& part, const LiveRun& live);
                                         const std::vector<std::string>& more = {});
 
 /// The recording of the plant and `simulated` hold the same motion.
-void expect_same(const Plant& plant, const std::string& simulated, const LiveRun& live);
+void expect_same(const Plant& plant, const std::string& simulated);
 
 /// What came over the wire is what the service recorded of those cycles.
 void expect_on_wire(const Plant& plant, const LiveRun& live);

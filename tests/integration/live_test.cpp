@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cstdlib>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "integration/live_run.hpp"
 
@@ -34,35 +37,59 @@ TEST(Live, RunsOnThroughBlocksAsItsSessionAsksAndEqualsTheSimulation) {
   live.station = {"--transition", "smooth"};
   const std::string simulated = simulate_part(plant, part, live, live.station);
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
-  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated, live));
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated));
   expect_checked(plant, part, live);
   const auto smooth_size = std::filesystem::file_size(simulated);
   EXPECT_LT(smooth_size, std::filesystem::file_size(simulate_part(plant, part, live)))
       << "it stopped at every block";
 }
 
-/// The shortest file of the corpus takes nearly three minutes: for whoever asks for it.
-TEST(Live, CutsAWholeFileOfTheCorpusAsTheSimulationDoes) {
-  const char* const name = std::getenv("MERIDIAN_LIVE_CORPUS");
-  if (name == nullptr) GTEST_SKIP() << "MERIDIAN_LIVE_CORPUS names no file of ../shared/cl_corpus";
-  const auto file =
-      std::filesystem::path(MERIDIAN_SOURCE_DIR).parent_path() / "shared" / "cl_corpus" / name;
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-  Plant plant;
-  const std::string tools = (plant.folder() / "tools.toml").string();
-  const std::string service = (plant.folder() / "service.toml").string();
-  std::ofstream(tools) << "[[tool]]\nnumber = 1\nlength_mm = 110\nradius_mm = 5\n"
-                          "[[tool]]\nnumber = 45\nlength_mm = 110\nradius_mm = 5\n";
-  std::ofstream(service) << "[service]\nmachine = \"" << machine_file()
-                         << "\"\ntools = \"tools.toml\"\n";
-  const std::string frame = "--frame=20,-30,50";
-  LiveRun live;
-  live.service = {"--service", service, frame};
-  live.reader = {"--units", "mm"};
-  live.simulate = {frame, "--tools", tools};
-  live.patience = std::chrono::hours(1);
-  run_and_judge(plant, file, live);
+/// Median and p99 of the computation times in the recording of `plant`, ns, and how many of the
+/// periods between its first and last row were executed.
+struct CycleFigures {
+  std::int64_t p50_ns = 0, p99_ns = 0;
+  double executed = 0;
+};
+
+CycleFigures cycle_figures(const Plant& plant) {
+  std::ifstream recording(plant.recording());
+  std::string line;
+  std::getline(recording, line);
+  std::vector<std::int64_t> times_ns;
+  std::int64_t first = -1, last = -1;
+  while (std::getline(recording, line)) {
+    times_ns.push_back(std::stoll(line.substr(line.rfind(',') + 1)));
+    last = std::stoll(line);
+    if (first < 0) first = last;
+  }
+  if (times_ns.empty()) return {};
+  std::sort(times_ns.begin(), times_ns.end());
+  return {times_ns[times_ns.size() / 2], times_ns[times_ns.size() * 99 / 100],
+          static_cast<double>(times_ns.size()) / static_cast<double>(last - first + 1)};
 }
+
+/// The shortest and the longest cycle that a machine file may ask for.
+class LiveAtCycle : public testing::TestWithParam<int> {};
+
+TEST_P(LiveAtCycle, KeepsItsRateAndEqualsTheSimulation) {
+  const int cycle_us = GetParam();
+  Plant plant;
+  ASSERT_NO_FATAL_FAILURE(plant.set_cycle_us(cycle_us));
+  const std::string part = (plant.folder() / "part.cls").string();
+  write_cl_file(part, 8);
+  run_and_judge(plant, part, {});
+  const CycleFigures figures = cycle_figures(plant);
+  std::printf(
+      "cycle of %d us: %.2f %% of the periods executed, computation p50 %.1f us, p99 %.1f us\n",
+      cycle_us, 100 * figures.executed, 1e-3 * static_cast<double>(figures.p50_ns),
+      1e-3 * static_cast<double>(figures.p99_ns));
+  EXPECT_GT(figures.executed, 0.5) << "a busy host steals some periods, not most of them";
+  EXPECT_GT(figures.p50_ns, 0);
+  EXPECT_LT(figures.p50_ns, 1000 * cycle_us / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cycle, LiveAtCycle, testing::Values(125, 4000),
+                         [](const auto& info) { return std::to_string(info.param) + "us"; });
 
 /// An operator who holds, resumes and turns the override while the program runs.
 void operate(Plant& plant) {
@@ -95,7 +122,7 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   live.operate = [&plant] { operate(plant); };
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
   const std::string events = plant.folder() / "recording.events.csv";
-  expect_same(plant, simulate_part(plant, part, live, {"--events", events}), live);
+  expect_same(plant, simulate_part(plant, part, live, {"--events", events}));
 }
 
 }  // namespace

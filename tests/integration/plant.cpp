@@ -10,8 +10,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iomanip>
+#include <regex>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -59,8 +61,30 @@ void InputPipe::close() {
   write_end_ = -1;
 }
 
+Terminal::Terminal() : our_end_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
+  (void)::grantpt(our_end_);
+  (void)::unlockpt(our_end_);
+  std::array<char, 64> name{};
+  (void)::ptsname_r(our_end_, name.data(), name.size());
+  process_end_ = ::open(name.data(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+}
+
+Terminal::~Terminal() {
+  ::close(process_end_);
+  ::close(our_end_);
+}
+
+const std::string& Terminal::shown() {
+  std::array<char, 4096> buffer{};
+  for (ssize_t n = 1; n > 0;) {
+    n = ::read(our_end_, buffer.data(), buffer.size());
+    if (n > 0) shown_.append(buffer.data(), static_cast<std::size_t>(n));
+  }
+  return shown_;
+}
+
 Process::Process(const std::vector<std::string>& arguments, std::filesystem::path log,
-                 const InputPipe* input)
+                 const InputPipe* input, const Terminal* terminal)
     : log_(std::move(log)) {
   std::vector<std::string> words = arguments;
   words[0] = std::string(MERIDIAN_BINARY_DIR) + "/bin/" + words[0];
@@ -73,6 +97,7 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
   const int file = ::open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
   ::dup2(file, STDOUT_FILENO);
   ::dup2(file, STDERR_FILENO);
+  if (terminal != nullptr) ::dup2(terminal->process_end(), STDOUT_FILENO);
   if (input != nullptr) ::dup2(input->read_end(), STDIN_FILENO);
   ::execv(argv[0], argv.data());
   ::_exit(127);
@@ -130,6 +155,7 @@ std::string machine_file(const std::string& machine) {
 
 Plant::Plant(std::string machine)
     : machine_(std::move(machine)),
+      machine_file_(machine_file(machine_)),
       folder_(std::filesystem::temp_directory_path() / ("meridian-plant-" + domain())),
       participant_({.domain = domain_.id(), .machine = machine_}),
       statuses_(participant_),
@@ -144,15 +170,24 @@ Plant::Plant(std::string machine)
 
 Plant::~Plant() {
   service_.reset();
+  if (testing::Test::HasFailure() && drives_) std::printf("drives:\n%s", drives_->said().c_str());
   drives_.reset();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
 }
 
+void Plant::set_cycle_us(int cycle_us) {
+  std::ostringstream text;
+  text << std::ifstream(test::machine_file(machine_)).rdbuf();
+  machine_file_ = (folder_ / "machine.toml").string();
+  std::ofstream(machine_file_) << std::regex_replace(text.str(), std::regex("cycle_us = [0-9]+"),
+                                                     "cycle_us = " + std::to_string(cycle_us));
+  ASSERT_EQ(config::load_machine(machine_file_).cycle_ns, 1000 * cycle_us);
+}
+
 Process& Plant::start_service(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"meridiand", "--machine",    machine_file(machine_),
-                                        "--domain",  domain(),       "--record",
-                                        recording(), "--best-effort"};
+  std::vector<std::string> arguments = {"meridiand", "--machine", machine_file_, "--domain",
+                                        domain(),    "--record",  recording(),   "--best-effort"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   status_.reset();
   service_ = std::make_unique<Process>(arguments, folder_ / "service.log");
@@ -160,23 +195,22 @@ Process& Plant::start_service(const std::vector<std::string>& more) {
 }
 
 Process& Plant::start_drives(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"meridian", "drives", "--machine", machine_file(machine_),
-                                        "--domain", domain()};
+  std::vector<std::string> arguments = {"meridian",    "drives",   "--machine",
+                                        machine_file_, "--domain", domain()};
   arguments.insert(arguments.end(), more.begin(), more.end());
   drives_ = std::make_unique<Process>(arguments, folder_ / "drives.log");
   return *drives_;
 }
 
 std::unique_ptr<Process> Plant::another_service() {
-  return std::make_unique<Process>(
-      std::vector<std::string>{"meridiand", "--machine", machine_file(machine_), "--domain",
-                               domain(), "--best-effort"},
-      folder_ / "second.log");
+  return std::make_unique<Process>(std::vector<std::string>{"meridiand", "--machine", machine_file_,
+                                                            "--domain", domain(), "--best-effort"},
+                                   folder_ / "second.log");
 }
 
 void Plant::look() {
   dds::Status status;
-  while (statuses_.take(status)) status_ = status;
+  if (dds::take_newest(statuses_, status)) status_ = status;
 }
 
 const dds::Status& Plant::status() {

@@ -42,13 +42,30 @@ class InputPipe {
   int read_end_ = -1, write_end_ = -1;
 };
 
+/// A pseudo-terminal that a process has as its standard output.
+class Terminal {
+ public:
+  Terminal();
+  ~Terminal();
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  /// Everything that was printed so far.
+  [[nodiscard]] const std::string& shown();
+  [[nodiscard]] int process_end() const noexcept { return process_end_; }
+
+ private:
+  int our_end_ = -1, process_end_ = -1;
+  std::string shown_;
+};
+
 /// A program of ours that runs beside the test; killed with it.
 class Process {
  public:
-  /// Starts build/bin/`arguments[0]`; what it says goes to `log`. It reads `input` where one is
-  /// given, else what the test reads.
+  /// Starts build/bin/`arguments[0]`; what it says goes to `log`, its standard output to `terminal`
+  /// where one is given. It reads `input` where one is given, else what the test reads.
   Process(const std::vector<std::string>& arguments, std::filesystem::path log,
-          const InputPipe* input = nullptr);
+          const InputPipe* input = nullptr, const Terminal* terminal = nullptr);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -71,6 +88,9 @@ class Plant {
   /// `machine`: one of deploy/machines.
   explicit Plant(std::string machine = "lai");
   ~Plant();
+
+  /// Runs service and drives from a copy of the machine file with another cycle time.
+  void set_cycle_us(int cycle_us);
 
   /// Start meridiand (best effort, recording on) or the drives, `more` on the command
   /// line.
@@ -98,6 +118,8 @@ class Plant {
 
   [[nodiscard]] std::filesystem::path recording() const { return folder_ / "recording.csv"; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// The machine file that service and drives are started with.
+  [[nodiscard]] const std::string& machine() const { return machine_file_; }
   [[nodiscard]] std::string domain() const { return std::to_string(domain_.id()); }
   [[nodiscard]] dds::Participant& participant() { return participant_; }
   [[nodiscard]] Process& service() { return *service_; }
@@ -106,7 +128,7 @@ class Plant {
  private:
   void look();
 
-  std::string machine_;
+  std::string machine_, machine_file_;
   support::PrivateDomain domain_;
   std::filesystem::path folder_;
   dds::Participant participant_;

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -61,6 +63,81 @@ TEST_F(Tool, StreamsAPartFromOpenToEnd) {
   EXPECT_NE(said.find("machine is Running"), std::string::npos) << said;
   EXPECT_NE(said.find("ran to its end"), std::string::npos) << said;
   EXPECT_EQ(said.find('\r'), std::string::npos) << "in a pipe plain lines";
+}
+
+/// One drawing of the progress bar.
+struct Bar {
+  int full = 0, percent = 0;
+  int block = 0, block_count = 0, line = 0;
+  int feed_mm_per_min = -1;  ///< -1: a rapid
+  int to_go_s = -1;          ///< -1: not said
+};
+
+/// The bars in what a terminal was shown, of a program at `feed` mm/min.
+std::vector<Bar> bars_in(const std::string& shown, const std::string& feed) {
+  const std::regex pattern(
+      "\r\x1b\\[K\\[(#*)(\\.*)\\] +(\\d+) % block (\\d+) of (\\d+), line (\\d+), "
+      "(?:feed (\\d+) of " +
+      feed + "|rapid at \\d+) mm/min(?:, to go (\\d+):(\\d\\d))?");
+  std::vector<Bar> bars;
+  for (std::sregex_iterator i(shown.begin(), shown.end(), pattern), end; i != end; ++i) {
+    const auto number = [&i](std::size_t n) { return std::stoi(i->str(n)); };
+    EXPECT_EQ(i->length(1) + i->length(2), 24);
+    Bar bar{static_cast<int>(i->length(1)), number(3), number(4), number(5), number(6)};
+    if (i->length(7) > 0) bar.feed_mm_per_min = number(7);
+    if (i->length(8) > 0) bar.to_go_s = 60 * number(8) + number(9);
+    bars.push_back(bar);
+  }
+  return bars;
+}
+
+TEST_F(Tool, ShowsABarWithBlockFeedAndTimeToGoOnATerminal) {
+  plant.start_service();
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  const std::string text =
+      "PARTNO/BAR\nUNITS/MM\nFEDRAT/1500,MMPM\n" + cl_text(small_program(16, 1500, 5)) + "FINI\n";
+  Terminal terminal;
+  Process stream(
+      {"meridian", "stream", part("bar.apt", text), "--wait-end", "--domain", plant.domain()},
+      plant.folder() / "bar.log", nullptr, &terminal);
+  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << terminal.shown() << stream.said();
+  Process start = run({"ctl", "start"});
+  ASSERT_EQ(start.wait(kShort), 0) << start.said();
+  ASSERT_TRUE(eventually(
+      [&] {
+        (void)terminal.shown();  // nobody else empties the terminal
+        return stream.wait(milliseconds(0)).has_value();
+      },
+      kLong))
+      << terminal.shown();
+  EXPECT_EQ(stream.wait(kShort), 0) << terminal.shown();
+  const std::string shown = terminal.shown();
+  EXPECT_NE(shown.find("\r\x1b[Kmachine is Running"), std::string::npos)
+      << "a message wipes the bar: " << shown;
+  const std::vector<Bar> bars = bars_in(shown, "1500");
+  ASSERT_GE(bars.size(), 10U) << shown;
+  Bar before = bars.front();
+  int fastest = -1, longest_s = -1, shortest_s = 9999;
+  for (const Bar& bar : bars) {
+    EXPECT_EQ(bar.block_count, 17) << "sixteen points and the end";
+    EXPECT_LE(bar.block, bar.block_count);
+    EXPECT_TRUE(bar.line == 0 || (bar.line > 3 && bar.line < 21)) << bar.line;
+    EXPECT_GE(bar.block, before.block);
+    EXPECT_GE(bar.percent, before.percent);
+    EXPECT_NEAR(bar.full, bar.percent * 24 / 100.0, 1);
+    EXPECT_LE(bar.feed_mm_per_min, 1500);
+    fastest = std::max(fastest, bar.feed_mm_per_min);
+    if (bar.to_go_s >= 0) {
+      longest_s = std::max(longest_s, bar.to_go_s);
+      shortest_s = std::min(shortest_s, bar.to_go_s);
+    }
+    before = bar;
+  }
+  EXPECT_GT(bars.back().block, bars.front().block);
+  EXPECT_GT(fastest, 1400) << "the feed that is cut, not that of the file";
+  EXPECT_GE(longest_s, 4) << "112 mm at 25 mm/s";
+  EXPECT_LE(shortest_s, 1) << shown;
 }
 
 TEST_F(Tool, StreamsAPipeAtThePaceOfItsWriter) {

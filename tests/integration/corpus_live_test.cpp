@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "integration/live_run.hpp"
+#include "support/shared_folder.hpp"
+
+namespace meridian::test {
+namespace {
+
+/// Cuts a file of the corpus live, and judges it by simulation and checker.
+void cut(Plant& plant, const std::filesystem::path& part) {
+  const std::string tools = (plant.folder() / "tools.toml").string();
+  const std::string service = (plant.folder() / "service.toml").string();
+  std::ofstream(tools) << "[[tool]]\nnumber = 1\nlength_mm = 110\nradius_mm = 5\n"
+                          "[[tool]]\nnumber = 45\nlength_mm = 110\nradius_mm = 5\n";
+  std::ofstream(service) << "[service]\nmachine = \"" << machine_file()
+                         << "\"\ntools = \"tools.toml\"\n";
+  const std::string frame = "--frame=20,-30,50";
+  LiveRun live;
+  live.service = {"--service", service, frame};
+  live.reader = {"--units", "mm"};
+  live.simulate = {frame, "--tools", tools};
+  live.patience = std::chrono::hours(1);
+  run_and_judge(plant, part.string(), live);
+}
+
+/// The first two lines of a five-axis part of a real CAM system, with its tool and its rapids: 25
+/// s.
+TEST(LiveCorpus, CutsTheHeadOfAFiveAxisFileAsTheSimulationDoes) {
+  const auto file = shared_folder() / "cl_corpus" / "ramsai_1-3_plan_5x_depincage_double.apt";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  Plant plant;
+  const auto head = plant.folder() / "head.apt";
+  std::ifstream in(file, std::ios::binary);
+  std::ofstream out(head, std::ios::binary);
+  std::string line;
+  for (int n = 0; n < 40 && std::getline(in, line); ++n) out << line << "\n";
+  out << "FINI\n";
+  out.close();
+  cut(plant, head);
+}
+
+/// The shortest whole file takes nearly three minutes: for whoever asks for one.
+TEST(LiveCorpus, CutsAWholeFileAsTheSimulationDoes) {
+  const char* const name = std::getenv("MERIDIAN_LIVE_CORPUS");
+  if (name == nullptr) GTEST_SKIP() << "MERIDIAN_LIVE_CORPUS names no file of cl_corpus";
+  const auto file = shared_folder() / "cl_corpus" / name;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  Plant plant;
+  cut(plant, file);
+}
+
+}  // namespace
+}  // namespace meridian::test
