@@ -89,7 +89,9 @@ TEST_P(LiveAtCycle, KeepsItsRateAndEqualsTheSimulation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cycle, LiveAtCycle, testing::Values(125, 4000),
-                         [](const auto& info) { return std::to_string(info.param) + "us"; });
+                         [](const testing::TestParamInfo<int>& cycle) {
+                           return std::to_string(cycle.param) + "us";
+                         });
 
 /// An operator who holds, resumes and turns the override while the program runs.
 void operate(Plant& plant) {

@@ -50,15 +50,11 @@ std::vector<HelpEntry> entries_of(const std::string& help, const std::string& se
       is_inside = line == section + ":";
     } else if (is_inside && line.find_first_not_of(' ') == 2) {
       const std::string name = line.substr(2, line.find(' ', 2) - 2);
-      const std::size_t text = line.find("  ", 2);
-      entries.push_back({name, text == std::string::npos ? "" : line.substr(text)});
+      const bool has_text = line.size() > kColumn && line[kColumn - 1] == ' ';
+      entries.push_back({name, has_text ? line.substr(kColumn) : ""});
     } else if (is_inside && !entries.empty() && line.find_first_not_of(' ') == kColumn) {
       entries.back().text += line.substr(kColumn);
     }
-  }
-  for (HelpEntry& entry : entries) {
-    const std::size_t begin = entry.text.find_first_not_of(' ');
-    entry.text = begin == std::string::npos ? "" : entry.text.substr(begin);
   }
   return entries;
 }
