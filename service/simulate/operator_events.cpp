@@ -58,6 +58,9 @@ template <class Number>
     return about(argument, "is no number");
   }
   if (needs_argument(*verb) && argument.empty()) return about(word, "needs its factor");
+  if (needs_argument(*verb) && !(event.argument >= 0 && event.argument <= 1)) {
+    return about(argument, "is no factor from 0 to 1");
+  }
   return row.empty() ? "" : "there is more than cycle, verb and argument";
 }
 

@@ -178,7 +178,7 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       why = "no feedback from the drives; start them and check their network";
       break;
     case Refusal::kOutOfRange:
-      why = "the value is out of range: feed override 0 to 1.5, rapid override 0 to 1";
+      why = "the value is out of range: overrides reach from 0 to 100 %";
       break;
     case Refusal::kStale:
       why = "what you saw is older than 500 ms or of an earlier epoch; look again, then repeat";

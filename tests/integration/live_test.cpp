@@ -105,7 +105,7 @@ void operate(Plant& plant) {
   std::this_thread::sleep_for(milliseconds(400));
   say(Verb::kHold);
   ASSERT_TRUE(plant.wait_for(State::kHeld));
-  say(Verb::kFeedOverride, 1.3);
+  say(Verb::kFeedOverride, 1.0);
   say(Verb::kResume);
   std::this_thread::sleep_for(milliseconds(350));
   say(Verb::kFeedOverride, 0.8);

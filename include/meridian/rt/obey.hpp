@@ -12,7 +12,8 @@
 /// The operator's word: table first, then the conditions that a table cannot hold. RT: cycle.
 namespace meridian {
 
-inline constexpr double kMostFeedOverride = 1.5, kMostRapidOverride = 1.0;
+/// Plans are made for the programmed feed, and the cycle never exceeds its plan.
+inline constexpr double kMostOverride = 1.0;
 
 /// At rest: everything planned is void, and all that travels later carries the next epoch.
 inline void drop_program(Cycle& c) noexcept {
@@ -40,11 +41,9 @@ inline void drop_program(Cycle& c) noexcept {
     case Verb::kReset:
       return f.emergency_stop ? Refusal::kFaultPresent : Refusal::kNone;
     case Verb::kFeedOverride:
-      return command.argument >= 0 && command.argument <= kMostFeedOverride ? Refusal::kNone
-                                                                            : Refusal::kOutOfRange;
     case Verb::kRapidOverride:
-      return command.argument >= 0 && command.argument <= kMostRapidOverride ? Refusal::kNone
-                                                                             : Refusal::kOutOfRange;
+      return command.argument >= 0 && command.argument <= kMostOverride ? Refusal::kNone
+                                                                        : Refusal::kOutOfRange;
     default:
       return Refusal::kNone;
   }

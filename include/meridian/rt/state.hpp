@@ -33,7 +33,7 @@ enum class Verb : std::uint8_t {
   kResume,
   kAbort,
   kReset,
-  kFeedOverride,   ///< argument: factor, 0 to 1.5
+  kFeedOverride,   ///< argument: factor, 0 to 1
   kRapidOverride,  ///< argument: factor, 0 to 1
 };
 inline constexpr int kVerbCount = 9;

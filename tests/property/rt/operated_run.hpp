@@ -14,7 +14,7 @@ namespace meridian::test {
 
 /// What an operator does who cannot leave a machine alone.
 struct Operator {
-  double least_override = 0;  ///< to which the feed is turned; the most is 1.5
+  double least_override = 0;  ///< to which the feed is turned
   bool turns_rapids = true;
   int holds = 0;
 
@@ -43,7 +43,7 @@ struct Operator {
       run.command(Verb::kHold);
       ++holds;
     } else if (what < 0.8) {
-      run.command(Verb::kFeedOverride, random.uniform(least_override, 1.5));
+      run.command(Verb::kFeedOverride, std::min(1.0, random.uniform(least_override, 1.5)));
     } else if (turns_rapids) {
       run.command(Verb::kRapidOverride, random.uniform(0.2, 1.0));
     }

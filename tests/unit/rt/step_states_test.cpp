@@ -249,17 +249,17 @@ TEST(Step, DisablesOnlyAtRestAndOverDisablingToOff) {
   EXPECT_EQ(p.world.state.epoch, 2);
 }
 
-TEST(Step, OverridesOutOfRangeAreRefusedAndInRangeAreKeptForThePlanner) {
+TEST(Step, OverridesOutOfRangeAreRefusedAndThoseInForceStay) {
   Program p;
-  p.world.command(Verb::kFeedOverride, 1.3);
-  EXPECT_EQ(p.world.state.feed_override, 1.3);
-  for (const double bad : {-0.1, 1.51, std::nan("")}) {
+  p.world.command(Verb::kFeedOverride, 0.7);
+  EXPECT_EQ(p.world.state.feed_override, 0.7);
+  for (const double bad : {-0.1, 1.01, 1.5, std::nan("")}) {
     p.world.command(Verb::kFeedOverride, bad);
     EXPECT_EQ(refusal_of(p.world), Refusal::kOutOfRange);
   }
   p.world.command(Verb::kRapidOverride, 1.01);
   EXPECT_EQ(refusal_of(p.world), Refusal::kOutOfRange);
-  EXPECT_EQ(p.world.state.feed_override, 1.3);
+  EXPECT_EQ(p.world.state.feed_override, 0.7);
   EXPECT_EQ(p.world.state.rapid_override, 1.0);
 }
 

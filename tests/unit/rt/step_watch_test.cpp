@@ -49,7 +49,7 @@ const Scenario kScenarios[] = {
        p.world.command(Verb::kHold);
        run_on(p, State::kHeld);
        p.world.command(Verb::kResume);
-       p.world.command(Verb::kFeedOverride, 1.2);
+       p.world.command(Verb::kFeedOverride, 1);
        p.world.run_for(0.1);
      },
      State::kRunning},

@@ -40,6 +40,7 @@ TEST(OperatorEvents, AreRefusedWithTheirLine) {
       {"5,hold\n4,resume\n", "e.csv:2: cycles do not go up"},
       {"5,feed_override\n", "'feed_override' needs its factor"},
       {"5,feed_override,nan\n", "'nan' is no number"},
+      {"5,feed_override,1.3\n", "'1.3' is no factor from 0 to 1"},
       {"5,hold,1,2\n", "more than cycle, verb and argument"},
   };
   for (const Case& c : cases) {
