@@ -218,6 +218,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   cell.h = draft.h;
   cell.most_b = std::numeric_limits<double>::infinity();
   JointVector reference = joints_;
+  LimitedVector values{};  // at the sample before
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
     CellSample& at = cell.at[static_cast<std::size_t>(k)];
     const double x = draft.x + draft.h * k / FeedCell::kSteps;
@@ -231,6 +232,13 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
         joint >= 0) {
       return {PathFault::Kind::kTravel, joint, limited_value(model_, reference, joint)};
     }
+    const LimitedVector here = limited_of(model_, reference);
+    if (k > 0) {
+      const auto fault = judge_turns(model_, values, cell.at[static_cast<std::size_t>(k - 1)].d1,
+                                     here, at.d1, draft.h / FeedCell::kSteps);
+      if (fault.kind != PathFault::Kind::kNone) return fault;
+    }
+    values = here;
     const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here
     for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];

@@ -9,8 +9,6 @@
 namespace meridian {
 namespace {
 
-constexpr int kMostParts = 64;
-
 /// Time in which the law covers `length`, by Newton from `guess`.
 double time_over(const FeedPiece& piece, double length, double guess) noexcept {
   TimePiece law;

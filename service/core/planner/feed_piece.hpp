@@ -7,6 +7,7 @@
 #include "service/core/planner/feed_cells.hpp"
 #include "service/core/planner/feed_check.hpp"
 #include "service/core/planner/feed_rest.hpp"
+#include "service/core/planner/jerk_step.hpp"
 
 namespace meridian {
 
@@ -18,10 +19,13 @@ struct FeedPiece {
   double s0 = 0, v = 0, a = 0, j = 0, k = 0;
 };
 
-/// Pieces of a window, in order, in a fixed store; what does not fit is not added.
+/// Pieces of a window, in order, in a fixed store.
 class FeedPieces {
  public:
-  static constexpr std::size_t kCapacity = 4096;
+  static constexpr int kMostParts = 64;  ///< that a cell is cut into
+  /// Of every cell of a window or a crawl as many.
+  static constexpr std::size_t kCapacity =
+      static_cast<std::size_t>(JerkStep::kCells + 2) * kMostParts;
 
   FeedPieces() { pieces_.reserve(kCapacity); }
   void clear() noexcept { pieces_.clear(); }

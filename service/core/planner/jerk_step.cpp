@@ -12,7 +12,6 @@ constexpr double kGapGoal = 1e-4;     // of the time
 constexpr double kPrimalGoal = 1e-7;  // rows are scaled to about 1
 constexpr double kPrimalGood = 1e-5;  // what is accepted when the rounds are over
 constexpr double kToTheWall = 0.995;  // share of the way to the next bound that is gone
-constexpr double kFreeBegin = 11;     // the begin is given: its own rows bind nothing
 constexpr double kLeastScale = 1e-3;  // of the limit: a row of a joint that hardly moves
 constexpr int kStallRounds = 6;       // the primal residual has to halve in them
 
@@ -25,7 +24,6 @@ JerkStep::JerkStep(const CellGrid& grid, const FeedLimits& limits) : grid_(grid)
   }
   middle_.resize(kCells);
   rows_.resize(kCells);
-  packs_ = (8 * limits_.count + 2 + kLanes - 1) / kLanes;
 }
 
 void JerkStep::set_up(const JerkProblem& problem) noexcept {
@@ -40,7 +38,7 @@ void JerkStep::set_up(const JerkProblem& problem) noexcept {
   bar_[0] = problem.bar_knots[0];
   bar_[cells_ + 1] = problem.bar_knots[cells_];
   for (int i = 0; i < cells_; ++i) bar_[i + 1] = problem.bar_middles[i];
-  for (int i = 0; i < cells_; ++i) set_up_cell(problem, i);
+  set_up_cells(problem);
   for (int k = 0; k < cells_ + 2; ++k) c_[k] = 0.5;
   set_ends(problem);
 }
@@ -55,80 +53,70 @@ void JerkStep::set_ends(const JerkProblem& problem) noexcept {
   c_[m + 1] = (end.b + left_[m] / rise_[m] * end.slope) / bar_[m + 1];
 }
 
-void JerkStep::add_row(int cell, int row, const Coefficients& a, double limit) noexcept {
+void JerkStep::put_row(int cell, int row, const JerkRow& from) noexcept {
+  const JerkCoefficients& a = from.a;
   const double a0 = a[0] * bar_[cell], a1 = a[1] * bar_[cell + 1], a2 = a[2] * bar_[cell + 2];
-  const double scale =
-      std::max({std::abs(a0), std::abs(a1), std::abs(a2), std::abs(limit) * kLeastScale, 1e-300});
+  const double scale = std::max(
+      {std::abs(a0), std::abs(a1), std::abs(a2), std::abs(from.limit) * kLeastScale, 1e-300});
   CellRows& rows = rows_[cell];
   const int pack = row / kLanes, lane = row % kLanes;
   rows.a0[pack][lane] = a0 / scale;
   rows.a1[pack][lane] = a1 / scale;
   rows.a2[pack][lane] = a2 / scale;
-  rows.limit[pack][lane] = limit / scale;
+  rows.limit[pack][lane] = from.limit / scale;
 }
 
-void JerkStep::set_up_cell(const JerkProblem& problem, int i) noexcept {
-  const FeedCell& cell = grid_[problem.first + i];
-  const double h = h_[i];
-  // b at the left boundary, b' at both, as combinations of the three coefficients.
-  const Coefficients b0{left_[i], right_[i], 0};
-  const Coefficients s0{-rise_[i], rise_[i], 0}, s1{0, -rise_[i + 1], rise_[i + 1]};
-  int row = 0;
-  const auto add_pair = [&](const Coefficients& value, const Coefficients& both, double limit) {
-    add_row(i, row++, {value[0] + both[0], value[1] + both[1], value[2] + both[2]}, limit);
-    add_row(i, row++, {both[0] - value[0], both[1] - value[1], both[2] - value[2]}, limit);
-  };
-
-  const double relax = i == 0 ? kFreeBegin : 1;
-  const double bar = problem.bar_knots[i], root = std::sqrt(bar);
-  for (int j = 0; j < limits_.count; ++j) {  // acceleration, and what the rate filter adds to it
-    const double d1 = cell.at[0].d1[j], d2 = cell.at[0].d2[j];
-    const double filter = limits_.slope * std::abs(d1);
-    Coefficients value{}, both{};
-    for (int t = 0; t < 3; ++t) {
-      value[t] = 0.5 * d1 * s0[t] + d2 * b0[t];
-      both[t] = filter / (2 * root) * b0[t];
-    }
-    const double limit = limits_.acceleration[j] * problem.accel_share[i] - 0.5 * filter * root;
-    add_pair(value, both, limit * relax);
-  }
+/// What is known of a cell beforehand, |b'| at its end left out.
+JerkCell JerkStep::describe(const JerkProblem& problem, int i) const noexcept {
+  JerkCell at;
+  at.cell = &grid_[problem.first + i];
+  at.is_first = i == 0;
+  at.b = {left_[i], right_[i], 0};
+  at.slope = {-rise_[i], rise_[i], 0};
+  at.end = {0, -rise_[i + 1], rise_[i + 1]};
   for (int t = 0; t < 3; ++t) {
-    middle_[i][t] = b0[t] + (3 * s0[t] + s1[t]) * h / 8;
+    at.middle[t] = at.b[t] + (3 * at.slope[t] + at.end[t]) * h_[i] / 8;
   }
-  for (int p = 0; p < 3; ++p) {  // jerk at the begin, the middle and the end
-    const double x = 0.5 * p;
-    const CellSample& at = cell.at[p * FeedCell::kSteps / 2];
-    const double around = p == 0   ? problem.bar_knots[i]
-                          : p == 1 ? problem.bar_middles[i]
-                                   : problem.bar_knots[i + 1];
-    const double around_root = std::sqrt(around);
-    for (int j = 0; j < limits_.count; ++j) {
-      const double jerk = limits_.jerk[j] * problem.jerk_share[i];
-      Coefficients value{}, both{};
-      for (int t = 0; t < 3; ++t) {
-        const double second = (s1[t] - s0[t]) / h;
-        const double first = s0[t] + second * x * h;
-        const double b = b0[t] + s0[t] * x * h + 0.5 * second * x * x * h * h;
-        value[t] = at.d3[j] * b + 1.5 * at.d2[j] * first + 0.5 * at.d1[j] * second;
-        both[t] = jerk / (2 * around * around_root) * b;
-      }
-      add_pair(value, both, 1.5 * jerk / around_root);
+  at.bar = {problem.bar_knots[i], problem.bar_middles[i], problem.bar_knots[i + 1]};
+  const bool is_last = i + 1 == cells_;
+  const double most_begin = grid_.most_b_at(problem.first + i);
+  at.most_b = {at.is_first ? problem.begin.b : most_begin, std::min(most_begin, at.cell->most_b),
+               is_last ? problem.end.b : grid_.most_b_at(problem.first + i + 1)};
+  at.accel_share = problem.accel_share[i];
+  at.jerk_share = problem.jerk_share[i];
+  if (at.is_first) {
+    at.most_slope = std::abs(problem.begin.slope);
+  } else {
+    bound_slope(limits_, at);
+  }
+  return at;
+}
+
+void JerkStep::set_up_cells(const JerkProblem& problem) noexcept {
+  JerkCell at = describe(problem, 0);
+  places_ = 0;
+  for (int i = 0; i < cells_; ++i) {
+    JerkCell next;
+    if (i + 1 < cells_) next = describe(problem, i + 1);
+    at.most_end = i + 1 < cells_ ? next.most_slope : std::abs(problem.end.slope);
+    found_.find(limits_, at);
+    const int packs = rows_[i].packs = (found_.count() + kLanes - 1) / kLanes;
+    for (int row = 0; row < packs * kLanes; ++row) {
+      put_row(i, row, row < found_.count() ? found_[row] : JerkRow{{}, 1});
     }
+    places_ += packs * kLanes;
+    for (int t = 0; t < 3; ++t) middle_[i][t] = at.middle[t] * bar_[i + t];
+    at = next;
   }
-  const double most_here = grid_.most_b_at(problem.first + i);
-  add_row(i, row++, b0, most_here * relax);
-  add_row(i, row++, middle_[i], std::min(most_here, cell.most_b));
-  for (; row < packs_ * kLanes; ++row) add_row(i, row, {0, 0, 0}, 1);
-  for (int t = 0; t < 3; ++t) middle_[i][t] *= bar_[i + t];
 }
 
 void JerkStep::start() noexcept {
   double time = 0;
   for (int i = 0; i < cells_; ++i) time += h_[i] / std::sqrt(std::max(middle_of(i, c_), 1e-9));
-  const double centre = time / (1.0 * cells_ * packs_ * kLanes);
+  const double centre = time / places_;
   for (int i = 0; i < cells_; ++i) {
     CellRows& rows = rows_[i];
-    for (int p = 0; p < packs_; ++p) {
+    for (int p = 0; p < rows.packs; ++p) {
       const Pack value = rows.a0[p] * c_[i] + rows.a1[p] * c_[i + 1] + rows.a2[p] * c_[i + 2];
       rows.slack[p] = (rows.limit[p] - value).max(kLeastSlack);
       rows.lambda[p] = centre / rows.slack[p];
@@ -146,14 +134,14 @@ bool JerkStep::assemble() noexcept {
     if (!(b > 0)) return false;
     const double inverse = 1 / b, root = std::sqrt(inverse);
     const double slope = -0.5 * h_[i] * root * inverse, curvature = -1.5 * slope * inverse;
-    const Coefficients& w = middle_[i];
+    const JerkCoefficients& w = middle_[i];
     time_ += h_[i] * root;
     for (int t = 0; t < 3; ++t) gradient_[i + t] -= w[t] * slope;
 
     CellRows& rows = rows_[i];
     Pack m00 = Pack::Zero(), m11 = m00, m22 = m00, m01 = m00, m12 = m00, m02 = m00;
     Pack pull0 = m00, pull1 = m00, pull2 = m00, gap = m00, residual = m00;
-    for (int p = 0; p < packs_; ++p) {
+    for (int p = 0; p < rows.packs; ++p) {
       const Pack &a0 = rows.a0[p], &a1 = rows.a1[p], &a2 = rows.a2[p];
       const Pack &s = rows.slack[p], &l = rows.lambda[p];
       const Pack per_slack = 1 / s;
@@ -233,7 +221,7 @@ void JerkStep::find_step(double centre, bool is_corrector) noexcept {
   for (int i = 0; i < cells_; ++i) {
     const CellRows& rows = rows_[i];
     Pack sum0 = Pack::Zero(), sum1 = sum0, sum2 = sum0;
-    for (int p = 0; p < packs_; ++p) {
+    for (int p = 0; p < rows.packs; ++p) {
       const Pack t = rows.lambda[p] * rows.inverse[p] * rows.residual[p] + aim(rows, p);
       sum0 += rows.a0[p] * t;
       sum1 += rows.a1[p] * t;
@@ -247,7 +235,7 @@ void JerkStep::find_step(double centre, bool is_corrector) noexcept {
   Pack primal = Pack::Constant(kToTheWall), dual = primal;
   for (int i = 0; i < cells_; ++i) {
     CellRows& rows = rows_[i];
-    for (int p = 0; p < packs_; ++p) {
+    for (int p = 0; p < rows.packs; ++p) {
       const Pack &l = rows.lambda[p], &inverse = rows.inverse[p];
       const Pack ds = -rows.residual[p] - (rows.a0[p] * step_[i] + rows.a1[p] * step_[i + 1] +
                                            rows.a2[p] * step_[i + 2]);
@@ -267,7 +255,7 @@ double JerkStep::gap_after_step() const noexcept {
   Pack gap = Pack::Zero();
   for (int i = 0; i < cells_; ++i) {
     const CellRows& rows = rows_[i];
-    for (int p = 0; p < packs_; ++p) {
+    for (int p = 0; p < rows.packs; ++p) {
       gap += (rows.lambda[p] + step_dual_ * rows.step_lambda[p]) *
              (rows.slack[p] + step_primal_ * rows.step_slack[p]);
     }
@@ -283,7 +271,7 @@ void JerkStep::take_step() noexcept {
   for (int k = 0; k < cells_ + 2; ++k) c_[k] += step_primal_ * step_[k];
   for (int i = 0; i < cells_; ++i) {
     CellRows& rows = rows_[i];
-    for (int p = 0; p < packs_; ++p) {
+    for (int p = 0; p < rows.packs; ++p) {
       rows.slack[p] += step_primal_ * rows.step_slack[p];
       rows.lambda[p] += step_dual_ * rows.step_lambda[p];
     }
@@ -293,7 +281,7 @@ void JerkStep::take_step() noexcept {
 bool JerkStep::solve(const JerkProblem& problem) noexcept {
   set_up(problem);
   start();
-  const double rows = 1.0 * cells_ * packs_ * kLanes;
+  const double rows = places_;
   std::array<double, kRounds> history{};
   for (round_ = 0; round_ < kRounds; ++round_) {
     if (!assemble()) return false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "service/core/planner/feed_cells.hpp"
+#include "service/core/planner/jerk_rows.hpp"
 
 /// The fastest feed inside velocity, acceleration and jerk of every joint, as one convex programme.
 /// Source: docs/motion.md, section 8.
@@ -59,21 +60,21 @@ class JerkStep {
 
  private:
   static constexpr int kLanes = 4;
-  static constexpr int kPacks = (8 * kMaxLimited + 2 + kLanes - 1) / kLanes;
+  static constexpr int kPacks = (JerkRows::kMost + kLanes - 1) / kLanes;
   using Pack = Eigen::Array<double, kLanes, 1>;
   using Values = std::vector<double>;
 
   /// Rows a·c <= limit of one cell with their slacks and multipliers, four at a time.
   struct CellRows {
+    int packs = 0;
     std::array<Pack, kPacks> a0, a1, a2, limit, slack, lambda, step_slack, step_lambda;
     std::array<Pack, kPacks> residual, inverse;  ///< a·c + slack - limit, and 1/slack
   };
-  /// One row while it is being filled in.
-  using Coefficients = std::array<double, 3>;
 
   void set_up(const JerkProblem& problem) noexcept;
-  void set_up_cell(const JerkProblem& problem, int cell) noexcept;
-  void add_row(int cell, int row, const Coefficients& a, double limit) noexcept;
+  void set_up_cells(const JerkProblem& problem) noexcept;
+  [[nodiscard]] JerkCell describe(const JerkProblem& problem, int cell) const noexcept;
+  void put_row(int cell, int row, const JerkRow& from) noexcept;
   void set_ends(const JerkProblem& problem) noexcept;
   void start() noexcept;
   [[nodiscard]] double middle_of(int cell, const Values& c) const noexcept {
@@ -91,14 +92,16 @@ class JerkStep {
 
   const CellGrid& grid_;
   FeedLimits limits_;
-  int cells_ = 0, packs_ = 0, round_ = 0;
+  int cells_ = 0, round_ = 0;
+  int places_ = 0;  ///< for rows, those that fill up a pack included
   double time_ = 0, gap_ = 0, primal_ = 0, dual_ = 0;
   double step_primal_ = 0, step_dual_ = 0;
   Values h_, left_, right_, rise_;  ///< spline: b_k = left c_k + right c_{k+1}, b'_k = rise (..)
   Values bar_, c_, step_, gradient_, pull_;
   Values diagonal_, first_off_, second_off_;
-  std::vector<Coefficients> middle_;
+  std::vector<JerkCoefficients> middle_;
   std::vector<CellRows> rows_;
+  JerkRows found_;
 };
 
 }  // namespace meridian

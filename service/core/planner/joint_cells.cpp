@@ -55,23 +55,6 @@ PathFault judge_travel(const MachineModel& model, const LimitedVector& q) noexce
   return {};
 }
 
-/// Travel at the turning points that the joints have between two samples `h` apart.
-PathFault judge_between(const MachineModel& model, const Sample& a, const Sample& b,
-                        double h) noexcept {
-  for (int i = 0; i < limited_count(model); ++i) {
-    if (!(a.d1[i] * b.d1[i] < 0)) continue;
-    // Value of the cubic through both samples where its derivative vanishes (secant).
-    const double t = a.d1[i] / (a.d1[i] - b.d1[i]);
-    const double by = b.q[i] - a.q[i];
-    const double q =
-        a.q[i] + by * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * a.d1[i] - t * b.d1[i]);
-    if (!is_inside_travel(limited_spec(model, i), q, kTravelMargin)) {
-      return {PathFault::Kind::kTravel, i, q};
-    }
-  }
-  return {};
-}
-
 /// Largest of three samples of a smooth function, raised by what it may do between them.
 double bound(double a, double b, double c) noexcept {
   const double largest = std::max({std::abs(a), std::abs(b), std::abs(c)});
@@ -100,6 +83,22 @@ double axis_noise(const MachineModel& model, const PathPiece& piece, double begi
 
 }  // namespace
 
+PathFault judge_turns(const MachineModel& model, const LimitedVector& a, const LimitedVector& da,
+                      const LimitedVector& b, const LimitedVector& db, double h) noexcept {
+  for (int i = 0; i < limited_count(model); ++i) {
+    if (!(da[i] * db[i] < 0)) continue;
+    // Value of the cubic through both samples where its derivative vanishes (secant).
+    const double t = da[i] / (da[i] - db[i]);
+    const double by = b[i] - a[i];
+    const double q =
+        a[i] + by * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * da[i] - t * db[i]);
+    if (!is_inside_travel(limited_spec(model, i), q, kTravelMargin)) {
+      return {PathFault::Kind::kTravel, i, q};
+    }
+  }
+  return {};
+}
+
 PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, double begin,
                             double end, int cells, JointVector& joints) noexcept {
   if (count_ + cells > kCapacity) return {PathFault::Kind::kTooLong, -1, 0};
@@ -123,7 +122,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       if (!take_sample(model, piece, s, at[k - 1].joints, at[k])) {
         return {PathFault::Kind::kUnreachable, -1, 0};
       }
-      PathFault fault = judge_between(model, at[k - 1], at[k], h / 2);
+      PathFault fault = judge_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
       if (fault.kind == PathFault::Kind::kNone) fault = judge_travel(model, at[k].q);
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }

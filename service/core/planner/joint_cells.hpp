@@ -58,6 +58,12 @@ class CellTable {
   double coarseness_ = 1;
 };
 
+/// Travel at the turning points that joints and drives have between two samples `h` apart, by the
+/// cubic through both: values `a` and `b`, derivatives `da` and `db`.
+[[nodiscard]] PathFault judge_turns(const MachineModel& model, const LimitedVector& a,
+                                    const LimitedVector& da, const LimitedVector& b,
+                                    const LimitedVector& db, double h) noexcept;
+
 /// One cell that bounds both.
 [[nodiscard]] JointCell merged(const JointCell& a, const JointCell& b) noexcept;
 

@@ -19,6 +19,8 @@ constexpr double kReachShare = 0.98, kHalf = 0.49;
 constexpr double kLeastReach_mm = 1e-3;
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kLeastPart_mm = 1e-6;
+/// Of the free joint between two places at which its winding is followed.
+constexpr double kMostTurn_rad = 0.5, kLeastStep_mm = 1e-8;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
 /// of axis, so a zone beside them still has half of its reach.
 constexpr double kOutOfReach_rad = 0.5 * PoleCorridor::kReach_mm / kAxisLength_mm_per_rad;
@@ -147,20 +149,36 @@ void PoleCorridor::add_cuts(double nearest) noexcept {
 }
 
 JointVector PoleCorridor::follow_to(double u) const noexcept {
+  const int free = free_joint(model_);
   JointVector joints = known_;
-  double at = known_u_;
+  double at = known_u_, step = 0;
   while (at < u) {
     const BandSpan& span = span_at(at);
-    at = std::min(u, at + std::max(span.length / kProbes, 1e-6));
-    const BandSpan& there = span_at(at);
-    const auto pose = pose_on(there.c, std::clamp(at - there.u0, 0.0, there.length));
-    const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
-    if (solved.status != SolveStatus::kUnreachable) joints = solved.q;
+    const double whole = std::max(span.length / kProbes, kLeastPart_mm);
+    step = std::min(step > 0 ? 2 * step : whole, whole);
+    for (;; step *= 0.5) {  // so short that a turn of the free joint is seen
+      const double next = std::min(u, at + step);
+      const BandSpan& there = span_at(next);
+      const auto pose = pose_on(there.c, std::clamp(next - there.u0, 0.0, there.length));
+      const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
+      const bool is_there = solved.status != SolveStatus::kUnreachable;
+      const bool is_turn =
+          is_there && free >= 0 && std::abs(solved.q[free] - joints[free]) > kMostTurn_rad;
+      if (is_turn && step > kLeastStep_mm) continue;
+      if (is_there) joints = solved.q;
+      at = next;
+      break;
+    }
   }
   return joints;
 }
 
 bool PoleCorridor::decide(Place place) noexcept {
+  const double earliest = u_of(std::max(place - 1, held_.begin_index() * kProbes));
+  const auto is_behind = [this](double core_end) {
+    return is_finished_ || held_.is_full() || end_u() > core_end + 2 * kReach_mm + 1;
+  };
+  if (!is_behind(earliest)) return false;
   const double nearest = find_nearest(place);
   PolePlace around;
   around.core_begin = around.core_end = nearest;
@@ -183,9 +201,7 @@ bool PoleCorridor::decide(Place place) noexcept {
     around.is_end = around.is_dwelling = true;
     around.core_end = end_u();
   }
-  const bool has_all =
-      is_finished_ || held_.is_full() || end_u() > around.core_end + 2 * kReach_mm + 1;
-  if (!has_all) return false;
+  if (!is_behind(around.core_end)) return false;
   scan_ = last + 1;
   const double left = pending_.begin_index() == pending_.end_index()
                           ? emitted_u()

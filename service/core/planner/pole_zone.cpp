@@ -43,9 +43,9 @@ double top_of(double left, double middle, double right) noexcept {
 }
 
 /// Time per u at which the joints can follow, seconds per mm.
-double slowness(const PoleTask& task, double u, const Joints<Jet<3>>& q) noexcept {
+double slowness(const PoleTask& task, double u, const Pose<Jet<3>>& pose,
+                const Joints<Jet<3>>& q) noexcept {
   const BandSpan& span = task.spans.span_at(u);
-  const auto pose = pose_on(span.c, Jet<1>::variable(std::clamp(u - span.u0, 0.0, span.length)));
   double tip = 0;
   for (int i = 0; i < 3; ++i) tip += pose.tip[i].derivative(1) * pose.tip[i].derivative(1);
   double most = std::max(std::sqrt(tip) / span.feed_mm_per_s, 1 / span.u_speed_mm_per_s);
@@ -58,26 +58,35 @@ double slowness(const PoleTask& task, double u, const Joints<Jet<3>>& q) noexcep
   return most;
 }
 
-/// Time of the exact way on one side of the core, from the reach inwards to a distance `d`.
+/// Time of the exact way on one side of the core, from the reach inwards to a distance `d`, and
+/// where the free joint is there: on the way in its winding is followed.
 class OutsideTime {
  public:
   OutsideTime(const PoleTask& task, const PolePlace& place, double side) noexcept
       : reach_(place.reach) {
     const double core = side < 0 ? place.core_begin : place.core_end;
+    JointVector joints = place.joints;
     for (int k = 0; k < kNodes; ++k) {
       const double far = distance(k), near = distance(k + 1);
-      const auto at = solve(task.model, task.tool_length_mm,
-                            pose_of<Jet<3>>(task, core + side * 0.5 * (far + near)), place.branch,
-                            JointVector{});
-      const double time = (far - near) * slowness(task, core + side * 0.5 * (far + near), at.q);
+      const double u = core + side * 0.5 * (far + near);
+      const auto pose = pose_of<Jet<3>>(task, u);
+      const auto at = solve(task.model, task.tool_length_mm, pose, place.branch, joints);
+      const bool is_there = at.status != SolveStatus::kUnreachable;
+      for (int i = 0; is_there && i < task.model.joint_count; ++i) joints[i] = value_of(at.q[i]);
+      free_[k] = joints[free_joint(task.model)];
+      const double time = (far - near) * slowness(task, u, pose, at.q);
       sum_[k + 1] = sum_[k] + (std::isfinite(time) ? time : 0);
     }
   }
 
   [[nodiscard]] double to(double d) const noexcept {
-    const double place = std::clamp(std::log(d / reach_) / std::log(kRatio), 0.0, 1.0 * kNodes);
+    const double place = place_of(d);
     const int k = std::min(static_cast<int>(place), kNodes - 1);
     return sum_[k] + (place - k) * (sum_[k + 1] - sum_[k]);
+  }
+  /// The free joint not far from `d`.
+  [[nodiscard]] double free_near(double d) const noexcept {
+    return free_[std::min(static_cast<int>(place_of(d)), kNodes - 1)];
   }
   [[nodiscard]] double whole() const noexcept { return sum_[kNodes]; }
   [[nodiscard]] double innermost() const noexcept { return distance(kNodes); }
@@ -86,8 +95,12 @@ class OutsideTime {
   static constexpr int kNodes = 64;
   static constexpr double kRatio = 0.87;  // 0.87^64 = 1.3e-4
   [[nodiscard]] double distance(int k) const noexcept { return reach_ * std::pow(kRatio, k); }
+  [[nodiscard]] double place_of(double d) const noexcept {
+    return std::clamp(std::log(d / reach_) / std::log(kRatio), 0.0, 1.0 * kNodes);
+  }
   double reach_;
   std::array<double, kNodes + 1> sum_{};
+  std::array<double, kNodes> free_{};
 };
 
 class Search {
@@ -133,8 +146,8 @@ class Search {
   }
 
   void try_zone(PoleZone zone, double outside) noexcept {
-    if (!fit(zone) || !is_inside(zone, kSamples / 8)) return;
-    const double time = outside + time_on(zone);
+    if (!(outside < best_time_) || !fit(zone) || !is_inside(zone, kSamples / 8)) return;
+    const double time = outside + time_on(zone, best_time_ - outside);
     if (!(time < best_time_) || !is_inside(zone, kSamples)) return;
     best_time_ = time;
     best_ = zone;
@@ -146,8 +159,9 @@ class Search {
     JointVector reference = place_.joints;
     double from = reference[free_], a1 = 0, a2 = 0;  // a start: at rest where it is
     if (!place_.is_start) {
+      reference[free_] = before_.free_near(place_.core_begin - zone.begin);
       const auto in = solve(task_.model, task_.tool_length_mm, pose_of<Jet<2>>(task_, zone.begin),
-                            place_.branch, place_.joints);
+                            place_.branch, reference);
       if (in.status != SolveStatus::kOk) return false;
       for (int i = 0; i < kMaxJoints; ++i) reference[i] = value_of(in.q[i]);
       from = reference[free_];
@@ -193,15 +207,17 @@ class Search {
     return true;
   }
 
-  [[nodiscard]] double time_on(const PoleZone& zone) const noexcept {
+  /// Counted no farther than `most`.
+  [[nodiscard]] double time_on(const PoleZone& zone, double most) const noexcept {
     constexpr int kSteps = kSamples / 2;
     const double h = zone.end - zone.begin;
     double sum = 0;
-    for (int k = 0; k < kSteps; ++k) {
+    for (int k = 0; k < kSteps && sum <= most; ++k) {
       const double t = (k + 0.5) / kSteps, u = zone.begin + t * h;
-      const auto held = solve_held(task_.model, task_.tool_length_mm, pose_of<Jet<3>>(task_, u),
+      const auto pose = pose_of<Jet<3>>(task_, u);
+      const auto held = solve_held(task_.model, task_.tool_length_mm, pose,
                                    quintic_at(zone.free, Jet<3>::with_derivative(t, 1 / h)));
-      sum += h / kSteps * slowness(task_, u, held.q);
+      sum += h / kSteps * slowness(task_, u, pose, held.q);
     }
     return sum;
   }

@@ -85,6 +85,7 @@ bool RollingFeed::try_plan() noexcept {
   (void)grid_.make_cells();  // fault() tells
   if (is_done() || grid_.last() < window_end()) return false;
   ++count_.windows;
+  window_rounds_ = 0;
   if (!is_failing() && plan_window()) {
     commit(true);
   } else if (is_at_rest_) {
@@ -161,6 +162,7 @@ bool RollingFeed::refine() noexcept {
       const double funnel = 1 - kFunnel * std::min(1.0, 1.0 * k / settings_.window_cells);
       accel_share_[k] = jerk_share_[k] = funnel * grid_[new_.first + k].tight;
     }
+    if (window_rounds_ >= settings_.most_rounds) break;
     ++count_.solves;
     const bool is_solved = solver_.solve({new_.first,
                                           cells,
@@ -171,6 +173,8 @@ bool RollingFeed::refine() noexcept {
                                           accel_share_.data(),
                                           jerk_share_.data()});
     count_.rounds += solver_.rounds();
+    window_rounds_ += solver_.rounds();
+    count_.most_rounds = std::max(count_.most_rounds, window_rounds_);
     if (!is_solved) break;
     take_result();
     if (!check_and_tighten(round < kTightenings)) {
@@ -221,58 +225,6 @@ bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
     }
   }
   return is_good;
-}
-
-void RollingFeed::commit(bool is_new) noexcept {
-  committed_.clear();
-  tail_.clear();
-  Plan& plan = is_new ? new_ : old_;
-  const bool is_start = is_new && is_at_rest_;
-  if (is_start) committed_.add(grid_[next_], next_, start_, true);
-  if (!is_new) {  // what is left of the old plan
-    const auto skipped = static_cast<std::ptrdiff_t>(next_ - plan.first);
-    std::move(plan.b.begin() + skipped, plan.b.begin() + plan.cells() + 1, plan.b.begin());
-    std::move(plan.slope.begin() + skipped, plan.slope.begin() + plan.cells() + 1,
-              plan.slope.begin());
-    plan.first = next_;
-  }
-  const int cells = plan.cells();
-  const bool is_last = grid_.is_complete() && plan.end == grid_.last();
-  const bool is_whole = is_last || (!is_new && cells <= settings_.commit_cells);
-  const int kept = is_whole ? cells : std::min(settings_.commit_cells, cells);
-  for (int k = 0; k < cells; ++k) {
-    FeedPieces& pieces = k < kept ? committed_ : tail_;
-    const std::int64_t number = plan.first + k;
-    pieces.add(grid_[number], number, {plan.b[k], plan.slope[k], plan.slope[k + 1]});
-  }
-  (is_whole ? committed_ : tail_).add(grid_[plan.end - 1], plan.end - 1, plan.stop, false);
-  window_ = {is_start, committed_.all(), tail_.all(), plan.end};
-  next_ = is_whole ? plan.end : plan.first + kept;
-  is_at_rest_ = is_whole;
-  if (is_whole) {
-    count_.stops += is_last ? 0 : 1;
-  } else {
-    state_ = {plan.b[kept], plan.slope[kept]};
-  }
-  if (is_new) std::swap(old_, new_);
-}
-
-void RollingFeed::commit_crawl() noexcept {
-  ++count_.crawls;
-  committed_.clear();
-  tail_.clear();
-  Crawl best;
-  for (const int wanted : {3, 6, 12, 24, 48}) {
-    const int cells = static_cast<int>(std::min<std::int64_t>(wanted, window_end() - next_));
-    const Crawl crawl = crawl_over(grid_, planned_, next_, cells);
-    const bool is_faster =
-        best.cells == 0 || crawl.length * best.duration > best.length * crawl.duration;
-    if (is_faster) best = crawl;
-  }
-  committed_.add(grid_, next_, best);
-  next_ += best.cells;
-  old_.first = old_.end = next_;
-  window_ = {true, committed_.all(), tail_.all(), next_};
 }
 
 }  // namespace meridian

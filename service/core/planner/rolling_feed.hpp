@@ -18,7 +18,9 @@ struct FeedSettings {
   CellSettings cells;
   RateReserve reserve;
   int window_cells = 120;  ///< planned at a time, to a rest at their end; at most 160
-  int commit_cells = 40;   ///< of them kept
+  int commit_cells = 40;   ///< of them kept, and on to twice as many while they yield
+  double commit_s = 0.06;  ///< less motion than this
+  int most_rounds = 240;   ///< of the solver per window; then the plan before it stands
   /// Convex programmes per window, each around the result of the last. The plan of the window
   /// before is a good place to linearise at: a second one gains little and doubles the work.
   int refinements = 1;
@@ -37,6 +39,7 @@ struct FeedWindow {
 /// What was done, for reports and tests.
 struct FeedCount {
   std::int64_t windows = 0, solves = 0, rounds = 0, kept = 0, stops = 0, crawls = 0, tightened = 0;
+  std::int64_t most_rounds = 0;  ///< of one window
 };
 
 /// The feed over a stream of spans, window by window, inside velocity, acceleration and jerk of
@@ -108,6 +111,8 @@ class RollingFeed {
   [[nodiscard]] bool refine() noexcept;
   [[nodiscard]] bool check_and_tighten(bool may_tighten) noexcept;
   void take_result() noexcept;
+  [[nodiscard]] int cells_to_keep(const Plan& plan) const noexcept;
+  [[nodiscard]] std::size_t find_tail(std::int64_t first, int& kept) const noexcept;
   void commit(bool is_new) noexcept;
   void commit_crawl() noexcept;
   [[nodiscard]] bool is_failing() const noexcept;
@@ -125,9 +130,10 @@ class RollingFeed {
   RestCell start_;   ///< of the window being planned
   Plan old_, new_, best_;
   std::vector<double> backward_, bound_, bar_knots_, bar_middles_, accel_share_, jerk_share_;
-  FeedPieces committed_, tail_;
+  FeedPieces pieces_;  ///< of the window, the tail behind what is committed
   FeedWindow window_;
   FeedCount count_;
+  std::int64_t window_rounds_ = 0;  ///< of the solver, spent on this window
 };
 
 }  // namespace meridian

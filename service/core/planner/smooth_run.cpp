@@ -65,9 +65,19 @@ void SmoothRun::fail(const PathFault& fault, std::uint64_t sequence, std::uint32
 
 SmoothRun::Status SmoothRun::publish(MotionWriter& writer) noexcept {
   for (;;) {
+    const Status status = publish_window(writer);
+    if (status != Status::kPublished) return status;
+  }
+}
+
+SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
+  for (;;) {
     follow_tail(writer);
-    if (has_window_ && !write(writer)) return Status::kNoRoom;
-    has_window_ = false;
+    if (has_window_) {
+      if (!write(writer)) return Status::kNoRoom;
+      has_window_ = false;
+      return Status::kPublished;
+    }
     if (is_fault(fault_)) return Status::kFailed;
     const Status status = prepare();
     if (has_window_) continue;

@@ -34,6 +34,7 @@ struct RunStart {
 class SmoothRun {
  public:
   enum class Status : std::uint8_t {
+    kPublished,    ///< publish_window() alone: a window was published, call again
     kNeedsBlocks,  ///< all that is ready was published
     kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
                    ///< again
@@ -54,6 +55,8 @@ class SmoothRun {
 
   /// Plans and publishes what is ready.
   [[nodiscard]] Status publish(MotionWriter& writer) noexcept;
+  /// The same one window at a time.
+  [[nodiscard]] Status publish_window(MotionWriter& writer) noexcept;
 
   [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
   /// The block that the fault is on; its code is left to the caller.

@@ -183,6 +183,7 @@ inline FeedRun run_feed(const FeedPath& path, const FeedSettings& settings, bool
     while (feed.try_plan()) {
       const FeedWindow& w = feed.window();
       const auto& last = w.tail.empty() ? w.committed.back() : w.tail.back();
+      EXPECT_LT(w.tail.size(), MotionReader::kMostDrops);  // skipped in one call of the cycle
       const PathState end = end_of(last);
       if (std::abs(end.ds) > 1e-9 * (1 + last.v)) run.ended_at_rest = false;
       run.pieces.insert(run.pieces.end(), w.committed.begin(), w.committed.end());

@@ -301,6 +301,50 @@ TEST(SmoothPlanner, RefusesWhatLeavesTravelAndRestsAheadOfIt) {
 
 /// 60 mm while the axis passes the pole at 0.1 deg and turns by 170 deg about it: C is what takes
 /// the time, and a path from rest to rest takes twice as long.
+/// A slide turns round between the places that a cell knows: 1e-7 mm beyond its travel is seen.
+TEST(SmoothPlanner, RefusesAJointThatTurnsRoundBeyondItsTravel) {
+  for (const double phase : {0.0, 1.0, 2.0, 3.0}) {
+    std::vector<ClBlock> blocks;
+    for (int n = 0; n <= 60; ++n) {
+      ClBlock block;
+      block.sequence = blocks.size();
+      block.tip_mm = {n - 30.0, 20, 30 + 4 * std::sin((n + 0.1 * phase) / 20)};
+      block.axis = {std::sin(0.35), 0, std::cos(0.35)};
+      block.feed = 50;
+      block.feed_meaning = FeedMeaning::kTip;
+      blocks.push_back(block);
+    }
+    end_program(blocks);
+    MachineModel model = bench_machine();
+    const JointVector start = joints_of(model, blocks[0]);
+    const SmoothTrace whole = plan_smooth(model, blocks, start);
+    ASSERT_EQ(whole.last.status, PlanStatus::kOk);
+    const auto setpoints = sample(model, whole, 250e-6, 0.37, start);
+    int turning = -1;
+    for (int i = 0; i < 3; ++i) {
+      double low = setpoints.front().q[i], high = low;
+      for (const auto& setpoint : setpoints) {
+        low = std::min(low, setpoint.q[i]);
+        high = std::max(high, setpoint.q[i]);
+      }
+      const double first = setpoints.front().q[i], last = setpoints.back().q[i];
+      JointLimits& limits = model.joints[i].limits;
+      if (high > std::max(first, last) + 0.1)
+        limits.travel_max = high - 1e-7;
+      else if (low < std::min(first, last) - 0.1)
+        limits.travel_min = low + 1e-7;
+      else
+        continue;
+      turning = i;
+      break;
+    }
+    ASSERT_GE(turning, 0);
+    const SmoothTrace cut = plan_smooth(model, blocks, start);
+    EXPECT_EQ(cut.last.status, PlanStatus::kRefused) << "phase " << phase;
+    EXPECT_EQ(cut.last.reject.joint, turning);
+  }
+}
+
 TEST(SmoothPlanner, PassesBesideThePoleInNearlyTheLeastTime) {
   const MachineModel model = bench_machine();
   std::vector<ClBlock> blocks;
