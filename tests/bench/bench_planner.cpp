@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/planner_workload.hpp"
+#include "bench/smooth_workload.hpp"
 
 namespace meridian {
 namespace {
@@ -23,6 +24,23 @@ void RestToRestBlocks(benchmark::State& state) {
   state.counters["motion_s_per_s"] = benchmark::Counter(planned_s, benchmark::Counter::kIsRate);
 }
 BENCHMARK(RestToRestBlocks)->Unit(benchmark::kMillisecond);
+
+/// Dense five-axis data run on smoothly; argument: length of the blocks, µm.
+void SmoothBlocks(benchmark::State& state) {
+  const double step = 1e-3 * static_cast<double>(state.range(0));
+  const auto blocks = bench::dense_blocks(static_cast<int>(120 / step), step, 50);
+  const auto windows = std::make_unique<bench::SmoothWindows>(test::bench_machine());
+  double motion_s = 0;
+  for (auto _ : state) {
+    bench::SmoothTotal total;
+    windows->run(blocks, total);
+    if (total.has_failed) return state.SkipWithError("a block was refused");
+    for (const auto& window : total.windows) motion_s += window.motion_s;
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
+  state.counters["motion_s_per_s"] = benchmark::Counter(motion_s, benchmark::Counter::kIsRate);
+}
+BENCHMARK(SmoothBlocks)->Arg(2)->Arg(50)->Arg(300)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace meridian

@@ -11,6 +11,7 @@
 #include "bench/cycle_workload.hpp"
 #include "bench/ik_workload.hpp"
 #include "bench/planner_workload.hpp"
+#include "bench/smooth_workload.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -32,6 +33,10 @@ int main(int argc, char** argv) {
     checksum = meridian::bench::run_cycle(count);
   } else if (workload == "planner") {
     checksum = meridian::bench::run_planner(count);
+  } else if (workload == "smooth_block") {
+    checksum = meridian::bench::run_smooth_blocks(count);
+  } else if (workload == "smooth_window") {
+    checksum = meridian::bench::run_smooth_hostile(count);
   } else {
     std::fprintf(stderr, "no workload %s\n", argv[1]);
     return 2;

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// motion_table [MACHINE.toml FILE...]: time, limits, tolerance and throughput of smooth programs,
+/// a line each; without files the throughput of dense data and of programs that are meant to hurt.
+///
+/// A file is simulated and its recording judged as `meridian check` does; shares of 1 are the whole
+/// of a limit or a tolerance. Throughput is the planner's alone: seconds of motion per second of
+/// CPU time, and which share of the motion that a window yields planning it took (median, 99 %,
+/// most).
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "bench/smooth_workload.hpp"
+#include "service/cl/cl_reader.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/record/check.hpp"
+#include "service/record/recording_reader.hpp"
+#include "service/record/recording_writer.hpp"
+#include "service/simulate/simulate.hpp"
+
+namespace meridian {
+namespace {
+
+void print_cost(const bench::SmoothTotal& total) {
+  std::vector<double> shares;
+  double cpu_s = 0, motion_s = 0;
+  std::int64_t blocks = 0;
+  for (const bench::WindowCost& window : total.windows) {
+    shares.push_back(window.share());
+    cpu_s += window.intake_s + window.planning_s;
+    motion_s += window.motion_s;
+    blocks += window.blocks;
+  }
+  if (shares.empty()) return;
+  std::sort(shares.begin(), shares.end());
+  std::printf(" %8.0f s/s %8.0f blocks/s   windows %6zu: %.3f %.3f %.3f%s\n", motion_s / cpu_s,
+              static_cast<double>(blocks) / cpu_s, shares.size(), shares[shares.size() / 2],
+              shares[shares.size() * 99 / 100], shares.back(), total.has_failed ? " FAILED" : "");
+}
+
+void print_made_up() {
+  const auto windows = std::make_unique<bench::SmoothWindows>(test::bench_machine());
+  for (const double step : {0.0001, 0.002, 0.05, 0.3}) {
+    bench::SmoothTotal total;
+    windows->run(bench::dense_blocks(static_cast<int>(std::min(1e6, 500 / step)), step, 50), total);
+    std::printf("dense, %.4f mm    ", step);
+    print_cost(total);
+  }
+  for (const bool is_at_pole : {false, true}) {
+    bench::SmoothTotal total;
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      auto path = is_at_pole ? test::HostilePath(seed, 0, 0.087) : test::HostilePath(seed);
+      windows->run(path.make(8), total);
+    }
+    std::printf(is_at_pole ? "hostile, at a pole" : "hostile           ");
+    print_cost(total);
+  }
+}
+
+std::string read_file(const std::string& name) {
+  std::ifstream in(name, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+/// Time, limits and tolerances of the simulated run. False: it did not come to its end.
+bool print_run(const std::string& text, const std::string& name, const MachineModel& model) {
+  const auto recording = std::filesystem::temp_directory_path() /
+                         ("meridian-motion-table-" + std::to_string(::getpid()) + ".csv");
+  auto writer = record::RecordingWriter::create(recording, model);
+  if (!writer) return false;
+  cl::ClReader reader(text, name);
+  bool is_written = true;
+  const auto report = simulate::simulate(
+      reader, name, model, {}, {},
+      [&](const CycleRecord& record) { is_written = writer->write(record) && is_written; });
+  is_written = writer->close() && is_written;
+  record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
+  cl::ClReader again(text, name);
+  for (auto block = again.next(); block && *block; block = again.next()) path.add(**block, 0);
+  auto rows = record::RecordingReader::open(recording, model);
+  if (report.outcome != simulate::Outcome::kDone || !is_written || !rows) {
+    std::printf("%-18s %s\n", name.c_str(), report.reason.c_str());
+    std::filesystem::remove(recording);
+    return false;
+  }
+  const auto verdict = record::check(*rows, path, model, {});
+  std::filesystem::remove(recording);
+  if (!verdict) return false;
+  double v = 0, a = 0, j = 0;
+  for (const record::JointUse& joint : verdict->joints) {
+    v = std::max(v, joint.velocity.value);
+    a = std::max(a, joint.acceleration.value);
+    j = std::max(j, joint.jerk.value);
+  }
+  std::printf(
+      "%-18s %8.2f s  v %.3f a %.3f j %.3f feed %.4f  tip %.1f um axis %.3f deg %s", name.c_str(),
+      report.program_s, v, a, j, verdict->feed.value, 1e3 * verdict->tip_between_mm.value,
+      units::deg_from_rad(verdict->axis_between_rad.value), verdict->passed() ? "pass" : "FAIL");
+  return true;
+}
+
+/// The cuts of the file in one run, tools and rapids left out, are planned again window by window.
+void print_file(const std::string& file, const MachineModel& model) {
+  const std::string text = read_file(file), name = std::filesystem::path(file).stem();
+  if (!print_run(text, name, model)) return;
+  std::vector<ClBlock> cuts;
+  cl::ClReader reader(text, name);
+  for (auto block = reader.next(); block && *block; block = reader.next()) {
+    if ((*block)->kind == BlockKind::kCut) cuts.push_back(**block);
+  }
+  if (cuts.empty()) return;
+  const auto windows = std::make_unique<bench::SmoothWindows>(model);
+  bench::SmoothTotal total;
+  windows->run(cuts, total);
+  print_cost(total);
+}
+
+}  // namespace
+}  // namespace meridian
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    meridian::print_made_up();
+    return 0;
+  }
+  meridian::MachineModel model = meridian::config::load_machine(argv[1]);
+  model.transition = meridian::Transition::kSmooth;
+  for (int n = 2; n < argc; ++n) meridian::print_file(argv[n], model);
+  return 0;
+}

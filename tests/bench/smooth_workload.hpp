@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "property/path/hostile_path.hpp"
+#include "service/core/planner/smooth_run.hpp"
+#include "support/machines.hpp"
+
+/// Smooth runs window by window: what each costs beside the motion that it yields.
+namespace meridian::bench {
+
+/// CPU time of this thread, s.
+[[nodiscard]] inline double cpu_s() noexcept {
+  timespec now{};
+  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// What came to pass between a window and the one before it: blocks taken, spline, plan, authority.
+struct WindowCost {
+  double intake_s = 0;    ///< CPU time of taking blocks
+  double planning_s = 0;  ///< CPU time of spline, plan and authority
+  double motion_s = 0;    ///< of the window without its tail
+  int blocks = 0;         ///< taken since the window before
+  [[nodiscard]] double share() const noexcept { return planning_s / motion_s; }
+};
+
+/// What a run came to.
+struct SmoothTotal {
+  std::vector<WindowCost> windows;
+  std::uint64_t checksum = 14695981039346656037ULL;  ///< of every published piece
+  bool has_failed = false;
+};
+
+/// Joints of a block on the first branch that reaches it; the branch is told.
+[[nodiscard]] inline RunStart start_at(const MachineModel& model, const ClBlock& block) {
+  RunStart start;
+  start.pose = {to_vector(block.tip_mm), to_vector(block.axis).normalized()};
+  start.tool_length_mm = model.tool_length_mm;
+  for (int branch = branch_count(model); branch-- > 0;) {
+    const auto at = solve(model, model.tool_length_mm, start.pose, branch, JointVector{});
+    if (at.status == SolveStatus::kUnreachable || first_joint_outside_travel(model, at.q, 0) >= 0) {
+      continue;
+    }
+    start.joints = at.q;
+    start.branch = branch;
+  }
+  return start;
+}
+
+/// Runs cuts smoothly, from rest at the first to rest at the last, in the machine's tolerances; a
+/// cycle that needs no time reads every window as it is published.
+class SmoothWindows {
+ public:
+  explicit SmoothWindows(const MachineModel& model) : model_(model), run_(model_), writer_(port_) {}
+
+  /// Ends early once `total` has `most_windows`.
+  void run(const std::vector<ClBlock>& blocks, SmoothTotal& total,
+           std::size_t most_windows = std::numeric_limits<std::size_t>::max()) {
+    RunStart start = start_at(model_, blocks.front());
+    start.epoch = ++epoch_;
+    BandTolerance tolerance;
+    tolerance.tip_mm = model_.tolerances.tip_mm;
+    tolerance.axis_rad = model_.tolerances.axis_rad;
+    const bool eases = free_joint(model_) >= 0 && model_.pole_policy == PolePolicy::kEase;
+    if (eases) tolerance.pole = to_array(pole_direction(model_));
+    run_.begin(start, tolerance,
+               std::max(model_.tolerances.axis_rad, model_.tolerances.pole_axis_rad));
+    most_windows_ = most_windows;
+    cost_ = {};
+    for (std::size_t n = 1; n < blocks.size() && total.windows.size() < most_windows; ++n) {
+      const double begin = cpu_s();
+      run_.take(blocks[n]);
+      cost_.intake_s += cpu_s() - begin;
+      ++cost_.blocks;
+      publish(total);
+    }
+    run_.finish();
+    publish(total);
+  }
+
+ private:
+  void publish(SmoothTotal& total) {
+    using Status = SmoothRun::Status;
+    Status status = Status::kPublished;
+    for (int tries = 0; tries < 100 && total.windows.size() < most_windows_;) {
+      const double begin = cpu_s();
+      status = run_.publish_window(writer_);
+      cost_.planning_s += cpu_s() - begin;
+      if (status == Status::kNeedsBlocks || status == Status::kDone) return;
+      if (status == Status::kFailed) {
+        total.has_failed = true;
+        return;
+      }
+      tries = status == Status::kPublished ? 0 : tries + 1;
+      read(total);
+    }
+  }
+
+  /// Takes what was published off the port and tells the planner that its window was begun.
+  void read(SmoothTotal& total) {
+    bool has_piece = false;
+    while (const TimePiece* piece = port_.times.peek(0)) {
+      if (!piece->is_tail) cost_.motion_s += piece->duration;
+      for (const double x : {piece->duration, piece->v, piece->a, piece->j, piece->k,
+                             piece->stop_accel, piece->slow_fault_jerk}) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &x, sizeof bits);
+        total.checksum = (total.checksum ^ bits) * 1099511628211ULL;
+      }
+      port_.window_begun.store((std::uint64_t{1} << 63U) | (std::uint64_t{epoch_} << 32U) |
+                               piece->window);
+      port_.times.drop(1);
+      has_piece = true;
+    }
+    port_.paths.drop(port_.paths.size());
+    if (!has_piece) return;
+    total.windows.push_back(cost_);
+    cost_ = {};
+  }
+
+  MachineModel model_;
+  SmoothRun run_;
+  MotionPort port_;
+  MotionWriter writer_;
+  WindowCost cost_;
+  std::uint16_t epoch_ = 0;
+  std::size_t most_windows_ = 0;
+};
+
+/// Block `i` of a finish without end: `step` mm to the next on a curve that winds, tilts and turns.
+[[nodiscard]] inline ClBlock dense_block(std::uint64_t i, double step, double feed) {
+  const double u = step * static_cast<double>(i);
+  const double tilt = 0.35 + 0.2 * std::sin(u / 35), azimuth = u / 80;
+  ClBlock block;
+  block.sequence = i;
+  block.line = static_cast<std::uint32_t>(i + 1);
+  block.feed_meaning = FeedMeaning::kTip;
+  block.feed = feed;
+  block.tip_mm = {60 * std::cos(u / 60), 60 * std::sin(u / 60), 4 * std::sin(u / 7)};
+  block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                std::cos(tilt)};
+  return block;
+}
+
+[[nodiscard]] inline std::vector<ClBlock> dense_blocks(int count, double step, double feed) {
+  std::vector<ClBlock> blocks;
+  blocks.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    blocks.push_back(dense_block(static_cast<std::uint64_t>(i), step, feed));
+  }
+  return blocks;
+}
+
+/// A checksum of `n` windows of programs that are meant to hurt the planner; 0 if one failed.
+[[nodiscard]] inline std::uint64_t run_smooth_hostile(int n) {
+  const auto windows = std::make_unique<SmoothWindows>(test::bench_machine());
+  SmoothTotal total;
+  for (std::uint32_t seed = 1; total.windows.size() < static_cast<std::size_t>(n); ++seed) {
+    windows->run(test::HostilePath(seed).make(8), total, static_cast<std::size_t>(n));
+    if (total.has_failed) return 0;
+  }
+  return total.checksum;
+}
+
+/// A checksum of what `n` blocks of 0.3 mm at 50 mm/s become; 0 if one failed.
+[[nodiscard]] inline std::uint64_t run_smooth_blocks(int n) {
+  const auto windows = std::make_unique<SmoothWindows>(test::bench_machine());
+  SmoothTotal total;
+  windows->run(dense_blocks(n, 0.3, 50), total);
+  return total.has_failed ? 0 : total.checksum;
+}
+
+}  // namespace meridian::bench
