@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <vector>
 
 #include "meridian/units.hpp"
-#include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/record/check.hpp"
 #include "service/record/compare.hpp"
 #include "service/record/picture.hpp"
+#include "service/record/read_path.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -42,34 +41,12 @@ int compare(const Options& options, const MachineModel& model) {
   return report->is_same() ? kFine : kVerdictNo;
 }
 
-/// The path of the CL file; a message where the file is refused.
-[[nodiscard]] std::string read_path(const Options& options, const MachineModel& model,
-                                    const ToolTable& tools, record::CheckedPath& path) {
-  std::ifstream file(options.file, std::ios::binary);
-  if (!file) return options.file + ": cannot be opened";
-  cl::ClReader reader(file, options.file, reader_options(options.cl, model));
-  for (;;) {
-    const auto block = reader.next();
-    if (!block) return block.error().text();
-    if (!*block) return "";
-    double tool_length_mm = 0;
-    if ((*block)->kind == BlockKind::kTool) {
-      const Tool* tool = tools.find(static_cast<int>((*block)->value));
-      if (tool == nullptr) {
-        return options.file + ":" + std::to_string((*block)->line) +
-               ": the tool is not in the tool table; name one with --tools";
-      }
-      tool_length_mm = tool->length_mm;
-    }
-    path.add(**block, tool_length_mm);
-  }
-}
-
 int check(Options& options, const MachineModel& model) {
   const ToolTable tools = load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
   if (!options.file.empty()) {
-    const std::string refusal = read_path(options, model, tools, path);
+    const std::string refusal =
+        record::read_path(options.file, reader_options(options.cl, model), tools, path);
     if (!refusal.empty()) return refuse(refusal);
   }
   auto recording = record::RecordingReader::open(options.recording, model);

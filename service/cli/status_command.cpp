@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
@@ -11,6 +17,7 @@
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
 #include "service/stream/operator_link.hpp"
+#include "service/text/percentiles.hpp"
 
 namespace meridian::cli {
 
@@ -19,32 +26,76 @@ namespace {
 struct StatusOptions {
   PeerOptions peer;
   bool is_json = false, is_watching = false, is_latency = false;
+  std::string histograms;
+  double for_s = 0;
 };
 
-/// Waits for the next snapshot of the latency topic and prints its percentiles.
-int print_latency(dds::Participant& participant, const StatusOptions& options) {
-  dds::Waitset waitset(participant);
-  dds::Reader<dds::Latency> reader(participant);
-  waitset.attach(reader);
-  const auto until = std::chrono::steady_clock::now() + options.peer.timeout();
+using Histograms = std::vector<dds::NamedHistogram>;
+
+/// Waits for the next snapshot of the latency topic; nothing where none comes.
+[[nodiscard]] std::optional<Histograms> next_latency(dds::Waitset& waitset,
+                                                     dds::Reader<dds::Latency>& reader,
+                                                     std::chrono::milliseconds patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
   dds::Latency latency;
   while (!reader.take(latency)) {
     const auto left = until - std::chrono::steady_clock::now();
-    if (left <= left.zero()) {
-      std::fprintf(stderr, "meridian: machine %s does not tell its latencies\n",
-                   options.peer.machine.c_str());
-      return kNoPeer;
-    }
+    if (left <= left.zero()) return std::nullopt;
     waitset.wait(left);
   }
-  std::printf("latency, us            samples        p50        p99      p99.9        max\n");
-  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  for (const dds::HistogramSnapshot& h : latency.histograms) {
-    std::printf("%-18s %11llu %10.1f %10.1f %10.1f %10.1f\n", h.name.c_str(),
-                static_cast<unsigned long long>(h.count), us(h.p50_ns), us(h.p99_ns), us(h.p999_ns),
-                us(h.max_ns));
+  return latency.histograms;
+}
+
+/// What the service counted since it started or, where --for was given, in that time.
+[[nodiscard]] std::optional<Histograms> measure_latency(dds::Participant& participant,
+                                                        const StatusOptions& options) {
+  dds::Waitset waitset(participant);
+  dds::Reader<dds::Latency> reader(participant);
+  waitset.attach(reader);
+  const auto patience = options.peer.timeout();
+  auto begin = next_latency(waitset, reader, patience);
+  if (!begin || options.for_s <= 0) return begin;
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.for_s));
+  for (dds::Latency old; reader.take(old);) {
+  }
+  auto end = next_latency(waitset, reader, patience);
+  if (!end || end->size() != begin->size()) return std::nullopt;
+  for (std::size_t i = 0; i < end->size(); ++i) {
+    (*end)[i].histogram = (*end)[i].histogram.since((*begin)[i].histogram);
+  }
+  return end;
+}
+
+/// One percentile table for each histogram.
+int write_histograms(const Histograms& histograms, const std::string& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  for (const dds::NamedHistogram& one : histograms) {
+    const auto path = std::filesystem::path(folder) / text::percentile_file_name(one.name);
+    std::ofstream file(path);
+    file << "#[" << one.name << ", us]\n" << text::percentile_table(one.histogram);
+    if (file.flush()) continue;
+    std::fprintf(stderr, "meridian: %s cannot be written\n", path.c_str());
+    return kInputRefused;
   }
   return kFine;
+}
+
+int print_latency(dds::Participant& participant, const StatusOptions& options) {
+  const auto histograms = measure_latency(participant, options);
+  if (!histograms) {
+    std::fprintf(stderr, "meridian: machine %s does not tell its latencies\n",
+                 options.peer.machine.c_str());
+    return kNoPeer;
+  }
+  std::printf("latency, us              samples        p50        p99      p99.9        max\n");
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  for (const auto& [name, h] : *histograms) {
+    std::printf("%-20s %11llu %10.1f %10.1f %10.1f %10.1f\n", name.c_str(),
+                static_cast<unsigned long long>(h.count()), us(h.percentile_ns(0.5)),
+                us(h.percentile_ns(0.99)), us(h.percentile_ns(0.999)), us(h.max_ns()));
+  }
+  return options.histograms.empty() ? kFine : write_histograms(*histograms, options.histograms);
 }
 
 int run_status(StatusOptions& options) {
@@ -52,7 +103,7 @@ int run_status(StatusOptions& options) {
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
-  if (options.is_latency) return print_latency(participant, options);
+  if (options.is_latency || !options.histograms.empty()) return print_latency(participant, options);
   stream::OperatorLink link(participant, "status");
   if (options.is_watching) watch_for_stop();
   do {
@@ -76,7 +127,14 @@ void add_status_command(CLI::App& app, int& exit_code) {
       "status", "What the machine does now: state, program, block, feed, buffer, counters");
   command->add_flag("--json", options->is_json, "One JSON object per line, for programs");
   command->add_flag("--latency", options->is_latency,
-                    "Percentiles of wake-up, computation and hand-over since the service started");
+                    "Percentiles of wake-up, computation, hand-over, planning and transport");
+  command->add_option(
+      "--histograms", options->histograms,
+      "The same as percentile tables of HdrHistogram, one file each in this folder");
+  command
+      ->add_option("--for", options->for_s,
+                   "Latencies of this time from now on, s; default: since the service started")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--watch", options->is_watching, "Print every status until interrupted");
   add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run_status(*options); });

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <string_view>
+
 #include "service/dds/convert.hpp"
 #include "service/dds/wire_fields.hpp"
 
@@ -6,7 +11,6 @@ namespace meridian::dds {
 namespace {
 
 static_assert(kMaxHistograms == meridian_wire_kHistograms);
-static_assert(kHistogramBuckets == meridian_wire_kHistogramBuckets);
 
 template <class Way, class Message, class Wire>
 void status_fields(Way way, Message& message, Wire& wire) {
@@ -108,15 +112,56 @@ void machine_info_fields(Way way, Message& message, Wire& wire) {
   way(message.tool_file, wire.tool_file);
 }
 
-template <class Way, class Message, class Wire>
-void histogram_fields(Way way, Message& message, Wire& wire) {
-  way(message.name, wire.name);
-  way(message.count, wire.count);
-  way(message.p50_ns, wire.p50_ns);
-  way(message.p99_ns, wire.p99_ns);
-  way(message.p999_ns, wire.p999_ns);
-  way(message.max_ns, wire.max_ns);
-  way(message.buckets, wire.buckets);
+/// "number:count number:count ..." of the buckets that are not empty. What does not fit is left
+/// out, the fewest counts being at the far end.
+template <std::size_t N>
+void print_buckets(const Histogram& histogram, char (&text)[N]) noexcept {
+  constexpr std::size_t kLongest = 32;
+  char* at = text;
+  for (std::size_t i = 0; i < Histogram::kBuckets; ++i) {
+    if (histogram.bucket(i) == 0) continue;
+    if (static_cast<std::size_t>(text + N - at) < kLongest) break;
+    if (at != text) *at++ = ' ';
+    at = std::to_chars(at, text + N, i).ptr;
+    *at++ = ':';
+    at = std::to_chars(at, text + N, histogram.bucket(i)).ptr;
+  }
+  *at = '\0';
+}
+
+void read_buckets(std::string_view text, Histogram& histogram) noexcept {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (;;) {
+    std::size_t index = 0;
+    std::uint64_t count = 0;
+    const auto number = std::from_chars(at, end, index);
+    if (number.ec != std::errc() || number.ptr == end || *number.ptr != ':') return;
+    const auto counted = std::from_chars(number.ptr + 1, end, count);
+    if (counted.ec != std::errc()) return;
+    histogram.restore_bucket(index, count);
+    if (counted.ptr == end) return;
+    at = counted.ptr + 1;
+  }
+}
+
+void histogram_to_wire(const NamedHistogram& message, meridian_wire_Histogram& wire) noexcept {
+  const Histogram& histogram = message.histogram;
+  ToWire()(message.name, wire.name);
+  wire.count = histogram.count();
+  wire.sum_ns = histogram.sum_ns();
+  wire.p50_ns = histogram.percentile_ns(0.5);
+  wire.p99_ns = histogram.percentile_ns(0.99);
+  wire.p999_ns = histogram.percentile_ns(0.999);
+  wire.max_ns = histogram.max_ns();
+  print_buckets(histogram, wire.buckets);
+}
+
+void histogram_from_wire(const meridian_wire_Histogram& wire, NamedHistogram& message) {
+  FromWire()(message.name, wire.name);
+  message.histogram.clear();
+  read_buckets({wire.buckets, ::strnlen(wire.buckets, sizeof wire.buckets)}, message.histogram);
+  message.histogram.restore_sum_and_max(wire.sum_ns, wire.max_ns);
 }
 
 }  // namespace
@@ -146,7 +191,7 @@ void to_wire(const Latency& message, meridian_wire_Latency& wire) noexcept {
   wire.count = static_cast<std::uint32_t>(count);
   std::memset(wire.histograms, 0, sizeof wire.histograms);
   for (std::size_t i = 0; i < count; ++i) {
-    histogram_fields(ToWire(), message.histograms[i], wire.histograms[i]);
+    histogram_to_wire(message.histograms[i], wire.histograms[i]);
   }
 }
 
@@ -155,7 +200,7 @@ void from_wire(const meridian_wire_Latency& wire, Latency& message) {
   message.time_ns = wire.time_ns;
   message.histograms.resize(std::min<std::size_t>(wire.count, kMaxHistograms));
   for (std::size_t i = 0; i < message.histograms.size(); ++i) {
-    histogram_fields(FromWire(), message.histograms[i], wire.histograms[i]);
+    histogram_from_wire(wire.histograms[i], message.histograms[i]);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/histogram.hpp"
 
 /// What travels on the topics, in the words of the core. Rooms use these; the generated wire types
 /// stop at service/dds/convert.hpp. Units: as the names say, else house units (mm, rad, s).
@@ -260,22 +261,19 @@ struct MachineInfo {
 
 inline constexpr std::size_t kMachineFileBytes = 12287, kToolFileBytes = 4095;
 
-inline constexpr std::size_t kHistogramBuckets = 64;
-inline constexpr std::size_t kMaxHistograms = 6;
+inline constexpr std::size_t kMaxHistograms = 8;
 
-/// Bucket i counts values up to 256 ns · 2^((i + 1) / 4); the last has no upper edge.
-struct HistogramSnapshot {
+/// What a service measured of one thing since it started.
+struct NamedHistogram {
   std::string name{};
-  std::uint64_t count = 0;
-  std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
-  std::array<std::uint64_t, kHistogramBuckets> buckets{};
+  Histogram histogram{};
 };
 
 /// `latency`
 struct Latency {
   std::uint64_t service_id = 0;
   std::int64_t time_ns = 0;
-  std::vector<HistogramSnapshot> histograms{};  ///< at most kMaxHistograms
+  std::vector<NamedHistogram> histograms{};  ///< at most kMaxHistograms
 };
 
 }  // namespace meridian::dds

@@ -69,7 +69,8 @@ void CycleThread::hand_over(std::int64_t woke_ns) noexcept {
   ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
   (void)ports_.timings.try_push({.lateness = output_.record.lateness_ns,
                                  .computation = computation_ns_,
-                                 .wake = narrow_ns(handed_ns - computed_ns)});
+                                 .wake = narrow_ns(handed_ns - computed_ns),
+                                 .lost = inputs_.lost_periods});
 }
 
 void CycleThread::show() noexcept {

@@ -76,12 +76,23 @@ void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept
   dds::SampleInfo info;
   bool has_news = false;
   while (reader.take(sample, info)) {
-    if (info.is_valid) has_news = merge_.take(sample, info.source, monotonic_ns()) || has_news;
+    if (!info.is_valid) continue;
+    const std::int64_t now_ns = monotonic_ns();
+    if (!merge_.take(sample, info.source, now_ns)) continue;
+    has_news = true;
+    time_round_trip(sample.cycle_seen, now_ns);
   }
   if (!has_news) return;
   ports_.feedback.store(merge_.feedback());
   ports_.drive_words.store(merge_.words());
   ports_.drive_words_for_status.store(merge_.words());
+}
+
+void FeedbackListener::time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept {
+  if (cycle == answered_) return;
+  answered_ = cycle;
+  const std::int64_t sent_ns = ports_.sent_times.sent_ns(cycle);
+  if (sent_ns > 0) (void)ports_.round_trips.try_push(narrow_ns(now_ns - sent_ns));
 }
 
 }  // namespace meridian::interpolator

@@ -49,9 +49,11 @@ class FeedbackListener {
 
  private:
   void on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept;
+  void time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept;
 
   Ports& ports_;
   FeedbackMerge merge_;
+  std::uint64_t answered_ = 0;  ///< newest cycle that a drive has answered
   dds::Reader<dds::DriveFeedback> reader_;
 };
 

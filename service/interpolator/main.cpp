@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -15,7 +16,9 @@
 #include "interpolator_version.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/config/service_file.hpp"
+#include "service/interpolator/notify.hpp"
 #include "service/interpolator/service.hpp"
+#include "service/manual/manual.hpp"
 #include "service/telemetry/log.hpp"
 
 namespace meridian::interpolator {
@@ -26,7 +29,7 @@ enum ExitCode { kFine = 0, kCannotStart = 1, kUsage = 2, kConfigRefused = 3 };
 struct Options {
   std::string machine, service, recording, frame;
   int domain = -1;
-  bool is_best_effort = false;
+  bool is_best_effort = false, is_manual = false;
 };
 
 /// Threads that libraries start get small stacks too: locked memory is resident.
@@ -91,10 +94,16 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   const auto service = std::make_unique<Service>(parts, realtime, log);
   service->start();
   log->info("answering in Off");
+  ServiceManager manager;
+  manager.is_ready("serving machine " + parts.model.name);
 
   constexpr timespec kLeasePeriod{.tv_sec = 0, .tv_nsec = 100'000'000};
   int signal = 0;
-  while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) service->keep_lease();
+  while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) {
+    service->keep_lease();
+    manager.beat(service->heartbeat(), std::chrono::steady_clock::now());
+  }
+  manager.is_stopping();
   log->info("{}: stopping", signal == SIGINT ? "interrupted" : "asked to end");
   constexpr auto kPatience = std::chrono::seconds(10);
   if (!service->switch_off(kPatience)) {
@@ -117,10 +126,15 @@ int run(int argc, char** argv) {
   app.add_option("--frame", options.frame, "workpiece: x,y,z[,a,b,c] in mm and deg");
   app.add_flag("--best-effort", options.is_best_effort,
                "run without real-time rights where they are missing");
+  app.add_flag("--man-page", options.is_manual)->group("");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kFine : kUsage;
+  }
+  if (options.is_manual) {
+    std::fputs(manual::man_page(app, "meridiand", kVersion, "meridian(1)").c_str(), stdout);
+    return kFine;
   }
   make_stacks_small();
   const sigset_t signals = block_end_signals();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/planner_thread.hpp"
 
+#include "service/interpolator/monotonic.hpp"
+
 namespace meridian::interpolator {
 
 PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports)
@@ -43,7 +45,11 @@ bool PlannerThread::work() noexcept {
 
 bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   if (!announce_action(queued.block)) return false;
+  const std::int64_t begun_ns = monotonic_ns();
   const PlanResult result = planner_.plan(queued.block, writer_);
+  if (result.status != PlanStatus::kNoRoom) {
+    (void)ports_.plan_times.try_push(narrow_ns(monotonic_ns() - begun_ns));
+  }
   tell_eases();
   switch (result.status) {
     case PlanStatus::kNoRoom:

@@ -14,6 +14,7 @@
 #include "meridian/rt/latest_value.hpp"
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/interpolator/queue_mark.hpp"
+#include "service/interpolator/sent_times.hpp"
 #include "service/interpolator/wake.hpp"
 
 /// Everything that passes between the threads of the service, each with one writer and one reader.
@@ -61,6 +62,13 @@ struct CycleTiming {
   std::int32_t lateness = 0;     ///< actual wake-up minus due
   std::int32_t computation = 0;  ///< step()
   std::int32_t wake = 0;         ///< waking the publisher
+  std::uint32_t lost = 0;        ///< periods that nobody executed before this one
+};
+
+/// How one setpoint left. Unit: ns.
+struct PublishTiming {
+  std::int32_t sent_minus_due = 0;
+  std::int32_t write = 0;  ///< time in DDS
 };
 
 /// CiA 402 statuswords as the drives sent them last, by joint.
@@ -84,7 +92,11 @@ struct Ports {
 
   SpscRing<Setpoint, 256> setpoints;
   Wake publisher_wake;
-  SpscRing<std::int32_t, 8192> sent_minus_due;  ///< publisher to telemetry, ns
+  SpscRing<PublishTiming, 8192> publish_timings;
+  SpscRing<std::int32_t, 8192> plan_times;   ///< planner to telemetry: a block, ns
+  SpscRing<std::int32_t, 8192> round_trips;  ///< receive thread to telemetry: setpoint sent until a
+                                             ///< drive's first answer to it is here, ns
+  SentTimes sent_times;
   SpscRing<CycleRecord, 8192> records;
   SpscRing<CycleTiming, 8192> timings;
   SpscRing<Event, 4096> events;

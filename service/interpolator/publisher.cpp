@@ -14,9 +14,12 @@ void Publisher::run() noexcept {
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     const std::uint32_t seen = ports_.publisher_wake.look();
     while (ports_.setpoints.try_pop(sample.setpoint)) {
-      sample.sent_minus_due_ns = narrow_ns(monotonic_ns() - sample.setpoint.due_ns);
+      const std::int64_t now_ns = monotonic_ns();
+      sample.sent_minus_due_ns = narrow_ns(now_ns - sample.setpoint.due_ns);
+      ports_.sent_times.note(sample.setpoint.cycle, now_ns);
       if (!writer_.write(sample)) ports_.writes_failed.fetch_add(1, std::memory_order_relaxed);
-      (void)ports_.sent_minus_due.try_push(sample.sent_minus_due_ns);
+      (void)ports_.publish_timings.try_push(
+          {sample.sent_minus_due_ns, narrow_ns(monotonic_ns() - now_ns)});
     }
     ports_.publisher_wake.wait(seen, kLookForStop_ns);
   }

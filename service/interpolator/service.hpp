@@ -51,6 +51,8 @@ class Service {
   /// In Off, the thread that made the service: throws StartError where an older service of the same
   /// machine was heard of only now. A machine that is on goes on; drives obey one service.
   void keep_lease();
+  /// Counts up with every cycle: one that stands still is a cycle that hangs.
+  [[nodiscard]] std::uint32_t heartbeat() const noexcept { return ports_.publisher_wake.look(); }
   /// Brings the machine to rest and to Off; false where it is not there within `patience`.
   [[nodiscard]] bool switch_off(std::chrono::milliseconds patience);
   /// Ends all threads and closes the recording.

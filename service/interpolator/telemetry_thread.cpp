@@ -36,6 +36,8 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
       motion_(model) {
   status_.service_id = service_id_;
   status_.realtime_mode = mode;
+  latency_.service_id = service_id_;
+  for (const char* name : kBooks) latency_.histograms.push_back({name, {}});
   status_.is_auxiliary_ignored = service.auxiliary == config::AuxiliaryPolicy::kIgnore;
 }
 
@@ -70,12 +72,19 @@ void TelemetryThread::drain() {
   }
   CycleTiming timing;
   while (ports_.timings.try_pop(timing)) {
-    lateness_.record(timing.lateness);
-    computation_.record(timing.computation);
-    wake_.record(timing.wake);
+    const std::int64_t late_ns = timing.lateness + timing.lost * model_.cycle_ns;
+    book(kLateness).record_every(late_ns, model_.cycle_ns);
+    book(kComputation).record(timing.computation);
+    book(kWake).record(timing.wake);
   }
-  std::int32_t sent_minus_due = 0;
-  while (ports_.sent_minus_due.try_pop(sent_minus_due)) sent_.record(sent_minus_due);
+  PublishTiming sent;
+  while (ports_.publish_timings.try_pop(sent)) {
+    book(kSent).record(sent.sent_minus_due);
+    book(kWrite).record(sent.write);
+  }
+  std::int32_t took_ns = 0;
+  while (ports_.plan_times.try_pop(took_ns)) book(kPlanning).record(took_ns);
+  while (ports_.round_trips.try_pop(took_ns)) book(kRoundTrip).record(took_ns);
   if (ports_.telemetry_view.refresh()) view_ = ports_.telemetry_view.latest();
   if (std::exchange(told_state_, view_.record.state) != view_.record.state) has_news_ = true;
 }
@@ -185,13 +194,8 @@ void TelemetryThread::publish_latency(std::int64_t now_ns) {
   latency_ns_ = now_ns;
   if (periods_lost_ > 0) log_->warn("{} periods lost in the last second", periods_lost_);
   periods_lost_ = 0;
-  dds::Latency latency;
-  latency.service_id = service_id_;
-  latency.time_ns = now_ns;
-  for (const auto* book : {&lateness_, &computation_, &wake_, &sent_}) {
-    latency.histograms.push_back(book->snapshot());
-  }
-  (void)latencies_.write(latency);
+  latency_.time_ns = now_ns;
+  (void)latencies_.write(latency_);
 }
 
 }  // namespace meridian::interpolator

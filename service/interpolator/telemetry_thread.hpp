@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,7 +15,6 @@
 #include "service/interpolator/intake.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/status_clock.hpp"
-#include "service/telemetry/latency_book.hpp"
 #include "service/telemetry/motion_watch.hpp"
 #include "service/telemetry/recorder.hpp"
 
@@ -53,8 +53,21 @@ class TelemetryThread {
   dds::Status status_;
   DriveWords words_;
   telemetry::MotionWatch motion_;
-  telemetry::LatencyBook lateness_{"wake-up lateness"}, computation_{"cycle computation"},
-      wake_{"publisher's wake"}, sent_{"sent minus due"};
+  enum Book : std::size_t {
+    kLateness,  ///< lost periods are counted as if they had been executed (Histogram::record_every)
+    kComputation,
+    kWake,
+    kSent,
+    kWrite,
+    kPlanning,
+    kRoundTrip
+  };
+  static constexpr std::array kBooks{
+      "wake-up lateness", "cycle computation",   "publisher's wake",    "sent minus due",
+      "DDS write",        "planning of a block", "setpoint to feedback"};
+  static_assert(kBooks.size() == kRoundTrip + 1 && kBooks.size() <= dds::kMaxHistograms);
+  [[nodiscard]] Histogram& book(Book which) { return latency_.histograms[which].histogram; }
+  dds::Latency latency_;
   std::int64_t status_ns_ = 0, latency_ns_ = 0;
   State told_state_ = State::kOff;
   std::uint64_t periods_lost_ = 0;  ///< since that was told last

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "support/budgets.hpp"
+#include "service/probe/budgets.hpp"
 
 namespace meridian {
 namespace {
@@ -54,9 +54,9 @@ void expect_within_budget(const std::string& workload, int calls) {
   const auto many = count_run(workload, 2 * calls);
   ASSERT_TRUE(few && many) << "count_instructions " << workload << " failed under callgrind";
   const double per_call = static_cast<double>(*many - *few) / calls;
-  const support::Budget budget = support::load_budget("instructions_" + workload);
+  const probe::Budget budget = probe::load_budget("instructions_" + workload);
   std::printf("%s: %.1f instructions per call, %d calls; %s\n", workload.c_str(), per_call, calls,
-              support::to_text(budget).c_str());
+              probe::to_text(budget).c_str());
   EXPECT_LE(per_call, budget.allowed());
   EXPECT_GE(per_call, 0.5 * budget.allowed())
       << "far below the limit: lower it, or does the workload still do its work?";

@@ -16,16 +16,16 @@
 #include <thread>
 
 #include "integration/plant.hpp"
-#include "support/budgets.hpp"
+#include "service/probe/budgets.hpp"
 #include "support/heap_watch.hpp"
 #include "support/watch_report.hpp"
 
 namespace meridian::test {
 namespace {
 
+using probe::load_budget;
 using stream::Station;
 using stream::StationState;
-using support::load_budget;
 
 bool is_complete(const Station& station) { return station.state() == StationState::kComplete; }
 bool has_ran(const Station& station) { return station.state() == StationState::kRan; }

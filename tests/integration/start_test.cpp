@@ -8,7 +8,7 @@
 #include <string>
 
 #include "integration/plant.hpp"
-#include "support/budgets.hpp"
+#include "service/probe/budgets.hpp"
 
 namespace meridian::test {
 namespace {
@@ -33,9 +33,9 @@ TEST(Service, AnswersInOffWithinThreeSecondsAndStaysSmall) {
   const double resident = resident_mib(service.pid());
   std::printf("answering in Off after %.3f s, %.1f MiB resident\n", took_s, resident);
   EXPECT_GT(plant.status().service_id, 0U) << service.said();
-  EXPECT_LE(took_s, support::load_budget("start_time").allowed());
+  EXPECT_LE(took_s, probe::load_budget("start_time").allowed());
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  EXPECT_LE(resident, support::load_budget("resident_memory").allowed());
+  EXPECT_LE(resident, probe::load_budget("resident_memory").allowed());
 #endif
 }
 

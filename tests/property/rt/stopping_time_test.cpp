@@ -9,7 +9,7 @@
 
 #include "property/rt/program_run.hpp"
 #include "property/rt/stop_oracle.hpp"
-#include "support/budgets.hpp"
+#include "service/probe/budgets.hpp"
 #include "support/draws.hpp"
 
 /// Holds at any instant of random programs against the least time that the path allows.
@@ -27,7 +27,7 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
   const std::uint64_t seed = test::number_of("MERIDIAN_HOLD_SEED", kSeed + 1000);
   const auto programs = static_cast<int>(test::number_of("MERIDIAN_HOLD_PROGRAMS", kPrograms));
   std::cout << "seed " << seed << "\n";
-  const support::Budget budget = support::load_budget("stop_time");  // in cycles
+  const probe::Budget budget = probe::load_budget("stop_time");  // in cycles
   std::vector<double> ratios;
   for (int n = 0; n < programs; ++n) {
     Draw draw(seed + static_cast<std::uint64_t>(n));

@@ -108,11 +108,26 @@ TEST(Convert, CutsLongTextsAndEndsEndlessOnes) {
   EXPECT_EQ(back.text, std::string(sizeof wire.text, 'y'));
 }
 
+TEST(Convert, ReadsNoMoreOfHistogramsThanIsThere) {
+  meridian_wire_Latency wire{};
+  wire.count = 1;
+  for (const char* text : {"", ":", "7", "7:", "7:3 x", "7:3 99999:4", "7:3 8"}) {
+    std::strcpy(wire.histograms[0].buckets, text);
+    Latency back;
+    from_wire(wire, back);
+    EXPECT_LE(back.histograms[0].histogram.count(), 3U) << text;
+  }
+}
+
 TEST(Convert, KeepsLatencySnapshotsAndTheirNumberInBounds) {
   Latency latency;
   latency.histograms.resize(kMaxHistograms + 3);
   latency.histograms[1].name = "wake-up lateness";
-  latency.histograms[1].buckets[63] = 17;
+  Histogram& sent = latency.histograms[1].histogram;
+  for (std::int64_t value_ns = 1; value_ns < 30'000'000; value_ns += 1 + value_ns / 3) {
+    sent.record(value_ns);
+    sent.record(900);
+  }
   meridian_wire_Latency wire;
   to_wire(latency, wire);
   wire.count = 1000;
@@ -120,7 +135,11 @@ TEST(Convert, KeepsLatencySnapshotsAndTheirNumberInBounds) {
   from_wire(wire, back);
   ASSERT_EQ(back.histograms.size(), kMaxHistograms);
   EXPECT_EQ(back.histograms[1].name, "wake-up lateness");
-  EXPECT_EQ(back.histograms[1].buckets[63], 17U);
+  const Histogram& got = back.histograms[1].histogram;
+  for (std::size_t i = 0; i < Histogram::kBuckets; ++i) EXPECT_EQ(got.bucket(i), sent.bucket(i));
+  EXPECT_EQ(got.count(), sent.count());
+  EXPECT_EQ(got.max_ns(), sent.max_ns());
+  EXPECT_EQ(got.mean_ns(), sent.mean_ns());
 }
 
 }  // namespace

@@ -70,5 +70,41 @@ TEST(Histogram, MergesAsIfOneHadRecordedAll) {
   EXPECT_EQ(one.max_ns(), both.max_ns());
 }
 
+TEST(Histogram, CountsWhatALateOneKeptFromBeingMeasured) {
+  Histogram plain, corrected;
+  for (int i = 0; i < 990; ++i) {
+    plain.record(10'000);
+    corrected.record_every(10'000, 1'000'000);
+  }
+  plain.record(9'500'000);  // nine periods of 1 ms were slept through
+  corrected.record_every(9'500'000, 1'000'000);
+  EXPECT_EQ(corrected.count(), 1000U);
+  EXPECT_LT(plain.percentile_ns(0.995), 11'000);
+  EXPECT_GT(corrected.percentile_ns(0.995), 4'500'000);
+  EXPECT_EQ(corrected.max_ns(), 9'500'000);
+  Histogram endless;
+  endless.record_every(INT64_MAX, 1);
+  EXPECT_EQ(endless.count(), 1U + Histogram::kMostOmitted);
+}
+
+TEST(Histogram, TellsWhatWasCountedSinceACopy) {
+  Histogram whole;
+  for (int i = 1; i <= 100; ++i) whole.record(i * 1000);
+  const Histogram before = whole;
+  Histogram later;
+  for (const int value : {7, 800, 90'000}) {
+    whole.record(value);
+    later.record(value);
+  }
+  const Histogram grown = whole.since(before);
+  EXPECT_EQ(grown.count(), 3U);
+  EXPECT_EQ(grown.sum_ns(), later.sum_ns());
+  for (std::size_t i = 0; i < Histogram::kBuckets; ++i) EXPECT_EQ(grown.bucket(i), later.bucket(i));
+  EXPECT_GE(grown.max_ns(), 90'000);
+  EXPECT_LE(grown.max_ns(), 100'000);
+  whole.record(5'000'000);
+  EXPECT_EQ(whole.since(before).max_ns(), 5'000'000);
+}
+
 }  // namespace
 }  // namespace meridian

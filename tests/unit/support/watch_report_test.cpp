@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "support/child_process.hpp"
+#include "service/process/child_process.hpp"
 #include "support/heap_watch.hpp"
 
 namespace meridian::watch {
@@ -24,7 +24,7 @@ TEST(WatchReport, CountsAProgramThatWasNotBuiltForIt) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("meridian_watch_" + std::to_string(getpid()));
   const WatchedProgram program(folder);
-  support::ChildProcess child({MERIDIAN_WATCHED_PROGRAM}, {program.environment(), ""});
+  process::ChildProcess child({MERIDIAN_WATCHED_PROGRAM}, {program.environment(), ""});
   ASSERT_EQ(child.read_line(kWithin), "ready");
   child.write_line("go");  // warm-up: the first allocation of a thread sets up its own heap cache
   ASSERT_EQ(child.read_line(kWithin), "done");

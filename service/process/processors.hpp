@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sched.h>
+
+namespace meridian::process {
+
+/// The processors that this process was given when it began; what it starts gets these again,
+/// wherever its own threads are pinned by then.
+[[nodiscard]] const cpu_set_t& initial_cpus() noexcept;
+
+/// The last of them: the service's choice for its cycle too.
+[[nodiscard]] int last_cpu() noexcept;
+
+/// Keeps the calling thread, and threads that it starts, off one CPU where there is another.
+void stay_off_cpu(int cpu) noexcept;
+
+}  // namespace meridian::process
