@@ -133,7 +133,7 @@ std::optional<dds::Credit> IntakeJudge::on_batch(const dds::Batch& batch,
     newest_.text = "a batch was corrupted: send again from block " + number(next_);
     return credit(around);
   }
-  static_cast<void>(credit(around));  // places that came free count for this batch too
+  grant(around);  // places that came free count for this batch too
   if (batch.first_sequence > granted_end_ || batch.count > granted_end_ - batch.first_sequence) {
     return refuse(Verdict::kBeyondCredit,
                   "station sent blocks up to " + number(batch.first_sequence + batch.count) +
@@ -293,16 +293,18 @@ const dds::Credit* IntakeJudge::find_ended(std::uint64_t session) const noexcept
   return session == 0 || last == ended_.end() ? nullptr : last;
 }
 
+/// Free places become credit. One is kept for the end that append_end() may add.
+void IntakeJudge::grant(const Surroundings& around) noexcept {
+  if (!may_send() || around.free_places <= 1) return;
+  granted_end_ = std::max(granted_end_, next_ + around.free_places - 1);
+}
+
 dds::Credit IntakeJudge::credit(const Surroundings& around) {
-  const bool may_send = !is_refused_ && !is_complete_;
-  // One place is kept for the end that append_end() may add.
-  if (may_send && around.free_places > 1) {
-    granted_end_ = std::max(granted_end_, next_ + around.free_places - 1);
-  }
+  grant(around);
   newest_.session = session_;
   newest_.service_id = service_id_;
   newest_.next_sequence = next_;
-  newest_.credits = may_send ? static_cast<std::uint32_t>(granted_end_ - next_) : 0;
+  newest_.credits = may_send() ? static_cast<std::uint32_t>(granted_end_ - next_) : 0;
   published_ns_ = around.now_ns;
   published_end_ = granted_end_;
   return newest_;

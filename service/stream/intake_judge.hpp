@@ -102,6 +102,8 @@ class IntakeJudge {
   [[nodiscard]] dds::Credit end_session(dds::Verdict verdict, std::string text,
                                         const Surroundings& around);
   [[nodiscard]] const dds::Credit* find_ended(std::uint64_t session) const noexcept;
+  [[nodiscard]] bool may_send() const noexcept { return !is_refused_ && !is_complete_; }
+  void grant(const Surroundings& around) noexcept;
   [[nodiscard]] dds::Credit credit(const Surroundings& around);
   [[nodiscard]] bool take_blocks(const dds::Batch& batch, const Surroundings& around,
                                  Accepted& accepted, dds::Credit& refusal);

@@ -14,7 +14,12 @@ Station::Station(dds::SessionRequest request, Source source, const StationOption
 }
 
 std::optional<dds::SessionRequest> Station::due_request(std::int64_t now_ns) {
-  if (state_ != StationState::kOpening) return std::nullopt;
+  if (is_over()) return std::nullopt;
+  if (state_ != StationState::kOpening) {
+    if (now_ns - std::max(heard_ns_, asked_ns_) < options_.silence_ns) return std::nullopt;
+    asked_ns_ = now_ns;
+    return request_;
+  }
   if (!is_asked_) opened_ns_ = now_ns;
   if (is_asked_ && now_ns - opened_ns_ >= options_.open_timeout_ns) {
     stop(StationState::kNoAnswer, "no service answers for this machine");
@@ -111,6 +116,7 @@ void Station::on_credit(const dds::Credit& credit, std::int64_t now_ns) {
     return;
   }
   service_id_ = credit.service_id;
+  heard_ns_ = now_ns;
   credit_ = credit;
   if (!credit.text.empty()) message_ = credit.text;
   if (credit.verdict >= Verdict::kRefusedStation) {

@@ -39,6 +39,7 @@ using Source = std::function<Supply()>;
 struct StationOptions {
   std::int64_t open_repeat_ns = 500'000'000;
   std::int64_t open_timeout_ns = 5'000'000'000;
+  std::int64_t silence_ns = 1'000'000'000;     ///< of the service, which repeats itself: ask again
   std::int64_t resend_after_ns = 500'000'000;  ///< no progress for so long: send again
   std::int64_t gap_quiet_ns = 50'000'000;      ///< at least so long between two resends for one gap
   std::int64_t gather_ns = 5'000'000;  ///< a source that waits fills a small batch for so long
@@ -61,7 +62,8 @@ class Station {
  public:
   Station(dds::SessionRequest request, Source source, const StationOptions& options = {});
 
-  /// Returns the request that is to be sent now, if any: the open and its repetitions.
+  /// Returns the request that is to be sent now, if any: the open and its repetitions. Once open it
+  /// is repeated where the service fell silent: one that was restarted answers with its own name.
   [[nodiscard]] std::optional<dds::SessionRequest> due_request(std::int64_t now_ns);
   /// Fills the next batch that may be sent now; false where there is none.
   [[nodiscard]] bool next_batch(std::int64_t now_ns, dds::Batch& batch);
@@ -104,7 +106,7 @@ class Station {
   std::optional<std::int64_t> gathering_since_ns_;  ///< when a small batch was first held back
   bool is_end_sent_ = false;  ///< the end mark went out after `cursor_` got to the end
   std::uint64_t service_id_ = 0;
-  std::int64_t opened_ns_ = 0, asked_ns_ = 0, progress_ns_ = 0, went_back_ns_ = 0;
+  std::int64_t opened_ns_ = 0, asked_ns_ = 0, heard_ns_ = 0, progress_ns_ = 0, went_back_ns_ = 0;
   std::uint64_t went_back_to_ = ~std::uint64_t{0};
   bool is_asked_ = false;
   std::uint64_t cursor_before_ = 0;  ///< of the newest batch, for on_not_sent()

@@ -363,6 +363,15 @@ TEST_F(Intake, RepeatsTheCreditUntilTheSessionEnds) {
   EXPECT_FALSE(judge_.due_credit(around_));
 }
 
+TEST_F(Intake, RepeatsTheCreditWhileBatchesKeepComing) {
+  static_cast<void>(open());
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    around_.now_ns += IntakeJudge::kCreditRepeat_ns / 2;
+    static_cast<void>(send(good_batch(kSession, i, 1)));
+    EXPECT_EQ(judge_.due_credit(around_).has_value(), i % 2 == 1) << "batch " << i;
+  }
+}
+
 TEST_F(Intake, TellsAtOnceWhenManyPlacesCameFree) {
   static_cast<void>(open());
   around_.free_places += IntakeJudge::kCreditStep;

@@ -147,6 +147,18 @@ TEST(StationProtocol, ARestartedServiceHasLostTheSession) {
   EXPECT_EQ(station.state(), StationState::kRefused);
 }
 
+TEST(StationProtocol, AsksAgainWhenTheServiceFellSilentAndThereIsNothingToSend) {
+  Station station = opened(1000, 32);
+  dds::Batch batch;
+  ASSERT_TRUE(station.next_batch(0, batch));
+  station.on_credit(credit(32, 0), kSecond);
+  EXPECT_FALSE(station.next_batch(9 * kSecond, batch)) << "no credit, nothing under way";
+  EXPECT_FALSE(station.due_request(2 * kSecond - 1));
+  EXPECT_TRUE(station.due_request(2 * kSecond));
+  EXPECT_FALSE(station.due_request(2 * kSecond)) << "once a while";
+  EXPECT_TRUE(station.due_request(3 * kSecond));
+}
+
 TEST(StationProtocol, IgnoresCreditsOfOtherSessions) {
   Station station = opened(100, 0);
   dds::Credit other = credit(0, 100);
