@@ -17,6 +17,7 @@ namespace {
 
 struct Options {
   std::uint32_t domain = 0;
+  std::string machine;
   bool is_json = false, is_silent = false;
 };
 
@@ -29,8 +30,11 @@ void add(probe::Findings& all, const probe::Findings& more) {
   ::gethostname(host_name, sizeof host_name - 1);
   try {
     constexpr std::chrono::milliseconds kPatience{800};
-    return probe::examine_peers(stream::find_machines(options.domain, "", kPatience), host_name,
-                                MERIDIAN_VERSION);
+    const dds::Participant participant({.domain = options.domain, .machine = options.machine});
+    probe::Findings all = probe::examine_security(participant.is_secured());
+    add(all, probe::examine_peers(stream::find_machines(options.domain, options.machine, kPatience),
+                                  host_name, MERIDIAN_VERSION));
+    return all;
   } catch (const dds::DdsError& error) {
     return {{"DDS", probe::Health::kBad, error.what(), "mend CYCLONEDDS_URI or the network"}};
   }
@@ -60,6 +64,8 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->add_option("--domain", options->domain, "DDS domain")
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
+  command->add_option("--machine-name", options->machine,
+                      "Look for this machine only; needed in a secured domain");
   command->add_flag("--no-dds", options->is_silent, "Do not look for machines in the DDS domain");
   command->add_flag("--json", options->is_json, "As JSON");
   command->callback([options, &exit_code] { exit_code = run(*options); });

@@ -16,7 +16,6 @@
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
-#include "service/stream/operator_link.hpp"
 #include "service/text/percentiles.hpp"
 
 namespace meridian::cli {
@@ -98,22 +97,48 @@ int print_latency(dds::Participant& participant, const StatusOptions& options) {
   return options.histograms.empty() ? kFine : write_histograms(*histograms, options.histograms);
 }
 
+/// The machine's status, read and nothing else.
+class StatusLink {
+ public:
+  explicit StatusLink(dds::Participant& participant) : reader_(participant), waitset_(participant) {
+    waitset_.attach(reader_);
+  }
+
+  /// The newest status, waiting for one; nothing: time was up.
+  [[nodiscard]] std::optional<dds::Status> wait(std::chrono::milliseconds timeout) {
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    std::optional<dds::Status> newest;
+    for (;;) {
+      dds::Status status;
+      while (reader_.take(status)) newest = status;
+      const auto left = until - std::chrono::steady_clock::now();
+      if (newest || left <= left.zero()) return newest;
+      waitset_.wait(left);
+    }
+  }
+
+ private:
+  dds::Reader<dds::Status> reader_;
+  dds::Waitset waitset_;
+};
+
 int run_status(StatusOptions& options) {
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   if (options.is_latency || !options.histograms.empty()) return print_latency(participant, options);
-  stream::OperatorLink link(participant, "status");
+  StatusLink link(participant);  // reads only: what a viewer may in a secured domain
   if (options.is_watching) watch_for_stop();
   do {
-    if (!link.wait_for_status(options.peer.timeout())) {
+    const auto status = link.wait(options.peer.timeout());
+    if (!status) {
       std::fprintf(stderr, "meridian: machine %s does not tell its status\n",
                    options.peer.machine.c_str());
       return kNoPeer;
     }
-    std::printf("%s\n", options.is_json ? to_json(*link.status(), *machine).c_str()
-                                        : describe(*link.status(), *machine).c_str());
+    std::printf("%s\n", options.is_json ? to_json(*status, *machine).c_str()
+                                        : describe(*status, *machine).c_str());
     std::fflush(stdout);
   } while (options.is_watching && !stop_flag().load());
   return kFine;

@@ -2,6 +2,7 @@
 #include "service/dds/participant.hpp"
 
 #include <dds/dds.h>
+#include <dlfcn.h>
 
 #include <cstdlib>
 #include <map>
@@ -54,6 +55,15 @@ void release_domain(std::uint32_t id) {
   domains().erase(found);
 }
 
+/// Cyclone loads its plugins with the first participant that its configuration gives an identity,
+/// and creates none where that fails.
+bool has_security_plugins() noexcept {
+  void* const plugin = ::dlopen("libdds_security_auth.so", RTLD_LAZY | RTLD_NOLOAD);
+  if (plugin == nullptr) return false;
+  ::dlclose(plugin);
+  return true;
+}
+
 }  // namespace
 
 Participant::Participant(const ParticipantOptions& options)
@@ -64,8 +74,9 @@ Participant::Participant(const ParticipantOptions& options)
     release_domain(options.domain);
     fail("no place in DDS domain " + std::to_string(options.domain), participant_,
          "is the loopback interface up, and are real-time rights there if CYCLONEDDS_URI asks for "
-         "real-time threads?");
+         "real-time threads, and its certificates and permissions if it asks for security?");
   }
+  is_secured_ = has_security_plugins();
   dds_qos_t* qos = dds_create_qos();
   const char* partition = options.machine.c_str();
   dds_qset_partition(qos, 1, &partition);

@@ -37,12 +37,15 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
+  /// Whether it has an identity and talks to nobody without one (docs/security.md).
+  [[nodiscard]] bool is_secured() const noexcept { return is_secured_; }
   [[nodiscard]] std::int32_t handle() const noexcept { return participant_; }
   [[nodiscard]] std::int32_t publisher() const noexcept { return publisher_; }
   [[nodiscard]] std::int32_t subscriber() const noexcept { return subscriber_; }
 
  private:
   std::int32_t domain_ = 0, participant_ = 0, publisher_ = 0, subscriber_ = 0;
+  bool is_secured_ = false;
 };
 
 }  // namespace meridian::dds

@@ -49,10 +49,10 @@ SetpointWriter::~SetpointWriter() {
 void SetpointWriter::make_moulds(Participant& participant) {
   const Entity topic(kMoulds, dds_create_topic(participant.handle(), &meridian_wire_Setpoint_desc,
                                                kMoulds, nullptr, nullptr));
-  const Entity reader(kMoulds,
-                      dds_create_reader(participant.handle(), topic.handle(), nullptr, nullptr));
+  const Entity reader(
+      kMoulds, dds_create_reader(participant.subscriber(), topic.handle(), nullptr, nullptr));
   const Entity writer(kMoulds,
-                      dds_create_writer(participant.handle(), topic.handle(), nullptr, nullptr));
+                      dds_create_writer(participant.publisher(), topic.handle(), nullptr, nullptr));
   SetpointSample pattern;
   pattern.setpoint.cycle = 0x0123456789abcdefULL;
   pattern.setpoint.position.fill(1.25);

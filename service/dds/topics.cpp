@@ -91,6 +91,12 @@ MERIDIAN_TOPIC(Latency, Latency, "latency", kSnapshot);
 
 #undef MERIDIAN_TOPIC
 
+[[nodiscard]] std::string describe(dds_return_t code) {
+  if (code != DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) return dds_strretcode(-code);
+  return "the permissions of this identity do not allow it; use the configuration of a role that "
+         "may, and name the machine (--machine-name), for that is what permissions are given for";
+}
+
 /// Creates the topic with an endpoint on it by `make`; both live until the participant goes.
 template <class Message, class Make>
 dds_entity_t make_endpoint(Participant& participant, dds_entity_t& topic, Make make) {
@@ -99,8 +105,7 @@ dds_entity_t make_endpoint(Participant& participant, dds_entity_t& topic, Make m
   const Qos qos = make_qos(T::kQuality);
   const dds_entity_t endpoint = topic < 0 ? topic : make(topic, qos.get());
   if (endpoint < 0) {
-    throw DdsError(std::string("DDS topic ") + T::kName +
-                   " cannot be used: " + dds_strretcode(-endpoint));
+    throw DdsError(std::string("DDS topic ") + T::kName + " cannot be used: " + describe(endpoint));
   }
   return endpoint;
 }

@@ -29,7 +29,7 @@ dds_entity_t make_keeping_writer(Participant& participant, dds_entity_t topic) {
   dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
   dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, kNodes, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
-  return dds_create_writer(participant.handle(), topic, qos.get(), nullptr);
+  return dds_create_writer(participant.publisher(), topic, qos.get(), nullptr);
 }
 
 }  // namespace

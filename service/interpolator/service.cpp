@@ -133,6 +133,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
     intake_.wake();
   });
   take_lease();
+  tell_security();
 }
 
 Service::~Service() { stop(); }
@@ -147,6 +148,15 @@ void Service::take_lease() {
     return;
   }
   throw served_already(*holder);
+}
+
+void Service::tell_security() {
+  if (participant_.is_secured()) {
+    log_->info("secured: only identities of this machine's authority take part, each in its role");
+  } else {
+    log_->info("open: whoever reaches DDS domain {} may command this machine (docs/security.md)",
+               parts_.domain);
+  }
 }
 
 void Service::keep_lease() {

@@ -60,6 +60,7 @@ class Service {
 
  private:
   void take_lease();
+  void tell_security();
 
   ServiceParts parts_;
   const Realtime& realtime_;

@@ -36,6 +36,7 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
       motion_(model) {
   status_.service_id = service_id_;
   status_.realtime_mode = mode;
+  status_.is_secured = participant.is_secured();
   latency_.service_id = service_id_;
   for (const char* name : kBooks) latency_.histograms.push_back({name, {}});
   status_.is_auxiliary_ignored = service.auxiliary == config::AuxiliaryPolicy::kIgnore;

@@ -28,6 +28,8 @@ struct Rights {
 [[nodiscard]] Findings examine_kernel(const HostFiles& host);
 /// Socket buffers and the DDS configuration; `cyclone_uri` is CYCLONEDDS_URI, empty where unset.
 [[nodiscard]] Findings examine_network(const HostFiles& host, const std::string& cyclone_uri);
+/// Whether this process has an identity that the machine's authority signed.
+[[nodiscard]] Findings examine_security(bool is_secured);
 /// Who answers in the DDS domain, seen from `host_name` with this `version`.
 [[nodiscard]] Findings examine_peers(const std::vector<dds::MachineInfo>& machines,
                                      const std::string& host_name, const std::string& version);

@@ -33,6 +33,14 @@ Findings examine_network(const HostFiles& host, const std::string& cyclone_uri) 
   return {socket_buffers(host), interface(host, cyclone_uri)};
 }
 
+Findings examine_security(bool is_secured) {
+  if (is_secured) {
+    return {{"DDS security", Health::kFine, "secured: this identity, its role and no more", ""}};
+  }
+  return {{"DDS security", Health::kNote, "open: whoever reaches the DDS domain may command",
+           "deploy/security/make_identities where the network is not only yours"}};
+}
+
 Findings examine_peers(const std::vector<dds::MachineInfo>& machines, const std::string& host_name,
                        const std::string& version) {
   if (machines.empty()) return {{"machines", Health::kFine, "no service answers here now", ""}};
