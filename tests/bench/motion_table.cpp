@@ -50,7 +50,9 @@ void print_made_up() {
   const auto windows = std::make_unique<bench::SmoothWindows>(test::bench_machine());
   for (const double step : {0.0001, 0.002, 0.05, 0.3}) {
     bench::SmoothTotal total;
-    windows->run(bench::dense_blocks(static_cast<int>(std::min(1e6, 500 / step)), step, 50), total);
+    const double feed = step < 0.001 ? 5 : 50;  // mm/s
+    const int blocks = static_cast<int>(std::min(1e6, 500 / step));
+    windows->run(bench::dense_blocks(blocks, step, feed), total);
     std::printf("dense, %.4f mm    ", step);
     print_cost(total);
   }
