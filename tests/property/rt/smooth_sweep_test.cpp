@@ -142,6 +142,14 @@ TEST(SmoothSweep, GoesOnFromARestOnThePoleWithoutAStepOfC) {
   EXPECT_EQ(sweep.refused, 0);
 }
 
+/// Programs whose free joint turns by more than half a turn between the reach of a zone and its
+/// begin.
+TEST(SmoothSweep, KnowsTheWindingWhereAZoneBegins) {
+  Sweep sweep;
+  for (const std::uint32_t seed : {507U, 996U}) run_program(seed, sweep);
+  EXPECT_EQ(sweep.refused, 0);
+}
+
 TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
   const std::uint32_t first = number_of("MERIDIAN_SWEEP_SEED", 1);
   const std::uint32_t programs =
