@@ -78,7 +78,7 @@ void take_turns(const Host& host, std::int64_t period_ns, int turns, const fs::p
   RateMeasurement m;
   m.rate_hz = rate_hz;
   m.is_loaded = is_loaded;
-  const std::int64_t period_ns = 1'000'000'000 / rate_hz;
+  const std::int64_t period_ns = 1'000'000 / rate_hz * 1000;  // whole microseconds, as in the file
   const process::ScratchFolder folder;
   host.machine = (folder.path() / "machine.toml").string();
   std::ifstream file(options.machine);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/process/programs.hpp"
+#include "service/soak/soak.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  soak::SoakOptions soak;
+  std::string duration = "60s", report;
+  bool is_json = false;
+};
+
+/// "90", "90s", "15m", "8h" in seconds; throws CLI::ValidationError.
+[[nodiscard]] double seconds_of(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
+  if (!(number > 0) || factor == 0) {
+    throw CLI::ValidationError("--for", "'" + text + "' is no time: 90s, 15m, 8h");
+  }
+  return number * factor;
+}
+
+int run(Options& options) {
+  options.soak.for_s = seconds_of(options.duration);
+  options.soak.report = options.report;
+  if (options.soak.machine.empty()) {
+    options.soak.machine = process::shipped_file("machines/lai.toml").string();
+  }
+  watch_for_stop();
+  const soak::SoakReport report =
+      soak::run_soak(options.soak, stop_flag(),
+                     [](const std::string& text) { std::cerr << "soak: " << text << "\n"; });
+  std::cout << (options.is_json ? to_json(report) : to_text(report));
+  return report.passed() ? kFine : kVerdictNo;
+}
+
+}  // namespace
+
+void add_soak_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("soak",
+                         "Service, simulated drives and station run for long, with mishaps on a "
+                         "seeded schedule; every "
+                         "setpoint is judged while it runs. Exit code 1 where anything was wrong");
+  command->add_option("programs", options->soak.programs,
+                      "CL files to cut, one after the other; default: drawn ones near home");
+  command->add_option("--for", options->duration, "How long: 90s, 15m, 8h")->capture_default_str();
+  command->add_option("--machine", options->soak.machine,
+                      "Machine file (TOML); default: the Lai machine that is shipped");
+  command->add_option("--tools", options->soak.tools, "Tool table (TOML)");
+  command
+      ->add_option("--chaos", options->soak.chaos_every_s,
+                   "Mishaps every so many seconds on the average: hold, override, abort, a station "
+                   "or service that dies, drives that fail; default: none")
+      ->check(CLI::Range(0.5, 1e6));
+  command->add_option("--seed", options->soak.seed, "Of programs and mishaps")
+      ->capture_default_str();
+  command->add_option("--domain", options->soak.domain, "DDS domain, which must be free")
+      ->check(CLI::Range(0, 230))
+      ->capture_default_str();
+  command->add_option("--report", options->report,
+                      "JSON file, written again and again while it runs; text beside it as .txt");
+  command->add_flag("--json", options->is_json, "Print JSON");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli

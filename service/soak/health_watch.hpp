@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <map>
+#include <string>
+
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/soak/soak_report.hpp"
+
+namespace meridian::soak {
+
+/// Watches a service from outside: memory, files, threads, faults and switches by the kernel's
+/// account, latencies by what it publishes. Fills Life and Drift of a report.
+class HealthWatch {
+ public:
+  HealthWatch(dds::Participant& participant, SoakReport& report);
+
+  /// A service was started.
+  void begin_life(double now_s);
+  /// Once a second while it runs.
+  void look(pid_t service, double now_s);
+
+ private:
+  void take_latencies(double now_s);
+
+  SoakReport& report_;
+  dds::Reader<dds::Latency> latencies_;
+  double begin_s_ = 0, drift_s_ = 0;
+  std::uint64_t service_id_ = 0;
+  std::map<std::string, Histogram> before_;  ///< as of the last interval, of this life
+};
+
+}  // namespace meridian::soak

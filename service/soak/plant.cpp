@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/soak/plant.hpp"
+
+#include <csignal>
+#include <fstream>
+#include <utility>
+
+#include "service/process/programs.hpp"
+
+namespace meridian::soak {
+namespace {
+
+using process::ChildProcess;
+using std::chrono::milliseconds;
+
+[[nodiscard]] const char* injection_word(Mishap mishap) {
+  if (mishap == Mishap::kDriveFault) return "fault";
+  if (mishap == Mishap::kDriveBlocked) return "blocked";
+  return mishap == Mishap::kDrivesSilent ? "silence" : "emergency";
+}
+
+}  // namespace
+
+Plant::Plant(std::string machine, std::string tools, std::uint32_t domain,
+             std::filesystem::path folder)
+    : machine_(std::move(machine)),
+      tools_(std::move(tools)),
+      domain_(std::to_string(domain)),
+      folder_(std::move(folder)) {}
+
+void Plant::start_service(const std::filesystem::path& recording) {
+  std::vector<std::string> words{process::program_beside("meridiand").string(),
+                                 "--machine",
+                                 machine_,
+                                 "--domain",
+                                 domain_,
+                                 "--record",
+                                 recording.string(),
+                                 "--best-effort"};
+  if (!tools_.empty()) {
+    const auto file = folder_ / "service.toml";
+    std::ofstream(file) << "[service]\ntools = \"" << std::filesystem::absolute(tools_).string()
+                        << "\"\n";
+    words.insert(words.end(), {"--service", file.string()});
+  }
+  service_ = std::make_unique<ChildProcess>(
+      words, ChildProcess::Options{.error_file = log("service.log")});
+}
+
+void Plant::start_drives(const std::optional<Planned>& mishap, const std::string& drive_name) {
+  std::vector<std::string> words{process::program_beside("meridian").string(),
+                                 "drives",
+                                 "--machine",
+                                 machine_,
+                                 "--domain",
+                                 domain_,
+                                 "--quiet"};
+  if (mishap) {
+    words.insert(words.end(), {"--inject", std::string(injection_word(mishap->mishap)) + "@" +
+                                               std::to_string(mishap->at_s) + ":" + drive_name});
+  }
+  drives_.reset();
+  drives_ = std::make_unique<ChildProcess>(
+      words, ChildProcess::Options{.error_file = log("drives.log"), .output_file = "/dev/null"});
+}
+
+void Plant::start_station(const std::string& program) {
+  station_.reset();
+  station_ = std::make_unique<ChildProcess>(
+      std::vector<std::string>{process::program_beside("meridian").string(), "stream", program,
+                               "--domain", domain_, "--wait-end"},
+      ChildProcess::Options{.error_file = log("station.log"), .output_file = log("station.out")});
+}
+
+bool Plant::end_service() {
+  if (!service_) return true;
+  service_->send_signal(SIGTERM);
+  const bool is_well = service_->wait_for_exit(milliseconds(15'000)) == 0;
+  service_.reset();
+  return is_well;
+}
+
+}  // namespace meridian::soak

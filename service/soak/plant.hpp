@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "service/process/child_process.hpp"
+#include "service/soak/chaos.hpp"
+
+namespace meridian::soak {
+
+/// Service, drives and station as processes; each may die and be started again.
+class Plant {
+ public:
+  Plant(std::string machine, std::string tools, std::uint32_t domain, std::filesystem::path folder);
+
+  void start_service(const std::filesystem::path& recording);
+  /// With something that is to go wrong, or nothing. `name` is that of the drive.
+  void start_drives(const std::optional<Planned>& mishap, const std::string& drive_name);
+  void start_station(const std::string& program);
+
+  /// Ends it as an operator would; true where it ended well in time.
+  bool end_service();
+  void kill_service() { service_.reset(); }
+  void kill_station() { station_.reset(); }
+
+  [[nodiscard]] process::ChildProcess* service() { return service_.get(); }
+  [[nodiscard]] process::ChildProcess* drives() { return drives_.get(); }
+  [[nodiscard]] process::ChildProcess* station() { return station_.get(); }
+  void stop_drives() { drives_.reset(); }
+
+ private:
+  [[nodiscard]] std::string log(const char* name) const { return (folder_ / name).string(); }
+
+  std::string machine_, tools_, domain_;
+  std::filesystem::path folder_;
+  std::unique_ptr<process::ChildProcess> service_, drives_, station_;
+};
+
+}  // namespace meridian::soak

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "meridian/rt/histogram.hpp"
+#include "service/process/account.hpp"
+#include "service/record/check_report.hpp"
+#include "service/soak/chaos.hpp"
+
+namespace meridian::soak {
+
+/// Something that must not be, for the report.
+struct Violation {
+  std::string text;   ///< a sentence
+  std::string where;  ///< segment and program
+};
+
+/// How a service stood at one time.
+struct Health {
+  process::Account process;
+  process::ThreadAccount cycle, publisher;
+};
+
+/// One life of the service: from its start to its end or death.
+struct Life {
+  Health first, last;  ///< first: when it had warmed up
+  double most_resident_mib = 0;
+  bool has_first = false;
+};
+
+/// A histogram over the whole soak, with the part of it that came first and the one that came last.
+struct Drift {
+  Histogram all, first, last;
+};
+
+/// All that a soak found out, and its verdict. Times s.
+struct SoakReport {
+  std::string machine, host;
+  std::uint64_t seed = 0;
+  double asked_s = 0, elapsed_s = 0;
+  bool is_over = false;  ///< false: written on the way
+  std::uint64_t programs = 0, finished = 0, aborted = 0, refused = 0;
+  std::uint64_t segments = 0, segments_unread = 0, rows = 0, missing = 0, longest_gap = 0;
+  std::array<std::uint64_t, kMishapCount> mishaps{};
+  std::uint64_t alarms = 0, service_starts = 0, drive_starts = 0;
+  double tip_mm = 0, axis_rad = 0;                  ///< largest deviations
+  double velocity = 0, acceleration = 0, jerk = 0;  ///< largest share of a limit
+  std::uint64_t cycles_run = 0, periods_lost = 0, overruns = 0, starvations = 0;
+  std::vector<Life> lives;
+  std::map<std::string, Drift> latencies;
+  std::vector<Violation> violations;  ///< the first kMostViolations
+  std::uint64_t violation_count = 0;
+  double resident_budget_mib = 64;
+  static constexpr std::size_t kMostViolations = 100;
+
+  void violate(std::string text, std::string where);
+  /// Takes the judgement of one segment.
+  void add(const record::CheckReport& check, const std::string& where);
+  [[nodiscard]] bool passed() const;
+};
+
+/// What speaks against the service's memory, files and threads; empty where nothing does. The first
+/// minute of a life is warm-up.
+[[nodiscard]] std::vector<std::string> growth(const SoakReport& report);
+
+[[nodiscard]] std::string to_text(const SoakReport& report);
+[[nodiscard]] std::string to_json(const SoakReport& report);
+
+/// Replaces `file` in one step: a reader finds the old text or the new one, also where this process
+/// is killed meanwhile. False where it cannot be written.
+[[nodiscard]] bool write_whole(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace meridian::soak

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "service/process/programs.hpp"
+#include "service/soak/chaos.hpp"
+#include "service/soak/segments.hpp"
+#include "service/soak/soak_report.hpp"
+
+namespace meridian::soak {
+namespace {
+
+TEST(Chaos, IsTheSameForTheSameSeedAndHoldsEveryMishap) {
+  Chaos one(7, 10, 5), same(7, 10, 5), other(8, 10, 5);
+  std::set<Mishap> seen;
+  double before_s = 0;
+  bool differs = false;
+  for (int i = 0; i < 400; ++i) {
+    const Planned a = one.next(), b = same.next(), c = other.next();
+    EXPECT_EQ(a.mishap, b.mishap);
+    EXPECT_EQ(a.at_s, b.at_s);
+    EXPECT_EQ(a.value, b.value);
+    differs = differs || a.at_s != c.at_s;
+    EXPECT_GE(a.at_s - before_s, 5);
+    EXPECT_LE(a.at_s - before_s, 15);
+    before_s = a.at_s;
+    const Planned drive = one.next_of_drives();
+    EXPECT_LT(drive.drive, 5);
+    EXPECT_GE(drive.at_s, 10);
+    seen.insert(a.mishap);
+    seen.insert(drive.mishap);
+  }
+  EXPECT_TRUE(differs);
+  EXPECT_EQ(seen.size(), static_cast<std::size_t>(kMishapCount));
+}
+
+/// Rows of `count` cycles in one state, from `first` on.
+std::string rows(const char* state, int first, int count) {
+  std::string text;
+  for (int i = first; i < first + count; ++i) {
+    text += std::to_string(i) + "," + std::to_string(i * 1000) + ",0.5," + state + ",1\n";
+  }
+  return text;
+}
+
+class SegmentsTest : public testing::Test {
+ protected:
+  /// Feeds `text` in portions that never end with a line.
+  void feed(const std::string& text) {
+    for (std::size_t i = 0; i < text.size(); i += 7) segments_.add(text.substr(i, 7));
+  }
+  static std::string text_of(const Segment& segment) {
+    std::ifstream file(segment.file);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  static constexpr const char* kHeader = "cycle,due_ns,x_mm,state,rate\n";
+  process::ScratchFolder folder_;
+  std::vector<Segment> told_;
+  Segments segments_{folder_.path(), [this](const Segment& one) { told_.push_back(one); }};
+};
+
+TEST_F(SegmentsTest, EndWhereTheMachineRestsBehindAProgram) {
+  const std::string first =
+      rows("ready", 0, 100) + rows("running", 100, 30) + rows("ready", 130, 50);
+  feed(kHeader + first + rows("ready", 180, 20));
+  ASSERT_EQ(told_.size(), 1U);
+  EXPECT_TRUE(told_[0].has_run);
+  EXPECT_FALSE(told_[0].is_aborted);
+  EXPECT_EQ(told_[0].rows, 180U);
+  EXPECT_EQ(told_[0].begin_ns, 100'000);
+  EXPECT_EQ(text_of(told_[0]), kHeader + first);
+  feed(rows("running", 200, 5) + rows("fault_stop", 205, 5) + rows("fault", 210, 50));
+  ASSERT_EQ(told_.size(), 2U);
+  EXPECT_TRUE(told_[1].is_aborted);
+  EXPECT_NE(told_[1].file, told_[0].file);
+  EXPECT_EQ(told_[1].rows, 80U);
+}
+
+TEST_F(SegmentsTest, EndWithTheServiceWithoutTheRowThatWasBeingWritten) {
+  feed(kHeader + rows("running", 0, 10) + "10,100");
+  segments_.cut_off();
+  ASSERT_EQ(told_.size(), 1U);
+  EXPECT_TRUE(told_[0].is_aborted);
+  EXPECT_EQ(told_[0].rows, 10U);
+  feed(kHeader + rows("off", 0, 10));
+  segments_.cut_off();
+  ASSERT_EQ(told_.size(), 2U);
+  EXPECT_FALSE(told_[1].has_run);
+}
+
+SoakReport good_report() {
+  SoakReport report;
+  report.finished = 3;
+  Life life;
+  life.has_first = true;
+  life.first.process = {.resident_mib = 30, .threads = 15, .files = 20};
+  life.last = life.first;
+  life.most_resident_mib = 30;
+  report.lives.push_back(life);
+  return report;
+}
+
+TEST(SoakReport, PassesOnlyWhereNothingWasWrongAndSomethingWasDone) {
+  EXPECT_TRUE(good_report().passed()) << to_text(good_report());
+  EXPECT_FALSE(SoakReport{}.passed());
+  SoakReport violated = good_report();
+  violated.violate("too fast", "part.cl");
+  EXPECT_FALSE(violated.passed());
+  EXPECT_NE(to_text(violated).find("VIOLATION: too fast (part.cl)"), std::string::npos);
+  SoakReport grown = good_report();
+  grown.lives[0].last.process.resident_mib = 32;
+  EXPECT_FALSE(grown.passed());
+  SoakReport large = good_report();
+  large.lives[0].most_resident_mib = 65;
+  EXPECT_FALSE(large.passed());
+  SoakReport threads = good_report();
+  ++threads.lives[0].last.process.threads;
+  EXPECT_FALSE(threads.passed());
+}
+
+TEST(SoakReport, IsReplacedInOneStep) {
+  const process::ScratchFolder folder;
+  const auto file = folder.path() / "report.json";
+  ASSERT_TRUE(write_whole(file, "old"));
+  ASSERT_TRUE(write_whole(file, to_json(good_report())));
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(text, to_json(good_report()));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.json.part"));
+  EXPECT_FALSE(write_whole(folder.path() / "no/such/folder.json", "x"));
+}
+
+}  // namespace
+}  // namespace meridian::soak
