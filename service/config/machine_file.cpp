@@ -142,6 +142,19 @@ void read_tolerances(Section section, MachineModel& model) {
   section.finish();
 }
 
+void read_unwind(Section section, MachineModel& model) {
+  model.unwind_policy =
+      static_cast<UnwindPolicy>(section.choice_or("policy", 0, {"refuse", "retract"}));
+  if (model.unwind_policy == UnwindPolicy::kRetract) {
+    model.unwind_retract_mm = section.number(
+        "retract_mm", {1, 1e4}, "say how far the tool leaves the part before C may turn");
+  } else if (section.has("retract_mm")) {
+    section.refuse("retract_mm", "nothing beside policy = \"refuse\"",
+                   "remove it, or write policy = \"retract\"");
+  }
+  section.finish();
+}
+
 void read_frame(Section section, MachineModel& model) {
   const auto origin = section.triple_or("origin_mm", {0, 0, 0}, kLength_mm);
   const auto [a, b, c] = section.triple_or("rotation_deg", {0, 0, 0}, {-360, 360});
@@ -166,6 +179,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"ease", "exact"}));
   model.tolerances.pole_axis_rad = units::rad_from_deg(pole.number_or("axis_deg", 0, {0, 10}));
   pole.finish();
+  read_unwind(file.section_or("unwind"), model);
   read_frame(file.section_or("frame"), model);
   file.finish();
   return model;

@@ -24,7 +24,10 @@ bool PlannerThread::work() noexcept {
   if (look.is_emptied) is_refused_ = is_action_told_ = false;
   if (!look.is_in_step) return look.is_emptied;
   if (look.front == nullptr) {
-    if (has_begun_ && !is_refused_) planner_.advance(writer_);
+    if (has_begun_ && !is_refused_) {
+      look_at_stall();
+      planner_.advance(writer_);
+    }
     tell_eases();
     return false;
   }
@@ -43,12 +46,18 @@ bool PlannerThread::work() noexcept {
   return plan(*look.front);
 }
 
+void PlannerThread::look_at_stall() noexcept {
+  constexpr std::int64_t kStall_ns = kSecond_ns;
+  if (monotonic_ns() - last_block_ns_ > kStall_ns) planner_.look_no_further();
+}
+
 bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   if (!announce_action(queued.block)) return false;
   const std::int64_t begun_ns = monotonic_ns();
   const PlanResult result = planner_.plan(queued.block, writer_);
+  last_block_ns_ = monotonic_ns();
   if (result.status != PlanStatus::kNoRoom) {
-    (void)ports_.plan_times.try_push(narrow_ns(monotonic_ns() - begun_ns));
+    (void)ports_.plan_times.try_push(narrow_ns(last_block_ns_ - begun_ns));
   }
   tell_eases();
   switch (result.status) {
@@ -70,6 +79,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
 
 void PlannerThread::tell_eases() noexcept {
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
+  for (Unwinding one; planner_.take_unwinding(one);) (void)ports_.unwindings.try_push(one);
 }
 
 bool PlannerThread::announce_action(const ClBlock& block) noexcept {

@@ -14,7 +14,8 @@ namespace meridian::interpolator {
 /// Plans block by block into the motion port. A plan begins where the machine rests in Ready, in
 /// the epoch of that moment; when the cycle advances the epoch, the plan and all blocks that came
 /// in before intake took note of it are void. What it publishes depends on the blocks and that
-/// beginning alone, never on the clock. Preallocated.
+/// beginning alone, never on the clock, unless the stream stalls for a second at the begin of a
+/// program. Preallocated.
 class PlannerThread {
  public:
   PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports);
@@ -27,6 +28,8 @@ class PlannerThread {
   [[nodiscard]] bool work() noexcept;
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
   void tell_eases() noexcept;
+  /// A program of which no block has come for a while begins with those that are there.
+  void look_at_stall() noexcept;
   [[nodiscard]] bool announce_action(const ClBlock& block) noexcept;
   void pop() noexcept;
 
@@ -34,10 +37,11 @@ class PlannerThread {
   QueueFollower queue_;
   MotionWriter writer_;
   SmoothPlanner planner_;
-  double published_before_s_ = 0;  ///< when the plan was begun
-  bool has_begun_ = false;         ///< a plan is being made
-  bool is_refused_ = false;        ///< a block was refused: nothing behind it moves
-  bool is_action_told_ = false;    ///< of the block at the head of the queue
+  std::int64_t last_block_ns_ = 0;  ///< when one was planned last
+  double published_before_s_ = 0;   ///< when the plan was begun
+  bool has_begun_ = false;          ///< a plan is being made
+  bool is_refused_ = false;         ///< a block was refused: nothing behind it moves
+  bool is_action_told_ = false;     ///< of the block at the head of the queue
 };
 
 }  // namespace meridian::interpolator

@@ -9,6 +9,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/smooth_planner.hpp"
+#include "meridian/planner/unwinding.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/latest_value.hpp"
@@ -84,7 +85,8 @@ struct Ports {
   SpscRing<SessionReject, 64> rejects;
   SpscRing<PlannedAction, 1024> actions;
   MotionPort motion;
-  SpscRing<PoleEase, 256> eases;  ///< planner to telemetry
+  SpscRing<PoleEase, 256> eases;        ///< planner to telemetry
+  SpscRing<Unwinding, 256> unwindings;  ///< planner to telemetry
 
   SpscRing<Command, 64> commands;
   LatestValue<Feedback> feedback;

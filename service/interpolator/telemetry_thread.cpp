@@ -65,6 +65,8 @@ void TelemetryThread::drain() {
   recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
   PoleEase ease;
   while (ports_.eases.try_pop(ease)) log_->info("{}", telemetry::describe(ease));
+  Unwinding unwinding;
+  while (ports_.unwindings.try_pop(unwinding)) log_->info("{}", telemetry::describe(unwinding));
   CycleRecord record;
   const double tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
   while (ports_.records.try_pop(record)) {

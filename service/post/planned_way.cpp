@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/units.hpp"
@@ -72,6 +73,13 @@ Expected<std::vector<WayPiece>, PostError> PlannedWay::plan(const ClBlock& block
   const PlanResult result = planner_.plan(block, writer_);
   if (result.status != PlanStatus::kOk) {
     return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});
+  }
+  if (result.unwinding.turns != 0) {
+    return tl::make_unexpected(PostError{
+        block.line,
+        model_.joints[free_joint(model_)].name +
+            " runs out of its travel here and has to be turned back off the part, "
+            "which NC programs are not written for; split the program ahead of this line"});
   }
   std::vector<WayPiece> pieces;
   for (PathPiece piece; port_->paths.try_pop(piece);) {

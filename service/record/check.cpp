@@ -12,6 +12,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/record/joint_judge.hpp"
 #include "service/record/path_judge.hpp"
+#include "service/record/unwind_judge.hpp"
 
 namespace meridian::record {
 namespace {
@@ -186,15 +187,19 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
 
   JointJudge joints(model, survey.largest());
   PathJudge tool(model, path, options);
+  UnwindJudge unwinding(model, path.begin_tool_length_mm(), options);
   const bool has_cut = survey.has_cut(options);
   read = for_each(recording, options, [&](const RecordingRow& row) {
     joints.add(row, recording.has_velocity());
     if (has_cut && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
-      tool.add(row);
+      if (!unwinding.add(row)) tool.add(row);
     }
   });
   if (!read) return tl::make_unexpected(std::move(read.error()));
-  if (has_cut) tool.finish(report);
+  if (has_cut) {
+    tool.finish(report);
+    unwinding.finish(report);
+  }
   joints.finish(report);
   return report;
 }

@@ -32,6 +32,8 @@ struct CheckOptions {
 ///   through four), has a programmed pose near the place being cut within tip and axis tolerance
 ///   together; every CL vertex is passed within the tip tolerance, the whole path is cut, and
 ///   nothing more;
+/// * rows of kind `unwind` leave the path along the tool axis alone, turn the free joint by whole
+///   turns off the part, and come back to where they left;
 /// * tip speed never above the programmed feed; inverse time: nor the turn of the axis;
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;

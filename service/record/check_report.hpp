@@ -51,7 +51,8 @@ struct Finding {
     kJerk,
     kTravel,
     kSentVelocity,
-    kStage
+    kStage,
+    kUnwinding
   };
   Kind kind{};
   std::string text;         ///< a sentence with value, place and bound
@@ -79,6 +80,7 @@ struct CheckReport {
   Peak tip_between_mm, axis_between_rad;  ///< at three places between neighbouring setpoints
   Peak vertex_mm;                         ///< `line`: of the block that ends there
   std::uint64_t vertices = 0, vertices_in_gaps = 0;
+  std::uint64_t unwindings = 0;  ///< turns of the free joint off the part
   Peak feed;  ///< tip speed / programmed feed
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows

@@ -7,7 +7,7 @@
 namespace meridian::record {
 namespace {
 
-constexpr std::array<std::string_view, 4> kKinds{"approach", "cut", "rapid", "pole_turn"};
+constexpr std::array<std::string_view, 5> kKinds{"approach", "cut", "rapid", "pole_turn", "unwind"};
 constexpr std::array<std::string_view, kStateCount> kStates{
     "off",  "enabling", "ready",   "loaded",   "approaching", "running",    "holding",
     "held", "starving", "starved", "aborting", "disabling",   "fault_stop", "fault"};

@@ -12,7 +12,7 @@
 /// The words of a recording: column names, and what stands in the columns `kind` and `state`.
 namespace meridian::record {
 
-/// approach, cut, rapid, pole_turn.
+/// approach, cut, rapid, pole_turn, unwind.
 [[nodiscard]] std::string_view word(MotionKind kind) noexcept;
 /// off, enabling, ready, loaded, ... as in docs/operating.md, small letters.
 [[nodiscard]] std::string_view word(State state) noexcept;

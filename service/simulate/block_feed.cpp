@@ -78,6 +78,11 @@ void BlockFeed::take_eases() {
       explainer_->add_ease(ease.first_sequence, ease.last_sequence, ease.deviation_rad);
     }
   }
+  Unwinding unwinding;
+  while (planner_.take_unwinding(unwinding)) {
+    ++unwinding_count_;
+    if (unwindings_.size() < kMostEases) unwindings_.push_back(unwinding);
+  }
 }
 
 void BlockFeed::fill() {
@@ -86,6 +91,8 @@ void BlockFeed::fill() {
   while (!is_over_) {
     if (!block_ && !take_block()) {
       is_over_ = true;
+      planner_.look_no_further();
+      planner_.advance(writer_);
       return;
     }
     const PlanResult result = planner_.plan(*block_, writer_);

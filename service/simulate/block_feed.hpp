@@ -41,6 +41,9 @@ class BlockFeed {
   };
   static constexpr std::size_t kMostEases = 100;
   [[nodiscard]] const Eases& eases() const noexcept { return eases_; }
+  /// Unwindings so far, in order: the first kMostEases.
+  [[nodiscard]] const std::vector<Unwinding>& unwindings() const noexcept { return unwindings_; }
+  [[nodiscard]] std::uint64_t unwinding_count() const noexcept { return unwinding_count_; }
   [[nodiscard]] std::uint64_t motion_blocks() const noexcept { return motion_blocks_; }
   [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return judge_.feeds_limited(); }
 
@@ -61,6 +64,8 @@ class BlockFeed {
 
   std::string refusal_;
   Eases eases_;
+  std::vector<Unwinding> unwindings_;
+  std::uint64_t unwinding_count_ = 0;
   std::uint64_t motion_blocks_ = 0;
   bool has_begun_ = false, is_over_ = false;
 };

@@ -103,6 +103,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
     place = find_place(*path, p.s, p.ds * record.rate);
     if (path->kind == PathKind::kSpline)
       block = find_block(place, std::max(record.sequence, running_));
+    if (path->motion == MotionKind::kUnwind) block = std::max(block, running_);
     const Open* const open = find(block);
     view = limits_.look(*path, *piece, piece_time, record.joints,
                         open != nullptr ? find_feed_share(*open, p.ds) : 0);
@@ -110,6 +111,12 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
       view.limit = kMachineFeedLimit;
     }
     cause = cause_of(view, record);
+    if (path->motion == MotionKind::kUnwind) {
+      decide(Cause::kRest);
+      behind_ = Cause::kRest;
+      is_braking_ = false;
+      cause = Cause::kUnwinding;
+    }
   } else {
     cause = Cause::kWaiting;
     is_on_span_ = false;
@@ -154,7 +161,8 @@ double Explainer::find_feed_share(const Open& open, double speed) {
 }
 
 double Explainer::find_place(const PathPiece& path, double s, double speed) {
-  const Open* const open = find(path.sequence);  // may be over: a span reaches over many
+  if (path.motion == MotionKind::kUnwind) return place_;  // off the path, and back to it
+  const Open* const open = find(path.sequence);           // may be over: a span reaches over many
   if (path.kind != PathKind::kSpline) {
     is_on_span_ = false;
     return open != nullptr ? open->path_end_mm : place_;

@@ -42,9 +42,10 @@ enum class Cause : std::uint8_t {
   kPole,      ///< the free joint turns beside the pole
   kRest,      ///< the motion sets off from a rest or comes to one
   kOverride,  ///< the operator: an override below 100 %, a hold, a resume
-  kWaiting    ///< at rest: dwell, action, stop, hold, or blocks that did not come
+  kWaiting,   ///< at rest: dwell, action, stop, hold, or blocks that did not come
+  kUnwinding  ///< the free joint ran out of travel and is turned back off the part
 };
-inline constexpr std::size_t kCauses = 7;
+inline constexpr std::size_t kCauses = 8;
 [[nodiscard]] const char* name_of(Cause cause) noexcept;
 
 }  // namespace meridian::simulate

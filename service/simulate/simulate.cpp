@@ -53,6 +53,8 @@ class Run {
     report.eases = feed_.eases().first;
     report.ease_count = feed_.eases().count;
     report.largest_ease_rad = feed_.eases().largest_rad;
+    report.unwindings = feed_.unwindings();
+    report.unwinding_count = feed_.unwinding_count();
     if (report.outcome == Outcome::kDone || report.outcome == Outcome::kStarved) {
       if (!feed_.refusal().empty()) report.outcome = Outcome::kRefused;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
 #include "service/text/printed.hpp"
@@ -37,6 +38,21 @@ void append_shares(std::string& text, const LimitShares& shares, const MachineMo
     separator = ", ";
   }
   text += "\n";
+}
+
+void append_unwindings(std::string& text, const SimulateReport& report, const MachineModel& model) {
+  constexpr std::size_t kMostTold = 12;
+  append(text, "unwinding  %llu times\n", static_cast<Count>(report.unwinding_count));
+  const std::size_t told = std::min(kMostTold, report.unwindings.size());
+  for (std::size_t n = 0; n < told; ++n) {
+    const Unwinding& one = report.unwindings[n];
+    append(text, "  line %u: %s would leave its travel; from %.3f deg by %+d turns, %.6g mm off\n",
+           one.line, model.joints[free_joint(model)].name.c_str(),
+           units::deg_from_rad(one.from_rad), one.turns, one.retract_mm);
+  }
+  if (report.unwinding_count > told) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.unwinding_count - told));
+  }
 }
 
 /// The stretches that were eased, the farthest first where there are many.
@@ -109,6 +125,7 @@ std::string to_text(const SimulateReport& report, const MachineModel& model) {
   append(text, "           the cuts alone at the programmed feed: %.3f s\n", report.at_feed_s);
   if (report.shares.cycles > 0) append_shares(text, report.shares, model);
   if (report.ease_count > 0) append_eases(text, report);
+  if (report.unwinding_count > 0) append_unwindings(text, report, model);
   append(text, "cycles     %llu of %.6g ms, computed in %.2f s\n",
          static_cast<Count>(report.cycles), report.cycle_s * 1e3, report.computing_s);
   if (!report.happenings.empty()) text += "events\n";

@@ -195,4 +195,13 @@ std::string describe(const PoleEase& ease) {
                      ease.last_line, units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
 }
 
+std::string describe(const Unwinding& unwinding) {
+  return fmt::format(
+      "line {}: the free joint would leave its travel; it turns by {:+} turns from {:.3f} deg, {} "
+      "mm "
+      "off the part",
+      unwinding.line, unwinding.turns, units::deg_from_rad(unwinding.from_rad),
+      unwinding.retract_mm);
+}
+
 }  // namespace meridian::telemetry

@@ -5,6 +5,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/unwinding.hpp"
 #include "meridian/rt/cycle_data.hpp"
 
 /// What the cycle tells in numbers, in words for operators and the log.
@@ -21,6 +22,7 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
                                    const MachineModel& model);
 /// Where the tool axis will be moved beside the pole, by how much and why.
 [[nodiscard]] std::string describe(const PoleEase& ease);
+[[nodiscard]] std::string describe(const Unwinding& unwinding);
 /// Answer to an operator whose verb was accepted; `state` is the one it led to.
 [[nodiscard]] std::string describe(Verb verb, State state);
 /// Answer to an operator whose verb was refused in `state`, with the remedy.

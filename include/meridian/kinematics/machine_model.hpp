@@ -48,6 +48,13 @@ enum class PolePolicy : std::uint8_t {
   kExact  ///< the joints follow the path, which slows down as the free joint needs it
 };
 
+/// What the planner does where the free joint would leave its travel within the program and tip and
+/// axis do not rest on the pole, where it turns in place whatever the policy.
+enum class UnwindPolicy : std::uint8_t {
+  kRefuse,  ///< the block is refused
+  kRetract  ///< rest, off the part along the tool axis, whole turns of the free joint, back, on
+};
+
 /// How the cuts of a program join.
 enum class Transition : std::uint8_t {
   kExactStop,  ///< rest at the end of every block
@@ -89,7 +96,9 @@ struct MachineModel {
   Tolerances tolerances;
   Transition transition = Transition::kExactStop;  ///< of programs that do not ask for another
   PolePolicy pole_policy = PolePolicy::kEase;
-  double clearance_mm = 50;  ///< retract of an approach along the tool axis
+  UnwindPolicy unwind_policy = UnwindPolicy::kRefuse;
+  double unwind_retract_mm = 0;  ///< kRetract: the whole way off the part, never less
+  double clearance_mm = 50;      ///< retract of an approach along the tool axis
   double approach_feed_mm_per_s = 10;
   double max_feed_mm_per_s = 0;  ///< programmed feeds above it are limited and reported
   std::int64_t cycle_ns = 1'000'000;

@@ -28,7 +28,13 @@ using PoseQuartic = std::array<std::array<double, 5>, 6>;
 using FreeQuintic = std::array<double, 6>;
 
 /// What the operator sees the machine do on a piece; the `kind` column of a recording.
-enum class MotionKind : std::uint8_t { kApproach, kCut, kRapid, kPoleTurn };
+enum class MotionKind : std::uint8_t {
+  kApproach,
+  kCut,
+  kRapid,
+  kPoleTurn,
+  kUnwind  ///< off the part, whole turns of the free joint, and back to the same place
+};
 
 /// A stretch of path as a function of the path length s in [0, length]: where, not when.
 /// s is sqrt(tip length² + (50 mm/rad · axis turn)²), so that a pure rotation advances too. Frame:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/joints.hpp"
@@ -11,6 +12,7 @@
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/unwinding.hpp"
 
 namespace meridian {
 
@@ -24,6 +26,7 @@ struct PlanResult {
   PlanStatus status = PlanStatus::kOk;
   BlockReject reject;
   double axis_deviation_rad = 0;  ///< largest ease of the axis beside the pole
+  Unwinding unwinding;            ///< made ahead of the block, where its turns are not 0
 };
 
 /// Within this distance of the pole the programmed axis is eased onto the pole: nearer, the turn of
@@ -32,6 +35,9 @@ inline constexpr double kPoleEase_rad = 8e-6;
 
 /// The plain planner: every block from rest to rest, tip on its line or arc, axis on its great
 /// circle, every joint inside its limits at every override, feed never exceeded.
+///
+/// Where the free joint would leave its travel on the way and the machine's file says how, it is
+/// turned back by whole turns ahead of the block, off the part (PlanResult::unwinding).
 ///
 /// One window per block, without a tail: it ends at rest. The joints of the whole way between two
 /// blocks are judged before anything of it is published. What a block becomes depends on the blocks
@@ -49,6 +55,11 @@ class RestToRestPlanner {
   /// tool axis by the clearance as far as travel allows, joint move, down at approach feed. In an
   /// epoch that saw a program before, pieces and windows go on being counted.
   void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch) noexcept;
+
+  /// Blocks that are going to be planned, the first motion block of the program first: its approach
+  /// takes the branch and winding that carry farthest through them. Nothing is kept of them behind
+  /// that block; until then they must stay.
+  void look_at(std::span<const ClBlock> ahead) noexcept;
 
   /// Plans and publishes one block.
   [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
@@ -69,11 +80,18 @@ class RestToRestPlanner {
   /// junction() would tell. Only where no block waits for room.
   void continue_at(const Junction& junction) noexcept;
 
+  /// Turns the free joint back off the part, where the tool rests: in `block` it would come to
+  /// `beyond`, outside travel. Refused where that cannot be.
+  [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond,
+                                  MotionWriter& writer) noexcept;
+
   /// Joints and tool length at the end of what was published.
   [[nodiscard]] const JointVector& joints() const noexcept;
   [[nodiscard]] double tool_length_mm() const noexcept;
 
  private:
+  [[nodiscard]] PlanResult publish(MotionWriter& writer) noexcept;
+
   struct Workspace;
   std::unique_ptr<Workspace> workspace_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "meridian/planner/unwinding.hpp"
 
 namespace meridian {
 
@@ -33,11 +35,19 @@ struct SmoothSettings {
 /// published depends on the blocks and begin() alone, as long as the machine does not run dry; it
 /// then goes on from where it came to rest. Fixed store, no clock.
 ///
+/// A free joint with travel: its branch and winding at the begin of a program are those that carry
+/// farthest through the first kLookAhead blocks, which are therefore taken before anything is
+/// published (fewer where the program ends, or look_no_further() is called). Where it runs out of
+/// travel all the same, the machine rests, in mid-block where cuts run on, and the joint is turned
+/// back off the part if the machine's file says how (docs/motion.md, section 11).
+///
 /// A refusal may name a block that was taken before; what is published ends at rest ahead of it.
 /// Method and formulas: docs/motion.md. Context: planner thread.
 /// Proof: tests/property/planner/smooth_planner_test.cpp.
 class SmoothPlanner {
  public:
+  static constexpr std::size_t kLookAhead = 2048;
+
   explicit SmoothPlanner(const MachineModel& model, ToolTable tools = {});
   ~SmoothPlanner();
   SmoothPlanner(const SmoothPlanner&) = delete;
@@ -55,6 +65,13 @@ class SmoothPlanner {
   /// and has to be sent on. A refusal found on the way is told by the next plan().
   void advance(MotionWriter& writer) noexcept;
 
+  /// No block comes for a while: the program begins with those that are there.
+  void look_no_further() noexcept;
+
+  /// Takes the oldest unwinding of what was planned so far; false if there is none. At most 256
+  /// wait, then the oldest go.
+  [[nodiscard]] bool take_unwinding(Unwinding& out) noexcept;
+
   /// Takes the oldest stretch beside the pole on which the axis was moved, of what was planned so
   /// far; false if there is none. At most 256 wait, then the oldest go.
   [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
@@ -64,6 +81,10 @@ class SmoothPlanner {
   [[nodiscard]] double tool_length_mm() const noexcept;
 
  private:
+  [[nodiscard]] PlanResult plan_one(const ClBlock& block, MotionWriter& writer) noexcept;
+  /// Plans what was taken to look at; false: not all of it yet, or a block was refused.
+  [[nodiscard]] bool plan_what_waits(MotionWriter& writer) noexcept;
+
   struct Workspace;
   std::unique_ptr<Workspace> workspace_;
 };

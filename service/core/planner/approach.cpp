@@ -5,6 +5,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
+#include "service/core/planner/look_ahead.hpp"
 #include "service/core/planner/router.hpp"
 
 /// The approach: retract along the tool axis, joint move, down. Part of Router.
@@ -38,24 +39,23 @@ ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
 }  // namespace
 
 double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
-                              double tool_length_mm) const noexcept {
-  const double whole = model_.clearance_mm;
-  if (!(whole > 0)) return 0;
+                              double tool_length_mm, double whole_mm) const noexcept {
+  if (!(whole_mm > 0)) return 0;
   double share = 1;
   if (free_joint(model_) < 0) {
     // The joints of an arm bend on the way up: as far as the whole way stays in reach and travel.
     constexpr int kSteps = 16;
     for (int n = 1; n <= kSteps; ++n) {
-      const auto at = solve_near(lifted(pose, whole * n / kSteps), joints, tool_length_mm);
+      const auto at = solve_near(lifted(pose, whole_mm * n / kSteps), joints, tool_length_mm);
       if (at.status == SolveStatus::kOk && first_joint_outside_travel(model_, at.q, 0) < 0)
         continue;
       share = static_cast<double>(n - 1) / kSteps;
       break;
     }
-    return share * whole > kNoClearance_mm ? share * whole : 0;
+    return share * whole_mm > kNoClearance_mm ? share * whole_mm : 0;
   }
   // With the axis fixed joints and drives of a machine with linear joints are linear in the lift.
-  const auto at = solve_near(lifted(pose, whole), joints, tool_length_mm);
+  const auto at = solve_near(lifted(pose, whole_mm), joints, tool_length_mm);
   const LimitedVector from = limited_of(model_, joints), to = limited_of(model_, at.q);
   for (int i = 0; i < limited_count(model_); ++i) {
     const JointSpec& spec = limited_spec(model_, i);
@@ -64,7 +64,7 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
     const double end = by > 0 ? spec.limits.travel_max : spec.limits.travel_min;
     if (std::abs(by) > 1e-9) share = std::min(share, (end - from[i]) / by);
   }
-  const double clearance = std::max(0.0, share) * whole;
+  const double clearance = std::max(0.0, share) * whole_mm;
   return clearance > kNoClearance_mm ? clearance : 0;
 }
 
@@ -75,14 +75,15 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   rapid.feed_mm_per_s = 0;
   PathFault fault;
   const double apart = largest_difference(way.joints, cursor.joints);
+  const double clearance = model_.clearance_mm;
   double down = 0;
   if (apart > kNearby) {
-    const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm);
+    const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
     if (up > 0) {
       fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
       if (is_fault(fault)) return fault;
     }
-    down = find_clearance(target, way.joints, cursor.tool_length_mm);
+    down = find_clearance(target, way.joints, cursor.tool_length_mm, clearance);
   }
   const JointVector over =
       down > 0 ? solve_near(lifted(target, down), way.joints, cursor.tool_length_mm).q : way.joints;
@@ -96,7 +97,19 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   return fault;
 }
 
-PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
+void Router::look_along(std::span<const ClBlock> ahead, const ToolPose& start,
+                        double tool_length_mm, Ways& ways) const noexcept {
+  std::array<AheadWay, kMaxWays> found;
+  const auto count = static_cast<std::size_t>(ways.count);
+  for (std::size_t n = 0; n < count; ++n) {
+    found[n] = {ways.way[n].branch, ways.way[n].joints[free_joint(model_)], 0, false};
+  }
+  look_ahead(model_, tool_length_mm, start, ahead, {found.data(), count});
+  for (std::size_t n = 0; n < count; ++n) ways.way[n].carries = found[n].carries;
+}
+
+PathFault Router::approach(const ClBlock& block, std::span<const ClBlock> ahead, PlanCursor& cursor,
+                           Staging& out) noexcept {
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
                         eased(to_vector(block.axis))};
@@ -110,6 +123,7 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
       const double room = std::min(at - limits.travel_min, limits.travel_max - at);
       ways.way[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
     }
+    look_along(ahead, target, cursor.tool_length_mm, ways);
     ways.sort();
   }
   const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};

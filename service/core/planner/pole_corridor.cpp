@@ -240,6 +240,15 @@ void PoleCorridor::take(const PoleZone& zone) noexcept {
   known_ = solve(model_, tool_length_mm_, pose, branch_, reference).q;
 }
 
+void PoleCorridor::shift_free(double by) noexcept {
+  const int free = free_joint(model_);
+  if (free < 0) return;
+  known_[free] += by;
+  for (std::int64_t n = pending_.begin_index(); n < pending_.end_index(); ++n) {
+    for (double& value : pending_[n].free) value += by;
+  }
+}
+
 bool PoleCorridor::may_emit() const noexcept {
   const Held& front = held_[held_.begin_index()];
   if (!has_pole_) return true;

@@ -51,6 +51,10 @@ class PoleCorridor : private SpanLookup {
   /// Returns the next span, nullptr where more are needed; valid until the next call.
   [[nodiscard]] const JointSpan* next() noexcept;
 
+  /// The machine turned its free joint by `by` rad (whole turns) at the end of what next() gave:
+  /// the path goes on from there. What next() gave last is not touched.
+  void shift_free(double by) noexcept;
+
   /// Zones since begin(), and the farthest that any moved the axis from the programmed one.
   [[nodiscard]] int zones() const noexcept { return zones_; }
 

@@ -10,6 +10,7 @@
 #include "service/core/planner/fault_code.hpp"
 #include "service/core/planner/router.hpp"
 #include "service/core/planner/staging.hpp"
+#include "service/core/planner/unwind_choice.hpp"
 
 namespace meridian {
 namespace {
@@ -52,22 +53,62 @@ struct RestToRestPlanner::Workspace {
   ToolTable tools;
   Router router;
   Staging staging;
-  PlanCursor cursor;  ///< end of what is published
-  PlanCursor next;    ///< end of what is staged
-  PlanResult result;  ///< of what is staged
+  PlanCursor cursor;               ///< end of what is published
+  PlanCursor next;                 ///< end of what is staged
+  PlanResult result;               ///< of what is staged
+  std::span<const ClBlock> ahead;  ///< the first motion block and those behind it
   bool is_staged = false;
   bool is_refused = false;
 
   void refuse(const ClBlock& block, RejectCode code, int joint, double value) noexcept {
     is_refused = true;
-    result = {PlanStatus::kRefused, {block.sequence, block.line, code, joint, value}, 0};
+    result = {PlanStatus::kRefused, {block.sequence, block.line, code, joint, value}, 0, {}};
   }
 
   /// Stages the whole of `block` behind `cursor`, or refuses it.
   void stage(const ClBlock& block) noexcept;
   void stage_motion(ClBlock block) noexcept;
   void stage_barrier(const ClBlock& block) noexcept;
+  /// Whether `fault` is one that turning the free joint back may help.
+  [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
+  /// Stages an unwinding and, unless `is_alone`, `block` behind it, from `next`; or tells why that
+  /// cannot be: `fault` of the block without one.
+  [[nodiscard]] PathFault unwind(const ClBlock& block, const PathFault& fault,
+                                 bool is_alone) noexcept;
+  /// All of what is staged is there.
+  void finish_staging() noexcept {
+    next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
+    is_staged = true;
+  }
 };
+
+bool RestToRestPlanner::Workspace::may_unwind(const PathFault& fault) const noexcept {
+  return model.unwind_policy == UnwindPolicy::kRetract && fault.kind == PathFault::Kind::kTravel &&
+         fault.joint >= 0 && fault.joint == free_joint(model);
+}
+
+PathFault RestToRestPlanner::Workspace::unwind(const ClBlock& block, const PathFault& fault,
+                                               bool is_alone) noexcept {
+  const PlanCursor rest = next;
+  const Staging::Mark mark = staging.mark();
+  const double from = rest.joints[fault.joint];
+  UnwindChoice choice(model.joints[fault.joint].limits, from, fault.value);
+  for (int turns = choice.next(); turns != 0; turns = choice.next()) {
+    if (router.unwind(block, turns, next, staging).kind == PathFault::Kind::kNone) {
+      ++next.window;
+      result.unwinding = {block.sequence, block.line, turns, from, model.unwind_retract_mm};
+      if (is_alone) return {};
+      if (router.route(block, next, staging).kind == PathFault::Kind::kNone) {
+        ++next.window;
+        return {};
+      }
+    }
+    next = rest;
+    staging.go_back(mark);
+  }
+  result.unwinding = {};
+  return fault;
+}
 
 void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
   staging.clear(cursor.path_index);
@@ -79,9 +120,7 @@ void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
   } else {
     stage_barrier(block);
   }
-  if (is_refused) return;
-  next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
-  is_staged = true;
+  if (!is_refused) finish_staging();
 }
 
 void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
@@ -97,7 +136,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   };
   PathFault fault;
   if (next.is_first) {
-    fault = router.approach(block, next, staging);
+    fault = router.approach(block, ahead, next, staging);
     result.axis_deviation_rad = router.axis_deviation_rad();
     next.is_first = false;
     count_window(0);
@@ -106,10 +145,17 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     if (!find_great_circle(next.pose.axis, to_vector(block.axis)).is_unique) {
       return refuse(block, RejectCode::kAxisReversal, -1, 0);
     }
-    const int before = staging.time_count;
+    const PlanCursor rest = next;
+    const Staging::Mark before = staging.mark();
     fault = router.route(block, next, staging);
+    if (may_unwind(fault)) {
+      staging.go_back(before);
+      next = rest;
+      fault = unwind(block, fault, false);
+    } else {
+      count_window(before.times);
+    }
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
-    count_window(before);
   }
   if (fault.kind == PathFault::Kind::kNone) return;
   RejectCode code = code_of(fault.kind);
@@ -158,6 +204,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
     cursor.window = w.cursor.window;
   }
   w.cursor = cursor;
+  w.ahead = {};
   w.cursor.joints = at_rest;
   w.cursor.tool_length_mm = tool_length_mm;
   w.cursor.epoch = epoch;
@@ -170,18 +217,45 @@ PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) n
   Workspace& w = *workspace_;
   if (w.is_refused) return w.result;
   if (!w.is_staged) w.stage(block);
+  return w.is_refused ? w.result : publish(writer);
+}
+
+void RestToRestPlanner::look_at(std::span<const ClBlock> ahead) noexcept {
+  workspace_->ahead = ahead;
+}
+
+PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond,
+                                     MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
   if (w.is_refused) return w.result;
+  if (!w.is_staged) {
+    w.staging.clear(w.cursor.path_index);
+    w.next = w.cursor;
+    w.result = {};
+    PathFault fault{PathFault::Kind::kTravel, free_joint(w.model), beyond};
+    if (w.may_unwind(fault)) fault = w.unwind(block, fault, true);
+    if (fault.kind != PathFault::Kind::kNone) {
+      w.refuse(block, code_of(fault.kind), fault.joint, fault.value);
+      return w.result;
+    }
+    w.finish_staging();
+  }
+  return publish(writer);
+}
+
+PlanResult RestToRestPlanner::publish(MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
   const Staging& staged = w.staging;
   if (!writer.has_room(static_cast<std::size_t>(staged.path_count),
                        static_cast<std::size_t>(staged.time_count))) {
-    return {PlanStatus::kNoRoom, {}, 0};
+    return {PlanStatus::kNoRoom, {}, 0, {}};
   }
   bool is_written = true;
   for (int n = 0; n < staged.path_count; ++n) is_written &= writer.stage(staged.paths[n]);
   for (int n = 0; n < staged.time_count; ++n) is_written &= writer.stage(staged.times[n]);
   if (!is_written) {
     writer.discard();
-    return {PlanStatus::kNoRoom, {}, 0};
+    return {PlanStatus::kNoRoom, {}, 0, {}};
   }
   writer.publish();
   w.cursor = w.next;

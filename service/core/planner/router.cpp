@@ -48,34 +48,37 @@ Router::Job Router::job_of(const ClBlock& block) const noexcept {
 }
 
 void Router::Ways::sort() noexcept {
+  const auto is_before = [](const Way& a, const Way& b) {
+    return a.carries != b.carries ? a.carries > b.carries : a.cost < b.cost;
+  };
   for (int n = 1; n < count; ++n) {
-    for (int k = n; k > 0 && way[k].cost < way[k - 1].cost; --k) std::swap(way[k], way[k - 1]);
+    for (int k = n; k > 0 && is_before(way[k], way[k - 1]); --k) std::swap(way[k], way[k - 1]);
   }
 }
 
 Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept {
   Ways ways;
   const int free = free_joint(model_);
-  const auto add = [&](JointVector q) {
+  const auto add = [&](const JointVector& q, int branch) {
     if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
     double cost = 0;
     const LimitedVector from = limited_of(model_, cursor.joints), to = limited_of(model_, q);
     for (int i = 0; i < limited_count(model_); ++i) {
       cost = std::max(cost, std::abs(to[i] - from[i]) / limited_spec(model_, i).limits.velocity);
     }
-    ways.way[ways.count++] = {q, cost};
+    ways.way[ways.count++] = {q, cost, branch, 0};
   };
   for (int branch = 0; branch < branch_count(model_); ++branch) {
     const auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);
     if (at.status == SolveStatus::kUnreachable) continue;
-    add(at.q);
+    add(at.q, branch);
     if (at.status == SolveStatus::kAtPole) break;
     if (free < 0 || model_.joints[free].is_endless) continue;
     for (int turns = 1; turns <= kMostTurns; ++turns) {
       for (const int sign : {-1, 1}) {
         JointVector q = at.q;
         q[free] += sign * turns * 2 * std::numbers::pi;
-        add(q);
+        add(q, branch);
       }
     }
   }

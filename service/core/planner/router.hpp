@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/kinematics.hpp"
@@ -32,8 +33,17 @@ class Router {
   /// Plans the way from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
   [[nodiscard]] PathFault route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
-  /// Brings the first block's begin under the tool.
-  [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+  /// Brings the first block's begin under the tool. `ahead`: the block and those behind it, as far
+  /// as they are known; branch and winding are those that carry farthest through them, of these the
+  /// nearest.
+  [[nodiscard]] PathFault approach(const ClBlock& block, std::span<const ClBlock> ahead,
+                                   PlanCursor& cursor, Staging& out) noexcept;
+
+  /// Turns the free joint by whole `turns` off the part and comes back to where the tool rests, as
+  /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
+  /// is no room for it. The machine has a free joint.
+  [[nodiscard]] PathFault unwind(const ClBlock& block, int turns, PlanCursor& cursor,
+                                 Staging& out) noexcept;
 
   /// Whether any branch and winding puts the tool on the block's end.
   [[nodiscard]] bool is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept;
@@ -51,12 +61,15 @@ class Router {
   struct Way {
     JointVector joints{};
     double cost = 0;
+    int branch = 0;
+    int carries = 0;  ///< blocks ahead, where they were looked at
   };
   struct Ways {
     std::array<Way, kMaxWays> way;
     int count = 0;
 
-    /// Cheapest first, those of equal cost as they were found. Takes no memory.
+    /// Those that carry farthest first, then the cheapest, equal ones as they were found. Takes no
+    /// memory.
     void sort() noexcept;
   };
 
@@ -70,6 +83,8 @@ class Router {
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
   [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
+  void look_along(std::span<const ClBlock> ahead, const ToolPose& start, double tool_length_mm,
+                  Ways& ways) const noexcept;
   [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;
   [[nodiscard]] PathFault run(const PathPiece& path, const Job& job, double share,
                               PlanCursor& cursor, Staging& out) noexcept;
@@ -104,8 +119,10 @@ class Router {
                                          const PlanCursor& cursor) noexcept;
   [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
                                       PlanCursor& cursor, Staging& out) noexcept;
+  /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel; 0: not at
+  /// all.
   [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
-                                      double tool_length_mm) const noexcept;
+                                      double tool_length_mm, double whole_mm) const noexcept;
 
   const MachineModel& model_;
   LegPlanner legs_;

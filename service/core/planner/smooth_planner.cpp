@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/geometry/unit_vector.hpp"
@@ -19,12 +20,22 @@ namespace {
 
 /// Nearer to the pole than this share of the axis tolerance the axis counts as on it.
 constexpr double kOnPoleShare = 0.2;
-constexpr double kSamePlace = 1e-9;  // mm and of the unit axis: rounding of joints
+constexpr double kSamePlace = 1e-9;       // mm and of the unit axis: rounding of joints
+constexpr std::size_t kUnwindings = 256;  // that wait to be taken; the oldest go
+
+/// Whether the free joint may run out of travel.
+bool has_travel(const MachineModel& model) noexcept {
+  const int free = free_joint(model);
+  return free >= 0 && !model.joints[free].is_endless;
+}
 
 }  // namespace
 
 struct SmoothPlanner::Workspace {
-  Workspace(const MachineModel& m, ToolTable t) : model(m), plain(m, std::move(t)), run(m) {}
+  Workspace(const MachineModel& m, ToolTable t)
+      : model(m), plain(m, std::move(t)), run(m), unwindings(kUnwindings) {
+    if (has_travel(m)) waiting.reserve(kLookAhead);
+  }
 
   [[nodiscard]] BandTolerance tolerance() const noexcept {
     BandTolerance out;
@@ -47,6 +58,14 @@ struct SmoothPlanner::Workspace {
   [[nodiscard]] PlanResult refuse() noexcept;
   /// Publishes what is ready of the run.
   [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
+  /// Turns the free joint back at the rest that the run came to; false: no room in the port, or
+  /// refused.
+  [[nodiscard]] bool unwind(MotionWriter& writer) noexcept;
+  void note(const Unwinding& unwinding) noexcept;
+  void refuse(const PlanResult& why) noexcept {
+    is_refused = true;
+    refusal = why;
+  }
 
   const MachineModel& model;
   RestToRestPlanner plain;
@@ -60,6 +79,10 @@ struct SmoothPlanner::Workspace {
   bool is_refused = false;
   PlanResult refusal;
   PoleEase plain_ease;  ///< of the last block from rest to rest; no deviation: none
+  IndexRing<Unwinding> unwindings;
+  std::vector<ClBlock> waiting;   ///< the begin of the program, until it was looked at
+  std::size_t first_waiting = 0;  ///< that is not planned
+  bool is_looking = false;        ///< more of it may come
 };
 
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
@@ -136,14 +159,45 @@ void SmoothPlanner::Workspace::end_run() noexcept {
 }
 
 SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexcept {
-  const SmoothRun::Status status = run.publish(writer);
-  if (status == SmoothRun::Status::kFailed && !is_refused) {
-    is_refused = true;
-    BlockReject reject = run.faulty_block();
-    reject.code = code_of(run.fault().kind);
-    refusal = {PlanStatus::kRefused, reject, 0};
+  for (;;) {
+    const SmoothRun::Status status = run.publish(writer);
+    if (status == SmoothRun::Status::kUnwind) {
+      if (unwind(writer)) continue;
+      return is_refused ? SmoothRun::Status::kFailed : SmoothRun::Status::kNoRoom;
+    }
+    if (status == SmoothRun::Status::kFailed && !is_refused) {
+      BlockReject reject = run.faulty_block();
+      reject.code = code_of(run.fault().kind);
+      refuse({PlanStatus::kRefused, reject, 0, {}});
+    }
+    return status;
   }
-  return status;
+}
+
+bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
+  RestToRestPlanner::Junction at = plain.junction();
+  at.joints = run.joints();
+  at.pose = forward(model, at.tool_length_mm, at.joints);
+  at.path_index = run.next_path_index();
+  at.window = run.next_window();
+  plain.continue_at(at);
+  const BlockReject& where = run.unwind_at();
+  ClBlock block;
+  block.sequence = where.sequence;
+  block.line = where.line;
+  const PlanResult result = plain.unwind(block, where.value, writer);
+  if (result.status == PlanStatus::kRefused) refuse(result);
+  if (result.status != PlanStatus::kOk) return false;
+  note(result.unwinding);
+  const RestToRestPlanner::Junction behind = plain.junction();
+  run.go_on(behind.joints, result.unwinding.turns, behind.path_index, behind.window);
+  return true;
+}
+
+void SmoothPlanner::Workspace::note(const Unwinding& unwinding) noexcept {
+  if (unwinding.turns == 0) return;
+  if (unwindings.is_full()) unwindings.drop_before(unwindings.begin_index() + 1);
+  unwindings.push(unwinding);
 }
 
 SmoothPlanner::SmoothPlanner(const MachineModel& model, ToolTable tools)
@@ -158,11 +212,50 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   w.plain.begin(at_rest, tool_length_mm, epoch);
   w.settings = settings;
   w.is_refused = w.is_for_plain = false;
+  w.waiting.clear();
+  w.first_waiting = 0;
+  w.is_looking = has_travel(w.model);
   w.pose = w.plain.junction().pose;
   w.joints = at_rest;
 }
 
 PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  if (w.is_refused) return w.refusal;
+  const bool is_begun = !w.waiting.empty() || is_motion(block.kind);
+  if (w.is_looking && is_begun) {
+    // Without memory for the block: it is the last one, or the look is full.
+    const bool is_taken = block.kind != BlockKind::kEnd && w.waiting.size() < kLookAhead;
+    if (is_taken) w.waiting.push_back(block);
+    w.is_looking = is_taken && w.waiting.size() < kLookAhead;
+    if (w.is_looking) return {};
+    const bool is_planned = plan_what_waits(writer);
+    if (w.is_refused) return w.refusal;
+    if (is_taken) return {};
+    if (!is_planned) return {PlanStatus::kNoRoom, {}, 0, {}};
+  } else if (!plan_what_waits(writer)) {
+    return w.is_refused ? w.refusal : PlanResult{PlanStatus::kNoRoom, {}, 0, {}};
+  }
+  return plan_one(block, writer);
+}
+
+bool SmoothPlanner::plan_what_waits(MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  if (w.waiting.empty()) return true;
+  w.plain.look_at(w.waiting);
+  while (w.first_waiting < w.waiting.size()) {
+    if (plan_one(w.waiting[w.first_waiting], writer).status != PlanStatus::kOk) return false;
+    ++w.first_waiting;
+  }
+  w.plain.look_at({});
+  w.waiting.clear();
+  w.first_waiting = 0;
+  return true;
+}
+
+void SmoothPlanner::look_no_further() noexcept { workspace_->is_looking = false; }
+
+PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) noexcept {
   using Status = SmoothRun::Status;
   Workspace& w = *workspace_;
   if (w.is_refused) return w.refusal;
@@ -174,16 +267,16 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
     const Status status = w.publish(writer);
     if (w.is_refused) return w.refusal;
     if (status == Status::kNoRoom || (!cut && status != Status::kDone))
-      return {PlanStatus::kNoRoom, {}, 0};
+      return {PlanStatus::kNoRoom, {}, 0, {}};
     if (!cut) w.end_run();
   }
   if (!cut) {
     const PlanResult result = w.plain.plan(block, writer);
     w.is_for_plain = result.status == PlanStatus::kNoRoom;
     if (result.status == PlanStatus::kRefused) {
-      w.is_refused = true;
-      w.refusal = result;
+      w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
+      w.note(result.unwinding);
       w.pose = w.plain.junction().pose;
       w.joints = w.plain.joints();
       w.plain_ease = {
@@ -201,7 +294,16 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
 
 void SmoothPlanner::advance(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_running && !w.is_refused) (void)w.publish(writer);
+  if (w.is_refused || w.is_looking) return;
+  if (plan_what_waits(writer) && w.is_running) (void)w.publish(writer);
+}
+
+bool SmoothPlanner::take_unwinding(Unwinding& out) noexcept {
+  Workspace& w = *workspace_;
+  if (w.unwindings.begin_index() == w.unwindings.end_index()) return false;
+  out = w.unwindings[w.unwindings.begin_index()];
+  w.unwindings.drop_before(w.unwindings.begin_index() + 1);
+  return true;
 }
 
 bool SmoothPlanner::take_ease(PoleEase& out) noexcept {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
 
 namespace meridian {
@@ -39,16 +40,35 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   band_.begin(start.pose, tolerance);
   corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
                    pole_tolerance_rad, start.is_on_pole});
-  feed_.begin(start.joints, start.branch, start.tool_length_mm);
-  spans_.clear();
-  staged_spans_ = 0;
-  span_joints_ = start.joints;
-  window_ = start.window;
-  open_.fill({});
-  is_easing_ = false;
-  has_window_ = is_band_finished_ = is_feed_finished_ = false;
+  begin_feed(start.branch);
+  const int free = free_joint(model_);
+  follows_free_ = model_.unwind_policy == UnwindPolicy::kRetract && free >= 0 &&
+                  !model_.joints[free].is_endless;
+  is_held_ = is_just_unwound_ = is_easing_ = is_band_finished_ = false;
   fault_ = {};
   faulty_block_ = {};
+}
+
+void SmoothRun::begin_feed(int branch) noexcept {
+  feed_.begin(start_.joints, branch, start_.tool_length_mm);
+  spans_.clear();
+  staged_spans_ = 0;
+  span_joints_ = followed_ = start_.joints;
+  window_ = start_.window;
+  open_.fill({});
+  has_window_ = is_feed_finished_ = false;
+}
+
+void SmoothRun::go_on(const JointVector& joints, int turns, std::uint64_t path_index,
+                      std::uint32_t window) noexcept {
+  start_.joints = joints;
+  start_.path_index = path_index;
+  start_.window = window;
+  const double by = turns * kTurn_rad;
+  corridor_.shift_free(by);
+  for (double& value : held_.free) value += by;
+  begin_feed(held_.branch);
+  is_just_unwound_ = true;
 }
 
 void SmoothRun::take(const ClBlock& block) noexcept {
@@ -81,7 +101,8 @@ SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
     if (is_fault(fault_)) return Status::kFailed;
     const Status status = prepare();
     if (has_window_) continue;
-    return status == Status::kDone && !is_end_certain(writer) ? Status::kNoRoom : status;
+    const bool is_end = status == Status::kDone || status == Status::kUnwind;
+    return is_end && !is_end_certain(writer) ? Status::kNoRoom : status;
   }
 }
 
@@ -100,13 +121,29 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
     if (has_window_) return Status::kNoRoom;
     if (is_fault(feed_.fault())) fail_on_span();
     if (is_fault(fault_)) return Status::kFailed;
-    if (is_feed_finished_ && feed_.is_done()) return Status::kDone;
+    const bool is_at_unwinding = is_held_ && !is_just_unwound_;
+    if (is_feed_finished_ && feed_.is_done()) {
+      return is_at_unwinding ? Status::kUnwind : Status::kDone;
+    }
+    if (is_at_unwinding) return Status::kNoRoom;  // every cell is there: windows go on coming
     if (!feed_.has_room()) return Status::kNeedsBlocks;
-    if (const JointSpan* span = next_span()) {
+    if (const JointSpan* span = is_held_ ? &held_ : next_span()) {
       if (!(span->band.length > 0)) continue;
-      spans_.push(*span);
-      note_ease(span);
-      (void)feed_.push(*span);
+      if (follows_free_ && !follow(*span)) {
+        if (is_just_unwound_) {
+          fail({PathFault::Kind::kTravel, unwind_at_.joint, unwind_at_.value}, span->band.sequence,
+               span->band.line);
+          return Status::kFailed;
+        }
+        held_ = *span;
+        is_held_ = is_feed_finished_ = true;
+        (void)feed_.finish();
+      } else {
+        spans_.push(*span);
+        note_ease(span);
+        (void)feed_.push(*span);
+        is_held_ = is_just_unwound_ = false;
+      }
     } else if (band_.has_failed()) {
       const bool has_span = spans_.end_index() > 0;
       fail({PathFault::Kind::kTooLong, -1, 0}, has_span ? spans_.back().band.sequence : 0,
@@ -127,6 +164,39 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
 void SmoothRun::fail_on_span() noexcept {
   const BandSpan& span = spans_[static_cast<std::int64_t>(feed_.faulty_span())].band;
   fail(feed_.fault(), span.sequence, span.line);
+}
+
+bool SmoothRun::follow(const JointSpan& span) noexcept {
+  constexpr int kSteps = 8;
+  constexpr double kMargin_rad = 1e-4;  // and a quarter of the way, for what lies between
+  constexpr double kNoWay_rad = 1e-9;   // a joint at the end of travel that leaves it is inside
+  const int free = free_joint(model_);
+  JointVector at = followed_;
+  const double begin = at[free];
+  double low = begin, high = begin;
+  for (int k = 1; k <= kSteps; ++k) {
+    const double x = span.band.length * k / kSteps;
+    const ToolPose pose = pose_on(span.band.c, x);
+    const auto there = span.is_free_driven
+                           ? solve_held(model_, start_.tool_length_mm, pose,
+                                        quintic_at(span.free, x / span.band.length))
+                           : solve(model_, start_.tool_length_mm, pose, span.branch, at);
+    if (there.status == SolveStatus::kUnreachable) return true;  // the feed finds it too
+    at = there.q;
+    low = std::min(low, at[free]);
+    high = std::max(high, at[free]);
+  }
+  const JointLimits& limits = model_.joints[free].limits;
+  const double margin = kMargin_rad + 0.25 * (high - low);
+  const bool is_above = high > begin + kNoWay_rad && high + margin > limits.travel_max;
+  const bool is_below = low < begin - kNoWay_rad && low - margin < limits.travel_min;
+  if (is_above || is_below) {
+    unwind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween, free,
+                  is_above ? high + margin : low - margin};
+    return false;
+  }
+  followed_ = at;
+  return true;
 }
 
 void SmoothRun::note_ease(const JointSpan* span) noexcept {

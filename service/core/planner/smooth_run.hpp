@@ -39,6 +39,8 @@ class SmoothRun {
     kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
                    ///< again
     kDone,         ///< finish() was called and everything is published
+    kUnwind,       ///< published to a rest at which the free joint has to be turned back: see
+                   ///< unwind_at(), then go_on()
     kFailed        ///< fault() says why; what is published ends at rest
   };
 
@@ -62,6 +64,13 @@ class SmoothRun {
   /// The block that the fault is on; its code is left to the caller.
   [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
 
+  /// Where the free joint runs out of travel: the block, and `value` outside travel.
+  [[nodiscard]] const BlockReject& unwind_at() const noexcept { return unwind_at_; }
+  /// Behind kUnwind: the free joint was turned by whole `turns`, the machine rests at `joints` in
+  /// the same place; the names are those of what follows.
+  void go_on(const JointVector& joints, int turns, std::uint64_t path_index,
+             std::uint32_t window) noexcept;
+
   /// Takes the oldest stretch beside the pole on which the axis was moved; false if there is none.
   [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
 
@@ -82,6 +91,11 @@ class SmoothRun {
   [[nodiscard]] Status prepare() noexcept;
   /// The next span that joints follow, nullptr where there is none yet.
   [[nodiscard]] const JointSpan* next_span() noexcept;
+  /// Follows the free joint over `span`, the next one. False: it would leave its travel, and
+  /// unwind_at() names where; nothing is followed then.
+  [[nodiscard]] bool follow(const JointSpan& span) noexcept;
+  /// Starts the feed where the machine rests.
+  void begin_feed(int branch) noexcept;
   /// Keeps account of stretches beside the pole; `span` nullptr: the path ends.
   void note_ease(const JointSpan* span) noexcept;
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
@@ -107,6 +121,12 @@ class SmoothRun {
   std::array<OpenWindow, 4> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false, is_feed_finished_ = false;
+  bool follows_free_ = false;     ///< the free joint has travel and may be turned back
+  JointVector followed_{};        ///< at the end of the last span that the feed took
+  bool is_held_ = false;          ///< held_ waits for an unwinding
+  bool is_just_unwound_ = false;  ///< nothing was taken since
+  JointSpan held_;
+  BlockReject unwind_at_;
   PoleEase ease_;  ///< going on where is_easing_
   bool is_easing_ = false;
   IndexRing<PoleEase> eases_;

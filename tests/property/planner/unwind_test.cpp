@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Programs that turn C farther than its travel: what comes out of the port stays inside travel and
+/// limits, unwinds off the part alone, and cuts everything that is programmed.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <random>
+
+#include "property/planner/smooth_trace.hpp"
+#include "support/draws.hpp"
+#include "support/family_machines.hpp"
+#include "support/machines.hpp"
+#include "support/program_end.hpp"
+
+namespace meridian::test {
+namespace {
+
+constexpr double kLimit = 1 + 1e-6;
+constexpr double kRetract_mm = 30;
+
+/// Limits as bench_machine(), C between `low_deg` and `high_deg`, unwinding off the part.
+MachineModel limited(MachineModel model, double low_deg, double high_deg) {
+  const MachineModel bench = bench_machine();
+  for (int i = 0; i < model.joint_count; ++i) {
+    const std::string name = model.joints[i].name;
+    const bool is_rotary = model.joints[i].is_rotary;
+    model.joints[i] = bench.joints[is_rotary ? 4 : 0];
+    model.joints[i].name = name;
+    model.joints[i].is_rotary = is_rotary;
+  }
+  JointSpec& c = model.joints[free_joint(model)];
+  c.is_endless = false;
+  c.limits.travel_min = units::rad_from_deg(low_deg);
+  c.limits.travel_max = units::rad_from_deg(high_deg);
+  model.max_feed_mm_per_s = 1000;
+  model.unwind_policy = UnwindPolicy::kRetract;
+  model.unwind_retract_mm = kRetract_mm;
+  return model;
+}
+
+/// A fork head: A on C, both on the tool side; joints in the order X Y Z C A.
+MachineModel fork_machine() {
+  MachineModel model;
+  model.name = "fork-ca";
+  model.family = MachineFamily::kChain;
+  const Vector3 o = Vector3::Zero();
+  const std::array<ChainJoint, 5> chain{
+      ChainJoint{0, false, false, Vector3::UnitX(), o},
+      ChainJoint{1, false, false, Vector3::UnitY(), o},
+      ChainJoint{2, false, false, Vector3::UnitZ(), o},
+      ChainJoint{3, true, false, Vector3::UnitZ(), o},
+      ChainJoint{4, true, false, Vector3::UnitX(), Vector3(0, 0, 600)}};
+  model.chain = *describe_chain(chain, Vector3::UnitZ(), Vector3(0, 0, 400));
+  for (int i = 3; i < 5; ++i) model.joints[i].is_rotary = true;
+  model.tool_length_mm = 110;
+  return model;
+}
+
+std::vector<MachineModel> machines() {
+  return {limited(lai_machine(), -720, 720), limited(trunnion_machine(), -200, 340),
+          limited(fork_machine(), -360, 360)};
+}
+
+/// Round a dome: the axis leans outwards and turns about z by up to `step_deg` a block, up to
+/// `turns` turns, at times back again.
+std::vector<ClBlock> spiral(std::uint32_t seed, double turns, double step_deg, bool turns_back) {
+  std::mt19937 engine(seed);
+  const auto uniform = [&engine](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
+  std::vector<ClBlock> blocks;
+  double azimuth = uniform(-3, 3), sign = uniform(0, 1) < 0.5 ? -1 : 1, turned = 0;
+  double tilt = units::rad_from_deg(uniform(4, 35)), radius = uniform(5, 40);
+  while (turned < turns * kTurn_rad) {
+    ClBlock block;
+    block.sequence = blocks.size();
+    block.line = 10 * static_cast<std::uint32_t>(blocks.size()) + 7;
+    block.tip_mm = {radius * std::cos(azimuth), radius * std::sin(azimuth), 20 - 0.2 * turned};
+    block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                  std::cos(tilt)};
+    block.feed = uniform(20, 200);
+    block.feed_meaning = FeedMeaning::kTip;
+    blocks.push_back(block);
+    const double step = units::rad_from_deg(uniform(0.2, 1) * step_deg);
+    if (turns_back && uniform(0, 1) < 0.01) sign = -sign;
+    azimuth += sign * step;
+    turned += step;
+    tilt = std::clamp(tilt + uniform(-0.3, 0.3) * step, units::rad_from_deg(3),
+                      units::rad_from_deg(40));
+  }
+  end_program(blocks);
+  return blocks;
+}
+
+/// Judges what was made of `blocks`, the unwindings alone: off along the tool axis, C alone, back.
+/// Returns their number.
+int judge_unwindings(const MachineModel& model, const SmoothTrace& trace,
+                     const std::vector<PlanSample>& setpoints) {
+  const int free = free_joint(model);
+  int count = 0;
+  bool was_in = false;
+  JointVector rest{};
+  double farthest = 0;
+  for (std::size_t n = 1; n < setpoints.size(); ++n) {
+    const auto k = static_cast<std::size_t>(setpoints[n].piece);
+    const bool is_in =
+        trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion == MotionKind::kUnwind;
+    const double length = model.tool_length_mm;
+    if (is_in && !was_in) {
+      rest = setpoints[n - 1].q;
+      farthest = 0;
+      ++count;
+    }
+    const ToolPose begin = forward(model, length, rest);
+    const ToolPose pose = forward(model, length, setpoints[n].q);
+    const double off = (pose.tip - begin.tip).dot(begin.axis);
+    if (is_in) {
+      farthest = std::max(farthest, off);
+      const double turned = std::abs(setpoints[n].q[free] - setpoints[n - 1].q[free]);
+      // The setpoint before the first may be a cycle short of the rest: 1 µm.
+      if (turned > 0 &&
+          std::abs(std::remainder(setpoints[n].q[free] - rest[free], kTurn_rad)) > 1e-5) {
+        EXPECT_NEAR(farthest, kRetract_mm, 1e-3) << "C turns beside the part";
+        for (int i = 0; i < model.joint_count; ++i) {
+          if (i == free) continue;
+          EXPECT_NEAR(setpoints[n].q[i], setpoints[n - 1].q[i], 1e-9) << "with C, joint " << i;
+        }
+      } else {
+        EXPECT_LT((pose.tip - begin.tip - off * begin.axis).norm(), 2e-3);
+        EXPECT_LT(angle_between(pose.axis, begin.axis), 1e-4);
+        EXPECT_GT(off, -1e-3);
+      }
+    } else if (was_in) {
+      EXPECT_LT((pose.tip - begin.tip).norm(), 2e-2) << "not where it left";
+      EXPECT_NEAR(farthest, kRetract_mm, 1e-3);
+      EXPECT_GT(std::abs(setpoints[n].q[free] - rest[free]), 6);
+    }
+    was_in = is_in;
+  }
+  return count;
+}
+
+struct Found {
+  int unwindings = 0;
+  double v = 0, a = 0, j = 0, off = 0;
+};
+
+void judge(const MachineModel& model, const SmoothTrace& trace, const std::vector<ClBlock>& blocks,
+           const JointVector& start, Found& found) {
+  ASSERT_EQ(trace.last.status, PlanStatus::kOk)
+      << "code " << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
+      << " block " << trace.last.reject.sequence << " at " << trace.last.reject.value;
+  ASSERT_EQ(trace.times.back().kind, TimeKind::kEnd);
+  const auto ways = programmed_ways(blocks);
+  const auto setpoints = sample(model, trace, 1e-3, 0.37, start);
+  const LimitUse use = measure_limits(model, setpoints, 1e-3);
+  EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
+  EXPECT_LE(measure_feed(model, trace, setpoints, 1e-3), 1.0001);
+  for (std::size_t n = 3; n + 3 < setpoints.size(); ++n) {
+    ASSERT_LT(first_joint_outside_travel(model, setpoints[n].q, 1e-9), 0) << "setpoint " << n;
+    const auto k = static_cast<std::size_t>(setpoints[n].piece);
+    const PathPiece& path = trace.paths[k];
+    if (n % 11 != 0 || trace.times[k].kind != TimeKind::kMove) continue;
+    if (path.motion == MotionKind::kApproach || path.motion == MotionKind::kUnwind) continue;
+    const ToolPose pose = forward(model, path.tool_length_mm, setpoints[n].q);
+    const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
+                                     model.tolerances.axis_rad);
+    ASSERT_LE(off, kLimit) << "setpoint " << n << " block " << trace.times[k].sequence;
+    found.off = std::max(found.off, off);
+  }
+  const int unwindings = judge_unwindings(model, trace, setpoints);
+  EXPECT_EQ(unwindings, static_cast<int>(trace.unwindings.size()));
+  found.unwindings += unwindings;
+  found.v = std::max(found.v, use.v);
+  found.a = std::max(found.a, use.a);
+  found.j = std::max(found.j, use.j);
+  const ToolPose end = forward(model, model.tool_length_mm, trace.joints);
+  EXPECT_LE((end.tip - to_vector(blocks[blocks.size() - 2].tip_mm)).norm(), 2e-6);
+}
+
+constexpr std::uint32_t kPrograms = draws(4);
+
+void run_spirals(Transition transition, double step_deg) {
+  for (const MachineModel& model : machines()) {
+    Found found;
+    for (std::uint32_t seed = 1; seed <= kPrograms; ++seed) {
+      SCOPED_TRACE(testing::Message() << model.name << " seed " << seed);
+      const auto blocks = spiral(seed, 7, step_deg, seed % 2 == 0);
+      const JointVector start = joints_of(model, blocks[0]);
+      const SmoothSettings settings{transition, 0, 0};
+      judge(model, plan_smooth(model, blocks, start, settings), blocks, start, found);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    std::printf("%s: %d unwindings, v %.4f a %.4f j %.4f of the limits, %.3f tolerances\n",
+                model.name.c_str(), found.unwindings, found.v, found.a, found.j, found.off);
+    EXPECT_GT(found.unwindings, static_cast<int>(kPrograms) / 2);
+  }
+}
+
+TEST(Unwinding, KeepsTravelAndLimitsOnSpiralsFromRestToRest) {
+  run_spirals(Transition::kExactStop, 25);
+}
+
+TEST(Unwinding, KeepsTravelAndLimitsOnSmoothSpirals) { run_spirals(Transition::kSmooth, 6); }
+
+/// Bits of what the cycle would run.
+bool are_same(const SmoothTrace& a, const SmoothTrace& b) {
+  if (a.times.size() != b.times.size()) return false;
+  for (std::size_t n = 0; n < a.times.size(); ++n) {
+    const TimePiece &x = a.times[n], &y = b.times[n];
+    const PathPiece &p = a.paths[n], &q = b.paths[n];
+    const bool is_same_time = x.sequence == y.sequence && x.duration == y.duration &&
+                              x.s0 == y.s0 && x.v == y.v && x.a == y.a && x.j == y.j &&
+                              x.k == y.k && x.path_index == y.path_index;
+    if (!is_same_time || p.motion != q.motion || p.joints_begin != q.joints_begin ||
+        p.joints_end != q.joints_end || p.spline != q.spline) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
+  const MachineModel model = limited(lai_machine(), -200, 340);
+  for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+    const auto blocks = spiral(3, 6, transition == Transition::kSmooth ? 6 : 25, true);
+    const JointVector start = joints_of(model, blocks[0]);
+    const SmoothSettings settings{transition, 0, 0};
+    const SmoothTrace once = plan_smooth(model, blocks, start, settings);
+    ASSERT_EQ(once.last.status, PlanStatus::kOk);
+    EXPECT_FALSE(once.unwindings.empty());
+    for (const std::size_t every : {7U, 60U, 100000U}) {
+      const SmoothTrace again = plan_smooth(
+          model, blocks, start, settings, [every](std::size_t n) { return n % every == 0; },
+          [](std::size_t) { return false; });
+      EXPECT_TRUE(are_same(once, again)) << "read every " << every << " blocks";
+    }
+  }
+}
+
+TEST(Unwinding, IsNotNeededWhereAnotherWindingCarriesTheWholeProgram) {
+  MachineModel model = limited(fork_machine(), -360, 360);
+  model.unwind_policy = UnwindPolicy::kRefuse;
+  for (const double sign : {-1.0, 1.0}) {
+    std::vector<ClBlock> blocks;  // a turn and a half from where C stands at 0 or nearly
+    for (int n = 0; n <= 108; ++n) {
+      const double azimuth = sign * units::rad_from_deg(5.0 * n);
+      ClBlock block;
+      block.sequence = blocks.size();
+      block.tip_mm = {30 * std::cos(azimuth), 30 * std::sin(azimuth), 0};
+      block.axis = {std::sin(0.3) * std::cos(azimuth), std::sin(0.3) * std::sin(azimuth),
+                    std::cos(0.3)};
+      block.feed = 100;
+      block.feed_meaning = FeedMeaning::kTip;
+      blocks.push_back(block);
+    }
+    end_program(blocks);
+    JointVector start = joints_of(model, blocks[0]);
+    for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+      const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0});
+      EXPECT_EQ(trace.last.status, PlanStatus::kOk)
+          << sign << ": block " << trace.last.reject.sequence;
+      EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
+      EXPECT_TRUE(trace.unwindings.empty());
+    }
+  }
+}
+
+TEST(Unwinding, IsRefusedWhereNoWindingCarriesTheBlock) {
+  const MachineModel model = limited(lai_machine(), -100, 100);  // no whole turn inside travel
+  for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+    const auto blocks = spiral(5, 3, transition == Transition::kSmooth ? 6 : 25, false);
+    const JointVector start = joints_of(model, blocks[0]);
+    const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0});
+    EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
+    EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
+    EXPECT_EQ(trace.last.reject.joint, free_joint(model));
+    EXPECT_TRUE(trace.unwindings.empty());
+  }
+}
+
+TEST(Unwinding, IsNotMadeWhereTheMachineFileDoesNotSayHow) {
+  MachineModel model = limited(lai_machine(), -720, 720);
+  model.unwind_policy = UnwindPolicy::kRefuse;
+  const auto blocks = spiral(1, 7, 25, false);
+  const JointVector start = joints_of(model, blocks[0]);
+  const SmoothTrace trace = plan_smooth(model, blocks, start, {Transition::kExactStop, 0, 0});
+  EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
+  EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
+  EXPECT_EQ(trace.last.reject.joint, free_joint(model));
+}
+
+TEST(Unwinding, IsRefusedWhereTheToolCannotLeaveThePartSoFar) {
+  MachineModel model = limited(fork_machine(), -360, 360);
+  model.unwind_retract_mm = 1e4;  // farther than any slide goes
+  const auto blocks = spiral(1, 7, 25, false);
+  const JointVector start = joints_of(model, blocks[0]);
+  const SmoothTrace trace = plan_smooth(model, blocks, start, {Transition::kExactStop, 0, 0});
+  EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
+  EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
+  for (const PathPiece& path : trace.paths) EXPECT_NE(path.motion, MotionKind::kUnwind);
+}
+
+}  // namespace
+}  // namespace meridian::test

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// A spiral that C has no travel for, simulated: its recording passes the check, and spoilt it does
+/// not; the report and the explanation say what was done.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "service/simulate/explainer.hpp"
+#include "support/machines.hpp"
+#include "support/simulated_run.hpp"
+
+namespace meridian::simulate {
+namespace {
+
+using record::Finding;
+
+MachineModel short_travel() {
+  MachineModel model = test::lai_machine();
+  model.joints[3].limits.travel_min = units::rad_from_deg(-250);
+  model.joints[3].limits.travel_max = units::rad_from_deg(250);
+  model.unwind_policy = UnwindPolicy::kRetract;
+  model.unwind_retract_mm = 20;
+  return model;
+}
+
+/// Two turns round a cone.
+std::string spiral() {
+  std::string text = "UNITS/MM\nMULTAX/ON\nFEDRAT/3000,MMPM\n";
+  for (int n = 0; n <= 240; ++n) {
+    const double azimuth = units::rad_from_deg(3.0 * n);
+    char line[160];
+    std::snprintf(line, sizeof line, "GOTO/%.6f,%.6f,%.6f,%.9f,%.9f,%.9f\n", 20 * std::cos(azimuth),
+                  20 * std::sin(azimuth), 30 - 0.01 * n, std::sin(0.4) * std::cos(azimuth),
+                  std::sin(0.4) * std::sin(azimuth), std::cos(0.4));
+    text += line;
+  }
+  return text + "FINI\n";
+}
+
+class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
+ protected:
+  SimulatedUnwinding() { model.transition = GetParam(); }
+  ~SimulatedUnwinding() override { std::filesystem::remove(file); }
+
+  [[nodiscard]] record::CheckReport check(const std::vector<CycleRecord>& records) {
+    return test::check_records(records, test::path_of(text, model), model, {}, file);
+  }
+  [[nodiscard]] static bool has(const record::CheckReport& report, Finding::Kind kind) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [kind](const Finding& finding) { return finding.kind == kind; });
+  }
+  /// First record of an unwinding in which C turns well, or the tool is on its way.
+  [[nodiscard]] std::size_t find_in(const std::vector<CycleRecord>& records, bool turns) const {
+    std::size_t best = 0;
+    double most = 0;
+    for (std::size_t n = 1; n < records.size(); ++n) {
+      if (records[n].motion != MotionKind::kUnwind) continue;
+      const double turned = std::abs(records[n].joints[3] - records[n - 1].joints[3]);
+      const double moved = std::abs(records[n].joints[2] - records[n - 1].joints[2]);
+      const double is = turns ? turned : moved;
+      if (is > most) {
+        most = is;
+        best = n;
+      }
+    }
+    return best;
+  }
+
+  MachineModel model = short_travel();
+  std::string text = spiral();
+  std::string file =
+      ::testing::TempDir() + "unwind_" + std::to_string(static_cast<int>(GetParam())) + ".csv";
+};
+
+TEST_P(SimulatedUnwinding, PassesTheCheckAndIsTold) {
+  double unwinding_s = 0;
+  Explainer explainer(model,
+                      [&unwinding_s](const ExplainedBlock& block) {
+                        unwinding_s += block.by_cause[static_cast<std::size_t>(Cause::kUnwinding)];
+                      },
+                      {});
+  SimulateOptions options;
+  options.explainer = &explainer;
+  const test::SimulatedRun run = test::run_simulation(text, model, options);
+  ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
+  ASSERT_GE(run.report.unwinding_count, 1U);
+  EXPECT_NE(to_text(run.report, model).find("would leave its travel"), std::string::npos);
+  const record::CheckReport report = check(run.records);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.unwindings, run.report.unwinding_count);
+  const auto cycles =
+      std::count_if(run.records.begin(), run.records.end(),
+                    [](const CycleRecord& record) { return record.motion == MotionKind::kUnwind; });
+  EXPECT_NEAR(unwinding_s, 1e-3 * static_cast<double>(cycles), 0.05);
+}
+
+TEST_P(SimulatedUnwinding, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
+  const test::SimulatedRun run = test::run_simulation(text, model);
+  ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
+  auto sideways = run.records;
+  sideways[find_in(run.records, false)].joints[0] += 0.5;
+  EXPECT_TRUE(has(check(sideways), Finding::Kind::kUnwinding)) << "off the line";
+  auto with_c = run.records;
+  with_c[find_in(run.records, true)].joints[1] += 0.5;
+  EXPECT_TRUE(has(check(with_c), Finding::Kind::kUnwinding)) << "another joint moves with C";
+  model.unwind_retract_mm = 25;
+  EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not off as far as declared";
+  model.unwind_policy = UnwindPolicy::kRefuse;
+  EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not declared";
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, SimulatedUnwinding,
+                         ::testing::Values(Transition::kExactStop, Transition::kSmooth),
+                         [](const auto& info) {
+                           return info.param == Transition::kSmooth ? "Smooth" : "ExactStop";
+                         });
+
+}  // namespace
+}  // namespace meridian::simulate
