@@ -55,7 +55,6 @@ struct SmoothPlanner::Workspace {
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
   void begin_run() noexcept;
   void end_run() noexcept;
-  [[nodiscard]] PlanResult refuse() noexcept;
   /// Publishes what is ready of the run.
   [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
   /// Turns the free joint back at the rest that the run came to; false: no room in the port, or

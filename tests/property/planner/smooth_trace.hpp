@@ -50,14 +50,16 @@ struct SmoothTrace : Trace {
 };
 
 /// Plans `blocks` from `start`; `reads(n)` tells whether the port is read after block n, `dry(n)`
-/// whether the machine then runs into the tail.
+/// whether the machine then runs into the tail; `looks`: whether the begin of the program is looked
+/// at before it is planned.
 template <class Reads, class Dry>
 SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& blocks,
                         const JointVector& start, const SmoothSettings& settings, Reads reads,
-                        Dry dry) {
+                        Dry dry, bool looks = false) {
   SmoothTrace trace;
   SmoothPlanner planner(model);
   planner.begin(start, model.tool_length_mm, 0, settings);
+  if (!looks) planner.look_no_further();
   const auto port = std::make_unique<MotionPort>();
   MotionWriter writer(*port);
   PatientReader reader(*port);
@@ -80,10 +82,11 @@ SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& b
 
 inline SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& blocks,
                                const JointVector& start,
-                               const SmoothSettings& settings = {Transition::kSmooth, 0, 0}) {
+                               const SmoothSettings& settings = {Transition::kSmooth, 0, 0},
+                               bool looks = false) {
   return plan_smooth(
       model, blocks, start, settings, [](std::size_t) { return true; },
-      [](std::size_t) { return false; });
+      [](std::size_t) { return false; }, looks);
 }
 
 /// Joints of the first block on some branch, the machine's start where no approach is wanted.

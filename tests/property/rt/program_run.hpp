@@ -72,6 +72,8 @@ class PlannedRun {
         blocks_(blocks) {
     is_started_ = world.enable();
     planner_.begin(start, machine.tool_length_mm, world.state.epoch);
+    // Blocks come as they are planned, not all at the begin.
+    if constexpr (requires { planner_.look_no_further(); }) planner_.look_no_further();
     plan();
     is_started_ = is_started_ && !is_refused_ && world.run_until(State::kLoaded, 1);
     if (is_started_) world.command(Verb::kStart);
