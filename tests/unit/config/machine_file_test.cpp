@@ -131,6 +131,16 @@ TEST(MachineFile, TakesThePolesPolicyAndTheOverridesRamp) {
   EXPECT_EQ(model.override_ramp_s, 20);
 }
 
+TEST(MachineFile, TakesHowTheFreeJointIsTurnedBack) {
+  std::string text = test::read_text(kMachines / "lai.toml");
+  EXPECT_EQ(parse_machine(text, "as it ships").unwind_policy, UnwindPolicy::kRefuse);
+  const std::string_view refuse = "policy = \"refuse\"";
+  text.replace(text.find(refuse), refuse.size(), "policy = \"retract\"\nretract_mm = 75");
+  const MachineModel model = parse_machine(text, "retract");
+  EXPECT_EQ(model.unwind_policy, UnwindPolicy::kRetract);
+  EXPECT_EQ(model.unwind_retract_mm, 75);
+}
+
 TEST(MachineFile, TakesFrameUnitAndCycleTime) {
   std::string text = test::read_text(kMachines / "lai.toml");
   const auto put = [&text](std::string_view from, std::string_view to) {
