@@ -168,21 +168,32 @@ void SmoothRun::fail_on_span() noexcept {
 
 bool SmoothRun::follow(const JointSpan& span) noexcept {
   constexpr int kSteps = 8;
-  constexpr double kMargin_rad = 1e-4;  // and a quarter of the way, for what lies between
-  constexpr double kNoWay_rad = 1e-9;   // a joint at the end of travel that leaves it is inside
+  constexpr double kMargin_rad = 1e-4;   // and a quarter of the way, for what lies between
+  constexpr double kNoWay_rad = 1e-9;    // a joint at the end of travel that leaves it is inside
+  constexpr double kMostTurn_rad = 0.5;  // between two places, so that no turn is missed
+  constexpr double kLeastShare = 1e-6;
   const int free = free_joint(model_);
+  const double length = span.band.length;
+  const auto joints_of = [&](double x, const JointVector& reference) {
+    const ToolPose pose = pose_on(span.band.c, x);
+    return span.is_free_driven
+               ? solve_held(model_, start_.tool_length_mm, pose, quintic_at(span.free, x / length))
+               : solve(model_, start_.tool_length_mm, pose, span.branch, reference);
+  };
   JointVector at = followed_;
   const double begin = at[free];
-  double low = begin, high = begin;
-  for (int k = 1; k <= kSteps; ++k) {
-    const double x = span.band.length * k / kSteps;
-    const ToolPose pose = pose_on(span.band.c, x);
-    const auto there = span.is_free_driven
-                           ? solve_held(model_, start_.tool_length_mm, pose,
-                                        quintic_at(span.free, x / span.band.length))
-                           : solve(model_, start_.tool_length_mm, pose, span.branch, at);
+  double low = begin, high = begin, step = length / kSteps;
+  for (double x = 0; x < length;) {
+    const double next = std::min(length, x + step);
+    const auto there = joints_of(next, at);
     if (there.status == SolveStatus::kUnreachable) return true;  // the feed finds it too
+    if (std::abs(there.q[free] - at[free]) > kMostTurn_rad && step > kLeastShare * length) {
+      step *= 0.5;
+      continue;
+    }
     at = there.q;
+    x = next;
+    step = std::min(2 * step, length / kSteps);
     low = std::min(low, at[free]);
     high = std::max(high, at[free]);
   }
