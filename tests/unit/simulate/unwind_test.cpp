@@ -117,8 +117,8 @@ TEST_P(SimulatedUnwinding, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
 
 INSTANTIATE_TEST_SUITE_P(Both, SimulatedUnwinding,
                          ::testing::Values(Transition::kExactStop, Transition::kSmooth),
-                         [](const auto& info) {
-                           return info.param == Transition::kSmooth ? "Smooth" : "ExactStop";
+                         [](const auto& which) {
+                           return which.param == Transition::kSmooth ? "Smooth" : "ExactStop";
                          });
 
 }  // namespace
