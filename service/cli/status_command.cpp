@@ -107,12 +107,11 @@ class StatusLink {
   /// The newest status, waiting for one; nothing: time was up.
   [[nodiscard]] std::optional<dds::Status> wait(std::chrono::milliseconds timeout) {
     const auto until = std::chrono::steady_clock::now() + timeout;
-    std::optional<dds::Status> newest;
     for (;;) {
       dds::Status status;
-      while (reader_.take(status)) newest = status;
+      if (dds::take_newest(reader_, status)) return status;
       const auto left = until - std::chrono::steady_clock::now();
-      if (newest || left <= left.zero()) return newest;
+      if (left <= left.zero()) return std::nullopt;
       waitset_.wait(left);
     }
   }
