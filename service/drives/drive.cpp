@@ -68,7 +68,7 @@ void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
   }
   if (!is_following_) return;
   if (input.periods_without <= input.bridge_cycles) {
-    target_ += target_velocity_ * dt_s;
+    target_ += target_velocity_ * std::min(input.bridged_s, dt_s);
   } else {
     error_ = kErrorSetpointsStopped;
     state_ = DriveState::kFaultReactionActive;

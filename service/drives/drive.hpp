@@ -16,6 +16,7 @@ struct DriveInput {
   double position = 0, velocity = 0;
   int periods_without = 0;  ///< periods since the newest setpoint, lost ones too
   int bridge_cycles = 3;    ///< so many are bridged by the velocity
+  double bridged_s = 0;     ///< what of this step the bridge still covers; 0 with a new setpoint
 };
 
 /// One simulated servo drive in cyclic synchronous position mode: CiA 402 states, servo lag,

@@ -61,12 +61,17 @@ void DriveGroup::work(int periods) noexcept {
   // one on, when a service that the same host held up has sent again.
   periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
   periods_slept_ = is_new_ ? 0 : periods - 1;
+  // However long this side slept, the sent velocity leads on no farther than the bridge.
+  if (is_new_) bridge_left_ = bridge_cycles_;
+  const int bridged = is_new_ ? 0 : std::min(periods, bridge_left_);
+  bridge_left_ -= bridged;
   if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
   const bool is_enabled = (newest_.setpoint.flags & kSetpointEnabled) != 0;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    drives_[i].work({is_new_, is_enabled, newest_.setpoint.position[i],
-                     newest_.setpoint.velocity[i], periods_without_, bridge_cycles_},
-                    dt_s);
+    drives_[i].work(
+        {is_new_, is_enabled, newest_.setpoint.position[i], newest_.setpoint.velocity[i],
+         periods_without_, bridge_cycles_, cycle_s_ * bridged},
+        dt_s);
   }
   is_new_ = false;
   work_on_injections(dt_s);

@@ -70,6 +70,7 @@ class DriveGroup {
   dds::SetpointSample newest_;
   bool has_setpoint_ = false, is_new_ = false;
   int periods_without_ = 0;  ///< since the newest setpoint
+  int bridge_left_ = 0;      ///< periods for which the newest setpoint's velocity still leads on
   int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
   double enabled_s_ = 0;
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;

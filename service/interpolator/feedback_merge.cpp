@@ -89,10 +89,12 @@ void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept
 }
 
 void FeedbackListener::time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept {
-  if (cycle == answered_) return;
-  answered_ = cycle;
+  // Drives in several groups answer one after the other: the first to answer a cycle counts. What
+  // this service did not send, cycles of one before it too, is no answer.
   const std::int64_t sent_ns = ports_.sent_times.sent_ns(cycle);
-  if (sent_ns > 0) (void)ports_.round_trips.try_push(narrow_ns(now_ns - sent_ns));
+  if (sent_ns <= 0 || cycle <= answered_) return;
+  answered_ = cycle;
+  (void)ports_.round_trips.try_push(narrow_ns(now_ns - sent_ns));
 }
 
 }  // namespace meridian::interpolator

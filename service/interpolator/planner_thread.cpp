@@ -42,13 +42,18 @@ bool PlannerThread::work() noexcept {
                    view.epoch, look.front->settings);
     published_before_s_ = writer_.published_s();
     has_begun_ = true;
+    begun_ns_ = monotonic_ns();
   }
   return plan(*look.front);
 }
 
 void PlannerThread::look_at_stall() noexcept {
   constexpr std::int64_t kStall_ns = kSecond_ns;
-  if (monotonic_ns() - last_block_ns_ > kStall_ns) planner_.look_no_further();
+  constexpr std::int64_t kLongest_ns =
+      5 * kSecond_ns;  // for a stream that trickles and never stalls
+  const std::int64_t now_ns = monotonic_ns();
+  const bool is_late = now_ns - last_block_ns_ > kStall_ns || now_ns - begun_ns_ > kLongest_ns;
+  if (is_late) planner_.look_no_further();
 }
 
 bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
@@ -56,8 +61,10 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   const std::int64_t begun_ns = monotonic_ns();
   const PlanResult result = planner_.plan(queued.block, writer_);
   last_block_ns_ = monotonic_ns();
+  planning_ns_ += last_block_ns_ - begun_ns;
   if (result.status != PlanStatus::kNoRoom) {
-    (void)ports_.plan_times.try_push(narrow_ns(last_block_ns_ - begun_ns));
+    (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
+    planning_ns_ = 0;
   }
   tell_eases();
   switch (result.status) {

@@ -38,6 +38,8 @@ class PlannerThread {
   MotionWriter writer_;
   SmoothPlanner planner_;
   std::int64_t last_block_ns_ = 0;  ///< when one was planned last
+  std::int64_t begun_ns_ = 0;       ///< when the program's first was
+  std::int64_t planning_ns_ = 0;    ///< spent on the block in hand, attempts without room included
   double published_before_s_ = 0;   ///< when the plan was begun
   bool has_begun_ = false;          ///< a plan is being made
   bool is_refused_ = false;         ///< a block was refused: nothing behind it moves

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "meridian/rt/obey.hpp"
+
 namespace meridian::soak {
 namespace {
 
@@ -35,7 +37,7 @@ Planned Chaos::next() {
   std::size_t which = 0;
   while (place >= kWeights[which]) place -= kWeights[which++];
   Planned planned{static_cast<Mishap>(which), at_s_, 0, 0};
-  if (planned.mishap == Mishap::kOverride) planned.value = draw(random_, 0.2, 1.5);
+  if (planned.mishap == Mishap::kOverride) planned.value = draw(random_, 0.2, kMostOverride);
   if (planned.mishap == Mishap::kHold) planned.value = draw(random_, 0.1, 2);
   if (planned.mishap == Mishap::kStationStops) planned.value = draw(random_, 0.3, 3);
   return planned;

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "meridian/rt/obey.hpp"
 #include "service/record/check.hpp"
 #include "service/record/read_path.hpp"
 
@@ -19,7 +20,6 @@ namespace meridian::soak {
 namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(5);
-constexpr double kHighestOverride = 1.5;
 
 }  // namespace
 
@@ -112,7 +112,7 @@ Judge::Judged Judge::judge(const Segment& segment) {
   }
   record::CheckOptions options;
   options.max_missing = std::numeric_limits<std::uint64_t>::max();
-  options.feed_factor = kHighestOverride;
+  options.feed_factor = kMostOverride;
   options.allow_unfinished = segment.is_aborted;
   auto report = record::check(*recording, path, model_, options);
   if (report) {

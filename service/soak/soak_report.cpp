@@ -18,6 +18,7 @@ using text::json_quoted;
 
 /// What a life may grow by after its warm-up.
 constexpr double kGrowth_mib = 1;
+constexpr int kGrowth_files = 4;  // peers that come and go take some for a while
 constexpr double kUs = 1e-3;
 
 [[nodiscard]] double us(const Histogram& histogram, double share) {
@@ -100,6 +101,11 @@ std::vector<std::string> growth(const SoakReport& report) {
     } else if (life.has_first && life.last.process.threads > life.first.process.threads) {
       append(text, "threads grew from %d to %d", life.first.process.threads,
              life.last.process.threads);
+    }
+    if (text.empty() && life.has_first &&
+        life.last.process.files > life.first.process.files + kGrowth_files) {
+      append(text, "open files grew from %d to %d", life.first.process.files,
+             life.last.process.files);
     }
     if (!text.empty()) found.push_back(text);
   }

@@ -169,12 +169,12 @@ Plant::Plant(std::string machine)
 }
 
 Plant::~Plant() {
-  service_.reset();
   if (testing::Test::HasFailure()) {
     for (const auto* process : {service_.get(), drives_.get()}) {
       if (process != nullptr) std::printf("%s\n", process->said().c_str());
     }
   }
+  service_.reset();
   drives_.reset();
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);

@@ -26,10 +26,11 @@ class Group : public testing::Test {
     for (const std::uint16_t controlword : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F})
       command(controlword);
   }
-  void send(double x, std::uint16_t flags = kSetpointEnabled) {
+  void send(double x, std::uint16_t flags = kSetpointEnabled, double velocity = 0) {
     dds::SetpointSample sample;
     sample.setpoint.cycle = ++cycle_;
     sample.setpoint.position[0] = x;
+    sample.setpoint.velocity[0] = velocity;
     sample.setpoint.flags = flags;
     group_.take(sample);
   }
@@ -154,6 +155,16 @@ TEST_F(Group, InjectsSilenceAndTheStopInput) {
   group_.work(1);
   EXPECT_TRUE(group_.is_silent());
   EXPECT_TRUE(group_.feedback().is_emergency_stop);
+}
+
+TEST_F(Group, AStallOfItsOwnLeadsOnNoFartherThanTheBridge) {
+  enable();
+  send(1, kSetpointEnabled, 100);
+  group_.work(1);
+  const double sent = group_.drive(0).position() + group_.drive(0).following_error();
+  group_.work(1000);
+  const double led_to = group_.drive(0).position() + group_.drive(0).following_error();
+  EXPECT_NEAR(led_to - sent, 100 * 1e-3 * model_.bridge_cycles, 1e-9);
 }
 
 TEST_F(Group, AStallOfItsOwnCountsAsOneStepOfManyPeriods) {

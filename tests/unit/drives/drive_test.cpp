@@ -29,7 +29,9 @@ Drive enabled_drive(double position = 10) {
 DriveInput setpoint(double position, double velocity = 0) {
   return {.is_new = true, .is_enabled = true, .position = position, .velocity = velocity};
 }
-DriveInput nothing(int periods_without) { return {.periods_without = periods_without}; }
+DriveInput nothing(int periods_without) {
+  return {.periods_without = periods_without, .bridged_s = kPeriod_s};
+}
 
 /// Runs the drive along x = 10 + v t until it is settled; returns the last setpoint.
 double run_steadily(Drive& drive) {
