@@ -42,17 +42,17 @@ bool PlannerThread::work() noexcept {
                    view.epoch, look.front->settings);
     published_before_s_ = writer_.published_s();
     has_begun_ = true;
-    begun_ns_ = monotonic_ns();
+    motion_ns_ = 0;
   }
   return plan(*look.front);
 }
 
 void PlannerThread::look_at_stall() noexcept {
   constexpr std::int64_t kStall_ns = kSecond_ns;
-  constexpr std::int64_t kLongest_ns =
-      5 * kSecond_ns;  // for a stream that trickles and never stalls
+  constexpr std::int64_t kLongest_ns = 5 * kSecond_ns;  // where it trickles and never stalls
+  if (motion_ns_ == 0) return;
   const std::int64_t now_ns = monotonic_ns();
-  const bool is_late = now_ns - last_block_ns_ > kStall_ns || now_ns - begun_ns_ > kLongest_ns;
+  const bool is_late = now_ns - last_block_ns_ > kStall_ns || now_ns - motion_ns_ > kLongest_ns;
   if (is_late) planner_.look_no_further();
 }
 
@@ -62,6 +62,9 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   const PlanResult result = planner_.plan(queued.block, writer_);
   last_block_ns_ = monotonic_ns();
   planning_ns_ += last_block_ns_ - begun_ns;
+  const bool is_motion =
+      queued.block.kind == BlockKind::kCut || queued.block.kind == BlockKind::kRapid;
+  if (is_motion && motion_ns_ == 0) motion_ns_ = last_block_ns_;
   if (result.status != PlanStatus::kNoRoom) {
     (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
     planning_ns_ = 0;

@@ -38,7 +38,7 @@ class PlannerThread {
   MotionWriter writer_;
   SmoothPlanner planner_;
   std::int64_t last_block_ns_ = 0;  ///< when one was planned last
-  std::int64_t begun_ns_ = 0;       ///< when the program's first was
+  std::int64_t motion_ns_ = 0;      ///< when the program's first motion was taken; 0: not yet
   std::int64_t planning_ns_ = 0;    ///< spent on the block in hand, attempts without room included
   double published_before_s_ = 0;   ///< when the plan was begun
   bool has_begun_ = false;          ///< a plan is being made

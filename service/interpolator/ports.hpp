@@ -83,7 +83,7 @@ struct Ports {
   SpscRing<QueuedBlock, 8192> blocks;  ///< look-ahead of at least 5000 blocks
   Wake planner_wake;
   SpscRing<SessionReject, 64> rejects;
-  SpscRing<PlannedAction, 1024> actions;
+  SpscRing<PlannedAction, 4096> actions;  ///< more than a planner takes before it publishes
   MotionPort motion;
   SpscRing<PoleEase, 256> eases;        ///< planner to telemetry
   SpscRing<Unwinding, 256> unwindings;  ///< planner to telemetry

@@ -48,7 +48,7 @@ inline constexpr std::array<Row, kStateCount> kTable{{
     //            enable   disable  start                    hold              resume  abort    reset            overrides
     /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
     /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
-    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kSame,   kSame,           kValue, kValue},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue},
     /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue},
     /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue},
     /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue},
