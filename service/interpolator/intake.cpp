@@ -100,7 +100,8 @@ void Intake::take_rejects() {
 /// A refused program whose blocks have all run, or never could, leaves a machine in Ready with
 /// nothing to do: it is free then.
 void Intake::free_idle_machine() {
-  constexpr std::int64_t kIdle_ns = 200'000'000;
+  // Longer than the planner waits for more blocks to look at before it begins with what is there.
+  constexpr std::int64_t kIdle_ns = 1'500'000'000;
   const bool is_idle = refused_session_ != 0 && refused_session_ == judge_.session() &&
                        ports_.state.load(std::memory_order_relaxed) == State::kReady &&
                        ports_.blocks.empty() && ports_.motion.times.empty();
