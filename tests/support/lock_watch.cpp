@@ -78,6 +78,17 @@ constinit Real<ConditionWait> real_wait{"pthread_cond_wait", "GLIBC_2.3.2"};
 constinit Real<ConditionTimedWait> real_timedwait{"pthread_cond_timedwait", "GLIBC_2.3.2"};
 constinit Real<ConditionClockWait> real_clockwait{"pthread_cond_clockwait", "GLIBC_2.34"};
 
+/// At load: a name that is first looked up in a watched thread, at its first contended lock, would
+/// count as that thread's heap calls.
+[[gnu::constructor]] void look_names_up() noexcept {
+  for (auto* real : {&real_mutex_lock, &real_mutex_trylock}) (void)real->get();
+  for (auto* real : {&real_rdlock, &real_tryrdlock, &real_wrlock, &real_trywrlock})
+    (void)real->get();
+  (void)real_wait.get();
+  (void)real_timedwait.get();
+  (void)real_clockwait.get();
+}
+
 /// Counts, tries, and waits only where the try fails, which is what contended means.
 template <class Function, class Lock>
 int lock_counted(Real<Function>& real_try, Real<Function>& real_lock, Lock* lock) noexcept {
