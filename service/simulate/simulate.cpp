@@ -174,6 +174,11 @@ class Run {
                          : start_cycle_   ? Outcome::kStopped
                                           : Outcome::kStarved;
         break;
+      case State::kDisabling:  // a live run that was switched off as soon as it was through
+      case State::kOff:
+        is_end = start_cycle_ && !has_events;
+        report.outcome = is_program_over_ ? Outcome::kDone : Outcome::kStopped;
+        break;
       case State::kStarved:
         is_end = feed_.is_over();
         report.outcome = Outcome::kStarved;
