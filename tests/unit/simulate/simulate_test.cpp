@@ -64,6 +64,17 @@ TEST_F(Simulate, CutsTheWholePathInsideEveryLimit) {
   EXPECT_NEAR(report.cut_s, run.report.program_s, 0.01);
 }
 
+TEST_F(Simulate, EndsWhereTheMachineIsSwitchedOffRightBehindItsProgram) {
+  const SimulatedRun free = run_simulation(kPart, model);
+  const auto last = static_cast<std::int64_t>(free.report.cycles);
+  SimulateOptions events;
+  for (int n = 40; n > 0; --n) events.events.push_back({last - n, Verb::kDisable, 0});
+  const SimulatedRun run = run_simulation(kPart, model, events);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone);
+  EXPECT_EQ(run.records.back().state, State::kOff);
+  EXPECT_LT(run.report.cycles, free.report.cycles + 100);
+}
+
 TEST_F(Simulate, IsJudgedByThePolesToleranceWhichTheVerdictNames) {
   MachineModel bench = test::bench_machine();
   bench.tolerances.pole_axis_rad = units::rad_from_deg(1.5);
