@@ -2,8 +2,6 @@
 //
 // bench_cl [MEGABYTES [FILE]]: throughput of the CL reader on a generated dense five-axis file, or
 // on FILE. Prints MB/s and blocks/s, the best of five runs.
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include <string>
 
 #include "service/cl/cl_reader.hpp"
+#include "support/cpu_time.hpp"
 
 namespace {
 
@@ -32,12 +31,6 @@ std::string dense_program(std::size_t bytes) {
     text.append(line, static_cast<std::size_t>(size));
   }
   return text + "FINI\n";
-}
-
-double cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 }  // namespace
@@ -63,7 +56,7 @@ int main(int argc, char** argv) {
     stream.clear();
     stream.seekg(0);
     const auto start = std::chrono::steady_clock::now();
-    const double cpu_start = cpu_s();
+    const double cpu_start = meridian::test::cpu_s();
     meridian::cl::ClReader reader(stream, "bench", options);
     for (blocks = 0;; ++blocks) {
       const auto block = reader.next();
@@ -75,7 +68,7 @@ int main(int argc, char** argv) {
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     best = std::min(best, took.count());
-    best_cpu = std::min(best_cpu, cpu_s() - cpu_start);
+    best_cpu = std::min(best_cpu, meridian::test::cpu_s() - cpu_start);
   }
   const double bytes = static_cast<double>(text.size());
   std::printf(

@@ -6,8 +6,6 @@
 // its axis; lengths in metres, weights of one. It starts 10 mm and 3 degrees beside the answer, as
 // one who follows a path does, or at home, as one who begins. Both times are processor time of this
 // thread. Exit code 1 where ours leaves a pose out.
-#include <time.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
@@ -23,6 +21,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/inspect/skeleton.hpp"
+#include "support/cpu_time.hpp"
 
 namespace meridian {
 namespace {
@@ -153,11 +152,7 @@ std::vector<Case> cases_of(const MachineModel& model, const Skeleton& s, const K
   return out;
 }
 
-double now_ns() {
-  timespec t{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
+double now_ns() { return 1e9 * test::cpu_s(); }
 
 struct Score {
   double ns = 0;  ///< per solve

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -16,17 +15,15 @@
 #include "meridian/planner/motion_port.hpp"
 #include "property/path/hostile_path.hpp"
 #include "service/core/planner/smooth_run.hpp"
+#include "support/cpu_time.hpp"
+#include "support/dense_block.hpp"
 #include "support/machines.hpp"
 
 /// Smooth runs window by window: what each costs beside the motion that it yields.
 namespace meridian::bench {
 
-/// CPU time of this thread, s.
-[[nodiscard]] inline double cpu_s() noexcept {
-  timespec now{};
-  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+using test::cpu_s;
+using test::dense_block;
 
 /// What came to pass between a window and the one before it: blocks taken, spline, plan, authority.
 struct WindowCost {
@@ -139,21 +136,6 @@ class SmoothWindows {
   std::uint16_t epoch_ = 0;
   std::size_t most_windows_ = 0;
 };
-
-/// Block `i` of a finish without end: `step` mm to the next on a curve that winds, tilts and turns.
-[[nodiscard]] inline ClBlock dense_block(std::uint64_t i, double step, double feed) {
-  const double u = step * static_cast<double>(i);
-  const double tilt = 0.35 + 0.2 * std::sin(u / 35), azimuth = u / 80;
-  ClBlock block;
-  block.sequence = i;
-  block.line = static_cast<std::uint32_t>(i + 1);
-  block.feed_meaning = FeedMeaning::kTip;
-  block.feed = feed;
-  block.tip_mm = {60 * std::cos(u / 60), 60 * std::sin(u / 60), 4 * std::sin(u / 7)};
-  block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                std::cos(tilt)};
-  return block;
-}
 
 [[nodiscard]] inline std::vector<ClBlock> dense_blocks(int count, double step, double feed) {
   std::vector<ClBlock> blocks;

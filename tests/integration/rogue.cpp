@@ -97,7 +97,7 @@ int attack(std::uint32_t domain, const std::string& machine, const std::string& 
   std::vector<Attempt> attempts;
   if (has('w')) try_all_writers(participant, has('s'), attempts);
   if (has('r')) try_all_readers(participant, attempts);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(2500);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(4000);
   while (std::chrono::steady_clock::now() < end) {
     for (const Attempt& attempt : attempts) attempt.work();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

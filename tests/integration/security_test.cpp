@@ -177,7 +177,10 @@ void Security::expect_roles_enforced() {
                   {"ours/operator",
                    "wr",
                    {"writes command", "reads status", "reads machine", "reads latency"}}});
-  expect_through({{"", "r", {}}, {"theirs/operator", "r", {}}, {"lax-viewer", "r", {}}});
+  expect_through({{"", "r", {}},
+                  {"theirs/operator", "r", {}},
+                  {"lax-viewer", "r", {}},
+                  {"ours/viewer", "r", seen_by_viewer}});
   const std::string after = status();
   EXPECT_NE(after.find("machine   lai: Ready"), std::string::npos) << after << service_->said();
   EXPECT_EQ(line(before, "joints"), line(after, "joints"));

@@ -11,21 +11,16 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 
 #include "property/planner/smooth_trace.hpp"
+#include "support/cpu_time.hpp"
+#include "support/dense_block.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::test {
 namespace {
-
-double cpu_s() {
-  timespec now{};
-  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// Resident memory, MiB.
 double resident_mib() {
@@ -33,21 +28,6 @@ double resident_mib() {
   double all = 0, resident = 0;
   file >> all >> resident;
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
-}
-
-/// Block `i` of a finish without end: `step` mm to the next on a curve that winds, tilts and turns.
-ClBlock dense_block(std::uint64_t i, double step, double feed) {
-  const double u = step * static_cast<double>(i);
-  const double tilt = 0.35 + 0.2 * std::sin(u / 35), azimuth = u / 80;
-  ClBlock block;
-  block.sequence = i;
-  block.line = static_cast<std::uint32_t>(i + 1);
-  block.feed_meaning = FeedMeaning::kTip;
-  block.feed = feed;
-  block.tip_mm = {60 * std::cos(u / 60), 60 * std::sin(u / 60), 4 * std::sin(u / 7)};
-  block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                std::cos(tilt)};
-  return block;
 }
 
 /// What one part of a program cost.

@@ -19,6 +19,13 @@ std::filesystem::path temporary_file() {
          ("meridian-recorder-" + std::to_string(::getpid()) + ".csv");
 }
 
+std::string last_line(const std::string& name) {
+  std::ifstream file(name);
+  std::string line, last;
+  while (std::getline(file, line)) last = line;
+  return last;
+}
+
 TEST(Recorder, WritesEveryRowThatItTookBeforeItEnds) {
   const auto path = temporary_file();
   {
@@ -68,10 +75,7 @@ TEST(Recorder, SaysInTheEventsFileAndInWordsThatEventsWereLost) {
     EXPECT_NE(recorder.complaint().find(events + " lacks 1 events"), std::string::npos)
         << recorder.complaint();
   }
-  std::ifstream file(events);
-  std::string line, last;
-  while (std::getline(file, line)) last = line;
-  EXPECT_EQ(last, "incomplete");
+  EXPECT_EQ(last_line(events), "incomplete");
   std::filesystem::remove(path);
   std::filesystem::remove(events);
 }
@@ -88,10 +92,7 @@ TEST(Recorder, SaysInTheEventsFileThatEventsWereLostBeforeTheyCame) {
     EXPECT_NE(recorder.complaint().find(events + " lacks 3 events"), std::string::npos)
         << recorder.complaint();
   }
-  std::ifstream file(events);
-  std::string line, last;
-  while (std::getline(file, line)) last = line;
-  EXPECT_EQ(last, "incomplete");
+  EXPECT_EQ(last_line(events), "incomplete");
   std::filesystem::remove(path);
   std::filesystem::remove(events);
 }
