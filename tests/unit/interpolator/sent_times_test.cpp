@@ -25,20 +25,18 @@ TEST(SentTimes, KnowsTheNewestSetpointsAndForgetsOlderOnes) {
 
 TEST(SentTimes, NeverGivesTheTimeOfAnotherSetpoint) {
   const auto times = std::make_unique<SentTimes>();
-  constexpr std::uint64_t kLast = 2'000'000;
-  std::atomic<bool> is_looking{false};
+  std::atomic<bool> is_enough{false};
   std::atomic<std::uint64_t> newest{0};
   std::thread writer([&] {
-    while (!is_looking) std::this_thread::yield();
-    for (std::uint64_t cycle = 1; cycle <= kLast; ++cycle) {
+    for (std::uint64_t cycle = 1; !is_enough; ++cycle) {
       times->note(cycle, static_cast<std::int64_t>(cycle) * 7);
       newest.store(cycle, std::memory_order_release);
     }
   });
-  is_looking = true;
   int found = 0, wrong = 0;
-  for (std::uint64_t cycle = 0; cycle < kLast;) {
-    cycle = newest.load(std::memory_order_acquire);
+  while (newest < SentTimes::kPlaces) std::this_thread::yield();
+  for (int looks = 0; looks < 300'000; ++looks) {
+    const std::uint64_t cycle = newest.load(std::memory_order_acquire);
     // The newest, one in the middle, and the one that the writer is about to take the place of.
     for (const std::uint64_t back :
          {std::uint64_t{0}, SentTimes::kPlaces / 2, SentTimes::kPlaces - 1}) {
@@ -48,10 +46,11 @@ TEST(SentTimes, NeverGivesTheTimeOfAnotherSetpoint) {
       wrong += sent != 0 && sent != static_cast<std::int64_t>(cycle - back) * 7;
     }
   }
+  is_enough = true;
   writer.join();
   EXPECT_GT(found, 100);
   EXPECT_EQ(wrong, 0);
-  EXPECT_EQ(times->sent_ns(kLast), static_cast<std::int64_t>(kLast) * 7);
+  EXPECT_EQ(times->sent_ns(newest), static_cast<std::int64_t>(newest.load()) * 7);
 }
 
 }  // namespace
