@@ -18,6 +18,7 @@ std::optional<dds::SessionRequest> Station::due_request(std::int64_t now_ns) {
   if (state_ != StationState::kOpening) {
     if (now_ns - std::max(heard_ns_, asked_ns_) < options_.silence_ns) return std::nullopt;
     asked_ns_ = now_ns;
+    awaits_answer_ = true;
     return request_;
   }
   if (!is_asked_) opened_ns_ = now_ns;
@@ -66,7 +67,7 @@ bool Station::is_worth_sending(std::uint64_t count, std::uint64_t there, std::in
 }
 
 bool Station::next_batch(std::int64_t now_ns, dds::Batch& batch) {
-  if (state_ != StationState::kStreaming) return false;
+  if (state_ != StationState::kStreaming || awaits_answer_) return false;
   const bool is_waiting = cursor_ > acknowledged_ || is_end_sent_;
   if (is_waiting && now_ns - progress_ns_ >= options_.resend_after_ns) {
     ++progress_.resends;
@@ -117,6 +118,7 @@ void Station::on_credit(const dds::Credit& credit, std::int64_t now_ns) {
   }
   service_id_ = credit.service_id;
   heard_ns_ = now_ns;
+  awaits_answer_ = false;
   credit_ = credit;
   if (!credit.text.empty()) message_ = credit.text;
   if (credit.verdict >= Verdict::kRefusedStation) {

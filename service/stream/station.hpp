@@ -64,6 +64,7 @@ class Station {
 
   /// Returns the request that is to be sent now, if any: the open and its repetitions. Once open it
   /// is repeated where the service fell silent: one that was restarted answers with its own name.
+  /// Until the answer nothing is sent, so that a restarted service does not keep half a program.
   [[nodiscard]] std::optional<dds::SessionRequest> due_request(std::int64_t now_ns);
   /// Fills the next batch that may be sent now; false where there is none.
   [[nodiscard]] bool next_batch(std::int64_t now_ns, dds::Batch& batch);
@@ -109,6 +110,7 @@ class Station {
   std::int64_t opened_ns_ = 0, asked_ns_ = 0, heard_ns_ = 0, progress_ns_ = 0, went_back_ns_ = 0;
   std::uint64_t went_back_to_ = ~std::uint64_t{0};
   bool is_asked_ = false;
+  bool awaits_answer_ = false;  ///< asked again, not answered yet
   std::uint64_t cursor_before_ = 0;  ///< of the newest batch, for on_not_sent()
   bool end_sent_before_ = false;
 };

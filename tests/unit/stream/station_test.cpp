@@ -159,6 +159,16 @@ TEST(StationProtocol, AsksAgainWhenTheServiceFellSilentAndThereIsNothingToSend) 
   EXPECT_TRUE(station.due_request(3 * kSecond));
 }
 
+TEST(StationProtocol, SendsNothingAfterItAskedAgainUntilItIsAnswered) {
+  Station station = opened(1000, 100);
+  ASSERT_TRUE(station.due_request(kSecond)) << "the service fell silent, or was restarted";
+  dds::Batch batch;
+  EXPECT_FALSE(station.next_batch(kSecond, batch)) << "a new service would keep the head";
+  station.on_credit(credit(0, 100), kSecond);
+  ASSERT_TRUE(station.next_batch(kSecond, batch));
+  EXPECT_EQ(batch.first_sequence, 0u);
+}
+
 TEST(StationProtocol, IgnoresCreditsOfOtherSessions) {
   Station station = opened(100, 0);
   dds::Credit other = credit(0, 100);
