@@ -28,6 +28,9 @@ struct BandTuning {
   double smoothness = 3;  ///< weight of the third difference
   double relaxation = 1.6;
   double radius = 0.92;  ///< of the band at the samples, in tolerances
+  /// Bound the mean spline too, for BandStatistics::largest_mean. Nothing rests on it: where a
+  /// window is put back on the mean spline, what comes of it is verified as any other.
+  bool bounds_mean = false;
 };
 
 /// The programmed tool axis at a place: between two of them it lies on their great circle.
@@ -42,7 +45,7 @@ struct BandStatistics {
   std::uint64_t pulled_windows = 0;  ///< where a span had to be pulled back
   std::uint64_t reset_windows = 0;   ///< pulled back as a whole
   std::uint64_t control_points = 0;
-  double largest_mean = 0;  ///< bound of the mean spline's deviation, in tolerances
+  double largest_mean = 0;  ///< of the mean spline, in tolerances; see BandTuning::bounds_mean
   double largest = 0;       ///< bound of the committed spline's deviation, in tolerances
 };
 

@@ -11,11 +11,18 @@ using Points = std::array<Vector6, 5>;
 
 constexpr int kMostHalvings = 3;
 constexpr double kEnough = 0.99 * 0.99;  // squared: a bound below needs no halving
+constexpr double kQuick = 0.99;          // a bound by places below it needs no Bernstein points
 
 /// Squares of one over the tolerances of tip and axis.
 struct Scale {
   double tip, axis;
 };
+
+/// One over the squares of the tolerances on the segment that ends in `b`.
+Scale scale_of(const BandPolyline& line, const BandVertex& b) noexcept {
+  const double tip = b.share * line.tolerance().tip_mm, axis = b.share * b.axis_tolerance;
+  return {1 / (tip * tip), 1 / (axis * axis)};
+}
 
 double largest_square(const Points& b, const Scale& scale) noexcept {
   double largest = 0;
@@ -69,20 +76,101 @@ Points find_difference(const PoseQuartic& quartic, const BandVertex& a, const Ba
   return out;
 }
 
+/// Squares of lengths of tip and axis.
+struct Squares {
+  double tip = 0, axis = 0;
+};
+
+Squares squares_of(const Vector6& x) noexcept {
+  return {x[0] * x[0] + x[1] * x[1] + x[2] * x[2], x[3] * x[3] + x[4] * x[4] + x[5] * x[5]};
+}
+
+/// Largest squares of the second derivative on a span: it is a quadratic, inside its Bernstein
+/// points.
+Squares largest_bend(const PoseQuartic& c, double length) noexcept {
+  std::array<Vector6, 3> bend;
+  for (std::size_t d = 0; d < 6; ++d) {
+    bend[0][d] = 2 * c[d][2];
+    bend[1][d] = bend[0][d] + 3 * length * c[d][3];
+    bend[2][d] = bend[0][d] + length * (6 * c[d][3] + 12 * length * c[d][4]);
+  }
+  Squares out;
+  for (const Vector6& x : bend) {
+    const Squares at = squares_of(x);
+    out = {std::max(out.tip, at.tip), std::max(out.axis, at.axis)};
+  }
+  return out;
+}
+
+/// The coefficients of a span, those of one power side by side.
+using Powers = std::array<Vector6, 5>;
+
+Powers powers_of(const PoseQuartic& quartic) noexcept {
+  Powers out;
+  for (std::size_t d = 0; d < 6; ++d) {
+    for (std::size_t k = 0; k < 5; ++k) out[k][d] = quartic[d][k];
+  }
+  return out;
+}
+
+/// Squares of what is between the span at `x` and `place` of the polyline.
+Squares difference_at(const Powers& c, double x, const Vector6& place) noexcept {
+  Vector6 off;
+  for (std::size_t d = 0; d < 6; ++d) {
+    off[d] = c[0][d] + x * (c[1][d] + x * (c[2][d] + x * (c[3][d] + x * c[4][d]))) - place[d];
+  }
+  return squares_of(off);
+}
+
+/// The bound by places: at vertices and ends the difference itself, between two of them, `width`
+/// apart, where the polyline is straight, at most width²/8 of the span's second derivative more.
+double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, double begin,
+                       double end, std::int64_t i) noexcept {
+  const Powers powers = powers_of(quartic);
+  const Squares bend = largest_bend(quartic, end - begin);
+  double worst = 0, width = 0;
+  Scale scale{}, most{};
+  const BandVertex* known = nullptr;  // the vertex whose segment `scale` is of
+  Squares before = difference_at(powers, 0, line.at(begin, i));
+  for (double u = begin; u < end; ++i) {
+    const BandVertex& b = line[i + 1];
+    const bool is_inner = i + 1 < line.last() && b.u < end;
+    const double to = is_inner ? b.u : end;
+    const Squares after = difference_at(powers, to - begin, is_inner ? b.x : line.at(to, i));
+    if (known == nullptr || b.share != known->share || b.axis_tolerance != known->axis_tolerance) {
+      scale = scale_of(line, b);
+      most = {std::max(most.tip, scale.tip), std::max(most.axis, scale.axis)};
+      known = &b;
+    }
+    worst = std::max({worst, std::max(before.tip, after.tip) * scale.tip,
+                      std::max(before.axis, after.axis) * scale.axis});
+    width = std::max(width, to - u);
+    before = after;
+    u = to;
+  }
+  const double between = std::max(bend.tip * most.tip, bend.axis * most.axis);
+  return std::sqrt(worst) + 0.125 * width * width * std::sqrt(between);
+}
+
 }  // namespace
 
 double bound_deviation(const BandPolyline& line, const PoseQuartic& quartic, double begin,
                        double end, std::int64_t segment) noexcept {
+  const std::int64_t i = line.segment_at(begin, segment);
+  const double bound = bound_by_places(line, quartic, begin, end, i);
+  return bound < kQuick ? bound : bound_by_hull(line, quartic, begin, end, i);
+}
+
+double bound_by_hull(const BandPolyline& line, const PoseQuartic& quartic, double begin, double end,
+                     std::int64_t segment) noexcept {
   std::int64_t i = line.segment_at(begin, segment);
   double worst = 0;
   for (double u = begin; u < end; ++i) {
     const BandVertex& a = line[i];
     const BandVertex& b = line[i + 1];
     const double to = i + 1 < line.last() ? std::min(end, b.u) : end;
-    const double tip = b.share * line.tolerance().tip_mm, axis = b.share * b.axis_tolerance;
     const Points points = find_difference(quartic, a, b, u - begin, to - u, begin);
-    worst =
-        std::max(worst, bound_square(points, {1 / (tip * tip), 1 / (axis * axis)}, kMostHalvings));
+    worst = std::max(worst, bound_square(points, scale_of(line, b), kMostHalvings));
     u = to;
   }
   return std::sqrt(worst);

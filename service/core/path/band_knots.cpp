@@ -29,17 +29,33 @@ double gap_by_density(const BandPolyline& line, std::int64_t i) noexcept {
   return gap;
 }
 
-/// Bound of the mean spline's deviation, in tolerances, that gaps of `gap` about vertex `i` give.
+/// Bound of the mean spline's deviation, in tolerances, that gaps of `gap` give where they feel the
+/// jumps of direction behind vertex `from` up to vertex `to`; `before` is the one ahead of `from`.
+double mean_deviation(const BandPolyline& line, std::int64_t before, std::int64_t from,
+                      std::int64_t to, double gap) noexcept {
+  const BandVertex &low = line[from], &high = line[to];
+  const bool is_near_pole = high.near_pole > line[before].near_pole;
+  const double axis_tolerance = (is_near_pole ? 0.5 : 1.0) * line.tolerance().axis_rad;
+  const double tip = (high.tip_turns - low.tip_turns) / line.tolerance().tip_mm;
+  const double axis = (high.axis_turns - low.axis_turns) / axis_tolerance;
+  return kCorner * gap * std::max(tip, axis);
+}
+
+/// The same of gaps about vertex `i`.
 double mean_deviation(const BandPolyline& line, std::int64_t i, double gap) noexcept {
   const std::int64_t low = std::max<std::int64_t>(i - kVertexReach, 0);
   const double u = line[i].u;
   const std::int64_t from = line.find_from(u - kSupport * gap, low);
   const std::int64_t to = std::min(line.find_after(u + kSupport * gap, i), line.last());
-  const bool is_near_pole = line[to].near_pole > line[std::max(low, from - 1)].near_pole;
-  const double axis_tolerance = (is_near_pole ? 0.5 : 1.0) * line.tolerance().axis_rad;
-  const double tip = (line[to].tip_turns - line[from].tip_turns) / line.tolerance().tip_mm;
-  const double axis = (line[to].axis_turns - line[from].axis_turns) / axis_tolerance;
-  return kCorner * gap * std::max(tip, axis);
+  return mean_deviation(line, std::max(low, from - 1), from, to, gap);
+}
+
+/// Whether gaps of `gap`, no longer than gap_by_density(), do about vertex `i` even if they feel
+/// every jump within kVertexReach vertices: mostly so on dense data, and needs no search.
+bool is_straight(const BandPolyline& line, std::int64_t i, double gap) noexcept {
+  const std::int64_t low = std::max<std::int64_t>(i - kVertexReach, 0);
+  const std::int64_t high = std::min(i + kVertexReach, line.last());
+  return mean_deviation(line, low, low, high, gap) <= kMeanShare;
 }
 
 /// Largest gap that needs no look at the blocks: the polyline is 1-Lipschitz in u.
@@ -52,6 +68,7 @@ double find_gap(const BandPolyline& line, std::int64_t i) noexcept {
   const double least = least_gap(line.tolerance());
   const double dense = gap_by_density(line, i);
   if (i == 0 || i == line.last()) return std::max(dense, least);
+  if (dense > least && is_straight(line, i, dense)) return dense;
   for (double gap = dense; gap > least; gap *= kShrink) {
     if (mean_deviation(line, i, gap) <= kMeanShare) return gap;
   }
@@ -87,13 +104,14 @@ bool BandGaps::is_final(const BandPolyline& line, std::int64_t i) const noexcept
 void BandKnots::begin() noexcept {
   ring_.clear();
   is_complete_ = false;
+  near_ = 0;
   for (int k = 0; k < 5; ++k) ring_.push({});
 }
 
 bool BandKnots::advance(const BandPolyline& line, const BandGaps& gaps) noexcept {
   if (is_complete_ || line.last() < 1) return false;
   const Knot before = ring_.back();
-  const std::int64_t i = line.segment_at(before.t, before.segment);
+  const std::int64_t i = near_ = line.segment_at(before.t, std::max(before.segment, near_));
   if (!gaps.is_final(line, i + 1)) return false;
   const BandVertex& a = line[i];
   const BandVertex& b = line[i + 1];

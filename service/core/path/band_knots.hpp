@@ -62,6 +62,9 @@ class BandKnots {
   };
 
   IndexRing<Knot> ring_;
+  /// A segment at or before the one that holds the last knot, as far as vertices had come when the
+  /// next one was asked for: where to look, no more.
+  std::int64_t near_ = 0;
   bool is_complete_ = false;
 };
 

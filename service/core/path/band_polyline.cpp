@@ -41,6 +41,29 @@ bool comes_near(const Vector3& pole, const Vector3& a, const Vector3& b) noexcep
 
 BandPolyline::BandPolyline() : ring_(static_cast<std::size_t>(kVertexCapacity)) {}
 
+/// Index of the first vertex from `low` on that `is_it`, as all behind it; steps that double, since
+/// what is looked for is mostly near.
+template <class Is>
+std::int64_t BandPolyline::find_first(std::int64_t low, Is is_it) const noexcept {
+  std::int64_t high = last() + 1;
+  for (std::int64_t step = 1; low + step <= high; step *= 2) {
+    if (is_it(ring_[low + step - 1])) {
+      high = low + step - 1;
+    } else {
+      low += step;
+    }
+  }
+  while (low < high) {
+    const std::int64_t middle = (low + high) / 2;
+    if (is_it(ring_[middle])) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
+}
+
 void BandPolyline::begin(const ToolPose& pose, const BandTolerance& tolerance) noexcept {
   ring_.clear();
   tolerance_ = tolerance;
@@ -126,29 +149,11 @@ void BandPolyline::add(const ToolPose& pose, bool ends_block) noexcept {
 }
 
 std::int64_t BandPolyline::find_after(double u, std::int64_t low) const noexcept {
-  std::int64_t high = last() + 1;
-  while (low < high) {
-    const std::int64_t middle = (low + high) / 2;
-    if (ring_[middle].u <= u) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
+  return find_first(low, [u](const BandVertex& vertex) { return vertex.u > u; });
 }
 
 std::int64_t BandPolyline::find_from(double u, std::int64_t low) const noexcept {
-  std::int64_t high = last() + 1;
-  while (low < high) {
-    const std::int64_t middle = (low + high) / 2;
-    if (ring_[middle].u < u) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
+  return find_first(low, [u](const BandVertex& vertex) { return vertex.u >= u; });
 }
 
 std::int64_t BandPolyline::segment_at(double u, std::int64_t low) const noexcept {

@@ -79,6 +79,8 @@ class BandPolyline {
   [[nodiscard]] Vector6 at(double u, std::int64_t i) const noexcept;
 
  private:
+  template <class Is>
+  [[nodiscard]] std::int64_t find_first(std::int64_t low, Is is_it) const noexcept;
   void add(const ToolPose& pose, bool ends_block) noexcept;
 
   IndexRing<BandVertex> ring_;

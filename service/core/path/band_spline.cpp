@@ -104,8 +104,8 @@ struct BandSpline::Workspace {
   void check_mean(std::int64_t to) noexcept {
     for (; checked < to; ++checked) {
       const double deviation =
-          bound_deviation(line, quartic_of(knots, points, checked), knots.t(checked),
-                          knots.t(checked + 1), knots.segment(checked));
+          bound_by_hull(line, quartic_of(knots, points, checked), knots.t(checked),
+                        knots.t(checked + 1), knots.segment(checked));
       statistics.largest_mean = std::max(statistics.largest_mean, deviation);
     }
   }
@@ -119,7 +119,7 @@ struct BandSpline::Workspace {
     add_points();
     const std::int64_t end = find_window_end();
     const std::int64_t limit = knots.is_complete() ? count() : points.end_index();
-    check_mean(std::min(end + 4, limit));
+    if (tuning.bounds_mean) check_mean(std::min(end + 4, limit));
     const SmoothedWindow window = smoother.smooth(line, knots, points, first, end, limit);
     ++statistics.windows;
     statistics.pulled_windows += window.is_pulled ? 1 : 0;

@@ -63,9 +63,11 @@ void expect_inside(const std::vector<ClBlock>& blocks, const BandTolerance& tole
 
 TEST(BandTolerance, IsKeptBothWaysOnHostilePaths) {
   BandStatistics sum;
+  BandTuning tuning;
+  tuning.bounds_mean = true;
   for (std::uint32_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    expect_inside(HostilePath(seed).make(16), {}, {}, &sum);
+    expect_inside(HostilePath(seed).make(16), {}, tuning, &sum);
   }
   std::printf("%llu windows, %llu pulled; mean spline %.3f, smoothed %.3f tolerances\n",
               static_cast<unsigned long long>(sum.windows),
