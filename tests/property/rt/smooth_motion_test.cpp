@@ -83,7 +83,8 @@ TEST(SmoothMotion, HoldsWherePlansKeepNothingForTheOverride) {
   LimitShares worst;
   double longest = 0;
   int holds = 0;
-  for (std::uint32_t n = 0; n < 16; ++n) {
+  constexpr std::uint32_t kHolds = std::max(test::draws(16), 4);
+  for (std::uint32_t n = 0; n < kHolds; ++n) {
     SCOPED_TRACE(testing::Message() << "hold " << n);
     test::RandomPrograms random(7000 + n);
     const MachineModel machine = without_reserve();
@@ -103,7 +104,7 @@ TEST(SmoothMotion, HoldsWherePlansKeepNothingForTheOverride) {
   }
   std::printf("%d holds, the longest %.3f s; worst v %.6f a %.6f j %.6f\n", holds, longest, worst.v,
               worst.a, worst.j);
-  EXPECT_GT(holds, 10);
+  EXPECT_GT(holds, static_cast<int>(kHolds) / 2);
   EXPECT_LT(longest, 1.5);
   EXPECT_GT(worst.j, 0.9) << "the reserve was kept";
 }
@@ -112,7 +113,8 @@ TEST(SmoothMotion, FaultStopsWherePlansKeepNothingForTheOverride) {
   LimitShares worst;
   double longest = 0;
   int stops = 0;
-  for (std::uint32_t n = 0; n < 10; ++n) {
+  constexpr std::uint32_t kStops = std::max(test::draws(10), 3);
+  for (std::uint32_t n = 0; n < kStops; ++n) {
     SCOPED_TRACE(testing::Message() << "stop " << n);
     test::RandomPrograms random(7100 + n);
     const MachineModel machine = without_reserve();
@@ -129,7 +131,7 @@ TEST(SmoothMotion, FaultStopsWherePlansKeepNothingForTheOverride) {
   }
   std::printf("%d FaultStops, the longest %.3f s; worst v %.6f a %.6f j %.6f\n", stops, longest,
               worst.v, worst.a, worst.j);
-  EXPECT_GT(stops, 6);
+  EXPECT_GT(stops, static_cast<int>(kStops) / 2);
   EXPECT_LT(longest, 0.5);
 }
 
