@@ -20,13 +20,25 @@ Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const s
   return OperatorEventsWriter(std::move(*file));
 }
 
+bool is_replayed(const Event& event) noexcept {
+  return (event.code == EventCode::kAccepted && event.b < kVerbCount) ||
+         event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered;
+}
+
 bool OperatorEventsWriter::write(const Event& event) noexcept {
-  if (event.code != EventCode::kAccepted || event.b >= kVerbCount) return true;
+  if (!is_replayed(event)) return true;
   char* const at = file_.begin_row();
   if (at == nullptr) return false;
   CsvRow row(at);
-  row.put_integer(event.cycle).put(',').put(name_of(static_cast<Verb>(event.b)));
-  file_.end_row(row.put(',').put_real(event.x).put('\n').end());
+  row.put_integer(event.cycle).put(',');
+  if (event.code == EventCode::kPeriodsLost) {
+    row.put(event.b != 0 ? kPeriodsBridgedWord : kPeriodsLostWord).put(',').put_integer(event.a);
+  } else if (event.code == EventCode::kActionAnswered) {
+    row.put(kActionAnsweredWord).put(',').put_real(event.x);
+  } else {
+    row.put(name_of(static_cast<Verb>(event.b))).put(',').put_real(event.x);
+  }
+  file_.end_row(row.put('\n').end());
   return file_.flush();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "meridian/expected.hpp"
@@ -14,14 +15,26 @@ namespace meridian::record {
 /// The file of operator events that belongs to a recording: run.csv has run.events.csv.
 [[nodiscard]] std::string operator_events_path(const std::string& recording);
 
-/// Writes what operators asked for and the cycle took, one row `cycle,verb,argument` each, for
-/// `meridian simulate --events`. Every row reaches the system at once: there are few.
+/// What stands where rows of operators have their verb: the argument says how many periods were
+/// lost before the row's cycle (bridged by the drives, or more than they bridge), or whether the
+/// action that was waited for is done (1) or refused (0).
+inline constexpr std::string_view kPeriodsBridgedWord = "periods_bridged";
+inline constexpr std::string_view kPeriodsLostWord = "periods_lost";
+inline constexpr std::string_view kActionAnsweredWord = "action_answered";
+
+/// Whether the motion follows from it, beside the program: an accepted verb, lost periods, an
+/// answered action.
+[[nodiscard]] bool is_replayed(const Event& event) noexcept;
+
+/// Writes what operators asked for and the cycle took, and what else the world did to it, one row
+/// `cycle,verb,argument` each, for `meridian simulate --events`. Every row reaches the system at
+/// once: there are few.
 /// Proof: tests/unit/record/operator_events_writer_test.cpp.
 class OperatorEventsWriter {
  public:
   [[nodiscard]] static Expected<OperatorEventsWriter, RecordError> create(const std::string& path);
 
-  /// Adds the event if it is an accepted verb; others are passed over. False once a write failed.
+  /// Adds the event if it is_replayed(); others are passed over. False once a write failed.
   bool write(const Event& event) noexcept;
   /// Says in the file that events are missing, once: `meridian simulate --events` refuses it then.
   void mark_incomplete() noexcept;

@@ -12,7 +12,8 @@ void LimitMeter::add(const CycleRecord& record, double tool_length_mm, double fe
                      LimitShares& shares) {
   std::rotate(places_.begin(), places_.begin() + 1, places_.end());
   places_.back() = limited_of(model_, record.joints, record.setpoint.position);
-  known_ = std::min(known_ + 1, 4);
+  known_ = record.setpoint.cycle == last_cycle_ + 1 ? std::min(known_ + 1, 4) : 1;
+  last_cycle_ = record.setpoint.cycle;
   const Vector3 tip = forward(model_, tool_length_mm, record.joints).tip;
   const Vector3 step = tip - tip_;
   tip_ = tip;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/limited.hpp"
@@ -25,6 +26,7 @@ class LimitMeter {
   std::array<LimitedVector, 4> places_{};  ///< newest last
   Vector3 tip_ = Vector3::Zero();
   int known_ = 0;
+  std::uint64_t last_cycle_ = 0;
 };
 
 }  // namespace meridian::simulate

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "meridian/rt/state_table.hpp"
+#include "service/record/operator_events_writer.hpp"
 
 namespace meridian::simulate {
 namespace {
@@ -46,50 +47,83 @@ template <class Number>
   return out.append(text).append("' ").append(what);
 }
 
+constexpr double kMostPeriods = 1e9;
+
+[[nodiscard]] bool is_of_loss(std::string_view word) {
+  return word == record::kPeriodsBridgedWord || word == record::kPeriodsLostWord;
+}
+
+struct Row {
+  std::string_view word;
+  OperatorEvent event;  ///< its verb: that of `word` where it is one
+};
+
 /// What is wrong with the row, empty if nothing is.
-[[nodiscard]] std::string read_row(std::string_view row, OperatorEvent& event) {
-  const std::string_view cycle = cut(row, ','), word = cut(row, ','), argument = cut(row, ',');
-  if (!parse(cycle, event.cycle)) return about(cycle, "is no cycle number");
-  const auto verb = find_verb(word);
-  if (!verb) return about(word, "is no verb (hold, resume, feed_override, ...)");
-  event.verb = *verb;
-  event.argument = 0;
-  if (!argument.empty() && (!parse(argument, event.argument) || !std::isfinite(event.argument))) {
+[[nodiscard]] std::string read_row(std::string_view text, Row& row) {
+  const std::string_view cycle = cut(text, ',');
+  row.word = cut(text, ',');
+  const std::string_view argument = cut(text, ',');
+  if (!parse(cycle, row.event.cycle)) return about(cycle, "is no cycle number");
+  const bool is_loss = is_of_loss(row.word);
+  const bool is_of_host = is_loss || row.word == record::kActionAnsweredWord;
+  const auto verb = find_verb(row.word);
+  if (!verb && !is_of_host) return about(row.word, "is no verb (hold, resume, feed_override, ...)");
+  double& value = row.event.argument;
+  if (!argument.empty() && (!parse(argument, value) || !std::isfinite(value))) {
     return about(argument, "is no number");
   }
-  if (needs_argument(*verb) && argument.empty()) return about(word, "needs its factor");
-  if (needs_argument(*verb) && !(event.argument >= 0 && event.argument <= 1)) {
+  if (!text.empty()) return "there is more than cycle, verb and argument";
+  if (is_of_host) {
+    const double most = is_loss ? kMostPeriods : 1;
+    const bool is_count =
+        !argument.empty() && value >= 0 && value <= most && value == std::floor(value);
+    return is_count ? "" : about(row.word, "needs a whole number");
+  }
+  row.event.verb = *verb;
+  if (needs_argument(*verb) && argument.empty()) return about(row.word, "needs its factor");
+  if (needs_argument(*verb) && !(value >= 0 && value <= 1)) {
     return about(argument, "is no factor from 0 to 1");
   }
-  return row.empty() ? "" : "there is more than cycle, verb and argument";
+  return "";
+}
+
+/// Puts the row where it belongs; cycles count from `zero`.
+void keep(const Row& row, std::int64_t zero, OperatorEvents& events) {
+  const std::int64_t cycle = row.event.cycle - zero;
+  if (cycle < 0) return;
+  if (is_of_loss(row.word)) {
+    events.losses.push_back(
+        {cycle, static_cast<int>(row.event.argument), row.word == record::kPeriodsBridgedWord});
+  } else if (row.word == record::kActionAnsweredWord) {
+    events.answers.push_back({cycle, row.event.argument != 0});
+  } else if (row.event.verb != Verb::kStart) {
+    events.verbs.push_back({cycle, row.event.verb, row.event.argument});
+  }
 }
 
 }  // namespace
 
-Expected<std::vector<OperatorEvent>, std::string> read_operator_events(std::string_view text,
-                                                                       const std::string& name) {
-  std::vector<OperatorEvent> events;
+Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
+                                                           const std::string& name) {
+  std::vector<Row> rows;
   std::optional<std::int64_t> start;
   for (int line = 1; !text.empty(); ++line) {
-    const std::string_view row = cut(text, '\n');
-    if (row.empty() || row.front() == '#' || row == "cycle,verb,argument") continue;
-    OperatorEvent event;
-    std::string fault = row == "incomplete" ? "the recorder lost events: they cannot be replayed"
-                                            : read_row(row, event);
-    if (fault.empty() && !events.empty() && event.cycle < events.back().cycle) {
+    const std::string_view part = cut(text, '\n');
+    if (part.empty() || part.front() == '#' || part == "cycle,verb,argument") continue;
+    Row row;
+    std::string fault = part == "incomplete" ? "the recorder lost events: they cannot be replayed"
+                                             : read_row(part, row);
+    if (fault.empty() && !rows.empty() && row.event.cycle < rows.back().event.cycle) {
       fault = "cycles do not go up";
     }
     if (!fault.empty()) {
       return tl::make_unexpected(name + ":" + std::to_string(line) + ": " + fault);
     }
-    if (event.verb == Verb::kStart && !start) start = event.cycle;
-    events.push_back(event);
+    if (row.word == name_of(Verb::kStart) && !start) start = row.event.cycle;
+    rows.push_back(row);
   }
-  const std::int64_t zero = start.value_or(0);
-  std::erase_if(events, [&](const OperatorEvent& event) {
-    return event.cycle < zero || event.verb == Verb::kStart;
-  });
-  for (OperatorEvent& event : events) event.cycle -= zero;
+  OperatorEvents events;
+  for (const Row& row : rows) keep(row, start.value_or(0), events);
   return events;
 }
 

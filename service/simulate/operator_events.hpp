@@ -18,14 +18,36 @@ struct OperatorEvent {
   double argument = 0;
 };
 
+/// Periods that a live run lost in front of a cycle.
+struct LostPeriods {
+  std::int64_t cycle = 0;  ///< the first that was executed again, counted from the start's
+  int count = 0;
+  bool is_bridged = true;  ///< by the drives; plan time went on meanwhile
+};
+
+/// When a live run took the answer to the action that it waited for.
+struct ActionAnswer {
+  std::int64_t cycle = 0;  ///< counted from that of the start
+  bool is_done = true;
+};
+
+/// What a run is replayed from, beside its program; each list in the order of cycles.
+struct OperatorEvents {
+  std::vector<OperatorEvent> verbs;
+  std::vector<LostPeriods> losses;
+  std::vector<ActionAnswer> answers;
+};
+
 /// Reads operator events: a row `cycle,verb[,argument]` each, in the order of cycles; the header
 /// `cycle,verb,argument`, empty lines and lines that begin with # are skipped. Verbs are those of
 /// name_of(Verb); an override's argument is its factor. A row `start` says which cycle the others
-/// count from (that of a live run); without one they count from the start as they are. Verbs before
-/// the start are not replayed. A row `incomplete`, by which a recorder says that it lost events, is
-/// refused. The error is a message with name and line. Proof:
+/// count from (that of a live run); without one they count from the start as they are. What was
+/// before the start is not replayed. Three words stand beside the verbs, with the host's part in a
+/// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
+/// `action_answered`, 1 done, 0 refused. A row `incomplete`, by which a recorder says that it lost
+/// events, is refused. The error is a message with name and line. Proof:
 /// tests/unit/simulate/operator_events_test.cpp.
-[[nodiscard]] Expected<std::vector<OperatorEvent>, std::string> read_operator_events(
-    std::string_view text, const std::string& name);
+[[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
+                                                                         const std::string& name);
 
 }  // namespace meridian::simulate

@@ -64,30 +64,30 @@ class Run {
  private:
   /// What the cycle is to see next.
   void prepare() {
-    ++in_.cycle;
+    const bool is_start = state_.state == State::kLoaded && !start_cycle_;
+    in_.lost_periods = take_loss(is_start ? in_.cycle + 1 : start_cycle_.value_or(in_.cycle + 2));
+    in_.cycle += 1 + in_.lost_periods;
     in_.due_ns = static_cast<std::int64_t>(in_.cycle) * model_.cycle_ns;
     in_.now_ns = in_.due_ns;
     const std::uint32_t all = (1U << static_cast<unsigned>(model_.joint_count)) - 1U;
     const bool is_on = is_enabled(state_.state);
     in_.feedback = {.arrival_ns = in_.now_ns,
-                    .cycle_seen = in_.cycle - 1,
+                    .cycle_seen = in_.cycle - 1 - in_.lost_periods,
                     .position = drives_,
                     .joint_mask = all,
                     .enabled_mask = is_on ? all : 0,
                     .fault_mask = 0,
                     .referenced_mask = all,
                     .emergency_stop = false};
-    in_.action = {.sequence = state_.sequence,
-                  .is_answered = state_.action == ActionState::kWaiting,
-                  .is_done = true};
+    answer_action();
     in_.has_command = true;
     if (in_.cycle == kEnableCycle) {
       command(Verb::kEnable);
-    } else if (state_.state == State::kLoaded && !start_cycle_) {
+    } else if (is_start) {
       start_cycle_ = in_.cycle;
       command(Verb::kStart);
     } else if (is_event_due()) {
-      const OperatorEvent& event = options_.events[next_event_++];
+      const OperatorEvent& event = options_.events.verbs[next_verb_++];
       command(event.verb, event.argument);
     } else if (is_at_program_stop()) {
       command(Verb::kResume);
@@ -98,10 +98,41 @@ class Run {
 
   void command(Verb verb, double argument = 0) { in_.command = {++request_, verb, argument}; }
 
+  /// Periods that are lost in front of the next cycle. Drives go on without them as they do live.
+  [[nodiscard]] std::uint32_t take_loss(std::uint64_t start_cycle) {
+    const auto& losses = options_.events.losses;
+    if (next_loss_ == losses.size() || start_cycle > in_.cycle + 1) return 0;
+    const LostPeriods& loss = losses[next_loss_];
+    const auto count = static_cast<std::uint32_t>(loss.count);
+    if (static_cast<std::int64_t>(in_.cycle + 1 + count - start_cycle) < loss.cycle) return 0;
+    ++next_loss_;
+    model_.bridge_cycles = loss.is_bridged ? loss.count : loss.count - 1;
+    const Setpoint& sent = out_.record.setpoint;
+    if (!loss.is_bridged || (sent.flags & kSetpointEnabled) == 0) return count;
+    const double time = 1e-9 * static_cast<double>(model_.cycle_ns) * count;
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i] += sent.velocity[i] * time;
+    return count;
+  }
+
+  void answer_action() {
+    const auto& answers = options_.events.answers;
+    in_.action = {.sequence = state_.sequence,
+                  .is_answered = state_.action == ActionState::kWaiting,
+                  .is_done = true};
+    if (!in_.action.is_answered || next_answer_ == answers.size()) return;
+    in_.action.is_done = answers[next_answer_].is_done;
+    in_.action.is_answered = is_reached(answers[next_answer_].cycle);
+    if (in_.action.is_answered) ++next_answer_;
+  }
+
+  /// `cycle` counts from that of the start.
+  [[nodiscard]] bool is_reached(std::int64_t cycle) const {
+    return start_cycle_ && static_cast<std::int64_t>(in_.cycle - *start_cycle_) >= cycle;
+  }
+
   [[nodiscard]] bool is_event_due() const {
-    return start_cycle_ && next_event_ < options_.events.size() &&
-           static_cast<std::int64_t>(in_.cycle - *start_cycle_) >=
-               options_.events[next_event_].cycle;
+    return next_verb_ < options_.events.verbs.size() &&
+           is_reached(options_.events.verbs[next_verb_].cycle);
   }
 
   [[nodiscard]] bool is_at_program_stop() const {
@@ -162,7 +193,7 @@ class Run {
   /// Whether nothing more will happen; sets the outcome.
   [[nodiscard]] bool is_over(SimulateReport& report) {
     if (in_.cycle <= kEnableCycle) return false;
-    const bool has_events = start_cycle_ && next_event_ < options_.events.size();
+    const bool has_events = start_cycle_ && next_verb_ < options_.events.verbs.size();
     bool is_end = false;
     switch (state_.state) {
       case State::kFault:
@@ -199,7 +230,7 @@ class Run {
     return rested_ > kRestCycles;
   }
 
-  const MachineModel& model_;
+  MachineModel model_;  ///< drives bridge what those of the live run bridged
   const SimulateOptions& options_;
   std::unique_ptr<MotionPort> port_;
   MotionReader motion_;
@@ -210,7 +241,7 @@ class Run {
   StepOutput out_;
   JointVector drives_{};  ///< where they are
   std::optional<std::uint64_t> start_cycle_;
-  std::size_t next_event_ = 0;
+  std::size_t next_verb_ = 0, next_loss_ = 0, next_answer_ = 0;
   std::uint64_t request_ = 0, rested_ = 0;
   bool is_program_over_ = false, has_approached_ = false;
 };

@@ -17,16 +17,17 @@
 namespace meridian::simulate {
 
 struct SimulateOptions {
-  std::optional<JointVector> start;   ///< where the drives are when enabled; nothing: home
-  std::vector<OperatorEvent> events;  ///< replayed
-  bool has_action_peer = true;        ///< false: programs with action words are refused
-  bool stops_at_optional = false;     ///< optional stops stop
-  Explainer* explainer = nullptr;     ///< follows the program from the end of its approach
+  std::optional<JointVector> start;  ///< where the drives are when enabled; nothing: home
+  OperatorEvents events;             ///< replayed
+  bool has_action_peer = true;       ///< false: programs with action words are refused
+  bool stops_at_optional = false;    ///< optional stops stop
+  Explainer* explainer = nullptr;    ///< follows the program from the end of its approach
 };
 
 /// Runs a CL file through judge, planner and cycle as the service does, without DDS and without a
 /// clock: drives that are ideal (feedback is the last setpoint, enabled at once), actions that are
-/// done at once, an operator who enables, starts, and resumes at program stops.
+/// done at once, or when the events say, an operator who enables, starts, and resumes at program
+/// stops.
 ///
 /// The motion is that of the service, bit for bit on every cycle that it sends. `take` gets every
 /// cycle. Context: a tool's main thread; memory is fixed but for the reader's.

@@ -27,7 +27,7 @@ bool Recorder::take(const CycleRecord& record) noexcept {
 }
 
 void Recorder::take(const Event& event) noexcept {
-  if (!writer_ || event.code != EventCode::kAccepted || events_.try_push(event)) return;
+  if (!writer_ || !record::is_replayed(event) || events_.try_push(event)) return;
   events_lost_.fetch_add(1, std::memory_order_relaxed);
 }
 

@@ -56,6 +56,7 @@ Weight weight_of(const Event& event) noexcept {
       return Weight::kWarning;
     case EventCode::kBlockStarted:
     case EventCode::kBlockDone:
+    case EventCode::kActionAnswered:
       return Weight::kDetail;
     default:
       return Weight::kNews;
@@ -78,6 +79,8 @@ std::string describe(const Event& event, const MachineModel& model) {
       return fmt::format("block {} of line {} done", event.a, event.b);
     case EventCode::kActionDue:
       return fmt::format("waiting for the action of line {}", event.b);
+    case EventCode::kActionAnswered:
+      return fmt::format("action of block {} {}", event.a, event.x != 0 ? "done" : "refused");
     case EventCode::kProgramEnd:
       return fmt::format("program ended with block {}", event.a);
     case EventCode::kEpochAdvanced:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -93,7 +94,15 @@ INSTANTIATE_TEST_SUITE_P(Cycle, LiveAtCycle, testing::Values(125, 4000),
                            return std::to_string(cycle.param) + "us";
                          });
 
-/// An operator who holds, resumes and turns the override while the program runs.
+/// The host takes the processor away from the service, for less than drives bridge.
+void stall(Plant& plant) {
+  plant.service().send_signal(SIGSTOP);
+  std::this_thread::sleep_for(milliseconds(20));
+  plant.service().send_signal(SIGCONT);
+}
+
+/// An operator who holds, resumes and turns the override while the program runs, on a host that
+/// takes periods away while the machine changes its speed.
 void operate(Plant& plant) {
   const auto say = [&plant](Verb verb, double argument = 0) {
     const auto reply = plant.say(verb, argument);
@@ -102,11 +111,13 @@ void operate(Plant& plant) {
   say(Verb::kStart);
   ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.service().said();
   say(Verb::kFeedOverride, 0.45);
+  stall(plant);
   std::this_thread::sleep_for(milliseconds(400));
   say(Verb::kHold);
   ASSERT_TRUE(plant.wait_for(State::kHeld));
   say(Verb::kFeedOverride, 1.0);
   say(Verb::kResume);
+  stall(plant);
   std::this_thread::sleep_for(milliseconds(350));
   say(Verb::kFeedOverride, 0.8);
   say(Verb::kHold);
@@ -118,7 +129,7 @@ void operate(Plant& plant) {
 TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   Plant plant;
   const std::string part = (plant.folder() / "part.cls").string();
-  std::ofstream(part) << "PARTNO LONG CUTS\nUNITS/MM\nFEDRAT/2000,MMPM\n"
+  std::ofstream(part) << "PARTNO LONG CUTS\nUNITS/MM\nSPINDL/8000,RPM,CLW\nFEDRAT/2000,MMPM\n"
                       << cl_text(small_program(20, 2000, 8)) << "FINI\n";
   LiveRun live;
   live.operate = [&plant] { operate(plant); };

@@ -72,10 +72,11 @@ enum class EventCode : std::uint16_t {
   kActionDue,      ///< a: sequence of the block whose action is to be published, b: line
   kProgramEnd,     ///< a: last sequence
   kEpochAdvanced,  ///< a: new epoch; queues of the old one are void
-  kPeriodsLost,    ///< a: how many
+  kPeriodsLost,    ///< a: how many, b: 1 if drives bridge so many
   kStopped,        ///< hold, abort or FaultStop came to rest; a: stopping time ns, x: distance mm
   kAlarm,  ///< a: Alarm, b: place in limited.hpp or 0, x: measured value, line of the block in
            ///< `line`
+  kActionAnswered,  ///< a: sequence, x: 1 done, 0 refused
 };
 
 /// Why the cycle took the machine to FaultStop, or refused to send a setpoint.

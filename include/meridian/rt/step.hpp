@@ -21,6 +21,7 @@ inline void take_action_answer(Cycle& c) noexcept {
                           c.in.action.sequence == c.state.sequence;
   if (!is_awaited) return;
   c.state.action = c.in.action.is_done ? ActionState::kDone : ActionState::kRefused;
+  tell(c, EventCode::kActionAnswered, c.state.sequence, 0, c.in.action.is_done ? 1 : 0);
 }
 
 /// The drives went on with the last velocity for the periods that were lost: feedback of that

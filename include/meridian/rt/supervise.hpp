@@ -199,12 +199,12 @@ inline void stop_from_feedback(Cycle& c) noexcept {
 
 /// Looks at everything that may end in a FaultStop, before anything moves.
 inline void supervise(Cycle& c) noexcept {
+  const bool is_bridged = c.in.lost_periods <= static_cast<std::uint32_t>(c.machine.bridge_cycles);
   if (c.in.lost_periods > 0) {
     c.state.periods_lost += c.in.lost_periods;
-    tell(c, EventCode::kPeriodsLost, c.in.lost_periods);
+    tell(c, EventCode::kPeriodsLost, c.in.lost_periods, is_bridged ? 1 : 0);
   }
   if (!is_enabled(c.state.state)) return;
-  const bool is_bridged = c.in.lost_periods <= static_cast<std::uint32_t>(c.machine.bridge_cycles);
   if (!is_bridged) {
     if (c.state.on_path.ds > 0 || c.state.stop.is_active) stop_from_feedback(c);
     c.periods = 1;

@@ -8,7 +8,7 @@
 namespace meridian::record {
 namespace {
 
-TEST(OperatorEventsWriter, KeepsAcceptedVerbsWithCycleAndArgument) {
+TEST(OperatorEventsWriter, KeepsWhatTheMotionFollowsFromWithCycleAndArgument) {
   const test::Scratch file(".csv");
   auto writer = OperatorEventsWriter::create(file.path());
   ASSERT_TRUE(writer.has_value());
@@ -23,8 +23,20 @@ TEST(OperatorEventsWriter, KeepsAcceptedVerbsWithCycleAndArgument) {
   EXPECT_TRUE(writer->write(event));
   event.code = EventCode::kRefused;
   EXPECT_TRUE(writer->write(event));
+  event.cycle = 2100;
+  event.code = EventCode::kPeriodsLost;
+  event.a = 17;
+  event.b = 1;
+  EXPECT_TRUE(writer->write(event));
+  event.a = 70;
+  event.b = 0;
+  EXPECT_TRUE(writer->write(event));
+  event.code = EventCode::kActionAnswered;
+  event.x = 1;
+  EXPECT_TRUE(writer->write(event));
   EXPECT_EQ(test::read_text(file.path()),
-            "cycle,verb,argument\n1203,start,0\n2000,feed_override,0.10000000000000001\n");
+            "cycle,verb,argument\n1203,start,0\n2000,feed_override,0.10000000000000001\n"
+            "2100,periods_bridged,17\n2100,periods_lost,70\n2100,action_answered,1\n");
 }
 
 TEST(OperatorEventsWriter, SitsBesideItsRecording) {

@@ -184,10 +184,10 @@ TEST(ExplainSmooth, TellsTheOperatorsOverrideAndHold) {
   const std::string text = corner_and_dense();
   const Explained free = explain(text, machine(Transition::kSmooth));
   const auto start = static_cast<std::int64_t>(free.run.report.approach_s * 1e3);
-  options.events = {{start + 300, Verb::kFeedOverride, 0.5},
-                    {start + 1200, Verb::kHold, 0},
-                    {start + 2200, Verb::kResume, 0},
-                    {start + 2300, Verb::kFeedOverride, 1}};
+  options.events.verbs = {{start + 300, Verb::kFeedOverride, 0.5},
+                          {start + 1200, Verb::kHold, 0},
+                          {start + 2200, Verb::kResume, 0},
+                          {start + 2300, Verb::kFeedOverride, 1}};
   const Explained out = explain(text, machine(Transition::kSmooth), options);
   const ExplainedBlock& block = out.at_line(5);
   EXPECT_GT(block.by_cause[static_cast<std::size_t>(Cause::kOverride)], 1.0F);

@@ -12,20 +12,39 @@ TEST(OperatorEvents, CountFromTheStartOfALiveRun) {
       "1900,feed_override,0.5\n",
       "e.csv");
   ASSERT_TRUE(events.has_value()) << events.error();
-  ASSERT_EQ(events->size(), 3U);
-  EXPECT_EQ((*events)[0].cycle, 500);
-  EXPECT_EQ((*events)[0].verb, Verb::kHold);
-  EXPECT_EQ((*events)[1].cycle, 800);
-  EXPECT_EQ((*events)[2].verb, Verb::kFeedOverride);
-  EXPECT_EQ((*events)[2].argument, 0.5);
+  ASSERT_EQ(events->verbs.size(), 3U);
+  EXPECT_EQ(events->verbs[0].cycle, 500);
+  EXPECT_EQ(events->verbs[0].verb, Verb::kHold);
+  EXPECT_EQ(events->verbs[1].cycle, 800);
+  EXPECT_EQ(events->verbs[2].verb, Verb::kFeedOverride);
+  EXPECT_EQ(events->verbs[2].argument, 0.5);
 }
 
 TEST(OperatorEvents, CountAsTheyAreWithoutAStart) {
   const auto events = read_operator_events("10,hold\n20,abort", "e.csv");
   ASSERT_TRUE(events.has_value());
-  ASSERT_EQ(events->size(), 2U);
-  EXPECT_EQ((*events)[1].cycle, 20);
-  EXPECT_TRUE(read_operator_events("", "e.csv")->empty());
+  ASSERT_EQ(events->verbs.size(), 2U);
+  EXPECT_EQ(events->verbs[1].cycle, 20);
+  EXPECT_TRUE(read_operator_events("", "e.csv")->verbs.empty());
+}
+
+TEST(OperatorEvents, SayWhatTheHostDid) {
+  const auto events = read_operator_events(
+      "900,periods_lost,3\n1000,periods_lost,2\n1000,start,0\n1100,action_answered,1\n"
+      "1200,periods_bridged,40\n1200,hold,0\n1300,action_answered,0\n",
+      "e.csv");
+  ASSERT_TRUE(events.has_value()) << events.error();
+  ASSERT_EQ(events->losses.size(), 2U) << "those before the start do not count, its own do";
+  EXPECT_EQ(events->losses[0].cycle, 0);
+  EXPECT_EQ(events->losses[1].cycle, 200);
+  EXPECT_EQ(events->losses[1].count, 40);
+  EXPECT_TRUE(events->losses[1].is_bridged);
+  EXPECT_FALSE(events->losses[0].is_bridged);
+  ASSERT_EQ(events->answers.size(), 2U);
+  EXPECT_TRUE(events->answers[0].is_done);
+  EXPECT_EQ(events->answers[1].cycle, 300);
+  EXPECT_FALSE(events->answers[1].is_done);
+  ASSERT_EQ(events->verbs.size(), 1U);
 }
 
 TEST(OperatorEvents, AreRefusedWithTheirLine) {
@@ -41,6 +60,9 @@ TEST(OperatorEvents, AreRefusedWithTheirLine) {
       {"5,feed_override\n", "'feed_override' needs its factor"},
       {"5,feed_override,nan\n", "'nan' is no number"},
       {"5,feed_override,1.3\n", "'1.3' is no factor from 0 to 1"},
+      {"5,periods_lost\n", "'periods_lost' needs a whole number"},
+      {"5,periods_lost,-1\n", "'periods_lost' needs a whole number"},
+      {"5,action_answered,2\n", "'action_answered' needs a whole number"},
       {"5,hold,1,2\n", "more than cycle, verb and argument"},
   };
   for (const Case& c : cases) {

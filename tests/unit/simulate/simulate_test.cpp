@@ -68,7 +68,7 @@ TEST_F(Simulate, EndsWhereTheMachineIsSwitchedOffRightBehindItsProgram) {
   const SimulatedRun free = run_simulation(kPart, model);
   const auto last = static_cast<std::int64_t>(free.report.cycles);
   SimulateOptions events;
-  for (int n = 40; n > 0; --n) events.events.push_back({last - n, Verb::kDisable, 0});
+  for (int n = 40; n > 0; --n) events.events.verbs.push_back({last - n, Verb::kDisable, 0});
   const SimulatedRun run = run_simulation(kPart, model, events);
   EXPECT_EQ(run.report.outcome, Outcome::kDone);
   EXPECT_EQ(run.records.back().state, State::kOff);
@@ -109,7 +109,7 @@ TEST_F(Simulate, ReplaysHoldAndResumeWithinEveryLimit) {
   SimulateOptions simulation;
   const SimulatedRun plain = run_simulation(kPart, model);
   const std::int64_t middle = middle_of(plain);
-  simulation.events = {{middle, Verb::kHold, 0}, {middle + 700, Verb::kResume, 0}};
+  simulation.events.verbs = {{middle, Verb::kHold, 0}, {middle + 700, Verb::kResume, 0}};
   const SimulatedRun run = run_simulation(kPart, model, simulation);
   EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
   EXPECT_GT(run.report.program_s, plain.report.program_s + 0.4);
@@ -120,13 +120,51 @@ TEST_F(Simulate, ReplaysHoldAndResumeWithinEveryLimit) {
 TEST_F(Simulate, ReplaysOverrides) {
   SimulateOptions simulation;
   const SimulatedRun plain = run_simulation(kPart, model);
-  simulation.events = {{0, Verb::kFeedOverride, 0.5}};
+  simulation.events.verbs = {{0, Verb::kFeedOverride, 0.5}};
   const SimulatedRun run = run_simulation(kPart, model, simulation);
   EXPECT_EQ(run.report.outcome, Outcome::kDone);
   EXPECT_GT(run.report.program_s, 1.7 * plain.report.program_s);
   options.feed_factor = 0.5;
   const CheckReport report = check(run, kPart);
   EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
+TEST_F(Simulate, GoesOverLostPeriodsAsTheCycleDoesThatLosesThem) {
+  SimulateOptions simulation;
+  const std::int64_t middle = middle_of(run_simulation(kPart, model));
+  // Cycles count from the one that takes the start: with three lost in front of it, from three
+  // later.
+  simulation.events.verbs = {{0, Verb::kFeedOverride, 0.4}, {middle + 3, Verb::kFeedOverride, 1}};
+  const SimulatedRun whole = run_simulation(kPart, model, simulation);
+  simulation.events.verbs.back().cycle = middle;
+  simulation.events.losses = {{0, 3, true}, {middle - 400, 20, true}, {middle + 30, 17, true}};
+  const SimulatedRun run = run_simulation(kPart, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_EQ(run.report.cycles, whole.report.cycles);
+  EXPECT_EQ(run.records.size() + 40, whole.records.size());
+  std::size_t at = 0;
+  for (const CycleRecord& record : run.records) {
+    while (whole.records[at].setpoint.cycle < record.setpoint.cycle) ++at;
+    ASSERT_EQ(record.joints, whole.records[at].joints) << "cycle " << record.setpoint.cycle;
+  }
+  options.max_missing = 40;
+  const CheckReport report = check(run, kPart);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
+TEST_F(Simulate, WaitsForActionsAsLongAsTheLiveRunDid) {
+  constexpr const char* kWithSpindle =
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0, 1\nGOTO / 95, -40, 20\n"
+      "SPINDL / 8000, CLW\nGOTO / 80, -40, 20\nFINI\n";
+  const SimulatedRun at_once = run_simulation(kWithSpindle, model);
+  SimulateOptions simulation;
+  const auto late = static_cast<std::int64_t>(at_once.report.cycles) + 300;
+  simulation.events.answers = {{late, true}};
+  const SimulatedRun run = run_simulation(kWithSpindle, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_GT(run.report.waiting_s, at_once.report.waiting_s + 0.3);
+  simulation.events.answers = {{late, false}};
+  EXPECT_EQ(run_simulation(kWithSpindle, model, simulation).report.outcome, Outcome::kStopped);
 }
 
 TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {
@@ -136,7 +174,7 @@ TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {
        {OperatorEvent{middle, Verb::kHold, 0}, OperatorEvent{middle, Verb::kAbort, 0},
         OperatorEvent{middle, Verb::kFeedOverride, 0}}) {
     SimulateOptions simulation;
-    simulation.events = {event};
+    simulation.events.verbs = {event};
     const SimulatedRun run = run_simulation(kPart, model, simulation);
     EXPECT_EQ(run.report.outcome, Outcome::kStopped) << to_text(run.report, model);
     const CheckReport report = check(run, kPart);
@@ -148,7 +186,7 @@ TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {
 
 TEST_F(Simulate, MayBeEndedInTheApproach) {
   SimulateOptions simulation;
-  simulation.events = {{100, Verb::kAbort, 0}};
+  simulation.events.verbs = {{100, Verb::kAbort, 0}};
   const SimulatedRun run = run_simulation(kPart, model, simulation);
   EXPECT_EQ(run.report.outcome, Outcome::kStopped);
   EXPECT_FALSE(check(run, kPart).passed()) << "the path was never begun";
