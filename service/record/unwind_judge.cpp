@@ -6,6 +6,7 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/winding.hpp"
 
 namespace meridian::record {
 
@@ -20,46 +21,60 @@ void UnwindJudge::blame(const char* what, const RecordingRow& row) {
   bad_line_ = row.line;
 }
 
+/// With the free joint where it was: what its turns do to the tool is no matter of the line.
+ToolPose UnwindJudge::held_pose(const RecordingRow& row) const {
+  JointVector held = row.joints;
+  held[free_] = rest_[free_];
+  return forward(model_, tool_length_, held);
+}
+
 void UnwindJudge::begin(const RecordingRow& row) {
   ++count_;
-  has_rest_ = has_last_ && last_.cycle + 1 == row.cycle;
-  rest_ = line_ = has_rest_ ? last_.joints : row.joints;
+  const std::uint64_t missing = has_last_ ? row.cycle - last_.cycle - 1 : kMostMissing + 1;
+  has_rest_ = missing <= kMostMissing;
+  rest_ = missing == 0 ? last_.joints : row.joints;
   begin_ = forward(model_, tool_length_, rest_);
-  off_ = 0;
+  missing_ = has_rest_ ? static_cast<double>(missing) : 0;
+  off_ = step_ = top_ = slack_ = 0;
+  rows_ = 0;
+  has_turned_ = false;
   if (free_ < 0 || model_.unwind_policy != UnwindPolicy::kRetract) {
     blame("the machine file has no unwinding", row);
   }
 }
 
-void UnwindJudge::judge(const RecordingRow& row) {
-  const ToolPose pose = forward(model_, tool_length_, row.joints);
-  const Vector3 by = pose.tip - begin_.tip;
-  const double off = by.dot(begin_.axis);
-  const bool is_on_line = (by - off * begin_.axis).norm() <= options_.tip_tolerance_mm &&
-                          angle_between(pose.axis, begin_.axis) <= options_.axis_tolerance_rad;
-  if (is_on_line) {
-    if (off < -options_.tip_tolerance_mm) blame("the tool goes into the part", row);
-    line_ = row.joints;
-    off_ = off;
-    return;
-  }
-  bool is_free_alone = true;
-  for (int i = 0; i < model_.joint_count; ++i) {
-    const double allowed =
-        model_.joints[i].is_rotary ? options_.axis_tolerance_rad : options_.tip_tolerance_mm;
-    is_free_alone &= i == free_ || std::abs(row.joints[i] - line_[i]) <= allowed;
-  }
-  if (!is_free_alone) {
-    blame("the tool leaves the line along its axis", row);
-  } else if (has_rest_ && off_ < model_.unwind_retract_mm - options_.tip_tolerance_mm) {
+void UnwindJudge::judge_turn(double off, const RecordingRow& row) {
+  if (!has_turned_) top_ = off;
+  has_turned_ = true;
+  if (off + slack_ < model_.unwind_retract_mm - options_.tip_tolerance_mm) {
     blame("the free joint turns before the tool is off the part", row);
+  } else if (std::abs(off - top_) > options_.tip_tolerance_mm) {
+    blame("the tool moves while the free joint turns", row);
   }
 }
 
+void UnwindJudge::judge(const RecordingRow& row) {
+  const ToolPose pose = held_pose(row);
+  const Vector3 by = pose.tip - begin_.tip;
+  const double off = by.dot(begin_.axis);
+  if (rows_ > 0) step_ = std::abs(off - off_) / static_cast<double>(row.cycle - last_.cycle);
+  if (rows_++ == 1) slack_ = missing_ * step_;
+  const bool is_on_line = (by - off * begin_.axis).norm() <= options_.tip_tolerance_mm &&
+                          angle_between(pose.axis, begin_.axis) <= options_.axis_tolerance_rad;
+  if (!is_on_line) blame("the tool leaves the line along its axis", row);
+  if (off < -options_.tip_tolerance_mm - slack_) blame("the tool goes into the part", row);
+  const double turned = std::remainder(row.joints[free_] - rest_[free_], kTurn_rad);
+  if (has_rest_ && std::abs(turned) > options_.axis_tolerance_rad) judge_turn(off, row);
+  off_ = off;
+}
+
+/// `row` is the first behind it, last_ its last one.
 void UnwindJudge::end(const RecordingRow& row) {
-  if (!has_rest_ || last_.cycle + 1 != row.cycle || free_ < 0) return;
-  const ToolPose pose = forward(model_, tool_length_, row.joints);
-  const bool is_back = (pose.tip - begin_.tip).norm() <= options_.tip_tolerance_mm &&
+  const std::uint64_t missing = row.cycle - last_.cycle - 1;
+  if (free_ < 0 || !has_rest_ || missing > kMostMissing) return;
+  const double slack = slack_ + static_cast<double>(missing) * step_;
+  const ToolPose pose = forward(model_, tool_length_, missing == 0 ? row.joints : last_.joints);
+  const bool is_back = (pose.tip - begin_.tip).norm() <= options_.tip_tolerance_mm + slack &&
                        angle_between(pose.axis, begin_.axis) <= options_.axis_tolerance_rad;
   if (!is_back) blame("the tool comes back to another place than it left", row);
 }

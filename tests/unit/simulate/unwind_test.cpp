@@ -115,6 +115,28 @@ TEST_P(SimulatedUnwinding, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
   EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not declared";
 }
 
+/// A wire that lost two rows in the very moment in which the tool leaves, and where it comes back.
+TEST_P(SimulatedUnwinding, IsJudgedWhereRowsAreMissingAtItsEnds) {
+  const test::SimulatedRun run = test::run_simulation(text, model);
+  ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
+  const auto is_unwinding = [](const CycleRecord& record) {
+    return record.motion == MotionKind::kUnwind;
+  };
+  auto records = run.records;
+  const auto first = std::find_if(records.begin(), records.end(), is_unwinding);
+  const auto behind = std::find_if_not(first, records.end(), is_unwinding);
+  records.erase(behind - 1, behind + 1);
+  records.erase(first - 1, first + 1);
+  record::CheckOptions options;
+  options.max_missing = 4;
+  const auto check = [&] {
+    return test::check_records(records, test::path_of(text, model), model, options, file);
+  };
+  EXPECT_TRUE(check().passed()) << to_text(check());
+  model.unwind_retract_mm = 20.1;
+  EXPECT_TRUE(has(check(), Finding::Kind::kUnwinding)) << "not off as far as declared";
+}
+
 INSTANTIATE_TEST_SUITE_P(Both, SimulatedUnwinding,
                          ::testing::Values(Transition::kExactStop, Transition::kSmooth),
                          [](const auto& which) {
