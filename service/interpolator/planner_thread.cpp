@@ -26,7 +26,8 @@ bool PlannerThread::work() noexcept {
   if (look.front == nullptr) {
     if (has_begun_ && !is_refused_) {
       look_at_stall();
-      planner_.advance(writer_);
+      const PlanResult result = planner_.advance(writer_);
+      if (result.status == PlanStatus::kRefused) refuse(result.reject);
     }
     tell_eases();
     return false;
@@ -56,7 +57,13 @@ void PlannerThread::look_at_stall() noexcept {
   if (is_late) planner_.look_no_further();
 }
 
+void PlannerThread::refuse(const BlockReject& reject) noexcept {
+  is_refused_ = true;
+  (void)ports_.rejects.try_push({session_, reject});
+}
+
 bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
+  session_ = queued.session;
   if (!announce_action(queued.block)) return false;
   const std::int64_t begun_ns = monotonic_ns();
   const PlanResult result = planner_.plan(queued.block, writer_);
@@ -79,8 +86,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
       if (queued.block.kind == BlockKind::kEnd) has_begun_ = false;
       break;
     case PlanStatus::kRefused:
-      is_refused_ = true;
-      (void)ports_.rejects.try_push({queued.session, result.reject});
+      refuse(result.reject);
       break;
   }
   pop();

@@ -27,6 +27,7 @@ class PlannerThread {
   /// Does one piece of work; false if there is none (yet).
   [[nodiscard]] bool work() noexcept;
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
+  void refuse(const BlockReject& reject) noexcept;
   void tell_eases() noexcept;
   /// A program of which no block has come for a while begins with those that are there.
   void look_at_stall() noexcept;
@@ -37,6 +38,7 @@ class PlannerThread {
   QueueFollower queue_;
   MotionWriter writer_;
   SmoothPlanner planner_;
+  std::uint64_t session_ = 0;       ///< of the block that was planned last
   std::int64_t last_block_ns_ = 0;  ///< when one was planned last
   std::int64_t motion_ns_ = 0;      ///< when the program's first motion was taken; 0: not yet
   std::int64_t planning_ns_ = 0;    ///< spent on the block in hand, attempts without room included

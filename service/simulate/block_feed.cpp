@@ -85,22 +85,32 @@ void BlockFeed::take_eases() {
   }
 }
 
-void BlockFeed::fill() {
-  planner_.advance(writer_);
+/// Publishes what became ready without a block.
+void BlockFeed::advance() {
+  const PlanResult result = planner_.advance(writer_);
   take_eases();
+  if (result.status == PlanStatus::kRefused) end_at(result.reject);
+}
+
+void BlockFeed::end_at(const BlockReject& reject) {
+  if (refusal_.empty()) refusal_ = stream::describe(reject, model_);
+  is_over_ = true;
+}
+
+void BlockFeed::fill() {
+  advance();
   while (!is_over_) {
     if (!block_ && !take_block()) {
       is_over_ = true;
       planner_.look_no_further();
-      planner_.advance(writer_);
+      advance();
       return;
     }
     const PlanResult result = planner_.plan(*block_, writer_);
     take_eases();
     if (result.status == PlanStatus::kNoRoom) return;
     if (result.status == PlanStatus::kRefused) {
-      refusal_ = stream::describe(result.reject, model_);
-      is_over_ = true;
+      end_at(result.reject);
       return;
     }
     block_.reset();

@@ -49,6 +49,9 @@ class BlockFeed {
 
  private:
   [[nodiscard]] bool take_block();
+  void advance();
+  /// `reject` is the end of the program.
+  void end_at(const BlockReject& reject);
   void explain(const ClBlock& block, double programmed_feed);
 
   cl::ClReader& reader_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -13,6 +14,10 @@
 #include <vector>
 
 #include "integration/live_run.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/units.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/record/recording_reader.hpp"
 
 namespace meridian::test {
 namespace {
@@ -43,6 +48,55 @@ TEST(Live, RunsOnThroughBlocksAsItsSessionAsksAndEqualsTheSimulation) {
   const auto smooth_size = std::filesystem::file_size(simulated);
   EXPECT_LT(smooth_size, std::filesystem::file_size(simulate_part(plant, part, live)))
       << "it stopped at every block";
+}
+
+/// Round a cone, `degrees` of azimuth in all: C follows.
+std::string cone_text(double degrees) {
+  const ToolPose home = [] {
+    const MachineModel model = config::load_machine(machine_file());
+    return forward(model, model.tool_length_mm, JointVector{});
+  }();
+  std::string text = "PARTNO ROUND A CONE\nUNITS/MM\nMULTAX/ON\nFEDRAT/6000,MMPM\n";
+  for (double at = 0; at <= degrees; at += 4) {
+    const double azimuth = units::rad_from_deg(at);
+    char line[160];
+    std::snprintf(line, sizeof line, "GOTO/%.6f,%.6f,%.6f,%.9f,%.9f,%.9f\n",
+                  home.tip[0] + 10 * std::cos(azimuth), home.tip[1] + 10 * std::sin(azimuth),
+                  home.tip[2] - 20, std::sin(0.2) * std::cos(azimuth),
+                  std::sin(0.2) * std::sin(azimuth), std::cos(0.2));
+    text += line;
+  }
+  return text + "FINI\n";
+}
+
+/// C turns farther than its travel: it is turned back off the part, live as simulated.
+TEST(Live, TurnsCBackOffThePartAndEqualsTheSimulation) {
+  Plant plant;
+  ASSERT_NO_FATAL_FAILURE(plant.change_machine(
+      {{"-720, 720", "-200, 200"},
+       {"policy = \"refuse\"", "policy = \"retract\""},
+       {"# retract_mm = 50", "retract_mm = 15"},
+       {"\\nvelocity_deg_per_s = 60", "\nvelocity_deg_per_s = 180"},
+       {"\\nacceleration_deg_per_s2 = 600", "\nacceleration_deg_per_s2 = 1200"},
+       {"\\njerk_deg_per_s3 = 12000", "\njerk_deg_per_s3 = 48000"}}));
+  const std::string part = (plant.folder() / "part.cls").string();
+  std::ofstream(part) << cone_text(460);
+  LiveRun live;
+  live.station = {"--transition", "smooth"};
+  const std::string simulated = simulate_part(plant, part, live, live.station);
+  ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated));
+  expect_checked(plant, part, live);
+  const MachineModel model = config::load_machine(plant.machine());
+  auto recording = record::RecordingReader::open(plant.recording(), model);
+  ASSERT_TRUE(recording);
+  double least = 0, most = 0;
+  for (record::RecordingRow row; recording->next(row).value_or(false);) {
+    if (row.kind != MotionKind::kUnwind) continue;
+    least = std::min(least, row.joints[3]);
+    most = std::max(most, row.joints[3]);
+  }
+  EXPECT_GT(most - least, 6.2) << "C was not turned back";
 }
 
 /// Median and p99 of the computation times in the recording of `plant`, ns, and how many of the

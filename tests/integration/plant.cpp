@@ -181,12 +181,21 @@ Plant::~Plant() {
 }
 
 void Plant::set_cycle_us(int cycle_us) {
-  std::ostringstream text;
-  text << std::ifstream(test::machine_file(machine_)).rdbuf();
-  machine_file_ = (folder_ / "machine.toml").string();
-  std::ofstream(machine_file_) << std::regex_replace(text.str(), std::regex("cycle_us = [0-9]+"),
-                                                     "cycle_us = " + std::to_string(cycle_us));
+  ASSERT_NO_FATAL_FAILURE(
+      change_machine({{"cycle_us = [0-9]+", "cycle_us = " + std::to_string(cycle_us)}}));
   ASSERT_EQ(config::load_machine(machine_file_).cycle_ns, 1000 * cycle_us);
+}
+
+void Plant::change_machine(const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::ostringstream old;
+  old << std::ifstream(machine_file_).rdbuf();
+  std::string text = old.str();
+  for (const auto& [from, to] : changes) {
+    ASSERT_TRUE(std::regex_search(text, std::regex(from))) << from;
+    text = std::regex_replace(text, std::regex(from), to);
+  }
+  machine_file_ = (folder_ / "machine.toml").string();
+  std::ofstream(machine_file_) << text;
 }
 
 Process& Plant::start_service(const std::vector<std::string>& more) {

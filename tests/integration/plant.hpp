@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "service/dds/messages.hpp"
@@ -91,6 +92,8 @@ class Plant {
 
   /// Runs service and drives from a copy of the machine file with another cycle time.
   void set_cycle_us(int cycle_us);
+  /// Changes that copy: what matches the first becomes the second, at least once each.
+  void change_machine(const std::vector<std::pair<std::string, std::string>>& changes);
 
   /// Start meridiand (best effort, recording on) or the drives, `more` on the command
   /// line.

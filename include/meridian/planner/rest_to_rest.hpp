@@ -56,9 +56,9 @@ class RestToRestPlanner {
   /// epoch that saw a program before, pieces and windows go on being counted.
   void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch) noexcept;
 
-  /// Blocks that are going to be planned, the first motion block of the program first: its approach
-  /// takes the branch and winding that carry farthest through them. Nothing is kept of them behind
-  /// that block; until then they must stay.
+  /// Blocks that are going to be planned, the first motion block of the program first: the approach
+  /// and the ways off the pole among them take the branch and winding that carry farthest. They
+  /// must stay until this is called again, or begin().
   void look_at(std::span<const ClBlock> ahead) noexcept;
 
   /// Plans and publishes one block.
@@ -80,9 +80,10 @@ class RestToRestPlanner {
   /// junction() would tell. Only where no block waits for room.
   void continue_at(const Junction& junction) noexcept;
 
-  /// Turns the free joint back off the part, where the tool rests: in `block` it would come to
-  /// `beyond`, outside travel. Refused where that cannot be.
-  [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond,
+  /// Turns the free joint back off the part, where the tool rests, to the best winding that `trial`
+  /// lets pass: in `block` it would come to `beyond`, outside travel. Refused where none does, or
+  /// where the tool cannot leave the part.
+  [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
                                   MotionWriter& writer) noexcept;
 
   /// Joints and tool length at the end of what was published.

@@ -35,11 +35,11 @@ struct SmoothSettings {
 /// published depends on the blocks and begin() alone, as long as the machine does not run dry; it
 /// then goes on from where it came to rest. Fixed store, no clock.
 ///
-/// A free joint with travel: its branch and winding at the begin of a program are those that carry
+/// A machine with a free joint: branch and winding at the begin of a program are those that carry
 /// farthest through the first kLookAhead blocks, which are therefore taken before anything is
-/// published (fewer where the program ends, or look_no_further() is called). Where it runs out of
-/// travel all the same, the machine rests, in mid-block where cuts run on, and the joint is turned
-/// back off the part if the machine's file says how (docs/motion.md, section 11).
+/// published (fewer where the program ends, or look_no_further() is called). Where the free joint
+/// runs out of travel all the same, the machine rests, in mid-block where cuts run on, and the
+/// joint is turned back off the part if the machine's file says how (docs/motion.md, section 11).
 ///
 /// A refusal may name a block that was taken before; what is published ends at rest ahead of it.
 /// Method and formulas: docs/motion.md. Context: planner thread.
@@ -62,8 +62,9 @@ class SmoothPlanner {
   [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
 
   /// Publishes what is ready, without a new block: where the port was full, or the machine ran dry
-  /// and has to be sent on. A refusal found on the way is told by the next plan().
-  void advance(MotionWriter& writer) noexcept;
+  /// and has to be sent on. kRefused, with the block: found on the way, told again by plan(); else
+  /// kOk.
+  [[nodiscard]] PlanResult advance(MotionWriter& writer) noexcept;
 
   /// No block comes for a while: the program begins with those that are there.
   void look_no_further() noexcept;

@@ -15,4 +15,12 @@ struct Unwinding {
   double retract_mm = 0;       ///< how far the tool leaves the part
 };
 
+/// Tells of every winding whether what follows an unwinding keeps travel on it.
+class WindingTrial {
+ public:
+  virtual ~WindingTrial() = default;
+  /// With the free joint turned by whole `turns` from where it rests.
+  [[nodiscard]] virtual bool fits(int turns) const noexcept = 0;
+};
+
 }  // namespace meridian

@@ -97,19 +97,26 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   return fault;
 }
 
-void Router::look_along(std::span<const ClBlock> ahead, const ToolPose& start,
-                        double tool_length_mm, Ways& ways) const noexcept {
+void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                        Ways& ways) const noexcept {
+  const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
+    return one.sequence == block.sequence;
+  });
+  if (first == ahead_.end() || ways.count < 2) return;
   std::array<AheadWay, kMaxWays> found;
   const auto count = static_cast<std::size_t>(ways.count);
   for (std::size_t n = 0; n < count; ++n) {
-    found[n] = {ways.way[n].branch, ways.way[n].joints[free_joint(model_)], 0, false};
+    found[n] = {ways.way[n].branch, ways.way[n].joints[free_joint(model_)], 0, 0, false};
   }
-  look_ahead(model_, tool_length_mm, start, ahead, {found.data(), count});
-  for (std::size_t n = 0; n < count; ++n) ways.way[n].carries = found[n].carries;
+  look_ahead(model_, tool_length_mm, start, {first, ahead_.end()}, {found.data(), count});
+  for (std::size_t n = 0; n < count; ++n) {
+    ways.way[n].carries = found[n].carries;
+    ways.way[n].cost += found[n].time_s;
+  }
+  ways.sort();
 }
 
-PathFault Router::approach(const ClBlock& block, std::span<const ClBlock> ahead, PlanCursor& cursor,
-                           Staging& out) noexcept {
+PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
                         eased(to_vector(block.axis))};
@@ -123,9 +130,9 @@ PathFault Router::approach(const ClBlock& block, std::span<const ClBlock> ahead,
       const double room = std::min(at - limits.travel_min, limits.travel_max - at);
       ways.way[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
     }
-    look_along(ahead, target, cursor.tool_length_mm, ways);
     ways.sort();
   }
+  if (free >= 0) look_along(block, target, cursor.tool_length_mm, ways);
   const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
   if (ways.count == 0) {

@@ -4,18 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meridian/geometry/great_circle.hpp"
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
 
 namespace meridian {
 namespace {
 
 constexpr double kStepShare = 0.3;       // of the distance to the pole, that the axis turns at once
+constexpr double kMostStep_rad = 0.05;   // more would miss where slides turn round
+constexpr double kArcStep_rad = 0.1;     // of an arc
 constexpr double kPoleTolerances = 2.5;  // nearer a smooth run may change the branch
 constexpr double kLeastPole_rad = 1e-3;
 constexpr int kMostSteps = 256;  // per block
-constexpr double kMargin_rad = 1e-9;
+constexpr double kMargin = 1e-9;
 
 /// One branch, followed from the start with the free joint anywhere.
 class Follower {
@@ -30,7 +35,9 @@ class Follower {
         pose_(start),
         ways_(ways) {
     const auto at = solve(model_, tool_length_mm_, start, branch_, JointVector{});
-    is_over_ = at.status != SolveStatus::kOk || pole_distance(model_, start.axis) < pole_rad_;
+    const double distance = pole_distance(model_, start.axis);
+    is_over_ = at.status != SolveStatus::kOk || distance < kPoleEase_rad;
+    has_left_pole_ = distance >= pole_rad_;
     joints_ = at.q;
     begin_ = joints_[free_];
   }
@@ -38,36 +45,60 @@ class Follower {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
   void follow(const ClBlock& block) noexcept {
-    if (is_motion(block.kind)) run_to({to_vector(block.tip_mm), to_vector(block.axis)});
+    is_tool_known_ &= block.kind != BlockKind::kTool;
+    if (is_motion(block.kind)) run(block);
     if (is_over_) return;
     for (AheadWay& way : ways_) {
-      if (way.branch == branch_ && !way.is_out) ++way.carries;
+      if (way.branch != branch_ || way.is_out) continue;
+      ++way.carries;
+      way.time_s = time_s_;
     }
   }
 
  private:
-  void run_to(ToolPose end) noexcept {
-    const auto unit = UnitVector3::near_unit(end.axis);
+  void run(const ClBlock& block) noexcept {
+    const auto unit = UnitVector3::near_unit(to_vector(block.axis));
+    const ToolPose end{to_vector(block.tip_mm), unit ? unit->vector() : Vector3::UnitZ()};
     if (!unit || !end.tip.allFinite()) {
       is_over_ = true;
       return;
     }
-    end.axis = unit->vector();
-    const GreatCircle circle = find_great_circle(pose_.axis, end.axis);
-    double turned = 0;
-    for (int n = 0; turned < circle.turn && !is_over_; ++n) {
-      const Vector3 here = std::cos(turned) * circle.begin + std::sin(turned) * circle.normal;
-      turned = std::min(circle.turn, turned + kStepShare * pole_distance(model_, here));
-      const Vector3 axis = std::cos(turned) * circle.begin + std::sin(turned) * circle.normal;
-      is_over_ = n == kMostSteps || !circle.is_unique || !put_at({end.tip, axis});
-    }
+    const PathPiece path = block.is_arc ? make_arc(pose_, end, block) : make_line(pose_, end);
     pose_ = end;
+    if (!(path.length > 0)) return;
+    const double feed_s = feed_time_s(path, block);
+    const double arc_steps = block.is_arc ? std::abs(block.sweep_rad) / kArcStep_rad : 1;
+    double share = 0;
+    for (int n = 0; share < 1 && !is_over_; ++n) {
+      const double turn =
+          std::min(kMostStep_rad,
+                   kStepShare * pole_distance(model_, pose_at(path, share * path.length).axis));
+      const double by = std::min(1 / std::max(1.0, arc_steps),
+                                 path.axis_turn > turn ? turn / path.axis_turn : 1.0);
+      const double next = n + 1 < kMostSteps ? std::min(1.0, share + by) : 1.0;
+      is_over_ =
+          n == kMostSteps || !put_at(pose_at(path, next * path.length), (next - share) * feed_s);
+      share = next;
+    }
   }
 
-  /// False: the branch cannot be followed there.
-  [[nodiscard]] bool put_at(const ToolPose& pose) noexcept {
+  [[nodiscard]] double feed_time_s(const PathPiece& path, const ClBlock& block) const noexcept {
+    if (block.kind != BlockKind::kCut || !(block.feed > 0)) return 0;
+    return block.feed_meaning == FeedMeaning::kTip ? tip_length(path) / block.feed : 1 / block.feed;
+  }
+
+  /// False: the branch cannot be followed there. `feed_s`: the time that the feed takes there.
+  [[nodiscard]] bool put_at(const ToolPose& pose, double feed_s) noexcept {
     const auto at = solve(model_, tool_length_mm_, pose, branch_, joints_);
-    if (at.status != SolveStatus::kOk || pole_distance(model_, pose.axis) < pole_rad_) return false;
+    const double distance = pole_distance(model_, pose.axis);
+    has_left_pole_ |= distance >= pole_rad_;
+    const double nearest = has_left_pole_ ? pole_rad_ : kPoleEase_rad;
+    if (at.status != SolveStatus::kOk || distance < nearest) return false;
+    double time_s = feed_s;
+    for (int i = 0; i < model_.joint_count; ++i) {
+      time_s = std::max(time_s, std::abs(at.q[i] - joints_[i]) / model_.joints[i].limits.velocity);
+    }
+    time_s_ += time_s;
     joints_ = at.q;
     bool is_any_inside = false;
     for (AheadWay& way : ways_) {
@@ -79,10 +110,12 @@ class Follower {
   }
 
   [[nodiscard]] bool is_inside(double free) const noexcept {
+    JointVector all = joints_;
+    all[free_] = free;
+    if (is_tool_known_) return first_joint_outside_travel(model_, all, kMargin) < 0;
     for (int i = 0; i < model_.joint_count; ++i) {
-      if (!model_.joints[i].is_rotary) continue;
-      const double at = i == free_ ? free : joints_[i];
-      if (!is_inside_travel(model_.joints[i], at, kMargin_rad)) return false;
+      if (model_.joints[i].is_rotary && !is_inside_travel(model_.joints[i], all[i], kMargin))
+        return false;
     }
     return true;
   }
@@ -95,7 +128,10 @@ class Follower {
   std::span<AheadWay> ways_;
   JointVector joints_{};
   double begin_ = 0;  ///< of the free joint
+  double time_s_ = 0;
   bool is_over_ = false;
+  bool has_left_pole_ = false;  ///< it was far enough from the pole once
+  bool is_tool_known_ = true;
 };
 
 }  // namespace

@@ -19,6 +19,7 @@ constexpr double kReachShare = 0.98, kHalf = 0.49;
 constexpr double kLeastReach_mm = 1e-3;
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kLeastPart_mm = 1e-6;
+constexpr double kTravelMargin = 1e-9;
 /// Of the free joint between two places at which its winding is followed.
 constexpr double kMostTurn_rad = 0.5, kLeastStep_mm = 1e-8;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
@@ -206,7 +207,8 @@ bool PoleCorridor::decide(Place place) noexcept {
   const double left = pending_.begin_index() == pending_.end_index()
                           ? emitted_u()
                           : std::max(emitted_u(), pending_.back().end);
-  if (around.is_start ? pending_.end_index() > 0 : around.core_begin <= left) return true;
+  const bool is_begun = pending_.end_index() > 0 || emitted_u() > 0;
+  if (around.is_start ? is_begun : around.core_begin <= left) return true;
   around.reach = kReach_mm;
   if (!around.is_start) around.reach = kReachShare * (around.core_begin - left);
   if (!around.is_end) {
@@ -240,13 +242,42 @@ void PoleCorridor::take(const PoleZone& zone) noexcept {
   known_ = solve(model_, tool_length_mm_, pose, branch_, reference).q;
 }
 
-void PoleCorridor::shift_free(double by) noexcept {
-  const int free = free_joint(model_);
-  if (free < 0) return;
-  known_[free] += by;
-  for (std::int64_t n = pending_.begin_index(); n < pending_.end_index(); ++n) {
-    for (double& value : pending_[n].free) value += by;
+bool PoleCorridor::is_in_zone() const noexcept {
+  return pending_.begin_index() != pending_.end_index() &&
+         pending_[pending_.begin_index()].begin < emitted_u() - kLeastPart_mm;
+}
+
+bool PoleCorridor::fits_zone(double by) const noexcept {
+  constexpr int kSamples = 64;
+  if (!is_in_zone()) return true;
+  const PoleZone& zone = pending_[pending_.begin_index()];
+  for (int n = 0; n <= kSamples; ++n) {
+    const double u = emitted_u() + n * (zone.end - emitted_u()) / kSamples;
+    const BandSpan& span = span_at(u);
+    const double free = quintic_at(zone.free, (u - zone.begin) / (zone.end - zone.begin)) + by;
+    const ToolPose pose = pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length));
+    const auto at = solve_held(model_, tool_length_mm_, pose, free);
+    if (first_joint_outside_travel(model_, at.q, kTravelMargin) >= 0) return false;
   }
+  return true;
+}
+
+void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
+  if (free_joint(model_) < 0) return;
+  const bool keeps_zone = is_in_zone();
+  PoleZone zone = keeps_zone ? pending_[pending_.begin_index()] : PoleZone{};
+  zones_ -= static_cast<int>(pending_.end_index() - pending_.begin_index());
+  pending_.drop_before(pending_.end_index());
+  cut_count_ = 0;
+  scan_ = held_.begin_index() * kProbes;
+  if (keeps_zone) {
+    for (double& value : zone.free) value += by;
+    take(zone);
+    return;
+  }
+  branch_ = out_branch_;
+  known_ = joints;
+  if (held_.begin_index() != held_.end_index()) known_u_ = emitted_u();
 }
 
 bool PoleCorridor::may_emit() const noexcept {

@@ -51,9 +51,14 @@ class PoleCorridor : private SpanLookup {
   /// Returns the next span, nullptr where more are needed; valid until the next call.
   [[nodiscard]] const JointSpan* next() noexcept;
 
-  /// The machine turned its free joint by `by` rad (whole turns) at the end of what next() gave:
-  /// the path goes on from there. What next() gave last is not touched.
-  void shift_free(double by) noexcept;
+  /// The machine turned its free joint by `by` rad (whole turns) ahead of what next() gave last,
+  /// and will be at `joints` at its end. What next() gave is not touched, a zone that it lies in
+  /// keeps its shape, all zones behind are sought anew on the winding in force now.
+  void wind(double by, const JointVector& joints) noexcept;
+
+  /// Whether what is left of the zone that next() is in, if any, stays inside travel with the free
+  /// joint turned by `by`.
+  [[nodiscard]] bool fits_zone(double by) const noexcept;
 
   /// Zones since begin(), and the farthest that any moved the axis from the programmed one.
   [[nodiscard]] int zones() const noexcept { return zones_; }
@@ -91,7 +96,10 @@ class PoleCorridor : private SpanLookup {
   void add_cut(double u) noexcept;
   /// Joints of the exact way at `u`, the windings followed from where they are known.
   [[nodiscard]] JointVector follow_to(double u) const noexcept;
+  /// `zone` is the last one: branch and winding behind it are known.
   void take(const PoleZone& zone) noexcept;
+  /// Whether a zone is partly out.
+  [[nodiscard]] bool is_in_zone() const noexcept;
   [[nodiscard]] bool may_emit() const noexcept;
   void emit() noexcept;
 

@@ -83,7 +83,8 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
 
 PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
                              PlanCursor& cursor, Staging& out) noexcept {
-  const Ways ways = find_ways(end, cursor);
+  Ways ways = find_ways(end, cursor);
+  look_along(job.block, end, cursor.tool_length_mm, ways);
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
   if (ways.count == 0) {
     const auto at = solve(model_, cursor.tool_length_mm, end, 0, cursor.joints);
@@ -126,9 +127,10 @@ bool Router::is_straight_passage(const PathPiece& path, double free_end,
 
 PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double share,
                             const Job& job, PlanCursor& cursor, Staging& out) noexcept {
-  const Ways ways = find_ways(end, cursor);
+  Ways ways = find_ways(end, cursor);
+  look_along(job.block, end, cursor.tool_length_mm, ways);
   const int free = free_joint(model_);
-  for (int n = 0; n < ways.count; ++n) {
+  for (int n = 0; n < ways.count && ways.way[n].carries == ways.way[0].carries; ++n) {
     const double free_end = ways.way[n].joints[free];
     if (!is_straight_passage(path, free_end, cursor)) continue;
     PlanCursor trial = cursor;

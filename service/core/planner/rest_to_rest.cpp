@@ -53,10 +53,9 @@ struct RestToRestPlanner::Workspace {
   ToolTable tools;
   Router router;
   Staging staging;
-  PlanCursor cursor;               ///< end of what is published
-  PlanCursor next;                 ///< end of what is staged
-  PlanResult result;               ///< of what is staged
-  std::span<const ClBlock> ahead;  ///< the first motion block and those behind it
+  PlanCursor cursor;  ///< end of what is published
+  PlanCursor next;    ///< end of what is staged
+  PlanResult result;  ///< of what is staged
   bool is_staged = false;
   bool is_refused = false;
 
@@ -71,10 +70,10 @@ struct RestToRestPlanner::Workspace {
   void stage_barrier(const ClBlock& block) noexcept;
   /// Whether `fault` is one that turning the free joint back may help.
   [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
-  /// Stages an unwinding and, unless `is_alone`, `block` behind it, from `next`; or tells why that
-  /// cannot be: `fault` of the block without one.
+  /// Stages an unwinding from `next`, to a winding that `trial` lets pass, or without one with
+  /// `block` behind it; or tells why that cannot be: `fault` of the block without one.
   [[nodiscard]] PathFault unwind(const ClBlock& block, const PathFault& fault,
-                                 bool is_alone) noexcept;
+                                 const WindingTrial* trial) noexcept;
   /// All of what is staged is there.
   void finish_staging() noexcept {
     next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
@@ -88,16 +87,17 @@ bool RestToRestPlanner::Workspace::may_unwind(const PathFault& fault) const noex
 }
 
 PathFault RestToRestPlanner::Workspace::unwind(const ClBlock& block, const PathFault& fault,
-                                               bool is_alone) noexcept {
+                                               const WindingTrial* trial) noexcept {
   const PlanCursor rest = next;
   const Staging::Mark mark = staging.mark();
   const double from = rest.joints[fault.joint];
   UnwindChoice choice(model.joints[fault.joint].limits, from, fault.value);
   for (int turns = choice.next(); turns != 0; turns = choice.next()) {
+    if (trial != nullptr && !trial->fits(turns)) continue;
     if (router.unwind(block, turns, next, staging).kind == PathFault::Kind::kNone) {
       ++next.window;
       result.unwinding = {block.sequence, block.line, turns, from, model.unwind_retract_mm};
-      if (is_alone) return {};
+      if (trial != nullptr) return {};
       if (router.route(block, next, staging).kind == PathFault::Kind::kNone) {
         ++next.window;
         return {};
@@ -136,7 +136,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   };
   PathFault fault;
   if (next.is_first) {
-    fault = router.approach(block, ahead, next, staging);
+    fault = router.approach(block, next, staging);
     result.axis_deviation_rad = router.axis_deviation_rad();
     next.is_first = false;
     count_window(0);
@@ -151,7 +151,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     if (may_unwind(fault)) {
       staging.go_back(before);
       next = rest;
-      fault = unwind(block, fault, false);
+      fault = unwind(block, fault, nullptr);
     } else {
       count_window(before.times);
     }
@@ -204,7 +204,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
     cursor.window = w.cursor.window;
   }
   w.cursor = cursor;
-  w.ahead = {};
+  w.router.look_at({});
   w.cursor.joints = at_rest;
   w.cursor.tool_length_mm = tool_length_mm;
   w.cursor.epoch = epoch;
@@ -221,10 +221,10 @@ PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) n
 }
 
 void RestToRestPlanner::look_at(std::span<const ClBlock> ahead) noexcept {
-  workspace_->ahead = ahead;
+  workspace_->router.look_at(ahead);
 }
 
-PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond,
+PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
                                      MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.is_refused) return w.result;
@@ -233,7 +233,7 @@ PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond,
     w.next = w.cursor;
     w.result = {};
     PathFault fault{PathFault::Kind::kTravel, free_joint(w.model), beyond};
-    if (w.may_unwind(fault)) fault = w.unwind(block, fault, true);
+    if (w.may_unwind(fault)) fault = w.unwind(block, fault, &trial);
     if (fault.kind != PathFault::Kind::kNone) {
       w.refuse(block, code_of(fault.kind), fault.joint, fault.value);
       return w.result;

@@ -33,11 +33,13 @@ class Router {
   /// Plans the way from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
   [[nodiscard]] PathFault route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
-  /// Brings the first block's begin under the tool. `ahead`: the block and those behind it, as far
-  /// as they are known; branch and winding are those that carry farthest through them, of these the
-  /// nearest.
-  [[nodiscard]] PathFault approach(const ClBlock& block, std::span<const ClBlock> ahead,
-                                   PlanCursor& cursor, Staging& out) noexcept;
+  /// Blocks that are known, among them those that are planned: where branch and winding can be
+  /// chosen, the ways that carry farthest through them come first, of these the cheapest. Empty:
+  /// the nearest. They stay as they are until this is called again.
+  void look_at(std::span<const ClBlock> ahead) noexcept { ahead_ = ahead; }
+
+  /// Brings the first block's begin under the tool.
+  [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
   /// Turns the free joint by whole `turns` off the part and comes back to where the tool rests, as
   /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
@@ -83,7 +85,8 @@ class Router {
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
   [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
-  void look_along(std::span<const ClBlock> ahead, const ToolPose& start, double tool_length_mm,
+  /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it.
+  void look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                   Ways& ways) const noexcept;
   [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;
   [[nodiscard]] PathFault run(const PathPiece& path, const Job& job, double share,
@@ -126,6 +129,7 @@ class Router {
 
   const MachineModel& model_;
   LegPlanner legs_;
+  std::span<const ClBlock> ahead_;
   double deviation_rad_ = 0;
 };
 

@@ -23,18 +23,15 @@ constexpr double kOnPoleShare = 0.2;
 constexpr double kSamePlace = 1e-9;       // mm and of the unit axis: rounding of joints
 constexpr std::size_t kUnwindings = 256;  // that wait to be taken; the oldest go
 
-/// Whether the free joint may run out of travel.
-bool has_travel(const MachineModel& model) noexcept {
-  const int free = free_joint(model);
-  return free >= 0 && !model.joints[free].is_endless;
-}
+/// Whether there is a branch to choose.
+bool has_branches(const MachineModel& model) noexcept { return free_joint(model) >= 0; }
 
 }  // namespace
 
 struct SmoothPlanner::Workspace {
   Workspace(const MachineModel& m, ToolTable t)
       : model(m), plain(m, std::move(t)), run(m), unwindings(kUnwindings) {
-    if (has_travel(m)) waiting.reserve(kLookAhead);
+    if (has_branches(m)) waiting.reserve(kLookAhead);
   }
 
   [[nodiscard]] BandTolerance tolerance() const noexcept {
@@ -184,7 +181,7 @@ bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
   ClBlock block;
   block.sequence = where.sequence;
   block.line = where.line;
-  const PlanResult result = plain.unwind(block, where.value, writer);
+  const PlanResult result = plain.unwind(block, where.value, run, writer);
   if (result.status == PlanStatus::kRefused) refuse(result);
   if (result.status != PlanStatus::kOk) return false;
   note(result.unwinding);
@@ -213,7 +210,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   w.is_refused = w.is_for_plain = false;
   w.waiting.clear();
   w.first_waiting = 0;
-  w.is_looking = has_travel(w.model);
+  w.is_looking = has_branches(w.model);
   w.pose = w.plain.junction().pose;
   w.joints = at_rest;
 }
@@ -291,10 +288,11 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   return w.is_refused ? w.refusal : PlanResult{};
 }
 
-void SmoothPlanner::advance(MotionWriter& writer) noexcept {
+PlanResult SmoothPlanner::advance(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_refused || w.is_looking) return;
-  if (plan_what_waits(writer) && w.is_running) (void)w.publish(writer);
+  const bool may_publish = !w.is_refused && !w.is_looking;
+  if (may_publish && plan_what_waits(writer) && w.is_running) (void)w.publish(writer);
+  return w.is_refused ? w.refusal : PlanResult{};
 }
 
 bool SmoothPlanner::take_unwinding(Unwinding& out) noexcept {

@@ -31,6 +31,7 @@ SmoothRun::SmoothRun(const MachineModel& model)
       corridor_(model),
       feed_(model, feed_settings(model)),
       authority_(model),
+      travel_(model),
       spans_(kSpans),
       eases_(kEases) {}
 
@@ -53,7 +54,8 @@ void SmoothRun::begin_feed(int branch) noexcept {
   feed_.begin(start_.joints, branch, start_.tool_length_mm);
   spans_.clear();
   staged_spans_ = 0;
-  span_joints_ = followed_ = start_.joints;
+  span_joints_ = start_.joints;
+  travel_.begin(start_.joints, start_.tool_length_mm);
   window_ = start_.window;
   open_.fill({});
   has_window_ = is_feed_finished_ = false;
@@ -61,14 +63,19 @@ void SmoothRun::begin_feed(int branch) noexcept {
 
 void SmoothRun::go_on(const JointVector& joints, int turns, std::uint64_t path_index,
                       std::uint32_t window) noexcept {
+  const double by = turns * kTurn_rad;
+  corridor_.wind(by, travel_.end_of(held_, by));
   start_.joints = joints;
   start_.path_index = path_index;
   start_.window = window;
-  const double by = turns * kTurn_rad;
-  corridor_.shift_free(by);
   for (double& value : held_.free) value += by;
   begin_feed(held_.branch);
   is_just_unwound_ = true;
+}
+
+bool SmoothRun::fits(int turns) const noexcept {
+  const double by = turns * kTurn_rad;
+  return travel_.fits(held_, by) && corridor_.fits_zone(by);
 }
 
 void SmoothRun::take(const ClBlock& block) noexcept {
@@ -167,47 +174,12 @@ void SmoothRun::fail_on_span() noexcept {
 }
 
 bool SmoothRun::follow(const JointSpan& span) noexcept {
-  constexpr int kSteps = 8;
-  constexpr double kMargin_rad = 1e-4;   // and a quarter of the way, for what lies between
-  constexpr double kNoWay_rad = 1e-9;    // a joint at the end of travel that leaves it is inside
-  constexpr double kMostTurn_rad = 0.5;  // between two places, so that no turn is missed
-  constexpr double kLeastShare = 1e-6;
-  const int free = free_joint(model_);
-  const double length = span.band.length;
-  const auto joints_of = [&](double x, const JointVector& reference) {
-    const ToolPose pose = pose_on(span.band.c, x);
-    return span.is_free_driven
-               ? solve_held(model_, start_.tool_length_mm, pose, quintic_at(span.free, x / length))
-               : solve(model_, start_.tool_length_mm, pose, span.branch, reference);
-  };
-  JointVector at = followed_;
-  const double begin = at[free];
-  double low = begin, high = begin, step = length / kSteps;
-  for (double x = 0; x < length;) {
-    const double next = std::min(length, x + step);
-    const auto there = joints_of(next, at);
-    if (there.status == SolveStatus::kUnreachable) return true;  // the feed finds it too
-    if (std::abs(there.q[free] - at[free]) > kMostTurn_rad && step > kLeastShare * length) {
-      step *= 0.5;
-      continue;
-    }
-    at = there.q;
-    x = next;
-    step = std::min(2 * step, length / kSteps);
-    low = std::min(low, at[free]);
-    high = std::max(high, at[free]);
+  const auto outside = travel_.follow(span);
+  if (outside) {
+    unwind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween,
+                  free_joint(model_), *outside};
   }
-  const JointLimits& limits = model_.joints[free].limits;
-  const double margin = kMargin_rad + 0.25 * (high - low);
-  const bool is_above = high > begin + kNoWay_rad && high + margin > limits.travel_max;
-  const bool is_below = low < begin - kNoWay_rad && low - margin < limits.travel_min;
-  if (is_above || is_below) {
-    unwind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween, free,
-                  is_above ? high + margin : low - margin};
-    return false;
-  }
-  followed_ = at;
-  return true;
+  return !outside;
 }
 
 void SmoothRun::note_ease(const JointSpan* span) noexcept {

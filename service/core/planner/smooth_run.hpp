@@ -9,8 +9,10 @@
 #include "meridian/path/block_reject.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/unwinding.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed_authority.hpp"
+#include "service/core/planner/free_travel.hpp"
 #include "service/core/planner/pole_corridor.hpp"
 #include "service/core/planner/rolling_feed.hpp"
 
@@ -31,7 +33,7 @@ struct RunStart {
 
 /// A stretch of program without a rest: from blocks through spline and feed to windows in the port.
 /// It starts and ends at rest.
-class SmoothRun {
+class SmoothRun : public WindingTrial {
  public:
   enum class Status : std::uint8_t {
     kPublished,    ///< publish_window() alone: a window was published, call again
@@ -66,6 +68,9 @@ class SmoothRun {
 
   /// Where the free joint runs out of travel: the block, and `value` outside travel.
   [[nodiscard]] const BlockReject& unwind_at() const noexcept { return unwind_at_; }
+  /// Behind kUnwind: whether the span that would have left travel fits with the free joint turned
+  /// by whole `turns`, with the rest of a zone that it lies in.
+  [[nodiscard]] bool fits(int turns) const noexcept override;
   /// Behind kUnwind: the free joint was turned by whole `turns`, the machine rests at `joints` in
   /// the same place; the names are those of what follows.
   void go_on(const JointVector& joints, int turns, std::uint64_t path_index,
@@ -113,6 +118,7 @@ class SmoothRun {
   PoleCorridor corridor_;
   RollingFeed feed_;
   FeedAuthority authority_;
+  FreeTravel travel_;
   IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
   RunStart start_;
   std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
@@ -122,7 +128,6 @@ class SmoothRun {
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false, is_feed_finished_ = false;
   bool follows_free_ = false;     ///< the free joint has travel and may be turned back
-  JointVector followed_{};        ///< at the end of the last span that the feed took
   bool is_held_ = false;          ///< held_ waits for an unwinding
   bool is_just_unwound_ = false;  ///< nothing was taken since
   JointSpan held_;

@@ -107,7 +107,9 @@ class PlannedRun {
       is_refused_ = result.status == PlanStatus::kRefused;
       next_ += is_refused_ ? 0 : 1;
     }
-    if constexpr (requires { planner_.advance(writer_); }) planner_.advance(writer_);
+    if constexpr (requires { planner_.advance(writer_); }) {
+      is_refused_ |= planner_.advance(writer_).status == PlanStatus::kRefused;
+    }
   }
 
   Planner planner_;

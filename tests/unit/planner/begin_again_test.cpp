@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "support/machines.hpp"
 
 namespace meridian {
@@ -38,6 +40,51 @@ TEST(RestToRestPlanner, GivesNoPathIndexTwiceToTwoProgramsOfAnEpoch) {
     EXPECT_GT(moves, 0);
     joints = planner.joints();
   }
+}
+
+class LeastTurn final : public WindingTrial {
+ public:
+  [[nodiscard]] bool fits(int turns) const noexcept override { return std::abs(turns) < 2; }
+};
+
+TEST(RestToRestPlanner, TurnsTheFreeJointBackToTheBestWindingThatFitsWhatFollows) {
+  MachineModel model = test::lai_machine();  // C two turns either way
+  model.unwind_policy = UnwindPolicy::kRetract;
+  model.unwind_retract_mm = 20;
+  const auto port = std::make_unique<MotionPort>();
+  MotionWriter writer(*port);
+  RestToRestPlanner planner(model);
+  JointVector joints{};
+  joints[3] = 12;
+  planner.begin(joints, model.tool_length_mm, 1);
+  ClBlock block;
+  block.sequence = 7;
+  const PlanResult result = planner.unwind(block, 13, LeastTurn{}, writer);
+  EXPECT_EQ(result.status, PlanStatus::kOk);
+  EXPECT_EQ(result.unwinding.turns, -1) << "three turns back there would be more room";
+  EXPECT_NEAR(planner.joints()[3], 12 - kTurn_rad, 1e-12);
+}
+
+/// Nobody waits for a block that will not come to hear of one that was refused.
+TEST(SmoothPlanner, TellsAtOnceOfARefusalThatItFindsWithoutABlock) {
+  const MachineModel model = test::lai_machine();
+  const auto port = std::make_unique<MotionPort>();
+  MotionWriter writer(*port);
+  SmoothPlanner planner(model);
+  planner.begin(JointVector{}, model.tool_length_mm, 1);
+  ClBlock block;
+  block.kind = BlockKind::kRapid;
+  block.sequence = 3;
+  block.tip_mm = {5000, 0, 0};  // farther than any slide goes
+  block.axis = {0, 0, 1};
+  ASSERT_EQ(planner.plan(block, writer).status, PlanStatus::kOk) << "more may come to look at";
+  EXPECT_EQ(planner.advance(writer).status, PlanStatus::kOk);
+  planner.look_no_further();
+  const PlanResult found = planner.advance(writer);
+  EXPECT_EQ(found.status, PlanStatus::kRefused);
+  EXPECT_EQ(found.reject.sequence, 3U);
+  EXPECT_EQ(found.reject.code, RejectCode::kTravel);
+  EXPECT_EQ(planner.plan(block, writer).status, PlanStatus::kRefused);
 }
 
 }  // namespace
