@@ -5,8 +5,9 @@
 ///
 /// A file is simulated and its recording judged as `meridian check` does; shares of 1 are the whole
 /// of a limit or a tolerance. Throughput is the planner's alone: seconds of motion per second of
-/// CPU time, and which share of the motion that a window yields planning it took (median, 99 %,
-/// most).
+/// CPU time, and which share of the motion that a window yields it took (median, 99 %, most): from
+/// the window before to this one, blocks taken, spline, plan and authority. Every run is done three
+/// times, the least cost of a window counts: the plan is the same, what else the host does is not.
 
 #include <unistd.h>
 
@@ -35,7 +36,7 @@ void print_cost(const bench::SmoothTotal& total) {
   std::int64_t blocks = 0;
   for (const bench::WindowCost& window : total.windows) {
     shares.push_back(window.share());
-    cpu_s += window.intake_s + window.planning_s;
+    cpu_s += window.cpu_s;
     motion_s += window.motion_s;
     blocks += window.blocks;
   }
@@ -46,22 +47,39 @@ void print_cost(const bench::SmoothTotal& total) {
               shares[shares.size() * 99 / 100], shares.back(), total.has_failed ? " FAILED" : "");
 }
 
-void print_made_up() {
-  const auto windows = std::make_unique<bench::SmoothWindows>(test::bench_machine());
-  for (const double step : {0.0001, 0.002, 0.05, 0.3}) {
+/// Runs all of `programs`, three times.
+bench::SmoothTotal run(const MachineModel& model,
+                       const std::vector<std::vector<ClBlock>>& programs) {
+  bench::SmoothTotal least;
+  for (int n = 0; n < 3; ++n) {
+    const auto windows = std::make_unique<bench::SmoothWindows>(model);
     bench::SmoothTotal total;
+    for (const auto& blocks : programs) windows->run(blocks, total);
+    if (n == 0) {
+      least = total;
+    } else {
+      least.keep_least(total);
+    }
+  }
+  return least;
+}
+
+void print_made_up() {
+  const MachineModel model = test::bench_machine();
+  for (const double step : {0.0001, 0.002, 0.05, 0.3}) {
     const double feed = step < 0.001 ? 5 : 50;  // mm/s
     const int blocks = static_cast<int>(std::min(1e6, 500 / step));
-    windows->run(bench::dense_blocks(blocks, step, feed), total);
+    const auto total = run(model, {bench::dense_blocks(blocks, step, feed)});
     std::printf("dense, %.4f mm    ", step);
     print_cost(total);
   }
   for (const bool is_at_pole : {false, true}) {
-    bench::SmoothTotal total;
+    std::vector<std::vector<ClBlock>> programs;
     for (std::uint32_t seed = 1; seed <= 40; ++seed) {
       auto path = is_at_pole ? test::HostilePath(seed, 0, 0.087) : test::HostilePath(seed);
-      windows->run(path.make(8), total);
+      programs.push_back(path.make(8));
     }
+    const auto total = run(model, programs);
     std::printf(is_at_pole ? "hostile, at a pole" : "hostile           ");
     print_cost(total);
   }
@@ -121,10 +139,7 @@ void print_file(const std::string& file, const MachineModel& model) {
     if ((*block)->kind == BlockKind::kCut) cuts.push_back(**block);
   }
   if (cuts.empty()) return;
-  const auto windows = std::make_unique<bench::SmoothWindows>(model);
-  bench::SmoothTotal total;
-  windows->run(cuts, total);
-  print_cost(total);
+  print_cost(run(model, {cuts}));
 }
 
 }  // namespace

@@ -367,6 +367,8 @@ void PoleCorridor::scan() noexcept {
         is_start || is_end ||
         (before < scan_ && here < kNear_rad && here <= distance_of(before) && here < behind);
     if (is_minimum) {
+      // Not before a span waits for it: searches are dear, and so no two come at once.
+      if (may_emit() && !held_.is_full()) return;
       if (!decide(scan_)) return;
     } else {
       ++scan_;

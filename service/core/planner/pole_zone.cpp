@@ -24,14 +24,32 @@ constexpr double kTravelMargin = 1e-9;
 constexpr double kLeastPart_mm = 1e-4;
 
 template <class S>
-Pose<S> pose_of(const PoleTask& task, double u) noexcept {
-  const BandSpan& span = task.spans.span_at(u);
+Pose<S> pose_of(const BandSpan& span, double u) noexcept {
   const double x = std::clamp(u - span.u0, 0.0, span.length);
   if constexpr (std::is_same_v<S, double>) {
     return pose_on(span.c, x);
   } else {
     return pose_on(span.c, S::variable(x));
   }
+}
+
+template <class S>
+Pose<S> pose_of(const PoleTask& task, double u) noexcept {
+  return pose_of<S>(task.spans.span_at(u), u);
+}
+
+/// The quintic at the share `t` of its range of length `h`, with its derivatives by u: they are
+/// differences of what de Casteljau's steps leave.
+Jet<3> free_at(const FreeQuintic& values, double t, double h) noexcept {
+  FreeQuintic level = values;
+  std::array<double, 4> out{};  // by the share
+  for (std::size_t left = 6; left > 1; --left) {
+    if (left == 4) out[3] = 60 * (level[3] - 3 * level[2] + 3 * level[1] - level[0]);
+    if (left == 3) out[2] = 20 * (level[2] - 2 * level[1] + level[0]);
+    if (left == 2) out[1] = 5 * (level[1] - level[0]);
+    for (std::size_t n = 0; n + 1 < left; ++n) level[n] += (level[n + 1] - level[n]) * t;
+  }
+  return Jet<3>::from_derivatives({level[0], out[1] / h, out[2] / (h * h), out[3] / (h * h * h)});
 }
 
 /// Largest value that a smooth function may have about the middle of three samples: there, or at
@@ -43,17 +61,18 @@ double top_of(double left, double middle, double right) noexcept {
 }
 
 /// Time per u at which the joints can follow, seconds per mm.
-double slowness(const PoleTask& task, double u, const Pose<Jet<3>>& pose,
+double slowness(const MachineModel& model, const BandSpan& span, const Pose<Jet<3>>& pose,
                 const Joints<Jet<3>>& q) noexcept {
-  const BandSpan& span = task.spans.span_at(u);
   double tip = 0;
   for (int i = 0; i < 3; ++i) tip += pose.tip[i].derivative(1) * pose.tip[i].derivative(1);
   double most = std::max(std::sqrt(tip) / span.feed_mm_per_s, 1 / span.u_speed_mm_per_s);
-  for (int i = 0; i < task.model.joint_count; ++i) {
-    const JointLimits& limits = task.model.joints[i].limits;
-    most = std::max({most, std::abs(q[i].derivative(1)) / limits.velocity,
-                     std::sqrt(std::abs(q[i].derivative(2)) / limits.acceleration),
-                     std::cbrt(std::abs(q[i].derivative(3)) / limits.jerk)});
+  for (int i = 0; i < model.joint_count; ++i) {
+    const JointLimits& limits = model.joints[i].limits;
+    most = std::max(most, std::abs(q[i].derivative(1)) / limits.velocity);
+    const double bend = std::abs(q[i].derivative(2)) / limits.acceleration;
+    if (bend > most * most) most = std::sqrt(bend);
+    const double twist = std::abs(q[i].derivative(3)) / limits.jerk;
+    if (twist > most * most * most) most = std::cbrt(twist);
   }
   return most;
 }
@@ -69,12 +88,13 @@ class OutsideTime {
     for (int k = 0; k < kNodes; ++k) {
       const double far = distance(k), near = distance(k + 1);
       const double u = core + side * 0.5 * (far + near);
-      const auto pose = pose_of<Jet<3>>(task, u);
+      const BandSpan& span = task.spans.span_at(u);
+      const auto pose = pose_of<Jet<3>>(span, u);
       const auto at = solve(task.model, task.tool_length_mm, pose, place.branch, joints);
       const bool is_there = at.status != SolveStatus::kUnreachable;
       for (int i = 0; is_there && i < task.model.joint_count; ++i) joints[i] = value_of(at.q[i]);
       free_[k] = joints[free_joint(task.model)];
-      const double time = (far - near) * slowness(task, u, pose, at.q);
+      const double time = (far - near) * slowness(task.model, span, pose, at.q);
       sum_[k + 1] = sum_[k] + (std::isfinite(time) ? time : 0);
     }
   }
@@ -214,22 +234,23 @@ class Search {
     double sum = 0;
     for (int k = 0; k < kSteps && sum <= most; ++k) {
       const double t = (k + 0.5) / kSteps, u = zone.begin + t * h;
-      const auto pose = pose_of<Jet<3>>(task_, u);
-      const auto held = solve_held(task_.model, task_.tool_length_mm, pose,
-                                   quintic_at(zone.free, Jet<3>::with_derivative(t, 1 / h)));
-      sum += h / kSteps * slowness(task_, u, pose, held.q);
+      const BandSpan& span = task_.spans.span_at(u);
+      const auto pose = pose_of<Jet<3>>(span, u);
+      const auto held =
+          solve_held(task_.model, task_.tool_length_mm, pose, free_at(zone.free, t, h));
+      sum += h / kSteps * slowness(task_.model, span, pose, held.q);
     }
     return sum;
   }
 
   /// Of the way without a zone: at the core the free joint turns from one side to the other.
   [[nodiscard]] double exact_time() const noexcept {
-    const auto free_at = [this](double u) {
+    const auto exact_at = [this](double u) {
       return solve(task_.model, task_.tool_length_mm, pose_of<double>(task_, u), place_.branch, {})
           .q[free_];
     };
-    const double turn = free_at(place_.core_end + behind_.innermost()) -
-                        free_at(place_.core_begin - before_.innermost());
+    const double turn = exact_at(place_.core_end + behind_.innermost()) -
+                        exact_at(place_.core_begin - before_.innermost());
     return before_.whole() + behind_.whole() +
            std::abs(std::remainder(turn, 2 * std::numbers::pi)) /
                task_.model.joints[free_].limits.velocity;
