@@ -14,6 +14,7 @@ namespace meridian::cli {
 
 using text::append;
 using text::Count;
+using text::json_number;
 using text::json_quoted;
 
 namespace {
@@ -88,14 +89,18 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,
          "\"block\":%llu,\"block_count\":%llu,\"line\":%u,\"blocks_received\":%llu,"
-         "\"blocks_done\":%llu,\"blocks_queued\":%u,\"planned_s\":%.3f,",
+         "\"blocks_done\":%llu,\"blocks_queued\":%u,",
          Count{status.block}, Count{status.block_count}, status.line, Count{status.blocks_received},
-         Count{status.blocks_done}, status.blocks_queued, status.planned_s);
-  append(text,
-         "\"feed_programmed_mm_per_min\":%.6g,\"feed_achieved_mm_per_min\":%.6g,"
-         "\"feed_override\":%.6g,\"rapid_override\":%.6g,\"plan_time_s\":%.6f,",
-         status.feed_programmed_mm_per_min, status.feed_achieved_mm_per_min, status.feed_override,
-         status.rapid_override, status.plan_time_s);
+         Count{status.blocks_done}, status.blocks_queued);
+  const auto add = [&text](const std::string& name, const char* format, double value) {
+    text += json_quoted(name) + ":" + json_number(format, value) + ",";
+  };
+  add("planned_s", "%.3f", status.planned_s);
+  add("feed_programmed_mm_per_min", "%.6g", status.feed_programmed_mm_per_min);
+  add("feed_achieved_mm_per_min", "%.6g", status.feed_achieved_mm_per_min);
+  add("feed_override", "%.6g", status.feed_override);
+  add("rapid_override", "%.6g", status.rapid_override);
+  add("plan_time_s", "%.6f", status.plan_time_s);
   append(text,
          "\"cycles_run\":%llu,\"periods_lost\":%llu,\"starvations\":%llu,"
          "\"batches_dropped\":%llu,\"batches_lost\":%llu,\"records_overrun\":%llu,"
@@ -107,8 +112,8 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "enforced" : "best_effort",
          status.is_secured ? "true" : "false");
   for (std::size_t i = 0; i < joint_count(machine); ++i) {
-    append(text, "\"%s_%s\":%.17g,", machine.joints[i].name.c_str(),
-           machine.joints[i].is_rotary ? "rad" : "mm", status.joints[i]);
+    const dds::JointInfo& joint = machine.joints[i];
+    add(joint.name + (joint.is_rotary ? "_rad" : "_mm"), "%.17g", status.joints[i]);
   }
   append(text, "\"message\":%s}", json_quoted(status.message).c_str());
   return text;

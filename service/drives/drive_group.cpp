@@ -7,6 +7,16 @@
 #include "meridian/kinematics/limited.hpp"
 
 namespace meridian::drives {
+namespace {
+
+/// What no drive is ever told, mm or rad and per second: beyond it sums of setpoints lose meaning.
+constexpr double kBeyondAnything = 1e9;
+
+[[nodiscard]] bool is_sane(double value) noexcept {
+  return std::abs(value) < kBeyondAnything;  // false for what is no number
+}
+
+}  // namespace
 
 DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag)
     : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9), bridge_cycles_(model.bridge_cycles) {
@@ -43,13 +53,12 @@ void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
 }
 
 void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
-  const bool is_finite = std::all_of(drives_.begin(), drives_.end(), [&](const Drive& drive) {
+  const bool is_sound = std::all_of(drives_.begin(), drives_.end(), [&](const Drive& drive) {
     const auto i = static_cast<std::size_t>(&drive - drives_.data());
-    return std::isfinite(setpoint.setpoint.position[i]) &&
-           std::isfinite(setpoint.setpoint.velocity[i]);
+    return is_sane(setpoint.setpoint.position[i]) && is_sane(setpoint.setpoint.velocity[i]);
   });
   const bool is_newer = !has_setpoint_ || setpoint.setpoint.cycle > newest_.setpoint.cycle;
-  if (!is_finite || (!is_newer && !is_off())) return;
+  if (!is_sound || (!is_newer && !is_off())) return;
   newest_ = setpoint;
   has_setpoint_ = is_new_ = true;
   ++setpoints_seen_;

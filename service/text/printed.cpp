@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/text/printed.hpp"
 
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
 namespace meridian::text {
 
 void append(std::string& text, const char* format, ...) {
-  char line[512];
   std::va_list arguments;
   va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
+  std::va_list again;
+  va_copy(again, arguments);
+  const int size = std::vsnprintf(nullptr, 0, format, arguments);
   va_end(arguments);
-  text += line;
+  const std::size_t before = text.size();
+  if (size > 0) {
+    text.resize(before + static_cast<std::size_t>(size));
+    std::vsnprintf(text.data() + before, static_cast<std::size_t>(size) + 1, format, again);
+  }
+  va_end(again);
 }
 
 std::string json_quoted(const std::string& text) {
@@ -29,6 +36,13 @@ std::string json_quoted(const std::string& text) {
     }
   }
   return out + '"';
+}
+
+std::string json_number(const char* format, double value) {
+  if (!std::isfinite(value)) return "null";
+  std::string out;
+  append(out, format, value);
+  return out;
 }
 
 }  // namespace meridian::text

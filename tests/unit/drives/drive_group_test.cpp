@@ -76,6 +76,11 @@ TEST_F(Group, ASetpointThatIsNoNumberIsNotFollowed) {
   send(std::numeric_limits<double>::quiet_NaN());
   group_.work(1);
   EXPECT_EQ(group_.feedback().position[0], 1);
+  send(1e308);
+  group_.work(1);
+  send(1, kSetpointEnabled, -1e308);
+  group_.work(1);
+  EXPECT_EQ(group_.feedback().position[0], 1) << "sums of such numbers overflow";
 }
 
 TEST_F(Group, ObeysOneServiceUntilItIsOff) {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+
+#include "fuzz/fuzz_targets.hpp"
+#include "service/cl/cl_points.hpp"
+#include "service/cl/cl_reader.hpp"
+
+namespace meridian::fuzz {
+namespace {
+
+constexpr double kUnit = 1e-12;
+
+void check_motion(const ClBlock& block) {
+  require(to_vector(block.tip_mm).allFinite(), "a tip that is no number");
+  require(std::abs(to_vector(block.axis).norm() - 1) < kUnit, "a tool axis that is no unit vector");
+  if (block.kind == BlockKind::kCut) {
+    require(std::isfinite(block.feed) && block.feed > 0, "a cut without feed");
+  }
+  if (!block.is_arc) return;
+  require(std::abs(to_vector(block.normal).norm() - 1) < kUnit, "an arc without a normal");
+  require(block.sweep_rad > 0 && block.sweep_rad <= 2 * std::numbers::pi, "an arc without a sweep");
+}
+
+}  // namespace
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "found: %s\n", what);
+  std::abort();
+}
+
+void read_cl(Bytes bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  cl::ClReader reader(text, "fuzz");
+  std::uint64_t sequence = 0;
+  bool has_ended = false;
+  for (;;) {
+    const auto block = reader.next();
+    if (!block) {
+      require(!block.error().message.empty(), "an error without words");
+      require(block.error().line <= reader.summary().lines + 1, "an error behind the file");
+      return;
+    }
+    if (!*block) break;
+    require(!has_ended, "a block behind the end");
+    require((*block)->sequence == sequence++, "a block is missing");
+    has_ended = (*block)->kind == BlockKind::kEnd;
+    if (is_motion((*block)->kind)) check_motion(**block);
+  }
+  require(has_ended, "a program without an end that is no error");
+}
+
+Seeds cl_seeds() {
+  constexpr std::string_view kPrograms[] = {
+      "PARTNO A\nUNITS/MM\nFROM/0,0,50,0,0,1\nRAPID\nGOTO/10,0,20\nFEDRAT/PERMIN,141\n"
+      "GOTO/10.,.0,5.$\n.0,.6,-.8\nCIRCLE/0,0,5,0,0,1,10\nGOTO/0,10,5\nFINI\n",
+      "$$ISO\r\nPARTNO B\r\nUNITS/INCH\r\nMULTAX/ON\r\nMSYS/0,0,0,1,0,0,0,1,0\r\nTRNTYP/LOCAL\r\n"
+      "CUTTER/10.,5.,$\r\n5.\r\nLOAD/TOOL,4\r\nSPINDL/RPM,7957.75,CLW\r\nCOOLNT/FLOOD\r\n"
+      "FEDRAT/0.1,MMPR\r\nGODLTA/0,0,1\r\nEND\r\nFINI\r\n",
+      "PARTNO C\nUNITS/MM\nFEDRAT/INVERS,60\nGODLTA/-1\nGOTO/10,0,5\nINDIRV/0,1,0\n"
+      "TLON,GOFWD/ (CIRCLE/ 0,0,5,$\n10.0),ON,(LINE/ 0,0,5,-10,0,5)\nDELAY/1.5\nSTOP\nOPSTOP\n"
+      "AUXFUN/8\nPPRINT/BEGIN-SECTION,A\nTLAXIS/0,0,1\nGOTO/1 2 3 0 0 1\nSPINDL/OFF\nFINI\n",
+      "$$*CATIA0\n$$ 001\n$$ 1 0 0 0\n$$ 0 1 0 0\n$$ 0 0 1 0\nPARTNO D\nUNITS / MM\n"
+      "FEDRAT/500,MMPM\nGOTO/1,2,3,0,0,1\nCIRCLE/0,0,5,0,0,1,10.0,.002,.5,10.,0.\nGOTO/10,0,5\n"
+      "FINI\n"};
+  Seeds seeds;
+  for (const std::string_view program : kPrograms)
+    seeds.emplace_back(program.begin(), program.end());
+  return seeds;
+}
+
+}  // namespace meridian::fuzz

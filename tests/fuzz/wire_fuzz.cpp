@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+
+#include "fuzz/fuzz_targets.hpp"
+#include "fuzz/wire_samples.hpp"
+#include "meridian/rt/state_table.hpp"
+#include "service/cli/status_text.hpp"
+#include "service/dds/convert.hpp"
+#include "service/drives/action_peer.hpp"
+#include "service/drives/drive_group.hpp"
+#include "service/interpolator/feedback_merge.hpp"
+#include "service/stream/freshness.hpp"
+#include "service/stream/intake_judge.hpp"
+#include "service/stream/station.hpp"
+#include "support/machines.hpp"
+#include "support/programs.hpp"
+
+namespace meridian::fuzz {
+namespace {
+
+/// Reads bytes from the front; what is missing is zero.
+class Supplies {
+ public:
+  explicit Supplies(Bytes bytes) : bytes_(bytes) {}
+  [[nodiscard]] bool is_empty() const { return bytes_.empty(); }
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void take(T& value) {
+    std::memset(&value, 0, sizeof value);
+    const std::size_t size = std::min(sizeof value, bytes_.size());
+    std::memcpy(&value, bytes_.data(), size);
+    bytes_ = bytes_.subspan(size);
+  }
+  template <class T>
+  [[nodiscard]] T next() {
+    T value;
+    take(value);
+    return value;
+  }
+  /// A message as it comes off the wire.
+  template <class Wire, class Message>
+  void read(Message& message) {
+    static Wire wire;  // some are larger than a stack should hold
+    take(wire);
+    dds::from_wire(wire, message);
+  }
+
+ private:
+  Bytes bytes_;
+};
+
+/// Everybody who acts on a sample, with the state that samples before have left.
+class Listeners {
+ public:
+  Listeners() : model_(test::lai_machine()), intake_(model_, {{1, 100.0}}, 7), drives_(model_, {}) {
+    dds::SessionRequest open;
+    open.session = 1;
+    static_cast<void>(intake_.on_request(open, around(), model_.tool_length_mm));
+    station_.emplace(open, [next = std::uint64_t{0}]() mutable {
+      if (next == 50) return stream::Supply{};
+      return stream::Supply{stream::Supply::Kind::kBlock, test::good_cut(next++), {}};
+    });
+  }
+
+  void take(Supplies& in) {
+    now_ns_ += 10'000'000;
+    switch (in.next<std::uint8_t>() % kTypes) {
+      case kBatch:
+        return take_batch(in);
+      case kRawBatch:
+        return take_raw_batch(in);
+      case kSession:
+        return take_session(in);
+      case kCredit:
+        return take_credit(in);
+      case kCommand:
+        return take_command(in);
+      case kReply:
+        return take_reply(in);
+      case kJog:
+        return in.read<meridian_wire_Jog>(jog_);
+      case kSetpoint:
+        return take_setpoint(in);
+      case kDriveCommand:
+        return take_drive_command(in);
+      case kFeedback:
+        return take_feedback(in);
+      case kAction:
+        return take_action(in);
+      case kActionDone:
+        return in.read<meridian_wire_ActionDone>(done_);
+      case kStatus:
+        return take_status(in);
+      case kMachine:
+        return take_machine(in);
+      default:
+        return take_latency(in);
+    }
+  }
+
+ private:
+  [[nodiscard]] stream::Surroundings around() const {
+    return {.now_ns = now_ns_, .free_places = 100, .actions = {.is_there = true}};
+  }
+
+  /// A few blocks with a CRC that is right, so that the judge looks at them.
+  void take_batch(Supplies& in) {
+    dds::Batch batch;
+    batch.session = in.next<std::uint8_t>() % 3;
+    batch.first_sequence = in.next<std::uint8_t>();
+    batch.count = in.next<std::uint8_t>() % 34;
+    batch.is_end = in.next<std::uint8_t>() % 4 == 0;
+    const std::size_t given = std::min<std::size_t>(batch.count, 3);
+    for (std::size_t i = 0; i < dds::kBatchBlocks; ++i) {
+      if (i >= given) {
+        batch.blocks[i] = test::good_cut(batch.first_sequence + i);
+        continue;
+      }
+      wire_batch_ = {};
+      in.take(wire_batch_.blocks[0]);
+      dds::Batch one;
+      dds::from_wire(wire_batch_, one);
+      batch.blocks[i] = one.blocks[0];
+    }
+    batch.crc = dds::batch_crc(batch);
+    judge(batch);
+  }
+  void take_raw_batch(Supplies& in) {
+    dds::Batch batch;
+    in.read<meridian_wire_ClBatch>(batch);
+    judge(batch);
+  }
+  void judge(const dds::Batch& batch) {
+    const std::uint64_t before = intake_.next_sequence();
+    stream::Accepted accepted;
+    static_cast<void>(intake_.on_batch(batch, around(), accepted));
+    require(accepted.count <= accepted.blocks.size(), "more blocks than a batch holds");
+    for (std::size_t i = 0; i < accepted.count; ++i) {
+      const ClBlock& block = accepted.blocks[i];
+      require(block.sequence == before + i, "a block out of turn");
+      require(block.kind <= BlockKind::kEnd, "a kind of block that is none");
+      if (!is_motion(block.kind)) continue;
+      require(to_vector(block.tip_mm).allFinite(), "a tip that is no number");
+      require(std::abs(to_vector(block.axis).norm() - 1) < 1e-9, "an axis that is no unit vector");
+      require(std::isfinite(block.feed) && block.feed >= 0, "a feed that is none");
+    }
+  }
+  void take_session(Supplies& in) {
+    dds::SessionRequest request;
+    in.read<meridian_wire_ClSession>(request);
+    request.session %= 4;
+    static_cast<void>(intake_.on_request(request, around(), model_.tool_length_mm));
+    require(intake_.session() < 4, "a session that nobody opened");
+  }
+  void take_credit(Supplies& in) {
+    dds::Credit credit;
+    in.read<meridian_wire_ClCredit>(credit);
+    credit.session %= 3;
+    station_->on_credit(credit, now_ns_);
+    static dds::Batch batch;
+    for (int n = 0; n < 4 && station_->next_batch(now_ns_, batch); ++n) {
+      require(batch.first_sequence + batch.count <= 50, "blocks that are not in the program");
+      require(batch.count <= dds::kBatchBlocks, "more blocks than a batch holds");
+    }
+  }
+  void take_command(Supplies& in) {
+    dds::CommandRequest request;
+    in.read<meridian_wire_Command>(request);
+    times_.published(5, now_ns_);
+    const Refusal refusal = stream::judge_freshness(request, 7, 1, times_, now_ns_);
+    if (static_cast<int>(request.verb) >= kVerbCount) return;  // as the supervisor does
+    require(refusal == Refusal::kNone || stream::needs_freshness(request.verb), "a stop is stale");
+    static_cast<void>(effect_of(State::kRunning, request.verb));
+  }
+  void take_reply(Supplies& in) {
+    dds::Reply reply;
+    in.read<meridian_wire_Reply>(reply);
+    require(cli::text_of(reply.state) != nullptr, "a state without words");
+  }
+  void take_setpoint(Supplies& in) {
+    dds::SetpointSample setpoint;
+    in.read<meridian_wire_Setpoint>(setpoint);
+    drives_.take(setpoint);
+    work_drives();
+  }
+  void take_drive_command(Supplies& in) {
+    dds::DriveCommand command;
+    in.read<meridian_wire_DriveCommand>(command);
+    command.drive %= 8;
+    command.service_id %= 3;
+    drives_.take(command);
+    work_drives();
+  }
+  void work_drives() {
+    drives_.work(1);
+    for (const double x : drives_.feedback().position) {
+      require(std::isfinite(x), "a drive whose position is no number");
+    }
+  }
+  void take_feedback(Supplies& in) {
+    dds::DriveFeedback sample;
+    const std::uint64_t source = in.next<std::uint8_t>() % 8;
+    in.read<meridian_wire_Feedback>(sample);
+    static_cast<void>(merge_.take(sample, source, now_ns_));
+    const Feedback& feedback = merge_.feedback();
+    require((feedback.joint_mask >> kMaxJoints) == 0, "joints that no machine has");
+    require(feedback.joint_mask == 0 || feedback.arrival_ns <= now_ns_, "feedback of the future");
+  }
+  void take_action(Supplies& in) {
+    dds::Action action;
+    in.read<meridian_wire_Action>(action);
+    require(!drives::describe(action).empty(), "an action without words");
+    peer_.take(action, now_ns_);
+    const auto answer = peer_.due_answer(now_ns_);
+    require(answer && answer->id == action.id, "an answer to another action");
+  }
+  void take_status(Supplies& in) {
+    in.read<meridian_wire_Status>(status_);
+    show();
+  }
+  void take_machine(Supplies& in) {
+    in.read<meridian_wire_Machine>(machine_);
+    require(machine_.joint_count <= kMaxJoints, "joints that no machine has");
+    machine_.service_id %= 3;
+    drives_.take(machine_);
+    work_drives();
+    show();
+  }
+  void show() {
+    require(!cli::describe(status_, machine_).empty(), "a status without words");
+    require(cli::to_json(status_, machine_).back() == '}', "JSON without an end");
+  }
+  void take_latency(Supplies& in) {
+    dds::Latency latency;
+    in.read<meridian_wire_Latency>(latency);
+    require(latency.histograms.size() <= dds::kMaxHistograms, "more histograms than there are");
+  }
+
+  MachineModel model_;
+  std::int64_t now_ns_ = 1'000'000'000;
+  stream::IntakeJudge intake_;
+  std::optional<stream::Station> station_;
+  stream::StatusTimes times_;
+  drives::DriveGroup drives_;
+  drives::ActionPeer peer_{0, false};
+  interpolator::FeedbackMerge merge_;
+  dds::Status status_;
+  dds::MachineInfo machine_;
+  dds::Jog jog_;
+  dds::ActionDone done_;
+  meridian_wire_ClBatch wire_batch_{};
+};
+
+}  // namespace
+
+void judge_wire(Bytes bytes) {
+  Listeners listeners;
+  Supplies supplies(bytes);
+  for (int n = 0; n < 64 && !supplies.is_empty(); ++n) listeners.take(supplies);
+}
+
+}  // namespace meridian::fuzz
