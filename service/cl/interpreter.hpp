@@ -17,6 +17,8 @@
 
 namespace meridian::cl {
 
+inline constexpr double kLeastMove_mm = 1e-9;  ///< below it a block moves nothing
+
 /// Turns statements into blocks: holds what is modal in a CL file (unit, frame, tool axis, feed,
 /// spindle, pending RAPID, pending arc). One statement gives no, one or several blocks.
 class Interpreter {

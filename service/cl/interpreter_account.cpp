@@ -9,7 +9,6 @@
 namespace meridian::cl {
 namespace {
 
-constexpr double kLeastMove_mm = 1e-9;        // below it a block moves nothing
 constexpr double kLargestInchPart_mm = 1000;  // inch files beyond it are suspected of being metric
 constexpr double kFastInch_mm_per_s = 20000.0 / 60.0;
 

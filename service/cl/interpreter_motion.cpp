@@ -14,7 +14,6 @@ namespace {
 constexpr double kAxisNormTolerance = 1e-3;   // a rounded or sloppy axis is normalised
 constexpr double kFarthest_mm = 1e6;          // no machine is larger; catches lost decimal points
 constexpr double kRadiusTolerance_mm = 0.01;  // told radius against begin of the arc
-constexpr double kLeastMove_mm = 1e-9;        // below it a block moves nothing
 
 double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));

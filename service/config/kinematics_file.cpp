@@ -9,8 +9,6 @@
 namespace meridian::config {
 namespace {
 
-constexpr Range kLength_mm{-1e5, 1e5};
-constexpr Range kPositive_mm{1e-3, 1e5};
 constexpr Range kDirection{-1e3, 1e3};
 
 void read_named_joints(const std::vector<std::string>& names, std::size_t first_rotary,

@@ -14,8 +14,6 @@
 namespace meridian::config {
 namespace {
 
-constexpr Range kLength_mm{-1e5, 1e5};
-
 void read_machine(Section machine, MachineModel& model) {
   model.name = machine.text("name", "name the machine; the DDS partition takes the name");
   model.version = machine.text_or("version", "");

@@ -21,6 +21,10 @@ struct Range {
   double high = std::numeric_limits<double>::max();
 };
 
+/// What a length, and a length that cannot be nothing, may be in any machine file, mm.
+inline constexpr Range kLength_mm{-1e5, 1e5};
+inline constexpr Range kPositive_mm{1e-3, 1e5};
+
 /// Reads a TOML file. Throws ConfigError where there is none or it is not TOML.
 [[nodiscard]] toml::table parse_file(const std::filesystem::path& path);
 

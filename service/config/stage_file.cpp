@@ -13,8 +13,6 @@
 namespace meridian::config {
 namespace {
 
-constexpr Range kLength_mm{-1e5, 1e5};
-constexpr Range kPositive_mm{1e-3, 1e5};
 constexpr double kRodMargin = 1.05;   // over the farthest that a pin gets from its rail
 constexpr double kLeastShare = 0.05;  // of the determinant at φ = 0
 constexpr double kSameJoints = 1e-9;  // there and back rounds by 1e-12

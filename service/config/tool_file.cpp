@@ -8,7 +8,7 @@ namespace meridian::config {
 
 namespace {
 
-ToolTable read_file(const toml::table& table, const std::string& name) {
+ToolTable read_tools(const toml::table& table, const std::string& name) {
   Section file(name, table);
   std::vector<Tool> tools;
   for (Section& section : file.sections_or("tool")) {
@@ -30,11 +30,11 @@ ToolTable read_file(const toml::table& table, const std::string& name) {
 }  // namespace
 
 ToolTable load_tools(const std::filesystem::path& path) {
-  return read_file(parse_file(path), path.string());
+  return read_tools(parse_file(path), path.string());
 }
 
 ToolTable parse_tools(std::string_view text, const std::string& name) {
-  return read_file(parse_text(text, name), name);
+  return read_tools(parse_text(text, name), name);
 }
 
 }  // namespace meridian::config

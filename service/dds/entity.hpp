@@ -3,6 +3,7 @@
 
 #include <dds/dds.h>
 
+#include <memory>
 #include <string>
 
 #include "service/dds/participant.hpp"
@@ -25,5 +26,10 @@ class Entity {
  private:
   dds_entity_t handle_;
 };
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 }  // namespace meridian::dds

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "service/dds/convert.hpp"
+#include "service/dds/entity.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/writer.hpp"
 
@@ -27,11 +28,6 @@ enum class Quality : std::uint8_t {
   kSetpoint,  ///< as kCyclic, with manual liveliness
   kJog        ///< best effort, keep last 1
 };
-
-struct QosDeleter {
-  void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
-};
-using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 /// Readers never have resource limits: one that filled up would stop every topic of its process.
 Qos make_qos(Quality quality) {

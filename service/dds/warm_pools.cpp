@@ -5,7 +5,6 @@
 #include <dds/ddsi/q_freelist.h>
 #include <idl/drives.h>
 
-#include <memory>
 #include <string>
 
 #include "service/dds/entity.hpp"
@@ -18,13 +17,9 @@ namespace {
 constexpr std::int32_t kNodes = 7 * NN_FREELIST_MAGSIZE + 8;
 constexpr const char* kName = "meridian/pools";
 
-struct QosDeleter {
-  void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
-};
-
 /// Keeps that many samples although nobody reads them.
 dds_entity_t make_keeping_writer(Participant& participant, dds_entity_t topic) {
-  const std::unique_ptr<dds_qos_t, QosDeleter> qos(dds_create_qos());
+  const Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, 0);
   dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
   dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, kNodes, DDS_LENGTH_UNLIMITED,

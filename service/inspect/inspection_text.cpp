@@ -6,30 +6,24 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/inspect/inspection.hpp"
+#include "service/inspect/printed.hpp"
 
 namespace meridian::inspect {
 namespace {
 
 constexpr double kNothing = 1e-9;
 
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 /// Never "-0.000".
 double shown(double value) { return std::abs(value) < 5e-5 ? 0.0 : value; }
 
 std::string vector_text(const Vector3& v) {
-  return print("(%.4f, %.4f, %.4f)", shown(v[0]), shown(v[1]), shown(v[2]));
+  return printed("(%.4f, %.4f, %.4f)", shown(v[0]), shown(v[1]), shown(v[2]));
 }
 
 /// "+x" for a coordinate direction, else its numbers.
 std::string direction_text(const Vector3& v) {
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(std::abs(v[i]) - 1) < 1e-9) return print("%c%c", v[i] > 0 ? '+' : '-', "xyz"[i]);
+    if (std::abs(std::abs(v[i]) - 1) < 1e-9) return printed("%c%c", v[i] > 0 ? '+' : '-', "xyz"[i]);
   }
   return vector_text(v);
 }
@@ -64,13 +58,13 @@ std::string chain_text(const Inspection& in, const MachineModel& model) {
   out += " - tool\n";
   for (const SkeletonJoint& joint : in.skeleton.joints) {
     const JointSpec& spec = spec_of(model, joint.joint);
-    out += print("  %-10s ", spec.name.c_str());
+    out += printed("  %-10s ", spec.name.c_str());
     if (joint.is_rotary) {
-      out += print("+ turns the %s right-handed about %s through %s\n", mover(joint.side),
-                   direction_text(joint.direction).c_str(), vector_text(joint.point).c_str());
+      out += printed("+ turns the %s right-handed about %s through %s\n", mover(joint.side),
+                     direction_text(joint.direction).c_str(), vector_text(joint.point).c_str());
     } else {
-      out += print("+ moves the %s towards %s\n", mover(joint.side),
-                   direction_text(joint.direction).c_str());
+      out += printed("+ moves the %s towards %s\n", mover(joint.side),
+                     direction_text(joint.direction).c_str());
     }
   }
   if (has_stage(model)) {
@@ -93,13 +87,13 @@ std::string trial_text(const Inspection& in, const MachineModel& model) {
   out += ":\n";
   for (const JointTrial& trial : in.trials) {
     const JointSpec& spec = spec_of(model, trial.joint);
-    out +=
-        print("  %-10s %+6.4g %-3s ", spec.name.c_str(), at_edge(spec, trial.step), unit_of(spec));
+    out += printed("  %-10s %+6.4g %-3s ", spec.name.c_str(), at_edge(spec, trial.step),
+                   unit_of(spec));
     out += trial.tip_move.norm() > kNothing ? "tip by " + vector_text(trial.tip_move) + " mm"
                                             : std::string("tip stays");
     out += trial.axis_turn > kNothing
-               ? print("; axis leans %.4f deg towards %s", units::deg_from_rad(trial.axis_turn),
-                       direction_text(trial.axis_towards).c_str())
+               ? printed("; axis leans %.4f deg towards %s", units::deg_from_rad(trial.axis_turn),
+                         direction_text(trial.axis_towards).c_str())
                : std::string("; axis stays");
     out += "\n";
   }
@@ -117,23 +111,23 @@ std::string pole_text(const Inspection& in, const MachineModel& model) {
     out = "pole       tool axis along " + direction_text(pole_direction(model)) + ": " +
           spec_of(model, free).name + " is free there; ";
   }
-  out += print("measure at home %.4g%s\n", in.home_measure,
-               in.home_measure >= 1e-9 ? ""
-               : free < 0              ? " (home is singular)"
-                                       : ": it is on the pole");
+  out += printed("measure at home %.4g%s\n", in.home_measure,
+                 in.home_measure >= 1e-9 ? ""
+                 : free < 0              ? " (home is singular)"
+                                         : ": it is on the pole");
   return out;
 }
 
 std::string reach_text(const Inspection& in) {
   if (!in.is_origin_in_reach) return "reach      the workpiece's origin is out of reach\n";
-  std::string out = print(
+  std::string out = printed(
       "reach      at the workpiece's origin every tool axis to %.0f deg from z; some to "
       "%.0f deg\n",
       units::deg_from_rad(in.all_tilt), units::deg_from_rad(in.some_tilt));
   out += "           from there, tool along z:";
   for (std::size_t i = 0; i < 3; ++i) {
-    out += print(" %c %.1f .. %.1f%s", "xyz"[i], shown(in.straight[i][0]), shown(in.straight[i][1]),
-                 i < 2 ? "," : " mm\n");
+    out += printed(" %c %.1f .. %.1f%s", "xyz"[i], shown(in.straight[i][0]),
+                   shown(in.straight[i][1]), i < 2 ? "," : " mm\n");
   }
   return out;
 }
@@ -147,11 +141,12 @@ std::string limits_text(const MachineModel& model) {
     const JointLimits& l = joint.limits;
     const std::string travel = joint.is_endless
                                    ? "endless"
-                                   : print("%.6g .. %.6g %s", at_edge(joint, l.travel_min),
-                                           at_edge(joint, l.travel_max), unit_of(joint));
-    out += print("           %-10s %-22s %7.6g %10.6g/s %10.6g/s2 %10.6g/s3\n", joint.name.c_str(),
-                 travel.c_str(), at_edge(joint, joint.home), at_edge(joint, l.velocity),
-                 at_edge(joint, l.acceleration), at_edge(joint, l.jerk));
+                                   : printed("%.6g .. %.6g %s", at_edge(joint, l.travel_min),
+                                             at_edge(joint, l.travel_max), unit_of(joint));
+    out +=
+        printed("           %-10s %-22s %7.6g %10.6g/s %10.6g/s2 %10.6g/s3\n", joint.name.c_str(),
+                travel.c_str(), at_edge(joint, joint.home), at_edge(joint, l.velocity),
+                at_edge(joint, l.acceleration), at_edge(joint, l.jerk));
   }
   return out;
 }
@@ -160,13 +155,14 @@ std::string limits_text(const MachineModel& model) {
 
 std::string to_text(const Inspection& in, const MachineModel& model) {
   std::string out = "machine    " + model.name;
-  out += print(", %d joints, tool of %.6g mm, workpiece at %s mm in the machine\n",
-               model.joint_count, model.tool_length_mm, vector_text(model.frame_origin_mm).c_str());
+  out +=
+      printed(", %d joints, tool of %.6g mm, workpiece at %s mm in the machine\n",
+              model.joint_count, model.tool_length_mm, vector_text(model.frame_origin_mm).c_str());
   out += chain_text(in, model);
   out += "home       " + pose_text(in.home_pose) + " in the workpiece\n";
   out += trial_text(in, model) + pole_text(in, model) + reach_text(in) + limits_text(model);
-  out += print("inverse    joints to pose and back: within %.2g mm and %.2g rad\n",
-               in.round_trip_mm, in.round_trip_axis);
+  out += printed("inverse    joints to pose and back: within %.2g mm and %.2g rad\n",
+                 in.round_trip_mm, in.round_trip_axis);
   for (const std::string& warning : in.warnings) out += "WARNING    " + warning + "\n";
   if (in.warnings.empty()) out += "no warnings\n";
   return out;

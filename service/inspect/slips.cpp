@@ -7,6 +7,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/inspect/inspection.hpp"
+#include "service/inspect/printed.hpp"
 
 namespace meridian::inspect {
 namespace {
@@ -15,13 +16,6 @@ constexpr double kExact = 1e-6;  // rad and mm: what rounding of a file makes
 constexpr double kNearMiss_deg = 2;
 constexpr double kNearMiss_mm = 0.5;
 constexpr double kLeastVolume = 0.5;  // of three unit vectors
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 /// Angle to the nearest direction whose coordinates are all 0 or of one size: axes, 45 degrees
 /// between two, the diagonal of a cube.
@@ -48,17 +42,17 @@ void look_at_directions(const MachineModel& model, const Skeleton& skeleton,
     if (model.family != MachineFamily::kChain) continue;
     const double off = off_usual(joint.direction);
     if (off > kExact && off < units::rad_from_deg(kNearMiss_deg)) {
-      out.push_back(print("%s runs %.4g deg beside a usual direction: measured, or a slip?",
-                          name_of(model, joint), units::deg_from_rad(off)));
+      out.push_back(printed("%s runs %.4g deg beside a usual direction: measured, or a slip?",
+                            name_of(model, joint), units::deg_from_rad(off)));
     }
   }
   if (linear.size() != 3) return;
   const double volume = std::abs(linear[0].dot(linear[1].cross(linear[2])));
   if (volume < kLeastVolume) {
     out.push_back(
-        print("the linear joints run nearly in one plane (volume %.3g of 1): small ways "
-              "of the tip take long ways of the joints",
-              volume));
+        printed("the linear joints run nearly in one plane (volume %.3g of 1): small ways "
+                "of the tip take long ways of the joints",
+                volume));
   }
 }
 
@@ -70,7 +64,8 @@ void look_at_pivots(const MachineModel& model, const Skeleton& skeleton,
   const Vector3 normal = k.a.axis.cross(k.b.axis).normalized();
   const double apart = std::abs(normal.dot(k.b.point_mm - k.a.point_mm));
   if (apart > kExact && apart < kNearMiss_mm) {
-    out.push_back(print("the rotary axes miss each other by %.4g mm: measured, or a slip?", apart));
+    out.push_back(
+        printed("the rotary axes miss each other by %.4g mm: measured, or a slip?", apart));
   }
   for (const SkeletonJoint& joint : skeleton.joints) {
     const JointSpec& spec = model.joints[static_cast<std::size_t>(joint.joint)];
@@ -89,14 +84,14 @@ void look_at_limits(const MachineModel& model, std::vector<std::string>& out) {
     const double to_speed = joint.limits.velocity / joint.limits.acceleration;
     const double to_push = joint.limits.acceleration / joint.limits.jerk;
     if (to_speed > kLongest_s) {
-      out.push_back(print("%s takes %.3g s to its full velocity: are the units right?",
-                          joint.name.c_str(), to_speed));
+      out.push_back(printed("%s takes %.3g s to its full velocity: are the units right?",
+                            joint.name.c_str(), to_speed));
     }
     if (to_push > kLongest_s || to_push < 1e-9 * static_cast<double>(model.cycle_ns)) {
       out.push_back(
-          print("%s takes %.3g s to its full acceleration, a cycle being %.3g s: are the "
-                "units right?",
-                joint.name.c_str(), to_push, 1e-9 * static_cast<double>(model.cycle_ns)));
+          printed("%s takes %.3g s to its full acceleration, a cycle being %.3g s: are the "
+                  "units right?",
+                  joint.name.c_str(), to_push, 1e-9 * static_cast<double>(model.cycle_ns)));
     }
   }
 }

@@ -14,7 +14,7 @@
 namespace meridian::interpolator {
 namespace {
 
-constexpr auto kLookAtRings = std::chrono::milliseconds(10);
+constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void TelemetryThread::run() noexcept {
     const bool is_due = has_news_ || now_ns - status_ns_ >= status_period_ns;
     if (is_due && view_.cycles_run > 0) publish_status(now_ns);
     if (now_ns - latency_ns_ >= kSecond_ns) publish_latency(now_ns);
-    std::this_thread::sleep_for(kLookAtRings);
+    std::this_thread::sleep_for(kBetweenLooks);
   }
   drain();
   publish_status(monotonic_ns());

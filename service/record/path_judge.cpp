@@ -13,7 +13,7 @@
 namespace meridian::record {
 namespace {
 
-constexpr double kRelative = 1e-6;
+constexpr double kRoundingShare = 1e-6;
 /// A vertex is looked for this far before and behind the place where the tool is.
 constexpr double kVertexMargin_mm = 0.1;
 /// A chord between samples cuts no more than this off a smooth way.
@@ -83,11 +83,11 @@ void PathJudge::sample(const JointVector& joints, const Place& place, bool is_se
   here_ = match(joints, pose);
   (is_setpoint ? tip_ : tip_between_).raise(here_.tip_mm, place.cycle, place.line);
   (is_setpoint ? axis_ : axis_between_).raise(here_.axis_rad, place.cycle, place.line);
-  if (here_.tip_mm > tip_tolerance_ * (1 + kRelative)) {
+  if (here_.tip_mm > tip_tolerance_ * (1 + kRoundingShare)) {
     tip_over_.worst.raise(here_.tip_mm, place.cycle, place.line);
     tip_over_.count += is_setpoint ? 1 : 0;
   }
-  if (here_.axis_rad > allowed_axis_ * (1 + kRelative)) {
+  if (here_.axis_rad > allowed_axis_ * (1 + kRoundingShare)) {
     if (here_.axis_rad > axis_over_.worst.value) exceeded_axis_ = allowed_axis_;
     axis_over_.worst.raise(here_.axis_rad, place.cycle, place.line);
     axis_over_.count += is_setpoint ? 1 : 0;
@@ -141,12 +141,12 @@ void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, d
   }
   const double use = speed / (feed * options_.feed_factor);
   feed_.raise(use, to.cycle, to.line);
-  if (use > 1 + kRelative) {
+  if (use > 1 + kRoundingShare) {
     feed_over_.worst.raise(use, to.cycle, to.line);
     ++feed_over_.count;
   }
   const double rate = angle_between(a.axis, b.axis) / period_;
-  if (turn > 0 && rate > turn * options_.feed_factor * (1 + kRelative) + 1e-9) {
+  if (turn > 0 && rate > turn * options_.feed_factor * (1 + kRoundingShare) + 1e-9) {
     turn_over_.worst.raise(rate / turn, to.cycle, to.line);
     ++turn_over_.count;
   }
@@ -242,15 +242,15 @@ void PathJudge::finish_vertices(CheckReport& report) const {
   Excess missed;
   bool is_unfinished = false;
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
-    const bool is_ahead =
-        vertex_s(i) > reached_ + tip_tolerance_ && nearest_[i] > tip_tolerance_ * (1 + kRelative);
+    const bool is_ahead = vertex_s(i) > reached_ + tip_tolerance_ &&
+                          nearest_[i] > tip_tolerance_ * (1 + kRoundingShare);
     if (is_ahead && vertex_s(i) > reached_ + kVertexMargin_mm) {
       is_unfinished = true;
       if (options_.allow_unfinished) break;
     }
     if (is_ahead && options_.allow_unfinished) break;
     ++report.vertices;
-    const bool is_missed = nearest_[i] > tip_tolerance_ * (1 + kRelative);
+    const bool is_missed = nearest_[i] > tip_tolerance_ * (1 + kRoundingShare);
     if (is_missed && in_gap_[i]) {
       ++report.vertices_in_gaps;
       continue;

@@ -66,8 +66,6 @@ void append_shares(std::string& out, const Explanation& explanation, const Machi
   return "";
 }
 
-[[nodiscard]] double per_min(double mm_per_s) { return units::per_min_from_per_s(mm_per_s); }
-
 }  // namespace
 
 std::string to_text(const Explanation& explanation, const MachineModel& model) {
@@ -90,8 +88,9 @@ std::string to_text(const Explanation& explanation, const MachineModel& model) {
     }
     append(out, "%-17s %9llu %9.3f %9.3f %13.0f %8.0f %8.0f  %s, %s\n", lines,
            static_cast<Count>(stretch.blocks), stretch.lost_s, stretch.time_s,
-           per_min(stretch.programmed_mm_per_s), per_min(stretch.way_mm / stretch.time_s),
-           per_min(stretch.least_mm_per_s), name_of(stretch.limit, model).c_str(),
+           units::per_min_from_per_s(stretch.programmed_mm_per_s),
+           units::per_min_from_per_s(stretch.way_mm / stretch.time_s),
+           units::per_min_from_per_s(stretch.least_mm_per_s), name_of(stretch.limit, model).c_str(),
            name_of(stretch.cause));
   }
   return out;
@@ -115,8 +114,10 @@ std::string explained_header(const MachineModel& model) {
 std::string to_csv(const ExplainedBlock& block, const MachineModel& model) {
   std::string out;
   append(out, "%llu,%u,%s,%.6f,%.3f,%.3f,%.3f,%.6f,%.6f,", static_cast<Count>(block.sequence),
-         block.line, name_of(block.kind), block.length_mm, per_min(block.programmed_mm_per_s),
-         per_min(block.mean_mm_per_s()), per_min(block.least_mm_per_s), block.time_s, block.lost_s);
+         block.line, name_of(block.kind), block.length_mm,
+         units::per_min_from_per_s(block.programmed_mm_per_s),
+         units::per_min_from_per_s(block.mean_mm_per_s()),
+         units::per_min_from_per_s(block.least_mm_per_s), block.time_s, block.lost_s);
   out += name_of(block.main_limit(), model) + "," + name_of(block.main_cause());
   append(out, ",%.6f", units::deg_from_rad(block.eased_rad));
   const double whole = std::max(block.time_s, 1e-300);

@@ -18,8 +18,6 @@ constexpr const char* kColour[kColours] = {"#1f5fa8", "#e08214", "#c22f4f", "#7b
 constexpr const char* kAtFeed = "#a8d5a2";
 constexpr const char* kOther = "#bbbbbb";
 
-[[nodiscard]] double per_min(double mm_per_s) { return units::per_min_from_per_s(mm_per_s); }
-
 [[nodiscard]] LimitId find_main(const std::array<float, kLimitIds>& by_limit) {
   return static_cast<LimitId>(std::max_element(by_limit.begin(), by_limit.end()) -
                               by_limit.begin());
@@ -74,8 +72,8 @@ void FeedPicture::print_columns(std::FILE* out, const std::vector<LimitId>& show
     const LimitId main = find_main(column.by_limit);
     const auto place = std::find(shown.begin(), shown.end(), main) - shown.begin();
     std::fprintf(out, "%.7g %.7g %.7g %.7g %.5g %.5g %d\n", time, time + column.time_s, way,
-                 way + column.way_mm, per_min(column.way_mm / column.time_s),
-                 per_min(column.programmed_mm_per_s), static_cast<int>(place));
+                 way + column.way_mm, units::per_min_from_per_s(column.way_mm / column.time_s),
+                 units::per_min_from_per_s(column.programmed_mm_per_s), static_cast<int>(place));
     time += column.time_s;
     way += column.way_mm;
   }
@@ -106,7 +104,7 @@ void FeedPicture::print(std::FILE* out, const std::string& title) const {
       "set key outside right top noreverse Left samplen 1.2\nset rmargin 34\nset xtics out "
       "nomirror\nset autoscale xfix\n"
       "set lmargin 12\nset yrange [0:%.6g]\nset ylabel 'tip, mm/min'\n",
-      per_min(1.15 * most));
+      units::per_min_from_per_s(1.15 * most));
   double others = whole;
   for (const LimitId id : shown) others -= time[id];
   const auto panel = [&](int from, const char* label, double place) {

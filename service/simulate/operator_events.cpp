@@ -53,13 +53,13 @@ constexpr double kMostPeriods = 1e9;
   return word == record::kPeriodsBridgedWord || word == record::kPeriodsLostWord;
 }
 
-struct Row {
+struct EventRow {
   std::string_view word;
   OperatorEvent event;  ///< its verb: that of `word` where it is one
 };
 
 /// What is wrong with the row, empty if nothing is.
-[[nodiscard]] std::string read_row(std::string_view text, Row& row) {
+[[nodiscard]] std::string read_row(std::string_view text, EventRow& row) {
   const std::string_view cycle = cut(text, ',');
   row.word = cut(text, ',');
   const std::string_view argument = cut(text, ',');
@@ -88,7 +88,7 @@ struct Row {
 }
 
 /// Puts the row where it belongs; cycles count from `zero`.
-void keep(const Row& row, std::int64_t zero, OperatorEvents& events) {
+void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   const std::int64_t cycle = row.event.cycle - zero;
   if (cycle < 0) return;
   if (is_of_loss(row.word)) {
@@ -105,12 +105,12 @@ void keep(const Row& row, std::int64_t zero, OperatorEvents& events) {
 
 Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                            const std::string& name) {
-  std::vector<Row> rows;
+  std::vector<EventRow> rows;
   std::optional<std::int64_t> start;
   for (int line = 1; !text.empty(); ++line) {
     const std::string_view part = cut(text, '\n');
     if (part.empty() || part.front() == '#' || part == "cycle,verb,argument") continue;
-    Row row;
+    EventRow row;
     std::string fault = part == "incomplete" ? "the recorder lost events: they cannot be replayed"
                                              : read_row(part, row);
     if (fault.empty() && !rows.empty() && row.event.cycle < rows.back().event.cycle) {
@@ -123,7 +123,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
     rows.push_back(row);
   }
   OperatorEvents events;
-  for (const Row& row : rows) keep(row, start.value_or(0), events);
+  for (const EventRow& row : rows) keep(row, start.value_or(0), events);
   return events;
 }
 
