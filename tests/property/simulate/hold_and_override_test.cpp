@@ -74,14 +74,14 @@ TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
     for (int i = draw(1, 6); i > 0; --i) {
       if (draw(0, 2) == 0) {
         feed_override = draw(1, 10) / 10.0;
-        simulation.events.push_back({cycle, Verb::kFeedOverride, feed_override});
+        simulation.events.verbs.push_back({cycle, Verb::kFeedOverride, feed_override});
       } else {
-        simulation.events.push_back({cycle, Verb::kHold, 0});
+        simulation.events.verbs.push_back({cycle, Verb::kHold, 0});
         cycle += draw(1, whole / 8);
-        simulation.events.push_back({cycle, Verb::kResume, 0});
+        simulation.events.verbs.push_back({cycle, Verb::kResume, 0});
         // The hold may not be over yet: refused then; once more later.
         cycle += whole / 5;
-        simulation.events.push_back({cycle, Verb::kResume, 0});
+        simulation.events.verbs.push_back({cycle, Verb::kResume, 0});
       }
       cycle += draw(0, whole / 8);
     }
