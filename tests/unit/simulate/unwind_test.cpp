@@ -4,6 +4,7 @@
 /// not; the report and the explanation say what was done.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,8 +75,7 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
 
   MachineModel model = short_travel();
   std::string text = spiral();
-  std::string file =
-      ::testing::TempDir() + "unwind_" + std::to_string(static_cast<int>(GetParam())) + ".csv";
+  std::string file = ::testing::TempDir() + "unwind_" + std::to_string(::getpid()) + ".csv";
 };
 
 TEST_P(SimulatedUnwinding, PassesTheCheckAndIsTold) {
