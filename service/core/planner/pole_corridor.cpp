@@ -184,6 +184,7 @@ bool PoleCorridor::decide(Place place) noexcept {
   PolePlace around;
   around.core_begin = around.core_end = nearest;
   around.branch = branch_;
+  around.is_dwelling = distance_at(nearest) < kPoleEase_rad;
   Place last = place;
   const auto dwells = [this](Place n) {
     return distance_of(n) < kDwellTolerances * tolerance_rad_;
@@ -193,7 +194,7 @@ bool PoleCorridor::decide(Place place) noexcept {
     while (first > held_.begin_index() * kProbes && dwells(first - 1)) --first;
     while (last + 1 < end_place() && dwells(last + 1)) ++last;
     around.is_start = first == 0;
-    around.is_dwelling = around.is_start || last > first || distance_at(nearest) < kPoleEase_rad;
+    around.is_dwelling = around.is_dwelling || around.is_start || last > first;
     around.core_begin = std::min(nearest, u_of(first));
     around.core_end = std::max(nearest, u_of(last));
   }
@@ -216,6 +217,7 @@ bool PoleCorridor::decide(Place place) noexcept {
   }
   const bool has_room = !pending_.is_full() && around.reach > kLeastReach_mm &&
                         distance_at(nearest) < kZoneTolerances * tolerance_rad_;
+  around.known_end = std::min(end_u(), around.core_end + 2 * kReach_mm);
   PoleZone zone;
   if (has_room) {
     around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);

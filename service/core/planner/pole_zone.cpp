@@ -8,6 +8,7 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "service/core/planner/pole_travel.hpp"
 
 namespace meridian {
 namespace {
@@ -133,8 +134,21 @@ class Search {
         behind_(task, place, 1) {}
 
   PoleZone run() noexcept {
+    const bool is_exact_kept = !place_.is_dwelling && keeps_travel_exactly();
+    search(is_exact_kept);
+    const bool is_found = is_exact_kept || best_.end > best_.begin;
+    if (!is_found) {
+      looks_behind_ = false;
+      search(!place_.is_dwelling);
+    }
+    return best_;
+  }
+
+ private:
+  /// All candidates, against the exact way where there is one.
+  void search(bool has_exact) noexcept {
     const int branches = branch_count(task_.model);
-    best_time_ = place_.is_dwelling ? kNever : exact_time() - kLeastGain_s;
+    best_time_ = has_exact ? exact_time() - kLeastGain_s : kNever;
     for (int n = 0; n < kWidths; ++n) {
       const double width = place_.reach * std::pow(kLeastShare, 1.0 * n / (kWidths - 1));
       for (const double skew : kSkews) {
@@ -153,10 +167,19 @@ class Search {
         }
       }
     }
-    return best_;
   }
 
- private:
+  [[nodiscard]] bool keeps_travel_exactly() const noexcept {
+    const double begin = place_.is_start ? place_.core_begin : place_.core_begin - place_.reach;
+    return keeps_travel(task_, place_, begin, place_.joints, place_.branch);
+  }
+  [[nodiscard]] bool keeps_travel_behind(const PoleZone& zone) const noexcept {
+    if (!looks_behind_ || place_.is_end) return true;
+    JointVector joints = place_.joints;
+    joints[free_] = zone.free.back();
+    return keeps_travel(task_, place_, zone.end, joints, zone.branch_after);
+  }
+
   /// `u`, or the end of a span that is so close that the part between would be none.
   [[nodiscard]] double snapped(double u) const noexcept {
     const BandSpan& span = task_.spans.span_at(u);
@@ -168,7 +191,7 @@ class Search {
   void try_zone(PoleZone zone, double outside) noexcept {
     if (!(outside < best_time_) || !fit(zone) || !is_inside(zone, kSamples / 8)) return;
     const double time = outside + time_on(zone, best_time_ - outside);
-    if (!(time < best_time_) || !is_inside(zone, kSamples)) return;
+    if (!(time < best_time_) || !is_inside(zone, kSamples) || !keeps_travel_behind(zone)) return;
     best_time_ = time;
     best_ = zone;
   }
@@ -262,6 +285,7 @@ class Search {
   OutsideTime before_, behind_;
   double best_time_ = 0;
   PoleZone best_;
+  bool looks_behind_ = true;
 };
 
 }  // namespace

@@ -33,6 +33,7 @@ struct PolePlace {
   bool is_end = false;       ///< it ends at rest in the core
   int branch = 0;            ///< on the way in
   JointVector joints{};      ///< at the start, or near the begin of the reach for the winding
+  double known_end = 0;      ///< how far behind the core joints are to keep travel as well
 };
 
 /// What stays the same along a path.
@@ -49,7 +50,9 @@ struct PoleTask {
 ///
 /// Candidates are quintics that meet the exact free joint with two derivatives at both ends, on
 /// either branch behind: 24 widths, 7 skews. A candidate whose tool axis leaves the tolerance about
-/// the programmed axis, or whose joints leave travel, is none. Time is counted without regard to
+/// the programmed axis, or whose joints leave travel there or behind, as far as the path is known,
+/// is none. Neither is the exact way where joints leave travel on it; where nothing is left, travel
+/// behind the zone is not asked for. Time is counted without regard to
 /// what lies around: the largest of |P'|/F, |q'|/V, √(|q''|/A), ∛(|q'''|/J) over all joints.
 /// Source: docs/motion.md, section 10. Bounded work, no memory.
 [[nodiscard]] PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept;

@@ -388,6 +388,38 @@ TEST(Unwinding, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
   }
 }
 
+/// Straight through the pole the tilt would come to the other side, where it has no travel: C turns
+/// on the pole or beside it instead.
+TEST(LookAhead, TakesNoWayPastThePoleOnWhichAJointLeavesItsTravelBehindIt) {
+  MachineModel model = bench_machine();
+  const double tilt = units::rad_from_deg(15);
+  for (const double offset_deg : {0.0, 0.05}) {
+    SCOPED_TRACE(offset_deg);
+    const double offset = units::rad_from_deg(offset_deg);
+    std::vector<ClBlock> blocks;
+    for (int n = 0; n <= 20; ++n) {
+      const double x = tilt * (1 - n / 10.0);
+      blocks.push_back(
+          leaning(std::hypot(x, offset), std::atan2(offset, x), Vector3(2.0 * n, 0, 0)));
+      blocks.back().sequence = blocks.size() - 1;
+    }
+    end_program(blocks);
+    for (const double side : {-1.0, 1.0}) {
+      const int branch = solve_block(model, blocks[0], 0)[4] * side > 0 ? 0 : 1;
+      const JointVector start = solve_block(model, blocks[0], branch);
+      JointLimits& limits = model.joints[4].limits;
+      limits.travel_min = units::rad_from_deg(side > 0 ? -5 : -60);
+      limits.travel_max = units::rad_from_deg(side > 0 ? 60 : 5);
+      const SmoothTrace trace = plan_smooth(model, blocks, start);
+      EXPECT_EQ(trace.last.status, PlanStatus::kOk)
+          << "joint " << trace.last.reject.joint << " at " << trace.last.reject.value;
+      for (const PlanSample& one : sample(model, trace, 1e-3, 0.37, start)) {
+        ASSERT_LT(first_joint_outside_travel(model, one.q, 1e-9), 0);
+      }
+    }
+  }
+}
+
 TEST(Unwinding, IsNotAskedForWhereTheTurnOfCFits) {
   MachineModel model = limited(lai_machine(), -720, 720);
   model.pole_policy = PolePolicy::kExact;

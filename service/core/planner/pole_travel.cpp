@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/pole_travel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/path/pose_at.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kMostStep_mm = 0.5, kLeastStep_mm = 1e-8;
+constexpr double kMostTurn_rad = 0.5;
+constexpr double kOtherTolerances = 3;
+constexpr double kTravelMargin = 1e-9;
+
+}  // namespace
+
+bool keeps_travel(const PoleTask& task, const PolePlace& place, double begin,
+                  const JointVector& joints, int branch) noexcept {
+  const int free = free_joint(task.model);
+  JointVector last = joints;
+  double step = kMostStep_mm;
+  for (double u = begin; u < place.known_end;) {
+    const double next = std::min(place.known_end, u + step);
+    const BandSpan& span = task.spans.span_at(next);
+    const ToolPose pose = pose_on(span.c, std::clamp(next - span.u0, 0.0, span.length));
+    const bool is_behind = next > place.core_end + place.reach;
+    if (is_behind && pole_distance(task.model, pose.axis) < kOtherTolerances * task.tolerance_rad) {
+      return true;
+    }
+    const auto at = solve(task.model, task.tool_length_mm, pose, branch, last);
+    if (at.status == SolveStatus::kUnreachable) return false;
+    if (std::abs(at.q[free] - last[free]) > kMostTurn_rad && step > kLeastStep_mm) {
+      step *= 0.5;
+      continue;
+    }
+    if (first_joint_outside_travel(task.model, at.q, kTravelMargin) >= 0) return false;
+    last = at.q;
+    u = next;
+    step = std::min(2 * step, kMostStep_mm);
+  }
+  return true;
+}
+
+}  // namespace meridian
