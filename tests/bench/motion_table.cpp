@@ -4,7 +4,8 @@
 /// a line each; without files the throughput of dense data and of programs that are meant to hurt.
 ///
 /// A file is simulated and its recording judged as `meridian check` does; shares of 1 are the whole
-/// of a limit or a tolerance. Throughput is the planner's alone: seconds of motion per second of
+/// of a limit or a tolerance. One that does not say its unit is in mm; its tools are all as long as
+/// the machine's. Throughput is the planner's alone: seconds of motion per second of
 /// CPU time, and which share of the motion that a window yields it took (median, 99 %, most): from
 /// the window before to this one, blocks taken, spline, plan and authority. Every run is done three
 /// times, the least cost of a window counts: the plan is the same, what else the host does is not.
@@ -15,9 +16,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bench/smooth_workload.hpp"
 #include "service/cl/cl_reader.hpp"
@@ -64,8 +68,26 @@ bench::SmoothTotal run(const MachineModel& model,
   return least;
 }
 
+/// Onto the pole with the axis turning, then 2 m on it: it is not known for long where that ends.
+std::vector<ClBlock> along_the_pole() {
+  std::vector<ClBlock> blocks;
+  for (int n = 0; n <= 1000; ++n) {
+    ClBlock block;
+    block.sequence = static_cast<std::uint64_t>(n);
+    const double tilt = std::max(0.0, 0.2 - 0.01 * n);
+    block.tip_mm = {2.0 * n, 20, 0};
+    block.axis = {std::sin(tilt), 0, std::cos(tilt)};
+    block.feed = 100;
+    block.feed_meaning = FeedMeaning::kTip;
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
 void print_made_up() {
   const MachineModel model = test::bench_machine();
+  std::printf("along the pole    ");
+  print_cost(run(model, {along_the_pole()}));
   for (const double step : {0.0001, 0.002, 0.05, 0.3}) {
     const double feed = step < 0.001 ? 5 : 50;  // mm/s
     const int blocks = static_cast<int>(std::min(1e6, 500 / step));
@@ -92,21 +114,49 @@ std::string read_file(const std::string& name) {
   return out.str();
 }
 
+/// A program that is read again and again.
+struct Program {
+  std::string text, name;
+
+  [[nodiscard]] cl::ClReader reader() const {
+    cl::ClReaderOptions options;
+    options.unit = cl::LengthUnit::kMillimetre;
+    return cl::ClReader(text, name, options);
+  }
+  [[nodiscard]] std::vector<ClBlock> blocks() const {
+    std::vector<ClBlock> all;
+    auto from = reader();
+    for (auto block = from.next(); block && *block; block = from.next()) all.push_back(**block);
+    return all;
+  }
+  /// A line for every tool that it calls.
+  [[nodiscard]] ToolTable tools(double length_mm) const {
+    std::map<int, Tool> all;
+    for (const ClBlock& block : blocks()) {
+      const int number = static_cast<int>(block.value);
+      if (block.kind == BlockKind::kTool) all[number] = {number, length_mm, 5};
+    }
+    std::vector<Tool> lines;
+    for (const auto& [number, tool] : all) lines.push_back(tool);
+    return ToolTable(std::move(lines));
+  }
+};
+
 /// Time, limits and tolerances of the simulated run. False: it did not come to its end.
-bool print_run(const std::string& text, const std::string& name, const MachineModel& model) {
+bool print_run(const Program& program, const MachineModel& model) {
+  const std::string& name = program.name;
   const auto recording = std::filesystem::temp_directory_path() /
                          ("meridian-motion-table-" + std::to_string(::getpid()) + ".csv");
   auto writer = record::RecordingWriter::create(recording, model);
   if (!writer) return false;
-  cl::ClReader reader(text, name);
+  cl::ClReader reader = program.reader();
   bool is_written = true;
   const auto report = simulate::simulate(
-      reader, name, model, {}, {},
+      reader, name, model, program.tools(model.tool_length_mm), {},
       [&](const CycleRecord& record) { is_written = writer->write(record) && is_written; });
   is_written = writer->close() && is_written;
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
-  cl::ClReader again(text, name);
-  for (auto block = again.next(); block && *block; block = again.next()) path.add(**block, 0);
+  for (const ClBlock& block : program.blocks()) path.add(block, 0);
   auto rows = record::RecordingReader::open(recording, model);
   if (report.outcome != simulate::Outcome::kDone || !is_written || !rows) {
     std::printf("%-18s %s\n", name.c_str(), report.reason.c_str());
@@ -131,13 +181,10 @@ bool print_run(const std::string& text, const std::string& name, const MachineMo
 
 /// The cuts of the file in one run, tools and rapids left out, are planned again window by window.
 void print_file(const std::string& file, const MachineModel& model) {
-  const std::string text = read_file(file), name = std::filesystem::path(file).stem();
-  if (!print_run(text, name, model)) return;
-  std::vector<ClBlock> cuts;
-  cl::ClReader reader(text, name);
-  for (auto block = reader.next(); block && *block; block = reader.next()) {
-    if ((*block)->kind == BlockKind::kCut) cuts.push_back(**block);
-  }
+  const Program program{read_file(file), std::filesystem::path(file).stem()};
+  if (!print_run(program, model)) return;
+  std::vector<ClBlock> cuts = program.blocks();
+  std::erase_if(cuts, [](const ClBlock& block) { return block.kind != BlockKind::kCut; });
   if (cuts.empty()) return;
   print_cost(run(model, {cuts}));
 }

@@ -13,6 +13,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
 #include "property/path/hostile_path.hpp"
 #include "service/core/planner/smooth_run.hpp"
 #include "support/cpu_time.hpp"
@@ -76,6 +77,10 @@ class SmoothWindows {
            std::size_t most_windows = std::numeric_limits<std::size_t>::max()) {
     RunStart start = start_at(model_, blocks.front());
     start.epoch = ++epoch_;
+    start.is_on_pole = std::all_of(blocks.begin(), blocks.end(), [this](const ClBlock& block) {
+      return free_joint(model_) >= 0 &&
+             pole_distance(model_, to_vector(block.axis)) < kPoleEase_rad;
+    });
     BandTolerance tolerance;
     tolerance.tip_mm = model_.tolerances.tip_mm;
     tolerance.axis_rad = model_.tolerances.axis_rad;

@@ -52,6 +52,7 @@ void PoleCorridor::begin(const Start& start) noexcept {
   programmed_.begin(start.axis);
   held_.clear();
   scan_ = 0;
+  core_ = {};
   emitted_x_ = known_u_ = 0;
   known_ = start.joints;
   branch_ = out_branch_ = start.branch;
@@ -174,28 +175,37 @@ JointVector PoleCorridor::follow_to(double u) const noexcept {
   return joints;
 }
 
+bool PoleCorridor::dwells(Place place) const noexcept {
+  return distance_of(place) < kDwellTolerances * tolerance_rad_;
+}
+
+void PoleCorridor::follow_core(Place place) noexcept {
+  const Place begin = held_.begin_index() * kProbes;
+  if (core_.place != place) {
+    core_ = {place, place, place, find_nearest(place)};
+    while (dwells(place) && core_.first > begin && dwells(core_.first - 1)) --core_.first;
+  }
+  core_.first = std::max(core_.first, begin);  // what is behind may be gone
+  while (dwells(place) && core_.last + 1 < end_place() && dwells(core_.last + 1)) ++core_.last;
+}
+
 bool PoleCorridor::decide(Place place) noexcept {
   const double earliest = u_of(std::max(place - 1, held_.begin_index() * kProbes));
   const auto is_behind = [this](double core_end) {
     return is_finished_ || held_.is_full() || end_u() > core_end + 2 * kReach_mm + 1;
   };
   if (!is_behind(earliest)) return false;
-  const double nearest = find_nearest(place);
+  follow_core(place);
+  const Place last = core_.last;
+  const double nearest = core_.nearest;
   PolePlace around;
   around.core_begin = around.core_end = nearest;
   around.branch = branch_;
   around.is_dwelling = distance_at(nearest) < kPoleEase_rad;
-  Place last = place;
-  const auto dwells = [this](Place n) {
-    return distance_of(n) < kDwellTolerances * tolerance_rad_;
-  };
   if (dwells(place)) {
-    Place first = place;
-    while (first > held_.begin_index() * kProbes && dwells(first - 1)) --first;
-    while (last + 1 < end_place() && dwells(last + 1)) ++last;
-    around.is_start = first == 0;
-    around.is_dwelling = around.is_dwelling || around.is_start || last > first;
-    around.core_begin = std::min(nearest, u_of(first));
+    around.is_start = core_.first == 0;
+    around.is_dwelling = around.is_dwelling || around.is_start || last > core_.first;
+    around.core_begin = std::min(nearest, u_of(core_.first));
     around.core_end = std::max(nearest, u_of(last));
   }
   if (is_finished_ && last + 1 == end_place() &&
@@ -362,8 +372,7 @@ void PoleCorridor::scan() noexcept {
     const Place before = std::max(scan_ - 1, held_.begin_index() * kProbes);
     const double here = distance_of(scan_);
     const double behind = is_last ? distance_at(end_u()) : distance_of(scan_ + 1);
-    const bool dwells = here < kDwellTolerances * tolerance_rad_;
-    const bool is_start = scan_ == 0 && dwells;
+    const bool is_start = scan_ == 0 && dwells(scan_);
     const bool is_end = is_last && is_finished_ && behind < kDwellTolerances * tolerance_rad_;
     const bool is_minimum =
         is_start || is_end ||

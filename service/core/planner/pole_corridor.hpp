@@ -86,11 +86,23 @@ class PoleCorridor : private SpanLookup {
     return held_[held_.begin_index()].band.u0 + emitted_x_;
   }
 
+  /// Where the path is closest to the pole: what is known of it stays while spans behind it come,
+  /// so that a way along the pole is walked once, however long.
+  struct Core {
+    Place place = -1;           ///< the minimum among the probes
+    Place first = 0, last = 0;  ///< the run of places on the pole about it
+    double nearest = 0;         ///< u
+  };
+
   /// Looks at probes as far as enough of what follows is there.
   void scan() noexcept;
   /// A local minimum of the distance. False: more spans are needed to decide.
   [[nodiscard]] bool decide(Place place) noexcept;
   [[nodiscard]] double find_nearest(Place place) const noexcept;
+  /// Whether the path counts as on the pole at `place`.
+  [[nodiscard]] bool dwells(Place place) const noexcept;
+  /// Finds what is known of the core about `place`.
+  void follow_core(Place place) noexcept;
   [[nodiscard]] double find_room_behind(Place from, double core_end) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;
@@ -110,6 +122,7 @@ class PoleCorridor : private SpanLookup {
   ProgrammedAxis programmed_;
   IndexRing<Held> held_;
   Place scan_ = 0;        ///< first probe that is not judged
+  Core core_;             ///< that is being decided
   double emitted_x_ = 0;  ///< of the first span held, what is out already
   double known_u_ = 0;    ///< winding and branch behind all zones are known there
   JointVector known_{};
