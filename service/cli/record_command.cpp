@@ -9,6 +9,7 @@
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
+#include "service/dds/followed.hpp"
 #include "service/dds/reader.hpp"
 #include "service/record/wire_recording.hpp"
 #include "service/stream/steady_ns.hpp"
@@ -79,7 +80,7 @@ class EndWatch {
 
   [[nodiscard]] bool is_over() {
     dds::Status status;
-    if (dds::take_newest(reader_, status)) {
+    if (followed_.take(reader_, status)) {
       const bool is_idle = status.state == State::kReady || status.state == State::kOff ||
                            status.state == State::kFault;
       has_run_ = has_run_ || status.state == State::kRunning;
@@ -90,6 +91,7 @@ class EndWatch {
 
  private:
   dds::Reader<dds::Status> reader_;
+  dds::Followed<dds::Status> followed_;
   bool has_run_ = false, is_over_ = false;
 };
 

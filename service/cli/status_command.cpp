@@ -13,6 +13,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
+#include "service/dds/followed.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
@@ -109,7 +110,7 @@ class StatusLink {
     const auto until = std::chrono::steady_clock::now() + timeout;
     for (;;) {
       dds::Status status;
-      if (dds::take_newest(reader_, status)) return status;
+      if (followed_.take(reader_, status)) return status;
       const auto left = until - std::chrono::steady_clock::now();
       if (left <= left.zero()) return std::nullopt;
       waitset_.wait(left);
@@ -118,6 +119,7 @@ class StatusLink {
 
  private:
   dds::Reader<dds::Status> reader_;
+  dds::Followed<dds::Status> followed_;
   dds::Waitset waitset_;
 };
 

@@ -14,7 +14,6 @@ struct SampleInfo {
   bool is_valid = false;     ///< false: only `is_alive` changed, the message holds the key
   bool is_alive = false;     ///< false: disposed, or nobody writes this instance any more
   std::uint64_t source = 0;  ///< writer that sent it, see Reader::has_source
-  std::int64_t sent_ns = 0;  ///< writer's system clock, since 1970
 };
 
 /// Receives `Message` on its topic with the topic's QoS (topics.cpp). One thread takes at a time.
@@ -43,23 +42,5 @@ class Reader {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Takes everything that came and leaves what was sent last in `message`; false where nothing came.
-/// For topics that are keyed by their service and whose receiver wants the newest whoever it is
-/// from: instances come in any order.
-template <class Message>
-[[nodiscard]] bool take_newest(Reader<Message>& reader, Message& message) {
-  bool has_message = false;
-  std::int64_t newest_ns = 0;
-  Message taken;
-  SampleInfo info;
-  while (reader.take(taken, info)) {
-    if (!info.is_valid || (has_message && info.sent_ns < newest_ns)) continue;
-    newest_ns = info.sent_ns;
-    message = taken;
-    has_message = true;
-  }
-  return has_message;
-}
 
 }  // namespace meridian::dds

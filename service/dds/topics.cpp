@@ -152,7 +152,6 @@ bool Reader<Message>::take(Message& message, SampleInfo& info) noexcept {
   info.is_valid = wire_info.valid_data;
   info.is_alive = wire_info.instance_state == DDS_IST_ALIVE;
   info.source = wire_info.publication_handle;
-  info.sent_ns = wire_info.source_timestamp;
   from_wire(impl_->wire, message);
   return true;
 }

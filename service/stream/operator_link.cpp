@@ -34,7 +34,7 @@ OperatorLink::OperatorLink(dds::Participant& participant, std::string operator_n
 
 bool OperatorLink::take_statuses() {
   dds::Status status;
-  if (!dds::take_newest(statuses_, status)) return false;
+  if (!followed_.take(statuses_, status)) return false;
   status_ = status;
   return true;
 }

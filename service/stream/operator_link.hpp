@@ -8,6 +8,7 @@
 #include <string>
 
 #include "meridian/rt/state.hpp"
+#include "service/dds/followed.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
@@ -50,6 +51,7 @@ class OperatorLink {
   dds::Writer<dds::CommandRequest> commands_;
   dds::Reader<dds::Reply> replies_;
   dds::Reader<dds::Status> statuses_;
+  dds::Followed<dds::Status> followed_;
   dds::Waitset waitset_;
   std::optional<dds::Status> status_;
 };

@@ -51,7 +51,7 @@ void StationLink::work(std::chrono::milliseconds timeout) {
 
 std::optional<dds::Status> StationLink::take_status() {
   dds::Status status;
-  return dds::take_newest(statuses_, status) ? std::optional(status) : std::nullopt;
+  return followed_.take(statuses_, status) ? std::optional(status) : std::nullopt;
 }
 
 void StationLink::close() {

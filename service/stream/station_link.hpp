@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "service/dds/followed.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
@@ -38,6 +39,7 @@ class StationLink {
   dds::Writer<dds::Batch> batches_;
   dds::Reader<dds::Credit> credits_;
   dds::Reader<dds::Status> statuses_;
+  dds::Followed<dds::Status> followed_;
   dds::Waitset waitset_;
   dds::Batch batch_;
 };

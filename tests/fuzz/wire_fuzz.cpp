@@ -146,7 +146,8 @@ class Listeners {
       if (!is_motion(block.kind)) continue;
       require(to_vector(block.tip_mm).allFinite(), "a tip that is no number");
       require(std::abs(to_vector(block.axis).norm() - 1) < 1e-9, "an axis that is no unit vector");
-      require(std::isfinite(block.feed) && block.feed >= 0, "a feed that is none");
+      require(std::isfinite(block.feed), "a feed that is no number");
+      require(block.feed > 0 || block.kind != BlockKind::kCut, "a cut without feed");
     }
   }
   void take_session(Supplies& in) {

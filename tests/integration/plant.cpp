@@ -223,7 +223,7 @@ std::unique_ptr<Process> Plant::another_service() {
 
 void Plant::look() {
   dds::Status status;
-  if (dds::take_newest(statuses_, status)) status_ = status;
+  if (followed_.take(statuses_, status)) status_ = status;
 }
 
 const dds::Status& Plant::status() {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "service/dds/followed.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/writer.hpp"
@@ -136,6 +137,7 @@ class Plant {
   std::filesystem::path folder_;
   dds::Participant participant_;
   dds::Reader<dds::Status> statuses_;
+  dds::Followed<dds::Status> followed_;
   dds::Writer<dds::CommandRequest> commands_;
   dds::Reader<dds::Reply> replies_;
   dds::Writer<dds::SessionRequest> requests_;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "service/dds/reader.hpp"
+
+namespace meridian::dds {
+
+/// Takes what came on a topic that is keyed by its service, for a receiver that wants one service,
+/// whoever it is: it follows the one that it heard first for as long as that is there, then another
+/// one. No clocks are compared, for two hosts have two. Proof: tests/unit/dds/exchange_test.cpp.
+template <class Message>
+class Followed {
+ public:
+  /// Takes everything that came since the last call and leaves the newest of the service that is
+  /// followed in `message`; false where nothing of it came.
+  [[nodiscard]] bool take(Reader<Message>& reader, Message& message) {
+    bool has_message = false;
+    bool is_there = source_ != 0 && reader.has_source(source_);
+    Message taken;
+    SampleInfo info;
+    while (reader.take(taken, info)) {
+      if (!info.is_valid || (is_there && info.source != source_)) continue;
+      source_ = info.source;
+      is_there = reader.has_source(source_);
+      message = taken;
+      has_message = true;
+    }
+    return has_message;
+  }
+
+ private:
+  std::uint64_t source_ = 0;  ///< writer of the service, see SampleInfo; 0: none yet
+};
+
+}  // namespace meridian::dds
