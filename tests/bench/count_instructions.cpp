@@ -34,7 +34,9 @@ int main(int argc, char** argv) {
   } else if (workload == "planner") {
     checksum = meridian::bench::run_planner(count);
   } else if (workload == "smooth_block") {
-    checksum = meridian::bench::run_smooth_blocks(count);
+    checksum = meridian::bench::run_smooth_blocks(count, 0.3);
+  } else if (workload == "smooth_dense_block") {
+    checksum = meridian::bench::run_smooth_blocks(count, 0.002);
   } else if (workload == "smooth_window") {
     checksum = meridian::bench::run_smooth_hostile(count);
   } else {

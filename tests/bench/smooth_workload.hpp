@@ -171,11 +171,11 @@ class SmoothWindows {
   return total.checksum;
 }
 
-/// A checksum of what `n` blocks of 0.3 mm at 50 mm/s become; 0 if one failed.
-[[nodiscard]] inline std::uint64_t run_smooth_blocks(int n) {
+/// A checksum of what `n` blocks of `step` mm at 50 mm/s become; 0 if one failed.
+[[nodiscard]] inline std::uint64_t run_smooth_blocks(int n, double step) {
   const auto windows = std::make_unique<SmoothWindows>(test::bench_machine());
   SmoothTotal total;
-  windows->run(dense_blocks(n, 0.3, 50), total);
+  windows->run(dense_blocks(n, step, 50), total);
   return total.has_failed ? 0 : total.checksum;
 }
 
