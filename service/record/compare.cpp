@@ -8,9 +8,12 @@
 #include <utility>
 
 #include "service/record/words.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::record {
 namespace {
+
+using text::Count;
 
 /// Plan times this close are one, s: far below any cycle time.
 constexpr double kSamePlanTime_s = 1e-9;
@@ -181,7 +184,6 @@ Expected<ComparisonReport, RecordError> compare(RecordingReader& a, RecordingRea
 
 std::string to_text(const ComparisonReport& report, const std::string& name_a,
                     const std::string& name_b, const MachineModel& model) {
-  using Count = unsigned long long;
   char line[512];
   std::string text;
   const auto side = [&](const char* label, const std::string& name, std::uint64_t rows,

@@ -7,11 +7,12 @@
 
 #include "meridian/units.hpp"
 #include "service/record/words.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::record {
 namespace {
 
-using Count = unsigned long long;  // what printf calls std::uint64_t
+using text::Count;
 
 /// A cycle number this far back is no late sample: the service was started anew.
 constexpr std::uint64_t kRestart = 1000;
