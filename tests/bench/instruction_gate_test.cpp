@@ -76,7 +76,7 @@ TEST(InstructionGate, Cycle) { expect_within_budget("cycle", 8000); }
 TEST(InstructionGate, Planner) { expect_within_budget("planner", 100); }
 TEST(InstructionGate, SmoothPlannerPerBlock) { expect_within_budget("smooth_block", 55); }
 TEST(InstructionGate, SmoothPlannerPerDenseBlock) {
-  expect_within_budget("smooth_dense_block", 20000);
+  expect_within_budget("smooth_dense_block", 8000);
 }
 TEST(InstructionGate, SmoothPlannerPerHostileWindow) { expect_within_budget("smooth_window", 10); }
 
