@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "meridian/units.hpp"
@@ -9,6 +12,7 @@
 #include "service/cli/machine_options.hpp"
 #include "service/record/check.hpp"
 #include "service/record/compare.hpp"
+#include "service/record/operator_events_writer.hpp"
 #include "service/record/picture.hpp"
 #include "service/record/read_path.hpp"
 
@@ -19,7 +23,7 @@ struct Options {
   std::string recording, file, picture;
   std::vector<std::string> same;
   double tip_tolerance_mm = 0, axis_tolerance_deg = 0;
-  bool is_json = false;
+  bool is_json = false, is_feed_factor_given = false;
   record::CheckOptions check;
   MachineOptions machine;
   ClFileOptions cl;
@@ -41,6 +45,18 @@ int compare(const Options& options, const MachineModel& model) {
   return report->is_same() ? kFine : kVerdictNo;
 }
 
+/// The overrides of the run, where its recorder wrote the operator's events beside the recording.
+void find_overrides(Options& options, const MachineModel& model) {
+  std::ifstream file(record::operator_events_path(options.recording), std::ios::binary);
+  if (!file) return;
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (auto overrides = record::read_feed_overrides(text)) {
+    options.check.overrides = std::move(*overrides);
+  } else {
+    options.check.feed_factor = model.most_feed_override;
+  }
+}
+
 int check(Options& options, const MachineModel& model) {
   const ToolTable tools = load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
@@ -56,6 +72,7 @@ int check(Options& options, const MachineModel& model) {
         *recording, path, model, std::filesystem::path(options.file).filename(), options.picture);
     if (error) return refuse(error->text());
   }
+  if (!options.is_feed_factor_given) find_overrides(options, model);
   options.check.tip_tolerance_mm = options.tip_tolerance_mm;
   options.check.axis_tolerance_rad = units::rad_from_deg(options.axis_tolerance_deg);
   auto report = record::check(*recording, path, model, options.check);
@@ -102,11 +119,11 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber);
   command->add_option("--max-missing", options->check.max_missing, "Cycles that may be missing")
       ->capture_default_str();
-  command
-      ->add_option("--feed-factor", options->check.feed_factor,
-                   "Highest feed override of the run, 1 is 100 %")
-      ->check(CLI::Range(0.01, 10.0))
-      ->capture_default_str();
+  CLI::Option* const factor = command->add_option("--feed-factor", options->check.feed_factor,
+                                                  "Highest feed override of the run, 1 is 100 %, "
+                                                  "instead of those in the .events.csv beside the "
+                                                  "recording");
+  factor->check(CLI::Range(0.01, 10.0))->capture_default_str();
   command->add_flag("--unfinished", options->check.allow_unfinished,
                     "The run was ended before its path was");
   command->add_option("--from-cycle", options->check.from_cycle, "Leave out the cycles before");
@@ -115,7 +132,10 @@ void add_check_command(CLI::App& app, int& exit_code) {
                       "Draw tip path, joints, speeds and rates to this .png or .svg");
   command->add_flag("--json", options->is_json, "The report as JSON");
   add_cl_file_options(*command, options->cl);
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, factor, &exit_code] {
+    options->is_feed_factor_given = factor->count() > 0;
+    exit_code = run(*options);
+  });
 }
 
 }  // namespace meridian::cli

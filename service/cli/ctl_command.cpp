@@ -98,7 +98,10 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::IsMember(names))
       ->type_name("VERB");
-  command->add_option("value", options->percent, "override and rapid-override: 0 to 100 %")
+  command
+      ->add_option("value", options->percent,
+                   "override: 0 to feed_override_max_percent of the machine's file (150), "
+                   "rapid-override: 0 to 100 %")
       ->type_name("PERCENT");
   command
       ->add_option("--wait", options->wait,

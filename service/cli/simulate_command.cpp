@@ -127,7 +127,7 @@ int run(const Options& options) {
     std::ifstream file(options.events, std::ios::binary);
     if (!file) return refuse(options.events + ": cannot be opened");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    auto events = simulate::read_operator_events(text, options.events);
+    auto events = simulate::read_operator_events(text, options.events, model.most_feed_override);
     if (!events) return refuse(events.error());
     simulation.events = std::move(*events);
   }
@@ -180,8 +180,10 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->add_option("--picture", options->picture,
                       "Draw the feed, programmed and achieved, and what held it to this .png or "
                       ".svg");
-  command->add_option("--events", options->events,
-                      "Replay operator events: rows cycle,verb,argument (docs/recordings.md)");
+  command->add_option(
+      "--events", options->events,
+      "Replay operator events: rows cycle,verb,argument, as the service writes them "
+      "beside its recording (docs/recordings.md)");
   command->add_option("--start-from", options->start_from,
                       "Start where the drives were enabled in this recording "
                       "instead of the machine's home");

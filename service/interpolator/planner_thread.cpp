@@ -6,7 +6,9 @@
 namespace meridian::interpolator {
 
 PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports)
-    : ports_(ports), queue_(ports), writer_(ports.motion), planner_(model, tools) {}
+    : ports_(ports), queue_(ports), writer_(ports.motion), planner_(model, tools) {
+  if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
+}
 
 void PlannerThread::run() noexcept {
   // The cycle cannot wake us when it makes room in its rings or comes to Ready: look again.
@@ -41,6 +43,7 @@ bool PlannerThread::work() noexcept {
     if (view.record.state != State::kReady) return false;
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view.epoch, look.front->settings);
+    tell_eases();  // of the plan that begins, before anything of it can be started
     published_before_s_ = writer_.published_s();
     has_begun_ = true;
     motion_ns_ = 0;
@@ -96,6 +99,9 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
 void PlannerThread::tell_eases() noexcept {
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
   for (Unwinding one; planner_.take_unwinding(one);) (void)ports_.unwindings.try_push(one);
+  for (FeedMark mark; planner_.take_feed_mark(mark);) {
+    if (!ports_.feed_marks.try_push(mark)) ports_.events_overrun.fetch_add(1);
+  }
 }
 
 bool PlannerThread::announce_action(const ClBlock& block) noexcept {

@@ -15,7 +15,7 @@ namespace meridian::interpolator {
 /// the epoch of that moment; when the cycle advances the epoch, the plan and all blocks that came
 /// in before intake took note of it are void. What it publishes depends on the blocks and that
 /// beginning alone, never on the clock, unless the stream stalls for a second at the begin of a
-/// program. Preallocated.
+/// program, and on what Ports::feed_marks tells. Preallocated.
 class PlannerThread {
  public:
   PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports);

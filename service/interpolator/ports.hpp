@@ -6,6 +6,7 @@
 
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/smooth_planner.hpp"
@@ -87,6 +88,7 @@ struct Ports {
   MotionPort motion;
   SpscRing<PoleEase, 256> eases;        ///< planner to telemetry
   SpscRing<Unwinding, 256> unwindings;  ///< planner to telemetry
+  SpscRing<FeedMark, 256> feed_marks;   ///< planner to telemetry
 
   SpscRing<Command, 64> commands;
   LatestValue<Feedback> feedback;

@@ -57,6 +57,16 @@ void TelemetryThread::run() noexcept {
 }
 
 void TelemetryThread::drain() {
+  // The planner first: a plan is begun before its program is started.
+  for (FeedMark mark; ports_.feed_marks.try_pop(mark);) {
+    Event planned;
+    planned.code = mark.is_begin ? EventCode::kPlanBegun : EventCode::kFeedPlanned;
+    planned.cycle = view_.record.setpoint.cycle;
+    planned.a = mark.sequence;
+    planned.b = mark.span;
+    planned.x = mark.factor;
+    recorder_.take(planned);
+  }
   Event event;
   while (ports_.told.try_pop(event)) {
     recorder_.take(event);

@@ -5,11 +5,13 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "meridian/expected.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/record/check_report.hpp"
 #include "service/record/checked_path.hpp"
+#include "service/record/feed_overrides.hpp"
 #include "service/record/recording_reader.hpp"
 
 namespace meridian::record {
@@ -19,9 +21,10 @@ struct CheckOptions {
   double axis_tolerance_rad = 0;  ///< 0: the machine's
   double pole_tolerance_rad = 0;  ///< of the axis beside the pole; set by check()
   std::uint64_t max_missing = 0;  ///< cycles that may be missing
-  double feed_factor = 1;         ///< highest feed override in the run
-  bool allow_unfinished = false;  ///< the run was ended before the path was
-  std::uint64_t from_cycle = 0;   ///< rows before are not looked at
+  double feed_factor = 1;         ///< highest feed override in the run, where `overrides` is empty
+  std::vector<FeedOverride> overrides;  ///< those of the run: each holds when and as long as it did
+  bool allow_unfinished = false;        ///< the run was ended before the path was
+  std::uint64_t from_cycle = 0;         ///< rows before are not looked at
   std::uint64_t to_cycle = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -34,7 +37,8 @@ struct CheckOptions {
 ///   nothing more;
 /// * rows of kind `unwind` leave the path along the tool axis alone, turn the free joint by whole
 ///   turns off the part, and come back to where they left;
-/// * tip speed never above the programmed feed; inverse time: nor the turn of the axis;
+/// * tip speed never above the programmed feed, times the feed override in force or in force as
+///   long before as the machine takes to follow; inverse time: nor the turn of the axis;
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.

@@ -15,14 +15,15 @@ std::string operator_events_path(const std::string& recording) {
 Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const std::string& path) {
   auto file = CsvFile::create(path);
   if (!file) return tl::make_unexpected(std::move(file.error()));
-  (void)file->append("cycle,verb,argument\n");
+  (void)file->append("cycle,verb,argument,block,span\n");
   (void)file->flush();
   return OperatorEventsWriter(std::move(*file));
 }
 
 bool is_replayed(const Event& event) noexcept {
   return (event.code == EventCode::kAccepted && event.b < kVerbCount) ||
-         event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered;
+         event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
+         event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned;
 }
 
 bool OperatorEventsWriter::write(const Event& event) noexcept {
@@ -35,6 +36,11 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
     row.put(event.b != 0 ? kPeriodsBridgedWord : kPeriodsLostWord).put(',').put_integer(event.a);
   } else if (event.code == EventCode::kActionAnswered) {
     row.put(kActionAnsweredWord).put(',').put_real(event.x);
+  } else if (event.code == EventCode::kPlanBegun) {
+    row.put(kPlanBegunWord).put(',').put_real(event.x);
+  } else if (event.code == EventCode::kFeedPlanned) {
+    row.put(kFeedPlannedWord).put(',').put_real(event.x);
+    row.put(',').put_integer(event.a).put(',').put_integer(event.b);
   } else {
     row.put(name_of(static_cast<Verb>(event.b))).put(',').put_real(event.x);
   }

@@ -21,9 +21,13 @@ namespace meridian::record {
 inline constexpr std::string_view kPeriodsBridgedWord = "periods_bridged";
 inline constexpr std::string_view kPeriodsLostWord = "periods_lost";
 inline constexpr std::string_view kActionAnsweredWord = "action_answered";
+/// Of the planner: it begins a program; it plans for a feed override above 100 %, the argument,
+/// from the block and span of it on that two more columns tell (FeedMark).
+inline constexpr std::string_view kPlanBegunWord = "plan_begun";
+inline constexpr std::string_view kFeedPlannedWord = "feed_planned";
 
 /// Whether the motion follows from it, beside the program: an accepted verb, lost periods, an
-/// answered action.
+/// answered action, what the planner planned with.
 [[nodiscard]] bool is_replayed(const Event& event) noexcept;
 
 /// Writes what operators asked for and the cycle took, and what else the world did to it, one row

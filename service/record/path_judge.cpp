@@ -19,6 +19,14 @@ constexpr double kVertexMargin_mm = 0.1;
 /// A chord between samples cuts no more than this off a smooth way.
 constexpr double kLargestSag_mm = 1e-4;
 
+/// How long the rate of plan time takes at most to follow an override: its ramp, and what it needs
+/// to turn round, get going and settle.
+[[nodiscard]] std::uint64_t ramp_cycles(const MachineModel& model) {
+  constexpr double kSettle_s = 0.3;
+  return static_cast<std::uint64_t>(1e9 * (model.override_ramp_s + kSettle_s)) /
+         static_cast<std::uint64_t>(model.cycle_ns);
+}
+
 [[nodiscard]] double distance_to_chord(const Vector3& point, const Vector3& a, const Vector3& b) {
   const Vector3 d = b - a;
   const double square = d.squaredNorm();
@@ -36,6 +44,7 @@ PathJudge::PathJudge(const MachineModel& model, const CheckedPath& path,
       tip_tolerance_(options.tip_tolerance_mm),
       axis_tolerance_(options.axis_tolerance_rad),
       period_(static_cast<double>(model.cycle_ns) * 1e-9),
+      overrides_(options.overrides, ramp_cycles(model)),
       follower_(path, tip_tolerance_, axis_tolerance_),
       tool_length_(path.begin_tool_length_mm()),
       nearest_(path.elements().size() + 1, std::numeric_limits<double>::infinity()),
@@ -139,14 +148,15 @@ void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, d
     feed = std::max(feed, element->feed_mm_per_s);
     turn = std::max(turn, element->turn_rad_per_s);
   }
-  const double use = speed / (feed * options_.feed_factor);
+  const double factor = options_.overrides.empty() ? options_.feed_factor : overrides_.at(to.cycle);
+  const double use = speed / (feed * factor);
   feed_.raise(use, to.cycle, to.line);
   if (use > 1 + kRoundingShare) {
     feed_over_.worst.raise(use, to.cycle, to.line);
     ++feed_over_.count;
   }
   const double rate = angle_between(a.axis, b.axis) / period_;
-  if (turn > 0 && rate > turn * options_.feed_factor * (1 + kRoundingShare) + 1e-9) {
+  if (turn > 0 && rate > turn * factor * (1 + kRoundingShare) + 1e-9) {
     turn_over_.worst.raise(rate / turn, to.cycle, to.line);
     ++turn_over_.count;
   }
@@ -226,8 +236,9 @@ void PathJudge::finish(CheckReport& report) {
     find(Finding::Kind::kAxis, axis_over_);
   }
   if (feed_over_.count > 0) {
-    std::snprintf(text, sizeof text, "tip speed is %.6f x the programmed feed in %llu cycles",
-                  feed_over_.worst.value, static_cast<unsigned long long>(feed_over_.count));
+    std::snprintf(text, sizeof text, "tip speed is %.6f x the programmed feed%s in %llu cycles",
+                  feed_over_.worst.value, options_.overrides.empty() ? "" : " times the override",
+                  static_cast<unsigned long long>(feed_over_.count));
     find(Finding::Kind::kFeed, feed_over_);
   }
   if (turn_over_.count > 0) {

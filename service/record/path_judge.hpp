@@ -50,6 +50,7 @@ class PathJudge {
   double tip_tolerance_, axis_tolerance_, period_;
   double allowed_axis_ = 0;   ///< at the last sample
   double exceeded_axis_ = 0;  ///< what was allowed where the axis was farthest off
+  FeedInForce overrides_;
   PathFollower follower_;
   double tool_length_;
   std::array<Place, 4> places_{};  ///< newest last

@@ -26,7 +26,9 @@ BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const Tool
       actions_{.is_there = has_action_peer, .is_ignored = false},
       planner_(model, tools),
       writer_(port),
-      explainer_(explainer) {}
+      explainer_(explainer) {
+  if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
+}
 
 void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch) {
   judge_.begin(model_.tool_length_mm);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ class BlockFeed {
   /// `explainer`: is told every block; may be nullptr.
   BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
             MotionPort& port, bool has_action_peer, Explainer* explainer);
+
+  /// Plans with the factors of a run before. `marks` must stay.
+  void replay_feed(std::span<const FeedMark> marks) noexcept { planner_.replay_feed(marks); }
 
   /// Starts the program from joints at rest.
   void begin(const JointVector& at_rest, std::uint16_t epoch);

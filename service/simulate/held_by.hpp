@@ -41,7 +41,7 @@ enum class Cause : std::uint8_t {
   kBend,      ///< the path bends: a corner or a curve, here or where the motion brakes for it
   kPole,      ///< the free joint turns beside the pole
   kRest,      ///< the motion sets off from a rest or comes to one
-  kOverride,  ///< the operator: an override below 100 %, a hold, a resume
+  kOverride,  ///< the operator: an override below what was planned, a hold, a resume
   kWaiting,   ///< at rest: dwell, action, stop, hold, or blocks that did not come
   kUnwinding  ///< the free joint ran out of travel and is turned back off the part
 };

@@ -17,7 +17,7 @@ class LimitMeter {
  public:
   explicit LimitMeter(const MachineModel& model) : model_(model) {}
 
-  /// `feed_mm_per_s`: programmed, 0 for none. Counts where the program moves.
+  /// `feed_mm_per_s`: planned for, 0 for none. Counts where the program moves.
   void add(const CycleRecord& record, double tool_length_mm, double feed_mm_per_s,
            LimitShares& shares);
 

@@ -49,8 +49,8 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
     view.tip_speed = std::sqrt(tip) * p.ds;
   }
   const double share = feed_share > 0 || piece.feed_mm_per_s == 0
-                           ? feed_share
-                           : view.tip_speed / piece.feed_mm_per_s;
+                           ? feed_share / piece.feed_factor
+                           : view.tip_speed / (piece.feed_factor * piece.feed_mm_per_s);
   const auto weigh = [&](double use, double least, LimitId id) {
     if (!(use > least) || !(use > largest)) return false;
     largest = use;

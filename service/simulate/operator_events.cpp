@@ -8,6 +8,7 @@
 
 #include "meridian/rt/state_table.hpp"
 #include "service/record/operator_events_writer.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::simulate {
 namespace {
@@ -59,7 +60,7 @@ struct EventRow {
 };
 
 /// What is wrong with the row, empty if nothing is.
-[[nodiscard]] std::string read_row(std::string_view text, EventRow& row) {
+[[nodiscard]] std::string read_row(std::string_view text, double most_feed, EventRow& row) {
   const std::string_view cycle = cut(text, ',');
   row.word = cut(text, ',');
   const std::string_view argument = cut(text, ',');
@@ -81,8 +82,11 @@ struct EventRow {
   }
   row.event.verb = *verb;
   if (needs_argument(*verb) && argument.empty()) return about(row.word, "needs its factor");
-  if (needs_argument(*verb) && !(value >= 0 && value <= 1)) {
-    return about(argument, "is no factor from 0 to 1");
+  const double most = *verb == Verb::kFeedOverride ? most_feed : 1;
+  if (needs_argument(*verb) && !(value >= 0 && value <= most)) {
+    std::string fault = about(argument, "is no factor from 0 to ");
+    text::append(fault, "%.4g", most);
+    return fault;
   }
   return "";
 }
@@ -101,18 +105,51 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   }
 }
 
+/// A row of the planner; false if it is none or holds anything else.
+[[nodiscard]] bool read_mark(std::string_view row, FeedMark& mark) {
+  (void)cut(row, ',');
+  const std::string_view word = cut(row, ','), factor = cut(row, ',');
+  mark.is_begin = word == record::kPlanBegunWord;
+  if (mark.is_begin) return row.empty();
+  const std::string_view block = cut(row, ','), span = cut(row, ',');
+  return word == record::kFeedPlannedWord && row.empty() && parse(factor, mark.factor) &&
+         mark.factor >= 1 && std::isfinite(mark.factor) && parse(block, mark.sequence) &&
+         parse(span, mark.span);
+}
+
+/// Of what came before the start, the overrides in force then.
+void keep_overrides(const std::vector<EventRow>& rows, std::int64_t start,
+                    std::vector<OperatorEvent>& verbs) {
+  for (const Verb verb : {Verb::kFeedOverride, Verb::kRapidOverride}) {
+    const EventRow* last = nullptr;
+    for (const EventRow& row : rows) {
+      if (row.event.cycle < start && row.word == name_of(verb)) last = &row;
+    }
+    if (last != nullptr) verbs.push_back({-1, verb, last->event.argument});
+  }
+}
+
 }  // namespace
 
 Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
-                                                           const std::string& name) {
+                                                           const std::string& name,
+                                                           double most_feed) {
   std::vector<EventRow> rows;
+  OperatorEvents events;
   std::optional<std::int64_t> start;
+  bool is_first_program = true;
   for (int line = 1; !text.empty(); ++line) {
     const std::string_view part = cut(text, '\n');
-    if (part.empty() || part.front() == '#' || part == "cycle,verb,argument") continue;
+    if (part.empty() || part.front() == '#' || part.starts_with("cycle,verb,argument")) continue;
+    if (FeedMark mark; read_mark(part, mark)) {
+      if (mark.is_begin) is_first_program = !start;
+      if (mark.is_begin && is_first_program) events.feed_marks.clear();
+      if (is_first_program) events.feed_marks.push_back(mark);
+      continue;
+    }
     EventRow row;
     std::string fault = part == "incomplete" ? "the recorder lost events: they cannot be replayed"
-                                             : read_row(part, row);
+                                             : read_row(part, most_feed, row);
     if (fault.empty() && !rows.empty() && row.event.cycle < rows.back().event.cycle) {
       fault = "cycles do not go up";
     }
@@ -122,7 +159,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
     if (row.word == name_of(Verb::kStart) && !start) start = row.event.cycle;
     rows.push_back(row);
   }
-  OperatorEvents events;
+  if (start) keep_overrides(rows, *start, events.verbs);
   for (const EventRow& row : rows) keep(row, start.value_or(0), events);
   return events;
 }

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "meridian/expected.hpp"
+#include "meridian/planner/feed_mark.hpp"
 #include "meridian/rt/state.hpp"
 
 namespace meridian::simulate {
 
 /// What an operator asked for, and when. `cycle` counts from the cycle that took the start.
 struct OperatorEvent {
-  std::int64_t cycle = 0;
+  std::int64_t cycle = 0;  ///< below 0: ahead of the start
   Verb verb = Verb::kHold;
   double argument = 0;
 };
@@ -36,18 +37,24 @@ struct OperatorEvents {
   std::vector<OperatorEvent> verbs;
   std::vector<LostPeriods> losses;
   std::vector<ActionAnswer> answers;
+  /// What the live planner told of feed overrides above 100 %; empty: it is planned as a service
+  /// would.
+  std::vector<FeedMark> feed_marks;
 };
 
 /// Reads operator events: a row `cycle,verb[,argument]` each, in the order of cycles; the header
-/// `cycle,verb,argument`, empty lines and lines that begin with # are skipped. Verbs are those of
-/// name_of(Verb); an override's argument is its factor. A row `start` says which cycle the others
-/// count from (that of a live run); without one they count from the start as they are. What was
-/// before the start is not replayed. Three words stand beside the verbs, with the host's part in a
+/// `cycle,verb,argument,block,span`, empty lines and lines that begin with # are skipped. Verbs are
+/// those of name_of(Verb); an override's argument is its factor, that of the feed up to
+/// `most_feed`. A row `start` says which cycle the others count from (that of a live run); without
+/// one they count from the start as they are. Of what was before the start the overrides in force
+/// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
-/// `action_answered`, 1 done, 0 refused. A row `incomplete`, by which a recorder says that it lost
+/// `action_answered`, 1 done, 0 refused; two with the planner's: `plan_begun` and
+/// `feed_planned,factor,block,span`. A row `incomplete`, by which a recorder says that it lost
 /// events, is refused. The error is a message with name and line. Proof:
 /// tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
-                                                                         const std::string& name);
+                                                                         const std::string& name,
+                                                                         double most_feed = 1.0);
 
 }  // namespace meridian::simulate

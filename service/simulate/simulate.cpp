@@ -32,6 +32,7 @@ class Run {
     if (options.start) drives_ = *options.start;
     in_.session = 1;
     in_.stops_at_optional = options.stops_at_optional;
+    if (!options.events.feed_marks.empty()) feed_.replay_feed(options.events.feed_marks);
   }
 
   void go(SimulateReport& report, const std::function<void(const CycleRecord&)>& take) {
@@ -64,7 +65,8 @@ class Run {
  private:
   /// What the cycle is to see next.
   void prepare() {
-    const bool is_start = state_.state == State::kLoaded && !start_cycle_;
+    const bool is_start =
+        state_.state == State::kLoaded && !start_cycle_ && !is_verb_due_before_start();
     in_.lost_periods = take_loss(is_start ? in_.cycle + 1 : start_cycle_.value_or(in_.cycle + 2));
     in_.cycle += 1 + in_.lost_periods;
     in_.due_ns = static_cast<std::int64_t>(in_.cycle) * model_.cycle_ns;
@@ -83,6 +85,9 @@ class Run {
     in_.has_command = true;
     if (in_.cycle == kEnableCycle) {
       command(Verb::kEnable);
+    } else if (is_verb_due_before_start()) {
+      const OperatorEvent& verb = options_.events.verbs[next_verb_++];
+      command(verb.verb, verb.argument);
     } else if (is_start) {
       start_cycle_ = in_.cycle;
       command(Verb::kStart);
@@ -135,6 +140,11 @@ class Run {
            is_reached(options_.events.verbs[next_verb_].cycle);
   }
 
+  [[nodiscard]] bool is_verb_due_before_start() const {
+    return state_.state == State::kLoaded && next_verb_ < options_.events.verbs.size() &&
+           options_.events.verbs[next_verb_].cycle < 0;
+  }
+
   [[nodiscard]] bool is_at_program_stop() const {
     if (state_.state != State::kHeld || motion_.piece() == nullptr) return false;
     const TimeKind kind = motion_.piece()->kind;
@@ -157,7 +167,8 @@ class Run {
     const PathPiece* path = motion_.path();
     const double length = path != nullptr ? path->tool_length_mm : model_.tool_length_mm;
     const TimePiece* piece = motion_.piece();
-    meter_.add(out_.record, length, piece != nullptr ? piece->feed_mm_per_s : 0, report.shares);
+    const double feed = piece != nullptr ? piece->feed_factor * piece->feed_mm_per_s : 0;
+    meter_.add(out_.record, length, feed, report.shares);
     if (options_.explainer != nullptr && !is_approach) {
       options_.explainer->add_cycle(out_.record, piece, path, state_.piece_time, length);
     }

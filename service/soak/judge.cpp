@@ -12,7 +12,6 @@
 #include <system_error>
 #include <utility>
 
-#include "meridian/rt/obey.hpp"
 #include "service/record/check.hpp"
 #include "service/record/read_path.hpp"
 
@@ -112,7 +111,7 @@ Judge::Judged Judge::judge(const Segment& segment) {
   }
   record::CheckOptions options;
   options.max_missing = std::numeric_limits<std::uint64_t>::max();
-  options.feed_factor = kMostOverride;
+  options.feed_factor = model_.most_feed_override;
   options.allow_unfinished = segment.is_aborted;
   auto report = record::check(*recording, path, model_, options);
   if (report) {

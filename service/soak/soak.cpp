@@ -46,7 +46,7 @@ class Soak {
         tools_(options.tools.empty() ? ToolTable{} : config::load_tools(options.tools)),
         judge_(model_, tools_, folder_.path()),
         plant_(options.machine, options.tools, options.domain, folder_.path()),
-        chaos_(options.seed, options.chaos_every_s, model_.joint_count),
+        chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.most_feed_override),
         participant_({.domain = options.domain, .machine = model_.name}),
         operator_(participant_, "soak"),
         health_(participant_, report_) {

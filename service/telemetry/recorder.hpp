@@ -23,8 +23,8 @@ class Recorder {
 
   /// Telemetry thread: hands a row over. False: no room, the row is lost.
   [[nodiscard]] bool take(const CycleRecord& record) noexcept;
-  /// Telemetry thread: accepted verbs go into a file of their own, for a replay. Where one is lost
-  /// the file says so, and is not replayed.
+  /// Telemetry thread: accepted verbs and events of the planner go into a file of their own, for a
+  /// replay. Where one is lost the file says so, and is not replayed.
   void take(const Event& event) noexcept;
   /// Telemetry thread: `count` events, ever, were lost before they came here. What they were nobody
   /// knows, so that the file of verbs counts as incomplete.

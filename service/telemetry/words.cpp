@@ -85,6 +85,11 @@ std::string describe(const Event& event, const MachineModel& model) {
       return fmt::format("program ended with block {}", event.a);
     case EventCode::kEpochAdvanced:
       return fmt::format("queues emptied, epoch {}", event.a);
+    case EventCode::kPlanBegun:
+      return "a program is being planned";
+    case EventCode::kFeedPlanned:
+      return fmt::format("from block {} on planned for {:.4g} % of the feed", event.a,
+                         100 * event.x);
     case EventCode::kPeriodsLost:
       return fmt::format("{} periods lost before cycle {}", event.a, event.cycle);
     case EventCode::kStopped:
@@ -181,7 +186,10 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       why = "no feedback from the drives; start them and check their network";
       break;
     case Refusal::kOutOfRange:
-      why = "the value is out of range: overrides reach from 0 to 100 %";
+      why = verb == Verb::kFeedOverride
+                ? "the value is out of range: from 0 to what the machine's file allows "
+                  "(feed_override_max_percent)"
+                : "the value is out of range: from 0 to 100 %";
       break;
     case Refusal::kStale:
       why = "what you saw is older than 500 ms or of an earlier epoch; look again, then repeat";

@@ -18,6 +18,7 @@
 #include "meridian/units.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/record/recording_reader.hpp"
+#include "support/text_file.hpp"
 
 namespace meridian::test {
 namespace {
@@ -177,6 +178,7 @@ void operate(Plant& plant) {
   say(Verb::kHold);
   ASSERT_TRUE(plant.wait_for(State::kHeld));
   say(Verb::kRapidOverride, 0.5);
+  say(Verb::kFeedOverride, 1.5);
   say(Verb::kResume);
 }
 
@@ -189,7 +191,9 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   live.operate = [&plant] { operate(plant); };
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
   const std::string events = plant.folder() / "recording.events.csv";
+  EXPECT_NE(read_text(events).find("feed_planned,1.5,"), std::string::npos);
   expect_same(plant, simulate_part(plant, part, live, {"--events", events}));
+  expect_checked(plant, part, live);  // the feed times the override in force
 }
 
 }  // namespace

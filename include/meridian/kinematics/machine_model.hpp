@@ -109,6 +109,8 @@ struct MachineModel {
   /// Least time that the feed override, a resume or a hold along the plan takes between 100 % and
   /// 0, s. Every plan keeps room in the joints' limits for it; the longer, the less.
   double override_ramp_s = 1.0;
+  /// Highest feed override, at least 1. Above 1 later motion is planned for a higher feed.
+  double most_feed_override = 1.0;
 };
 
 /// Deviation of the axis that is allowed within kPoleReach_rad of the pole.

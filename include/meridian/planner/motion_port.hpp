@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "meridian/path/path_piece.hpp"
@@ -14,7 +16,7 @@
 ///
 ///     planner ─ MotionWriter ─▶ [paths: where] ─▶ MotionReader ─ cycle
 ///                             ─▶ [times: when ] ─▶
-///                             ◀─ tail entered, window begun ──
+///                             ◀─ tail entered, window begun, feed override ──
 ///
 /// Windows are published whole. Path pieces are shown before the time pieces that refer to them, so
 /// a time piece that the cycle sees always has its path. Every published plan ends at rest: either
@@ -28,8 +30,11 @@ struct MotionPort {
   std::atomic<std::uint64_t> tail_entered{0};
   /// Epoch and window that the cycle is in or was in last, packed the same way.
   std::atomic<std::uint64_t> window_begun{0};
+  /// What the operator asks for, 1 is 100 %.
+  std::atomic<double> feed_override{1};
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+static_assert(std::atomic<double>::is_always_lock_free);
 
 /// Names a window of an epoch.
 struct WindowName {
@@ -42,16 +47,23 @@ class MotionWriter {
  public:
   explicit MotionWriter(MotionPort& port) noexcept : port_(port) {}
 
-  /// Whether that many pieces would fit now.
+  /// Whether that many pieces would fit now, and the plan is not farther ahead than it may be.
   [[nodiscard]] bool has_room(std::size_t paths, std::size_t times) noexcept {
-    return port_.paths.count_free_places() >= paths && port_.times.count_free_places() >= times;
+    return port_.paths.count_free_places() >= paths && port_.times.count_free_places() >= times &&
+           (horizon_s_ == kNoHorizon || ahead_s() < horizon_s_);
   }
+
+  /// From now on there is room only while less than `horizon_s` of plan time lies behind the window
+  /// that the cycle is in: what is planned for a new feed override is cut that soon.
+  void set_horizon(double horizon_s) noexcept { horizon_s_ = horizon_s; }
 
   /// Adds a piece to the window being written; the cycle does not see it yet. False if full.
   [[nodiscard]] bool stage(const PathPiece& piece) noexcept { return port_.paths.stage(piece); }
   [[nodiscard]] bool stage(const TimePiece& piece) noexcept {
     if (!port_.times.stage(piece)) return false;
     staged_s_ += piece.duration;
+    staged_ = {{piece.epoch, piece.window},
+               piece.is_tail ? staged_.end_s : staged_.end_s + piece.duration};
     return true;
   }
 
@@ -60,6 +72,7 @@ class MotionWriter {
     port_.paths.discard_staged();
     port_.times.discard_staged();
     staged_s_ = 0;
+    staged_.end_s = newest_.end_s;
   }
 
   /// Shows the staged window to the cycle.
@@ -68,6 +81,11 @@ class MotionWriter {
     port_.times.publish();
     published_s_ += staged_s_;
     staged_s_ = 0;
+    if (staged_.name.epoch != newest_.name.epoch) {  // what was published before is void
+      first_end_ = next_end_;
+      begun_s_ = newest_.end_s;
+    }
+    newest_ = ends_[next_end_++ % ends_.size()] = staged_;
   }
 
   /// Plan time published ever, tails included, s.
@@ -85,7 +103,34 @@ class MotionWriter {
     return unpack(port_.window_begun.load(std::memory_order_acquire));
   }
 
+  /// The feed override that the operator asks for now, 1 is 100 %.
+  [[nodiscard]] double feed_override() const noexcept {
+    return port_.feed_override.load(std::memory_order_relaxed);
+  }
+
  private:
+  static constexpr double kNoHorizon = std::numeric_limits<double>::infinity();
+
+  /// Where a window ends: plan time published ever up to there, tails left out, s.
+  struct WindowEnd {
+    WindowName name;
+    double end_s = 0;
+  };
+
+  /// Plan time behind the window that the cycle is in, of the last windows published.
+  [[nodiscard]] double ahead_s() noexcept {
+    const auto begun = window_begun();
+    while (first_end_ != next_end_) {
+      const WindowEnd& end = ends_[first_end_ % ends_.size()];
+      const bool is_begun =
+          begun && begun->epoch == end.name.epoch && end.name.window <= begun->window;
+      if (!is_begun && next_end_ - first_end_ <= ends_.size()) break;
+      begun_s_ = end.end_s;
+      ++first_end_;
+    }
+    return newest_.end_s - begun_s_;
+  }
+
   [[nodiscard]] static std::optional<WindowName> unpack(std::uint64_t packed) noexcept {
     if (packed == 0) return std::nullopt;
     return WindowName{static_cast<std::uint16_t>(packed >> 32U),
@@ -94,6 +139,11 @@ class MotionWriter {
 
   MotionPort& port_;
   double staged_s_ = 0, published_s_ = 0;
+  double horizon_s_ = kNoHorizon;
+  std::array<WindowEnd, 256> ends_{};  ///< of windows that the cycle may not have begun
+  std::size_t first_end_ = 0, next_end_ = 0;
+  WindowEnd staged_, newest_;
+  double begun_s_ = 0;  ///< end of the window that the cycle is in
 };
 
 /// The cycle's end of the port: the piece in force and the rules that say which one follows.
@@ -159,6 +209,11 @@ class MotionReader {
     path_ = nullptr;
   }
   [[nodiscard]] std::uint16_t epoch() const noexcept { return epoch_; }
+
+  /// Lets the planner know of the operator's feed override.
+  void ask_feed(double factor) noexcept {
+    port_.feed_override.store(factor, std::memory_order_relaxed);
+  }
 
  private:
   /// Whether `next` is what follows; else it is dropped.

@@ -61,6 +61,10 @@ class RestToRestPlanner {
   /// must stay until this is called again, or begin().
   void look_at(std::span<const ClBlock> ahead) noexcept;
 
+  /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's
+  /// highest feed bounds it.
+  void set_feed_factor(double factor) noexcept;
+
   /// Plans and publishes one block.
   [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
 

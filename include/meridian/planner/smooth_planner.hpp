@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
@@ -34,6 +36,11 @@ struct SmoothSettings {
 /// of path and half a second of motion later, or when a block comes that is done at rest. What is
 /// published depends on the blocks and begin() alone, as long as the machine does not run dry; it
 /// then goes on from where it came to rest. Fixed store, no clock.
+///
+/// What is taken up while the operator asks for more than 100 % (MotionWriter::feed_override()) is
+/// planned for that much of the programmed feed, up to MachineModel::most_feed_override; joints and
+/// the machine's highest feed bound it as always. take_feed_mark() tells from where on, and with
+/// replay_feed() the plan is the same again.
 ///
 /// A machine with a free joint: branch and winding at the begin of a program are those that carry
 /// farthest through the first kLookAhead blocks, which are therefore taken before anything is
@@ -76,6 +83,15 @@ class SmoothPlanner {
   /// Takes the oldest stretch beside the pole on which the axis was moved, of what was planned so
   /// far; false if there is none. At most 256 wait, then the oldest go.
   [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
+
+  /// Takes the oldest mark of where a feed override above 100 % holds from, of what was planned so
+  /// far; false if there is none. A program's begin comes first. None where the machine's file
+  /// allows no more than 100 %. At most 256 wait, then the oldest go.
+  [[nodiscard]] bool take_feed_mark(FeedMark& out) noexcept;
+
+  /// Before begin(): plans with the factors of an earlier run of the program, not with what the
+  /// operator asks for. `marks` are those of that program, in order, and must stay.
+  void replay_feed(std::span<const FeedMark> marks) noexcept;
 
   /// Joints and tool length at the end of the last motion that was published to its end.
   [[nodiscard]] const JointVector& joints() const noexcept;

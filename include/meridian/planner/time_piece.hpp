@@ -42,6 +42,9 @@ struct TimePiece {
   double j = 0;                 ///< mm/s³
   double k = 0;                 ///< 1/s²
   double feed_mm_per_s = 0;     ///< programmed tip feed, 0 for rapid
+  /// The tip is nowhere on the piece faster than the programmed feed times this, at least 1: plan
+  /// time runs at no more than the feed override over it (docs/motion.md, section 9).
+  double feed_factor = 1;
   /// Authority to stop: every StopLaw from here to the next rest with ṡ no faster than planned,
   /// |s̈| <= stop_accel and |s⃛| <= stop_jerk keeps every joint inside its limits (fault_*: its
   /// FaultStop limits).

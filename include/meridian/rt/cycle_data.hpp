@@ -74,6 +74,8 @@ enum class EventCode : std::uint16_t {
   kEpochAdvanced,  ///< a: new epoch; queues of the old one are void
   kPeriodsLost,    ///< a: how many, b: 1 if drives bridge so many
   kStopped,        ///< hold, abort or FaultStop came to rest; a: stopping time ns, x: distance mm
+  kPlanBegun,      ///< of the planner: a program is planned from here on, for its feed
+  kFeedPlanned,    ///< of the planner: from span b of block a on for x times the feed (FeedMark)
   kAlarm,  ///< a: Alarm, b: place in limited.hpp or 0, x: measured value, line of the block in
            ///< `line`
   kActionAnswered,  ///< a: sequence, x: 1 done, 0 refused

@@ -115,7 +115,7 @@ struct CycleState {
   Alarm alarm = Alarm::kNone;     ///< why the machine is in FaultStop or Fault
   std::uint32_t alarms_told = 0;  ///< one bit per Alarm since the last reset
 
-  double feed_override = 1;   ///< wanted, 0 to 1
+  double feed_override = 1;   ///< wanted, 0 to MachineModel::most_feed_override
   double rapid_override = 1;  ///< wanted, 0 to 1
   RateFilter rate;
   double piece_time = 0;    ///< plan time since the piece in force began

@@ -29,11 +29,13 @@ inline void starve(Cycle& c) noexcept {
   enter(c, State::kStarved);
 }
 
-/// Lets the rate follow the override of the piece in force. Where the plan rests, it jumps there.
+/// Lets the rate follow the override of the piece in force, over the factor that the piece's feed
+/// was planned with. Where the plan rests, it jumps there.
 inline void aim_rate(Cycle& c) noexcept {
   const MotionKind motion = c.reader.path()->motion;
   const bool is_rapid = motion == MotionKind::kRapid || motion == MotionKind::kApproach;
-  double wanted = is_rapid ? c.state.rapid_override : c.state.feed_override;
+  double wanted =
+      is_rapid ? c.state.rapid_override : c.state.feed_override / c.reader.piece()->feed_factor;
   // It comes in mid-cut and ends in the cut: whoever slowed the cut down slowed it too.
   if (motion == MotionKind::kUnwind) wanted = std::min(wanted, c.state.rapid_override);
   if (is_plan_at_rest(c)) {

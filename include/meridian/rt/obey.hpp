@@ -12,9 +12,6 @@
 /// The operator's word: table first, then the conditions that a table cannot hold. RT: cycle.
 namespace meridian {
 
-/// Plans are made for the programmed feed, and the cycle never exceeds its plan.
-inline constexpr double kMostOverride = 1.0;
-
 /// At rest: everything planned is void, and all that travels later carries the next epoch.
 inline void drop_program(Cycle& c) noexcept {
   c.state.has_block = false;
@@ -41,9 +38,11 @@ inline void drop_program(Cycle& c) noexcept {
     case Verb::kReset:
       return f.emergency_stop ? Refusal::kFaultPresent : Refusal::kNone;
     case Verb::kFeedOverride:
-    case Verb::kRapidOverride:
-      return command.argument >= 0 && command.argument <= kMostOverride ? Refusal::kNone
-                                                                        : Refusal::kOutOfRange;
+    case Verb::kRapidOverride: {
+      const double most = command.verb == Verb::kFeedOverride ? c.machine.most_feed_override : 1.0;
+      return command.argument >= 0 && command.argument <= most ? Refusal::kNone
+                                                               : Refusal::kOutOfRange;
+    }
     default:
       return Refusal::kNone;
   }
@@ -101,7 +100,10 @@ inline void obey(Cycle& c) noexcept {
   tell(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb),
        command.argument);
   if (effect.effect == Effect::kGo) go(c, effect.next);
-  if (command.verb == Verb::kFeedOverride) c.state.feed_override = command.argument;
+  if (command.verb == Verb::kFeedOverride) {
+    c.state.feed_override = command.argument;
+    c.reader.ask_feed(command.argument);
+  }
   if (command.verb == Verb::kRapidOverride) c.state.rapid_override = command.argument;
 }
 

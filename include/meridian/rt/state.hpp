@@ -33,7 +33,7 @@ enum class Verb : std::uint8_t {
   kResume,
   kAbort,
   kReset,
-  kFeedOverride,   ///< argument: factor, 0 to 1
+  kFeedOverride,   ///< argument: factor, 0 to MachineModel::most_feed_override
   kRapidOverride,  ///< argument: factor, 0 to 1
 };
 inline constexpr int kVerbCount = 9;

@@ -16,6 +16,7 @@ struct JointSpan {
   FreeQuintic free{};             ///< Bernstein values over [0, length], rad
   double axis_deviation_rad = 0;  ///< largest angle by which driving the free joint moves the axis
   EaseReason reason = EaseReason::kBeside;  ///< why, where driven
+  double feed_factor = 1;                   ///< FeedFactors::label
 };
 
 /// The piece that the cycle runs on `span`. Joints and names are filled in by the planner.

@@ -183,9 +183,11 @@ double LegPlanner::find_feed_velocity(const Leg& leg, double share_rate) const n
   constexpr double kBelow = 1 - 1e-7;  // never above the feed, whatever rounding does
   double velocity = std::numeric_limits<double>::max();
   const double tip_rate = tip_length_ * share_rate;
-  if (leg.feed_mm_per_s > 0 && tip_rate > 0) velocity = kBelow * leg.feed_mm_per_s / tip_rate;
-  if (leg.share_per_s > 0 && share_rate > 0) {
-    velocity = std::min(velocity, kBelow * leg.share_per_s / share_rate);
+  const bool is_inverse = leg.share_per_s > 0;
+  const double feed = is_inverse ? leg.feed_mm_per_s : leg.feed_factor * leg.feed_mm_per_s;
+  if (feed > 0 && tip_rate > 0) velocity = kBelow * feed / tip_rate;
+  if (is_inverse && share_rate > 0) {
+    velocity = std::min(velocity, kBelow * leg.feed_factor * leg.share_per_s / share_rate);
   }
   return velocity;
 }
@@ -285,6 +287,7 @@ bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const Motio
   time.sequence = piece.sequence;
   time.line = piece.line;
   time.feed_mm_per_s = find_tip_feed(leg);
+  time.feed_factor = leg.feed_factor;
   const AuthorityTable authority(cells, offset, caps_, fault_caps_, choice);
   const ProfilePhases phases = phases_of(choice.profile, piece.length);
   for (int n = 0; n < phases.count; ++n) {

@@ -18,6 +18,7 @@ struct Leg {
   PathPiece path;            ///< names, kind and joints_begin filled in
   double feed_mm_per_s = 0;  ///< programmed tip feed; 0: limited by the joints alone
   double share_per_s = 0;    ///< inverse time: largest d(share of the leg)/dt; 0: none
+  double feed_factor = 1;    ///< on what is programmed: `share_per_s`, without one `feed_mm_per_s`
   std::uint32_t window = 0;
 };
 

@@ -211,6 +211,11 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.cursor.pose = forward(w.model, tool_length_mm, at_rest);
   w.is_staged = false;
   w.is_refused = false;
+  w.router.set_feed_factor(1);
+}
+
+void RestToRestPlanner::set_feed_factor(double factor) noexcept {
+  workspace_->router.set_feed_factor(factor);
 }
 
 PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {

@@ -38,11 +38,13 @@ Router::Job Router::job_of(const ClBlock& block) const noexcept {
   Job job{block, block.kind == BlockKind::kRapid ? MotionKind::kRapid : MotionKind::kCut};
   if (block.kind == BlockKind::kRapid) return job;
   const double most = model_.max_feed_mm_per_s;
+  job.feed_factor = feed_factor_;
   if (block.feed_meaning == FeedMeaning::kInverseTime) {
     job.share_per_s = block.feed;
     job.feed_mm_per_s = most;
   } else {
     job.feed_mm_per_s = most > 0 ? std::min(most, block.feed) : block.feed;
+    if (most > 0) job.feed_factor = std::min(feed_factor_, most / job.feed_mm_per_s);
   }
   return job;
 }
@@ -101,6 +103,7 @@ PathFault Router::run(const PathPiece& path, const Job& job, double share, PlanC
   leg.path.tool_length_mm = cursor.tool_length_mm;
   leg.feed_mm_per_s = job.feed_mm_per_s;
   leg.share_per_s = share > 0 ? job.share_per_s / share : 0;
+  leg.feed_factor = job.feed_factor;
   leg.window = cursor.window;
   return legs_.plan(leg, out, cursor.joints);
 }

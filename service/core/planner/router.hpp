@@ -30,6 +30,9 @@ class Router {
  public:
   explicit Router(const MachineModel& model) noexcept : model_(model), legs_(model) {}
 
+  /// Cuts are planned for `factor` times their feed.
+  void set_feed_factor(double factor) noexcept { feed_factor_ = factor; }
+
   /// Plans the way from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
   [[nodiscard]] PathFault route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
@@ -81,6 +84,7 @@ class Router {
     MotionKind motion;
     double feed_mm_per_s = 0;
     double share_per_s = 0;
+    double feed_factor = 1;
   };
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
@@ -130,6 +134,7 @@ class Router {
   const MachineModel& model_;
   LegPlanner legs_;
   std::span<const ClBlock> ahead_;
+  double feed_factor_ = 1;
   double deviation_rad_ = 0;
 };
 

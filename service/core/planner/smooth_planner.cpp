@@ -12,6 +12,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/fault_code.hpp"
+#include "service/core/planner/feed_raise.hpp"
 #include "service/core/planner/leg_planner.hpp"
 #include "service/core/planner/smooth_run.hpp"
 
@@ -30,7 +31,7 @@ bool has_branches(const MachineModel& model) noexcept { return free_joint(model)
 
 struct SmoothPlanner::Workspace {
   Workspace(const MachineModel& m, ToolTable t)
-      : model(m), plain(m, std::move(t)), run(m), unwindings(kUnwindings) {
+      : model(m), plain(m, std::move(t)), raise(m), run(m, raise), unwindings(kUnwindings) {
     if (has_branches(m)) waiting.reserve(kLookAhead);
   }
 
@@ -65,12 +66,14 @@ struct SmoothPlanner::Workspace {
 
   const MachineModel& model;
   RestToRestPlanner plain;
+  FeedRaise raise;
   SmoothRun run;
   SmoothSettings settings;
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
   JointVector joints{};
   bool is_running = false;
   bool is_for_plain = false;  ///< the block that waits for room goes from rest to rest
+  bool has_factor = false;    ///< and has been given the factor of its feed
   bool is_run_on_pole = false;
   bool is_refused = false;
   PlanResult refusal;
@@ -207,7 +210,8 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (w.is_running) w.end_run();  // no index comes twice
   w.plain.begin(at_rest, tool_length_mm, epoch);
   w.settings = settings;
-  w.is_refused = w.is_for_plain = false;
+  w.raise.begin();
+  w.is_refused = w.is_for_plain = w.has_factor = false;
   w.waiting.clear();
   w.first_waiting = 0;
   w.is_looking = has_branches(w.model);
@@ -267,8 +271,12 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     if (!cut) w.end_run();
   }
   if (!cut) {
+    if (!w.has_factor && block.kind == BlockKind::kCut) {
+      w.raise.rest();
+      w.plain.set_feed_factor(w.raise.next(block.sequence, writer.feed_override(), 0).label);
+    }
     const PlanResult result = w.plain.plan(block, writer);
-    w.is_for_plain = result.status == PlanStatus::kNoRoom;
+    w.is_for_plain = w.has_factor = result.status == PlanStatus::kNoRoom;
     if (result.status == PlanStatus::kRefused) {
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
@@ -310,6 +318,12 @@ bool SmoothPlanner::take_ease(PoleEase& out) noexcept {
   out = w.plain_ease;
   w.plain_ease.deviation_rad = 0;
   return true;
+}
+
+bool SmoothPlanner::take_feed_mark(FeedMark& out) noexcept { return workspace_->raise.take(out); }
+
+void SmoothPlanner::replay_feed(std::span<const FeedMark> marks) noexcept {
+  workspace_->raise.replay(marks);
 }
 
 const JointVector& SmoothPlanner::joints() const noexcept { return workspace_->joints; }

@@ -22,12 +22,19 @@ FeedSettings feed_settings(const MachineModel& model) noexcept {
   return settings;
 }
 
+/// Least time that a span takes at its programmed feed.
+double least_time(const BandSpan& span) noexcept {
+  const double chord = (pose_on(span.c, span.length).tip - pose_on(span.c, 0.0).tip).norm();
+  return std::max(chord / span.feed_mm_per_s, span.length / span.u_speed_mm_per_s);
+}
+
 bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
 
 }  // namespace
 
-SmoothRun::SmoothRun(const MachineModel& model)
+SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise)
     : model_(model),
+      raise_(raise),
       corridor_(model),
       feed_(model, feed_settings(model)),
       authority_(model),
@@ -52,6 +59,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
 
 void SmoothRun::begin_feed(int branch) noexcept {
   feed_.begin(start_.joints, branch, start_.tool_length_mm);
+  raise_.rest();
   spans_.clear();
   staged_spans_ = 0;
   span_joints_ = start_.joints;
@@ -106,7 +114,7 @@ SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
       return Status::kPublished;
     }
     if (is_fault(fault_)) return Status::kFailed;
-    const Status status = prepare();
+    const Status status = prepare(writer.feed_override());
     if (has_window_) continue;
     const bool is_end = status == Status::kDone || status == Status::kUnwind;
     return is_end && !is_end_certain(writer) ? Status::kNoRoom : status;
@@ -122,7 +130,7 @@ bool SmoothRun::is_end_certain(const MotionWriter& writer) const noexcept {
 }
 
 /// Plans the next window, from as many spans as it takes.
-SmoothRun::Status SmoothRun::prepare() noexcept {
+SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
   for (;;) {
     has_window_ = feed_.try_plan();
     if (has_window_) return Status::kNoRoom;
@@ -146,9 +154,8 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
         is_held_ = is_feed_finished_ = true;
         (void)feed_.finish();
       } else {
-        spans_.push(*span);
         note_ease(span);
-        (void)feed_.push(*span);
+        push(*span, feed_override);
         is_held_ = is_just_unwound_ = false;
       }
     } else if (band_.has_failed()) {
@@ -165,6 +172,21 @@ SmoothRun::Status SmoothRun::prepare() noexcept {
     if (is_fault(feed_.fault())) fail_on_span();
     if (is_fault(fault_)) return Status::kFailed;
   }
+}
+
+void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
+  const FeedFactors factors = raise_.next(span.band.sequence, feed_override, least_time(span.band));
+  spans_.push(span);
+  spans_.back().feed_factor = factors.label;
+  JointSpan planned = span;
+  if (factors.planned > 1) {
+    BandSpan& band = planned.band;
+    const double most = model_.max_feed_mm_per_s;
+    band.u_speed_mm_per_s *= factors.planned;
+    band.feed_mm_per_s *= factors.planned;
+    if (most > 0) band.feed_mm_per_s = std::min(band.feed_mm_per_s, most);
+  }
+  (void)feed_.push(planned);
 }
 
 /// Names the block of the span on which the feed found a fault.
@@ -290,7 +312,8 @@ bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept 
 }
 
 bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool is_tail) noexcept {
-  const BandSpan& span = spans_[static_cast<std::int64_t>(piece.span)].band;
+  const JointSpan& joint_span = spans_[static_cast<std::int64_t>(piece.span)];
+  const BandSpan& span = joint_span.band;
   TimePiece time;
   time.kind = TimeKind::kMove;
   time.is_tail = is_tail;
@@ -307,6 +330,7 @@ bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool i
   time.j = piece.j;
   time.k = piece.k;
   time.feed_mm_per_s = std::isfinite(span.feed_mm_per_s) ? span.feed_mm_per_s : 0;
+  time.feed_factor = joint_span.feed_factor;
   authority_.grant(piece, time);
   return writer.stage(time);
 }

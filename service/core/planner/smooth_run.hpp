@@ -12,6 +12,7 @@
 #include "meridian/planner/unwinding.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed_authority.hpp"
+#include "service/core/planner/feed_raise.hpp"
 #include "service/core/planner/free_travel.hpp"
 #include "service/core/planner/pole_corridor.hpp"
 #include "service/core/planner/rolling_feed.hpp"
@@ -46,7 +47,8 @@ class SmoothRun : public WindingTrial {
     kFailed        ///< fault() says why; what is published ends at rest
   };
 
-  explicit SmoothRun(const MachineModel& model);
+  /// `raise` says what the feed is planned with.
+  SmoothRun(const MachineModel& model, FeedRaise& raise);
 
   /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
   void begin(const RunStart& start, const BandTolerance& tolerance,
@@ -93,7 +95,9 @@ class SmoothRun : public WindingTrial {
     std::int64_t rest_cell = -1;  ///< -1: it has no tail
   };
 
-  [[nodiscard]] Status prepare() noexcept;
+  [[nodiscard]] Status prepare(double feed_override) noexcept;
+  /// Gives the next span to the feed, with the factors that hold for it.
+  void push(const JointSpan& span, double feed_override) noexcept;
   /// The next span that joints follow, nullptr where there is none yet.
   [[nodiscard]] const JointSpan* next_span() noexcept;
   /// Follows the free joint over `span`, the next one. False: it would leave its travel, and
@@ -114,6 +118,7 @@ class SmoothRun : public WindingTrial {
                                  bool is_tail) noexcept;
 
   const MachineModel& model_;
+  FeedRaise& raise_;
   BandSpline band_;
   PoleCorridor corridor_;
   RollingFeed feed_;

@@ -43,7 +43,8 @@ struct Operator {
       run.command(Verb::kHold);
       ++holds;
     } else if (what < 0.8) {
-      run.command(Verb::kFeedOverride, std::min(1.0, random.uniform(least_override, 1.5)));
+      run.command(Verb::kFeedOverride, std::min(run.world.machine.most_feed_override,
+                                                random.uniform(least_override, 1.5)));
     } else if (turns_rapids) {
       run.command(Verb::kRapidOverride, random.uniform(0.2, 1.0));
     }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "property/planner/random_programs.hpp"
 #include "support/cycle_world.hpp"
@@ -64,13 +65,18 @@ template <class Planner>
 class PlannedRun {
  public:
   PlannedRun(const MachineModel& machine, const std::vector<ClBlock>& blocks,
-             const JointVector& start, std::size_t blocks_before_start = ~std::size_t{0})
+             const JointVector& start, std::size_t blocks_before_start = ~std::size_t{0},
+             const std::vector<FeedMark>* replayed = nullptr)
       : most_blocks(blocks_before_start),
         world(machine, start),
         planner_(world.machine),
         writer_(*world.port),
         blocks_(blocks) {
     is_started_ = world.enable();
+    if constexpr (requires { planner_.replay_feed({}); }) {
+      if (replayed != nullptr) planner_.replay_feed(*replayed);
+    }
+    if (machine.most_feed_override > 1 && replayed == nullptr) writer_.set_horizon(kFeedHorizon_s);
     planner_.begin(start, machine.tool_length_mm, world.state.epoch);
     // Blocks come as they are planned, not all at the begin.
     if constexpr (requires { planner_.look_no_further(); }) planner_.look_no_further();
@@ -93,6 +99,8 @@ class PlannedRun {
     plan();
     return world.command(verb, argument);
   }
+
+  [[nodiscard]] Planner& planner() { return planner_; }
 
   std::size_t most_blocks;  ///< that come between two cycles
   CycleWorld world;

@@ -175,6 +175,34 @@ TEST_F(Check, RefusesAFeedAboveTheProgrammedOne) {
   EXPECT_EQ(report.findings[0].line, 7U);
   options.feed_factor = 1.1;
   EXPECT_TRUE(run().passed()) << "an override allows it";
+  const std::uint64_t late = report.findings[0].cycle;
+  options.overrides = {{1, 0.9}, {late - 50, 1.1}};
+  EXPECT_TRUE(run().passed()) << "in force there";
+  options.overrides = {{1, 1.1}, {late - 50, 0.5}};
+  EXPECT_TRUE(run().passed()) << "the machine takes a while to follow";
+  options.overrides = {{late + 1, 1.1}};
+  expect_only(run(), Finding::Kind::kFeed);
+}
+
+TEST(FeedInForce, IsTheLargestOfTheRampBeforeACycle) {
+  FeedInForce in_force({{100, 1.5}, {200, 0.5}, {210, 1.2}}, 50);
+  EXPECT_EQ(in_force.at(99), 1);
+  EXPECT_EQ(in_force.at(100), 1.5);
+  EXPECT_EQ(in_force.at(240), 1.5) << "in force until 199, less than 50 before";
+  EXPECT_EQ(in_force.at(250), 1.2);
+  EXPECT_EQ(in_force.at(900), 1.2);
+}
+
+TEST(FeedOverrides, AreReadFromTheEventsOfARecording) {
+  const auto set = read_feed_overrides(
+      "cycle,verb,argument,block,span\n5,plan_begun,1\n7,start,0\n9,feed_override,1.25\n"
+      "9,feed_planned,1.25,3,0\n12,rapid_override,0.5\n20,feed_override,0.5\n");
+  ASSERT_TRUE(set.has_value());
+  ASSERT_EQ(set->size(), 2U);
+  EXPECT_EQ((*set)[0].cycle, 9U);
+  EXPECT_EQ((*set)[0].factor, 1.25);
+  EXPECT_EQ((*set)[1].factor, 0.5);
+  EXPECT_FALSE(read_feed_overrides("9,feed_override,1.25\nincomplete\n"));
 }
 
 TEST_F(Check, RefusesMoreMissingCyclesThanAllowed) {

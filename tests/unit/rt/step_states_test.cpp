@@ -263,6 +263,19 @@ TEST(Step, OverridesOutOfRangeAreRefusedAndThoseInForceStay) {
   EXPECT_EQ(p.world.state.rapid_override, 1.0);
 }
 
+TEST(Step, TakesAnOverrideUpToTheMachinesHighestAndTellsThePlanner) {
+  Program p;
+  p.world.machine.most_feed_override = 1.2;
+  p.world.command(Verb::kFeedOverride, 1.2);
+  EXPECT_EQ(p.world.state.feed_override, 1.2);
+  EXPECT_EQ(p.world.port->feed_override, 1.2);
+  p.world.command(Verb::kFeedOverride, 1.21);
+  EXPECT_EQ(refusal_of(p.world), Refusal::kOutOfRange);
+  p.world.command(Verb::kRapidOverride, 1.1);
+  EXPECT_EQ(refusal_of(p.world), Refusal::kOutOfRange);
+  EXPECT_EQ(p.world.port->feed_override, 1.2);
+}
+
 TEST(Step, FollowsTheOverrideOfTheMotionInForce) {
   Program p;
   p.plan.cut({60, 0, 0}, kLimits, MotionKind::kRapid);

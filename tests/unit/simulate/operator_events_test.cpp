@@ -47,6 +47,25 @@ TEST(OperatorEvents, SayWhatTheHostDid) {
   ASSERT_EQ(events->verbs.size(), 1U);
 }
 
+TEST(OperatorEvents, HoldWhatThePlannerOfTheFirstStartedProgramTold) {
+  const auto events = read_operator_events(
+      "cycle,verb,argument,block,span\n10,plan_begun,1\n20,feed_planned,1.1,4,0\n"
+      "30,plan_begun,1\n30,feed_override,0.9\n31,feed_override,1.25\n32,feed_planned,1.25,1,0\n"
+      "40,start,0\n50,feed_override,1\n49,feed_planned,1,7,2\n60,plan_begun,1\n"
+      "60,feed_planned,1.5,2,0\n",
+      "e.csv", 1.5);
+  ASSERT_TRUE(events.has_value()) << events.error();
+  ASSERT_EQ(events->verbs.size(), 2U);
+  EXPECT_EQ(events->verbs[0].cycle, -1) << "in force before the start";
+  EXPECT_EQ(events->verbs[0].argument, 1.25);
+  EXPECT_EQ(events->verbs[1].cycle, 10);
+  ASSERT_EQ(events->feed_marks.size(), 3U);
+  EXPECT_TRUE(events->feed_marks[0].is_begin);
+  EXPECT_EQ(events->feed_marks[1].factor, 1.25);
+  EXPECT_EQ(events->feed_marks[2].sequence, 7U);
+  EXPECT_EQ(events->feed_marks[2].span, 2U);
+}
+
 TEST(OperatorEvents, AreRefusedWithTheirLine) {
   struct Case {
     const char* text;
@@ -63,6 +82,7 @@ TEST(OperatorEvents, AreRefusedWithTheirLine) {
       {"5,periods_lost\n", "'periods_lost' needs a whole number"},
       {"5,periods_lost,-1\n", "'periods_lost' needs a whole number"},
       {"5,action_answered,2\n", "'action_answered' needs a whole number"},
+      {"5,feed_planned,1.1,x,0\n", "'feed_planned' is no verb"},
       {"5,hold,1,2\n", "more than cycle, verb and argument"},
   };
   for (const Case& c : cases) {

@@ -167,6 +167,22 @@ TEST_F(Simulate, WaitsForActionsAsLongAsTheLiveRunDid) {
   EXPECT_EQ(run_simulation(kWithSpindle, model, simulation).report.outcome, Outcome::kStopped);
 }
 
+TEST_F(Simulate, PlansForOverridesAboveTheFeedAsTheOperatorOrTheFileOfALiveRunSays) {
+  model.most_feed_override = 1.5;
+  SimulateOptions simulation;
+  const SimulatedRun plain = run_simulation(kPart, model);
+  simulation.events.verbs = {{-1, Verb::kFeedOverride, 1.4}};
+  const SimulatedRun run = run_simulation(kPart, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone);
+  EXPECT_LT(run.report.program_s, 0.85 * plain.report.program_s);
+  const CheckReport report = check(run, kPart);
+  EXPECT_FALSE(report.passed()) << to_text(report);
+  options.overrides = {{1, 1.4}};
+  EXPECT_TRUE(check(run, kPart).passed()) << to_text(check(run, kPart));
+  simulation.events.feed_marks = {{true, 0, 0, 1}};  // the live planner was through before
+  EXPECT_EQ(run_simulation(kPart, model, simulation).report.program_s, plain.report.program_s);
+}
+
 TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {
   options.allow_unfinished = true;
   const std::int64_t middle = middle_of(run_simulation(kPart, model));

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace meridian {
+
+/// Where a feed override above 100 % holds from in what is planned: with the blocks, these marks
+/// say all of what a plan depends on. Proof: tests/property/rt/feed_raise_test.cpp.
+struct FeedMark {
+  bool is_begin = false;       ///< a program begins, at 100 %
+  std::uint64_t sequence = 0;  ///< CL block
+  std::uint32_t span = 0;      ///< of the smooth path, counted from the block's first
+  double factor = 1;           ///< of the programmed feed, at least 1
+};
+
+/// How far ahead of the cycle a planner keeps, that is to obey an override above 100 %, s: soon
+/// enough for an operator, far enough for a planner that has to wait for the processor.
+inline constexpr double kFeedHorizon_s = 2.0;
+
+}  // namespace meridian
