@@ -31,7 +31,7 @@ bool PlannerThread::work() noexcept {
       const PlanResult result = planner_.advance(writer_);
       if (result.status == PlanStatus::kRefused) refuse(result.reject);
     }
-    tell_eases();
+    tell_of_plan();
     return false;
   }
   if (is_refused_) {
@@ -43,8 +43,8 @@ bool PlannerThread::work() noexcept {
     if (view.record.state != State::kReady) return false;
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view.epoch, look.front->settings);
-    tell_eases();  // of the plan that begins, before anything of it can be started
     published_before_s_ = writer_.published_s();
+    tell_of_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
     motion_ns_ = 0;
   }
@@ -79,13 +79,11 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
     (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
     planning_ns_ = 0;
   }
-  tell_eases();
+  tell_of_plan();
   switch (result.status) {
     case PlanStatus::kNoRoom:
       return false;
     case PlanStatus::kOk:
-      ports_.planned_s.store(writer_.published_s() - published_before_s_,
-                             std::memory_order_relaxed);
       if (queued.block.kind == BlockKind::kEnd) has_begun_ = false;
       break;
     case PlanStatus::kRefused:
@@ -96,7 +94,8 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   return true;
 }
 
-void PlannerThread::tell_eases() noexcept {
+void PlannerThread::tell_of_plan() noexcept {
+  ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
   for (Unwinding one; planner_.take_unwinding(one);) (void)ports_.unwindings.try_push(one);
   for (FeedMark mark; planner_.take_feed_mark(mark);) {

@@ -28,7 +28,8 @@ class PlannerThread {
   [[nodiscard]] bool work() noexcept;
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
   void refuse(const BlockReject& reject) noexcept;
-  void tell_eases() noexcept;
+  /// What others want to know of what was planned.
+  void tell_of_plan() noexcept;
   /// A program of which no block has come for a while begins with those that are there.
   void look_at_stall() noexcept;
   [[nodiscard]] bool announce_action(const ClBlock& block) noexcept;

@@ -174,7 +174,7 @@ TEST_F(Simulate, PlansForOverridesAboveTheFeedAsTheOperatorOrTheFileOfALiveRunSa
   simulation.events.verbs = {{-1, Verb::kFeedOverride, 1.4}};
   const SimulatedRun run = run_simulation(kPart, model, simulation);
   EXPECT_EQ(run.report.outcome, Outcome::kDone);
-  EXPECT_LT(run.report.program_s, 0.85 * plain.report.program_s);
+  EXPECT_LT(run.report.program_s, 0.97 * plain.report.program_s);
   const CheckReport report = check(run, kPart);
   EXPECT_FALSE(report.passed()) << to_text(report);
   options.overrides = {{1, 1.4}};
