@@ -81,7 +81,7 @@ struct CheckReport {
   Peak vertex_mm;                         ///< `line`: of the block that ends there
   std::uint64_t vertices = 0, vertices_in_gaps = 0;
   std::uint64_t unwindings = 0;  ///< turns of the free joint off the part
-  Peak feed;  ///< tip speed / programmed feed
+  Peak feed;                     ///< tip speed / programmed feed
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows
   std::uint64_t fault_stop_cycles = 0;

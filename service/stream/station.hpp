@@ -110,7 +110,7 @@ class Station {
   std::int64_t opened_ns_ = 0, asked_ns_ = 0, heard_ns_ = 0, progress_ns_ = 0, went_back_ns_ = 0;
   std::uint64_t went_back_to_ = ~std::uint64_t{0};
   bool is_asked_ = false;
-  bool awaits_answer_ = false;  ///< asked again, not answered yet
+  bool awaits_answer_ = false;       ///< asked again, not answered yet
   std::uint64_t cursor_before_ = 0;  ///< of the newest batch, for on_not_sent()
   bool end_sent_before_ = false;
 };
