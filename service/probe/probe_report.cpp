@@ -37,8 +37,8 @@ constexpr double kUs = 1e-3;
 }
 
 [[nodiscard]] const char* word(Weight weight) {
-  constexpr const char* kWords[] = {"judged", "target host", "reported"};
-  return kWords[static_cast<std::size_t>(weight)];
+  constexpr const char* kWeights[] = {"judged", "target host", "reported"};
+  return kWeights[static_cast<std::size_t>(weight)];
 }
 
 void append_measurement(std::string& out, const RateMeasurement& m) {

@@ -44,7 +44,7 @@ const std::string kCpu = "sys/devices/system/cpu/";
 
 /// Sleep states that take longer to leave than a cycle can spare.
 [[nodiscard]] Finding sleep_states(const HostFiles& host, const Rights& rights) {
-  constexpr long long kMost_us = 20;
+  constexpr long long kShallow_us = 20;
   long long deepest = 0;
   std::string name;
   for (const std::string& state : host.names(kCpu + "cpu0/cpuidle", "state")) {
@@ -60,7 +60,7 @@ const std::string kCpu = "sys/devices/system/cpu/";
   if (rights.has_dma_latency) {
     return {"sleep states", Health::kFine, found + "; the service holds them off", ""};
   }
-  if (deepest <= kMost_us) return {"sleep states", Health::kFine, found, ""};
+  if (deepest <= kShallow_us) return {"sleep states", Health::kFine, found, ""};
   return {"sleep states", Health::kNote, found,
           "let the service's user write /dev/cpu_dma_latency (a udev rule), or boot with "
           "cpuidle.off=1"};
