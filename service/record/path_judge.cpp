@@ -14,6 +14,9 @@ namespace meridian::record {
 namespace {
 
 constexpr double kRoundingShare = 1e-6;
+constexpr double kPlace_mm = 1e-11;   // of the tip, by rounding of the joints
+constexpr double kLeastFeed = 1e-12;  // mm/s
+
 /// A vertex is looked for this far before and behind the place where the tool is.
 constexpr double kVertexMargin_mm = 0.1;
 /// A chord between samples cuts no more than this off a smooth way.
@@ -149,7 +152,12 @@ void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, d
     turn = std::max(turn, element->turn_rad_per_s);
   }
   const double factor = options_.overrides.empty() ? options_.feed_factor : overrides_.at(to.cycle);
-  const double use = speed / (feed * factor);
+  double allowed = feed * factor;
+  if (factor > 1 && model_.max_feed_mm_per_s > 0) {
+    allowed = std::min(allowed, model_.max_feed_mm_per_s);
+  }
+  // At an override of 0 the tip stands but for the last bit of its place.
+  const double use = std::max(0.0, speed - kPlace_mm / period_) / std::max(allowed, kLeastFeed);
   feed_.raise(use, to.cycle, to.line);
   if (use > 1 + kRoundingShare) {
     feed_over_.worst.raise(use, to.cycle, to.line);

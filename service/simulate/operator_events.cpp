@@ -76,8 +76,8 @@ struct EventRow {
   if (!text.empty()) return "there is more than cycle, verb and argument";
   if (is_of_host) {
     const double most = is_loss ? kMostPeriods : 1;
-    const bool is_count =
-        !argument.empty() && value >= 0 && value <= most && value == std::floor(value);
+    const bool is_count = !argument.empty() && value >= (is_loss ? 1 : 0) && value <= most &&
+                          value == std::floor(value);
     return is_count ? "" : about(row.word, "needs a whole number");
   }
   row.event.verb = *verb;

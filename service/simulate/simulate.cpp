@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/simulate/simulate.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -94,7 +95,7 @@ class Run {
     } else if (is_event_due()) {
       const OperatorEvent& event = options_.events.verbs[next_verb_++];
       command(event.verb, event.argument);
-    } else if (is_at_program_stop()) {
+    } else if (is_at_program_stop() && !has_resume_left()) {
       command(Verb::kResume);
     } else {
       in_.has_command = false;
@@ -111,7 +112,8 @@ class Run {
     const auto count = static_cast<std::uint32_t>(loss.count);
     if (static_cast<std::int64_t>(in_.cycle + 1 + count - start_cycle) < loss.cycle) return 0;
     ++next_loss_;
-    model_.bridge_cycles = loss.is_bridged ? loss.count : loss.count - 1;
+    model_.bridge_cycles = loss.is_bridged ? std::max(loss.count, bridge_cycles_)
+                                           : std::min(loss.count - 1, bridge_cycles_);
     const Setpoint& sent = out_.record.setpoint;
     if (!loss.is_bridged || (sent.flags & kSetpointEnabled) == 0) return count;
     const double time = 1e-9 * static_cast<double>(model_.cycle_ns) * count;
@@ -138,6 +140,13 @@ class Run {
   [[nodiscard]] bool is_event_due() const {
     return next_verb_ < options_.events.verbs.size() &&
            is_reached(options_.events.verbs[next_verb_].cycle);
+  }
+
+  /// A run that is replayed goes on from its program stops when its operator did.
+  [[nodiscard]] bool has_resume_left() const {
+    const auto& verbs = options_.events.verbs;
+    return std::any_of(verbs.begin() + static_cast<std::ptrdiff_t>(next_verb_), verbs.end(),
+                       [](const OperatorEvent& event) { return event.verb == Verb::kResume; });
   }
 
   [[nodiscard]] bool is_verb_due_before_start() const {
@@ -242,6 +251,7 @@ class Run {
   }
 
   MachineModel model_;  ///< drives bridge what those of the live run bridged
+  const int bridge_cycles_ = model_.bridge_cycles;
   const SimulateOptions& options_;
   std::unique_ptr<MotionPort> port_;
   MotionReader motion_;

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
@@ -42,6 +43,11 @@ Judge::~Judge() { finish(); }
 void Judge::announce(const std::string& program, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   programs_.push_back({program, now_ns});
+}
+
+void Judge::announce_override(double factor, std::int64_t now_ns) {
+  const std::lock_guard lock(mutex_);
+  overrides_.push_back({factor, now_ns});
 }
 
 void Judge::read_pipe() {
@@ -96,6 +102,18 @@ std::string Judge::program_at(std::int64_t time_ns) {
   return file;
 }
 
+double Judge::most_override_since(std::int64_t time_ns) {
+  const std::lock_guard lock(mutex_);
+  double before = 1, most = 1;
+  for (const Override& asked : overrides_) {
+    if (asked.since_ns <= time_ns)
+      before = asked.factor;
+    else
+      most = std::max(most, asked.factor);
+  }
+  return std::max(before, most);
+}
+
 Judge::Judged Judge::judge(const Segment& segment) {
   Judged judged;
   record::CheckedPath path(model_.tool_length_mm, model_.max_feed_mm_per_s);
@@ -111,7 +129,7 @@ Judge::Judged Judge::judge(const Segment& segment) {
   }
   record::CheckOptions options;
   options.max_missing = std::numeric_limits<std::uint64_t>::max();
-  options.feed_factor = model_.most_feed_override;
+  options.feed_factor = most_override_since(segment.begin_ns);
   options.allow_unfinished = segment.is_aborted;
   auto report = record::check(*recording, path, model_, options);
   if (report) {

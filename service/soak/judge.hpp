@@ -32,6 +32,8 @@ class Judge {
   [[nodiscard]] std::filesystem::path pipe() const { return folder_ / "recording.pipe"; }
   /// From now on (machine's clock, ns) the programs that begin are this one.
   void announce(const std::string& program, std::int64_t now_ns);
+  /// From now on the operator's feed override is `factor`.
+  void announce_override(double factor, std::int64_t now_ns);
   /// Adds what was judged since the last call.
   void collect(SoakReport& report);
   /// Reads what is left; call when no service writes any more.
@@ -46,17 +48,24 @@ class Judge {
     std::string file;
     std::int64_t since_ns = 0;
   };
+  struct Override {
+    double factor = 1;
+    std::int64_t since_ns = 0;
+  };
   void read_pipe();
   void judge_segments();
   [[nodiscard]] Judged judge(const Segment& segment);
   [[nodiscard]] std::string program_at(std::int64_t time_ns);
+  /// Highest feed override since `time_ns`, at least 1.
+  [[nodiscard]] double most_override_since(std::int64_t time_ns);
 
   const MachineModel& model_;
   const ToolTable& tools_;
   std::filesystem::path folder_;
   Segments segments_;
-  std::mutex mutex_;  ///< of the three below
+  std::mutex mutex_;  ///< of the four below
   std::vector<Program> programs_;
+  std::vector<Override> overrides_;
   std::deque<Segment> waiting_;
   std::vector<Judged> judged_;
   std::atomic<bool> is_read_{false}, is_ending_{false};

@@ -228,6 +228,7 @@ class Soak {
         resume_s_ = now_s() + mishap.value;
         break;
       case Mishap::kOverride:
+        judge_.announce_override(mishap.value, stream::steady_ns());
         ask(Verb::kFeedOverride, mishap.value);
         break;
       case Mishap::kAbort:

@@ -82,8 +82,7 @@ class MotionWriter {
     published_s_ += staged_s_;
     staged_s_ = 0;
     if (staged_.name.epoch != newest_.name.epoch) {  // what was published before is void
-      first_end_ = next_end_;
-      begun_s_ = newest_.end_s;
+      forget_ahead();
     }
     newest_ = ends_[next_end_++ % ends_.size()] = staged_;
   }
@@ -101,6 +100,12 @@ class MotionWriter {
   /// the one that tail_entered() names.
   [[nodiscard]] std::optional<WindowName> window_begun() const noexcept {
     return unpack(port_.window_begun.load(std::memory_order_acquire));
+  }
+
+  /// What was published and not begun is void: the cycle came to a tail before it.
+  void forget_ahead() noexcept {
+    first_end_ = next_end_;
+    begun_s_ = newest_.end_s;
   }
 
   /// The feed override that the operator asks for now, 1 is 100 %.

@@ -75,7 +75,7 @@ class Follower {
                    kStepShare * pole_distance(model_, pose_at(path, share * path.length).axis));
       const double by = std::min(1 / std::max(1.0, arc_steps),
                                  path.axis_turn > turn ? turn / path.axis_turn : 1.0);
-      const double next = n + 1 < kMostSteps ? std::min(1.0, share + by) : 1.0;
+      const double next = std::min(1.0, share + by);
       is_over_ =
           n == kMostSteps || !put_at(pose_at(path, next * path.length), (next - share) * feed_s);
       share = next;
@@ -139,9 +139,10 @@ class Follower {
 void look_ahead(const MachineModel& model, double tool_length_mm, const ToolPose& start,
                 std::span<const ClBlock> blocks, std::span<AheadWay> ways) noexcept {
   if (blocks.empty()) return;
+  const auto to_follow = blocks.front().is_arc ? blocks : blocks.subspan(1);
   for (int branch = 0; branch < branch_count(model); ++branch) {
     Follower follower(model, tool_length_mm, branch, start, ways);
-    for (const ClBlock& block : blocks.subspan(1)) {
+    for (const ClBlock& block : to_follow) {
       if (follower.is_over()) break;
       follower.follow(block);
     }

@@ -250,12 +250,13 @@ const JointSpan* SmoothRun::next_span() noexcept {
 }
 
 /// The cycle came to a tail before the next window did: go on from the rest at its end.
-void SmoothRun::follow_tail(const MotionWriter& writer) noexcept {
+void SmoothRun::follow_tail(MotionWriter& writer) noexcept {
   const auto tail = writer.tail_entered();
   if (!tail || tail->epoch != start_.epoch) return;
   for (OpenWindow& open : open_) {
     if (open.rest_cell < 0 || open.window != tail->window) continue;
     feed_.resume_from(open.rest_cell);
+    writer.forget_ahead();
     open_.fill({});
     has_window_ = false;
     return;

@@ -110,7 +110,7 @@ class SmoothRun : public WindingTrial {
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
   void fail_on_span() noexcept;
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
-  void follow_tail(const MotionWriter& writer) noexcept;
+  void follow_tail(MotionWriter& writer) noexcept;
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;
   [[nodiscard]] JointVector joints_at_end(const PathPiece& piece) const noexcept;
   [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;

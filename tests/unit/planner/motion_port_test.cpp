@@ -17,7 +17,8 @@ struct Script {
   std::uint64_t paths = 0;
   std::uint16_t epoch = 0;
 
-  void move(std::uint32_t window, std::uint64_t name, bool is_from_rest, bool is_tail = false) {
+  void move(std::uint32_t window, std::uint64_t name, bool is_from_rest, bool is_tail = false,
+            double duration = 0) {
     PathPiece path;
     path.index = paths;
     path.epoch = epoch;
@@ -29,6 +30,7 @@ struct Script {
     time.path_index = paths++;
     time.is_from_rest = is_from_rest;
     time.is_tail = is_tail;
+    time.duration = duration;
     ASSERT_TRUE(writer.stage(path) && writer.stage(time));
   }
 
@@ -128,6 +130,27 @@ TEST(MotionPort, SaysWhenAWindowWouldNotFit) {
   EXPECT_FALSE(script.writer.has_room(4097, 1));
   script.move(0, 10, true);
   EXPECT_FALSE(script.writer.has_room(4096, 1));
+}
+
+TEST(MotionPort, CountsNothingAsAheadThatATailMadeVoid) {
+  Script script;
+  script.writer.set_horizon(2);
+  script.move(0, 10, true, false, 1);
+  script.move(0, 11, true, true, 1);
+  script.writer.publish();
+  ASSERT_EQ(script.reader.advance()->sequence, 10U);
+  ASSERT_EQ(script.reader.advance()->sequence, 11U);
+  script.move(1, 20, false, false, 3);  // comes too late: the cycle is in the tail before it
+  script.writer.publish();
+  EXPECT_EQ(script.run(), Names{});
+  EXPECT_FALSE(script.writer.has_room(1, 1));
+  script.writer.forget_ahead();
+  EXPECT_TRUE(script.writer.has_room(1, 1));
+  script.move(2, 30, true, false, 3);
+  script.writer.publish();
+  EXPECT_FALSE(script.writer.has_room(1, 1));
+  EXPECT_EQ(script.run(), Names{30});
+  EXPECT_TRUE(script.writer.has_room(1, 1));
 }
 
 }  // namespace

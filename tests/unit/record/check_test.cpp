@@ -175,6 +175,9 @@ TEST_F(Check, RefusesAFeedAboveTheProgrammedOne) {
   EXPECT_EQ(report.findings[0].line, 7U);
   options.feed_factor = 1.1;
   EXPECT_TRUE(run().passed()) << "an override allows it";
+  model.max_feed_mm_per_s = 26.5;
+  EXPECT_TRUE(has(run(), Finding::Kind::kFeed)) << "no override lifts the machine's highest feed";
+  model.max_feed_mm_per_s = 0;
   const std::uint64_t late = report.findings[0].cycle;
   options.overrides = {{1, 0.9}, {late - 50, 1.1}};
   EXPECT_TRUE(run().passed()) << "in force there";

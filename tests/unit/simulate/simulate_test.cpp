@@ -183,6 +183,23 @@ TEST_F(Simulate, PlansForOverridesAboveTheFeedAsTheOperatorOrTheFileOfALiveRunSa
   EXPECT_EQ(run_simulation(kPart, model, simulation).report.program_s, plain.report.program_s);
 }
 
+TEST_F(Simulate, GoesOnFromAProgramStopWhenTheOperatorOfTheEventsDid) {
+  constexpr const char* kWithStop =
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0, 1\nSTOP\nGOTO / 95, -40, 20\n"
+      "FINI\n";
+  const SimulatedRun at_once = run_simulation(kWithStop, model);
+  ASSERT_EQ(at_once.report.outcome, Outcome::kDone);
+  SimulateOptions simulation;
+  const auto late = static_cast<std::int64_t>(at_once.report.cycles) + 400;
+  simulation.events.verbs = {{late, Verb::kResume, 0}, {late + 100, Verb::kFeedOverride, 0.5}};
+  const SimulatedRun run = run_simulation(kWithStop, model, simulation);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
+  EXPECT_GT(run.report.program_s, at_once.report.program_s + 0.5);
+  std::size_t slowed = 0;
+  for (const CycleRecord& record : run.records) slowed += record.rate > 0.4 && record.rate < 0.6;
+  EXPECT_GT(slowed, 100U) << "the override meets the cut behind the stop";
+}
+
 TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {
   options.allow_unfinished = true;
   const std::int64_t middle = middle_of(run_simulation(kPart, model));
