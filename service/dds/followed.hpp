@@ -8,8 +8,10 @@
 namespace meridian::dds {
 
 /// Takes what came on a topic that is keyed by its service, for a receiver that wants one service,
-/// whoever it is: it follows the one that it heard first for as long as that is there, then another
-/// one. No clocks are compared, for two hosts have two. Proof: tests/unit/dds/exchange_test.cpp.
+/// whoever it is: it follows the one that it heard first for as long as that is there and speaks,
+/// then another one. No clocks are compared, for two hosts have two: one that says nothing while
+/// another speaks ten times is gone, though its lease may last. Proof:
+/// tests/unit/dds/exchange_test.cpp.
 template <class Message>
 class Followed {
  public:
@@ -21,7 +23,10 @@ class Followed {
     Message taken;
     SampleInfo info;
     while (reader.take(taken, info)) {
-      if (!info.is_valid || (is_there && info.source != source_)) continue;
+      if (!info.is_valid) continue;
+      const bool is_other = info.source != source_;
+      if (is_there && is_other && ++others_ < kSilent) continue;
+      others_ = 0;
       source_ = info.source;
       is_there = reader.has_source(source_);
       message = taken;
@@ -31,6 +36,8 @@ class Followed {
   }
 
  private:
+  static constexpr int kSilent = 10;  ///< samples of others in a row
+  int others_ = 0;
   std::uint64_t source_ = 0;  ///< writer of the service, see SampleInfo; 0: none yet
 };
 

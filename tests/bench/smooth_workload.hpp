@@ -15,6 +15,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "property/path/hostile_path.hpp"
+#include "service/core/planner/feed_raise.hpp"
 #include "service/core/planner/smooth_run.hpp"
 #include "support/cpu_time.hpp"
 #include "support/dense_block.hpp"
@@ -70,7 +71,8 @@ struct SmoothTotal {
 /// cycle that needs no time reads every window as it is published.
 class SmoothWindows {
  public:
-  explicit SmoothWindows(const MachineModel& model) : model_(model), run_(model_), writer_(port_) {}
+  explicit SmoothWindows(const MachineModel& model)
+      : model_(model), raise_(model_), run_(model_, raise_), writer_(port_) {}
 
   /// Ends early once `total` has `most_windows`.
   void run(const std::vector<ClBlock>& blocks, SmoothTotal& total,
@@ -142,6 +144,7 @@ class SmoothWindows {
   }
 
   MachineModel model_;
+  FeedRaise raise_;
   SmoothRun run_;
   MotionPort port_;
   MotionWriter writer_;
