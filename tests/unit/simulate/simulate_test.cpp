@@ -185,7 +185,7 @@ TEST_F(Simulate, PlansForOverridesAboveTheFeedAsTheOperatorOrTheFileOfALiveRunSa
 
 TEST_F(Simulate, GoesOnFromAProgramStopWhenTheOperatorOfTheEventsDid) {
   constexpr const char* kWithStop =
-      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0, 1\nSTOP\nGOTO / 95, -40, 20\n"
+      "UNITS / MM\nFEDRAT / 300, MMPM\nGOTO / 80, -40, 20, 0, 0, 1\nSTOP\nGOTO / 95, -40, 20\n"
       "FINI\n";
   const SimulatedRun at_once = run_simulation(kWithStop, model);
   ASSERT_EQ(at_once.report.outcome, Outcome::kDone);
