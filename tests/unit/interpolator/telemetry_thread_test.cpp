@@ -54,8 +54,8 @@ std::string events_file(std::uint64_t lost) {
 }
 
 TEST(TelemetryThread, TellsTheRecorderWhatWasLostOnTheWay) {
-  EXPECT_EQ(events_file(0), "cycle,verb,argument\n7,hold,0\n");
-  EXPECT_EQ(events_file(2), "cycle,verb,argument\n7,hold,0\nincomplete\n");
+  EXPECT_EQ(events_file(0), "cycle,verb,argument,block,span\n7,hold,0\n");
+  EXPECT_EQ(events_file(2), "cycle,verb,argument,block,span\n7,hold,0\nincomplete\n");
 }
 
 }  // namespace
