@@ -106,7 +106,7 @@ struct Density {
 TEST(SmoothThroughput, ABlockCostsTheSameAtTheEndOfALongProgram) {
   const char* const wanted = std::getenv("MERIDIAN_BLOCKS");
   for (const Density& density : {Density{0.0001, 5, 500000}, Density{0.002, 50, 100000},
-                                 Density{0.05, 50, 20000}, Density{0.3, 50, 4000}}) {
+                                 Density{0.05, 50, 20000}, Density{0.3, 50, 16000}}) {
     SCOPED_TRACE(testing::Message() << density.step_mm << " mm");
     const int blocks = wanted != nullptr ? std::atoi(wanted) : draws(density.blocks);
     const auto stream = std::make_unique<Stream>(density.step_mm, density.feed_mm_per_s);
