@@ -27,7 +27,7 @@ struct SimulateOptions {
 /// Runs a CL file through judge, planner and cycle as the service does, without DDS and without a
 /// clock: drives that are ideal (feedback is the last setpoint, enabled at once), actions that are
 /// done at once, or when the events say, an operator who enables, starts, and resumes at program
-/// stops.
+/// stops, unless the events list the resumes.
 ///
 /// The motion is that of the service, bit for bit on every cycle that it sends. `take` gets every
 /// cycle. Context: a tool's main thread; memory is fixed but for the reader's.

@@ -166,6 +166,7 @@ Plant::Plant(std::string machine)
       credits_(participant_) {
   std::filesystem::remove_all(folder_);
   std::filesystem::create_directories(folder_);
+  change_machine({{"approach_feed_mm_per_min = [0-9]+", "approach_feed_mm_per_min = 12000"}});
 }
 
 Plant::~Plant() {

@@ -87,13 +87,13 @@ class Process {
 /// Service and drives as processes on a private domain, with the test as operator and station.
 class Plant {
  public:
-  /// `machine`: one of deploy/machines.
+  /// `machine`: one of deploy/machines, but for its approach, which takes no time from a test.
   explicit Plant(std::string machine = "lai");
   ~Plant();
 
-  /// Runs service and drives from a copy of the machine file with another cycle time.
+  /// Runs service and drives with another cycle time.
   void set_cycle_us(int cycle_us);
-  /// Changes that copy: what matches the first becomes the second, at least once each.
+  /// Changes their machine file: what matches the first becomes the second, at least once each.
   void change_machine(const std::vector<std::pair<std::string, std::string>>& changes);
 
   /// Start meridiand (best effort, recording on) or the drives, `more` on the command

@@ -31,6 +31,17 @@ class IndexRing {
   [[nodiscard]] const T& back() const noexcept { return (*this)[end_ - 1]; }
 
   void push(const T& item) noexcept { (*this)[end_++] = item; }
+  /// Where it is full the oldest element goes.
+  void push_over_oldest(const T& item) noexcept {
+    if (is_full()) ++begin_;
+    push(item);
+  }
+  /// Takes the oldest element; false if there is none.
+  [[nodiscard]] bool take_oldest(T& out) noexcept {
+    if (begin_ == end_) return false;
+    out = (*this)[begin_++];
+    return true;
+  }
   /// Drops every element before index `first`.
   void drop_before(std::int64_t first) noexcept {
     if (first > begin_) begin_ = first < end_ ? first : end_;

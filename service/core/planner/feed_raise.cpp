@@ -20,7 +20,7 @@ void FeedRaise::begin() noexcept {
   span_ = 0;
   next_mark_ = 0;
   replayed_ = 1;
-  if (most_ > 1 && !is_replay_) tell({true, 0, 0, 1});
+  if (most_ > 1 && !is_replay_) told_.push_over_oldest({true, 0, 0, 1});
 }
 
 double FeedRaise::find_wanted(double asked) noexcept {
@@ -40,7 +40,7 @@ FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double least_s
     span_ = 0;
   }
   if (const double wanted = find_wanted(asked); wanted != now_.label) {
-    if (!is_replay_) tell({false, sequence_, span_, wanted});
+    if (!is_replay_) told_.push_over_oldest({false, sequence_, span_, wanted});
     if (wanted > now_.label) lead_s_ = ramp_s_ * (1 - now_.planned / wanted) + kSettle_s;
     now_ = {wanted, std::min(now_.planned, wanted)};
   }
@@ -49,18 +49,6 @@ FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double least_s
   is_at_rest_ = false;
   ++span_;
   return now_;
-}
-
-void FeedRaise::tell(const FeedMark& mark) noexcept {
-  if (told_.is_full()) told_.drop_before(told_.begin_index() + 1);
-  told_.push(mark);
-}
-
-bool FeedRaise::take(FeedMark& out) noexcept {
-  if (told_.begin_index() == told_.end_index()) return false;
-  out = told_[told_.begin_index()];
-  told_.drop_before(told_.begin_index() + 1);
-  return true;
 }
 
 }  // namespace meridian

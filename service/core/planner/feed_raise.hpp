@@ -49,12 +49,11 @@ class FeedRaise {
   [[nodiscard]] FeedFactors next(std::uint64_t sequence, double asked, double least_s) noexcept;
 
   /// Takes the oldest mark of what was planned; false if there is none. At most 256 wait.
-  [[nodiscard]] bool take(FeedMark& out) noexcept;
+  [[nodiscard]] bool take(FeedMark& out) noexcept { return told_.take_oldest(out); }
 
  private:
   static constexpr std::size_t kTold = 256;
 
-  void tell(const FeedMark& mark) noexcept;
   [[nodiscard]] double find_wanted(double asked) noexcept;
 
   double most_, ramp_s_;

@@ -195,8 +195,7 @@ bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
 
 void SmoothPlanner::Workspace::note(const Unwinding& unwinding) noexcept {
   if (unwinding.turns == 0) return;
-  if (unwindings.is_full()) unwindings.drop_before(unwindings.begin_index() + 1);
-  unwindings.push(unwinding);
+  unwindings.push_over_oldest(unwinding);
 }
 
 SmoothPlanner::SmoothPlanner(const MachineModel& model, ToolTable tools)
@@ -304,11 +303,7 @@ PlanResult SmoothPlanner::advance(MotionWriter& writer) noexcept {
 }
 
 bool SmoothPlanner::take_unwinding(Unwinding& out) noexcept {
-  Workspace& w = *workspace_;
-  if (w.unwindings.begin_index() == w.unwindings.end_index()) return false;
-  out = w.unwindings[w.unwindings.begin_index()];
-  w.unwindings.drop_before(w.unwindings.begin_index() + 1);
-  return true;
+  return workspace_->unwindings.take_oldest(out);
 }
 
 bool SmoothPlanner::take_ease(PoleEase& out) noexcept {

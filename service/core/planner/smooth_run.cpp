@@ -218,16 +218,8 @@ void SmoothRun::note_ease(const JointSpan* span) noexcept {
     is_easing_ = true;
   } else if (is_easing_) {
     is_easing_ = false;
-    if (eases_.is_full()) eases_.drop_before(eases_.begin_index() + 1);
-    eases_.push(ease_);
+    eases_.push_over_oldest(ease_);
   }
-}
-
-bool SmoothRun::take_ease(PoleEase& out) noexcept {
-  if (eases_.begin_index() == eases_.end_index()) return false;
-  out = eases_[eases_.begin_index()];
-  eases_.drop_before(eases_.begin_index() + 1);
-  return true;
 }
 
 const JointSpan* SmoothRun::next_span() noexcept {

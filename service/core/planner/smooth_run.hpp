@@ -79,7 +79,7 @@ class SmoothRun : public WindingTrial {
              std::uint32_t window) noexcept;
 
   /// Takes the oldest stretch beside the pole on which the axis was moved; false if there is none.
-  [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
+  [[nodiscard]] bool take_ease(PoleEase& out) noexcept { return eases_.take_oldest(out); }
 
   /// Names for what follows the run, and the joints at its end.
   [[nodiscard]] std::uint64_t next_path_index() const noexcept {

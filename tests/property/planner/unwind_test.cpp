@@ -9,6 +9,7 @@
 #include <random>
 
 #include "property/planner/smooth_trace.hpp"
+#include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
 #include "support/family_machines.hpp"
 #include "support/machines.hpp"
@@ -18,45 +19,6 @@ namespace meridian::test {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
-constexpr double kRetract_mm = 30;
-
-/// Limits as bench_machine(), C between `low_deg` and `high_deg`, unwinding off the part.
-MachineModel limited(MachineModel model, double low_deg, double high_deg) {
-  const MachineModel bench = bench_machine();
-  for (int i = 0; i < model.joint_count; ++i) {
-    const std::string name = model.joints[i].name;
-    const bool is_rotary = model.joints[i].is_rotary;
-    model.joints[i] = bench.joints[is_rotary ? 4 : 0];
-    model.joints[i].name = name;
-    model.joints[i].is_rotary = is_rotary;
-  }
-  JointSpec& c = model.joints[free_joint(model)];
-  c.is_endless = false;
-  c.limits.travel_min = units::rad_from_deg(low_deg);
-  c.limits.travel_max = units::rad_from_deg(high_deg);
-  model.max_feed_mm_per_s = 1000;
-  model.unwind_policy = UnwindPolicy::kRetract;
-  model.unwind_retract_mm = kRetract_mm;
-  return model;
-}
-
-/// A fork head: A on C, both on the tool side; joints in the order X Y Z C A.
-MachineModel fork_machine() {
-  MachineModel model;
-  model.name = "fork-ca";
-  model.family = MachineFamily::kChain;
-  const Vector3 o = Vector3::Zero();
-  const std::array<ChainJoint, 5> chain{
-      ChainJoint{0, false, false, Vector3::UnitX(), o},
-      ChainJoint{1, false, false, Vector3::UnitY(), o},
-      ChainJoint{2, false, false, Vector3::UnitZ(), o},
-      ChainJoint{3, true, false, Vector3::UnitZ(), o},
-      ChainJoint{4, true, false, Vector3::UnitX(), Vector3(0, 0, 600)}};
-  model.chain = *describe_chain(chain, Vector3::UnitZ(), Vector3(0, 0, 400));
-  for (int i = 3; i < 5; ++i) model.joints[i].is_rotary = true;
-  model.tool_length_mm = 110;
-  return model;
-}
 
 std::vector<MachineModel> machines() {
   return {limited(lai_machine(), -720, 720), limited(trunnion_machine(), -200, 340),
@@ -69,24 +31,6 @@ struct Spiral {
   bool turns_back = false;   ///< now and then
   bool passes_pole = false;  ///< the axis swings to the other side, through the pole or nearly
 };
-
-/// A cut to `tip` with the axis leaning by `tilt` towards `azimuth`, 100 mm/s.
-ClBlock leaning(double tilt, double azimuth, const Vector3& tip) {
-  ClBlock block;
-  block.tip_mm = to_array(tip);
-  block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                std::cos(tilt)};
-  block.feed = 100;
-  block.feed_meaning = FeedMeaning::kTip;
-  return block;
-}
-
-/// Joints at the end of `block`, with windings near `reference`.
-JointVector solve_block(const MachineModel& model, const ClBlock& block, int branch,
-                        const JointVector& reference = {}) {
-  const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis)};
-  return solve(model, model.tool_length_mm, pose, branch, reference).q;
-}
 
 /// Round a dome: the axis leans outwards and turns about z.
 std::vector<ClBlock> spiral(std::uint32_t seed, const Spiral& how) {
@@ -283,70 +227,6 @@ TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
   }
 }
 
-TEST(Unwinding, IsNotNeededWhereAnotherWindingCarriesTheWholeProgram) {
-  MachineModel model = limited(fork_machine(), -360, 360);
-  model.unwind_policy = UnwindPolicy::kRefuse;
-  for (const double sign : {-1.0, 1.0}) {
-    for (const double first_tilt : {0.3, 0.003, 0.0}) {  // beside the pole, and on it
-      SCOPED_TRACE(testing::Message() << sign << ", begins " << first_tilt << " from the pole");
-      std::vector<ClBlock> blocks;  // a turn and a half from where C stands at 0 or nearly
-      for (int n = -1; n <= 108; ++n) {
-        const double azimuth = n < 0 ? 0 : sign * units::rad_from_deg(5.0 * n);
-        blocks.push_back(
-            leaning(n < 0 ? first_tilt : 0.3, azimuth,
-                    {30 * std::cos(azimuth), 30 * std::sin(azimuth), n < 0 ? 1.0 : 0}));
-        blocks.back().sequence = blocks.size() - 1;
-      }
-      end_program(blocks);
-      const JointVector start = joints_of(model, blocks[0]);
-      for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
-        const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0}, true);
-        EXPECT_EQ(trace.last.status, PlanStatus::kOk) << "block " << trace.last.reject.sequence;
-        EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
-        EXPECT_TRUE(trace.unwindings.empty());
-      }
-    }
-  }
-}
-
-/// Plans straight lines through `blocks` with a look ahead, from `start`.
-PlanResult plan_with_look(const MachineModel& model, std::vector<ClBlock> blocks,
-                          const JointVector& start, Transition transition) {
-  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
-  end_program(blocks);
-  return plan_smooth(model, blocks, start, {transition, 0, 0}, true).last;
-}
-
-TEST(LookAhead, TakesTheBranchOnWhichNoJointLeavesItsTravelLater) {
-  for (const bool is_slide : {false, true}) {
-    MachineModel model = is_slide ? lai_machine() : bench_machine();  // C with travel, and endless
-    const std::vector<ClBlock> blocks{leaning(0.17, 0, {5, 0, 0}), leaning(0.17, 0, {100, 0, 0}),
-                                      leaning(is_slide ? 0.17 : 0.6, 0, {250, 0, 0})};
-    for (int branch = 0; branch < branch_count(model); ++branch) {
-      // The machine stands on `branch`, which leaves travel of one joint at the end.
-      const JointVector begin = solve_block(model, blocks[0], branch);
-      const JointVector out = solve_block(model, blocks[2], branch);
-      const JointVector in = solve_block(model, blocks[2], 1 - branch);
-      int joint = is_slide ? 0 : 4;
-      for (int i = 0; is_slide && i < 3; ++i) {
-        if (std::abs(out[i] - in[i]) > std::abs(out[joint] - in[joint])) joint = i;
-      }
-      ASSERT_GT(std::abs(out[joint] - in[joint]), 0.5);
-      MachineModel limited = model;
-      JointLimits& limits = limited.joints[joint].limits;
-      const double room = is_slide ? 50 : 0.2;
-      (out[joint] < in[joint] ? limits.travel_min : limits.travel_max) =
-          out[joint] + (out[joint] < in[joint] ? room : -room);
-      ASSERT_LT(first_joint_outside_travel(limited, begin, 0), 0);
-      for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
-        const PlanResult last = plan_with_look(limited, blocks, begin, transition);
-        EXPECT_EQ(last.status, PlanStatus::kOk)
-            << "joint " << joint << " branch " << branch << " block " << last.reject.sequence;
-      }
-    }
-  }
-}
-
 TEST(Unwinding, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
   const MachineModel model = limited(lai_machine(), -200, 200);
   const double tilt = units::rad_from_deg(8), offset = units::rad_from_deg(0.05);
@@ -390,36 +270,49 @@ TEST(Unwinding, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
   }
 }
 
-/// Straight through the pole the tilt would come to the other side, where it has no travel: C turns
-/// on the pole or beside it instead.
-TEST(LookAhead, TakesNoWayPastThePoleOnWhichAJointLeavesItsTravelBehindIt) {
-  MachineModel model = bench_machine();
-  const double tilt = units::rad_from_deg(15);
-  for (const double offset_deg : {0.0, 0.05}) {
-    SCOPED_TRACE(offset_deg);
-    const double offset = units::rad_from_deg(offset_deg);
-    std::vector<ClBlock> blocks;
-    for (int n = 0; n <= 20; ++n) {
-      const double x = tilt * (1 - n / 10.0);
-      blocks.push_back(
-          leaning(std::hypot(x, offset), std::atan2(offset, x), Vector3(2.0 * n, 0, 0)));
-      blocks.back().sequence = blocks.size() - 1;
-    }
-    end_program(blocks);
-    for (const double side : {-1.0, 1.0}) {
-      const int branch = solve_block(model, blocks[0], 0)[4] * side > 0 ? 0 : 1;
-      const JointVector start = solve_block(model, blocks[0], branch);
-      JointLimits& limits = model.joints[4].limits;
-      limits.travel_min = units::rad_from_deg(side > 0 ? -5 : -60);
-      limits.travel_max = units::rad_from_deg(side > 0 ? 60 : 5);
-      const SmoothTrace trace = plan_smooth(model, blocks, start);
-      EXPECT_EQ(trace.last.status, PlanStatus::kOk)
-          << "joint " << trace.last.reject.joint << " at " << trace.last.reject.value;
-      for (const PlanSample& one : sample(model, trace, 1e-3, 0.37, start)) {
-        ASSERT_LT(first_joint_outside_travel(model, one.q, 1e-9), 0);
+/// Wherever C comes to its end of travel on the way past the pole: also so that the closest place
+/// is just behind the unwinding.
+TEST(Unwinding, CutsOnWhereverItComesOnTheWayPastThePole) {
+  const MachineModel model = limited(lai_machine(), -200, 200);
+  const double tilt = units::rad_from_deg(8);
+  int unwindings = 0;
+  for (const PolePolicy policy : {PolePolicy::kExact, PolePolicy::kEase}) {
+    for (const double offset_deg : {0.05, 0.3, 1.0}) {
+      const double offset = units::rad_from_deg(offset_deg);
+      std::vector<ClBlock> blocks;
+      for (int n = 0; n <= 16; ++n) {
+        const double x = tilt * (1 - n / 8.0);
+        blocks.push_back(
+            leaning(std::hypot(x, offset), std::atan2(offset, x), Vector3(1.0 * n, 0, 0)));
+        blocks.back().sequence = blocks.size() - 1;
+      }
+      end_program(blocks);
+      const JointVector start = solve_block(model, blocks[0], 0);
+      const double sign = solve_block(model, blocks[7], 0, start)[3] > start[3] ? 1 : -1;
+      for (int degrees = 2; degrees < 180; degrees += kIsTimed ? 19 : 88) {
+        SCOPED_TRACE(testing::Message()
+                     << offset_deg << " deg beside the pole, C ends at " << degrees);
+        MachineModel turned = model;
+        turned.pole_policy = policy;
+        JointLimits& limits = turned.joints[3].limits;
+        const double end = start[3] + sign * units::rad_from_deg(degrees);
+        const double other = end - sign * units::rad_from_deg(540);
+        limits.travel_min = std::min(end, other);
+        limits.travel_max = std::max(end, other);
+        const SmoothTrace trace = plan_smooth(turned, blocks, start);
+        ASSERT_EQ(trace.last.status, PlanStatus::kOk)
+            << "joint " << trace.last.reject.joint << " block " << trace.last.reject.sequence;
+        ASSERT_EQ(trace.times.back().kind, TimeKind::kEnd);
+        const auto setpoints = sample(turned, trace, 1e-3, 0.37, start);
+        const LimitUse use = measure_limits(turned, setpoints, 1e-3);
+        EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
+        for (const PlanSample& one : setpoints)
+          ASSERT_LT(first_joint_outside_travel(turned, one.q, 1e-9), 0);
+        unwindings += static_cast<int>(trace.unwindings.size());
       }
     }
   }
+  EXPECT_GT(unwindings, 5);
 }
 
 TEST(Unwinding, IsNotAskedForWhereTheTurnOfCFits) {

@@ -87,26 +87,13 @@ double largest_feed(const SmoothRunning& run, double feed) {
   return largest;
 }
 
-/// An operator who turns the feed up and down and holds now and then. Returns how long.
-double operate(SmoothRunning& run, RandomPrograms& random, double most_s) {
-  double next = 0, t = 0;
-  for (; t < most_s && !run.is_over(); t += run.world.dt()) {
-    if (t < next) {
-      run.run();
-      continue;
-    }
-    next = t + random.log_uniform(0.05, 3);
-    if (run.world.now() == State::kHeld) {
-      run.command(Verb::kResume);
-    } else if (random.chance(0.15)) {
-      run.command(Verb::kHold);
-      next = t + 0.3;
-    } else {
-      run.command(Verb::kFeedOverride, random.uniform(random.chance(0.7) ? 1 : 0, 1.5));
-    }
-  }
-  return t;
-}
+/// Turns the feed up and down and holds now and then.
+constexpr Operator kRaising{.turns_rapids = false,
+                            .least_wait_s = 0.05,
+                            .most_wait_s = 2,
+                            .hold_share = 0.15,
+                            .feed_share = 0.85,
+                            .raise_share = 0.7};
 
 double seconds_of(const SmoothRunning& run) {
   return static_cast<double>(run.world.records.size()) * run.world.dt();
@@ -136,7 +123,8 @@ TEST(FeedRaise, KeepsLimitsFeedTimesOverrideAndTolerancesOnHostilePrograms) {
     const auto blocks = hostile(seed, feed);
     SmoothRunning run(machine, blocks, joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started());
-    seconds += operate(run, random, 10);
+    Operator raising_operator = kRaising;
+    seconds += raising_operator.operate(run, random, 10);
     expect_within_limits(run.world, 0, false, worst);
     EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
     EXPECT_EQ(run.world.count(EventCode::kRefused), 0);

@@ -16,6 +16,9 @@ namespace meridian::test {
 struct Operator {
   double least_override = 0;  ///< to which the feed is turned
   bool turns_rapids = true;
+  double least_wait_s = 0.01, most_wait_s = 1;  ///< from word to word
+  double hold_share = 0.5, feed_share = 0.3;    ///< of the words
+  double raise_share = 0;                       ///< of the feed's, above 100 % alone
   int holds = 0;
 
   /// Runs for `most_s` of motion or to the end of the program; returns how long.
@@ -27,7 +30,7 @@ struct Operator {
         run.run();
         continue;
       }
-      next = t + random.log_uniform(0.01, 1.0);
+      next = t + random.log_uniform(least_wait_s, most_wait_s);
       act(run, random);
     }
     return t;
@@ -39,12 +42,14 @@ struct Operator {
     const double what = random.uniform(0, 1);
     if (run.world.now() == State::kHeld) {
       run.command(Verb::kResume);
-    } else if (what < 0.5) {
+    } else if (what < hold_share) {
       run.command(Verb::kHold);
       ++holds;
-    } else if (what < 0.8) {
-      run.command(Verb::kFeedOverride, std::min(run.world.machine.most_feed_override,
-                                                random.uniform(least_override, 1.5)));
+    } else if (what < hold_share + feed_share) {
+      const bool is_raise = raise_share > 0 && random.chance(raise_share);
+      run.command(Verb::kFeedOverride,
+                  std::min(run.world.machine.most_feed_override,
+                           random.uniform(is_raise ? 1 : least_override, 1.5)));
     } else if (turns_rapids) {
       run.command(Verb::kRapidOverride, random.uniform(0.2, 1.0));
     }

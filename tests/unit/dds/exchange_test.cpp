@@ -144,6 +144,33 @@ TEST(Exchange, FollowsOneServiceUntilItIsGoneWhateverOthersSayLater) {
   EXPECT_EQ(status.service_id, 2U);
 }
 
+TEST(Exchange, LetsGoOfAServiceThatSaysNothingWhileAnotherSpeaksTenTimes) {
+  const support::PrivateDomain domain;
+  Participant here({.domain = domain.id(), .machine = "m"});
+  Reader<Status> reader(here);
+  Followed<Status> followed;
+  Status status;
+  Writer<Status> first(here);  // there all the time
+  Writer<Status> second(here);
+  ASSERT_TRUE(first.write({.service_id = 1}));
+  ASSERT_TRUE(followed.take(reader, status));
+  const auto say = [&](int times) {
+    int taken = 0;
+    for (int n = 0; n < times; ++n) {
+      EXPECT_TRUE(second.write({.service_id = 2}));
+      taken += followed.take(reader, status) ? 1 : 0;
+    }
+    return taken;
+  };
+  EXPECT_EQ(say(9), 0);
+  ASSERT_TRUE(first.write({.service_id = 1}));
+  ASSERT_TRUE(followed.take(reader, status));
+  EXPECT_EQ(status.service_id, 1U);
+  EXPECT_EQ(say(9), 0) << "it spoke in between: the count begins anew";
+  EXPECT_EQ(say(3), 3);
+  EXPECT_EQ(status.service_id, 2U);
+}
+
 TEST(Exchange, TellsThatAWriterHasGone) {
   const support::PrivateDomain domain;
   Participant here({.domain = domain.id(), .machine = "m"});

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Branch, winding and way past the pole follow from the blocks that are to come.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "property/planner/smooth_trace.hpp"
+#include "property/planner/winding_programs.hpp"
+#include "support/machines.hpp"
+#include "support/program_end.hpp"
+
+namespace meridian::test {
+namespace {
+
+TEST(LookAhead, BeginsOnTheWindingThatCarriesTheWholeProgram) {
+  MachineModel model = limited(fork_machine(), -360, 360);
+  model.unwind_policy = UnwindPolicy::kRefuse;
+  for (const double sign : {-1.0, 1.0}) {
+    for (const double first_tilt : {0.3, 0.003, 0.0}) {  // beside the pole, and on it
+      SCOPED_TRACE(testing::Message() << sign << ", begins " << first_tilt << " from the pole");
+      std::vector<ClBlock> blocks;  // a turn and a half from where C stands at 0 or nearly
+      for (int n = -1; n <= 108; ++n) {
+        const double azimuth = n < 0 ? 0 : sign * units::rad_from_deg(5.0 * n);
+        blocks.push_back(
+            leaning(n < 0 ? first_tilt : 0.3, azimuth,
+                    {30 * std::cos(azimuth), 30 * std::sin(azimuth), n < 0 ? 1.0 : 0}));
+        blocks.back().sequence = blocks.size() - 1;
+      }
+      end_program(blocks);
+      const JointVector start = joints_of(model, blocks[0]);
+      for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+        const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0}, true);
+        EXPECT_EQ(trace.last.status, PlanStatus::kOk) << "block " << trace.last.reject.sequence;
+        EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
+        EXPECT_TRUE(trace.unwindings.empty());
+      }
+    }
+  }
+}
+
+/// Plans straight lines through `blocks` with a look ahead, from `start`.
+PlanResult plan_with_look(const MachineModel& model, std::vector<ClBlock> blocks,
+                          const JointVector& start, Transition transition) {
+  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
+  end_program(blocks);
+  return plan_smooth(model, blocks, start, {transition, 0, 0}, true).last;
+}
+
+TEST(LookAhead, TakesTheBranchOnWhichNoJointLeavesItsTravelLater) {
+  for (const bool is_slide : {false, true}) {
+    MachineModel model = is_slide ? lai_machine() : bench_machine();  // C with travel, and endless
+    const std::vector<ClBlock> blocks{leaning(0.17, 0, {5, 0, 0}), leaning(0.17, 0, {100, 0, 0}),
+                                      leaning(is_slide ? 0.17 : 0.6, 0, {250, 0, 0})};
+    for (int branch = 0; branch < branch_count(model); ++branch) {
+      // The machine stands on `branch`, which leaves travel of one joint at the end.
+      const JointVector begin = solve_block(model, blocks[0], branch);
+      const JointVector out = solve_block(model, blocks[2], branch);
+      const JointVector in = solve_block(model, blocks[2], 1 - branch);
+      int joint = is_slide ? 0 : 4;
+      for (int i = 0; is_slide && i < 3; ++i) {
+        if (std::abs(out[i] - in[i]) > std::abs(out[joint] - in[joint])) joint = i;
+      }
+      ASSERT_GT(std::abs(out[joint] - in[joint]), 0.5);
+      MachineModel limited = model;
+      JointLimits& limits = limited.joints[joint].limits;
+      const double room = is_slide ? 50 : 0.2;
+      (out[joint] < in[joint] ? limits.travel_min : limits.travel_max) =
+          out[joint] + (out[joint] < in[joint] ? room : -room);
+      ASSERT_LT(first_joint_outside_travel(limited, begin, 0), 0);
+      for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+        const PlanResult last = plan_with_look(limited, blocks, begin, transition);
+        EXPECT_EQ(last.status, PlanStatus::kOk)
+            << "joint " << joint << " branch " << branch << " block " << last.reject.sequence;
+      }
+    }
+  }
+}
+
+/// Half a turn from `begin` about the origin, through +y.
+ClBlock half_turn(const ClBlock& begin) {
+  ClBlock arc = begin;
+  arc.tip_mm[0] = -begin.tip_mm[0];
+  arc.is_arc = true;
+  arc.sweep_rad = std::numbers::pi;
+  return arc;
+}
+
+TEST(LookAhead, FollowsAnArcThatTheProgramBeginsWith) {
+  const MachineModel model = lai_machine();
+  const ClBlock begin = leaning(0.17, 0, {100, 0, 0}), middle = leaning(0.17, 0, {0, 100, 0});
+  const ClBlock arc = half_turn(begin);
+  for (int branch = 0; branch < branch_count(model); ++branch) {
+    // The machine stands on `branch`, on which a slide leaves its travel in the middle of the arc.
+    const JointVector from = solve_block(model, begin, branch);
+    const JointVector there = solve_block(model, middle, branch, from);
+    MachineModel limited = model;
+    int limits = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double sign = there[i] > from[i] ? 1 : -1;
+      double inside = std::max(sign * from[i], sign * solve_block(model, arc, branch, from)[i]);
+      for (const ClBlock& block : {begin, middle, arc})
+        inside = std::max(inside, sign * solve_block(model, block, 1 - branch)[i]);
+      if (sign * there[i] < inside + 50) continue;
+      JointLimits& travel = limited.joints[i].limits;
+      (sign > 0 ? travel.travel_max : travel.travel_min) = sign * (inside + 25);
+      ++limits;
+    }
+    ASSERT_EQ(limits, 1);
+    for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+      ClBlock on = arc;
+      on.is_arc = false;
+      on.tip_mm[0] -= 10;
+      const PlanResult last = plan_with_look(limited, {arc, on}, from, transition);
+      EXPECT_EQ(last.status, PlanStatus::kOk)
+          << "joint " << last.reject.joint << " branch " << branch;
+    }
+  }
+}
+
+/// Straight through the pole the tilt would come to the other side, where it has no travel: C turns
+/// on the pole or beside it instead.
+TEST(LookAhead, TakesNoWayPastThePoleOnWhichAJointLeavesItsTravelBehindIt) {
+  MachineModel model = bench_machine();
+  const double tilt = units::rad_from_deg(15);
+  for (const double offset_deg : {0.0, 0.05}) {
+    SCOPED_TRACE(offset_deg);
+    const double offset = units::rad_from_deg(offset_deg);
+    std::vector<ClBlock> blocks;
+    for (int n = 0; n <= 20; ++n) {
+      const double x = tilt * (1 - n / 10.0);
+      blocks.push_back(
+          leaning(std::hypot(x, offset), std::atan2(offset, x), Vector3(2.0 * n, 0, 0)));
+      blocks.back().sequence = blocks.size() - 1;
+    }
+    end_program(blocks);
+    for (const double side : {-1.0, 1.0}) {
+      const int branch = solve_block(model, blocks[0], 0)[4] * side > 0 ? 0 : 1;
+      const JointVector start = solve_block(model, blocks[0], branch);
+      JointLimits& limits = model.joints[4].limits;
+      limits.travel_min = units::rad_from_deg(side > 0 ? -5 : -60);
+      limits.travel_max = units::rad_from_deg(side > 0 ? 60 : 5);
+      const SmoothTrace trace = plan_smooth(model, blocks, start);
+      EXPECT_EQ(trace.last.status, PlanStatus::kOk)
+          << "joint " << trace.last.reject.joint << " at " << trace.last.reject.value;
+      for (const PlanSample& one : sample(model, trace, 1e-3, 0.37, start)) {
+        ASSERT_LT(first_joint_outside_travel(model, one.q, 1e-9), 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meridian::test
