@@ -50,6 +50,7 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
     is_lost_ = false;
     return credit(around);
   }
+  if (const dds::Credit* last = find_ended(request.session)) return *last;
   const auto refused = [&](Verdict verdict, std::string text) {
     ++counters_.sessions_refused;
     return stranger(request.session, verdict, std::move(text));
@@ -61,10 +62,7 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
                        (is_lost_ ? ", which is gone; abort to free the machine"
                                  : "; wait for its end or abort it"));
   }
-  if (request.session == 0 || find_ended(request.session) != nullptr) {
-    return refused(Verdict::kRefusedProgram,
-                   "session " + in_hex(request.session) + " is over; open a new one");
-  }
+  if (request.session == 0) return refused(Verdict::kRefusedProgram, "0 names no session");
   if (!has_sane_tolerances(request)) {
     return refused(Verdict::kRefusedProgram,
                    "tolerances of the program are negative or no numbers");

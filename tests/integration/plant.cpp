@@ -304,7 +304,7 @@ bool Plant::stream_on(const std::function<bool(const stream::Station&)>& until,
                       milliseconds patience) {
   dds::Batch batch;
   dds::Credit credit;
-  return eventually(
+  const bool has_ended = eventually(
       [&] {
         if (const auto request = station_->due_request(now_ns())) (void)requests_.write(*request);
         while (credits_.take(credit)) station_->on_credit(credit, now_ns());
@@ -312,9 +312,10 @@ bool Plant::stream_on(const std::function<bool(const stream::Station&)>& until,
           if (!batches_.write(batch)) station_->on_not_sent();
         }
         look();
-        return until(*station_);
+        return until(*station_) || station_->is_over();
       },
       patience);
+  return has_ended && until(*station_);
 }
 
 std::vector<ClBlock> small_program(int blocks, double feed_mm_per_min, double step_mm,

@@ -167,10 +167,12 @@ TEST_F(Intake, TellsAStrangerThatItsSessionIsNotOpen) {
   EXPECT_EQ(accepted_.count, 0u);
 }
 
-TEST_F(Intake, NeverOpensAnOldSessionAgain) {
+TEST_F(Intake, NeverOpensAnOldSessionAgainButTellsHowItEnded) {
   static_cast<void>(open());
   static_cast<void>(judge_.on_queues_emptied("aborted", around_));
-  EXPECT_EQ(open().verdict, Verdict::kRefusedProgram);
+  const auto answer = open();
+  EXPECT_EQ(answer.verdict, Verdict::kAborted);
+  EXPECT_EQ(answer.text, "aborted");
   EXPECT_FALSE(judge_.is_held());
 }
 
