@@ -43,6 +43,7 @@ bool PlannerThread::work() noexcept {
     if (view.record.state != State::kReady) return false;
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view.epoch, look.front->settings);
+    writer_.forget_ahead();  // in Ready all that was published has run or is void
     published_before_s_ = writer_.published_s();
     tell_of_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;

@@ -33,6 +33,7 @@ BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const Tool
 void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch) {
   judge_.begin(model_.tool_length_mm);
   planner_.begin(at_rest, model_.tool_length_mm, epoch);
+  writer_.forget_ahead();  // what was published has run or is void
   has_begun_ = true;
 }
 

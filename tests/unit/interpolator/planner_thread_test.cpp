@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/planner_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "support/machines.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+/// The planner's thread between a queue that the test fills and a motion port that it empties.
+class PlannerThreadTest : public testing::Test {
+ protected:
+  PlannerThreadTest() : machine_(machine()), planner_(machine_, {}, *ports_) {
+    reader_.set_epoch(1);
+    show(1);
+    ports_->spindle_tool_mm = machine_.tool_length_mm;
+    thread_ = std::thread([this] { planner_.run(); });
+  }
+  ~PlannerThreadTest() override {
+    ports_->is_stopping = true;
+    ports_->planner_wake.notify();
+    thread_.join();
+  }
+
+  [[nodiscard]] static MachineModel machine() {
+    MachineModel model = test::lai_machine();
+    model.most_feed_override = 1.5;
+    return model;
+  }
+  /// The machine is in Ready at home, in `epoch`.
+  void show(std::uint16_t epoch) {
+    CycleView view;
+    view.record.state = State::kReady;
+    view.epoch = epoch;
+    ports_->planner_view.store(view);
+  }
+  /// Twenty cuts to and fro that take more than a second each, and the end.
+  void push_program() {
+    const ToolPose home = forward(machine_, machine_.tool_length_mm, JointVector{});
+    SmoothSettings settings;
+    settings.transition = Transition::kExactStop;
+    ClBlock block;
+    block.axis = to_array(home.axis);
+    block.feed_meaning = FeedMeaning::kTip;
+    block.feed = 10;
+    for (int i = 0; i <= 20; ++i) {
+      block.kind = i < 20 ? BlockKind::kCut : BlockKind::kEnd;
+      block.tip_mm = to_array(home.tip + Vector3(i % 2 == 0 ? 12 : 0, 0, 0));
+      block.sequence = static_cast<std::uint64_t>(i);
+      ASSERT_TRUE(ports_->blocks.stage({1, block, settings}));
+    }
+    pushed_ += 21;
+    ports_->blocks.publish();
+    ports_->planner_wake.notify();
+  }
+  [[nodiscard]] bool has_piece() {
+    for (int i = 0; i < 500 && reader_.advance() == nullptr; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return reader_.piece() != nullptr;
+  }
+
+  const MachineModel machine_;
+  const std::unique_ptr<Ports> ports_ = std::make_unique<Ports>();
+  MotionReader reader_{ports_->motion};
+  PlannerThread planner_;
+  std::uint64_t pushed_ = 0;
+  std::thread thread_;
+};
+
+TEST_F(PlannerThreadTest, PlansAProgramBehindOneThatWasAbortedWithSecondsOfPlanAhead) {
+  ASSERT_NO_FATAL_FAILURE(push_program());
+  ASSERT_TRUE(has_piece());
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // as far ahead as it goes
+  EXPECT_FALSE(ports_->blocks.empty()) << "the whole program is planned: nothing is far ahead";
+  reader_.set_epoch(2);
+  show(2);
+  ports_->queue_mark.store({pushed_, 2});
+  ASSERT_NO_FATAL_FAILURE(push_program());
+  EXPECT_TRUE(has_piece()) << "what is void was waited for";
+}
+
+}  // namespace
+}  // namespace meridian::interpolator
