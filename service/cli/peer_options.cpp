@@ -58,4 +58,6 @@ void watch_for_stop() {
   std::signal(SIGTERM, stop);
 }
 
+void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
+
 }  // namespace meridian::cli

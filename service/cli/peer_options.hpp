@@ -34,4 +34,8 @@ void add_peer_options(CLI::App& command, PeerOptions& options);
 [[nodiscard]] std::atomic<bool>& stop_flag() noexcept;
 void watch_for_stop();
 
+/// A command that has started other programs ends them in order, though nobody reads what it prints
+/// any more (`| head`).
+void outlive_readers();
+
 }  // namespace meridian::cli

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
 #include "service/probe/bare_peer.hpp"
 #include "service/probe/probe_report.hpp"
+#include "service/process/claimed_domain.hpp"
 #include "service/process/programs.hpp"
 
 namespace meridian::cli {
@@ -14,6 +18,7 @@ namespace {
 
 struct Options {
   probe::MeasureOptions measure;
+  std::optional<std::uint32_t> domain;
   std::string picture;
   std::vector<std::string> bare_peer;
   bool is_json = false, is_target = false;
@@ -32,6 +37,14 @@ int run(Options& options) {
   if (options.measure.machine.empty()) {
     options.measure.machine = process::shipped_file("machines/lai.toml").string();
   }
+  if (const std::string refusal = probe::too_large(options.measure, probe::available_mib());
+      !refusal.empty()) {
+    throw CLI::ValidationError("--for", refusal);
+  }
+  std::optional<process::ClaimedDomain> claimed;
+  if (!options.domain) claimed.emplace(process::kFirstProbeDomain, process::kLastProbeDomain);
+  options.measure.domain = options.domain ? *options.domain : claimed->id();
+  outlive_readers();
   probe::ProbeReport report;
   report.host = probe::host_text();
   report.is_target = options.is_target;
@@ -76,9 +89,11 @@ void add_probe_command(CLI::App& app, int& exit_code) {
                     "Once more while every processor copies memory and writes files");
   command->add_flag("--target", options->is_target,
                     "Budgets of a target host decide too; without, they are only told");
-  command->add_option("--domain", options->measure.domain, "DDS domain, which must be free")
-      ->check(CLI::Range(0, 230))
-      ->capture_default_str();
+  command
+      ->add_option("--domain", options->domain,
+                   "DDS domain, which must be free; default: one from 221 to 230 that no other "
+                   "soak or probe of this host has")
+      ->check(CLI::Range(0, 230));
   command->add_flag("--json", options->is_json, "As JSON");
   command->add_option("--picture", options->picture, "Draw the distributions to this .png or .svg");
   command->add_option("--bare-peer", options->bare_peer)->expected(4)->group("");

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
+#include "service/process/claimed_domain.hpp"
 #include "service/process/programs.hpp"
 #include "service/soak/soak.hpp"
 
@@ -14,6 +17,7 @@ namespace {
 
 struct Options {
   soak::SoakOptions soak;
+  std::optional<std::uint32_t> domain;
   std::string duration = "60s", report;
   bool is_json = false;
 };
@@ -36,7 +40,11 @@ int run(Options& options) {
   if (options.soak.machine.empty()) {
     options.soak.machine = process::shipped_file("machines/lai.toml").string();
   }
+  std::optional<process::ClaimedDomain> claimed;
+  if (!options.domain) claimed.emplace(process::kFirstProbeDomain, process::kLastProbeDomain);
+  options.soak.domain = options.domain ? *options.domain : claimed->id();
   watch_for_stop();
+  outlive_readers();
   const soak::SoakReport report =
       soak::run_soak(options.soak, stop_flag(),
                      [](const std::string& text) { std::cerr << "soak: " << text << "\n"; });
@@ -66,11 +74,14 @@ void add_soak_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.5, 1e6));
   command->add_option("--seed", options->soak.seed, "Of programs and mishaps")
       ->capture_default_str();
-  command->add_option("--domain", options->soak.domain, "DDS domain, which must be free")
-      ->check(CLI::Range(0, 230))
-      ->capture_default_str();
+  command
+      ->add_option("--domain", options->domain,
+                   "DDS domain, which must be free; default: one from 221 to 230 that no other "
+                   "soak or probe of this host has")
+      ->check(CLI::Range(0, 230));
   command->add_option("--report", options->report,
-                      "JSON file, written again and again while it runs; text beside it as .txt");
+                      "JSON file, written again and again while it runs; text beside it as .txt, "
+                      "recordings with something wrong in a folder as .kept");
   command->add_flag("--json", options->is_json, "Print JSON");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -14,6 +14,7 @@
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/dds/followed.hpp"
+#include "service/dds/latency_since.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
@@ -32,38 +33,48 @@ struct StatusOptions {
 
 using Histograms = std::vector<dds::NamedHistogram>;
 
-/// Waits for the next snapshot of the latency topic; nothing where none comes.
-[[nodiscard]] std::optional<Histograms> next_latency(dds::Waitset& waitset,
-                                                     dds::Reader<dds::Latency>& reader,
-                                                     std::chrono::milliseconds patience) {
-  const auto until = std::chrono::steady_clock::now() + patience;
-  dds::Latency latency;
-  while (!reader.take(latency)) {
-    const auto left = until - std::chrono::steady_clock::now();
-    if (left <= left.zero()) return std::nullopt;
-    waitset.wait(left);
+/// The latency topic of one service.
+class LatencyLink {
+ public:
+  explicit LatencyLink(dds::Participant& participant)
+      : reader_(participant), waitset_(participant) {
+    waitset_.attach(reader_);
   }
-  return latency.histograms;
-}
+
+  /// Waits for the next snapshot; nothing where none comes.
+  [[nodiscard]] std::optional<dds::Latency> next(std::chrono::milliseconds patience) {
+    const auto until = std::chrono::steady_clock::now() + patience;
+    dds::Latency latency;
+    while (!followed_.take(reader_, latency)) {
+      const auto left = until - std::chrono::steady_clock::now();
+      if (left <= left.zero()) return std::nullopt;
+      waitset_.wait(left);
+    }
+    return latency;
+  }
+
+ private:
+  dds::Reader<dds::Latency> reader_;
+  dds::Followed<dds::Latency> followed_;
+  dds::Waitset waitset_;
+};
 
 /// What the service counted since it started or, where --for was given, in that time.
 [[nodiscard]] std::optional<Histograms> measure_latency(dds::Participant& participant,
                                                         const StatusOptions& options) {
-  dds::Waitset waitset(participant);
-  dds::Reader<dds::Latency> reader(participant);
-  waitset.attach(reader);
+  LatencyLink link(participant);
   const auto patience = options.peer.timeout();
-  auto begin = next_latency(waitset, reader, patience);
-  if (!begin || options.for_s <= 0) return begin;
+  const auto begin = link.next(patience);
+  if (!begin) return std::nullopt;
+  if (options.for_s <= 0) return begin->histograms;
   std::this_thread::sleep_for(std::chrono::duration<double>(options.for_s));
-  for (dds::Latency old; reader.take(old);) {
+  (void)link.next(std::chrono::milliseconds(0));  // what came meanwhile
+  const auto end = link.next(patience);
+  if (!end) return std::nullopt;
+  if (end->service_id != begin->service_id) {
+    std::fprintf(stderr, "meridian: the service was started anew meanwhile; counted since then\n");
   }
-  auto end = next_latency(waitset, reader, patience);
-  if (!end || end->size() != begin->size()) return std::nullopt;
-  for (std::size_t i = 0; i < end->size(); ++i) {
-    (*end)[i].histogram = (*end)[i].histogram.since((*begin)[i].histogram);
-  }
-  return end;
+  return dds::latency_since(*begin, *end).histograms;
 }
 
 /// One percentile table for each histogram.

@@ -3,6 +3,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -13,6 +16,7 @@
 #include "service/config/machine_file.hpp"
 #include "service/probe/bare_reference.hpp"
 #include "service/probe/cyclictest.hpp"
+#include "service/probe/host_files.hpp"
 #include "service/probe/load.hpp"
 #include "service/probe/service_run.hpp"
 #include "service/probe/work_run.hpp"
@@ -42,6 +46,10 @@ namespace fs = std::filesystem;
   }
   return lost;
 }
+
+/// Of each cycle of a turn: while it is measured (arrivals, twice, those between the turns too; a
+/// row of the recording, parsed), and until the end (samples of six kinds).
+constexpr double kWorking_bytes = 320, kKept_bytes = 64;
 
 struct Host {
   int cpu = 0;
@@ -100,6 +108,29 @@ void take_turns(const Host& host, std::int64_t period_ns, int turns, const fs::p
 }
 
 }  // namespace
+
+double available_mib() {
+  const auto text = HostFiles().text("proc/meminfo").value_or("");
+  const std::size_t at = text.find("MemAvailable:");
+  constexpr double kKib_per_mib = 1024;
+  return at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 13, nullptr) / kKib_per_mib;
+}
+
+std::string too_large(const MeasureOptions& options, double available_mib) {
+  double fastest = 0, all = 0;
+  for (const int rate_hz : options.rates_hz) {
+    fastest = std::max(fastest, static_cast<double>(rate_hz));
+    all += rate_hz * (options.has_load ? 2 : 1);
+  }
+  const double needed_per_s_mib = (fastest * kWorking_bytes + all * kKept_bytes) / (1024 * 1024);
+  const double room_mib = available_mib / 2;
+  if (needed_per_s_mib * options.turns <= room_mib) return "";
+  return std::to_string(options.turns) + " s at these rates would take " +
+         std::to_string(std::lround(needed_per_s_mib * options.turns)) + " MiB of memory; " +
+         std::to_string(std::lround(std::floor(room_mib / needed_per_s_mib))) +
+         " s are what this host has room for: measure for less long or at fewer --rates; "
+         "`meridian soak --for 8h` is the measurement for long";
+}
 
 std::string with_cycle_us(const std::string& machine_text, std::int64_t cycle_us) {
   static const std::regex kCycle(R"((^|\n)(\s*cycle_us\s*=\s*)[0-9_]+)");

@@ -17,7 +17,7 @@ struct MeasureOptions {
   std::string machine;              ///< its file
   std::vector<int> rates_hz{1000};  ///< the machine's cycle is changed to each in turn
   int turns = 10;                   ///< of 1 s, of each kind
-  std::uint32_t domain = 230;
+  std::uint32_t domain = 0;
   bool has_load = false;  ///< measure once more under a load made here
 };
 
@@ -37,6 +37,13 @@ struct RateMeasurement {
   std::uint64_t bare_lost_periods = 0;  ///< of the bare thread in its turns
   double stolen_ms = 0;                 ///< processor time that the host took away meanwhile
 };
+
+/// Memory that this host has left, MiB.
+[[nodiscard]] double available_mib();
+
+/// Why a measurement cannot be held in half of `available_mib`, with what can; empty: it can.
+/// Proof: tests/unit/probe/probe_report_test.cpp.
+[[nodiscard]] std::string too_large(const MeasureOptions& options, double available_mib);
 
 /// Measures; `say` hears what is being done. Throws std::runtime_error or dds::DdsError where a
 /// program does not run.

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
@@ -23,10 +22,12 @@ constexpr auto kLook = std::chrono::milliseconds(5);
 
 }  // namespace
 
-Judge::Judge(const MachineModel& model, const ToolTable& tools, std::filesystem::path folder)
+Judge::Judge(const MachineModel& model, const ToolTable& tools, std::filesystem::path folder,
+             std::filesystem::path kept)
     : model_(model),
       tools_(tools),
       folder_(std::move(folder)),
+      kept_(std::move(kept)),
       segments_(folder_, [this](const Segment& segment) {
         const std::lock_guard lock(mutex_);
         waiting_.push_back(segment);
@@ -40,14 +41,14 @@ Judge::Judge(const MachineModel& model, const ToolTable& tools, std::filesystem:
 
 Judge::~Judge() { finish(); }
 
-void Judge::announce(const std::string& program, std::int64_t now_ns) {
+void Judge::announce(const std::string& program, bool is_ours, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
-  programs_.push_back({program, now_ns});
+  programs_.announce(program, is_ours, now_ns);
 }
 
 void Judge::announce_override(double factor, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
-  overrides_.push_back({factor, now_ns});
+  overrides_.announce(factor, now_ns);
 }
 
 void Judge::read_pipe() {
@@ -86,6 +87,7 @@ void Judge::judge_segments() {
     waiting_.pop_front();
     lock.unlock();
     Judged judged = judge(segment);
+    keep(judged, segment);
     std::error_code ignored;
     std::filesystem::remove(segment.file, ignored);
     lock.lock();
@@ -93,31 +95,18 @@ void Judge::judge_segments() {
   }
 }
 
-std::string Judge::program_at(std::int64_t time_ns) {
-  const std::lock_guard lock(mutex_);
-  std::string file;
-  for (const Program& program : programs_) {
-    if (program.since_ns <= time_ns) file = program.file;
-  }
-  return file;
-}
-
-double Judge::most_override_since(std::int64_t time_ns) {
-  const std::lock_guard lock(mutex_);
-  double before = 1, most = 1;
-  for (const Override& asked : overrides_) {
-    if (asked.since_ns <= time_ns)
-      before = asked.factor;
-    else
-      most = std::max(most, asked.factor);
-  }
-  return std::max(before, most);
-}
-
 Judge::Judged Judge::judge(const Segment& segment) {
   Judged judged;
   record::CheckedPath path(model_.tool_length_mm, model_.max_feed_mm_per_s);
-  const std::string program = segment.has_run ? program_at(segment.begin_ns) : "";
+  std::string program;
+  double most_override = 1;
+  if (segment.has_run) {
+    const std::lock_guard lock(mutex_);
+    programs_.forget_before(segment.begin_ns);
+    overrides_.forget_before(segment.begin_ns);
+    program = programs_.at(segment.begin_ns);
+    most_override = overrides_.most_since(segment.begin_ns);
+  }
   judged.where = program.empty() ? "no program" : program;
   if (!program.empty()) {
     judged.refusal = record::read_path(program, {}, tools_, path);
@@ -129,7 +118,7 @@ Judge::Judged Judge::judge(const Segment& segment) {
   }
   record::CheckOptions options;
   options.max_missing = std::numeric_limits<std::uint64_t>::max();
-  options.feed_factor = most_override_since(segment.begin_ns);
+  options.feed_factor = most_override;
   options.allow_unfinished = segment.is_aborted;
   auto report = record::check(*recording, path, model_, options);
   if (report) {
@@ -138,6 +127,16 @@ Judge::Judged Judge::judge(const Segment& segment) {
     judged.refusal = report.error().text();
   }
   return judged;
+}
+
+void Judge::keep(const Judged& judged, const Segment& segment) {
+  const bool is_wrong = !judged.refusal.empty() || !judged.check.findings.empty();
+  if (!is_wrong || kept_.empty() || kept_count_ >= kMostKept) return;
+  const std::string name = std::to_string(++kept_count_);
+  std::error_code ignored;
+  std::filesystem::create_directories(kept_, ignored);
+  std::filesystem::copy_file(segment.file, kept_ / (name + ".csv"), ignored);
+  std::filesystem::copy_file(judged.where, kept_ / (name + ".cl"), ignored);
 }
 
 void Judge::collect(SoakReport& report) {

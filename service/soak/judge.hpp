@@ -14,6 +14,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/soak/segments.hpp"
 #include "service/soak/soak_report.hpp"
+#include "service/soak/timeline.hpp"
 
 namespace meridian::soak {
 
@@ -22,16 +23,19 @@ namespace meridian::soak {
 /// (record::check) and throws it away.
 class Judge {
  public:
-  /// Makes the pipe in `folder`. Throws std::runtime_error.
-  Judge(const MachineModel& model, const ToolTable& tools, std::filesystem::path folder);
+  /// Makes the pipe in `folder`. Of the first kMostKept segments with something wrong, recording
+  /// and program are put into folder `kept`; empty: none. Throws std::runtime_error.
+  Judge(const MachineModel& model, const ToolTable& tools, std::filesystem::path folder,
+        std::filesystem::path kept);
   ~Judge();
   Judge(const Judge&) = delete;
   Judge& operator=(const Judge&) = delete;
 
   /// Where a service is to record.
   [[nodiscard]] std::filesystem::path pipe() const { return folder_ / "recording.pipe"; }
-  /// From now on (machine's clock, ns) the programs that begin are this one.
-  void announce(const std::string& program, std::int64_t now_ns);
+  /// From now on (machine's clock, ns) the programs that begin are this one. A file that `is_ours`
+  /// is removed when what the machine made of it has been judged.
+  void announce(const std::string& program, bool is_ours, std::int64_t now_ns);
   /// From now on the operator's feed override is `factor`.
   void announce_override(double factor, std::int64_t now_ns);
   /// Adds what was judged since the last call.
@@ -40,32 +44,25 @@ class Judge {
   void finish();
 
  private:
+  static constexpr int kMostKept = 10;
   struct Judged {
     record::CheckReport check;
     std::string where, refusal;
   };
-  struct Program {
-    std::string file;
-    std::int64_t since_ns = 0;
-  };
-  struct Override {
-    double factor = 1;
-    std::int64_t since_ns = 0;
-  };
   void read_pipe();
   void judge_segments();
   [[nodiscard]] Judged judge(const Segment& segment);
-  [[nodiscard]] std::string program_at(std::int64_t time_ns);
-  /// Highest feed override since `time_ns`, at least 1.
-  [[nodiscard]] double most_override_since(std::int64_t time_ns);
+  /// Puts the evidence aside where something is wrong.
+  void keep(const Judged& judged, const Segment& segment);
 
   const MachineModel& model_;
   const ToolTable& tools_;
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, kept_;
+  int kept_count_ = 0;
   Segments segments_;
   std::mutex mutex_;  ///< of the four below
-  std::vector<Program> programs_;
-  std::vector<Override> overrides_;
+  SentPrograms programs_;
+  AskedOverrides overrides_;
   std::deque<Segment> waiting_;
   std::vector<Judged> judged_;
   std::atomic<bool> is_read_{false}, is_ending_{false};

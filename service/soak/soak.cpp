@@ -13,10 +13,12 @@
 #include "service/probe/figures.hpp"
 #include "service/process/processors.hpp"
 #include "service/process/programs.hpp"
+#include "service/soak/fault_judge.hpp"
 #include "service/soak/health_watch.hpp"
 #include "service/soak/judge.hpp"
 #include "service/soak/plant.hpp"
 #include "service/soak/sample_program.hpp"
+#include "service/soak/status_counts.hpp"
 #include "service/stream/operator_link.hpp"
 #include "service/stream/steady_ns.hpp"
 
@@ -26,12 +28,18 @@ namespace {
 using std::chrono::milliseconds;
 constexpr milliseconds kTick{20}, kAnswer{1500};
 constexpr double kReportEvery_s = 5, kHealthEvery_s = 1;
+/// So often in a row is refused what leads on, until the drives are started anew.
+constexpr int kMostRefused = 15;
 /// Between the end of a program and the next: its recording is cut there.
 constexpr double kPause_s = 0.3;
 /// A service that is killed is forgotten after its lease; drives that lost it come to rest.
 constexpr double kAfterDeath_s = 2.5;
 /// Nothing moves for this long although nobody holds the machine: something is stuck.
 constexpr double kStuck_s = 60;
+
+[[nodiscard]] std::filesystem::path kept_beside(std::filesystem::path report) {
+  return report.empty() ? report : report.replace_extension(".kept");
+}
 
 [[nodiscard]] bool is_moving(State state) {
   return state == State::kApproaching || state == State::kRunning;
@@ -44,7 +52,7 @@ class Soak {
         say_(say),
         model_(config::load_machine(options.machine)),
         tools_(options.tools.empty() ? ToolTable{} : config::load_tools(options.tools)),
-        judge_(model_, tools_, folder_.path()),
+        judge_(model_, tools_, folder_.path(), kept_beside(options.report)),
         plant_(options.machine, options.tools, options.domain, folder_.path()),
         chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.most_feed_override),
         participant_({.domain = options.domain, .machine = model_.name}),
@@ -84,7 +92,7 @@ class Soak {
     plant_.start_service(judge_.pipe());
     ++report_.service_starts;
     health_.begin_life(now_s());
-    counted_ = {};
+    faults_.lose_service();
     state_ = State::kOff;
     moved_s_ = now_s();
   }
@@ -93,7 +101,9 @@ class Soak {
     injected_.reset();
     if (options_.chaos_every_s > 0) injected_ = chaos_.next_of_drives();
     plant_.start_drives(injected_, injected_ ? drive_spec(model_, injected_->drive).name : "");
+    faults_.begin_drives(injected_);
     ++report_.drive_starts;
+    refused_in_row_ = 0;
   }
 
   /// Starts again what died or was killed.
@@ -123,32 +133,20 @@ class Soak {
       return options_.programs[report_.programs % options_.programs.size()];
     }
     const auto file = folder_.path() / ("program" + std::to_string(report_.programs) + ".cl");
-    write_sample_program(model_, options_.seed * 1000 + report_.programs, file);
+    write_sample_program(model_, options_.seed * 1'000'000 + report_.programs, file);
     return file.string();
   }
 
   void start_program() {
     const std::string program = next_program();
     ++report_.programs;
-    judge_.announce(program, stream::steady_ns());
+    judge_.announce(program, options_.programs.empty(), stream::steady_ns());
     plant_.start_station(program);
   }
 
-  /// Counts what the status tells of this life of the service.
   void see(const dds::Status& status) {
-    const auto add = [](std::uint64_t& sum, std::uint64_t& counted, std::uint64_t now) {
-      if (now > counted) sum += now - counted;
-      counted = now;
-    };
-    if (status.service_id != counted_.service_id) counted_ = {.service_id = status.service_id};
-    add(report_.cycles_run, counted_.cycles, status.cycles_run);
-    add(report_.periods_lost, counted_.lost, status.periods_lost);
-    add(report_.starvations, counted_.starvations, status.starvations);
-    add(report_.overruns, counted_.overruns, status.setpoints_overrun + status.events_overrun);
-    if (status.state == State::kFault && state_ != State::kFault) {
-      ++report_.alarms;
-      is_drive_sick_ = injected_.has_value();
-    }
+    counts_.add(status, report_);
+    if (const auto cause = faults_.see(status, now_s())) judge_fault(*cause, status);
     if (status.state != state_ || is_moving(status.state)) moved_s_ = now_s();
     state_ = status.state;
     if (now_s() - moved_s_ < kStuck_s) return;
@@ -159,11 +157,21 @@ class Soak {
     break_off();
   }
 
+  /// What the drives suffer of is over with their process.
+  void judge_fault(FaultJudge::Cause cause, const dds::Status& status) {
+    ++report_.alarms;
+    is_drive_sick_ = true;
+    if (cause == FaultJudge::Cause::kInjected) {
+      ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
+    } else if (cause == FaultJudge::Cause::kUnprovoked) {
+      report_.violate("a Fault that nothing provoked: " + status.message, "soak");
+    }
+  }
+
   /// From anywhere back to a machine that can be switched on.
   void break_off() {
-    plant_.kill_station();
-    ++report_.aborted;
-    (void)operator_.ask(Verb::kAbort, 0, kAnswer);
+    lose_station();
+    ask(Verb::kAbort);
     start_drives();
   }
 
@@ -172,11 +180,12 @@ class Soak {
     if (now < ask_again_s_) return;
     switch (status.state) {
       case State::kOff:
-        ask(Verb::kEnable);
+        lead_on(status.drives_fault_mask != 0 ? Verb::kReset : Verb::kEnable);
         break;
       case State::kFault:
-        if (std::exchange(is_drive_sick_, false)) cure_drives();
-        ask(Verb::kReset);
+        if (!faults_.is_judged()) break;
+        if (std::exchange(is_drive_sick_, false)) start_drives();
+        lead_on(Verb::kReset);
         break;
       case State::kReady:
         if (plant_.station() == nullptr && now - ended_s_ > kPause_s) start_program();
@@ -195,16 +204,20 @@ class Soak {
     }
   }
 
-  /// Asks, and not again at once.
-  void ask(Verb verb, double value = 0) {
-    (void)operator_.ask(verb, value, kAnswer);
+  /// Asks, and not again at once; whether it was accepted.
+  bool ask(Verb verb, double value = 0) {
+    const auto reply = operator_.ask(verb, value, kAnswer);
     ask_again_s_ = now_s() + 0.2;
+    report_.asks_unanswered += reply ? 0 : 1;
+    report_.asks_refused += reply && !reply->is_accepted ? 1 : 0;
+    return reply && reply->is_accepted;
   }
 
-  /// What the drives were told to suffer is over with their process.
-  void cure_drives() {
-    ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
-    start_drives();
+  /// Asks for the way out of Off or Fault. Drives may have fallen ill while no service heard them:
+  /// of those that stay in the way there are new ones.
+  void lead_on(Verb verb) {
+    refused_in_row_ = ask(verb) ? 0 : refused_in_row_ + 1;
+    if (refused_in_row_ >= kMostRefused) start_drives();
   }
 
   void mishaps() {
@@ -214,47 +227,48 @@ class Soak {
       continue_s_ = 0;
     }
     if (!next_ || now < next_->at_s || state_ != State::kRunning) return;
-    ++report_.mishaps[static_cast<std::size_t>(next_->mishap)];
-    happen(*next_);
+    if (happen(*next_)) ++report_.mishaps[static_cast<std::size_t>(next_->mishap)];
     do {
       next_ = chaos_.next();
     } while (next_->at_s < now);
   }
 
-  void happen(const Planned& mishap) {
+  /// Lets it happen; false where it was refused or there was nobody for it to happen to.
+  bool happen(const Planned& mishap) {
     switch (mishap.mishap) {
       case Mishap::kHold:
-        ask(Verb::kHold);
         resume_s_ = now_s() + mishap.value;
-        break;
+        return ask(Verb::kHold);
       case Mishap::kOverride:
         judge_.announce_override(mishap.value, stream::steady_ns());
-        ask(Verb::kFeedOverride, mishap.value);
-        break;
+        return ask(Verb::kFeedOverride, mishap.value);
       case Mishap::kAbort:
-        ask(Verb::kAbort);
-        break;
+        return ask(Verb::kAbort);
       case Mishap::kStationStops:
-        if (plant_.station() == nullptr) break;
+        if (plant_.station() == nullptr) return false;
         plant_.station()->send_signal(SIGSTOP);
         continue_s_ = now_s() + mishap.value;
-        break;
+        return true;
       case Mishap::kStationDies:
-        if (plant_.station() == nullptr) break;
-        plant_.kill_station();
-        ++report_.aborted;
-        ended_s_ = now_s();
-        break;
+        if (plant_.station() == nullptr) return false;
+        lose_station();
+        return true;
       case Mishap::kServiceDies:
         plant_.kill_service();
-        plant_.kill_station();
-        ++report_.aborted;
+        lose_station();
         service_at_s_ = now_s() + kAfterDeath_s;
         state_ = State::kOff;
-        break;
+        return true;
       default:
-        break;  // those of the drives happen there
+        return false;  // those of the drives happen there
     }
+  }
+
+  void lose_station() {
+    if (plant_.station() != nullptr) ++report_.aborted;
+    plant_.kill_station();
+    ended_s_ = now_s();
+    continue_s_ = 0;
   }
 
   void watch() {
@@ -293,10 +307,6 @@ class Soak {
     report_.elapsed_s = elapsed_s;
   }
 
-  struct Counted {
-    std::uint64_t service_id = 0, cycles = 0, lost = 0, starvations = 0, overruns = 0;
-  };
-
   const SoakOptions& options_;
   const std::function<void(const std::string&)>& say_;
   const process::ScratchFolder folder_;
@@ -309,10 +319,12 @@ class Soak {
   dds::Participant participant_;
   stream::OperatorLink operator_;
   HealthWatch health_;
+  FaultJudge faults_;
   std::optional<Planned> next_, injected_;
-  Counted counted_;
+  StatusCounts counts_;
   State state_ = State::kOff;
   bool is_drive_sick_ = false;
+  int refused_in_row_ = 0;
   const std::int64_t begin_ns_ = stream::steady_ns();
   double moved_s_ = 0, ended_s_ = 0, ask_again_s_ = 0, resume_s_ = 0, continue_s_ = 0;
   double service_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;

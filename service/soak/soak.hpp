@@ -18,8 +18,10 @@ struct SoakOptions {
   double for_s = 60;
   std::uint64_t seed = 1;
   double chaos_every_s = 0;  ///< mean distance of mishaps; 0: none
-  std::uint32_t domain = 229;
-  std::filesystem::path report;  ///< text beside it as .txt; empty: none on the way
+  std::uint32_t domain = 0;
+  /// Text beside it as .txt, recordings with something wrong in a folder beside it as .kept; empty:
+  /// none on the way.
+  std::filesystem::path report;
 };
 
 /// Runs service, simulated drives and station as processes, one program after the other, and is

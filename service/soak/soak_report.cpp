@@ -121,6 +121,8 @@ std::string to_text(const SoakReport& report) {
          Count{report.refused}, Count{report.alarms});
   out += "  mishaps: ";
   append_mishaps(out, report);
+  append(out, "; asks refused %llu, unanswered %llu", Count{report.asks_refused},
+         Count{report.asks_unanswered});
   append(out, "\n  judged: %llu recordings, %llu setpoints, %llu missing, longest gap %llu\n",
          Count{report.segments}, Count{report.rows}, Count{report.missing},
          Count{report.longest_gap});
@@ -162,7 +164,9 @@ std::string to_json(const SoakReport& report) {
     append(out, "%s\"%s\": %llu", i > 0 ? ", " : "", word(static_cast<Mishap>(i)),
            Count{report.mishaps[static_cast<std::size_t>(i)]});
   }
-  append(out, "},\n \"recordings\": %llu, \"setpoints\": %llu, \"missing\": %llu,\n",
+  append(out, "}, \"asks_refused\": %llu, \"asks_unanswered\": %llu", Count{report.asks_refused},
+         Count{report.asks_unanswered});
+  append(out, ",\n \"recordings\": %llu, \"setpoints\": %llu, \"missing\": %llu,\n",
          Count{report.segments}, Count{report.rows}, Count{report.missing});
   append(out, " \"tip_mm\": %.9f, \"axis_deg\": %.9f, \"velocity_share\": %.6f,\n", report.tip_mm,
          units::deg_from_rad(report.axis_rad), report.velocity);

@@ -47,7 +47,8 @@ struct SoakReport {
   bool is_over = false;  ///< false: written on the way
   std::uint64_t programs = 0, finished = 0, aborted = 0, refused = 0;
   std::uint64_t segments = 0, segments_unread = 0, rows = 0, missing = 0, longest_gap = 0;
-  std::array<std::uint64_t, kMishapCount> mishaps{};
+  std::array<std::uint64_t, kMishapCount> mishaps{};    ///< that came to pass
+  std::uint64_t asks_refused = 0, asks_unanswered = 0;  ///< what the operator wanted in vain
   std::uint64_t alarms = 0, service_starts = 0, drive_starts = 0;
   double tip_mm = 0, axis_rad = 0;                  ///< largest deviations
   double velocity = 0, acceleration = 0, jerk = 0;  ///< largest share of a limit

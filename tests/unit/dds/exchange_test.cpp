@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "service/dds/followed.hpp"
+#include "service/dds/latency_since.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
@@ -211,6 +212,19 @@ TEST(Exchange, WakesAWaitingThreadAtOnce) {
   const auto start = Clock::now();
   waitset.wait(milliseconds(4000));
   EXPECT_LT(Clock::now() - start, milliseconds(2000));
+}
+
+TEST(LatencySince, CountsWhatOneServiceDidAndAllOfOneThatWasStartedAnew) {
+  Latency begin, end;
+  begin.service_id = end.service_id = 7;
+  begin.histograms = {{"lateness", {}}};
+  begin.histograms[0].histogram.record(10);
+  end.histograms = begin.histograms;
+  end.histograms[0].histogram.record(20);
+  EXPECT_EQ(latency_since(begin, end).histograms[0].histogram.count(), 1U);
+  EXPECT_EQ(latency_since(begin, end).histograms[0].histogram.max_ns(), 20);
+  end.service_id = 8;
+  EXPECT_EQ(latency_since(begin, end).histograms[0].histogram.count(), 2U);
 }
 
 }  // namespace

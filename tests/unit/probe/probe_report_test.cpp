@@ -41,6 +41,21 @@ TEST(Probe, IsFitWhereEveryBudgetIsKept) {
   EXPECT_NE(to_json(report).find("\"fit\": true"), std::string::npos);
 }
 
+TEST(Probe, IsRefusedWhereItsSamplesWouldFillTheMemory) {
+  MeasureOptions options;
+  EXPECT_EQ(too_large(options, 2000), "");
+  options.turns = 3600;
+  options.rates_hz = {8000};
+  EXPECT_NE(too_large(options, 2000).find("341 s are what this host has room for"),
+            std::string::npos)
+      << too_large(options, 2000);
+  EXPECT_EQ(too_large(options, 40'000), "");
+  options.has_load = true;
+  options.rates_hz = {1000, 2000, 4000, 8000};
+  EXPECT_NE(too_large(options, 20'000), "");
+  EXPECT_GT(available_mib(), 1);
+}
+
 TEST(Probe, TargetBudgetsDecideOnlyWhereTheyAreAskedFor) {
   const RateMeasurement m = measured(40);  // 1.5 * 20 + 20 allows it, 1.1 * 20 + 5 does not
   EXPECT_TRUE(report_of(m, false).is_fit());

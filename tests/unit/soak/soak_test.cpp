@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "service/process/programs.hpp"
 #include "service/soak/chaos.hpp"
+#include "service/soak/fault_judge.hpp"
 #include "service/soak/segments.hpp"
 #include "service/soak/soak_report.hpp"
+#include "service/soak/timeline.hpp"
 
 namespace meridian::soak {
 namespace {
@@ -37,6 +41,120 @@ TEST(Chaos, IsTheSameForTheSameSeedAndHoldsEveryMishap) {
   }
   EXPECT_TRUE(differs);
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(kMishapCount));
+}
+
+TEST(AskedOverrides, CountFromTheOneInForceOn) {
+  AskedOverrides asked;
+  EXPECT_EQ(asked.most_since(0), 1);
+  asked.announce(1.5, 100);
+  asked.announce(0.5, 200);
+  asked.announce(1.2, 300);
+  EXPECT_EQ(asked.most_since(50), 1.5);
+  EXPECT_EQ(asked.most_since(150), 1.5);
+  EXPECT_EQ(asked.most_since(200), 1.2);
+  EXPECT_EQ(asked.most_since(400), 1.2);
+  asked.forget_before(250);
+  EXPECT_EQ(asked.most_since(250), 1.2);
+  asked.announce(0.3, 500);
+  EXPECT_EQ(asked.most_since(600), 1) << "what is slowed down may still be going at full feed";
+  asked.forget_before(600);
+  EXPECT_EQ(asked.most_since(600), 1);
+}
+
+TEST(SentPrograms, AreRemovedOnlyWhereTheyWereMadeAndNobodyAsksForThemAnyMore) {
+  const process::ScratchFolder folder;
+  const auto made = [&](const char* name) {
+    const auto file = folder.path() / name;
+    std::ofstream(file) << "FINI";
+    return file.string();
+  };
+  const std::string mine = made("a"), yours = made("b"), last = made("c");
+  SentPrograms sent;
+  sent.announce(mine, true, 100);
+  sent.announce(yours, false, 200);
+  sent.announce(last, true, 300);
+  EXPECT_EQ(sent.at(50), "");
+  EXPECT_EQ(sent.at(150), mine);
+  sent.forget_before(150);
+  EXPECT_TRUE(std::filesystem::exists(mine));
+  sent.forget_before(350);
+  EXPECT_EQ(sent.at(350), last);
+  EXPECT_FALSE(std::filesystem::exists(mine));
+  EXPECT_TRUE(std::filesystem::exists(yours));
+  EXPECT_TRUE(std::filesystem::exists(last));
+}
+
+TEST(Faults, AreExplainedByTheirKindTheirDriveAndTheirTime) {
+  const Planned fault{Mishap::kDriveFault, 20, 0, 3};
+  EXPECT_TRUE(explains(fault, 20, Alarm::kDriveFault, 3));
+  EXPECT_FALSE(explains(fault, 20, Alarm::kDriveFault, 2));
+  EXPECT_FALSE(explains(fault, 19, Alarm::kDriveFault, 3));
+  EXPECT_FALSE(explains(fault, 20, Alarm::kFollowingError, 3));
+  const Planned blocked{Mishap::kDriveBlocked, 20, 0, 3};
+  EXPECT_TRUE(explains(blocked, 25, Alarm::kFollowingError, 3));
+  EXPECT_TRUE(explains(blocked, 25, Alarm::kDriveFault, 3));
+  EXPECT_FALSE(explains(blocked, 25, Alarm::kTravel, 3));
+  EXPECT_TRUE(explains({Mishap::kDrivesSilent, 20, 0, 0}, 20, Alarm::kFeedbackLost, 0));
+  EXPECT_TRUE(explains({Mishap::kEmergencyStop, 20, 0, 0}, 20, Alarm::kEmergencyStop, 0));
+  for (const Mishap mishap : {Mishap::kHold, Mishap::kAbort, Mishap::kServiceDies}) {
+    EXPECT_FALSE(explains({mishap, 0, 0, 0}, 20, Alarm::kDriveFault, 0)) << word(mishap);
+  }
+}
+
+class FaultJudgeTest : public testing::Test {
+ protected:
+  std::optional<FaultJudge::Cause> see(double now_s, State state, Alarm alarm = Alarm::kNone) {
+    dds::Status status;
+    status.state = state;
+    status.alarm = alarm;
+    return judge_.see(status, now_s);
+  }
+  using Cause = FaultJudge::Cause;
+  FaultJudge judge_;
+};
+
+TEST_F(FaultJudgeTest, CountsTheTimeThatDrivesWereEnabled) {
+  judge_.begin_drives(Planned{Mishap::kDrivesSilent, 10, 0, 0});
+  for (int life = 0; life < 2; ++life) {  // off for 100 s between two times of 6 s
+    EXPECT_FALSE(see(100 * life, State::kEnabling));
+    EXPECT_FALSE(see(100 * life + 6, State::kRunning));
+    judge_.lose_service();
+  }
+  EXPECT_FALSE(see(200, State::kFaultStop, Alarm::kFeedbackLost));
+  EXPECT_EQ(see(201, State::kFault, Alarm::kDriveFault), Cause::kInjected) << "the first counts";
+  EXPECT_FALSE(see(202, State::kFault, Alarm::kDriveFault)) << "once for each";
+  EXPECT_FALSE(see(203, State::kOff));
+  EXPECT_FALSE(judge_.is_judged());
+  judge_.begin_drives(Planned{Mishap::kDrivesSilent, 10, 0, 0});
+  EXPECT_FALSE(see(204, State::kEnabling));
+  EXPECT_EQ(see(206, State::kFault, Alarm::kFeedbackLost), Cause::kUnprovoked);
+}
+
+TEST_F(FaultJudgeTest, FindsNoExcuseWhereNothingIsPlanned) {
+  EXPECT_FALSE(see(0, State::kRunning));
+  EXPECT_EQ(see(100, State::kFault, Alarm::kPeriodsLost), Cause::kUnprovoked);
+}
+
+TEST_F(FaultJudgeTest, WaitsForTheAlarmThatIsToldBehindTheState) {
+  judge_.begin_drives(Planned{Mishap::kEmergencyStop, 1, 0, 0});
+  EXPECT_FALSE(see(0, State::kRunning));
+  EXPECT_FALSE(see(2, State::kFault));
+  EXPECT_FALSE(judge_.is_judged());
+  EXPECT_EQ(see(2.05, State::kFault, Alarm::kEmergencyStop), Cause::kInjected);
+  EXPECT_TRUE(judge_.is_judged());
+  EXPECT_FALSE(see(3, State::kRunning));
+  EXPECT_FALSE(see(4, State::kFault));
+  EXPECT_EQ(see(5.1, State::kFault), Cause::kUnprovoked) << "one that is never told";
+}
+
+TEST_F(FaultJudgeTest, KnowsWhatTheSoakDidItself) {
+  EXPECT_FALSE(see(0, State::kStarved));
+  judge_.begin_drives(std::nullopt);
+  EXPECT_EQ(see(1, State::kFault, Alarm::kFeedbackLost), Cause::kOwnDoing);
+  EXPECT_FALSE(see(2, State::kOff));
+  judge_.begin_drives(std::nullopt);  // those of a machine that is off miss nobody
+  EXPECT_FALSE(see(3, State::kReady));
+  EXPECT_EQ(see(4, State::kFault, Alarm::kFeedbackLost), Cause::kUnprovoked);
 }
 
 /// Rows of `count` cycles in one state, from `first` on.

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/soak/fault_judge.hpp"
+
+#include <utility>
+
+#include "meridian/rt/state_table.hpp"
+
+namespace meridian::soak {
+namespace {
+
+/// What is seen here of the time that drives were enabled comes by way of the status.
+constexpr double kSeenLate_s = 0.5;
+/// The state may be told before the alarm that led there.
+constexpr double kAlarmLate_s = 1;
+
+}  // namespace
+
+bool explains(const Planned& injected, double enabled_s, Alarm alarm, int joint) noexcept {
+  if (enabled_s + kSeenLate_s < injected.at_s) return false;
+  switch (injected.mishap) {
+    case Mishap::kDriveFault:
+      return alarm == Alarm::kDriveFault && joint == injected.drive;
+    case Mishap::kDriveBlocked:  // who sees it first says so: the service, or the drive itself
+      return alarm == Alarm::kFollowingError ||
+             (alarm == Alarm::kDriveFault && joint == injected.drive);
+    case Mishap::kDrivesSilent:
+      return alarm == Alarm::kFeedbackLost;
+    case Mishap::kEmergencyStop:
+      return alarm == Alarm::kEmergencyStop;
+    default:
+      return false;  // what operators and stations do faults no machine
+  }
+}
+
+void FaultJudge::begin_drives(const std::optional<Planned>& injected) noexcept {
+  is_own_doing_ = is_on_;
+  injected_ = injected;
+  enabled_s_ = 0;
+}
+
+void FaultJudge::lose_service() noexcept {
+  is_on_ = is_faulty_ = is_judged_ = is_own_doing_ = false;
+  alarm_ = Alarm::kNone;
+}
+
+std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, double now_s) noexcept {
+  if (is_on_) enabled_s_ += now_s - seen_s_;
+  is_on_ = is_enabled(status.state);
+  seen_s_ = now_s;
+  const bool is_stopping = status.state == State::kFaultStop || status.state == State::kFault;
+  if (!is_stopping) {
+    is_faulty_ = is_judged_ = false;
+    alarm_ = Alarm::kNone;
+    return std::nullopt;
+  }
+  if (alarm_ == Alarm::kNone) {
+    alarm_ = status.alarm;
+    joint_ = status.alarm_joint;
+  }
+  if (status.state != State::kFault) return std::nullopt;
+  if (!std::exchange(is_faulty_, true)) fault_s_ = now_s;
+  const bool is_told = alarm_ != Alarm::kNone || now_s - fault_s_ > kAlarmLate_s;
+  if (!is_told || std::exchange(is_judged_, true)) return std::nullopt;
+  if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
+  const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
+  return is_injected ? Cause::kInjected : Cause::kUnprovoked;
+}
+
+}  // namespace meridian::soak

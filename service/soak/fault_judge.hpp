@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "meridian/rt/cycle_data.hpp"
+#include "service/dds/messages.hpp"
+#include "service/soak/chaos.hpp"
+
+namespace meridian::soak {
+
+/// Whether `alarm` at `joint` is what drives that suffer `injected` make of it, once they have been
+/// enabled for `enabled_s`: of its kind, at its drive, and not before it was due.
+[[nodiscard]] bool explains(const Planned& injected, double enabled_s, Alarm alarm,
+                            int joint) noexcept;
+
+/// Says of every Fault of the machine whether the drives were told to cause it. Proof:
+/// tests/unit/soak/soak_test.cpp.
+class FaultJudge {
+ public:
+  enum class Cause { kInjected, kOwnDoing, kUnprovoked };
+
+  /// New drives, which nobody has enabled yet, with what they are to suffer. Where the machine was
+  /// on, its next Fault is the soak's own doing.
+  void begin_drives(const std::optional<Planned>& injected) noexcept;
+  /// The service is gone, and with it what it was about to tell.
+  void lose_service() noexcept;
+  /// Every status in its order, at `now_s`; the cause once for each Fault, as soon as it is told.
+  [[nodiscard]] std::optional<Cause> see(const dds::Status& status, double now_s) noexcept;
+  /// Whether the cause of the Fault that is there is known.
+  [[nodiscard]] bool is_judged() const noexcept { return is_judged_; }
+
+ private:
+  std::optional<Planned> injected_;
+  double enabled_s_ = 0, seen_s_ = 0, fault_s_ = 0;
+  bool is_on_ = false, is_faulty_ = false, is_judged_ = false, is_own_doing_ = false;
+  Alarm alarm_ = Alarm::kNone;  ///< first of the stop that is going on
+  int joint_ = 0;
+};
+
+}  // namespace meridian::soak
