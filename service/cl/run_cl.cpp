@@ -3,12 +3,12 @@
 
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::cl {
 namespace {
@@ -82,15 +82,15 @@ int run_cl(const RunOptions& options, std::ostream& out, std::ostream& err) {
   if (options.file == "-") std::ios::sync_with_stdio(false);
   std::istream& in = options.file == "-" ? std::cin : file;
   if (options.output.empty()) return read_through(options, in, out, err);
-  std::ofstream target(options.output, std::ios::binary);
-  if (!target) {
-    err << options.output << ": cannot be written\n";
+  if (text::is_same_file(options.file, options.output)) {
+    err << options.output << ": is the CL file itself; name another output\n";
     return kInputRefused;
   }
-  const int code = read_through(options, in, target, err);
-  target.close();
-  if (code != kFine) std::remove(options.output.c_str());
-  return code;
+  text::WholeFile target(options.output);
+  const int code = read_through(options, in, target.out(), err);
+  if (code != kFine || target.commit()) return code;
+  err << options.output << ": cannot be written\n";
+  return kInputRefused;
 }
 
 }  // namespace meridian::cl

@@ -61,8 +61,10 @@ int check(Options& options, const MachineModel& model) {
   const ToolTable tools = load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
   if (!options.file.empty()) {
+    std::vector<cl::ClWarning> warnings;
     const std::string refusal =
-        record::read_path(options.file, reader_options(options.cl, model), tools, path);
+        record::read_path(options.file, reader_options(options.cl, model), tools, path, &warnings);
+    print_warnings(options.file, warnings);
     if (!refusal.empty()) return refuse(refusal);
   }
   auto recording = record::RecordingReader::open(options.recording, model);

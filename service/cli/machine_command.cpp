@@ -9,6 +9,7 @@
 #include "service/inspect/inspection.hpp"
 #include "service/inspect/joint_pattern.hpp"
 #include "service/inspect/machine_picture.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -32,10 +33,9 @@ int run(const Options& options) {
     if (error) return refuse(*error);
   }
   if (!options.pattern.empty()) {
-    std::ofstream out(options.pattern, std::ios::binary);
-    inspect::write_joint_pattern(model, out);
-    out.flush();
-    if (!out) return refuse(options.pattern + " cannot be written");
+    text::WholeFile pattern(options.pattern);
+    inspect::write_joint_pattern(model, pattern.out());
+    if (!pattern.commit()) return refuse(options.pattern + " cannot be written");
   }
   return inspection.warnings.empty() ? kFine : kVerdictNo;
 }

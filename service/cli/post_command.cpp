@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -13,6 +12,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/post/post.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -30,17 +30,6 @@ int refuse(const std::string& message) {
   return kInputRefused;
 }
 
-/// All of `text` or no file of that name that was not there before.
-bool write_whole(const std::string& output, const std::string& text) {
-  const std::string part = output + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << text;
-  file.close();
-  if (file && std::rename(part.c_str(), output.c_str()) == 0) return true;
-  std::remove(part.c_str());
-  return false;
-}
-
 int run(Options options) {
   const MachineModel model = load_machine(options.machine);
   const ToolTable tools = load_tools(options.machine);
@@ -53,6 +42,9 @@ int run(Options options) {
   if (options.axis_deg) options.post.axis_rad = units::rad_from_deg(*options.axis_deg);
   if (options.rapid_feed_mm_per_min) {
     options.post.rapid_feed_mm_per_s = units::per_s_from_per_min(*options.rapid_feed_mm_per_min);
+  }
+  if (text::is_same_file(options.file, options.output)) {
+    return refuse(options.output + ": is the CL file itself; name another output");
   }
   std::ifstream file;
   std::istream* const input = open_cl_file(options.file, file);
@@ -73,7 +65,7 @@ int run(Options options) {
     std::cout << program->text << std::flush;
     return std::cout ? kFine : refuse("meridian post: the output cannot be written");
   }
-  if (!write_whole(options.output, program->text)) {
+  if (!text::write_whole(options.output, program->text)) {
     return refuse(options.output + ": cannot be written");
   }
   std::cout << options.output << ": " << program->motion_blocks << " CL motions, "

@@ -73,18 +73,23 @@ class Tap {
   dds::Reader<Message> reader_;
 };
 
-/// Sees from the status that a program ran and is over.
+/// Sees that a program ran and is over: from the status, and from setpoints for one so short that
+/// no status tells of it.
 class EndWatch {
  public:
   explicit EndWatch(dds::Participant& participant) : reader_(participant) {}
 
+  void saw(const Setpoint& setpoint) {
+    if ((setpoint.flags & kSetpointMoving) != 0) moved_ = std::max(moved_, setpoint.cycle);
+  }
   [[nodiscard]] bool is_over() {
     dds::Status status;
     if (followed_.take(reader_, status)) {
       const bool is_idle = status.state == State::kReady || status.state == State::kOff ||
                            status.state == State::kFault;
       has_run_ = has_run_ || status.state == State::kRunning;
-      is_over_ = has_run_ && is_idle;
+      const bool has_moved = moved_ > 0 && status.cycle > moved_;
+      is_over_ = (has_run_ || has_moved) && is_idle;
     }
     return is_over_;
   }
@@ -93,6 +98,7 @@ class EndWatch {
   dds::Reader<dds::Status> reader_;
   dds::Followed<dds::Status> followed_;
   bool has_run_ = false, is_over_ = false;
+  std::uint64_t moved_ = 0;  ///< newest cycle in motion
 };
 
 void take_feedback(const dds::DriveFeedback& feedback, record::WireRow& row) {
@@ -138,6 +144,7 @@ int run(Options& options) {
       row.sent_minus_due_ns = setpoint->message.sent_minus_due_ns;
       row.arrival_ns = setpoint->arrival_ns;
       setpoints->pop();
+      end.saw(row.setpoint);
       book.add(row);
       (void)writer->write(row);
     }

@@ -16,6 +16,7 @@
 #include "service/record/recording_writer.hpp"
 #include "service/simulate/feed_picture.hpp"
 #include "service/simulate/simulate.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -142,6 +143,10 @@ int run(const Options& options) {
   cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
   std::optional<record::RecordingWriter> writer;
   if (!options.record.empty()) {
+    for (const std::string& read : {options.file, options.events, options.start_from}) {
+      if (!text::is_same_file(read, options.record)) continue;
+      return refuse(options.record + ": is read by this run; name another recording");
+    }
     auto created = record::RecordingWriter::create(options.record, model);
     if (!created) return refuse(created.error().text());
     writer.emplace(std::move(*created));

@@ -150,7 +150,6 @@ void add_stream_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   add_cl_file_options(*command, options->file);
   add_join_options(*command, options->join);
-  add_frame_option(*command, options->file);
   add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run_stream_command(*options); });
 }

@@ -13,6 +13,7 @@
 #include "service/surface/surface_picture.hpp"
 #include "service/surface/surface_program.hpp"
 #include "service/surface/surface_report.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -34,10 +35,8 @@ int put(const Options& options, const std::string& program) {
     std::cout << program;
     return kFine;
   }
-  std::ofstream out(options.output, std::ios::binary);
-  out << program;
-  out.flush();
-  return out ? kFine : refuse(options.output + " cannot be written");
+  return text::write_whole(options.output, program) ? kFine
+                                                    : refuse(options.output + " cannot be written");
 }
 
 /// The spacings of the command line instead of the file's.

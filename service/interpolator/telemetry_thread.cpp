@@ -139,7 +139,10 @@ void TelemetryThread::tell(const Event& event) {
   const telemetry::Weight weight = telemetry::weight_of(event);
   if (weight == telemetry::Weight::kDetail) return;
   const std::string words = telemetry::describe(event, model_);
-  if (event.code == EventCode::kAlarm || event.code == EventCode::kStopped) status_.message = words;
+  if (event.code == EventCode::kAlarm) alarm_message_ = words;
+  const bool is_told_stop =
+      event.code == EventCode::kStopped && status_.alarm == Alarm::kNone;  // else the reason stays
+  if (event.code == EventCode::kAlarm || is_told_stop) status_.message = words;
   log_->log(weight == telemetry::Weight::kError     ? spdlog::level::err
             : weight == telemetry::Weight::kWarning ? spdlog::level::warn
                                                     : spdlog::level::info,
@@ -192,7 +195,14 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.records_overrun = ports_.records_overrun + recorder_.rows_lost();
   status.events_overrun = ports_.events_overrun + recorder_.events_lost();
   if (!session.message.empty() && session.message != session_message_) {
-    session_message_ = status.message = session.message;
+    session_message_ = session.message;
+    // In a fault the operator needs its reason and remedy first.
+    const bool is_fault = record.state == State::kFaultStop || record.state == State::kFault;
+    if (!is_fault || status.message.empty()) {
+      status.message = session.message;
+    } else if (!status.message.ends_with(session.message)) {
+      status.message = alarm_message_ + "; " + session.message;
+    }
     log_->info("{}", session.message);
   }
   // The clock first: a verb that quotes this status may be here before write() returns.

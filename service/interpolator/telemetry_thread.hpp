@@ -73,6 +73,7 @@ class TelemetryThread {
   std::uint64_t periods_lost_ = 0;  ///< since that was told last
   bool has_news_ = true;
   std::string session_message_;  ///< newest of intake that was told
+  std::string alarm_message_;    ///< of the newest alarm
 };
 
 }  // namespace meridian::interpolator

@@ -8,14 +8,18 @@
 namespace meridian::record {
 
 std::string read_path(const std::string& file, const cl::ClReaderOptions& options,
-                      const ToolTable& tools, CheckedPath& path) {
+                      const ToolTable& tools, CheckedPath& path,
+                      std::vector<cl::ClWarning>* warnings) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return file + ": cannot be opened";
   cl::ClReader reader(in, file, options);
   for (;;) {
     const auto block = reader.next();
     if (!block) return block.error().text();
-    if (!*block) return "";
+    if (!*block) {
+      if (warnings != nullptr) *warnings = reader.warnings();
+      return "";
+    }
     double tool_length_mm = 0;
     if ((*block)->kind == BlockKind::kTool) {
       const Tool* tool = tools.find(static_cast<int>((*block)->value));

@@ -2,15 +2,19 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "meridian/kinematics/tool_table.hpp"
+#include "service/cl/cl_error.hpp"
 #include "service/cl/cl_options.hpp"
 #include "service/record/checked_path.hpp"
 
 namespace meridian::record {
 
-/// Adds the program of a CL file to `path`. Returns why the file is refused, empty where it is not.
+/// Adds the program of a CL file to `path`, and what is odd about it to `warnings` where that is
+/// given. Returns why the file is refused, empty where it is not.
 [[nodiscard]] std::string read_path(const std::string& file, const cl::ClReaderOptions& options,
-                                    const ToolTable& tools, CheckedPath& path);
+                                    const ToolTable& tools, CheckedPath& path,
+                                    std::vector<cl::ClWarning>* warnings = nullptr);
 
 }  // namespace meridian::record

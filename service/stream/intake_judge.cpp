@@ -59,8 +59,8 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
     return refused(Verdict::kRefusedStation,
                    "machine " + model_.name + " is held by station " + request_.station +
                        " with program " + request_.program +
-                       (is_lost_ ? ", which is gone; abort to free the machine"
-                                 : "; wait for its end or abort it"));
+                       (is_lost_ ? ", which is gone; enable the machine and abort to free it"
+                                 : "; wait for its end, or enable the machine and abort it"));
   }
   if (request.session == 0) return refused(Verdict::kRefusedProgram, "0 names no session");
   if (!has_sane_tolerances(request)) {

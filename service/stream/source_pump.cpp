@@ -38,6 +38,11 @@ Supply SourcePump::take() {
   return supply;
 }
 
+std::vector<cl::ClWarning> SourcePump::take_warnings() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(warnings_, {});
+}
+
 bool SourcePump::put(Supply supply) {
   std::unique_lock lock(mutex_);
   has_room_.wait(lock, [this] { return is_stopping_ || supplies_.size() < kBlocksAhead; });
@@ -51,8 +56,13 @@ bool SourcePump::put(Supply supply) {
 
 void SourcePump::run(const std::string& name, const cl::ClReaderOptions& options) {
   cl::ClReader reader(stream_, name, options);
+  std::size_t warned = 0;
   for (bool is_going = true; is_going;) {
     Supply supply = supply_of(reader);
+    for (; warned < reader.warnings().size(); ++warned) {
+      const std::lock_guard lock(mutex_);
+      warnings_.push_back(reader.warnings()[warned]);
+    }
     const bool has_more = supply.kind == Supply::Kind::kBlock;
     is_going = put(std::move(supply)) && has_more;
   }

@@ -7,6 +7,7 @@
 #include <istream>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include "service/cl/cl_reader.hpp"
 #include "service/stream/pipe_buffer.hpp"
@@ -38,6 +39,8 @@ class SourcePump {
 
   /// The next supply, never waiting; behind kEnd and kBad there is nothing.
   [[nodiscard]] Supply take();
+  /// Oddities of the text that were not taken yet.
+  [[nodiscard]] std::vector<cl::ClWarning> take_warnings();
 
  private:
   void run(const std::string& name, const cl::ClReaderOptions& options);
@@ -50,6 +53,7 @@ class SourcePump {
   std::mutex mutex_;
   std::condition_variable has_room_;
   std::deque<Supply> supplies_;
+  std::vector<cl::ClWarning> warnings_;
   bool is_stopping_ = false;
   std::thread thread_;
 };

@@ -93,6 +93,17 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
     pump.emplace(STDIN_FILENO, kStandardInput, options.reader, [&link] { link.wake(); });
     source = [&pump] { return pump->take(); };
   }
+  auto say_warnings = [&, told = std::size_t{0}]() mutable {
+    if (options.preflight) return;
+    const auto say = [&](const cl::ClWarning& warning) {
+      listener.say(request.program + ":" + std::to_string(warning.line) +
+                   ": warning: " + warning.message);
+    };
+    if (pump) {
+      for (const cl::ClWarning& warning : pump->take_warnings()) say(warning);
+    }
+    for (; told < reader.warnings().size(); ++told) say(reader.warnings()[told]);
+  };
   ProgressMeter meter(options.preflight ? options.preflight->times : TimeTable{});
   Newsreader news(listener);
 
@@ -107,6 +118,7 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
       return StreamEnd::kInterrupted;
     }
     link.work(kIdle);
+    say_warnings();
     news.station(station.message());
     const std::int64_t now_ns = steady_ns();
     if (const auto status = link.take_status()) {

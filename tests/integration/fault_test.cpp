@@ -69,6 +69,15 @@ TEST_F(Fault, OfAShaftThatIsStuckIsAFollowingError) {
 TEST_F(Fault, OfSilentDrivesIsLostFeedback) {
   run_with({"--inject", "silence@2.5"});
   expect_fault(Alarm::kFeedbackLost);
+  ASSERT_TRUE(plant.stream(small_program(4, 3000), [](const stream::Station& station) {
+    return station.state() == stream::StationState::kComplete;
+  }));
+  EXPECT_TRUE(eventually([&] {
+    const std::string& message = plant.status().message;
+    return message.starts_with("no feedback from drive b3; check") &&
+           message.find("4 blocks") != std::string::npos;
+  })) << "the reason stays in front of what stations do: "
+      << plant.status().message;
 }
 
 TEST_F(Fault, OfTheEmergencyInputIsNotResetWhileItIsOpen) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "support/command_output.hpp"
@@ -13,6 +15,12 @@ namespace {
 
 using meridian::test::CommandOutput;
 using meridian::test::run_tool;
+using meridian::test::TextFile;
+
+std::string text_of(const TextFile& file) {
+  std::ifstream in(file.path());
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 const std::string kPart = MERIDIAN_SOURCE_DIR "/deploy/parts/blossom.apt";
 
@@ -50,6 +58,23 @@ TEST(ClCommand, PassesEachWordThatIsAllowed) {
   EXPECT_EQ(run_tool("cl -", program).exit_code, 3);
   EXPECT_EQ(run_tool("cl --allow-unknown FOO -", program).exit_code, 3);
   EXPECT_EQ(run_tool("cl --allow-unknown FOO --allow-unknown BAR -", program).exit_code, 0);
+}
+
+TEST(ClCommand, LeavesWhatIsThereWhereItRefuses) {
+  const std::string program = "UNITS/MM\nFEDRAT/60\nGOTO/1,2,3\nFINI\n";
+  const TextFile part(program, ".apt"), kept("kept\n", ".txt");
+  const std::string name = part.path().string();
+  const CommandOutput itself = run_tool("cl " + name + " -o " + name);
+  EXPECT_EQ(itself.exit_code, 3);
+  EXPECT_NE(itself.output.find("is the CL file itself"), std::string::npos) << itself.output;
+  EXPECT_EQ(text_of(part), program);
+  const TextFile bad("UNITS/MM\nFEDRAT/60\nGOTO/1,2,3\nGOTO/1,2,three\n", ".apt");
+  EXPECT_EQ(run_tool("cl " + bad.path().string() + " -o " + kept.path().string()).exit_code, 3);
+  EXPECT_EQ(text_of(kept), "kept\n");
+  EXPECT_EQ(run_tool("cl " + name + " -o " + kept.path().string()).exit_code, 0);
+  EXPECT_EQ(text_of(kept), "1 2 3 0 0 1 60\n");
+  EXPECT_EQ(run_tool("cl " + name + " -o /dev/full").exit_code, 3);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
 TEST(ClCommand, KnowsUsage) {

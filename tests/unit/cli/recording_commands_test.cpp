@@ -85,6 +85,23 @@ TEST_F(RecordingCommands, CheckSaysNoWhereTheMotionIsNotThatOfTheFile) {
   EXPECT_NE(same.output.find("DIFFERENT"), std::string::npos) << same.output;
 }
 
+TEST_F(RecordingCommands, ASimulationIsNotRecordedOverWhatItReads) {
+  const TextFile copy("UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20\nFINI\n", ".apt");
+  const std::string name = copy.path().string();
+  const CommandOutput refused = run_tool("simulate " + name + kMachine + "--record " + name);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.output.find("is read by this run"), std::string::npos) << refused.output;
+  EXPECT_EQ(run_tool("simulate " + name + kMachine).exit_code, 0) << "it is still there";
+}
+
+TEST_F(RecordingCommands, CheckSaysWhatIsOddAboutTheFile) {
+  ASSERT_EQ(run_tool("simulate " + part() + kMachine + "--record " + recording()).exit_code, 0);
+  const TextFile fast("UNITS / MM\nFEDRAT / 1e6, MMPM\nGOTO / 80, -40, 20\nFINI\n", ".apt");
+  const CommandOutput checked =
+      run_tool("check " + recording() + " " + fast.path().string() + kMachine);
+  EXPECT_NE(checked.output.find("warning"), std::string::npos) << checked.output;
+}
+
 TEST_F(RecordingCommands, WrongInputIsRefusedByName) {
   EXPECT_EQ(run_tool("check" + kMachine).exit_code, 2);
   EXPECT_EQ(run_tool("simulate " + part()).exit_code, 2) << "no machine";

@@ -100,6 +100,17 @@ TEST_F(Pump, SaysWhatIsWrongWithTheTextByNameAndLine) {
   EXPECT_NE(supply.text.find("standard input:4: "), std::string::npos) << supply.text;
 }
 
+TEST_F(Pump, HandsOutWhatIsOddAboutTheTextOnce) {
+  start();
+  pipe.write("PARTNO/ODD\nUNITS/INCHES\nFEDRAT/600,MMPM\nGOTO/0,0,0,0,0,1\nUNITS/MM\nGOTO/1,0,0\n");
+  pipe.close();
+  while (next().kind == Supply::Kind::kBlock) continue;
+  const auto warnings = pump_->take_warnings();
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_EQ(warnings.back().line, 5U);
+  EXPECT_TRUE(pump_->take_warnings().empty());
+}
+
 TEST_F(Pump, DoesNotWaitForAWriterThatSleepsWhenItIsToEnd) {
   start();
   pipe.write(kHead);

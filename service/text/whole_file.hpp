@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace meridian::text {
+
+/// A file of a tool's output that is there whole or as it was before: it is written beside its
+/// place, as NAME.part, and put there by commit(). What is no regular file (a pipe, a terminal) is
+/// written to at once and stays what it is. Proof: tests/unit/cli/recording_commands_test.cpp.
+class WholeFile {
+ public:
+  explicit WholeFile(std::string name);
+  /// Without a commit the part goes.
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  [[nodiscard]] std::ostream& out() noexcept { return file_; }
+  /// False where anything could not be written.
+  [[nodiscard]] bool commit();
+
+ private:
+  std::string name_, written_;
+  std::ofstream file_;
+};
+
+/// All of `content` in a file of that name, or what was there before and false.
+[[nodiscard]] bool write_whole(const std::string& name, const std::string& content);
+
+/// Whether both names are one file that is there.
+[[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);
+
+}  // namespace meridian::text
