@@ -5,6 +5,7 @@
 
 #include "meridian/units.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::cli {
 
@@ -65,6 +66,27 @@ void add_join_options(CLI::App& command, JoinOptions& options) {
       .add_option("--axis-tolerance-deg", options.axis_tolerance_deg,
                   "Of smoothing, instead of the machine file's")
       ->check(CLI::Range(1e-6, 10.0));
+}
+
+std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
+  std::string text;
+  const auto add = [&text](const char* name, const std::string& value) {
+    if (!value.empty()) text::append(text, "%s%s %s", text.empty() ? "" : " ", name, value.c_str());
+  };
+  const auto number = [](double value) {
+    std::string digits;
+    if (value > 0) text::append(digits, "%.9g", value);
+    return digits;
+  };
+  add("--units", file.units);
+  add("--feed", number(file.feed_mm_per_min.value_or(0)));
+  for (const std::string& word : file.allow_unknown) add("--allow-unknown", word);
+  if (file.allow_no_end) text += text.empty() ? "--allow-no-end" : " --allow-no-end";
+  add("--arc-sense", file.arc_sense == "form" ? "" : file.arc_sense);
+  add("--transition", join.transition);
+  add("--tip-tolerance-mm", number(join.tip_tolerance_mm));
+  add("--axis-tolerance-deg", number(join.axis_tolerance_deg));
+  return text;
 }
 
 void add_frame_option(CLI::App& command, ClFileOptions& options) {

@@ -45,6 +45,10 @@ struct JoinOptions {
 /// Adds --transition, --tip-tolerance-mm and --axis-tolerance-deg.
 void add_join_options(CLI::App& command, JoinOptions& options);
 
+/// The options of both that were given, as they stand on a command line; without --from-line,
+/// which is what changes where a program is gone on with.
+[[nodiscard]] std::string options_text(const ClFileOptions& file, const JoinOptions& join);
+
 /// Adds --frame, for commands that put out points in the frame of the kinematics.
 void add_frame_option(CLI::App& command, ClFileOptions& options);
 

@@ -94,6 +94,7 @@ int run_stream_command(StreamCommandOptions& options) {
   options.stream.reader = reader_options(options.file);
   options.stream.tip_tolerance_mm = options.join.tip_tolerance_mm;
   options.stream.axis_tolerance_rad = units::rad_from_deg(options.join.axis_tolerance_deg);
+  options.stream.options = options_text(options.file, options.join);
   if (options.join.transition == "smooth") options.stream.policies = dds::kPolicySmooth;
   if (options.join.transition == "exact_stop") options.stream.policies = dds::kPolicyExactStop;
   int exit_code = kFine;

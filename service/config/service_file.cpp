@@ -45,6 +45,7 @@ void read_service(Section section, const std::filesystem::path& folder, ServiceC
   config.tools = inside(section.text_or("tools", ""));
   config.recording = inside(section.text_or("recording", ""));
   config.log = inside(section.text_or("log", ""));
+  config.state_directory = inside(section.text_or("state_directory", ""));
   config.auxiliary =
       static_cast<AuxiliaryPolicy>(section.choice_or("auxiliary", 0, {"wait", "ignore"}));
   config.optional_stop = section.truth_or("optional_stop", config.optional_stop);

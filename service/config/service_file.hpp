@@ -38,10 +38,11 @@ struct RealtimeConfig {
 
 /// Everything about the service that is not about the machine.
 struct ServiceConfig {
-  std::filesystem::path machine;    ///< machine file
-  std::filesystem::path tools;      ///< tool table; empty: no tools, tool blocks are refused
-  std::filesystem::path recording;  ///< recording of record; empty: none
-  std::filesystem::path log;        ///< log file; empty: standard error
+  std::filesystem::path machine;          ///< machine file
+  std::filesystem::path tools;            ///< tool table; empty: no tools, tool blocks are refused
+  std::filesystem::path recording;        ///< recording of record; empty: none
+  std::filesystem::path log;              ///< log file; empty: standard error
+  std::filesystem::path state_directory;  ///< of the journal; empty: $STATE_DIRECTORY, else none
 
   RealtimeConfig realtime;
 

@@ -46,6 +46,7 @@ void session_request_fields(Way way, Message& message, Wire& wire) {
   way(message.tip_tolerance_mm, wire.tip_tolerance_mm);
   way(message.axis_tolerance_rad, wire.axis_tolerance_rad);
   way(message.policies, wire.policies);
+  way(message.options, wire.options);
 }
 
 template <class Way, class Message, class Wire>

@@ -50,6 +50,7 @@ struct SessionRequest {
   double tip_tolerance_mm = 0;    ///< 0: the machine's
   double axis_tolerance_rad = 0;  ///< 0: the machine's
   std::uint32_t policies = 0;     ///< SessionPolicy, or-ed
+  std::string options{};          ///< of the station's command line, for the journal
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.

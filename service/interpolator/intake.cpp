@@ -197,6 +197,7 @@ void Intake::show() {
   if (judge_.is_held()) {
     view_.station = judge_.request().station;
     view_.program = judge_.request().program;
+    view_.options = judge_.request().options;
     view_.block_count = judge_.request().block_count;
     view_.blocks_received = judge_.next_sequence();
   }

@@ -20,7 +20,7 @@ namespace meridian::interpolator {
 /// What intake tells the status.
 struct SessionView {
   std::uint64_t session = 0;
-  std::string station, program;
+  std::string station, program, options;
   std::uint64_t block_count = 0;
   std::uint64_t blocks_received = 0;
   std::uint64_t batches_dropped = 0, batches_lost = 0;

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -27,7 +28,7 @@ namespace {
 enum ExitCode { kFine = 0, kCannotStart = 1, kUsage = 2, kConfigRefused = 3 };
 
 struct Options {
-  std::string machine, service, recording, frame;
+  std::string machine, service, recording, state, frame;
   int domain = -1;
   bool is_best_effort = false, is_manual = false;
 };
@@ -58,6 +59,16 @@ void make_stacks_small() {
   return text.str();
 }
 
+/// The folder for what outlives the service: as asked for, or the one that systemd made.
+[[nodiscard]] std::filesystem::path state_folder(const std::string& option,
+                                                 const config::ServiceConfig& service) {
+  if (!option.empty()) return option;
+  if (!service.state_directory.empty()) return service.state_directory;
+  const char* const named = std::getenv("STATE_DIRECTORY");
+  const std::string folders = named != nullptr ? named : "";
+  return folders.substr(0, folders.find(':'));
+}
+
 [[nodiscard]] ServiceParts load(const Options& options) {
   ServiceParts parts;
   if (!options.service.empty()) parts.service = config::load_service(options.service);
@@ -79,6 +90,7 @@ void make_stacks_small() {
       static_cast<std::uint32_t>(options.domain >= 0 ? options.domain : parts.service.dds_domain);
   parts.recording =
       !options.recording.empty() ? options.recording : parts.service.recording.string();
+  parts.state_folder = state_folder(options.state, parts.service);
   return parts;
 }
 
@@ -123,6 +135,7 @@ int run(int argc, char** argv) {
   app.add_option("--service", options.service, "service file (TOML)");
   app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
   app.add_option("--record", options.recording, "write the recording of record here (CSV)");
+  app.add_option("--state", options.state, "folder of the journal of the last executed block");
   app.add_option("--frame", options.frame, "workpiece: x,y,z[,a,b,c] in mm and deg");
   app.add_flag("--best-effort", options.is_best_effort,
                "run without real-time rights where they are missing");

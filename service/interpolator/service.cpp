@@ -124,8 +124,9 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       supervisor_(participant_, parts_.model, parts_.tools, parts_.service, service_id_,
                   status_clock_, ports_),
       recorder_(parts_.recording, parts_.model),
+      journal_(parts_.state_folder, parts_.model.name),
       telemetry_(participant_, parts_.model, parts_.service, service_id_, realtime.mode(), intake_,
-                 status_clock_, recorder_, log_, ports_) {
+                 status_clock_, recorder_, journal_, log_, ports_) {
   ports_.spindle_tool_mm = parts_.model.tool_length_mm;
   ports_.stops_at_optional = parts_.service.optional_stop;
   supervisor_.on_session_event([this](bool has_action_peer) {
@@ -134,6 +135,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
   });
   take_lease();
   tell_security();
+  tell_last_program();
 }
 
 Service::~Service() { stop(); }
@@ -159,6 +161,23 @@ void Service::tell_security() {
   }
 }
 
+/// Behind the lease: the journal of a machine is its service's alone.
+void Service::tell_last_program() {
+  if (!journal_.is_kept()) {
+    log_->info("no journal of the last executed block is kept: no state_directory is named");
+    return;
+  }
+  if (const auto last = journal_.read()) {
+    const std::string words = telemetry::describe(*last);
+    log_->info("{}; {}", words, telemetry::describe_more(*last));
+    telemetry_.say_first(words);
+  }
+  if (!journal_.complaint().empty()) {
+    log_->warn("{}", journal_.complaint());
+    telemetry_.say_first(journal_.complaint());
+  }
+}
+
 void Service::keep_lease() {
   if (ports_.state != State::kOff) return;
   if (const auto holder = lease_.find_older()) throw served_already(*holder);
@@ -171,6 +190,9 @@ void Service::start() {
                           std::move(body));
   };
   recorder_thread_ = Thread(realtime_, {"recorder", 0, false}, [this] { recorder_.run(); });
+  journal_thread_ = Thread(realtime_, {"journal", 0, false}, [this] {
+    journal_.run([this](const std::string& complaint) { log_->error("{}", complaint); });
+  });
   add("telemetry", 0, false, [this] { telemetry_.run(); });
   add("intake", 0, false, [this] { intake_.run(); });
   add("planner", plan.planner_priority, false, [this] { planner_.run(); });
@@ -195,6 +217,8 @@ void Service::stop() {
   threads_.clear();
   recorder_.stop();
   recorder_thread_.join();
+  journal_.stop();
+  journal_thread_.join();
   const std::string complaint = recorder_.complaint();
   if (!std::exchange(is_stopped_, true) && !complaint.empty()) log_->error("{}", complaint);
 }

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct ServiceParts {
   config::ServiceConfig service;
   std::uint32_t domain = 0;
   std::string recording;                ///< path; empty: none
+  std::filesystem::path state_folder;   ///< of the journal; empty: none is kept
   std::string machine_file, tool_file;  ///< their texts, for the machine topic
 };
 
@@ -61,6 +63,7 @@ class Service {
  private:
   void take_lease();
   void tell_security();
+  void tell_last_program();
 
   ServiceParts parts_;
   const Realtime& realtime_;
@@ -78,9 +81,10 @@ class Service {
   CycleThread cycle_;
   Supervisor supervisor_;
   telemetry::Recorder recorder_;
+  telemetry::Journal journal_;
   TelemetryThread telemetry_;
   std::vector<Thread> threads_;
-  Thread recorder_thread_;
+  Thread recorder_thread_, journal_thread_;
   bool is_stopped_ = false;
 };
 

@@ -22,13 +22,15 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
                                  const config::ServiceConfig& service, std::uint64_t service_id,
                                  dds::RealtimeMode mode, const Intake& intake,
                                  StatusClock& status_clock, telemetry::Recorder& recorder,
-                                 std::shared_ptr<spdlog::logger> log, Ports& ports)
+                                 telemetry::Journal& journal, std::shared_ptr<spdlog::logger> log,
+                                 Ports& ports)
     : model_(model),
       service_(service),
       service_id_(service_id),
       intake_(intake),
       status_clock_(status_clock),
       recorder_(recorder),
+      journal_(journal),
       log_(std::move(log)),
       ports_(ports),
       statuses_(participant),
@@ -47,13 +49,25 @@ void TelemetryThread::run() noexcept {
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
     const std::int64_t now_ns = monotonic_ns();
+    keep_journal(now_ns);
     const bool is_due = has_news_ || now_ns - status_ns_ >= status_period_ns;
     if (is_due && view_.cycles_run > 0) publish_status(now_ns);
     if (now_ns - latency_ns_ >= kSecond_ns) publish_latency(now_ns);
     std::this_thread::sleep_for(kBetweenLooks);
   }
   drain();
+  keep_journal(monotonic_ns());
   publish_status(monotonic_ns());
+}
+
+void TelemetryThread::keep_journal(std::int64_t now_ns) {
+  if (!keeper_.is_due(now_ns)) return;
+  const SessionView session = intake_.view();
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  const auto entry =
+      keeper_.due({session.session, session.station, session.program, session.options}, now_ns,
+                  std::chrono::nanoseconds(since_1970).count());
+  if (entry) journal_.take(*entry);
 }
 
 void TelemetryThread::drain() {
@@ -71,6 +85,7 @@ void TelemetryThread::drain() {
   while (ports_.told.try_pop(event)) {
     recorder_.take(event);
     tell(event);
+    keeper_.see(event, status_.message);
   }
   recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
   PoleEase ease;

@@ -15,19 +15,26 @@
 #include "service/interpolator/intake.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/status_clock.hpp"
+#include "service/telemetry/journal.hpp"
+#include "service/telemetry/journal_keeper.hpp"
 #include "service/telemetry/motion_watch.hpp"
 #include "service/telemetry/recorder.hpp"
 
 namespace meridian::interpolator {
 
-/// Drains what the other threads tell: events into words, records to the recorder, timings into
-/// histograms; publishes the status at 20 Hz and on change, latencies at 1 Hz.
+/// Drains what the other threads tell: events into words, records to the recorder, the last
+/// executed block to the journal, timings into histograms; publishes the status at 20 Hz and on
+/// change, latencies at 1 Hz.
 class TelemetryThread {
  public:
   TelemetryThread(dds::Participant& participant, const MachineModel& model,
                   const config::ServiceConfig& service, std::uint64_t service_id,
                   dds::RealtimeMode mode, const Intake& intake, StatusClock& status_clock,
-                  telemetry::Recorder& recorder, std::shared_ptr<spdlog::logger> log, Ports& ports);
+                  telemetry::Recorder& recorder, telemetry::Journal& journal,
+                  std::shared_ptr<spdlog::logger> log, Ports& ports);
+
+  /// Before run(): what the status says until there is something newer.
+  void say_first(const std::string& message) { status_.message = message; }
 
   /// Runs until Ports::is_stopping; what is in the rings by then is drained.
   void run() noexcept;
@@ -35,6 +42,7 @@ class TelemetryThread {
  private:
   void drain();
   void tell(const Event& event);
+  void keep_journal(std::int64_t now_ns);
   void publish_status(std::int64_t now_ns);
   void publish_latency(std::int64_t now_ns);
 
@@ -44,6 +52,7 @@ class TelemetryThread {
   const Intake& intake_;
   StatusClock& status_clock_;
   telemetry::Recorder& recorder_;
+  telemetry::Journal& journal_;
   std::shared_ptr<spdlog::logger> log_;
   Ports& ports_;
   dds::Writer<dds::Status> statuses_;
@@ -53,6 +62,7 @@ class TelemetryThread {
   dds::Status status_;
   DriveWords words_;
   telemetry::MotionWatch motion_;
+  telemetry::JournalKeeper keeper_;
   enum Book : std::size_t {
     kLateness,  ///< lost periods are counted as if they had been executed (Histogram::record_every)
     kComputation,

@@ -36,6 +36,7 @@ dds::SessionRequest request_of(const StreamOptions& options) {
   request.tip_tolerance_mm = options.tip_tolerance_mm;
   request.axis_tolerance_rad = options.axis_tolerance_rad;
   request.policies = options.policies;
+  request.options = options.options;
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;

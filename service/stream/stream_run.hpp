@@ -23,6 +23,7 @@ struct StreamOptions {
   double tip_tolerance_mm = 0;               ///< 0: the machine's
   double axis_tolerance_rad = 0;             ///< 0: the machine's
   std::uint32_t policies = 0;                ///< dds::SessionPolicy, beside what the file says
+  std::string options;                       ///< what asked for this, for who goes on with it
 };
 
 enum class StreamEnd : std::uint8_t {

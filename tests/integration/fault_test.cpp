@@ -92,13 +92,24 @@ TEST_F(Fault, OfTheEmergencyInputIsNotResetWhileItIsOpen) {
 TEST_F(Fault, OfTheServiceItselfLeavesAMachineThatWaitsForEnableAndStart) {
   run_with({});
   ASSERT_TRUE(plant.wait_for(State::kRunning));
+  // Two seconds and more into it: what the journal says then is at most one second old.
+  ASSERT_TRUE(eventually([&] { return plant.status().block >= 6; }, milliseconds(20000)));
   const std::uint64_t first_id = plant.status().service_id;
+  const std::uint32_t last_line = plant.status().line;
   plant.service().send_signal(SIGKILL);
   ASSERT_TRUE(plant.service().wait(milliseconds(2000)));
   plant.start_service();
   ASSERT_TRUE(eventually([&] { return plant.status().service_id != first_id; }, milliseconds(6000)))
       << plant.service().said();
   EXPECT_EQ(plant.status().state, State::kOff);
+  const std::string message = plant.status().message;
+  const std::string go_on = " begun at least; go on with --from-line ";
+  EXPECT_EQ(message.rfind("last program: small program, line ", 0), 0U) << message;
+  ASSERT_NE(message.find(go_on), std::string::npos) << message;
+  const auto told = std::stoul(message.substr(message.find(go_on) + go_on.size()));
+  EXPECT_LE(told, last_line);
+  EXPECT_GE(told + 5, last_line) << "a block of 2 mm at 500 mm/min takes 0.24 s";
+  EXPECT_NE(plant.service().said().find(message + "; noted 2"), std::string::npos);
   const auto start = plant.say(Verb::kStart);
   ASSERT_TRUE(start);
   EXPECT_FALSE(start->is_accepted);

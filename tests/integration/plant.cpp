@@ -200,8 +200,9 @@ void Plant::change_machine(const std::vector<std::pair<std::string, std::string>
 }
 
 Process& Plant::start_service(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"meridiand", "--machine", machine_file_, "--domain",
-                                        domain(),    "--record",  recording(),   "--best-effort"};
+  std::vector<std::string> arguments = {"meridiand", "--machine",    machine_file_, "--domain",
+                                        domain(),    "--record",     recording(),   "--state",
+                                        state(),     "--best-effort"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   status_.reset();
   service_ = std::make_unique<Process>(arguments, folder_ / "service.log");

@@ -121,6 +121,8 @@ class Plant {
   [[nodiscard]] const stream::Station& station() const { return *station_; }
 
   [[nodiscard]] std::filesystem::path recording() const { return folder_ / "recording.csv"; }
+  /// Where the service keeps its journal.
+  [[nodiscard]] std::filesystem::path state() const { return folder_ / "state"; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// The machine file that service and drives are started with.
   [[nodiscard]] const std::string& machine() const { return machine_file_; }

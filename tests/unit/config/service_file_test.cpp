@@ -20,6 +20,7 @@ TEST(ServiceFile, OfOneLineHasTheDefaults) {
   EXPECT_EQ(config.machine, file.path().parent_path() / "m.toml");
   EXPECT_TRUE(config.tools.empty());
   EXPECT_TRUE(config.recording.empty());
+  EXPECT_TRUE(config.state_directory.empty());
   EXPECT_EQ(config.realtime.mode, RealtimeMode::kEnforce);
   EXPECT_EQ(config.realtime.cycle_priority, 80);
   EXPECT_EQ(config.realtime.planner_priority, 40);
@@ -32,6 +33,7 @@ TEST(ServiceFile, OfOneLineHasTheDefaults) {
 TEST(ServiceFile, GivesWhatItSays) {
   const test::TextFile file(
       "[service]\nmachine = \"/etc/m.toml\"\nauxiliary = \"ignore\"\nrecording = \"r.csv\"\n"
+      "state_directory = \"kept\"\n"
       "bridge_cycles = 7\nblock_queue = 5000\noptional_stop = true\nfeedback_timeout_s = 0.25\n"
       "[realtime]\nmode = \"best_effort\"\ncpu = 1\nlock_memory = false\n"
       "[dds]\ndomain = 42\npartition = \"cell 3\"\n");
@@ -40,6 +42,7 @@ TEST(ServiceFile, GivesWhatItSays) {
   EXPECT_EQ(config.recording, file.path().parent_path() / "r.csv");
   EXPECT_EQ(config.auxiliary, AuxiliaryPolicy::kIgnore);
   EXPECT_TRUE(config.optional_stop);
+  EXPECT_EQ(config.state_directory, file.path().parent_path() / "kept");
   EXPECT_EQ(config.feedback_timeout_s, 0.25);
   EXPECT_EQ(config.bridge_cycles, 7);
   EXPECT_EQ(config.realtime.mode, RealtimeMode::kBestEffort);

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/telemetry/journal.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "service/telemetry/journal_keeper.hpp"
+#include "support/text_file.hpp"
+
+namespace meridian::telemetry {
+namespace {
+
+namespace fs = std::filesystem;
+
+JournalEntry sample_entry() {
+  JournalEntry entry;
+  entry.time_ns = 1'790'000'000'123'456'789;
+  entry.session = 0xFEDCBA9876543210U;
+  entry.block = 4710;
+  entry.line = 4720;
+  entry.reached = Reached::kDone;
+  entry.state = State::kHeld;
+  put_text("cam\none", entry.station);
+  put_text("blade = 7.apt", entry.program);
+  put_text("--units inch", entry.options);
+  put_text("drive b3 reports a fault", entry.alarm);
+  return entry;
+}
+
+/// A folder of its own, gone with this object.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("meridian-journal-" + std::to_string(::getpid()))) {
+    fs::remove_all(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// What `body` finds in a journal whose thread runs beside it.
+template <class Body>
+std::vector<std::string> run_beside(Journal& journal, Body body) {
+  std::vector<std::string> complaints;
+  std::thread writer(
+      [&] { journal.run([&](const std::string& text) { complaints.push_back(text); }); });
+  body();
+  journal.stop();
+  writer.join();
+  return complaints;
+}
+
+TEST(JournalEntry, ComesBackFromItsText) {
+  const JournalEntry written = sample_entry();
+  const auto read = parse_journal(to_text(written, "lai"), "lai");
+  ASSERT_TRUE(read) << read.error();
+  EXPECT_EQ(read->time_ns, written.time_ns);
+  EXPECT_EQ(read->session, written.session);
+  EXPECT_EQ(read->block, written.block);
+  EXPECT_EQ(read->line, written.line);
+  EXPECT_EQ(read->reached, written.reached);
+  EXPECT_EQ(read->state, written.state);
+  EXPECT_STREQ(read->station.data(), "cam one") << "a text never breaks a line";
+  EXPECT_STREQ(read->program.data(), "blade = 7.apt");
+  EXPECT_STREQ(read->options.data(), "--units inch");
+  EXPECT_STREQ(read->alarm.data(), "drive b3 reports a fault");
+}
+
+TEST(JournalEntry, ThatIsTornAnywhereIsRefused) {
+  const std::string whole = to_text(sample_entry(), "lai");
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_FALSE(parse_journal(std::string_view(whole).substr(0, size), "lai")) << size;
+  }
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 4);
+    EXPECT_FALSE(parse_journal(changed, "lai")) << at;
+  }
+  EXPECT_FALSE(parse_journal(whole + "x", "lai"));
+}
+
+TEST(JournalEntry, OfSomebodyElseIsRefusedWithTheReason) {
+  const auto why = [](const std::string& text) {
+    const auto read = parse_journal(text, "lai");
+    return read ? std::string("taken") : read.error();
+  };
+  EXPECT_EQ(why("cycle,due_ns,line\n"), "is no journal of this service");
+  EXPECT_EQ(why("meridian journal 2\nmachine = lai\n"), "is of another version of this service");
+  EXPECT_EQ(why(to_text(sample_entry(), "bench")), "is of machine 'bench', not of 'lai'");
+  EXPECT_EQ(why("meridian journal 1\nmachine = lai\n"), "is torn: its end is missing");
+}
+
+TEST(JournalEntry, TellsFromWhichLineToGoOn) {
+  JournalEntry entry = sample_entry();
+  EXPECT_EQ(describe(entry),
+            "last program: blade = 7.apt, line 4720 done; go on with --from-line 4721");
+  entry.reached = Reached::kBegun;
+  EXPECT_EQ(describe(entry),
+            "last program: blade = 7.apt, line 4720 begun; go on with --from-line 4720");
+  entry.state = State::kRunning;
+  EXPECT_EQ(describe(entry),
+            "last program: blade = 7.apt, line 4720 begun at least; go on with --from-line 4720");
+  entry.reached = Reached::kEnd;
+  EXPECT_EQ(describe(entry), "last program: blade = 7.apt, ran to its end");
+  const std::string more = describe_more(sample_entry());
+  for (const char* part : {"2026-09-21", "UTC", "Held", "cam one", "--units inch", "drive b3"}) {
+    EXPECT_NE(more.find(part), std::string::npos) << more;
+  }
+}
+
+TEST(Journal, TellsTheNextServiceTheLastEntry) {
+  const Folder folder;
+  {
+    Journal journal(folder.path() / "made", "lai");
+    EXPECT_EQ(journal.complaint(), "");
+    EXPECT_FALSE(journal.read()) << "there was no service before";
+    EXPECT_EQ(journal.complaint(), "");
+    const auto complaints = run_beside(journal, [&] {
+      JournalEntry entry = sample_entry();
+      for (entry.line = 1; entry.line <= 50; ++entry.line) journal.take(entry);
+    });
+    EXPECT_TRUE(complaints.empty());
+  }
+  Journal next(folder.path() / "made", "lai");
+  const auto entry = next.read();
+  ASSERT_TRUE(entry) << next.complaint();
+  EXPECT_EQ(entry->line, 50U);
+  EXPECT_FALSE(fs::exists(next.path().string() + ".new"));
+}
+
+TEST(Journal, PutsAsideWhatIsTornAndGoesOn) {
+  const Folder folder;
+  fs::create_directories(folder.path());
+  Journal journal(folder.path(), "lai");
+  const std::string whole = to_text(sample_entry(), "lai");
+  std::ofstream(journal.path()) << whole.substr(0, whole.size() / 2);
+  EXPECT_FALSE(journal.read());
+  EXPECT_NE(journal.complaint().find("torn"), std::string::npos) << journal.complaint();
+  EXPECT_NE(journal.complaint().find("lai.journal.refused"), std::string::npos);
+  EXPECT_EQ(test::read_text(journal.path().string() + ".refused"),
+            whole.substr(0, whole.size() / 2));
+  (void)run_beside(journal, [&] { journal.take(sample_entry()); });
+  EXPECT_EQ(test::read_text(journal.path()), whole);
+}
+
+TEST(Journal, OfAServiceKilledWhileItWroteIsTheOneBefore) {
+  const Folder folder;
+  fs::create_directories(folder.path());
+  Journal journal(folder.path(), "lai");
+  const std::string whole = to_text(sample_entry(), "lai");
+  ASSERT_EQ(replace_file(journal.path(), whole), 0);
+  std::ofstream(journal.path().string() + ".new") << whole.substr(0, 40);
+  EXPECT_TRUE(journal.read()) << journal.complaint();
+}
+
+TEST(Journal, OnABlockedDiskHindersNobodyAndGetsTheNewestAfterwards) {
+  const Folder folder;
+  std::promise<void> disk;
+  std::shared_future<void> disk_is_free = disk.get_future().share();
+  std::vector<std::string> written;
+  std::atomic<bool> is_writing{false};
+  Journal journal(folder.path(), "lai", [&](const fs::path&, const std::string& text) {
+    is_writing = true;
+    disk_is_free.wait();
+    written.push_back(text);
+    return 0;
+  });
+  (void)run_beside(journal, [&] {
+    JournalEntry entry = sample_entry();
+    journal.take(entry);
+    while (!is_writing) std::this_thread::yield();
+    const auto begin = std::chrono::steady_clock::now();
+    for (entry.line = 0; entry.line <= 1000; ++entry.line) journal.take(entry);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+    disk.set_value();
+  });
+  ASSERT_EQ(written.size(), 2U);
+  EXPECT_NE(written[1].find("line = 1000\n"), std::string::npos) << written[1];
+}
+
+TEST(Journal, OnAFullDiskComplainsOnce) {
+  const Folder folder;
+  std::atomic<int> writes{0};
+  Journal journal(folder.path(), "lai", [&](const fs::path&, const std::string&) {
+    ++writes;
+    return ENOSPC;
+  });
+  const auto complaints = run_beside(journal, [&] {
+    for (int n = 1; n <= 3; ++n) {
+      journal.take(sample_entry());
+      while (writes < n) std::this_thread::yield();
+    }
+  });
+  ASSERT_EQ(complaints.size(), 1U);
+  EXPECT_NE(complaints[0].find("No space left"), std::string::npos) << complaints[0];
+}
+
+/// The events of a program, told to a keeper that is asked every 10 ms.
+class Kept {
+ public:
+  void tell(EventCode code, std::uint64_t a = 0, std::uint64_t b = 0) {
+    keeper_.see({.code = code, .a = a, .b = b}, code == EventCode::kAlarm ? "a fault" : "");
+  }
+  void enter(State state) { tell(EventCode::kStateChanged, static_cast<std::uint64_t>(state)); }
+  void begin(std::uint64_t block) { tell(EventCode::kBlockStarted, block, block + 10); }
+  void end(std::uint64_t block) { tell(EventCode::kBlockDone, block, block + 10); }
+  void run_for(int milliseconds) {
+    for (int t = 0; t < milliseconds; t += 10) {
+      now_ns_ += 10'000'000;
+      if (const auto entry = keeper_.due(owner, now_ns_, now_ns_)) entries.push_back(*entry);
+    }
+  }
+  JournalKeeper::Owner owner{7, "cam", "part.apt", ""};
+  std::vector<JournalEntry> entries;
+
+ private:
+  JournalKeeper keeper_;
+  std::int64_t now_ns_ = 5'000'000'000;
+};
+
+TEST(JournalKeeper, NotesNothingWhereNoProgramRuns) {
+  Kept kept;
+  for (const State state : {State::kEnabling, State::kReady, State::kLoaded, State::kFault}) {
+    kept.enter(state);
+    kept.run_for(3000);
+  }
+  EXPECT_TRUE(kept.entries.empty()) << "what the service before left stays";
+}
+
+TEST(JournalKeeper, NotesABlockThatIsAtMostASecondOldWhileTheProgramRuns) {
+  Kept kept;
+  kept.begin(0);
+  kept.enter(State::kApproaching);
+  kept.enter(State::kRunning);
+  for (std::uint64_t block = 0; block < 40; ++block) {  // 4 s
+    kept.run_for(100);
+    kept.end(block);
+    kept.begin(block + 1);
+    kept.run_for(10);
+    ASSERT_FALSE(kept.entries.empty());
+    EXPECT_LE(block + 1 - kept.entries.back().block, 10U) << "more than a second old";
+  }
+  EXPECT_LE(kept.entries.size(), 6U) << "a disk is not written to without end";
+  EXPECT_EQ(kept.entries.back().reached, Reached::kBegun);
+  EXPECT_STREQ(kept.entries.back().program.data(), "part.apt");
+}
+
+TEST(JournalKeeper, NotesRestsAtOnceAndWhoseProgramItWas) {
+  Kept kept;
+  kept.begin(0);
+  kept.enter(State::kApproaching);
+  kept.run_for(50);
+  kept.begin(3);
+  kept.enter(State::kRunning);
+  kept.enter(State::kHolding);
+  kept.enter(State::kHeld);
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().line, 13U);
+  EXPECT_EQ(kept.entries.back().state, State::kHeld);
+  kept.enter(State::kRunning);
+  kept.end(3);
+  kept.tell(EventCode::kAlarm);
+  kept.enter(State::kFaultStop);
+  kept.enter(State::kFault);
+  kept.owner = {8, "other", "next.apt", ""};  // who comes next is not whose program failed
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().reached, Reached::kDone);
+  EXPECT_EQ(kept.entries.back().state, State::kFault);
+  EXPECT_STREQ(kept.entries.back().alarm.data(), "a fault");
+  EXPECT_STREQ(kept.entries.back().program.data(), "part.apt");
+  const std::size_t count = kept.entries.size();
+  kept.enter(State::kOff);
+  kept.run_for(3000);
+  EXPECT_EQ(kept.entries.size(), count) << "the program is over";
+}
+
+TEST(JournalKeeper, NotesTheEndOfAProgram) {
+  Kept kept;
+  kept.begin(0);
+  kept.enter(State::kApproaching);
+  kept.run_for(20);
+  kept.enter(State::kRunning);
+  kept.end(0);
+  kept.tell(EventCode::kProgramEnd, 1);
+  kept.enter(State::kReady);
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().reached, Reached::kEnd);
+  EXPECT_EQ(kept.entries.back().alarm[0], '\0');
+}
+
+}  // namespace
+}  // namespace meridian::telemetry
