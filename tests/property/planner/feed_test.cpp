@@ -12,7 +12,7 @@
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 
-namespace meridian::test {
+namespace meridian::test::feed {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -226,4 +226,4 @@ TEST(RollingFeed, RefusesAPathThatLeavesTravel) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::feed

@@ -9,7 +9,7 @@
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 
-namespace meridian::test {
+namespace meridian::test::limits {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -181,4 +181,4 @@ TEST(RestToRest, KeepsEveryLimitOfJointsAndDrivesBehindAnyStage) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::limits

@@ -14,7 +14,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test {
+namespace meridian::test::look_ahead {
 namespace {
 
 TEST(LookAhead, BeginsOnTheWindingThatCarriesTheWholeProgram) {
@@ -155,4 +155,4 @@ TEST(LookAhead, TakesNoWayPastThePoleOnWhichAJointLeavesItsTravelBehindIt) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::look_ahead

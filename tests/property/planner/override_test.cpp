@@ -12,7 +12,7 @@
 #include "support/machines.hpp"
 
 /// The reserve that every plan keeps for the rate at which the cycle runs through it.
-namespace meridian::test {
+namespace meridian::test::override {
 namespace {
 
 TEST(RateReserve, HoldsEveryLimitUnderRandomOverrides) {
@@ -63,4 +63,4 @@ TEST(RateReserve, HoldsEveryLimitUnderRandomOverrides) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::override

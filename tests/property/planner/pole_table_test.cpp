@@ -10,7 +10,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test {
+namespace meridian::test::pole_table {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -133,4 +133,4 @@ TEST(PoleTable, ShowsWhatAToleranceGains) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::pole_table

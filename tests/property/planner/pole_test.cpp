@@ -9,7 +9,7 @@
 #include "support/machines.hpp"
 
 /// At, through and beside the pole: every limit, tip and axis, and how far C turns.
-namespace meridian::test {
+namespace meridian::test::pole {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -156,4 +156,4 @@ TEST(Pole, TurnsAtRestWhereTheTiltMayNotChangeItsSign) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::pole

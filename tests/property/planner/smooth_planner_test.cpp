@@ -14,7 +14,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test {
+namespace meridian::test::smooth_planner {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -371,4 +371,4 @@ TEST(SmoothPlanner, PassesBesideThePoleInNearlyTheLeastTime) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::smooth_planner

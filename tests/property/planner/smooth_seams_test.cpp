@@ -11,7 +11,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test {
+namespace meridian::test::smooth_seams {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -103,4 +103,4 @@ TEST(SmoothSeams, GoesOnBehindABlockTooShortToBeCut) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::smooth_seams

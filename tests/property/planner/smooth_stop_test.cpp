@@ -19,7 +19,7 @@
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 
-namespace meridian::test {
+namespace meridian::test::smooth_stop {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -198,4 +198,4 @@ TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::smooth_stop

@@ -19,7 +19,7 @@
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 
-namespace meridian::test {
+namespace meridian::test::smooth_throughput {
 namespace {
 
 /// Resident memory, MiB.
@@ -133,4 +133,4 @@ TEST(SmoothThroughput, ABlockCostsTheSameAtTheEndOfALongProgram) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::smooth_throughput

@@ -11,7 +11,7 @@
 #include "support/machines.hpp"
 
 /// The authority that the planner grants a stop: never more than the joints have, hardly less.
-namespace meridian::test {
+namespace meridian::test::stop {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -185,4 +185,4 @@ TEST(StopAuthority, KeepsTheLimitsAndWastesLittleFromAnywhere) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::stop

@@ -15,7 +15,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test {
+namespace meridian::test::unwind {
 namespace {
 
 constexpr double kLimit = 1 + 1e-6;
@@ -380,4 +380,4 @@ TEST(Unwinding, IsRefusedWhereTheToolCannotLeaveThePartSoFar) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::unwind

@@ -13,7 +13,7 @@
 
 /// Holds, overrides and FaultStops at any instant of random programs: the machine keeps to its path
 /// and every joint to its limits, third differences included.
-namespace meridian {
+namespace meridian::test::cycle_motion {
 namespace {
 
 using test::Draw;
@@ -93,4 +93,4 @@ TEST(CycleMotion, FaultStopsKeepPathAndFaultLimitsAtAnyInstant) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::cycle_motion

@@ -15,7 +15,7 @@
 
 /// Feed overrides above 100 %, planned for: joints keep their limits, the tip never exceeds the
 /// feed times the override in force, and the plan is the same again from what the planner told.
-namespace meridian::test {
+namespace meridian::test::feed_raise {
 namespace {
 
 constexpr double kSettle_s = 0.3;  // of the rate, beside its ramp
@@ -281,4 +281,4 @@ TEST(FeedRaise, IsReplayedBitForBitFromItsMarksHoweverFarAheadThePlanIs) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::feed_raise

@@ -11,7 +11,7 @@
 
 /// Laws of the override over random targets, cycle times and phases: w in [0, 1], |w'| <= slope,
 /// |w''| <= curvature, exact landing, no chatter, plan time the exact integral.
-namespace meridian {
+namespace meridian::test::rate_filter {
 namespace {
 
 constexpr double kRounding = 1e-9;  // relative; a tick's differences are rounded to 1e-12
@@ -198,4 +198,4 @@ TEST(RateFilter, IgnoresANaNAndLimitsTheTarget) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::rate_filter

@@ -12,7 +12,7 @@
 
 /// Smooth plans in the cycle: holds, overrides, FaultStops at any instant, and blocks that come
 /// late. The machine keeps to its path and every joint to its limits.
-namespace meridian {
+namespace meridian::test::smooth_motion {
 namespace {
 
 using test::LimitShares;
@@ -199,4 +199,4 @@ TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::smooth_motion

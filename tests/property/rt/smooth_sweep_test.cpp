@@ -21,7 +21,7 @@
 #include "property/rt/operated_run.hpp"
 #include "support/draws.hpp"
 
-namespace meridian::test {
+namespace meridian::test::smooth_sweep {
 namespace {
 
 using SmoothRunning = PlannedRun<SmoothPlanner>;
@@ -168,4 +168,4 @@ TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
 }
 
 }  // namespace
-}  // namespace meridian::test
+}  // namespace meridian::test::smooth_sweep

@@ -11,7 +11,7 @@
 /// The cycle of a machine whose stage stands between two joints and their drives: holds, overrides
 /// and FaultStops at any instant keep the limits of joints and drives, and what is sent are drive
 /// coordinates.
-namespace meridian {
+namespace meridian::test::stage_motion {
 namespace {
 
 using test::Draw;
@@ -81,4 +81,4 @@ TEST(StageMotion, FaultStopsKeepTheFaultLimitsOfJointsAndDrives) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::stage_motion

@@ -13,7 +13,7 @@
 
 /// Between rest and the planned speed: whatever the joints' derivatives along the path are, the
 /// authority keeps what they may do.
-namespace meridian {
+namespace meridian::test::stop_authority {
 namespace {
 
 constexpr unsigned kSeed = 20240630;
@@ -96,4 +96,4 @@ TEST(StopAuthority, IsWhatThePlanSaysAtThePlannedSpeedOrWhereNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::stop_authority

@@ -9,7 +9,7 @@
 #include <random>
 
 /// The stop from random path states: exact rest, bounds by finite differences, least time.
-namespace meridian {
+namespace meridian::test::stop_law {
 namespace {
 
 constexpr unsigned kSeed = 20240612;
@@ -136,4 +136,4 @@ TEST(StopLaw, NeverPassesTheRestOfAPlanWithTheSameBounds) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::stop_law

@@ -13,7 +13,7 @@
 #include "support/draws.hpp"
 
 /// Holds at any instant of random programs against the least time that the path allows.
-namespace meridian {
+namespace meridian::test::stopping_time {
 namespace {
 
 using test::Draw;
@@ -67,4 +67,4 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
 }
 
 }  // namespace
-}  // namespace meridian
+}  // namespace meridian::test::stopping_time
