@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/hand_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/dds/participant.hpp"
@@ -20,7 +21,8 @@ namespace {
 struct CtlOptions {
   PeerOptions peer;
   std::string verb, wait, operator_name;
-  std::optional<double> percent;
+  std::vector<std::string> values;
+  JogOptions jog;
   double wait_s = 60;
 };
 
@@ -33,7 +35,9 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"abort", Verb::kAbort},
                                                   {"reset", Verb::kReset},
                                                   {"override", Verb::kFeedOverride},
-                                                  {"rapid-override", Verb::kRapidOverride}};
+                                                  {"rapid-override", Verb::kRapidOverride},
+                                                  {"jog", Verb::kJog},
+                                                  {"home", Verb::kHome}};
   return kVerbs;
 }
 
@@ -55,24 +59,42 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   return kVerdictNo;
 }
 
+/// The argument of a verb that has one by itself, 0 for others; or says what is wrong.
+std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
+  const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
+  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome;
+  double percent = 0;
+  bool is_right = has_joints || options.values.size() == (is_override ? 1U : 0U);
+  if (is_right && is_override) {
+    is_right = CLI::detail::lexical_cast(options.values.front(), percent);
+  }
+  if (is_right) return percent / 100;
+  std::fprintf(stderr, "meridian: %s takes %s\n", options.verb.c_str(),
+               is_override ? "a value in %" : "no value");
+  return std::nullopt;
+}
+
 int run_ctl(CtlOptions& options) {
   const Verb verb = verbs().at(options.verb);
-  const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
-  if (is_override != options.percent.has_value()) {
-    std::fprintf(stderr, "meridian: %s takes %s\n", options.verb.c_str(),
-                 is_override ? "a value in %" : "no value");
-    return kUsage;
-  }
+  std::optional<double> argument = argument_of(verb, options);
+  if (!argument) return kUsage;
   if (!options.wait.empty() && !parse_state(options.wait)) {
     std::fprintf(stderr, "meridian: --wait %s: no such state; there are %s\n", options.wait.c_str(),
                  all_states().c_str());
     return kUsage;
   }
   int exit_code = kFine;
-  if (!find_machine(options.peer, exit_code)) return exit_code;
+  const auto machine = find_machine(options.peer, exit_code);
+  if (!machine) return exit_code;
+  if (verb == Verb::kHome && (*argument = home_argument(*machine, options.values)) < 0) {
+    return kUsage;
+  }
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   stream::OperatorLink link(participant, options.operator_name);
-  const auto reply = link.ask(verb, options.percent.value_or(0) / 100, options.peer.timeout());
+  if (verb == Verb::kJog) {
+    return run_jog(participant, link, *machine, options.values, options.jog, options.peer);
+  }
+  const auto reply = link.ask(verb, *argument, options.peer.timeout());
   if (!reply) {
     std::fprintf(stderr, "meridian: machine %s does not answer\n", options.peer.machine.c_str());
     return kNoPeer;
@@ -93,16 +115,31 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
   std::vector<std::string> names;
   for (const auto& [name, verb] : verbs()) names.push_back(name);
   command
-      ->add_option("verb", options->verb,
-                   "enable, disable, start, hold, resume, abort, reset, override, rapid-override")
+      ->add_option(
+          "verb", options->verb,
+          "enable, disable, start, hold, resume, abort, reset, override, rapid-override, jog, "
+          "home")
       ->required()
       ->check(CLI::IsMember(names))
       ->type_name("VERB");
   command
-      ->add_option("value", options->percent,
+      ->add_option("value", options->values,
                    "override: 0 to feed_override_max_percent of the machine's file (150), "
-                   "rapid-override: 0 to 100 %")
-      ->type_name("PERCENT");
+                   "rapid-override: 0 to 100 %; jog: JOINT (or tool-x, -y, -z, -a, -b) and its "
+                   "velocity in mm/s or deg/s; home: "
+                   "joints, default all")
+      ->type_name("VALUE");
+  command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      ->add_option("--distance", options->jog.distance,
+                   "jog: the joint rests exactly so far from where it began, mm or deg")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      ->add_option("--dead-man", options->jog.dead_man_ms,
+                   "jog: the joint comes to rest where the machine hears nothing for so long, ms")
+      ->capture_default_str()
+      ->check(CLI::Range(40.0, 500.0));
   command
       ->add_option("--wait", options->wait,
                    "Wait until the machine is in this state; exit code 1 where it does not come")

@@ -24,7 +24,15 @@ struct DrivesOptions {
   bool has_no_actions = false, is_refusing_actions = false, is_quiet = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
+  std::vector<std::string> unreferenced, failing, hanging;  ///< names of drives, or all
 };
+
+int find_drive(const char* option, const std::string& name, const MachineModel& model) {
+  for (int drive = 0; drive < model.joint_count; ++drive) {
+    if (drive_spec(model, drive).name == name) return drive;
+  }
+  throw CLI::ValidationError(option, "machine " + model.name + " has no drive " + name);
+}
 
 /// Reads KIND@SECONDS or KIND@SECONDS:DRIVE.
 drives::Injection parse_injection(const std::string& text, const MachineModel& model) {
@@ -46,14 +54,26 @@ drives::Injection parse_injection(const std::string& text, const MachineModel& m
   }
   drives::Injection injection{kind->second, after_s, 0};
   if (colon == std::string::npos) return injection;
-  const std::string joint = text.substr(colon + 1);
-  while (injection.drive < model.joint_count && drive_spec(model, injection.drive).name != joint) {
-    ++injection.drive;
-  }
-  if (injection.drive == model.joint_count) {
-    throw CLI::ValidationError("--inject", "machine " + model.name + " has no drive " + joint);
-  }
+  injection.drive = find_drive("--inject", text.substr(colon + 1), model);
   return injection;
+}
+
+std::vector<drives::HomingPlan> homing_plans(const DrivesOptions& options,
+                                             const MachineModel& model) {
+  std::vector<drives::HomingPlan> plans(static_cast<std::size_t>(model.joint_count));
+  const auto mark = [&](const char* option, const std::vector<std::string>& names, auto change) {
+    for (const std::string& name : names) {
+      if (name == "all") {
+        for (drives::HomingPlan& plan : plans) change(plan);
+      } else {
+        change(plans[static_cast<std::size_t>(find_drive(option, name, model))]);
+      }
+    }
+  };
+  mark("--unreferenced", options.unreferenced, [](auto& plan) { plan.is_referenced = false; });
+  mark("--homing-fails", options.failing, [](auto& plan) { plan.fails = true; });
+  mark("--homing-hangs", options.hanging, [](auto& plan) { plan.hangs = true; });
+  return plans;
 }
 
 void run_drives(const DrivesOptions& options) {
@@ -65,6 +85,7 @@ void run_drives(const DrivesOptions& options) {
   for (const std::string& text : options.injections) {
     simulated.injections.push_back(parse_injection(text, model));
   }
+  simulated.homing = homing_plans(options, model);
   simulated.is_action_peer = !options.has_no_actions;
   simulated.is_refusing_actions = options.is_refusing_actions;
   simulated.action_delay_ns = static_cast<std::int64_t>(options.action_delay_s * 1e9);
@@ -102,8 +123,9 @@ void add_drives_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DrivesOptions>();
   CLI::App* command = app.add_subcommand(
       "drives",
-      "Simulated drives of a machine: CiA 402 in cyclic synchronous position mode, servo lag, "
-      "following error, watchdog; plays the PLC that answers actions. Runs until interrupted");
+      "Simulated drives of a machine: CiA 402 in cyclic synchronous position and homing mode, "
+      "servo "
+      "lag, following error, watchdog; plays the PLC that answers actions. Runs until interrupted");
   command->add_option("--machine", options->machine_file, "Machine file (TOML)")->required();
   command->add_option("--machine-name", options->partition,
                       "DDS partition; default: the machine's name");
@@ -126,6 +148,16 @@ void add_drives_command(CLI::App& app, int& exit_code) {
                    "Something that goes wrong, KIND@SECONDS[:DRIVE] after operation is enabled; "
                    "KIND: fault, blocked, silence, emergency. May be repeated")
       ->type_name("WHAT");
+  const auto add_drive_names = [command](const char* name, std::vector<std::string>& names,
+                                         const char* text) {
+    command->add_option(name, names, text)->delimiter(',')->type_name("DRIVE,...");
+  };
+  add_drive_names("--unreferenced", options->unreferenced,
+                  "Drives (or all) that do not know where they are until they are homed");
+  add_drive_names("--homing-fails", options->failing,
+                  "Drives (or all) that say that they found no reference");
+  add_drive_names("--homing-hangs", options->hanging,
+                  "Drives (or all) that search for their reference for ever");
   command->add_flag("-q,--quiet", options->is_quiet, "Say only begin and end");
   command->callback([options, &exit_code] {
     run_drives(*options);

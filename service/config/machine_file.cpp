@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "meridian/units.hpp"
+#include "service/config/homing_file.hpp"
 #include "service/config/kinematics_file.hpp"
 #include "service/config/section.hpp"
 #include "service/config/stage_file.hpp"
@@ -180,6 +181,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   pole.finish();
   read_unwind(file.section_or("unwind"), model);
   read_frame(file.section_or("frame"), model);
+  (void)read_homing(file.section_or("homing"), model.joint_count);
   file.finish();
   return model;
 }

@@ -112,8 +112,10 @@ struct Jog {
   std::uint64_t operator_id = 0;
   std::uint64_t sample = 0;
   std::uint16_t epoch_seen = 0;
+  bool is_tool = false;    ///< `joint` is a ToolAxis
   std::uint8_t joint = 0;
   double velocity = 0;
+  double distance = 0;
   std::int64_t dead_man_ns = 0;
 };
 
@@ -123,11 +125,14 @@ struct SetpointSample {
   std::int32_t sent_minus_due_ns = 0;
 };
 
+/// CiA 402, objects 6060h and 6061h: how a drive works.
+inline constexpr std::uint8_t kHomingMode = 6, kCyclicPositionMode = 8;
+
 /// `drive_command`, one instance per drive
 struct DriveCommand {
   std::uint16_t drive = 0;
   std::uint16_t controlword = 0;
-  std::uint8_t mode = 8;  ///< CiA 402: cyclic synchronous position
+  std::uint8_t mode = kCyclicPositionMode;
   std::uint16_t epoch = 0;
   std::uint64_t service_id = 0;
   std::uint64_t sample = 0;
@@ -144,6 +149,7 @@ struct DriveFeedback {
   std::array<std::uint16_t, kMaxJoints> error{};
   std::uint32_t referenced_mask = 0;
   bool is_emergency_stop = false;
+  std::array<std::uint8_t, kMaxJoints> mode_display{};  ///< 0: the drive does not say
 };
 
 /// `action`: what the path waits for at rest.

@@ -6,11 +6,38 @@
 
 namespace meridian::drives {
 
-Drive::Drive(const JointLimits& limits, double position, const ServoLag& lag)
-    : limits_(limits), lag_(lag), servo_{position, 0}, target_(position) {}
+namespace {
 
-void Drive::take_controlword(std::uint16_t controlword) noexcept {
+constexpr double kSearchShare = 0.1;  ///< of the velocity limit
+
+/// How far from home a drive without a reference stands, inside travel.
+[[nodiscard]] double away_from_home(const JointSpec& spec) noexcept {
+  const double way = spec.is_rotary ? 0.05 : 5.0;
+  const bool has_room = spec.is_endless || spec.home + way <= spec.limits.travel_max;
+  return has_room ? way : -way;
+}
+
+}  // namespace
+
+Drive::Drive(const JointSpec& spec, const ServoLag& lag, const HomingPlan& homing)
+    : limits_(spec.limits),
+      lag_(lag),
+      homing_(homing, spec.home, homing.is_referenced ? 0 : spec.home + away_from_home(spec),
+              kSearchShare * spec.limits.velocity),
+      servo_{homing.is_referenced ? spec.home : 0, 0},
+      target_(servo_.position) {}
+
+void Drive::take_mode(std::uint8_t mode) noexcept {
+  if (mode == mode_ || (mode != dds::kCyclicPositionMode && mode != dds::kHomingMode)) return;
+  mode_ = mode;
+  target_ = servo_.position;
+  target_velocity_ = 0;
+  is_following_ = false;
+}
+
+void Drive::take_controlword(std::uint16_t controlword, std::uint8_t mode) noexcept {
   const DriveState before = state_;
+  take_mode(mode);
   state_ = next_state(state_, controlword, controlword_);
   controlword_ = controlword;
   if (before == DriveState::kFault && state_ != DriveState::kFault) error_ = kErrorNone;
@@ -21,6 +48,8 @@ void Drive::take_controlword(std::uint16_t controlword) noexcept {
     target_velocity_ = 0;
     is_following_ = false;
   }
+  const bool may_search = state_ == DriveState::kOperationEnabled && mode_ == dds::kHomingMode;
+  homing_.ask(may_search && (controlword & 0x10U) != 0);
 }
 
 void Drive::fail(std::uint16_t error) noexcept {
@@ -33,7 +62,11 @@ void Drive::fail(std::uint16_t error) noexcept {
 void Drive::work(const DriveInput& input, double dt_s) noexcept {
   switch (state_) {
     case DriveState::kOperationEnabled:
-      take_target(input, dt_s);
+      if (mode_ == dds::kHomingMode) {
+        search(input, dt_s);
+      } else {
+        take_target(input, dt_s);
+      }
       break;
     case DriveState::kQuickStopActive:
       ramp_down(dt_s);
@@ -70,10 +103,25 @@ void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
   if (input.periods_without <= input.bridge_cycles) {
     target_ += target_velocity_ * std::min(input.bridged_s, dt_s);
   } else {
-    error_ = kErrorSetpointsStopped;
-    state_ = DriveState::kFaultReactionActive;
-    ramp_down(dt_s);
+    miss_setpoints(dt_s);
   }
+}
+
+/// In homing mode setpoints lead nowhere, but a service that sends none any more is gone.
+void Drive::search(const DriveInput& input, double dt_s) noexcept {
+  if (homing_.is_searching() && !input.is_new && input.periods_without > input.bridge_cycles) {
+    return miss_setpoints(dt_s);
+  }
+  const double renamed = homing_.work(target_, servo_.position, dt_s);
+  target_ += renamed;
+  servo_.position += renamed;
+}
+
+void Drive::miss_setpoints(double dt_s) noexcept {
+  error_ = kErrorSetpointsStopped;
+  state_ = DriveState::kFaultReactionActive;
+  homing_.ask(false);
+  ramp_down(dt_s);
 }
 
 /// Slows the target down with the joint's FaultStop acceleration.
@@ -88,6 +136,7 @@ void Drive::ramp_down(double dt_s) noexcept {
 
 std::uint16_t Drive::statusword() const noexcept {
   std::uint16_t word = drives::statusword(state_);
+  if (mode_ == dds::kHomingMode) return word | homing_.statusword_bits();
   if (state_ == DriveState::kOperationEnabled && is_following_) word |= kStatusFollows;
   if (error_ == kErrorFollowing) word |= kStatusFollowingError;
   return word;

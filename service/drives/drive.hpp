@@ -4,7 +4,9 @@
 #include <cstdint>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "service/dds/messages.hpp"
 #include "service/drives/cia402.hpp"
+#include "service/drives/homing_search.hpp"
 #include "service/drives/servo.hpp"
 
 namespace meridian::drives {
@@ -19,14 +21,17 @@ struct DriveInput {
   double bridged_s = 0;     ///< what of this step the bridge still covers; 0 with a new setpoint
 };
 
-/// One simulated servo drive in cyclic synchronous position mode: CiA 402 states, servo lag,
-/// following error, and the watchdog that bridges missing setpoints by the sent velocity and then
-/// ramps down. Time is the argument of work(). Proof: tests/unit/drives/drive_test.cpp.
+/// One simulated servo drive in cyclic synchronous position mode or homing mode: CiA 402 states,
+/// servo lag, following error, and the watchdog that bridges missing setpoints by the sent velocity
+/// and then ramps down. Time is the argument of work(). Proof: tests/unit/drives/drive_test.cpp.
 class Drive {
  public:
-  Drive(const JointLimits& limits, double position, const ServoLag& lag);
+  /// It stands at `home`, or beside it without a reference (HomingPlan).
+  Drive(const JointSpec& spec, const ServoLag& lag, const HomingPlan& homing = {});
 
-  void take_controlword(std::uint16_t controlword) noexcept;
+  /// Objects 6040h and 6060h; a mode that it does not know changes nothing.
+  void take_controlword(std::uint16_t controlword,
+                        std::uint8_t mode = dds::kCyclicPositionMode) noexcept;
   /// One period of `dt_s`.
   void work(const DriveInput& input, double dt_s) noexcept;
   /// The drive finds something wrong with itself: it ramps down and goes to fault.
@@ -37,12 +42,17 @@ class Drive {
   [[nodiscard]] DriveState state() const noexcept { return state_; }
   [[nodiscard]] std::uint16_t statusword() const noexcept;
   [[nodiscard]] std::uint16_t error() const noexcept { return error_; }
+  [[nodiscard]] std::uint8_t mode() const noexcept { return mode_; }
+  [[nodiscard]] bool is_referenced() const noexcept { return homing_.is_referenced(); }
   [[nodiscard]] double position() const noexcept { return servo_.position; }
   [[nodiscard]] double velocity() const noexcept { return servo_.velocity; }
   [[nodiscard]] double following_error() const noexcept { return target_ - servo_.position; }
 
  private:
+  void take_mode(std::uint8_t mode) noexcept;
   void take_target(const DriveInput& input, double dt_s) noexcept;
+  void search(const DriveInput& input, double dt_s) noexcept;
+  void miss_setpoints(double dt_s) noexcept;
   void ramp_down(double dt_s) noexcept;
 
   JointLimits limits_;
@@ -50,6 +60,8 @@ class Drive {
   DriveState state_ = DriveState::kSwitchOnDisabled;
   std::uint16_t controlword_ = 0;
   std::uint16_t error_ = kErrorNone;
+  std::uint8_t mode_ = dds::kCyclicPositionMode;
+  HomingSearch homing_;
   ServoState servo_;
   double target_ = 0, target_velocity_ = 0;
   bool is_following_ = false;  ///< took an enabled setpoint since operation was enabled

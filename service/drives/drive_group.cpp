@@ -18,10 +18,13 @@ constexpr double kBeyondAnything = 1e9;
 
 }  // namespace
 
-DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag)
+DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag,
+                       const std::vector<HomingPlan>& homing)
     : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9), bridge_cycles_(model.bridge_cycles) {
   for (int i = 0; i < model.joint_count; ++i) {
-    drives_.emplace_back(drive_spec(model, i).limits, drive_spec(model, i).home, lag);
+    const auto place = static_cast<std::size_t>(i);
+    drives_.emplace_back(drive_spec(model, i), lag,
+                         place < homing.size() ? homing[place] : HomingPlan{});
   }
 }
 
@@ -42,7 +45,7 @@ void DriveGroup::take(const dds::DriveCommand& command) noexcept {
       if (told.service_id == service_id_) bridge_cycles_ = told.bridge_cycles;
     }
   }
-  drives_[command.drive].take_controlword(command.controlword);
+  drives_[command.drive].take_controlword(command.controlword, command.mode);
 }
 
 void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
@@ -117,7 +120,6 @@ void DriveGroup::work_on_injections(double dt_s) noexcept {
 dds::DriveFeedback DriveGroup::feedback() noexcept {
   dds::DriveFeedback feedback;
   feedback.joint_mask = (1U << drives_.size()) - 1;
-  feedback.referenced_mask = feedback.joint_mask;
   feedback.sample = ++sample_;
   feedback.cycle_seen = has_setpoint_ ? newest_.setpoint.cycle : 0;
   feedback.is_emergency_stop = is_emergency_stop_;
@@ -125,6 +127,8 @@ dds::DriveFeedback DriveGroup::feedback() noexcept {
     feedback.position[i] = drives_[i].position();
     feedback.statusword[i] = drives_[i].statusword();
     feedback.error[i] = drives_[i].error();
+    feedback.mode_display[i] = drives_[i].mode();
+    if (drives_[i].is_referenced()) feedback.referenced_mask |= 1U << i;
   }
   return feedback;
 }

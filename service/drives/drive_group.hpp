@@ -29,8 +29,10 @@ struct Injection {
 /// fresh by their cycle number, not by their clock. Proof: tests/unit/drives/drive_group_test.cpp.
 class DriveGroup {
  public:
-  /// Drives stand where the joints are at home.
-  DriveGroup(const MachineModel& model, const ServoLag& lag);
+  /// Drives stand where the joints are at home. `homing`, in drive order, may lack the last ones:
+  /// they know where they are.
+  DriveGroup(const MachineModel& model, const ServoLag& lag,
+             const std::vector<HomingPlan>& homing = {});
 
   void take(const dds::DriveCommand& command) noexcept;
   void take(const dds::SetpointSample& setpoint) noexcept;

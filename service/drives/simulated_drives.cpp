@@ -119,7 +119,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
                                            const SimulatedDrivesOptions& options,
                                            const std::atomic<bool>& is_stopping,
                                            const std::function<void(const std::string&)>& say) {
-  DriveGroup group(model, options.lag);
+  DriveGroup group(model, options.lag, options.homing);
   for (const Injection& injection : options.injections) group.inject(injection);
   StateTeller teller(model, say);
   dds::Writer<dds::DriveFeedback> feedbacks(participant);

@@ -15,6 +15,7 @@ namespace meridian::drives {
 
 struct SimulatedDrivesOptions {
   ServoLag lag;
+  std::vector<HomingPlan> homing;  ///< in drive order; missing ones know where they are
   std::vector<Injection> injections;
   bool is_action_peer = true;  ///< plays the PLC too
   bool is_refusing_actions = false;

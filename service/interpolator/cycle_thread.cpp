@@ -42,8 +42,10 @@ void CycleThread::run() noexcept {
 void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   ports_.feedback.refresh();
   ports_.action_answer.refresh();
+  ports_.jog.refresh();
   inputs_.feedback = ports_.feedback.latest();
   inputs_.action = ports_.action_answer.latest();
+  inputs_.jog = ports_.jog.latest();
   inputs_.now_ns = now_ns;
   inputs_.due_ns = period.due_ns;
   inputs_.cycle = period.number;
@@ -88,6 +90,7 @@ void CycleThread::show() noexcept {
   }
   view_.branch = path != nullptr ? path->branch : view_.branch;
   view_.is_at_pole = path != nullptr && path->kind == PathKind::kTurn;
+  view_.homing = asked_of(state_.homing);
   ++view_.cycles_run;
   view_.periods_lost = state_.periods_lost;
   view_.starvations = state_.starvations;

@@ -10,9 +10,9 @@ DriveCommander::DriveCommander(dds::Participant& participant, int drive_count,
                                std::uint64_t service_id)
     : writer_(participant), drive_count_(drive_count), service_id_(service_id) {}
 
-void DriveCommander::work(State state, std::uint16_t epoch, const DriveWords& words,
+void DriveCommander::work(const CycleView& view, const DriveWords& words,
                           std::int64_t now_ns) noexcept {
-  const bool is_wanted = is_enabled(state);
+  const bool is_wanted = is_enabled(view.record.state);
   for (int drive = 0; drive < drive_count_; ++drive) {
     const auto i = static_cast<std::size_t>(drive);
     const bool is_known = (words.joint_mask >> drive & 1U) != 0;
@@ -21,12 +21,19 @@ void DriveCommander::work(State state, std::uint16_t epoch, const DriveWords& wo
     std::uint16_t next = next_controlword(is, is_wanted);
     if (is == DriveState::kFault && now_ns < reset_until_ns_) next = controlword::kFaultReset;
 
+    const bool is_homing = (view.homing.mode_mask >> drive & 1U) != 0;
+    const bool is_searching = (view.homing.start_mask >> drive & 1U) != 0;
+    const std::uint8_t mode = is_homing ? dds::kHomingMode : dds::kCyclicPositionMode;
+    if (is_searching && is == DriveState::kOperationEnabled) next |= controlword::kStartHoming;
+
     dds::DriveCommand& sent = sent_[i];
-    const bool is_news = sent.sample == 0 || sent.controlword != next || sent.epoch != epoch;
+    const bool is_news = sent.sample == 0 || sent.controlword != next || sent.mode != mode ||
+                         sent.epoch != view.epoch;
     if (!is_news && now_ns - sent_ns_[i] < kRepeat_ns) continue;
     sent.drive = static_cast<std::uint16_t>(drive);
     sent.controlword = next;
-    sent.epoch = epoch;
+    sent.mode = mode;
+    sent.epoch = view.epoch;
     sent.service_id = service_id_;
     ++sent.sample;
     sent_ns_[i] = now_ns;

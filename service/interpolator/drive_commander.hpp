@@ -16,9 +16,8 @@ class DriveCommander {
  public:
   DriveCommander(dds::Participant& participant, int drive_count, std::uint64_t service_id);
 
-  /// Sends what is due, given the machine's state and what the drives say.
-  void work(State state, std::uint16_t epoch, const DriveWords& words,
-            std::int64_t now_ns) noexcept;
+  /// Sends what is due, given what the machine does and what the drives say.
+  void work(const CycleView& view, const DriveWords& words, std::int64_t now_ns) noexcept;
   /// Lets drives in fault be reset for a while: the operator said so.
   void reset_faults(std::int64_t now_ns) noexcept { reset_until_ns_ = now_ns + kReset_ns; }
 

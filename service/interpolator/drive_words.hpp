@@ -44,12 +44,24 @@ enum class DriveState : std::uint8_t {
   }
 }
 
+/// What a statusword says in homing mode. Source: CiA 402-2, bits 10, 12 and 13 of object 6041h.
+struct HomingWord {
+  bool is_still = false;     ///< over, interrupted or not begun
+  bool is_attained = false;  ///< the reference was found, and the drive stands
+  bool has_failed = false;
+};
+[[nodiscard]] constexpr HomingWord homing_word(std::uint16_t statusword) noexcept {
+  const bool is_still = (statusword & 0x0400U) != 0, has_failed = (statusword & 0x2000U) != 0;
+  return {is_still, is_still && (statusword & 0x1000U) != 0 && !has_failed, has_failed};
+}
+
 namespace controlword {
 inline constexpr std::uint16_t kDisableVoltage = 0x00;
 inline constexpr std::uint16_t kShutdown = 0x06;
 inline constexpr std::uint16_t kSwitchOn = 0x07;
 inline constexpr std::uint16_t kEnableOperation = 0x0F;
 inline constexpr std::uint16_t kFaultReset = 0x80;
+inline constexpr std::uint16_t kStartHoming = 0x10;  ///< in homing mode, beside kEnableOperation
 }  // namespace controlword
 
 /// Returns the controlword that brings a drive one step nearer to operation enabled, or keeps it

@@ -46,6 +46,12 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t source,
     set(feedback_.enabled_mask, state == DriveState::kOperationEnabled);
     set(feedback_.fault_mask, state == DriveState::kFault || state == DriveState::kFaultReaction);
     set(feedback_.referenced_mask, (sample.referenced_mask & bit) != 0);
+    const bool is_homing = sample.mode_display[i] == dds::kHomingMode;
+    const HomingWord homing = is_homing ? homing_word(sample.statusword[i]) : HomingWord{};
+    set(feedback_.homing_mask, is_homing);
+    set(feedback_.still_mask, homing.is_still);
+    set(feedback_.homed_mask, homing.is_attained);
+    set(feedback_.homing_error_mask, homing.has_failed);
   }
   merge();
   return true;

@@ -77,6 +77,7 @@ void make_stacks_small() {
       !options.machine.empty() ? options.machine : parts.service.machine.string();
   if (machine.empty()) throw StartError("no machine: give --machine FILE or name it in --service");
   parts.model = config::load_machine(machine);
+  parts.homing = config::load_homing(machine, parts.model.joint_count);
   parts.machine_file = text_of(machine);
   if (!options.frame.empty()) {
     config::place_workpiece(parts.model, config::parse_frame(options.frame));

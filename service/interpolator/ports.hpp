@@ -13,6 +13,7 @@
 #include "meridian/planner/unwinding.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/homing.hpp"
 #include "meridian/rt/latest_value.hpp"
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/interpolator/queue_mark.hpp"
@@ -54,6 +55,7 @@ struct CycleView {
   double feed_mm_per_s = 0;  ///< programmed, of the last motion of the program; 0: rapid
   std::uint8_t branch = 0;   ///< of the path piece in force
   bool is_at_pole = false;   ///< the free joint turns on the pole
+  HomingAsked homing;        ///< what drives are asked for beside the machine's state
   std::uint64_t cycles_run = 0;
   std::uint64_t periods_lost = 0;
   std::uint64_t starvations = 0;
@@ -93,6 +95,7 @@ struct Ports {
   SpscRing<Command, 64> commands;
   LatestValue<Feedback> feedback;
   LatestValue<ActionAnswer> action_answer;
+  LatestValue<JogOrder> jog;
 
   SpscRing<Setpoint, 256> setpoints;
   Wake publisher_wake;

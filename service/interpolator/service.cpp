@@ -80,11 +80,14 @@ namespace {
   return info;
 }
 
-[[nodiscard]] CycleOptions cycle_options(const config::ServiceConfig& service) {
+[[nodiscard]] CycleOptions cycle_options(const config::ServiceConfig& service,
+                                         const config::HomingConfig& homing) {
   CycleOptions options;
   options.enable_timeout_s = service.enable_timeout_s;
   options.action_timeout_s = service.action_timeout_s;
   options.feedback_timeout_s = service.feedback_timeout_s;
+  options.homing_timeout_s = homing.timeout_s;
+  options.homing_turns = homing.turns;
   return options;
 }
 
@@ -120,7 +123,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       feedback_(participant_, ports_),
       intake_(participant_, parts_.model, tool_lengths_, parts_.service, service_id_, ports_),
       planner_(parts_.model, parts_.tools, ports_),
-      cycle_(parts_.model, cycle_options(parts_.service), ports_),
+      cycle_(parts_.model, cycle_options(parts_.service, parts_.homing), ports_),
       supervisor_(participant_, parts_.model, parts_.tools, parts_.service, service_id_,
                   status_clock_, ports_),
       recorder_(parts_.recording, parts_.model),

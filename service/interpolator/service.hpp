@@ -11,6 +11,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
+#include "service/config/homing_file.hpp"
 #include "service/config/service_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/interpolator/cycle_thread.hpp"
@@ -32,6 +33,7 @@ struct ServiceParts {
   MachineModel model;
   ToolTable tools;
   config::ServiceConfig service;
+  config::HomingConfig homing;
   std::uint32_t domain = 0;
   std::string recording;                ///< path; empty: none
   std::filesystem::path state_folder;   ///< of the journal; empty: none is kept

@@ -30,11 +30,13 @@ Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
       ports_(ports),
       commands_(participant),
       replies_(participant),
+      jogs_(participant),
       actions_done_(participant),
       actions_(participant),
       drives_(participant, model.joint_count, service_id),
       waitset_(participant) {
   waitset_.attach(commands_);
+  waitset_.attach(jogs_);
   waitset_.attach(actions_done_);
 }
 
@@ -44,11 +46,12 @@ void Supervisor::run() noexcept {
     ports_.drive_words.refresh();
     ports_.state.store(view_.record.state, std::memory_order_relaxed);
     take_commands();
+    take_jogs();
     take_actions_done();
     take_events();
     send_delayed_reset();
     work_on_switching_off();
-    drives_.work(view_.record.state, view_.epoch, ports_.drive_words.latest(), monotonic_ns());
+    drives_.work(view_, ports_.drive_words.latest(), monotonic_ns());
     look_for_action_peer();
     waitset_.wait(kLookAtRings);
   }
@@ -62,6 +65,16 @@ void Supervisor::switch_off() noexcept {
 void Supervisor::take_commands() {
   dds::CommandRequest request;
   while (commands_.take(request)) take_command(request);
+}
+
+void Supervisor::take_jogs() {
+  if (view_.record.state != State::kJogging) jog_intake_.end();
+  dds::Jog jog;
+  while (jogs_.take(jog)) {
+    const auto order = jog_intake_.take(jog, view_.epoch, model_.joint_count,
+                                        ports_.spindle_tool_mm.load(std::memory_order_relaxed));
+    if (order) ports_.jog.store(*order);
+  }
 }
 
 void Supervisor::take_command(const dds::CommandRequest& request) {
@@ -174,6 +187,7 @@ void Supervisor::answer(const Event& event) {
   const bool is_accepted = event.code == EventCode::kAccepted;
   const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
   const Verb verb = pending->request.verb;
+  if (is_accepted && verb == Verb::kJog) jog_intake_.begin(pending->request.operator_id);
   reply(pending->request, is_accepted, refusal,
         is_accepted ? telemetry::describe(verb, view_.record.state)
                     : telemetry::describe(verb, refusal, view_.record.state));

@@ -15,13 +15,15 @@
 #include "service/dds/waitset.hpp"
 #include "service/dds/writer.hpp"
 #include "service/interpolator/drive_commander.hpp"
+#include "service/interpolator/jog_intake.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/status_clock.hpp"
 
 namespace meridian::interpolator {
 
-/// The commands thread: operators' verbs to the cycle and its answers back, actions out and in,
-/// controlwords to the drives, events on to who wants them, and the orderly end of the service.
+/// The commands thread: operators' verbs and jogs to the cycle and its answers back, actions out
+/// and in, controlwords to the drives, events on to who wants them, and the orderly end of the
+/// service.
 class Supervisor {
  public:
   Supervisor(dds::Participant& participant, const MachineModel& model, const ToolTable& tools,
@@ -50,6 +52,7 @@ class Supervisor {
   };
 
   void take_commands();
+  void take_jogs();
   void take_command(const dds::CommandRequest& request);
   void send(const dds::CommandRequest& request, Verb verb, double argument);
   void take_events();
@@ -73,9 +76,11 @@ class Supervisor {
   Ports& ports_;
   dds::Reader<dds::CommandRequest> commands_;
   dds::Writer<dds::Reply> replies_;
+  dds::Reader<dds::Jog> jogs_;
   dds::Reader<dds::ActionDone> actions_done_;
   dds::Writer<dds::Action> actions_;
   DriveCommander drives_;
+  JogIntake jog_intake_;
   dds::Waitset waitset_;
   std::function<void(bool)> tell_intake_;
 

@@ -135,6 +135,12 @@ void TelemetryThread::tell(const Event& event) {
         status_.alarm = Alarm::kNone;
         has_news_ = true;
       }
+      // That of a homing stands until the machine does something else.
+      if ((status_.alarm == Alarm::kHomingFailed || status_.alarm == Alarm::kHomingTimeout) &&
+          static_cast<State>(event.b) == State::kReady) {
+        status_.alarm = Alarm::kNone;
+        has_news_ = true;
+      }
       break;
     case EventCode::kStopped:
       status_.stop_time_s = 1e-9 * static_cast<double>(event.a);

@@ -97,7 +97,8 @@ void JointJudge::judge_stage(const RecordingRow& row) {
 
 void JointJudge::add(const RecordingRow& row, bool has_velocity) {
   const bool is_next = has_row_ && row.cycle == rows_.back().cycle + 1;
-  const bool is_enabled = (row.flags & kSetpointEnabled) != 0;
+  // While drives home themselves their setpoint is where they are, and jumps where that is found.
+  const bool is_enabled = (row.flags & kSetpointEnabled) != 0 && row.state != State::kHoming;
   std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
   rows_.back() = row;
   run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;

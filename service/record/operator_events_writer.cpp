@@ -21,7 +21,9 @@ Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const s
 }
 
 bool is_replayed(const Event& event) noexcept {
-  return (event.code == EventCode::kAccepted && event.b < kVerbCount) ||
+  const auto verb = static_cast<Verb>(event.b);
+  const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;  // no program is there then
+  return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_by_hand) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
          event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned;
 }

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kKinds{"approach", "cut", "rapid", "pole_turn", "unwind"};
 constexpr std::array<std::string_view, kStateCount> kStates{
-    "off",  "enabling", "ready",   "loaded",   "approaching", "running",    "holding",
-    "held", "starving", "starved", "aborting", "disabling",   "fault_stop", "fault"};
+    "off",      "enabling", "ready",    "loaded",    "approaching", "running", "holding", "held",
+    "starving", "starved",  "aborting", "disabling", "fault_stop",  "fault",   "jogging", "homing"};
 
 template <class Enum, std::size_t N>
 [[nodiscard]] std::optional<Enum> find(const std::array<std::string_view, N>& words,

@@ -23,6 +23,8 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
     case Verb::kResume:
     case Verb::kFeedOverride:
     case Verb::kRapidOverride:
+    case Verb::kJog:
+    case Verb::kHome:
       return true;
     case Verb::kDisable:
     case Verb::kHold:

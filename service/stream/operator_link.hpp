@@ -32,6 +32,8 @@ class OperatorLink {
   /// The newest status; nothing where none was seen yet.
   [[nodiscard]] const std::optional<dds::Status>& status() const noexcept { return status_; }
 
+  [[nodiscard]] std::uint64_t operator_id() const noexcept { return operator_id_; }
+
   /// Asks for `verb` and returns the answer; nothing where the service stays silent.
   [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout);
 

@@ -27,14 +27,20 @@ namespace {
 }
 
 [[nodiscard]] std::string remedy_for_wrong_state(Verb verb, State state) {
+  const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;
   switch (state) {
+    case State::kJogging:
+      return is_by_hand ? "somebody jogs; wait until the joints are let go"
+                        : "let the joints go first";
+    case State::kHoming:
+      return "wait until the drives have their references, or abort";
     case State::kOff:
       return "enable first";
     case State::kFault:
       return "mend the cause, then reset";
     case State::kRunning:
     case State::kApproaching:
-      return verb == Verb::kDisable ? "abort first" : "hold first";
+      return verb == Verb::kDisable || is_by_hand ? "abort first" : "hold first";
     case State::kReady:
       return "stream a program first";
     case State::kHeld:
@@ -81,6 +87,14 @@ std::string describe(const Event& event, const MachineModel& model) {
       return fmt::format("waiting for the action of line {}", event.b);
     case EventCode::kActionAnswered:
       return fmt::format("action of block {} {}", event.a, event.x != 0 ? "done" : "refused");
+    case EventCode::kJointsHomed: {
+      std::string names;
+      for (int joint = 0; joint < model.joint_count; ++joint) {
+        if ((event.a >> static_cast<unsigned>(joint) & 1U) == 0) continue;
+        names += (names.empty() ? "" : ", ") + joint_name(joint, model);
+      }
+      return fmt::format("homed: {}", names);
+    }
     case EventCode::kProgramEnd:
       return fmt::format("program ended with block {}", event.a);
     case EventCode::kEpochAdvanced:
@@ -154,6 +168,18 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       text = fmt::format(
           "drive {} did not enable in time; check power and drive faults, then reset", name);
       break;
+    case Alarm::kHomingFailed:
+      text = fmt::format(
+          "drive {} found no reference and says so; look at its switch and its homing settings, "
+          "then home again",
+          name);
+      break;
+    case Alarm::kHomingTimeout:
+      text = fmt::format(
+          "drive {} took {:.4g} s over its homing, too long; check that it knows homing mode, its "
+          "switch and the machine file's [homing], then home again",
+          name, value);
+      break;
     case Alarm::kActionFailed:
       text = "the action was refused or not done in time; see to the action peer, then resume";
       break;
@@ -177,7 +203,7 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       why = fmt::format("not in state {}; {}", name_of(state), remedy_for_wrong_state(verb, state));
       break;
     case Refusal::kNotReferenced:
-      why = "not every joint is referenced; home the machine";
+      why = "not every joint that it needs is referenced; home the machine";
       break;
     case Refusal::kNoProgram:
       why = "no program is there; stream one first";
@@ -185,8 +211,12 @@ std::string describe(Verb verb, Refusal refusal, State state) {
     case Refusal::kNoFeedback:
       why = "no feedback from the drives; start them and check their network";
       break;
+    case Refusal::kProgramPresent:
+      why = "a station holds the machine; end its program, or abort it";
+      break;
     case Refusal::kOutOfRange:
-      why = verb == Verb::kFeedOverride
+      why = verb == Verb::kJog || verb == Verb::kHome ? "the machine has no such joint"
+            : verb == Verb::kFeedOverride
                 ? "the value is out of range: from 0 to what the machine's file allows "
                   "(feed_override_max_percent)"
                 : "the value is out of range: from 0 to 100 %";

@@ -54,6 +54,22 @@ struct Feedback {
   std::uint32_t fault_mask = 0;       ///< drives in fault
   std::uint32_t referenced_mask = 0;  ///< joints with a valid reference
   bool emergency_stop = false;
+  std::uint32_t homing_mask = 0;        ///< drives that are in homing mode, and of these
+  std::uint32_t still_mask = 0;         ///< those whose homing is over, interrupted or not begun
+  std::uint32_t homed_mask = 0;         ///< those that have attained their reference
+  std::uint32_t homing_error_mask = 0;  ///< those whose homing failed
+};
+
+/// The newest word of the operator who jogs; every one has a larger `sample`.
+struct JogOrder {
+  std::uint64_t sample = 0;  ///< 0: none yet
+  std::uint16_t epoch = 0;   ///< orders of another one are void
+  bool is_tool = false;      ///< `joint` is a ToolAxis
+  std::uint8_t joint = 0;
+  double velocity = 0;
+  double distance = 0;  ///< no farther from where it began; 0: to the end of travel
+  double tool_length_mm = 0;
+  double dead_man_s = 0;  ///< without a newer order for so long the joint comes to rest
 };
 
 /// An operator's word on its way to the cycle. `request` comes back in the reply event.
@@ -79,6 +95,7 @@ enum class EventCode : std::uint16_t {
   kAlarm,  ///< a: Alarm, b: place in limited.hpp or 0, x: measured value, line of the block in
            ///< `line`
   kActionAnswered,  ///< a: sequence, x: 1 done, 0 refused
+  kJointsHomed,     ///< a: mask of the joints that have their reference now
 };
 
 /// Why the cycle took the machine to FaultStop, or refused to send a setpoint.
@@ -94,7 +111,9 @@ enum class Alarm : std::uint8_t {
   kEmergencyStop,
   kPeriodsLost,  ///< more periods lost than drives can bridge
   kEnableTimeout,
-  kActionFailed,  ///< an action was refused or timed out (Held, not FaultStop)
+  kActionFailed,   ///< an action was refused or timed out (Held, not FaultStop)
+  kHomingFailed,   ///< a drive found no reference (Ready, not FaultStop)
+  kHomingTimeout,  ///< nor in the time that the machine's file allows (Ready, not FaultStop)
 };
 
 /// Why a verb was refused.
@@ -107,6 +126,7 @@ enum class Refusal : std::uint8_t {
   kOutOfRange,
   kStale,
   kFaultPresent,
+  kProgramPresent,  ///< a station holds the machine: what it sends is planned from where it stands
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.
@@ -121,6 +141,6 @@ struct Event {
 
 static_assert(std::is_trivially_copyable_v<Setpoint> && std::is_trivially_copyable_v<CycleRecord> &&
               std::is_trivially_copyable_v<Feedback> && std::is_trivially_copyable_v<Command> &&
-              std::is_trivially_copyable_v<Event>);
+              std::is_trivially_copyable_v<JogOrder> && std::is_trivially_copyable_v<Event>);
 
 }  // namespace meridian

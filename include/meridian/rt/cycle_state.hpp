@@ -13,6 +13,8 @@
 #include "meridian/planner/rate_limits.hpp"
 #include "meridian/planner/time_law.hpp"
 #include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/jog_law.hpp"
+#include "meridian/rt/jog_tool.hpp"
 #include "meridian/rt/rate_filter.hpp"
 #include "meridian/rt/state.hpp"
 #include "meridian/rt/stop_law.hpp"
@@ -20,12 +22,14 @@
 /// What step() reads, keeps and gives back. Everything is of fixed size. Units: mm, rad, s.
 namespace meridian {
 
-/// Times that are the service's to choose, not the machine's.
+/// Times that are the service's to choose, not the machine's, and the order of homing.
 struct CycleOptions {
   double enable_timeout_s = 5.0;     ///< drives must report operation enabled within it
   double disable_timeout_s = 1.0;    ///< after it Off is entered whatever the drives report
   double action_timeout_s = 30.0;    ///< an action must be done within it, else Held
   double feedback_timeout_s = 0.02;  ///< feedback older than it is lost
+  double homing_timeout_s = 60;      ///< a drive must find its reference within it
+  std::array<int, kMaxJoints> homing_turns{};  ///< of each joint, from 1 on; 0: its place
 };
 
 /// The answer of the action peer to an action; an answer is given to exactly one step().
@@ -46,6 +50,7 @@ struct CycleInputs {
   bool has_command = false;
   Command command;
   ActionAnswer action;
+  JogOrder jog;               ///< newest of the operator who jogs
   std::uint64_t session = 0;  ///< open session, 0: none; starvation ends by itself only in its own
   bool stops_at_optional = false;  ///< the operator asked for optional stops
 };
@@ -94,6 +99,40 @@ struct StopInProgress {
   double deviation_time = 0;  ///< time in which `deviation` is run down to zero
 };
 
+/// An operator's hand on the joints, one of them at a time, or on the tool.
+struct Jogging {
+  bool is_active = false;
+  bool is_let_go = false;  ///< the hand is gone: what moves comes to rest, and that was it
+  bool has_order = false;
+  JogOrder order;         ///< in force
+  double silence = 0;     ///< s since it came
+  int joint = -1;         ///< that `axis` moves; from kMaxJoints on a ToolAxis; -1: none yet
+  bool is_ready = false;  ///< `axis` may move
+  JogAxis axis;
+  ToolWay way;  ///< of a ToolAxis
+  ToolSurvey survey;
+  JogRates fault;  ///< what a FaultStop may use
+};
+
+/// Drives that look for their references by themselves, group by group.
+struct Homing {
+  enum class Phase : std::uint8_t {
+    kBegin,   ///< drives are asked for homing mode
+    kSearch,  ///< they move until they find their references
+    kHalt,    ///< they are told to stop searching
+    kLeave,   ///< asked to follow setpoints again, which stand where they report to be
+    kSettle   ///< until they have seen the setpoint that stays
+  };
+  bool is_active = false;
+  bool has_failed = false;
+  Phase phase = Phase::kBegin;
+  std::uint32_t left = 0;   ///< joints whose turn comes later
+  std::uint32_t busy = 0;   ///< joints whose drives are homing; their setpoints are their feedback
+  std::uint32_t begun = 0;  ///< of those, the ones that were seen to search
+  double time = 0;          ///< s in this phase
+  std::uint64_t settled_cycle = 0;  ///< the setpoint of this cycle stays
+};
+
 /// What the action peer said about the action that the cycle waits for.
 enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
 
@@ -122,6 +161,8 @@ struct CycleState {
   double program_time = 0;  ///< plan time from the program's start to the begin of that piece
   PathState on_path{};  ///< s in the path piece in force; ṡ, s̈ as they are, override included
   StopInProgress stop;
+  Jogging jogging;
+  Homing homing;
 
   JointVector joints{};                            ///< last commanded
   JointVector velocity{};                          ///< its time derivative

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/follow_plan.hpp"
+#include "meridian/rt/homing.hpp"
+#include "meridian/rt/jogging.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/stop_motion.hpp"
 #include "meridian/rt/supervise.hpp"
@@ -20,6 +23,29 @@ inline void drop_program(Cycle& c) noexcept {
   c.state.epoch = static_cast<std::uint16_t>(c.state.epoch + 1);
   c.reader.set_epoch(c.state.epoch);
   tell(c, EventCode::kEpochAdvanced, c.state.epoch);
+}
+
+/// The joints that `home` names; 0: none, or what is no mask.
+[[nodiscard]] inline std::uint32_t joints_to_home(const MachineModel& machine,
+                                                  double argument) noexcept {
+  const std::uint32_t all = all_joints(machine);
+  if (!(argument >= 0 && argument <= all) || argument != std::floor(argument)) return 0;
+  return argument == 0 ? all : static_cast<std::uint32_t>(argument);
+}
+
+/// Why no hand may be laid on the joints now. What a station has sent is planned from where the
+/// machine stands.
+[[nodiscard]] inline Refusal condition_of_hand(const Cycle& c, const Command& command) noexcept {
+  if (c.in.session != 0) return Refusal::kProgramPresent;
+  if (command.verb == Verb::kHome) {
+    return joints_to_home(c.machine, command.argument) != 0 ? Refusal::kNone : Refusal::kOutOfRange;
+  }
+  const double what = command.argument, tool = what - kMaxJoints;
+  const bool is_joint = what >= 0 && what < c.machine.joint_count;
+  if (!is_joint && !(tool >= 0 && tool < kToolAxisCount)) return Refusal::kOutOfRange;
+  const auto joint = static_cast<int>(what);
+  return may_jog(c.machine, joint, c.in.feedback.referenced_mask) ? Refusal::kNone
+                                                                  : Refusal::kNotReferenced;
 }
 
 /// Why a verb that the table allows is refused now; kNone: it is not.
@@ -43,6 +69,9 @@ inline void drop_program(Cycle& c) noexcept {
       return command.argument >= 0 && command.argument <= most ? Refusal::kNone
                                                                : Refusal::kOutOfRange;
     }
+    case Verb::kJog:
+    case Verb::kHome:
+      return condition_of_hand(c, command);
     default:
       return Refusal::kNone;
   }
@@ -55,8 +84,15 @@ inline void resume(Cycle& c) noexcept {
   enter(c, running_state(c));
 }
 
-/// Goes to the state that the table names.
-inline void go(Cycle& c, State next) noexcept {
+/// Brings to rest what moves: the program, a joint that is jogged, drives that are homing.
+inline void begin_rest(Cycle& c) noexcept {
+  if (c.state.jogging.is_active) return brake_jogging(c, false);
+  if (c.state.homing.is_active) return halt_homing(c);
+  if (!c.state.stop.is_active) begin_stop(c, StopKind::kHold);
+}
+
+/// Goes to the state that the table names, as `command` asks for.
+inline void go(Cycle& c, State next, const Command& command) noexcept {
   switch (next) {
     case State::kEnabling:
       take_over_feedback(c);
@@ -71,10 +107,16 @@ inline void go(Cycle& c, State next) noexcept {
       break;
     case State::kHolding:
     case State::kAborting:
-      if (!c.state.stop.is_active) begin_stop(c, StopKind::kHold);
+      begin_rest(c);
       break;
     case State::kRunning:
       return resume(c);
+    case State::kJogging:
+      begin_jogging(c);
+      break;
+    case State::kHoming:
+      begin_homing(c, joints_to_home(c.machine, command.argument));
+      break;
     case State::kOff:
       c.state.alarm = Alarm::kNone;
       c.state.alarms_told = 0;
@@ -99,7 +141,7 @@ inline void obey(Cycle& c) noexcept {
   }
   tell(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb),
        command.argument);
-  if (effect.effect == Effect::kGo) go(c, effect.next);
+  if (effect.effect == Effect::kGo) go(c, effect.next, command);
   if (command.verb == Verb::kFeedOverride) {
     c.state.feed_override = command.argument;
     c.reader.ask_feed(command.argument);

@@ -20,9 +20,11 @@ enum class State : std::uint8_t {
   kAborting,
   kDisabling,
   kFaultStop,
-  kFault
+  kFault,
+  kJogging,
+  kHoming
 };
-inline constexpr int kStateCount = 14;
+inline constexpr int kStateCount = 16;
 
 /// What an operator asks for.
 enum class Verb : std::uint8_t {
@@ -35,7 +37,9 @@ enum class Verb : std::uint8_t {
   kReset,
   kFeedOverride,   ///< argument: factor, 0 to MachineModel::most_feed_override
   kRapidOverride,  ///< argument: factor, 0 to 1
+  kJog,            ///< argument: the joint that is jogged first; a ToolAxis + kMaxJoints
+  kHome,           ///< argument: mask of the joints, 0: all
 };
-inline constexpr int kVerbCount = 9;
+inline constexpr int kVerbCount = 11;
 
 }  // namespace meridian

@@ -31,6 +31,7 @@ inline constexpr VerbEffect kSame{Effect::kAlready, State::kOff, Refusal::kNone}
 inline constexpr VerbEffect kValue{Effect::kSet, State::kOff, Refusal::kNone};
 inline constexpr VerbEffect kNo{Effect::kRefused, State::kOff, Refusal::kWrongState};
 inline constexpr VerbEffect kEmpty{Effect::kRefused, State::kOff, Refusal::kNoProgram};
+inline constexpr VerbEffect kTaken{Effect::kRefused, State::kOff, Refusal::kProgramPresent};
 inline constexpr VerbEffect kBroken{Effect::kRefused, State::kOff, Refusal::kFaultPresent};
 [[nodiscard]] constexpr VerbEffect go(State next) { return {Effect::kGo, next, Refusal::kNone}; }
 
@@ -38,28 +39,31 @@ using Row = std::array<VerbEffect, kVerbCount>;
 
 inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisabling),
                             kRun = go(State::kRunning), kAbo = go(State::kAborting),
-                            kHol = go(State::kHolding);
+                            kHol = go(State::kHolding), kJog = go(State::kJogging),
+                            kHom = go(State::kHoming);
 
 // clang-format off
 /// One row per state in the order of State, one column per verb in the order of Verb. Conditions
 /// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
 /// checked after it, in rt/obey.hpp, and can only refuse more.
 inline constexpr std::array<Row, kStateCount> kTable{{
-    //            enable   disable  start                    hold              resume  abort    reset            overrides
-    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
-    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
-    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue},
-    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue},
-    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue},
-    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue},
-    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue},
-    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue},
-    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue},
-    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue},
-    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue},
-    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue},
-    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue},
-    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue},
+    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home
+    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo},
+    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom},
+    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken},
+    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo},
+    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo},
+    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo},
+    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken},
+    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo},
+    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken},
+    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo},
+    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo},
+    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken},
+    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken},
+    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo},
+    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo},
 }};
 // clang-format on
 
@@ -72,22 +76,23 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 
 [[nodiscard]] constexpr const char* name_of(State state) noexcept {
   constexpr std::array<const char*, kStateCount> kNames{
-      "Off",  "Enabling", "Ready",   "Loaded",   "Approaching", "Running",   "Holding",
-      "Held", "Starving", "Starved", "Aborting", "Disabling",   "FaultStop", "Fault"};
+      "Off",       "Enabling", "Ready",    "Loaded",  "Approaching", "Running",
+      "Holding",   "Held",     "Starving", "Starved", "Aborting",    "Disabling",
+      "FaultStop", "Fault",    "Jogging",  "Homing"};
   return kNames[static_cast<std::size_t>(state)];
 }
 
 [[nodiscard]] constexpr const char* name_of(Verb verb) noexcept {
-  constexpr std::array<const char*, kVerbCount> kNames{"enable", "disable",       "start",
-                                                       "hold",   "resume",        "abort",
-                                                       "reset",  "feed_override", "rapid_override"};
+  constexpr std::array<const char*, kVerbCount> kNames{
+      "enable", "disable",       "start",          "hold", "resume", "abort",
+      "reset",  "feed_override", "rapid_override", "jog",  "home"};
   return kNames[static_cast<std::size_t>(verb)];
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 8> kNames{"none",       "wrong state",  "not referenced",
-                                              "no program", "no feedback",  "out of range",
-                                              "stale",      "fault present"};
+  constexpr std::array<const char*, 9> kNames{"none",       "wrong state",   "not referenced",
+                                              "no program", "no feedback",   "out of range",
+                                              "stale",      "fault present", "program present"};
   return kNames[static_cast<std::size_t>(refusal)];
 }
 
@@ -96,7 +101,7 @@ inline constexpr std::array<Row, kStateCount> kTable{{
   return state != State::kOff && state != State::kDisabling && state != State::kFault;
 }
 
-/// True where the program's motion is executed or brought to rest.
+/// True where motion is executed or brought to rest: that of the program, or of a hand that jogs.
 [[nodiscard]] constexpr bool is_on_path(State state) noexcept {
   switch (state) {
     case State::kApproaching:
@@ -105,6 +110,7 @@ inline constexpr std::array<Row, kStateCount> kTable{{
     case State::kStarving:
     case State::kAborting:
     case State::kFaultStop:
+    case State::kJogging:
       return true;
     default:
       return false;

@@ -7,6 +7,8 @@
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/guard.hpp"
+#include "meridian/rt/homing.hpp"
+#include "meridian/rt/jogging.hpp"
 #include "meridian/rt/obey.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/stop_motion.hpp"
@@ -39,13 +41,17 @@ inline void follow_feedback(Cycle& c) noexcept {
   c.previous = c.state.joints;
 }
 
+/// Ready for a program, from here: what was planned before knew another place.
+inline void be_ready(Cycle& c) noexcept {
+  if (c.reader.piece() != nullptr || c.reader.advance() != nullptr) drop_program(c);
+  enter(c, State::kReady);
+}
+
 inline void wait_for_drives_on(Cycle& c) noexcept {
   const std::uint32_t all = all_joints(c.machine);
   rest(c);
   if ((c.in.feedback.enabled_mask & all) == all) {
-    // What was planned before knew another place.
-    if (c.reader.piece() != nullptr || c.reader.advance() != nullptr) drop_program(c);
-    enter(c, State::kReady);
+    be_ready(c);
   } else if (c.state.state_time > c.state.options.enable_timeout_s) {
     raise(c, Alarm::kEnableTimeout, first_bit(~c.in.feedback.enabled_mask & all));
   }
@@ -57,6 +63,23 @@ inline void wait_for_drives_off(Cycle& c) noexcept {
   if (is_off || c.state.state_time > c.state.options.disable_timeout_s) enter(c, State::kOff);
 }
 
+/// One cycle of a hand on the joints. False where they are nowhere.
+[[nodiscard]] inline bool jog_by_hand(Cycle& c) noexcept {
+  const JogStep step = follow_jogging(c);
+  if (step == JogStep::kOver) be_ready(c);
+  return step != JogStep::kNoJoints;
+}
+
+/// One cycle of drives that home themselves. False when that is over.
+[[nodiscard]] inline bool home(Cycle& c) noexcept {
+  bool is_stuck = false;
+  const bool goes_on = follow_homing(c, is_stuck);
+  if (!is_stuck) return goes_on;
+  const std::uint32_t busy = c.state.homing.busy;
+  raise(c, Alarm::kHomingTimeout, first_bit(busy), c.state.homing.time);
+  return true;
+}
+
 /// What a stop ends in.
 inline void arrive(Cycle& c) noexcept {
   finish_stop(c);
@@ -66,6 +89,22 @@ inline void arrive(Cycle& c) noexcept {
   }
   drop_program(c);
   enter(c, c.state.state == State::kAborting ? State::kReady : State::kFault);
+}
+
+/// One cycle of whatever stops. False if the path gave no joints.
+[[nodiscard]] inline bool come_to_rest(Cycle& c) noexcept {
+  if (c.state.jogging.is_active) {
+    const JogStep step = follow_braking(c);
+    if (step == JogStep::kOver) arrive(c);
+    return step != JogStep::kNoJoints;
+  }
+  if (c.state.homing.is_active) {
+    if (!home(c)) arrive(c);
+    return true;
+  }
+  if (!follow_stop(c)) return false;
+  if (is_stop_over(c.state.stop)) arrive(c);
+  return true;
 }
 
 /// One cycle of the state in force. False if the path gave no joints.
@@ -96,28 +135,44 @@ inline void arrive(Cycle& c) noexcept {
     case State::kStarved:
       wait_for_blocks(c);
       return true;
+    case State::kJogging:
+      return jog_by_hand(c);
+    case State::kHoming:
+      if (!home(c)) be_ready(c);
+      return true;
     case State::kHolding:
     case State::kAborting:
     case State::kFaultStop:
-      if (!follow_stop(c)) return false;
-      if (is_stop_over(c.state.stop)) arrive(c);
-      return true;
+      return come_to_rest(c);
   }
   return true;
+}
+
+/// The joints whose position means something: all that a program moves, else those with a
+/// reference.
+[[nodiscard]] inline std::uint32_t joints_with_travel(const Cycle& c) noexcept {
+  const State state = c.state.state;
+  const bool has_hand = c.state.jogging.is_active || c.state.homing.is_active;
+  const bool is_program =
+      is_on_path(state) && state != State::kFaultStop && state != State::kJogging && !has_hand;
+  return is_program ? ~0U : c.in.feedback.referenced_mask;
 }
 
 /// The last look before a setpoint leaves. One that must not be sent is replaced by a stop of every
 /// joint along its last velocity, and where even that must not be sent, by standing still.
 inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) noexcept {
   if (!is_enabled(c.state.state)) return;
-  GuardVerdict verdict = judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed);
+  const std::uint32_t has_travel = joints_with_travel(c);
+  GuardVerdict verdict =
+      judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
   if (!has_joints) verdict.alarm = Alarm::kUnreachable;
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
   raise(c, verdict.alarm, verdict.joint, verdict.value);
+  c.state.jogging = {};
   begin_stop_off_path(c, c.previous, last_velocity);
   (void)follow_stop(c);
-  verdict = judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed);
+  verdict = judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
   rest(c);

@@ -9,6 +9,7 @@
 
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/guard.hpp"
+#include "meridian/rt/jogging.hpp"
 #include "meridian/rt/on_path.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/stop_motion.hpp"
@@ -47,7 +48,12 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
   tell_alarm(c, alarm, joint, value);
   if (c.state.state == State::kFaultStop) return;
   c.state.alarm = alarm;
-  begin_stop(c, StopKind::kFault);
+  c.state.homing = {};
+  if (c.state.jogging.is_active) {
+    brake_jogging(c, true);
+  } else {
+    begin_stop(c, StopKind::kFault);
+  }
   enter(c, State::kFaultStop);
 }
 
@@ -74,17 +80,19 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
 }
 
 /// The joint, or drive of the stage, whose feedback is farther from the setpoint that it saw than
-/// its limit; -1: none.
+/// its limit; -1: none. Drives that are homing follow nothing.
 [[nodiscard]] inline int first_joint_behind(const Cycle& c, double& error) noexcept {
   const Feedback& f = c.in.feedback;
   const SentSetpoint& sent = c.state.sent[f.cycle_seen % kSentCycles];
   if (sent.cycle != f.cycle_seen || f.cycle_seen == 0) return -1;
+  const std::uint32_t busy = c.state.homing.busy;
   for (int i = 0; i < c.machine.joint_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
+    if ((busy >> n & 1U) != 0) continue;
     error = c.feedback[n] - sent.position[n];
     if (is_behind(c.machine.joints[n], error, sent.velocity[n], sent.bridged)) return i;
   }
-  return has_stage(c.machine) ? first_stage_drive_behind(c, sent, error) : -1;
+  return has_stage(c.machine) && busy == 0 ? first_stage_drive_behind(c, sent, error) : -1;
 }
 
 [[nodiscard]] inline int first_bit(std::uint32_t mask) noexcept {
@@ -197,6 +205,25 @@ inline void stop_from_feedback(Cycle& c) noexcept {
   c.periods = 1;
 }
 
+/// The same while a joint is jogged, which has no path: it runs out from where it reports to be,
+/// with what the ramp has left of its speed.
+inline void stop_jogging_from_feedback(Cycle& c) noexcept {
+  const JointVector velocity = c.state.velocity;
+  raise(c, Alarm::kPeriodsLost, 0, static_cast<double>(c.in.lost_periods));
+  c.state.jogging = {};
+  if (is_feedback_there(c)) c.previous = c.state.joints = c.feedback;
+  const double ramp_time =
+      c.dt * (c.in.lost_periods - static_cast<double>(c.machine.bridge_cycles));
+  JointVector left{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    const double lost = c.machine.joints[i].limits.fault_acceleration * ramp_time;
+    left[i] = std::copysign(std::max(0.0, std::abs(velocity[i]) - lost), velocity[i]);
+  }
+  begin_stop_off_path(c, c.state.joints, left);
+  c.elapsed = c.dt;
+  c.periods = 1;
+}
+
 /// Looks at everything that may end in a FaultStop, before anything moves.
 inline void supervise(Cycle& c) noexcept {
   const bool is_bridged = c.in.lost_periods <= static_cast<std::uint32_t>(c.machine.bridge_cycles);
@@ -206,7 +233,11 @@ inline void supervise(Cycle& c) noexcept {
   }
   if (!is_enabled(c.state.state)) return;
   if (!is_bridged) {
-    if (c.state.on_path.ds > 0 || c.state.stop.is_active) stop_from_feedback(c);
+    if (!c.state.jogging.axis.is_at_rest()) {
+      stop_jogging_from_feedback(c);
+    } else if (c.state.on_path.ds > 0 || c.state.stop.is_active) {
+      stop_from_feedback(c);
+    }
     c.periods = 1;
   }
   judge_drives(c);

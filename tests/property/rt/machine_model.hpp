@@ -23,13 +23,14 @@ using Table = std::function<VerbEffect(State, Verb)>;
 struct Machine {
   State state = State::kOff;
   bool has_fault = false, is_emergency = false, has_feedback = true;  ///< what the drives report
-  bool is_on = false;       ///< every drive reports operation enabled
-  int waiting = 0;          ///< pieces in the queue, at most two
-  bool has_piece = false;   ///< one is in force
-  bool is_moving = false;   ///< the joints are under way
-  bool may_go_on = false;   ///< starved for a short time, by the session that is still there
-  bool is_granted = false;  ///< ghost: an operator's start or resume stands behind the motion
-  bool is_clear = true;     ///< ghost: no fault since the last reset
+  bool is_on = false;        ///< every drive reports operation enabled
+  int waiting = 0;           ///< pieces in the queue, at most two
+  bool has_piece = false;    ///< one is in force
+  bool is_moving = false;    ///< the joints are under way
+  bool may_go_on = false;    ///< starved for a short time, by the session that is still there
+  bool has_session = false;  ///< a station holds the machine
+  bool is_granted = false;   ///< ghost: an operator's start or resume stands behind the motion
+  bool is_clear = true;      ///< ghost: no fault since the last reset
   std::string wrong{};
 
   bool operator==(const Machine&) const = default;
@@ -38,7 +39,7 @@ struct Machine {
 [[nodiscard]] inline std::string key_of(const Machine& m) {
   std::string key = name_of(m.state);
   for (const bool b : {m.has_fault, m.is_emergency, m.has_feedback, m.is_on, m.has_piece,
-                       m.is_moving, m.may_go_on, m.is_granted, m.is_clear}) {
+                       m.is_moving, m.may_go_on, m.has_session, m.is_granted, m.is_clear}) {
     key += b ? '1' : '0';
   }
   return key + std::to_string(m.waiting) + m.wrong;
@@ -114,7 +115,8 @@ class OperatedMachine {
     if (verb == Verb::kEnable && (!m.has_feedback || m.is_emergency || m.has_fault)) return;
     if (verb == Verb::kReset && m.is_emergency) return;
     if (verb == Verb::kResume && !m.has_piece && m.waiting == 0) return;
-    if (verb == Verb::kStart || verb == Verb::kResume) m.is_granted = true;
+    if ((verb == Verb::kJog || verb == Verb::kHome) && m.has_session) return;
+    if (verb == Verb::kStart || verb == Verb::kResume || verb == Verb::kJog) m.is_granted = true;
     if (verb == Verb::kReset) m.is_clear = true;
     if (effect.next == State::kDisabling) drop_program(m);
     const bool was_granted = m.is_granted;
@@ -146,7 +148,8 @@ class OperatedMachine {
     if (m.is_on || is_enabled(m.state)) {
       add("drives switch on or off", [](Machine& n) { n.is_on = !n.is_on; });
     }
-    if (m.waiting < 2) add("a block comes", [](Machine& n) { ++n.waiting; });
+    if (m.waiting < 2) add("a block comes", [](Machine& n) { ++n.waiting, n.has_session = true; });
+    add("a station comes or goes", [](Machine& n) { n.has_session = !n.has_session; });
     if (m.may_go_on)
       add("time is up, or the session is another", [](Machine& n) { n.may_go_on = false; });
   }
@@ -198,15 +201,31 @@ class OperatedMachine {
         }
         if (!m.has_piece && m.waiting > 0) add(", takes a block", take_piece);
         return;
+      case State::kJogging:
+        add(", the joint moves", [](Machine& n) { n.is_moving = true; });
+        add(", nobody holds it any more", be_ready);
+        return;
+      case State::kHoming:
+        add(", drives have their references or not", be_ready);
+        add(", drives do not come back", [](Machine& n) { raise(n); });
+        return;
       case State::kHolding:
       case State::kAborting:
       case State::kFaultStop:
         add(", at rest", arrive);
+        if (m.state == State::kAborting) {
+          add(", drives do not come back", [](Machine& n) { raise(n); });
+        }
         if (m.has_piece) add(", passes a piece", [](Machine& n) { pass(n); });
         return;
       default:
         return;
     }
+  }
+  static void be_ready(Machine& m) {
+    m.is_moving = false;
+    if (m.has_piece || m.waiting > 0) drop_program(m);
+    enter(m, State::kReady);
   }
   static void pass(Machine& m) {
     m.has_piece = false;

@@ -86,6 +86,8 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
   std::set<std::pair<State, State>> seen;
   constexpr std::uint64_t kSeed = 5;
   std::mt19937_64 random(kSeed);
+  constexpr int kHands = 7, kVerbs = kHands + 2;  // enable to reset, then jog and home
+  std::uint64_t orders = 0;
   const auto draw = [&random](int n) { return std::uniform_int_distribution(0, n - 1)(random); };
   for (int walk = 0; walk < 60; ++walk) {
     Program program(State::kOff);
@@ -100,7 +102,8 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
         const Event& event = world.out.events[i];
         const auto verb = static_cast<Verb>(event.b);
         if (event.code == EventCode::kAccepted) {
-          is_granted = is_granted || verb == Verb::kStart || verb == Verb::kResume;
+          is_granted =
+              is_granted || verb == Verb::kStart || verb == Verb::kResume || verb == Verb::kJog;
           if (verb == Verb::kReset && world.now() == State::kOff) is_clear = true;
         }
         if (event.code == EventCode::kStateChanged &&
@@ -127,9 +130,14 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
         plan->set_epoch(epoch);
       }
       const int what = draw(20);
-      if (what < kVerbCount - 2) {
-        world.command(static_cast<Verb>(what));
-        ASSERT_NO_FATAL_FAILURE(look(name_of(static_cast<Verb>(what))));
+      if (what < kVerbs) {
+        const bool is_by_hand = what >= kHands;
+        if (is_by_hand && draw(2) == 0) world.in.session = 0;
+        const Verb verb = !is_by_hand      ? static_cast<Verb>(what)
+                          : what == kHands ? Verb::kJog
+                                           : Verb::kHome;
+        world.command(verb);
+        ASSERT_NO_FATAL_FAILURE(look(name_of(verb)));
       } else if (what < 12 && world.state.epoch == epoch && is_enabled(world.now())) {
         const MotionKind kind = draw(3) == 0 ? MotionKind::kApproach : MotionKind::kCut;
         plan->cut(Vector3(0, draw(2) == 0 ? 3 : -3, 0), kLimits, kind);
@@ -143,13 +151,16 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
       } else if (what == 15) {
         is_cut_off = draw(6) == 0;
       } else if (what == 16) {
-        world.in.session = static_cast<std::uint64_t>(1 + draw(2));
+        world.in.session = static_cast<std::uint64_t>(draw(3));
       } else if (what == 17 && draw(6) == 0) {
         world.run(20);
         ASSERT_NO_FATAL_FAILURE(look("lost periods"));
       }
       for (int cycles = draw(3) == 0 ? 150 : draw(8); cycles > 0; --cycles) {
         if (is_cut_off) world.in.feedback.enabled_mask = 0;
+        world.in.feedback.homing_mask = asked_of(world.state.homing).mode_mask;
+        world.in.feedback.homed_mask = cycles % 7 == 0 ? world.in.feedback.homing_mask : 0;
+        if (cycles % 10 == 0) world.in.jog = {++orders, world.state.epoch, 0, 30.0, 0, 0.03};
         world.run();
         ASSERT_NO_FATAL_FAILURE(look("a period"));
       }

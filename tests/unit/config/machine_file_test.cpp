@@ -7,6 +7,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/config/homing_file.hpp"
 #include "support/machines.hpp"
 #include "support/text_file.hpp"
 
@@ -144,6 +145,23 @@ TEST(MachineFile, TakesHowTheFreeJointIsTurnedBack) {
   const MachineModel model = parse_machine(text, "retract");
   EXPECT_EQ(model.unwind_policy, UnwindPolicy::kRetract);
   EXPECT_EQ(model.unwind_retract_mm, 75);
+}
+
+TEST(MachineFile, SaysInWhichOrderAndHowLongJointsHome) {
+  const std::string text = test::read_text(kMachines / "lai.toml");
+  const HomingConfig plain = load_homing(kMachines / "lai.toml", 5);
+  EXPECT_EQ(plain.timeout_s, 60);
+  EXPECT_EQ(plain.turns[0], 0);
+  const test::TextFile file(text + "\n[homing]\norder = [2, 2, 1, 3, 3]\ntimeout_s = 7.5\n");
+  const HomingConfig homing = load_homing(file.path(), load_machine(file.path()).joint_count);
+  EXPECT_EQ(homing.timeout_s, 7.5);
+  EXPECT_EQ(homing.turns, (std::array<int, kMaxJoints>{2, 2, 1, 3, 3, 0}));
+  for (const char* wrong : {"order = [1, 2, 3]", "order = [1, 2, 3, 4, 7]",
+                            "order = [1, 2, 3, 4, 1.5]", "timeout_s = 0", "turns = 3"}) {
+    EXPECT_THROW((void)parse_machine(text + "\n[homing]\n" + wrong + "\n", wrong),
+                 std::runtime_error)
+        << wrong;
+  }
 }
 
 TEST(MachineFile, TakesFrameUnitAndCycleTime) {

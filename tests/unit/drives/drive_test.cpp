@@ -12,15 +12,19 @@ namespace {
 constexpr double kPeriod_s = 1e-3;
 constexpr double kVelocity = 100;  // mm/s
 
-JointLimits limits() {
-  JointLimits joint;
-  joint.following_error = 5;
-  joint.fault_acceleration = 5000;
+JointSpec joint_at(double home) {
+  JointSpec joint;
+  joint.home = home;
+  joint.limits.travel_min = -500;
+  joint.limits.travel_max = 500;
+  joint.limits.velocity = 300;
+  joint.limits.following_error = 5;
+  joint.limits.fault_acceleration = 5000;
   return joint;
 }
 
-Drive enabled_drive(double position = 10) {
-  Drive drive(limits(), position, {LagKind::kSecondOrder, 0.002});
+Drive enabled_drive(double position = 10, const HomingPlan& homing = {}) {
+  Drive drive(joint_at(position), {LagKind::kSecondOrder, 0.002}, homing);
   for (const std::uint16_t controlword : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F})
     drive.take_controlword(controlword);
   return drive;
@@ -44,7 +48,7 @@ double run_steadily(Drive& drive) {
 }
 
 TEST(SimulatedDrive, StandsWhileItIsNotEnabled) {
-  Drive drive(limits(), 10, {});
+  Drive drive(joint_at(10), {});
   for (int i = 0; i < 10; ++i) drive.work(setpoint(12), kPeriod_s);
   EXPECT_EQ(drive.position(), 10);
   EXPECT_EQ(drive.error(), kErrorNone);
@@ -128,6 +132,50 @@ TEST(SimulatedDrive, AFaultIsResetAndEnabledAgainWhereItStands) {
   EXPECT_EQ(drive.error(), kErrorNone);
   drive.work(nothing(1), kPeriod_s);
   EXPECT_EQ(drive.position(), stands);
+}
+
+/// Homes `drive` for so long, setpoints coming all the time; the words of the end.
+std::uint16_t home(Drive& drive, int periods) {
+  drive.take_controlword(0x0F, dds::kHomingMode);
+  drive.work(setpoint(0), kPeriod_s);
+  EXPECT_EQ(drive.statusword() & 0x3400, kStatusTargetReached) << "not begun";
+  drive.take_controlword(0x1F, dds::kHomingMode);
+  for (int n = 0; n < periods; ++n) {
+    drive.work(setpoint(1e6), kPeriod_s);
+    if ((drive.statusword() & kStatusTargetReached) != 0) break;
+  }
+  return drive.statusword() & 0x3400;
+}
+
+TEST(SimulatedDrive, FindsItsReferenceInHomingModeAndFollowsSetpointsAfterwards) {
+  Drive drive = enabled_drive(10, {.is_referenced = false});
+  EXPECT_FALSE(drive.is_referenced());
+  EXPECT_EQ(drive.position(), 0) << "what it calls 0 is 5 mm beside home";
+  EXPECT_EQ(home(drive, 1000), kStatusTargetReached | kStatusHomingAttained);
+  EXPECT_TRUE(drive.is_referenced());
+  EXPECT_NEAR(drive.position(), 10, 1e-5);
+  drive.take_controlword(0x0F, dds::kCyclicPositionMode);
+  EXPECT_EQ(drive.mode(), dds::kCyclicPositionMode);
+  drive.work(setpoint(10.1), kPeriod_s);
+  for (int n = 0; n < 30; ++n) drive.work(setpoint(10.1), kPeriod_s);
+  EXPECT_NEAR(drive.position(), 10.1, 1e-5);
+}
+
+TEST(SimulatedDrive, SaysThatItFoundNoReferenceOrSearchesForEver) {
+  Drive failing = enabled_drive(10, {.is_referenced = false, .fails = true});
+  EXPECT_EQ(home(failing, 1000), kStatusTargetReached | kStatusHomingError);
+  EXPECT_FALSE(failing.is_referenced());
+  Drive hanging = enabled_drive(10, {.is_referenced = false, .hangs = true});
+  EXPECT_EQ(home(hanging, 1000), 0);
+  hanging.take_controlword(0x0F, dds::kHomingMode);
+  EXPECT_EQ(hanging.statusword() & 0x3400, kStatusTargetReached) << "interrupted";
+}
+
+TEST(SimulatedDrive, StopsItsSearchWhereTheServiceIsGone) {
+  Drive drive = enabled_drive(10, {.is_referenced = false, .hangs = true});
+  EXPECT_EQ(home(drive, 10), 0);
+  for (int n = 1; n < 6; ++n) drive.work(nothing(n), kPeriod_s);
+  EXPECT_EQ(drive.error(), kErrorSetpointsStopped);
 }
 
 }  // namespace

@@ -47,5 +47,16 @@ TEST(DriveWords, NeverResetsAFaultByItself) {
   }
 }
 
+TEST(DriveWords, ReadsWhatADriveSaysInHomingMode) {
+  EXPECT_TRUE(homing_word(0x0627).is_still) << "not begun, or interrupted";
+  EXPECT_FALSE(homing_word(0x0627).is_attained);
+  EXPECT_FALSE(homing_word(0x0227).is_still) << "searching";
+  EXPECT_FALSE(homing_word(0x1227).is_attained) << "found, and still moving";
+  EXPECT_TRUE(homing_word(0x1627).is_attained);
+  EXPECT_TRUE(homing_word(0x2227).has_failed);
+  EXPECT_TRUE(homing_word(0x3627).has_failed);
+  EXPECT_FALSE(homing_word(0x3627).is_attained);
+}
+
 }  // namespace
 }  // namespace meridian::interpolator

@@ -50,6 +50,18 @@ TEST(FeedbackMerge, StartsAnewWithADriveProcessThatWasRestarted) {
   EXPECT_EQ(merge.feedback().cycle_seen, 101U);
 }
 
+TEST(FeedbackMerge, ReadsHomingOfDrivesInHomingModeAlone) {
+  FeedbackMerge merge;
+  dds::DriveFeedback feedback = sample(1, 0b111, 1);
+  feedback.statusword = {0x1627, 0x1627, 0x2627, 0, 0, 0};
+  feedback.mode_display = {dds::kCyclicPositionMode, dds::kHomingMode, dds::kHomingMode, 0, 0, 0};
+  ASSERT_TRUE(merge.take(feedback, 7, 1000));
+  EXPECT_EQ(merge.feedback().homing_mask, 0b110U);
+  EXPECT_EQ(merge.feedback().homed_mask, 0b010U) << "bit 12 means something else in mode 8";
+  EXPECT_EQ(merge.feedback().homing_error_mask, 0b100U);
+  EXPECT_EQ(merge.feedback().still_mask, 0b110U);
+}
+
 TEST(FeedbackMerge, RefusesAbsurdMasks) {
   FeedbackMerge merge;
   EXPECT_FALSE(merge.take(sample(1, 0, 1), 7, 1000));

@@ -54,6 +54,19 @@ TEST(Guard, StopsASetpointOutsideTravel) {
   EXPECT_EQ(verdict.value, 100.001);
 }
 
+TEST(Guard, WhoStandsOutsideMayStandAndComeBackButGoNoFarther) {
+  JointVector last{}, next{};
+  last[1] = next[1] = 105;
+  const MachineModel machine = machine_under_guard();
+  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  next[1] = 104.9;
+  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  next[1] = 105.001;
+  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s).alarm, Alarm::kTravel);
+  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s, ~2U).alarm, Alarm::kNone)
+      << "a joint whose position says nothing";
+}
+
 TEST(Guard, EndlessJointsHaveNoTravel) {
   JointVector last{}, next{};
   last[3] = next[3] = 1e4;

@@ -111,11 +111,12 @@ TEST(StageCycle, TheGuardStopsADriveBeyondTravelOrTooFast) {
   next[1] += 0.2;
   EXPECT_EQ(judge(machine, next, {}, last, 1e-3).alarm, Alarm::kNone);
   const double u1 = drives_of(machine, next)[kFirst];
-  machine.stage_drives[0].limits.travel_max = u1 - 0.1;
+  machine.stage_drives[0].limits.travel_min = u1 + 0.1;
   GuardVerdict verdict = judge(machine, next, {}, last, 1e-3);
   EXPECT_EQ(verdict.alarm, Alarm::kTravel);
   EXPECT_EQ(verdict.joint, 5);
   EXPECT_EQ(verdict.value, u1);
+  EXPECT_EQ(judge(machine, last, {}, next, 1e-3).alarm, Alarm::kNone) << "back inside";
   machine = test::hybrid_machine();
   machine.stage_drives[1].limits.velocity = 100;
   verdict = judge(machine, next, {}, last, 1e-3);

@@ -54,6 +54,21 @@ TEST(StateTable, NeverRefusesHoldOrAbortInMotion) {
   }
 }
 
+TEST(StateTable, LaysHandsOnAMachineThatIsReadyAndOnNoOther) {
+  for (int s = 0; s < kStateCount; ++s) {
+    const auto state = static_cast<State>(s);
+    for (const Verb verb : {Verb::kJog, Verb::kHome}) {
+      EXPECT_EQ(effect_of(state, verb).effect == Effect::kGo, state == State::kReady)
+          << name_of(verb) << " in " << name_of(state);
+    }
+  }
+  for (const State state : {State::kJogging, State::kHoming}) {
+    EXPECT_EQ(effect_of(state, Verb::kHold).next, State::kAborting);
+    EXPECT_EQ(effect_of(state, Verb::kAbort).next, State::kAborting);
+    EXPECT_EQ(effect_of(state, Verb::kStart).effect, Effect::kRefused);
+  }
+}
+
 TEST(StateTable, LeavesFaultOnlyByReset) {
   for (int v = 0; v < kVerbCount; ++v) {
     const auto verb = static_cast<Verb>(v);

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/jog_room.hpp"
+#include "meridian/rt/on_path.hpp"
+
+/// Jogging: one joint, or the tool, follows the velocity that an operator holds, for as long as
+/// orders keep coming. RT: cycle. Proof: tests/unit/rt/jogging_test.cpp,
+/// tests/property/rt/jog_test.cpp.
+namespace meridian {
+
+/// The first order must come in so long after the verb.
+inline constexpr double kFirstOrder_s = 0.5;
+/// No operator may ask for a longer dead man's time.
+inline constexpr double kLongestDeadMan_s = 0.5;
+
+/// Orders of before this are none of this hand's.
+inline void begin_jogging(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  jogging = {};
+  jogging.is_active = true;
+  jogging.order.sample = c.in.jog.sample;
+  jogging.order.dead_man_s = kFirstOrder_s;
+  c.state.motion = MotionKind::kApproach;
+}
+
+/// Takes a newer order of this epoch, or counts the silence. A hand that let go is not taken again:
+/// an order that was under way for long moves nothing.
+inline void take_order(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  const JogOrder& order = c.in.jog;
+  jogging.silence += c.dt * c.periods;
+  if (order.sample > jogging.order.sample && order.epoch == c.state.epoch && !jogging.is_let_go) {
+    jogging.has_order = true;
+    jogging.order = order;
+    jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
+    jogging.silence = 0;
+  }
+  if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.is_let_go = true;
+}
+
+/// Narrows the room to the distance that was asked for.
+inline void keep_distance(Jogging& jogging) noexcept {
+  if (!(jogging.order.distance > 0)) return;
+  const double from = jogging.axis.at.q;
+  jogging.axis.low = std::max(jogging.axis.low, from - jogging.order.distance);
+  jogging.axis.high = std::min(jogging.axis.high, from + jogging.order.distance);
+}
+
+inline void take_room(Jogging& jogging, const JogRoom& room) noexcept {
+  jogging.axis = room.axis;
+  jogging.fault = room.fault;
+  jogging.is_ready = true;
+  keep_distance(jogging);
+}
+
+/// Goes on with the survey of the tool's way, after which it may move.
+inline void survey_way(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  if (jogging.is_ready || jogging.joint < kMaxJoints) return;
+  jogging.survey.go_on(c.machine, jogging.way);
+  if (jogging.survey.is_over()) take_room(jogging, jogging.survey.room(c.machine, jogging.way));
+}
+
+/// What the order in force is for, as Jogging::joint says it.
+[[nodiscard]] inline int joint_of(const JogOrder& order) noexcept {
+  return order.joint + (order.is_tool ? kMaxJoints : 0);
+}
+
+/// Puts the hand on what is asked for, where nothing moves and it may be jogged.
+inline void choose_axis(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  const JogOrder& order = jogging.order;
+  const int joint = joint_of(order);
+  const std::uint32_t referenced = c.in.feedback.referenced_mask;
+  if (joint == jogging.joint) return survey_way(c);
+  if (!jogging.axis.is_at_rest()) return;
+  jogging.joint = -1;
+  jogging.is_ready = false;
+  if (!jogging.has_order || jogging.is_let_go || !may_jog(c.machine, joint, referenced)) return;
+  if (!order.is_tool) {
+    const bool is_referenced = (referenced >> static_cast<unsigned>(joint) & 1U) != 0;
+    jogging.joint = joint;
+    return take_room(jogging, jog_room(c.machine, c.state.joints, joint, is_referenced));
+  }
+  const bool has_way = lay_way(c.machine, c.state.joints, order.tool_length_mm,
+                               static_cast<ToolAxis>(order.joint), jogging.way);
+  if (!has_way) return;
+  jogging.joint = joint;
+  jogging.axis = {};
+  jogging.survey = ToolSurvey(c.machine, jogging.way, c.state.joints, order.distance);
+}
+
+/// Takes the hand off; the joints stay where they are.
+inline void end_jogging(Cycle& c) noexcept {
+  c.state.jogging = {};
+  rest(c);
+}
+
+/// The joints are where the axis is. False where there are none.
+[[nodiscard]] inline bool put_jogged(Cycle& c) noexcept {
+  const Jogging& jogging = c.state.jogging;
+  c.state.velocity = {};
+  if (!jogging.is_ready) return true;
+  if (jogging.joint < kMaxJoints) {
+    c.state.joints[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.q;
+    c.state.velocity[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.v;
+    return true;
+  }
+  const auto at =
+      joints_on(c.machine, jogging.way, Jet<1>::variable(jogging.axis.at.q), c.state.joints);
+  if (at.status != SolveStatus::kOk) return false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    c.state.joints[i] = value_of(at.q[i]);
+    c.state.velocity[i] = at.q[i].derivative(1) * jogging.axis.at.v;
+  }
+  return true;
+}
+
+enum class JogStep : std::uint8_t {
+  kGoesOn,
+  kOver,     ///< the hand is gone, and the joints rest
+  kNoJoints  ///< the way gave no joints: what the survey saw was not so
+};
+
+/// One cycle of Jogging.
+[[nodiscard]] inline JogStep follow_jogging(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  take_order(c);
+  choose_axis(c);
+  const bool is_held = !jogging.is_let_go && joint_of(jogging.order) == jogging.joint;
+  for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
+    follow(jogging.axis, is_held ? jogging.order.velocity : 0, c.dt);
+  }
+  if (!put_jogged(c)) return JogStep::kNoJoints;
+  if (!jogging.is_let_go || !jogging.axis.is_at_rest()) return JogStep::kGoesOn;
+  end_jogging(c);
+  return JogStep::kOver;
+}
+
+/// Takes the hand off by the operator's word or a fault: the joint brakes, with the limits of a
+/// FaultStop or its own.
+inline void brake_jogging(Cycle& c, bool is_fault) noexcept {
+  Jogging& jogging = c.state.jogging;
+  jogging.is_let_go = true;
+  if (jogging.is_ready) brake(jogging.axis, is_fault ? jogging.fault : jogging.axis.rates);
+}
+
+/// One cycle of braking.
+[[nodiscard]] inline JogStep follow_braking(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
+    jogging.axis.ramp.advance(jogging.axis.at, c.dt);
+  }
+  if (!put_jogged(c)) return JogStep::kNoJoints;
+  if (!jogging.axis.is_at_rest()) return JogStep::kGoesOn;
+  end_jogging(c);
+  return JogStep::kOver;
+}
+
+}  // namespace meridian

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/jogging.hpp"
+#include "service/dds/messages.hpp"
+
+namespace meridian::interpolator {
+
+/// Judges what comes in on `jog`: one operator holds the joints, the one whose verb `jog` was
+/// accepted, and each of his samples is newer than the last and quotes the epoch in force. What
+/// anybody else says changes nothing. One thread. Proof:
+/// tests/unit/interpolator/jog_intake_test.cpp.
+class JogIntake {
+ public:
+  void begin(std::uint64_t operator_id) noexcept {
+    if (operator_id != holder_) newest_ = 0;
+    holder_ = operator_id;
+    is_held_ = true;
+  }
+  void end() noexcept { is_held_ = false; }
+
+  /// Returns the order that `jog` is for the cycle, with a tool of that length in the spindle;
+  /// orders of all operators are counted as one row.
+  [[nodiscard]] std::optional<JogOrder> take(const dds::Jog& jog, std::uint16_t epoch,
+                                             int joint_count, double tool_length_mm) noexcept {
+    const bool is_of_holder = is_held_ && jog.operator_id == holder_ && jog.sample > newest_;
+    const bool is_sound = std::isfinite(jog.velocity) && std::isfinite(jog.distance) &&
+                          jog.joint < (jog.is_tool ? kToolAxisCount : joint_count) &&
+                          jog.distance >= 0 && jog.dead_man_ns > 0;
+    if (!is_of_holder || !is_sound || jog.epoch_seen != epoch) return std::nullopt;
+    newest_ = jog.sample;
+    return JogOrder{
+        .sample = ++orders_,
+        .epoch = epoch,
+        .is_tool = jog.is_tool,
+        .joint = jog.joint,
+        .velocity = jog.velocity,
+        .distance = jog.distance,
+        .tool_length_mm = tool_length_mm,
+        .dead_man_s = std::min(kLongestDeadMan_s, 1e-9 * static_cast<double>(jog.dead_man_ns))};
+  }
+
+ private:
+  bool is_held_ = false;
+  std::uint64_t holder_ = 0;  ///< the operator who jogs, or did last
+  std::uint64_t newest_ = 0, orders_ = 0;
+};
+
+}  // namespace meridian::interpolator

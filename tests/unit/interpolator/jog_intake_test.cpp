@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/jog_intake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace meridian::interpolator {
+namespace {
+
+constexpr std::uint16_t kEpoch = 3;
+constexpr int kJoints = 5;
+constexpr double kTool_mm = 110;
+
+dds::Jog jog_of(std::uint64_t operator_id, std::uint64_t sample) {
+  return {.operator_id = operator_id,
+          .sample = sample,
+          .epoch_seen = kEpoch,
+          .joint = 2,
+          .velocity = 10,
+          .distance = 0,
+          .dead_man_ns = 100'000'000};
+}
+
+TEST(JogIntake, TakesWhatTheOperatorWhoJogsSays) {
+  JogIntake intake;
+  EXPECT_FALSE(intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm)) << "nobody jogs";
+  intake.begin(7);
+  const auto order = intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm);
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->joint, 2);
+  EXPECT_EQ(order->velocity, 10);
+  EXPECT_DOUBLE_EQ(order->dead_man_s, 0.1);
+  EXPECT_EQ(order->epoch, kEpoch);
+  EXPECT_FALSE(intake.take(jog_of(8, 2), kEpoch, kJoints, kTool_mm)) << "another one";
+  intake.end();
+  EXPECT_FALSE(intake.take(jog_of(7, 2), kEpoch, kJoints, kTool_mm));
+}
+
+TEST(JogIntake, NeverTakesALateRepeatedOrOldSample) {
+  JogIntake intake;
+  intake.begin(7);
+  ASSERT_TRUE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm));
+  EXPECT_FALSE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm));
+  EXPECT_FALSE(intake.take(jog_of(7, 4), kEpoch, kJoints, kTool_mm));
+  EXPECT_FALSE(intake.take(jog_of(7, 6), kEpoch + 1, kJoints, kTool_mm))
+      << "of an epoch that is over";
+  intake.begin(7);
+  EXPECT_FALSE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm)) << "of the jog before";
+  EXPECT_TRUE(intake.take(jog_of(7, 6), kEpoch, kJoints, kTool_mm));
+}
+
+TEST(JogIntake, CountsOrdersOfAllOperatorsAsOneRow) {
+  JogIntake intake;
+  intake.begin(7);
+  const auto first = intake.take(jog_of(7, 5000), kEpoch, kJoints, kTool_mm);
+  intake.begin(9);
+  const auto second = intake.take(jog_of(9, 1), kEpoch, kJoints, kTool_mm);
+  ASSERT_TRUE(first && second);
+  EXPECT_GT(second->sample, first->sample);
+}
+
+TEST(JogIntake, PassesOverWhatIsNotSound) {
+  JogIntake intake;
+  intake.begin(7);
+  std::uint64_t sample = 0;
+  const auto is_taken = [&](auto change) {
+    dds::Jog jog = jog_of(7, ++sample);
+    change(jog);
+    return intake.take(jog, kEpoch, kJoints, kTool_mm).has_value();
+  };
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.velocity = NAN; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.distance = INFINITY; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.distance = -1; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.joint = kJoints; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.dead_man_ns = 0; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.is_tool = true, jog.joint = kToolAxisCount; }));
+  EXPECT_TRUE(is_taken([](dds::Jog& jog) { jog.dead_man_ns = INT64_MAX; })) << "500 ms of it";
+}
+
+}  // namespace
+}  // namespace meridian::interpolator
