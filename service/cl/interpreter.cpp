@@ -16,6 +16,22 @@ std::string quoted(std::string_view text) {
   return out + (text.size() > kMost ? "...'" : "'");
 }
 
+/// Words that end a path or change tool, place, frame or unit: none may stand inside an arc.
+bool breaks_arc(Word word) {
+  switch (word) {
+    case Word::kEndOfPath:
+    case Word::kToolPath:
+    case Word::kLoadTool:
+    case Word::kLoad:
+    case Word::kFrom:
+    case Word::kUnits:
+    case Word::kTransform:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 std::string short_number(double value) {
@@ -117,6 +133,14 @@ Interpreter::Result Interpreter::take_unknown(const Statement& s, Blocks& out) {
 }
 
 Interpreter::Result Interpreter::take(const Statement& s, Blocks& out) {
+  const bool is_behind_end = end_told_;
+  const std::size_t before = out.size();
+  auto done = read(s, out);
+  if (done && is_behind_end) return judge_behind_end(s, before, out);
+  return done;
+}
+
+Interpreter::Result Interpreter::read(const Statement& s, Blocks& out) {
   ++summary_.statements;
   if (s.is_catia_matrix) {
     summary_.dialect = "CATIA APT";
@@ -132,10 +156,6 @@ Interpreter::Result Interpreter::take(const Statement& s, Blocks& out) {
   const Word word = find_word(s.major);
   if (word == Word::kUnknown) return take_unknown(s, out);
   ++known_words_;
-  if (end_told_ && (word == Word::kGoto || word == Word::kGoDelta || word == Word::kToolOn)) {
-    return refuse(s.line, "motion behind the end of the program",
-                  "split the file: one program each");
-  }
   if (word == Word::kGoto) return take_goto(s, out);
   return dispatch(word, s, out);
 }
@@ -144,6 +164,9 @@ Interpreter::Result Interpreter::dispatch(Word word, const Statement& s, Blocks&
   if (word != Word::kFeed && word != Word::kUnits && word != Word::kRapid && word != Word::kArc &&
       word != Word::kFrom && word != Word::kGoDelta) {
     promises_end_ = true;
+  }
+  if (arc_.form != ArcForm::kNone && breaks_arc(word)) {
+    return refuse(s.line, std::string(s.major) + " between CIRCLE and the GOTO that ends the arc");
   }
   switch (word) {
     case Word::kUnknown:
@@ -161,6 +184,13 @@ Interpreter::Result Interpreter::dispatch(Word word, const Statement& s, Blocks&
       if (s.major.starts_with("CSI_")) summary_.dialect = "SolidWorks CAM APT";
       warn_once(s.major, s.line, [&] {
         return std::string(std::string(s.major) + " is skipped: it does not shape the path");
+      });
+      break;
+    case Word::kInsert:
+      warn_once(s.major, s.line, [&] {
+        return std::string(
+            "INSERT is text for another control and skipped, here and further on: what it would do "
+            "there is not done");
       });
       break;
     case Word::kRefused:
@@ -218,14 +248,7 @@ Interpreter::Result Interpreter::dispatch(Word word, const Statement& s, Blocks&
       break;
     case Word::kEnd:
     case Word::kFini:
-      if (arc_.form != ArcForm::kNone) {
-        return refuse(arc_.line, "CIRCLE without the GOTO that ends the arc");
-      }
-      if (!motion_begun_) return refuse(s.line, "there is no motion in the file");
-      if (!end_told_) emit(block(BlockKind::kEnd, s.line), out);
-      end_told_ = true;
-      finished_ = word == Word::kFini;
-      break;
+      return take_end(s, word == Word::kFini, out);
     case Word::kSet:
       return take_mode(s);
     case Word::kCycle:
@@ -252,37 +275,6 @@ Interpreter::Result Interpreter::dispatch(Word word, const Statement& s, Blocks&
     case Word::kNote:
       return take_note(s);
   }
-  return {};
-}
-
-Interpreter::Result Interpreter::finish(std::uint32_t last_line, bool open_end, Blocks& out) {
-  if (finished_ || end_told_) return {};
-  const auto cut_short = [&](std::uint32_t line, std::string why) {
-    return refuse(line, "the file is cut short: " + std::move(why));
-  };
-  if (arc_.form != ArcForm::kNone) {
-    return cut_short(arc_.line, "CIRCLE without the GOTO that ends the arc");
-  }
-  if (summary_.statements == 0) return refuse(0, "the file is empty");
-  if (open_path_line_ != 0) {
-    return cut_short(open_path_line_, "this TOOL PATH has no END-OF-PATH");
-  }
-  if (open_sections_ > 0) {
-    return cut_short(last_line, "PPRINT/BEGIN-SECTION without END-SECTION");
-  }
-  if (!path_closed_ && !sections_closed_ && !options_.allow_no_end) {
-    if (promises_end_) {
-      return refuse(last_line, "the file is cut short: there is no FINI, END or END-OF-PATH",
-                    "--allow-no-end takes it as whole");
-    }
-    warn_once("no end", last_line, [&] {
-      return std::string(std::string("there is no FINI: the list of points is taken as whole") +
-                         (open_end ? ", its last line too, although no line end follows" : ""));
-    });
-  }
-  if (!motion_begun_) return refuse(0, "there is no motion in the file");
-  emit(block(BlockKind::kEnd, last_line), out);
-  end_told_ = true;
   return {};
 }
 

@@ -17,6 +17,8 @@
 
 namespace meridian::cl {
 
+struct Arc;
+
 inline constexpr double kLeastMove_mm = 1e-9;  ///< below it a block moves nothing
 
 /// Turns statements into blocks: holds what is modal in a CL file (unit, frame, tool axis, feed,
@@ -68,6 +70,7 @@ class Interpreter {
   using Blocks = std::vector<ClBlock>;
 
   // interpreter.cpp
+  Result read(const Statement& s, Blocks& out);
   Result dispatch(Word word, const Statement& s, Blocks& out);
   ClBlock block(BlockKind kind, std::uint32_t line) const;
   void emit(ClBlock block, Blocks& out);
@@ -80,6 +83,16 @@ class Interpreter {
     if (is_new_warning(key)) add_warning(key, line, message());
   }
   Result take_unknown(const Statement& s, Blocks& out);
+
+  // interpreter_end.cpp
+  Result take_end(const Statement& s, bool is_fini, Blocks& out);
+  Result judge_behind_end(const Statement& s, std::size_t before, Blocks& out) const;
+  [[nodiscard]] bool has_moved() const {
+    const auto& count = summary_.blocks_by_kind;
+    return count[static_cast<std::size_t>(BlockKind::kCut)] +
+               count[static_cast<std::size_t>(BlockKind::kRapid)] >
+           0;
+  }
 
   // interpreter_motion.cpp
   Result take_goto(const Statement& s, Blocks& out);
@@ -94,17 +107,29 @@ class Interpreter {
   Result point_of(const double* xyz, std::uint32_t line, Vector3& tip) const;
   /// Tip and, of six numbers, the tool axis.
   Result take_pose(const Statement& s, Vector3& tip);
+  [[nodiscard]] bool is_at(const Vector3& tip) const;
+  Result begin_at_from(std::uint32_t line, Blocks& out);
   Result move_to(const Vector3& tip, std::uint32_t line, Blocks& out);
   Result arc_to(const Vector3& tip, std::uint32_t line, Blocks& out);
   Result feed_into(ClBlock& block, std::uint32_t line);
   void account(const ClBlock& block, double length_mm);
   void account_axis(double change_chord);
   void suspect_metric(const ClBlock& block);
+  void check_arc_gap(const Arc& arc, const Vector3& end, std::uint32_t line);
   void check_arc_sense(const Vector3& tangent, std::uint32_t line);
 
   // interpreter_words.cpp
   Result take_units(const Statement& s);
+  static FeedUnit feed_unit_of(std::string_view word);
   Result take_feed(const Statement& s);
+  struct SpindleWords {
+    const Argument* speed = nullptr;
+    std::optional<ActionKind> sense;
+    bool turns = false;      ///< a word that only a turning spindle has
+    std::string_view left;   ///< RANGE, MAXRPM: the machine's own business
+    std::string_view other;  ///< the first word that is none of SPINDL's speed and sense
+  };
+  Expected<SpindleWords, ClError> spindle_words(const Statement& s);
   Result take_spindle(const Statement& s, Blocks& out);
   Result take_coolant(const Statement& s, Blocks& out);
   Result take_tool(const Statement& s, bool needs_tool_word, Blocks& out);
@@ -173,6 +198,7 @@ class Interpreter {
   bool metric_suspected_ = false;
 
   // structure and summary
+  std::uint32_t from_line_ = 0;       ///< of the last FROM
   std::uint32_t open_path_line_ = 0;  ///< TOOL PATH that waits for END-OF-PATH
   int open_sections_ = 0;             ///< PPRINT/BEGIN-SECTION
   double cutter_written_ = 0;

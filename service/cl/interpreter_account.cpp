@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meridian/units.hpp"
+#include "service/cl/arc.hpp"
 #include "service/cl/interpreter.hpp"
 
 namespace meridian::cl {
@@ -27,6 +28,23 @@ void Interpreter::check_arc_sense(const Vector3& tangent, std::uint32_t line) {
           "(--arc-sense)");
     });
   }
+}
+
+/// Ends nearer to each other than files round, but not one point, may be a full circle that
+/// rounding opened or what is left of an arc that was split. CAM systems write the latter (a radius
+/// of 69 mm and a chord of its last decimal), so the sense decides, as for every arc, and it is
+/// said.
+void Interpreter::check_arc_gap(const Arc& arc, const Vector3& end, std::uint32_t line) {
+  Vector3 chord = end - tip_;
+  chord -= arc.normal * arc.normal.dot(chord);
+  const double gap = chord.norm();
+  if (gap >= kArcMismatch_mm || arc.radius < 10 * gap) return;
+  warn_once("arc gap", line, [&] {
+    return std::string("begin and end of this arc are " + short_number(gap) +
+                       " mm apart; as its sense says it is " +
+                       short_number(arc.radius * arc.sweep_rad) +
+                       " mm long: a full circle ends in the very point where it begins");
+  });
 }
 
 /// An inch file whose part would be beyond a metre, or whose feed beyond 20 m/min, is likely a
@@ -73,14 +91,15 @@ void Interpreter::account(const ClBlock& b, double length) {
   const Vector3 change = axis_ - axis_before_;
   const bool turns = change != Vector3::Zero();
   if (turns || !position_told_) account_axis(position_told_ ? change.norm() : 0);
-  if (position_told_ && length <= kLeastMove_mm && !turns) ++summary_.zero_length;
+  const bool moves = position_told_ && (length > kLeastMove_mm || turns);
+  if (position_told_ && !moves) ++summary_.zero_length;
   if (b.kind == BlockKind::kRapid) {
     summary_.rapid_length_mm += length;
     return;
   }
   summary_.cut_length_mm += length;
   if (b.feed_meaning == FeedMeaning::kInverseTime) {
-    summary_.cut_time_s += 1 / b.feed;
+    if (moves) summary_.cut_time_s += 1 / b.feed;
     return;
   }
   summary_.cut_time_s += length / b.feed;

@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <numbers>
 
+#include "service/cl/arc.hpp"
 #include "service/cl/interpreter.hpp"
 #include "service/cl/number.hpp"
 
 namespace meridian::cl {
 namespace {
+
+constexpr double kRadiusTolerance_mm = 0.01;  // told radius against begin of the arc
+
+double angle_between(const Vector3& a, const Vector3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 /// The numbers inside the bracket that `keyword` opens, e.g. of "(CIRCLE/ 1, 2, 3, 4)": up to 7.
 struct Numbers {
@@ -128,6 +138,96 @@ Interpreter::Result Interpreter::take_tool_on(const Statement& s, Blocks& out) {
   if (auto done = point_of(end.data(), s.line, tip); !done) return done;
   arc_ = arc;
   return arc_to(tip, s.line, out);
+}
+
+Interpreter::Result Interpreter::arc_to(const Vector3& tip, std::uint32_t line, Blocks& out) {
+  const PendingArc pending = arc_;
+  arc_ = {};
+  if (!has_position_) {
+    return refuse(pending.line, "an arc before any position", "begin with FROM or GOTO");
+  }
+  if (!position_told_) {
+    if (auto done = begin_at_from(pending.line, out); !done) return done;
+  }
+  Vector3 centre;
+  if (auto done = point_of(pending.centre_normal.data(), pending.line, centre); !done) return done;
+  Vector3 normal{pending.centre_normal[3], pending.centre_normal[4], pending.centre_normal[5]};
+  if (!frame_is_identity_) normal = frame_.direction(normal);
+  if (pending.form == ArcForm::kForward) {
+    normal = (tip_ - centre)
+                 .cross(frame_.direction(Vector3{(*forward_)[0], (*forward_)[1], (*forward_)[2]}));
+    forward_.reset();
+    if (!(normal.norm() > 1e-6)) {
+      return refuse(pending.line, "INDIRV does not tell which way the arc turns");
+    }
+  } else if (options_.arc_sense == ArcSense::kLeft ||
+             (options_.arc_sense == ArcSense::kByForm && pending.form == ArcForm::kClockwise)) {
+    normal = -normal;
+  }
+  const Arc arc = solve_arc(tip_, tip, centre, normal);
+  if (arc.status == Arc::Status::kNoRadius) {
+    return refuse(pending.line, "the arc has no radius or no plane");
+  }
+  if (arc.status == Arc::Status::kNotOneCircle) {
+    return refuse(
+        pending.line,
+        "begin and end of the arc do not lie on one circle about its centre: radii differ by " +
+            short_number(arc.mismatch_mm) + " mm, allowed 0.01 mm");
+  }
+  const double told = pending.radius * to_mm_;
+  if (told > 0 && std::abs(told - arc.radius) > kRadiusTolerance_mm) {
+    return refuse(pending.line, "radius " + short_number(told) +
+                                    " mm is told, but the arc begins " + short_number(arc.radius) +
+                                    " mm from its centre");
+  }
+  const bool closed = arc.sweep_rad == 2 * std::numbers::pi;
+  if (pending.turns > 1 && !closed) {
+    return refuse(pending.line, "a helix of several turns that does not end above its begin",
+                  "output it as arcs of one turn at most, or as points");
+  }
+  if (!closed) check_arc_gap(arc, tip, pending.line);
+  check_arc_sense(arc.normal.cross(tip_ - arc.centre).normalized(), pending.line);
+
+  ClBlock b = block(BlockKind::kCut, line);
+  if (auto done = feed_into(b, line); !done) return done;
+  b.is_arc = true;
+  b.normal = to_array(arc.normal);
+  b.sweep_rad = arc.sweep_rad;
+  const int turns = std::max(pending.turns, 1);
+  const bool is_inverse = b.feed_meaning == FeedMeaning::kInverseTime;
+  if (is_inverse) b.feed *= turns;
+  const Vector3 begin = tip_;
+  const Vector3 axis_begin = axis_before_;
+  const Vector3 axis_end = axis_;
+  const Vector3 rise = arc.normal * arc.normal.dot(arc.end - begin);
+  if (turns > 1 && angle_between(axis_begin, axis_end) > 0) {
+    return refuse(pending.line, "a helix of several turns while the tool axis turns");
+  }
+  const double length = std::hypot(arc.radius * arc.sweep_rad, rise.norm() / turns);
+  const double gap = (arc.end - tip).norm();
+  const double rest = !closed && gap > kLeastMove_mm ? gap : 0;  // cut as a line behind the arc
+  if (is_inverse) b.feed *= (length + rest) / length;            // both take the block's time
+  for (int turn = 1; turn <= turns; ++turn) {
+    const double done_part = static_cast<double>(turn - 1) / turns;
+    b.centre_mm = to_array(Vector3(arc.centre + rise * done_part));
+    const Vector3 end = turn == turns ? arc.end : Vector3(begin + rise * turn / turns);
+    b.tip_mm = to_array(end);
+    ++summary_.arcs;
+    summary_.full_circles += closed ? 1 : 0;
+    account(b, length);
+    emit(b, out);
+  }
+  summary_.arc_mismatch_max_mm = std::max(summary_.arc_mismatch_max_mm, std::abs(arc.mismatch_mm));
+  direction_.setZero();
+  tip_ = arc.end;
+  axis_before_ = axis_;
+  if (rest == 0) return {};
+  rapid_ = b.kind == BlockKind::kRapid;
+  const double feed = feed_;
+  if (is_inverse) feed_ *= (length + rest) / rest;
+  auto done = move_to(tip, line, out);
+  feed_ = feed;
+  return done;
 }
 
 }  // namespace meridian::cl

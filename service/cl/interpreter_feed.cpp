@@ -31,9 +31,11 @@ Interpreter::Result Interpreter::take_units(const Statement& s) {
                          ", --units says otherwise and holds");
     });
   }
-  if (unit_word_ && *unit_word_ != unit && motion_begun_) {
-    warn_once("unit change", s.line,
-              [&] { return std::string("the unit changes in mid-program"); });
+  if (unit_word_ && *unit_word_ != unit) {
+    warn_once(motion_begun_ ? "unit change" : "two units", s.line, [&] {
+      return std::string(motion_begun_ ? "the unit changes in mid-program"
+                                       : "the file tells two units: from here on the second");
+    });
   }
   unit_word_ = unit;
   unit_.reset();
@@ -67,34 +69,50 @@ Interpreter::Result Interpreter::resolve_unit(std::uint32_t line) {
   return {};
 }
 
+/// The unit that a word of FEDRAT tells; kNone: it is none.
+Interpreter::FeedUnit Interpreter::feed_unit_of(std::string_view word) {
+  struct Entry {
+    std::string_view text;
+    FeedUnit unit;
+  };
+  constexpr std::array kUnits = std::to_array<Entry>({{"MMPM", FeedUnit::kMillimetrePerMinute},
+                                                      {"MMPMIN", FeedUnit::kMillimetrePerMinute},
+                                                      {"IPM", FeedUnit::kInchPerMinute},
+                                                      {"PERMIN", FeedUnit::kPerMinute},
+                                                      {"UPM", FeedUnit::kPerMinute},
+                                                      {"MMPR", FeedUnit::kMillimetrePerRevolution},
+                                                      {"IPR", FeedUnit::kInchPerRevolution},
+                                                      {"PERREV", FeedUnit::kPerRevolution},
+                                                      {"UPR", FeedUnit::kPerRevolution},
+                                                      {"INVERS", FeedUnit::kInverseTime},
+                                                      {"INVERSE", FeedUnit::kInverseTime},
+                                                      {"FRN", FeedUnit::kInverseTime}});
+  const auto* const at = std::find_if(kUnits.begin(), kUnits.end(), [word](const Entry& entry) {
+    return is_word(word, entry.text);
+  });
+  return at != kUnits.end() ? at->unit : FeedUnit::kNone;
+}
+
 Interpreter::Result Interpreter::take_feed(const Statement& s) {
-  FeedUnit unit = FeedUnit::kPerMinute;
+  FeedUnit unit = FeedUnit::kNone;
   const Argument* number = s.only_number();
   bool automatic = false;
   for (std::size_t i = 0; i < s.argument_count; ++i) {
     const Argument& a = s.arguments[i];
     if (a.is_number) continue;
-    if (is_word(a.text, "MMPM") || is_word(a.text, "MMPMIN")) {
-      unit = FeedUnit::kMillimetrePerMinute;
-    } else if (is_word(a.text, "IPM")) {
-      unit = FeedUnit::kInchPerMinute;
-    } else if (is_word(a.text, "PERMIN") || is_word(a.text, "UPM")) {
-      unit = FeedUnit::kPerMinute;
-    } else if (is_word(a.text, "MMPR")) {
-      unit = FeedUnit::kMillimetrePerRevolution;
-    } else if (is_word(a.text, "IPR")) {
-      unit = FeedUnit::kInchPerRevolution;
-    } else if (is_word(a.text, "PERREV") || is_word(a.text, "UPR")) {
-      unit = FeedUnit::kPerRevolution;
-    } else if (is_word(a.text, "INVERS") || is_word(a.text, "INVERSE") || is_word(a.text, "FRN")) {
-      unit = FeedUnit::kInverseTime;
-    } else if (is_word(a.text, "AUTO")) {
+    const FeedUnit told = feed_unit_of(a.text);
+    if (is_word(a.text, "AUTO")) {
       automatic = true;
-    } else {
+    } else if (told == FeedUnit::kNone) {
       return refuse(s.line, "feed unit '" + std::string(a.text) + "' is not understood",
                     "MMPM, IPM, PERMIN, MMPR, IPR, PERREV or INVERS");
+    } else if (unit != FeedUnit::kNone) {
+      return refuse(s.line, "FEDRAT/" + std::string(s.rest.substr(0, 40)) + " tells two units");
+    } else {
+      unit = told;
     }
   }
+  if (unit == FeedUnit::kNone) unit = FeedUnit::kPerMinute;
   if (unit == FeedUnit::kInverseTime && number == nullptr && s.number_count == 0) {
     warn_once("inverse", s.line, [&] {
       return std::string(

@@ -2,22 +2,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "meridian/units.hpp"
-#include "service/cl/arc.hpp"
 #include "service/cl/interpreter.hpp"
 
 namespace meridian::cl {
 namespace {
 
-constexpr double kAxisNormTolerance = 1e-3;   // a rounded or sloppy axis is normalised
-constexpr double kFarthest_mm = 1e6;          // no machine is larger; catches lost decimal points
-constexpr double kRadiusTolerance_mm = 0.01;  // told radius against begin of the arc
-
-double angle_between(const Vector3& a, const Vector3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
+constexpr double kAxisNormTolerance = 1e-3;  // a rounded or sloppy axis is normalised
+constexpr double kFarthest_mm = 1e6;         // no machine is larger; catches lost decimal points
 
 }  // namespace
 
@@ -113,19 +106,21 @@ Interpreter::Result Interpreter::take_delta(const Statement& s, Blocks& out) {
   return move_to(tip, s.line, out);
 }
 
-/// FROM tells where the tool is; it does not move it. The point becomes a block only where an arc
-/// begins there (arc_to).
+/// FROM tells where the tool is; it does not move it. The point becomes a block only where a cut or
+/// an arc begins there (begin_at_from).
 Interpreter::Result Interpreter::take_from(const Statement& s) {
   const std::size_t n = s.argument_count;
   if (!s.all_numbers() || (n != 3 && n != 6)) return refuse(s.line, "FROM needs 3 or 6 numbers");
-  if (position_told_) {
+  if (auto done = prepare_motion(s.line); !done) return done;
+  Vector3 tip;
+  if (auto done = take_pose(s, tip); !done) return done;
+  if (position_told_ && is_at(tip)) return {};
+  if (has_moved()) {
     warn_once("FROM", s.line, [&] {
       return std::string("FROM behind motion: taken as the new position, without motion to it");
     });
   }
-  if (auto done = prepare_motion(s.line); !done) return done;
-  Vector3 tip;
-  if (auto done = take_pose(s, tip); !done) return done;
+  from_line_ = s.line;
   tip_ = tip;
   axis_before_ = axis_;
   has_position_ = true;
@@ -158,7 +153,33 @@ Interpreter::Result Interpreter::feed_into(ClBlock& b, std::uint32_t line) {
   return {};
 }
 
+bool Interpreter::is_at(const Vector3& tip) const {
+  return (tip - tip_).norm() <= kLeastMove_mm && axis_ == axis_before_;
+}
+
+/// A cut from the FROM point: a rapid brings the tool there first. Behind motion that ended
+/// elsewhere the file does not show how it comes there.
+Interpreter::Result Interpreter::begin_at_from(std::uint32_t line, Blocks& out) {
+  if (has_moved()) {
+    return refuse(from_line_,
+                  "FROM is not where the motion before it ended, and a cut begins there",
+                  "write RAPID and a GOTO to that point");
+  }
+  const Vector3 axis_after = axis_;
+  axis_ = axis_before_;
+  const ClBlock begin = block(BlockKind::kRapid, line);
+  account(begin, 0);
+  emit(begin, out);
+  position_told_ = true;
+  axis_ = axis_after;
+  return {};
+}
+
 Interpreter::Result Interpreter::move_to(const Vector3& tip, std::uint32_t line, Blocks& out) {
+  const bool cuts_from_from = !position_told_ && has_position_ && !rapid_;
+  if (cuts_from_from && (has_moved() || !is_at(tip))) {
+    if (auto done = begin_at_from(line, out); !done) return done;
+  }
   ClBlock b;
   b.line = line;
   b.kind = BlockKind::kCut;
@@ -173,96 +194,6 @@ Interpreter::Result Interpreter::move_to(const Vector3& tip, std::uint32_t line,
   emit(b, out);
   has_position_ = position_told_ = true;
   axis_before_ = axis_;
-  return {};
-}
-
-Interpreter::Result Interpreter::arc_to(const Vector3& tip, std::uint32_t line, Blocks& out) {
-  const PendingArc pending = arc_;
-  arc_ = {};
-  if (!has_position_) {
-    return refuse(pending.line, "an arc before any position", "begin with FROM or GOTO");
-  }
-  if (!position_told_) {  // the FROM point: the machine has to be there before the arc
-    const Vector3 axis_after = axis_;
-    axis_ = axis_before_;
-    ClBlock begin = block(BlockKind::kRapid, pending.line);
-    account(begin, 0);
-    emit(begin, out);
-    position_told_ = true;
-    axis_ = axis_after;
-  }
-  Vector3 centre;
-  if (auto done = point_of(pending.centre_normal.data(), pending.line, centre); !done) return done;
-  Vector3 normal{pending.centre_normal[3], pending.centre_normal[4], pending.centre_normal[5]};
-  if (!frame_is_identity_) normal = frame_.direction(normal);
-  if (pending.form == ArcForm::kForward) {
-    normal = (tip_ - centre)
-                 .cross(frame_.direction(Vector3{(*forward_)[0], (*forward_)[1], (*forward_)[2]}));
-    forward_.reset();
-    if (!(normal.norm() > 1e-6)) {
-      return refuse(pending.line, "INDIRV does not tell which way the arc turns");
-    }
-  } else if (options_.arc_sense == ArcSense::kLeft ||
-             (options_.arc_sense == ArcSense::kByForm && pending.form == ArcForm::kClockwise)) {
-    normal = -normal;
-  }
-  const Arc arc = solve_arc(tip_, tip, centre, normal);
-  if (arc.status == Arc::Status::kNoRadius) {
-    return refuse(pending.line, "the arc has no radius or no plane");
-  }
-  if (arc.status == Arc::Status::kNotOneCircle) {
-    return refuse(
-        pending.line,
-        "begin and end of the arc do not lie on one circle about its centre: radii differ by " +
-            short_number(arc.mismatch_mm) + " mm, allowed 0.01 mm");
-  }
-  const double told = pending.radius * to_mm_;
-  if (told > 0 && std::abs(told - arc.radius) > kRadiusTolerance_mm) {
-    return refuse(pending.line, "radius " + short_number(told) +
-                                    " mm is told, but the arc begins " + short_number(arc.radius) +
-                                    " mm from its centre");
-  }
-  const bool closed = arc.sweep_rad == 2 * std::numbers::pi;
-  if (pending.turns > 1 && !closed) {
-    return refuse(pending.line, "a helix of several turns that does not end above its begin",
-                  "output it as arcs of one turn at most, or as points");
-  }
-  check_arc_sense(arc.normal.cross(tip_ - arc.centre).normalized(), pending.line);
-
-  ClBlock b = block(BlockKind::kCut, line);
-  if (auto done = feed_into(b, line); !done) return done;
-  b.is_arc = true;
-  b.normal = to_array(arc.normal);
-  b.sweep_rad = arc.sweep_rad;
-  const int turns = std::max(pending.turns, 1);
-  if (b.feed_meaning == FeedMeaning::kInverseTime) b.feed *= turns;
-  const Vector3 begin = tip_;
-  const Vector3 axis_begin = axis_before_;
-  const Vector3 axis_end = axis_;
-  const Vector3 rise = arc.normal * arc.normal.dot(arc.end - begin);
-  if (turns > 1 && angle_between(axis_begin, axis_end) > 0) {
-    return refuse(pending.line, "a helix of several turns while the tool axis turns");
-  }
-  for (int turn = 1; turn <= turns; ++turn) {
-    const double done_part = static_cast<double>(turn - 1) / turns;
-    b.centre_mm = to_array(Vector3(arc.centre + rise * done_part));
-    const Vector3 end = turn == turns ? arc.end : Vector3(begin + rise * turn / turns);
-    b.tip_mm = to_array(end);
-    const double length = std::hypot(arc.radius * arc.sweep_rad, rise.norm() / turns);
-    ++summary_.arcs;
-    summary_.full_circles += closed ? 1 : 0;
-    account(b, length);
-    emit(b, out);
-  }
-  summary_.arc_mismatch_max_mm = std::max(summary_.arc_mismatch_max_mm, std::abs(arc.mismatch_mm));
-  direction_.setZero();
-  tip_ = arc.end;
-  axis_before_ = axis_;
-  if (!closed && (arc.end - tip).norm() > kLeastMove_mm) {
-    const bool was_rapid = b.kind == BlockKind::kRapid;
-    rapid_ = was_rapid;
-    return move_to(tip, line, out);
-  }
   return {};
 }
 

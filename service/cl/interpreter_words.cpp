@@ -16,63 +16,6 @@ Interpreter::Result Interpreter::take_rapid(const Statement& s) {
   return {};
 }
 
-Interpreter::Result Interpreter::take_spindle(const Statement& s, Blocks& out) {
-  const Argument* number = s.only_number();
-  if (s.has_word("OFF")) {
-    spindle_on_ = false;
-    feed_dirty_ = true;
-    action(BlockKind::kAuxiliary, ActionKind::kSpindleOff, 0, s.line, out);
-    return {};
-  }
-  for (std::size_t i = 0; i < s.argument_count; ++i) {
-    const Argument& a = s.arguments[i];
-    if (a.is_number || is_word(a.text, "RPM") || is_word(a.text, "ON")) continue;
-    if (is_word(a.text, "CLW") || is_word(a.text, "FWD")) {
-      spindle_sense_ = ActionKind::kSpindleClockwise;
-    } else if (is_word(a.text, "CCLW") || is_word(a.text, "REV")) {
-      spindle_sense_ = ActionKind::kSpindleCounterClockwise;
-    } else if (is_word(a.text, "SFM") || is_word(a.text, "SMM") || is_word(a.text, "SURF")) {
-      return refuse(s.line, "spindle by surface speed needs the radius being cut",
-                    "output the speed in rev/min");
-    } else {
-      vendor_word(s, out);  // ORIENT, LOCK, ranges: the machine's own business
-      return {};
-    }
-  }
-  if (number == nullptr && s.number_count > 0) return refuse(s.line, "SPINDL has several numbers");
-  if (number != nullptr) {
-    if (!(number->number >= 0 && number->number <= 1e6)) {
-      return refuse(s.line, "spindle speed " + short_number(number->number) + " makes no sense");
-    }
-    spindle_rpm_ = number->number;
-  } else if (!(spindle_rpm_ > 0)) {
-    return refuse(s.line, "SPINDL/" + std::string(s.rest) + " before any speed was told");
-  }
-  spindle_on_ = true;
-  feed_dirty_ = true;
-  action(BlockKind::kAuxiliary, spindle_sense_, spindle_rpm_, s.line, out);
-  return {};
-}
-
-Interpreter::Result Interpreter::take_coolant(const Statement& s, Blocks& out) {
-  ActionKind what = ActionKind::kVendorWord;
-  if (s.has_word("OFF")) {
-    what = ActionKind::kCoolantOff;
-  } else if (s.argument_count == 1 && (s.has_word("ON") || s.has_word("FLOOD"))) {
-    what = ActionKind::kCoolantFlood;
-  } else if (s.argument_count == 1 && s.has_word("MIST")) {
-    what = ActionKind::kCoolantMist;
-  } else if (s.argument_count == 1 && (s.has_word("THRU") || s.has_word("THROUGH"))) {
-    what = ActionKind::kCoolantThrough;
-  }
-  if (what == ActionKind::kVendorWord) {
-    vendor_word(s, out);
-  } else {
-    action(BlockKind::kAuxiliary, what, 0, s.line, out);
-  }
-  return {};
-}
-
 /// LOADTL/n[,...] and LOAD/TOOL,n[,...].
 Interpreter::Result Interpreter::take_tool(const Statement& s, bool needs_tool_word, Blocks& out) {
   std::size_t at = 0;

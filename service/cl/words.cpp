@@ -46,7 +46,7 @@ constexpr std::array kTable = std::to_array<Entry>({
     {"HEAD", Word::kRefused},
     {"INDEX", Word::kRefused},
     {"INDIRV", Word::kForward},
-    {"INSERT", Word::kSilent},
+    {"INSERT", Word::kInsert},
     {"INTOL", Word::kSilent},
     {"ISN", Word::kSilent},
     {"LEADER", Word::kSkipped},

@@ -12,6 +12,7 @@ enum class Word : std::uint8_t {
   kSilent,      ///< says nothing about motion: names, notes, tolerances of the CAM system
   kDisplay,     ///< for viewers: skipped with one warning
   kSkipped,     ///< means something to a post-processor that Meridian has no use for: one warning
+  kInsert,      ///< INSERT: text for another control, skipped with one warning
   kRefused,     ///< moves the machine in a way that a CL path cannot show: refused with the reason
   kVendor,      ///< an action of the machine's own: becomes a vendor word block
   kArc,         ///< CIRCLE

@@ -181,6 +181,38 @@ TEST(Circle, IsRefusedWhereItContradictsItself) {
   for (const char* const file : files) EXPECT_NE(read_body(file).error, "") << file;
 }
 
+TEST(Circle, IsRefusedWhereThePathEndsOrTheToolChangesBeforeItsGoto) {
+  for (const char* word :
+       {"END-OF-PATH", "TOOL PATH/B,TOOL,T", "LOADTL/2", "LOAD/TOOL,2", "FROM/0,10,0",
+        "UNITS/INCHES", "TRNTYP/WORLD", "MSYS/0,0,0,1,0,0,0,1,0"}) {
+    const auto read = read_body("GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\n" + std::string(word) +
+                                "\nGOTO/0,10,0\nEND-OF-PATH\n");
+    EXPECT_EQ(read.error_line, 5U) << word << read.error;
+    EXPECT_NE(read.error.find("between CIRCLE and"), std::string::npos) << read.error;
+    EXPECT_EQ(read.blocks.size(), 1U) << word;
+  }
+  EXPECT_EQ(read_body("GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nFEDRAT/90\nPAINT/COLOR,1\nGOTO/0,10,0\n")
+                .error,
+            "");
+}
+
+TEST(Circle, WhoseEndsAreNearlyOnePointIsReadByItsSenseAndFlagged) {
+  const auto circle = [](const char* end) {
+    return read_body("GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/" + std::string(end) + ",0\n");
+  };
+  const auto shorter = circle("10,0.0001");
+  EXPECT_NEAR(shorter.motion().at(1).sweep_rad, 1e-5, 1e-9);
+  EXPECT_TRUE(shorter.warned_of("0.0001 mm apart"));
+  const auto longer = circle("10,-0.0001");
+  EXPECT_NEAR(longer.motion().at(1).sweep_rad, 2 * kPi - 1e-5, 1e-9);
+  EXPECT_TRUE(longer.warned_of("0.0001 mm apart"));
+  EXPECT_TRUE(circle("10,0.009").warned_of("apart"));
+  EXPECT_FALSE(circle("10,0.011").warned_of("apart"));
+  EXPECT_TRUE(circle("10,0").warnings.empty());
+  EXPECT_FALSE(read_body("GOTO/.01,0,0\nCIRCLE/0,0,0,0,0,1,.01\nGOTO/0.0086603,.005,0\n")
+                   .warned_of("apart"));
+}
+
 TEST(Circle, SensesThatGoAgainstTheMotionBeforeThemAreFlagged) {
   std::string text;
   for (int i = 0; i < 4; ++i) {

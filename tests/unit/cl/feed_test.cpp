@@ -85,6 +85,38 @@ TEST(Feed, ThatIsAbsurdIsRefused) {
   }
 }
 
+TEST(Feed, InTwoUnitsIsRefused) {
+  for (const char* words :
+       {"0.2,MMPM,MMPR", "100,MMPR,MMPM", "100,IPM,INVERS", "MMPM,100,IPM", "100,PERMIN,PERREV"}) {
+    const auto read =
+        read_text("UNITS/MM\nSPINDL/1000\nFEDRAT/" + std::string(words) + "\nGOTO/0,0,0\nFINI\n");
+    EXPECT_EQ(read.error_line, 3U) << words;
+    EXPECT_NE(read.error.find("two units"), std::string::npos) << read.error;
+  }
+}
+
+TEST(Feed, InInverseTimeLetsAnArcAndItsRestTakeTheTimeOfOneBlock) {
+  const auto read = read_text(
+      "UNITS/MM\nFEDRAT/INVERS,2\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/10.005,-0.002,0\n"
+      "GOTO/10,10,0\nFINI\n");
+  ASSERT_EQ(read.error, "");
+  const auto m = read.motion();
+  ASSERT_EQ(m.size(), 4U);  // the arc, and its rest of 5 um
+  EXPECT_TRUE(m[1].is_arc);
+  EXPECT_NEAR(1 / m[1].feed + 1 / m[2].feed, 30, 1e-9);
+  EXPECT_NEAR(m[2].feed / m[1].feed, 2 * 3.14159265 * 10 / 5e-3, 20);  // one speed all the way
+  EXPECT_DOUBLE_EQ(1 / m[3].feed, 30);
+  EXPECT_NEAR(read.summary.cut_time_s, 60, 1e-9);  // the first block is approached
+}
+
+TEST(Feed, InInverseTimeGivesABlockThatMovesNothingNoTime) {
+  const auto read = read_text(
+      "UNITS/MM\nRAPID\nGOTO/0,0,10,0,0,1\nFEDRAT/INVERS,6\nGOTO/0,0,10,0,.6,.8\n"
+      "GOTO/0,0,10,0,.6,.8\nGOTO/30,0,10,0,0,1\nFINI\n");
+  EXPECT_EQ(read.summary.zero_length, 1U);
+  EXPECT_NEAR(read.summary.cut_time_s, 20, 1e-9);
+}
+
 TEST(Feed, BeyondTheMachineIsFlaggedOnceAndKept) {
   ClReaderOptions options;
   options.max_feed_mm_per_s = 50;
@@ -138,6 +170,20 @@ TEST(Units, InchOverAPlainlyMetricPartIsFlaggedAndTakenAsWritten) {
                   .warned_of("plainly metric"));
   EXPECT_TRUE(read_text("UNITS/MM\nFEDRAT/10,IPM\nGOTO/0,0,0\nFINI\n").warned_of("feed in inch"));
   EXPECT_TRUE(read_text("UNITS/INCHES\nFEDRAT/10,IPM\nGOTO/1,1,1\nFINI\n").warnings.empty());
+}
+
+TEST(Units, ThatDifferAreFlaggedAndTheLastOneHolds) {
+  const auto head = read_text("UNITS/MM\nUNITS/INCHES\nFEDRAT/10\nGOTO/1,0,0\nFINI\n");
+  EXPECT_EQ(head.error, "");
+  EXPECT_EQ(head.motion().at(0).tip_mm[0], 25.4);
+  ASSERT_EQ(head.warnings.size(), 1U);
+  EXPECT_EQ(head.warnings[0].line, 2U);
+  EXPECT_TRUE(head.warned_of("unit"));
+  const auto middle =
+      read_text("UNITS/MM\nFEDRAT/10\nGOTO/1,0,0\nUNITS/INCHES\nGOTO/1,0,0\nFINI\n");
+  EXPECT_TRUE(middle.warned_of("the unit changes in mid-program"));
+  EXPECT_EQ(middle.motion().at(1).tip_mm[0], 25.4);
+  EXPECT_TRUE(read_text("UNITS/MM\nUNITS/MM\nFEDRAT/10\nGOTO/1,0,0\nFINI\n").warnings.empty());
 }
 
 TEST(Units, ToldByTheCallerWinAndAreFlagged) {

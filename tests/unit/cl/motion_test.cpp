@@ -72,10 +72,51 @@ TEST(Reader, RefusesGodltaWithoutAPosition) {
 }
 
 TEST(Reader, TakesFromAsPositionWithoutMotion) {
-  const auto read = read_body("FROM/1,1,50,0,0,1\nGODLTA/0,0,-1\n");
+  const auto read = read_body("FROM/1,1,50,0,0,1\nRAPID\nGODLTA/0,0,-1\n");
   const auto m = read.motion();
   ASSERT_EQ(m.size(), 1U);
   EXPECT_EQ(m[0].tip_mm, (Array3{1, 1, 49}));
+}
+
+TEST(Reader, MakesFromABlockWhereACutBeginsThere) {
+  const auto read = read_body("FROM/0,0,0,0,.6,.8\nGOTO/100,0,0,0,0,1\nGOTO/100,50,0\n");
+  const auto m = read.motion();
+  ASSERT_EQ(m.size(), 3U);
+  EXPECT_EQ(m[0].kind, BlockKind::kRapid);
+  EXPECT_EQ(m[0].tip_mm, (Array3{0, 0, 0}));
+  EXPECT_NEAR(m[0].axis[1], .6, 1e-15);
+  EXPECT_EQ(m[1].kind, BlockKind::kCut);
+  EXPECT_EQ(m[1].tip_mm, (Array3{100, 0, 0}));
+  EXPECT_EQ(m[1].axis, (Array3{0, 0, 1}));
+  EXPECT_DOUBLE_EQ(read.summary.cut_length_mm, 150);
+  EXPECT_EQ(read_body("FROM/1,2,3\nGOTO/1,2,3\nGOTO/9,2,3\n").motion().size(), 2U);
+}
+
+TEST(Reader, TakesFromBehindMotionForARapidAlone) {
+  const auto read = read_body("GOTO/0,0,0\nFROM/50,0,0\nRAPID\nGOTO/60,0,0\nGOTO/70,0,0\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().size(), 3U);
+  EXPECT_TRUE(read.warned_of("FROM behind motion"));
+  for (const char* next :
+       {"GOTO/60,0,0\n", "GODLTA/10,0,0\n", "CIRCLE/40,0,0,0,0,1\nGOTO/40,10,0\n"}) {
+    const auto cut = read_body("GOTO/0,0,0\nFROM/50,0,0\n" + std::string(next));
+    EXPECT_EQ(cut.error_line, 4U) << next;
+    EXPECT_NE(cut.error.find("FROM"), std::string::npos) << cut.error;
+  }
+  const auto same = read_body("GOTO/0,0,0\nFROM/0,0,0\nGOTO/10,0,0\n");
+  EXPECT_EQ(same.error, "");
+  EXPECT_TRUE(same.warnings.empty());
+  EXPECT_DOUBLE_EQ(same.summary.cut_length_mm, 10);
+}
+
+TEST(Reader, RefusesCoordinatesBeyondAKilometre) {
+  for (const char* line :
+       {"GOTO/1000001,0,0\n", "GOTO/0,-1000001,0\n", "FROM/0,0,1E7\n", "GODLTA/1E6,0,0\n"}) {
+    const auto read = read_body("GOTO/1,0,0\n" + std::string(line) + "GOTO/0,0,0\n");
+    EXPECT_EQ(read.error_line, 4U) << line;
+    EXPECT_NE(read.error.find("beyond 1e6 mm"), std::string::npos) << read.error;
+  }
+  EXPECT_EQ(read_body("GOTO/1000000,0,0\n").error, "");
 }
 
 TEST(Reader, MakesFromABlockWhereAnArcBeginsThere) {

@@ -159,6 +159,35 @@ TEST(Truncation, OfABareListOfPointsCannotBeToldAndIsSaid) {
   EXPECT_TRUE(read.warned_of("no FINI"));
 }
 
+TEST(Refusal, OfAFileThatOnlyTellsWhereTheToolIs) {
+  EXPECT_NE(read_text("UNITS/MM\nFROM/1,2,3\nFINI\n").error.find("no motion"), std::string::npos);
+  EXPECT_NE(read_text("UNITS/MM\nFROM/1,2,3\n").error.find("no motion"), std::string::npos);
+}
+
+TEST(End, ComesLastWhereTheMachineIsSwitchedOffBehindIt) {
+  for (const char* tail :
+       {"END\nCOOLNT/OFF\nSPINDL/OFF\nFINI\n", "END\nCOOLNT/OFF\nSPINDL/OFF\n"}) {
+    const auto read = read_text("FEDRAT/9\nGOTO/1,2,3\n" + std::string(tail), metric());
+    ASSERT_EQ(read.error, "");
+    ASSERT_EQ(read.blocks.size(), 4U);
+    EXPECT_EQ(read.blocks[1].action, ActionKind::kCoolantOff);
+    EXPECT_EQ(read.blocks[2].action, ActionKind::kSpindleOff);
+    EXPECT_EQ(read.blocks[3].kind, BlockKind::kEnd);
+    EXPECT_EQ(read.blocks[3].sequence, 3U);
+  }
+}
+
+TEST(End, RefusesEveryOtherBlockBehindIt) {
+  for (const char* line : {"SPINDL/1000,CLW", "COOLNT/ON", "DELAY/1", "STOP", "OPSTOP", "LOADTL/2",
+                           "AUXFUN/8", "GOTO/1,2,4", "GODLTA/1"}) {
+    const auto read =
+        read_text("FEDRAT/9\nGOTO/1,2,3\nEND\n" + std::string(line) + "\nFINI\n", metric());
+    EXPECT_EQ(read.error_line, 4U) << line;
+    EXPECT_NE(read.error.find("behind the end of the program"), std::string::npos) << read.error;
+    EXPECT_EQ(read.blocks.size(), 1U) << line;
+  }
+}
+
 TEST(Refusal, OfMotionBehindTheEnd) {
   EXPECT_NE(read_text("FEDRAT/9\nGOTO/1,2,3\nEND\nGOTO/1,2,4\nFINI\n", metric())
                 .error.find("behind the end"),

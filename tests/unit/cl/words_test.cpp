@@ -59,6 +59,48 @@ TEST(Words, OfTheSpindleComeInAnyOrder) {
             ActionKind::kVendorWord);
 }
 
+TEST(Words, OfGearsAndLimitsLeaveTheSpindleItsSpeed) {
+  for (const char* words : {"3000,RPM,CLW,RANGE,HIGH", "RANGE,2,3000,CLW", "3000,RANGE,CLW",
+                            "3000,RPM,CLW,MAXRPM,5000", "MAXRPM,5000,CLW,3000"}) {
+    const auto read = read_text("UNITS/MM\nSPINDL/1000\nFEDRAT/0.2,MMPR\nSPINDL/" +
+                                std::string(words) + "\nGOTO/0,0,0\nDELAY/100,REV\nFINI\n");
+    ASSERT_EQ(read.error, "") << words;
+    EXPECT_EQ(read.blocks.at(1).action, ActionKind::kSpindleClockwise) << words;
+    EXPECT_EQ(read.blocks[1].value, 3000) << words;
+    EXPECT_DOUBLE_EQ(read.blocks.at(2).feed, 10) << words;
+    EXPECT_DOUBLE_EQ(read.blocks.at(3).value, 2) << words;
+    EXPECT_EQ(read.warnings.size(), 1U) << words;
+    EXPECT_TRUE(read.warned_of("is left to the machine")) << words;
+  }
+  EXPECT_EQ(read_body("SPINDL/RANGE,HIGH\nGOTO/0,0,0\n").blocks.at(0).action,
+            ActionKind::kVendorWord);
+}
+
+TEST(Words, OfTheSpindleThatNobodyKnowsAreRefusedBesideSpeedOrSense) {
+  for (const char* words : {"3000,FAST", "FAST,3000", "CLW,FAST", "ON,FAST", "3000,ORIENT,CLW",
+                            "3000,CLW,RANGE,3000", "3000,MAXRPM"}) {
+    const auto read = read_body("SPINDL/900\nSPINDL/" + std::string(words) + "\nGOTO/0,0,0\n");
+    EXPECT_EQ(read.error_line, 4U) << words;
+  }
+  for (const char* words : {"ORIENT", "ORIENT,90", "LOCK,90", "NEUTRL"}) {
+    EXPECT_EQ(first_block(read_body("SPINDL/" + std::string(words) + "\nGOTO/0,0,0\n")).action,
+              ActionKind::kVendorWord)
+        << words;
+  }
+}
+
+TEST(Words, OfTheCoolantMayHaveOnBesideThem) {
+  const auto what = [](const char* words) {
+    return first_block(read_body("COOLNT/" + std::string(words) + "\nGOTO/0,0,0\n")).action;
+  };
+  EXPECT_EQ(what("ON,MIST"), ActionKind::kCoolantMist);
+  EXPECT_EQ(what("MIST,ON"), ActionKind::kCoolantMist);
+  EXPECT_EQ(what("FLOOD,ON"), ActionKind::kCoolantFlood);
+  EXPECT_EQ(what("ON,THRU"), ActionKind::kCoolantThrough);
+  EXPECT_EQ(what("ON,TAPKUL"), ActionKind::kVendorWord);
+  EXPECT_EQ(what("MIST,FLOOD"), ActionKind::kVendorWord);
+}
+
 TEST(Words, OfTheCoolantBecomeActions) {
   const auto read = read_body(
       "COOLNT/ON\nCOOLNT/FLOOD\nCOOLNT/MIST\nCOOLNT/THRU\nCOOLNT/OFF\nCOOLNT/TAPKUL\nGOTO/0,0,0\n");
@@ -103,8 +145,25 @@ TEST(Words, OfVendorsThatDoNotShapeThePathAreSkipped) {
       "PPWORD / A, B, C\nREMARK free $ text\nORIGIN/0,0,0\nGOTO/0,0,0\n");
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.blocks.size(), 2U);
-  EXPECT_EQ(read.warnings.size(), 3U);  // two CSI_ words, CUTCOM
+  EXPECT_EQ(read.warnings.size(), 4U);  // two CSI_ words, INSERT, CUTCOM
   EXPECT_TRUE(read.warned_of("CUTCOM is not applied"));
+}
+
+TEST(Words, OfInsertedTextAreFlaggedAsTheyMayMoveTheMachine) {
+  const auto read = read_body("GOTO/0,0,0\nINSERT G91 X100\nINSERT G90\nGOTO/0,0,1\n");
+  EXPECT_EQ(read.error, "");
+  ASSERT_EQ(read.warnings.size(), 1U);
+  EXPECT_EQ(read.warnings[0].line, 4U);
+  EXPECT_TRUE(read.warned_of("text for another control"));
+}
+
+TEST(Words, ThatDoNotShapeThePathAreSkippedWithOneWarningEach) {
+  const auto read =
+      read_body("LINTOL/ON\nLINTOL/OFF\nOPSKIP/ON\nSEQNO/10\nSEQNO/20\nPPFUN/x\nGOTO/0,0,0\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.blocks.size(), 2U);
+  EXPECT_EQ(read.warnings.size(), 4U);
+  EXPECT_TRUE(read.warned_of("SEQNO is skipped"));
 }
 
 TEST(Words, ThatTheCallerAllowsGoToTheMachine) {
@@ -123,9 +182,13 @@ TEST(Words, ThatTheCallerAllowsGoToTheMachine) {
 }
 
 TEST(Words, OfTheMachineBecomeVendorWords) {
-  const auto read = read_body("AUXFUN/8\nGOTO/0,0,0\n");
+  const auto read = read_body("AUXFUN/8\nPREFUN/90\nCLAMP/ON\nAIR/ON\nGOTO/0,0,0\n");
   EXPECT_STREQ(first_block(read).text, "AUXFUN/8");
   EXPECT_EQ(first_block(read).value, 8);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(read.blocks.at(i).action, ActionKind::kVendorWord) << i;
+  }
+  EXPECT_STREQ(read.blocks[2].text, "CLAMP/ON");
 }
 
 TEST(Words, TellTheDialect) {
