@@ -90,12 +90,13 @@ class ClReader::Impl {
   Interpreter::Result read_statement() {
     if (!started_) {
       started_ = true;
-      const std::string_view head = lines_.head();
-      if (head.find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
+      Recognised what = recognise_foreign(lines_.head());
+      while (!what.is_certain && lines_.read_on()) what = recognise_foreign(lines_.head());
+      if (lines_.head().find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
         return interpreter_.refuse(0, "the file is empty");
       }
-      if (const std::string foreign = recognise_foreign(head); !foreign.empty()) {
-        return interpreter_.refuse(0, "this is " + foreign + ", not a CL file",
+      if (!what.foreign.empty()) {
+        return interpreter_.refuse(0, "this is " + what.foreign + ", not a CL file",
                                    "output APT or CLDATA text from the CAM system");
       }
     }

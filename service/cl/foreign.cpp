@@ -5,6 +5,9 @@
 #include <array>
 #include <cctype>
 
+#include "service/cl/statement.hpp"
+#include "service/cl/words.hpp"
+
 namespace meridian::cl {
 namespace {
 
@@ -43,12 +46,30 @@ void skip_blanks(std::string_view& text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
 }
 
-/// Takes a letter address with its number ("X-1.5", "G 1", "Z=_HOME") off the front.
+/// Takes a macro value off the front: "#2", "[#1+2]".
+bool take_macro(std::string_view& text) {
+  std::size_t used = 0;
+  if (text.starts_with('#')) {
+    used = 1;
+    while (used < text.size() && std::isdigit(static_cast<unsigned char>(text[used])) != 0) ++used;
+    if (used == 1) return false;
+  } else if (text.starts_with('[')) {
+    used = std::min(text.find(']'), text.size() - 1) + 1;
+  }
+  text.remove_prefix(used);
+  return used > 0;
+}
+
+/// Takes a letter address with its number ("X-1.5", "G 1", "Y#2") off the front.
 bool take_address(std::string_view& text) {
   if (text.empty() || std::isalpha(static_cast<unsigned char>(text.front())) == 0) return false;
   std::string_view rest = text.substr(1);
   skip_blanks(rest);
   if (!rest.empty() && rest.front() == '=') rest.remove_prefix(1);
+  if (take_macro(rest)) {
+    text = rest;
+    return true;
+  }
   std::size_t digits = 0;
   std::size_t at = 0;
   while (at < rest.size() &&
@@ -74,10 +95,85 @@ bool is_address_line(std::string_view line) {
   return addresses > 0;
 }
 
-std::string name_of(const std::string& text, bool percent, bool o_number) {
-  if (has(text, "BEGIN PGM")) return "a Heidenhain NC program (BEGIN PGM)";
-  for (const std::string_view word :
-       {"TRAORI", "TRAFOOF", "CYCLE832", "CYCLE800", "SUPA", "DEF REAL", "G710", "_N_", "MSG("}) {
+constexpr bool is_letter(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+std::string_view leading_word(std::string_view line) {
+  std::size_t size = 0;
+  while (size < line.size() && (is_letter(line[size]) || line[size] == '-')) ++size;
+  return line.substr(0, size);
+}
+
+/// True for a statement that only CL files have: one of their words, whole, with its slash, or one
+/// that takes free text.
+bool is_cl_line(std::string_view line) {
+  if (line.starts_with("TOOL PATH")) return true;
+  const std::string_view word = leading_word(line);
+  if (takes_free_text(word)) return true;
+  line.remove_prefix(word.size());
+  skip_blanks(line);
+  return line.starts_with('/') && find_word(word) != Word::kUnknown;
+}
+
+/// The word of a line that no text but a Siemens program has; empty where there is none.
+std::string_view siemens_word(std::string_view line) {
+  if (line.starts_with("%_N_")) return "_N_";
+  for (std::size_t at = 0; at < line.size() && line[at] != ';';) {
+    std::size_t stop = at;
+    while (stop < line.size() && is_letter(line[stop])) ++stop;
+    const std::string_view word = line.substr(at, stop - at);
+    if (word == "TRAORI" || word == "TRAFOOF") return word;
+    if (word.size() == 8 && word.starts_with("CYCLE8")) return word;  // CYCLE800, CYCLE832, ...
+    at = stop + 1;
+  }
+  return {};
+}
+
+/// Heads are judged line by line: how many there are, and of which kind.
+struct Lines {
+  std::size_t all = 0;
+  std::size_t addresses = 0;
+  std::size_t cl = 0;
+  bool percent = false;
+  bool o_number = false;
+  std::string_view siemens;
+
+  explicit Lines(std::string_view rest) {
+    while (!rest.empty() && all < kMost) {
+      const std::size_t stop = std::min(rest.find('\n'), rest.size());
+      std::string_view line = rest.substr(0, stop);
+      rest.remove_prefix(std::min(stop + 1, rest.size()));
+      while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+      skip_blanks(line);
+      if (!line.empty() && line.front() != ';' && line.front() != '(' && !line.starts_with("$$")) {
+        take(line);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMost = 400;
+
+  void take(std::string_view line) {
+    if (siemens.empty() && !is_cl_line(line)) siemens = siemens_word(line);
+    if (line.front() == '%') {
+      percent = true;
+      return;
+    }
+    ++all;
+    cl += is_cl_line(line) ? 1 : 0;
+    o_number |= line.size() > 1 && line.front() == 'O' &&
+                std::isdigit(static_cast<unsigned char>(line[1])) != 0;
+    addresses += is_address_line(line) ? 1 : 0;
+  }
+};
+
+constexpr std::string_view kHeidenhain = "a Heidenhain NC program (BEGIN PGM)";
+
+std::string name_of(const std::string& text, const Lines& lines) {
+  if (!lines.siemens.empty()) return "a Siemens NC program (" + std::string(lines.siemens) + ")";
+  for (const std::string_view word : {"SUPA", "DEF REAL", "G710", "_N_", "MSG("}) {
     if (has(text, word)) return "a Siemens NC program (" + std::string(word) + ")";
   }
   for (const std::string_view word : {"M428", "M429", "O<", "#<", "G43.1"}) {
@@ -86,60 +182,37 @@ std::string name_of(const std::string& text, bool percent, bool o_number) {
   for (const std::string_view word : {"G43.4", "G43.5", "G54.1", "G54.2", "G05.1", "G68.2"}) {
     if (has(text, word)) return "a Fanuc NC program (" + std::string(word) + ")";
   }
-  if (percent && o_number) return "a Fanuc NC program (% and O number)";
-  if (has(text, "G93") || percent) return "an NC program (G code, LinuxCNC or its like)";
+  if (lines.percent && lines.o_number) return "a Fanuc NC program (% and O number)";
+  if (has(text, "G93") || lines.percent) return "an NC program (G code, LinuxCNC or its like)";
   return "an NC program (G code)";
 }
 
 }  // namespace
 
-std::string recognise_foreign(std::string_view head) {
+Recognised recognise_foreign(std::string_view head) {
+  constexpr std::size_t kEnoughLines = 32;
   for (const Magic& magic : kMagics) {
-    if (head.starts_with(magic.bytes)) return std::string(magic.name);
+    if (head.starts_with(magic.bytes)) return {std::string(magic.name), true};
   }
   const auto control = std::count_if(head.begin(), head.end(), [](unsigned char c) {
     return c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f' && c != '\x1a';
   });
   if (control > 0 && (head.find('\0') != std::string_view::npos ||
                       control * 20 > static_cast<std::ptrdiff_t>(head.size()))) {
-    return "binary data";
+    return {"binary data", true};
   }
   const std::string text = in_capitals(head);
-  if (has(text, "BEGIN PGM")) return name_of(text, false, false);
-  std::size_t lines = 0;
-  std::size_t addresses = 0;
-  std::size_t words = 0;
-  bool percent = false;
-  bool o_number = false;
-  std::string_view rest = text;
-  while (!rest.empty() && lines < 400) {
-    const std::size_t stop = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, stop);
-    rest.remove_prefix(std::min(stop + 1, rest.size()));
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
-    skip_blanks(line);
-    if (line.empty() || line.front() == ';' || line.front() == '(' || line.starts_with("$$")) {
-      continue;
-    }
-    if (line.front() == '%') {
-      percent = true;
-      continue;
-    }
-    ++lines;
-    if (line.starts_with("GOTO") || line.starts_with("FEDRAT") || line.starts_with("CIRCLE") ||
-        line.starts_with("LOADTL") || line.starts_with("PARTNO") || line.starts_with("UNITS")) {
-      ++words;
-    }
-    o_number |= line.size() > 1 && line.front() == 'O' &&
-                std::isdigit(static_cast<unsigned char>(line[1])) != 0;
-    addresses += is_address_line(line) ? 1 : 0;
-  }
-  if (words > 0 || lines == 0) return {};
-  const std::string name = name_of(text, percent, o_number);
+  const Lines lines(text);
+  if (lines.cl > 0) return {{}, true};
+  if (has(text, "BEGIN PGM")) return {std::string(kHeidenhain), true};
+  if (lines.all == 0 && lines.siemens.empty()) return {};
+  const std::string name = name_of(text, lines);
   const bool is_named = !name.starts_with("an NC program");
-  const bool is_gcode =
-      addresses * 2 > lines || (is_named && addresses * 4 > lines) || (percent && addresses > 0);
-  return is_gcode ? name : std::string{};
+  const bool is_gcode = !lines.siemens.empty() || lines.addresses * 2 > lines.all ||
+                        (is_named && lines.addresses * 4 > lines.all) ||
+                        (lines.percent && lines.addresses > 0);
+  const bool is_enough = lines.all >= kEnoughLines;
+  return is_gcode ? Recognised{name, is_named || is_enough} : Recognised{{}, is_enough};
 }
 
 }  // namespace meridian::cl

@@ -6,10 +6,17 @@
 
 namespace meridian::cl {
 
-/// What a text is that is no CL file, e.g. "a Siemens NC program (TRAORI)" or "a ZIP archive";
-/// empty where nothing speaks against a CL file. `head` is the first 64 KiB or less.
+struct Recognised {
+  /// What a text is that is no CL file, e.g. "a Siemens NC program (TRAORI)" or "a ZIP archive";
+  /// empty where nothing speaks against a CL file.
+  std::string foreign;
+  /// More of the text would say nothing else.
+  bool is_certain = false;
+};
+
+/// `head` is the first 64 KiB or less.
 ///
-/// NC programs are told by what only they have; a text with APT motion words in it is none.
-[[nodiscard]] std::string recognise_foreign(std::string_view head);
+/// NC programs are told by what only they have; a text with a CL word and its slash in it is none.
+[[nodiscard]] Recognised recognise_foreign(std::string_view head);
 
 }  // namespace meridian::cl

@@ -64,6 +64,13 @@ std::string_view LineSource::head() {
   return {begin_, std::min(static_cast<std::size_t>(end_ - begin_), kHeadSize)};
 }
 
+bool LineSource::read_on() {
+  const auto before = static_cast<std::size_t>(end_ - begin_);
+  if (before >= kHeadSize) return false;
+  refill();
+  return static_cast<std::size_t>(end_ - begin_) > before;
+}
+
 LineSource::Outcome LineSource::next(std::string_view& line) {
   if (!started_) (void)head();
   const char* newline = find_newline(begin_, end_);

@@ -29,6 +29,8 @@ class LineSource {
   /// The first bytes of the source, as many as it has at once, up to 64 KiB; to be asked before the
   /// first next().
   [[nodiscard]] std::string_view head();
+  /// Waits for more of the head; false where there is none, or head() is as long as it gets.
+  [[nodiscard]] bool read_on();
 
   [[nodiscard]] std::uint32_t line_number() const noexcept { return line_number_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }

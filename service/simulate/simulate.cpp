@@ -230,6 +230,10 @@ class Run {
         is_end = start_cycle_ && !has_events;
         report.outcome = is_program_over_ ? Outcome::kDone : Outcome::kStopped;
         break;
+      case State::kLoaded:  // the start was refused, or blocks stand behind the end
+        is_end = start_cycle_ && !has_events;
+        report.outcome = is_program_over_ ? Outcome::kDone : Outcome::kStopped;
+        break;
       case State::kStarved:
         is_end = feed_.is_over();
         report.outcome = Outcome::kStarved;

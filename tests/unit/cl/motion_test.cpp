@@ -207,6 +207,26 @@ TEST(Reader, GivesABlockAsSoonAsItsLineIsThere) {
   EXPECT_EQ(source.given(), 6U);
 }
 
+TEST(Reader, KnowsAForeignProgramThatComesLineByLine) {
+  SlowSource source({"\n", "( boat )\n", "G21 G90\n", "M428\n", "G93\n", "G1 X  16.339 Y 2 F12\n"});
+  std::istream stream(&source);
+  ClReader reader(stream, "slow");
+  const auto block = reader.next();
+  ASSERT_FALSE(block);
+  EXPECT_NE(block.error().text().find("a LinuxCNC NC program (M428)"), std::string::npos)
+      << block.error().text();
+}
+
+TEST(Reader, WaitsForTheFirstWordOfAProgramThatBeginsWithNothing) {
+  SlowSource source(
+      {"\n", "$$ note\n", "MULTAX\n", "UNITS/MM\n", "FEDRAT/60\n", "GOTO/1,2,3\n", "FINI\n"});
+  std::istream stream(&source);
+  ClReader reader(stream, "slow");
+  const auto block = reader.next();
+  ASSERT_TRUE(block && *block);
+  EXPECT_EQ(source.given(), 6U);
+}
+
 TEST(Reader, RefusesMalformedGotos) {
   for (const char* line :
        {"GOTO/1,2\n", "GOTO/1,2,3,4\n", "GOTO/1,,3\n", "GOTO/1,2,X\n", "GOTO/\n",

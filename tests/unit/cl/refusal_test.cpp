@@ -30,6 +30,17 @@ INSTANTIATE_TEST_SUITE_P(
                 "N10 ;Start\nN20 DEF REAL _tol\nN30 G40 G17 G710 G94 G90\nN40 TRAORI\n"
                 "N50 G0 X0.0 Y20. I0.0\nN60 SUPA G0 Z=_Z D0\n"},
         Foreign{"Siemens", "N10 G40 G17\nN20 CYCLE800()\nN30 G0 X25. Y4. S20000 D1 M3\n"},
+        Foreign{"Siemens NC program (_N_)",
+                "%_N_X_MPF\n;$PATH=/_N_WKS_DIR\nN10 TRAORI\nN20 G1 X=R1 Y2\n"},
+        Foreign{
+            "Siemens NC program (TRAORI)",
+            "DEF REAL _camtolerance\nTRAORI\nCYCLE832(_camtolerance,1,1)\nCYCLE800()\nG1 X1 Y1\n"},
+        Foreign{"Siemens NC program (CYCLE832)", "DEF REAL _t\nCYCLE832(_t,1,1)\nG1 X=_A\n"},
+        Foreign{
+            "Siemens",
+            "N10 G17 G90 G54\nSTART:\nN20 TRAORI\nN30 G1 X10 Y20 Z3 F1000\nGOTOB START\nN50 M30\n"},
+        Foreign{"Fanuc", "%\nO1000\nG90 G54\nG43.4 H1\nX1. Y2. Z3.\nGOTO 100\nM30\n%\n"},
+        Foreign{"G code", "T1 M6\nG0 X[#1+2]\nWHILE [#1 LT 3] DO1\nG1 Y#2\nEND1\nM30\n"},
         Foreign{"Heidenhain",
                 "0  BEGIN PGM 11 MM\n1 ;part\n2 CYCL DEF 7.0 DATUM SHIFT\n"
                 "3 L Z-10 R0 FMAX M91\n4 L X+1 Z 25.000 F100\n"},
@@ -48,8 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Foreign, LeavesClFilesAlone) {
   for (const char* text :
        {"GOTO/1 2 3", "$$ISO\nUNITS/MM\n", "PARTNO N10 G1 X1\nUNITS/MM\nGOTO/1,2,3\n",
-        "PPRINT/APTCL-SPEC,MAKINO-FF,1\nUNITS/MM\n", "% \nPARTNO A\n"}) {
-    EXPECT_EQ(recognise_foreign(text), "") << text;
+        "PPRINT/APTCL-SPEC,MAKINO-FF,1\nUNITS/MM\n", "% \nPARTNO A\n", "PPRINT TRAORI\n",
+        "INSERT TRAORI\nINSERT CYCLE800()\nLOADTL / 1\n", "$$ TRAORI\nMULTAX\n"}) {
+    EXPECT_EQ(recognise_foreign(text).foreign, "") << text;
   }
 }
 

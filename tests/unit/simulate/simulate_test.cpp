@@ -75,6 +75,14 @@ TEST_F(Simulate, EndsWhereTheMachineIsSwitchedOffRightBehindItsProgram) {
   EXPECT_LT(run.report.cycles, free.report.cycles + 100);
 }
 
+TEST_F(Simulate, EndsWhereTheProgramSwitchesTheMachineOffBehindItsEnd) {
+  std::string text = kPart;
+  text.replace(text.rfind("FINI"), 4, "END\nSPINDL/OFF\nCOOLNT/OFF\nFINI");
+  const SimulatedRun run = run_simulation(text, model);
+  EXPECT_EQ(run.report.outcome, Outcome::kDone);
+  EXPECT_EQ(run.report.blocks_done, 9U);
+}
+
 TEST_F(Simulate, IsJudgedByThePolesToleranceWhichTheVerdictNames) {
   MachineModel bench = test::bench_machine();
   bench.tolerances.pole_axis_rad = units::rad_from_deg(1.5);
