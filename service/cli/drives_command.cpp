@@ -2,11 +2,13 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "meridian/kinematics/limited.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/injection_console.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
@@ -21,7 +23,7 @@ struct DrivesOptions {
   std::uint32_t domain = 0;
   std::string lag = "second";
   double time_constant_ms = 2;
-  bool has_no_actions = false, is_refusing_actions = false, is_quiet = false;
+  bool has_no_actions = false, is_refusing_actions = false, is_quiet = false, has_console = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
   std::vector<std::string> unreferenced, failing, hanging;  ///< names of drives, or all
@@ -83,7 +85,8 @@ void run_drives(const DrivesOptions& options) {
       options.lag == "first" ? drives::LagKind::kFirstOrder : drives::LagKind::kSecondOrder,
       options.time_constant_ms * 1e-3};
   for (const std::string& text : options.injections) {
-    simulated.injections.push_back(parse_injection(text, model));
+    const auto injection = drives::parse_injection(text, model);
+    simulated.injections.push_back(injection ? *injection : parse_injection(text, model));
   }
   simulated.homing = homing_plans(options, model);
   simulated.is_action_peer = !options.has_no_actions;
@@ -91,6 +94,8 @@ void run_drives(const DrivesOptions& options) {
   simulated.action_delay_ns = static_cast<std::int64_t>(options.action_delay_s * 1e9);
   watch_for_stop();
   simulated.has_priority = drives::prepare_drive_priority();
+  std::optional<InjectionConsole> console;
+  if (options.has_console) simulated.injections_now = &console.emplace(model).injections();
   dds::Participant participant(
       {.domain = options.domain,
        .machine = options.partition.empty() ? model.name : options.partition,
@@ -143,10 +148,14 @@ void add_drives_command(CLI::App& app, int& exit_code) {
   command->add_option("--action-delay", options->action_delay_s, "Time that an action takes, s")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0));
+  command->add_flag("--console", options->has_console,
+                    "Read KIND[:DRIVE][=VALUE] from standard input, a line each, and let it happen "
+                    "at once; 'mend' undoes everything");
   command
       ->add_option("--inject", options->injections,
-                   "Something that goes wrong, KIND@SECONDS[:DRIVE] after operation is enabled; "
-                   "KIND: fault, blocked, silence, emergency. May be repeated")
+                   "Something that goes wrong, KIND@SECONDS[:DRIVE][=VALUE] after operation is "
+                   "enabled; may be repeated. KIND (docs/faults.md): " +
+                       drives::all_injection_words())
       ->type_name("WHAT");
   const auto add_drive_names = [command](const char* name, std::vector<std::string>& names,
                                          const char* text) {

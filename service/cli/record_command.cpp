@@ -9,8 +9,11 @@
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
+#include "service/config/machine_file.hpp"
 #include "service/dds/followed.hpp"
 #include "service/dds/reader.hpp"
+#include "service/record/flight_picture.hpp"
+#include "service/record/flight_report.hpp"
 #include "service/record/wire_recording.hpp"
 #include "service/stream/steady_ns.hpp"
 
@@ -18,7 +21,7 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string output;
+  std::string output, flight, machine, picture;
   double duration_s = 0;
   bool until_end = false;
   std::int64_t max_missing = -1;
@@ -164,6 +167,22 @@ int run(Options& options) {
   return is_bad ? kVerdictNo : kFine;
 }
 
+int read(const Options& options) {
+  const auto refuse = [](const record::RecordError& error) {
+    std::cerr << error.text() << "\n";
+    return kInputRefused;
+  };
+  const MachineModel model = config::load_machine(options.machine);
+  auto recording = record::RecordingReader::open(options.flight, model);
+  if (!recording) return refuse(recording.error());
+  const auto report = record::read_flight(*recording, model);
+  if (!report) return refuse(report.error());
+  std::cout << record::to_text(*report, model);
+  if (options.picture.empty()) return kFine;
+  const auto error = record::draw_flight(*recording, *report, model, options.picture);
+  return error ? refuse(*error) : kFine;
+}
+
 }  // namespace
 
 void add_record_command(CLI::App& app, int& exit_code) {
@@ -171,15 +190,32 @@ void add_record_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "record",
       "Setpoints and feedback as they are seen on the wire, into a recording, with the gaps, the "
-      "age of what arrives and the following error");
-  command->add_option("output", options->output, "Recording to write (CSV)")->required();
+      "age of what arrives and the following error. Or, with --read, what such a recording or one "
+      "of "
+      "the flight recorder says of a fault");
+  command->add_option("output", options->output, "Recording to write (CSV)");
+  CLI::Option* const read_option =
+      command->add_option("--read", options->flight,
+                          "Instead: tell alarm, stop, following errors and what drives reported, "
+                          "out of this file of the flight recorder or of this command");
+  CLI::Option* const machine =
+      command->add_option("-m,--machine", options->machine, "For --read: machine file (TOML)")
+          ->needs(read_option);
+  read_option->needs(machine);
+  command->add_option("--picture", options->picture, "For --read: draw it to this .png or .svg")
+      ->needs(read_option);
   command->add_option("--duration", options->duration_s, "End after so many seconds")
       ->check(CLI::PositiveNumber);
   command->add_flag("--until-end", options->until_end, "End when the program in the machine ends");
   command->add_option("--max-missing", options->max_missing,
                       "Exit code 1 where more cycles are missing");
   add_peer_options(*command, options->peer);
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, &exit_code] {
+    if (options->flight.empty() == options->output.empty()) {
+      throw CLI::ValidationError("record", "name the recording to write, or one behind --read");
+    }
+    exit_code = options->flight.empty() ? run(*options) : read(*options);
+  });
 }
 
 }  // namespace meridian::cli

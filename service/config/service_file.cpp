@@ -35,6 +35,14 @@ void read_dds(Section section, ServiceConfig& config) {
   section.finish();
 }
 
+void read_flight(Section section, const std::filesystem::path& folder, FlightConfig& flight) {
+  const std::string name = section.text_or("folder", "");
+  if (!name.empty()) flight.folder = (folder / name).lexically_normal();
+  flight.seconds = section.number_or("seconds", flight.seconds, {1, 60});
+  flight.faults = section.integer_or("faults", flight.faults, 1, 1000);
+  section.finish();
+}
+
 void read_service(Section section, const std::filesystem::path& folder, ServiceConfig& config) {
   const auto inside = [&folder](const std::string& path) {
     return path.empty() ? std::filesystem::path() : (folder / path).lexically_normal();
@@ -70,6 +78,7 @@ ServiceConfig load_service(const std::filesystem::path& path) {
   Section file(path.string(), table);
   ServiceConfig config;
   read_service(file.section("service"), path.parent_path(), config);
+  read_flight(file.section_or("flight_recorder"), path.parent_path(), config.flight);
   read_realtime(file.section_or("realtime"), config.realtime);
   read_dds(file.section_or("dds"), config);
   file.finish();

@@ -36,6 +36,13 @@ struct RealtimeConfig {
   bool hold_dma_latency = true;
 };
 
+/// The flight recorder: what it keeps of a fault, and where (docs/recordings.md).
+struct FlightConfig {
+  std::filesystem::path folder;  ///< empty: `faults` in the state directory, else nothing
+  double seconds = 10;
+  int faults = 20;  ///< so many stay in the folder, the oldest go
+};
+
 /// Everything about the service that is not about the machine.
 struct ServiceConfig {
   std::filesystem::path machine;          ///< machine file
@@ -44,6 +51,7 @@ struct ServiceConfig {
   std::filesystem::path log;              ///< log file; empty: standard error
   std::filesystem::path state_directory;  ///< of the journal; empty: $STATE_DIRECTORY, else none
 
+  FlightConfig flight;
   RealtimeConfig realtime;
 
   int dds_domain = 0;

@@ -40,6 +40,7 @@ void Drive::take_controlword(std::uint16_t controlword, std::uint8_t mode) noexc
   take_mode(mode);
   state_ = next_state(state_, controlword, controlword_);
   controlword_ = controlword;
+  if (!has_power_) state_ = DriveState::kSwitchOnDisabled;
   if (before == DriveState::kFault && state_ != DriveState::kFault) error_ = kErrorNone;
   const bool is_entering =
       state_ == DriveState::kOperationEnabled && before != DriveState::kOperationEnabled;
@@ -50,6 +51,11 @@ void Drive::take_controlword(std::uint16_t controlword, std::uint8_t mode) noexc
   }
   const bool may_search = state_ == DriveState::kOperationEnabled && mode_ == dds::kHomingMode;
   homing_.ask(may_search && (controlword & 0x10U) != 0);
+}
+
+void Drive::set_power(bool has_power) noexcept {
+  has_power_ = has_power;
+  if (!has_power_) state_ = DriveState::kSwitchOnDisabled;
 }
 
 void Drive::fail(std::uint16_t error) noexcept {
@@ -84,7 +90,8 @@ void Drive::work(const DriveInput& input, double dt_s) noexcept {
   if (is_blocked_) {
     servo_.velocity = 0;
   } else {
-    servo_ = follow(servo_, target_, dt_s, lag_);
+    const ServoLag lag{lag_.kind, sick_time_constant_s_.value_or(lag_.time_constant_s)};
+    servo_ = follow(servo_, target_, dt_s, lag);
   }
   const bool is_lagging =
       limits_.following_error > 0 && std::abs(following_error()) > limits_.following_error;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/dds/messages.hpp"
@@ -36,8 +37,14 @@ class Drive {
   void work(const DriveInput& input, double dt_s) noexcept;
   /// The drive finds something wrong with itself: it ramps down and goes to fault.
   void fail(std::uint16_t error) noexcept;
-  /// The shaft is stuck: the position stays as it is from now on.
-  void block_shaft() noexcept { is_blocked_ = true; }
+  /// The shaft is stuck: the position stays as it is while it is blocked.
+  void block_shaft(bool is_blocked) noexcept { is_blocked_ = is_blocked; }
+  /// Without power the drive is in switch on disabled, whatever the controlword asks for.
+  void set_power(bool has_power) noexcept;
+  /// Follows with another time constant than its own; nothing: with its own.
+  void set_time_constant(std::optional<double> time_constant_s) noexcept {
+    sick_time_constant_s_ = time_constant_s;
+  }
 
   [[nodiscard]] DriveState state() const noexcept { return state_; }
   [[nodiscard]] std::uint16_t statusword() const noexcept;
@@ -65,7 +72,8 @@ class Drive {
   ServoState servo_;
   double target_ = 0, target_velocity_ = 0;
   bool is_following_ = false;  ///< took an enabled setpoint since operation was enabled
-  bool is_blocked_ = false;
+  bool is_blocked_ = false, has_power_ = true;
+  std::optional<double> sick_time_constant_s_;
 };
 
 }  // namespace meridian::drives

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "meridian/kinematics/limited.hpp"
 
@@ -36,7 +37,7 @@ bool DriveGroup::is_off() const noexcept {
 }
 
 void DriveGroup::take(const dds::DriveCommand& command) noexcept {
-  if (command.drive >= drives_.size()) return;
+  if (command.drive >= drives_.size() || is_dead_) return;
   if (command.service_id != service_id_) {
     if (service_id_ != 0 && !is_off()) return;
     service_id_ = command.service_id;
@@ -56,6 +57,10 @@ void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
 }
 
 void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
+  if (!is_dead_ && setpoint_faults_.lets_pass(setpoint)) accept(setpoint);
+}
+
+void DriveGroup::accept(const dds::SetpointSample& setpoint) noexcept {
   const bool is_sound = std::all_of(drives_.begin(), drives_.end(), [&](const Drive& drive) {
     const auto i = static_cast<std::size_t>(&drive - drives_.data());
     return is_sane(setpoint.setpoint.position[i]) && is_sane(setpoint.setpoint.velocity[i]);
@@ -68,7 +73,10 @@ void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
 }
 
 void DriveGroup::work(int periods) noexcept {
+  if (is_dead_) return;
   const double dt_s = cycle_s_ * periods;
+  setpoint_faults_.work(periods);
+  for (dds::SetpointSample late; setpoint_faults_.arrives(late);) accept(late);
   // Who slept through a setpoint did not miss it: periods that this side lost count from the next
   // one on, when a service that the same host held up has sent again.
   periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
@@ -97,24 +105,61 @@ void DriveGroup::work_on_injections(double dt_s) noexcept {
   enabled_s_ += dt_s;
   std::erase_if(injections_, [this](const Injection& injection) {
     if (enabled_s_ < injection.after_s) return false;
-    Drive& drive = drives_[static_cast<std::size_t>(
-        std::clamp(injection.drive, 0, static_cast<int>(drives_.size()) - 1))];
-    switch (injection.kind) {
-      case Injection::Kind::kFault:
-        drive.fail(kErrorDevice);
-        break;
-      case Injection::Kind::kBlocked:
-        drive.block_shaft();
-        break;
-      case Injection::Kind::kSilence:
-        is_silent_ = true;
-        break;
-      case Injection::Kind::kEmergency:
-        is_emergency_stop_ = true;
-        break;
-    }
+    inject_now(injection);
     return true;
   });
+}
+
+void DriveGroup::inject_now(const Injection& injection) noexcept {
+  const auto i = static_cast<std::size_t>(
+      std::clamp(injection.drive, 0, static_cast<int>(drives_.size()) - 1));
+  Drive& drive = drives_[i];
+  switch (injection.kind) {
+    case Injection::Kind::kFault:
+      return drive.fail(kErrorDevice);
+    case Injection::Kind::kBlocked:
+      return drive.block_shaft(true);
+    case Injection::Kind::kUnpowered:
+      return drive.set_power(false);
+    case Injection::Kind::kLag:
+      return drive.set_time_constant(injection.value);
+    case Injection::Kind::kSilence:
+      is_silent_ = true;
+      return;
+    case Injection::Kind::kDead:
+      is_dead_ = true;
+      return;
+    case Injection::Kind::kEmergency:
+      is_emergency_stop_ = true;
+      return;
+    case Injection::Kind::kUnreferenced:
+      return report_faults_.lose_reference(i);
+    case Injection::Kind::kMute:
+      return report_faults_.mute(i);
+    case Injection::Kind::kFrozen:
+      return report_faults_.freeze(i, drive.position());
+    case Injection::Kind::kNoNumber:
+      return report_faults_.make_no_number(i);
+    case Injection::Kind::kSpike:
+      return report_faults_.add_once(i, injection.value);
+    case Injection::Kind::kDeaf:
+      return setpoint_faults_.deafen(injection.value);
+    case Injection::Kind::kLate:
+      return setpoint_faults_.delay(injection.value);
+    case Injection::Kind::kMend:
+      return mend();
+  }
+}
+
+void DriveGroup::mend() noexcept {
+  for (Drive& drive : drives_) {
+    drive.block_shaft(false);
+    drive.set_power(true);
+    drive.set_time_constant(std::nullopt);
+  }
+  is_silent_ = is_dead_ = is_emergency_stop_ = false;
+  report_faults_ = {};
+  setpoint_faults_ = {};
 }
 
 dds::DriveFeedback DriveGroup::feedback() noexcept {
@@ -130,6 +175,7 @@ dds::DriveFeedback DriveGroup::feedback() noexcept {
     feedback.mode_display[i] = drives_[i].mode();
     if (drives_[i].is_referenced()) feedback.referenced_mask |= 1U << i;
   }
+  report_faults_.apply(feedback);
   return feedback;
 }
 

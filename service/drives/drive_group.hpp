@@ -8,21 +8,11 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/dds/messages.hpp"
 #include "service/drives/drive.hpp"
+#include "service/drives/injection.hpp"
+#include "service/drives/report_faults.hpp"
+#include "service/drives/setpoint_faults.hpp"
 
 namespace meridian::drives {
-
-/// Something that goes wrong on purpose, `after_s` after operation was enabled.
-struct Injection {
-  enum class Kind : std::uint8_t {
-    kFault,     ///< drive `drive` reports a device fault
-    kBlocked,   ///< the shaft of `drive` is stuck: following error
-    kSilence,   ///< no more feedback
-    kEmergency  ///< the stop input opens
-  };
-  Kind kind = Kind::kFault;
-  double after_s = 0;
-  int drive = 0;
-};
 
 /// All drives of a machine behind one wire: takes the service's setpoints and controlwords, works
 /// once per period, tells feedback. It obeys one service until every drive is off. Setpoints are
@@ -39,14 +29,17 @@ class DriveGroup {
   /// How many periods are bridged is told by the service that is obeyed, or by one that serves
   /// where none is obeyed yet.
   void take(const dds::MachineInfo& machine) noexcept;
+  /// Goes wrong when its time has come.
   void inject(const Injection& injection) { injections_.push_back(injection); }
+  /// Goes wrong now.
+  void inject_now(const Injection& injection) noexcept;
 
   /// Works `periods` cycle times (more than 1 after a stall of this process).
   void work(int periods) noexcept;
 
   /// Returns the feedback of this period.
   [[nodiscard]] dds::DriveFeedback feedback() noexcept;
-  [[nodiscard]] bool is_silent() const noexcept { return is_silent_; }
+  [[nodiscard]] bool is_silent() const noexcept { return is_silent_ || is_dead_; }
 
   [[nodiscard]] const Drive& drive(int index) const noexcept { return drives_[index]; }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(drives_.size()); }
@@ -56,6 +49,8 @@ class DriveGroup {
 
  private:
   [[nodiscard]] bool is_off() const noexcept;
+  void accept(const dds::SetpointSample& setpoint) noexcept;
+  void mend() noexcept;
   void work_on_injections(double dt_s) noexcept;
 
   std::vector<Drive> drives_;
@@ -76,7 +71,9 @@ class DriveGroup {
   int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
   double enabled_s_ = 0;
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
-  bool is_silent_ = false, is_emergency_stop_ = false;
+  bool is_silent_ = false, is_dead_ = false, is_emergency_stop_ = false;
+  ReportFaults report_faults_;
+  SetpointFaults setpoint_faults_;
 };
 
 }  // namespace meridian::drives

@@ -145,6 +145,10 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     while (machines.take(machine)) group.take(machine);
     while (commands.take(command)) group.take(command);
     while (setpoints.take(setpoint)) group.take(setpoint);
+    Injection injection;
+    while (options.injections_now != nullptr && options.injections_now->try_pop(injection)) {
+      group.inject_now(injection);
+    }
     group.work(static_cast<int>(lost) + 1);
     if (!group.is_silent()) static_cast<void>(feedbacks.write(group.feedback()));
     teller.look(group);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/rt/spsc_ring.hpp"
 #include "service/dds/participant.hpp"
 #include "service/drives/drive_group.hpp"
 
@@ -17,7 +18,8 @@ struct SimulatedDrivesOptions {
   ServoLag lag;
   std::vector<HomingPlan> homing;  ///< in drive order; missing ones know where they are
   std::vector<Injection> injections;
-  bool is_action_peer = true;  ///< plays the PLC too
+  SpscRing<Injection, 64>* injections_now = nullptr;  ///< what somebody wants at once; may be none
+  bool is_action_peer = true;                         ///< plays the PLC too
   bool is_refusing_actions = false;
   std::int64_t action_delay_ns = 200'000'000;
   bool has_priority = false;  ///< works at FIFO 65

@@ -86,12 +86,26 @@ void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept
     const std::int64_t now_ns = monotonic_ns();
     if (!merge_.take(sample, info.source, now_ns)) continue;
     has_news = true;
+    report(now_ns);
     time_round_trip(sample.cycle_seen, now_ns);
   }
   if (!has_news) return;
   ports_.feedback.store(merge_.feedback());
   ports_.drive_words.store(merge_.words());
   ports_.drive_words_for_status.store(merge_.words());
+}
+
+/// Telemetry that is held up loses reports: rows then carry an older one, and its cycle says so.
+void FeedbackListener::report(std::int64_t now_ns) noexcept {
+  const Feedback& feedback = merge_.feedback();
+  const DriveWords& words = merge_.words();
+  (void)ports_.drive_reports.try_push({.arrival_ns = now_ns,
+                                       .cycle_seen = feedback.cycle_seen,
+                                       .position = feedback.position,
+                                       .statusword = words.statusword,
+                                       .error = words.error,
+                                       .joint_mask = feedback.joint_mask,
+                                       .is_emergency_stop = feedback.emergency_stop});
 }
 
 void FeedbackListener::time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept {

@@ -49,6 +49,7 @@ class FeedbackListener {
 
  private:
   void on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept;
+  void report(std::int64_t now_ns) noexcept;
   void time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept;
 
   Ports& ports_;

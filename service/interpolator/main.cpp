@@ -28,7 +28,7 @@ namespace {
 enum ExitCode { kFine = 0, kCannotStart = 1, kUsage = 2, kConfigRefused = 3 };
 
 struct Options {
-  std::string machine, service, recording, state, frame;
+  std::string machine, service, recording, state, faults, frame;
   int domain = -1;
   bool is_best_effort = false, is_manual = false;
 };
@@ -92,6 +92,11 @@ void make_stacks_small() {
   parts.recording =
       !options.recording.empty() ? options.recording : parts.service.recording.string();
   parts.state_folder = state_folder(options.state, parts.service);
+  config::FlightConfig& flight = parts.service.flight;
+  if (!options.faults.empty()) flight.folder = options.faults;
+  if (flight.folder.empty() && !parts.state_folder.empty()) {
+    flight.folder = parts.state_folder / "faults";
+  }
   return parts;
 }
 
@@ -137,6 +142,8 @@ int run(int argc, char** argv) {
   app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
   app.add_option("--record", options.recording, "write the recording of record here (CSV)");
   app.add_option("--state", options.state, "folder of the journal of the last executed block");
+  app.add_option("--faults", options.faults,
+                 "folder where the flight recorder writes the last seconds before every fault");
   app.add_option("--frame", options.frame, "workpiece: x,y,z[,a,b,c] in mm and deg");
   app.add_flag("--best-effort", options.is_best_effort,
                "run without real-time rights where they are missing");

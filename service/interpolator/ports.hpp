@@ -19,6 +19,7 @@
 #include "service/interpolator/queue_mark.hpp"
 #include "service/interpolator/sent_times.hpp"
 #include "service/interpolator/wake.hpp"
+#include "service/record/flight_row.hpp"
 
 /// Everything that passes between the threads of the service, each with one writer and one reader.
 ///
@@ -94,6 +95,7 @@ struct Ports {
 
   SpscRing<Command, 64> commands;
   LatestValue<Feedback> feedback;
+  SpscRing<record::DriveReport, 8192> drive_reports;  ///< receive thread to telemetry: all of them
   LatestValue<ActionAnswer> action_answer;
   LatestValue<JogOrder> jog;
 

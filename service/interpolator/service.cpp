@@ -128,8 +128,9 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                   status_clock_, ports_),
       recorder_(parts_.recording, parts_.model),
       journal_(parts_.state_folder, parts_.model.name),
+      flight_(parts_.service.flight, parts_.model, log_),
       telemetry_(participant_, parts_.model, parts_.service, service_id_, realtime.mode(), intake_,
-                 status_clock_, recorder_, journal_, log_, ports_) {
+                 status_clock_, recorder_, journal_, flight_, log_, ports_) {
   ports_.spindle_tool_mm = parts_.model.tool_length_mm;
   ports_.stops_at_optional = parts_.service.optional_stop;
   supervisor_.on_session_event([this](bool has_action_peer) {
@@ -196,6 +197,7 @@ void Service::start() {
   journal_thread_ = Thread(realtime_, {"journal", 0, false}, [this] {
     journal_.run([this](const std::string& complaint) { log_->error("{}", complaint); });
   });
+  flight_thread_ = Thread(realtime_, {"flight", 0, false}, [this] { flight_.run(); });
   add("telemetry", 0, false, [this] { telemetry_.run(); });
   add("intake", 0, false, [this] { intake_.run(); });
   add("planner", plan.planner_priority, false, [this] { planner_.run(); });
@@ -222,6 +224,8 @@ void Service::stop() {
   recorder_thread_.join();
   journal_.stop();
   journal_thread_.join();
+  flight_.stop();
+  flight_thread_.join();
   const std::string complaint = recorder_.complaint();
   if (!std::exchange(is_stopped_, true) && !complaint.empty()) log_->error("{}", complaint);
 }

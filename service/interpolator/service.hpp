@@ -84,9 +84,10 @@ class Service {
   Supervisor supervisor_;
   telemetry::Recorder recorder_;
   telemetry::Journal journal_;
+  telemetry::FlightRecorder flight_;
   TelemetryThread telemetry_;
   std::vector<Thread> threads_;
-  Thread recorder_thread_, journal_thread_;
+  Thread recorder_thread_, journal_thread_, flight_thread_;
   bool is_stopped_ = false;
 };
 

@@ -22,8 +22,8 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
                                  const config::ServiceConfig& service, std::uint64_t service_id,
                                  dds::RealtimeMode mode, const Intake& intake,
                                  StatusClock& status_clock, telemetry::Recorder& recorder,
-                                 telemetry::Journal& journal, std::shared_ptr<spdlog::logger> log,
-                                 Ports& ports)
+                                 telemetry::Journal& journal, telemetry::FlightRecorder& flight,
+                                 std::shared_ptr<spdlog::logger> log, Ports& ports)
     : model_(model),
       service_(service),
       service_id_(service_id),
@@ -31,6 +31,7 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
       status_clock_(status_clock),
       recorder_(recorder),
       journal_(journal),
+      flight_(flight),
       log_(std::move(log)),
       ports_(ports),
       statuses_(participant),
@@ -57,6 +58,7 @@ void TelemetryThread::run() noexcept {
   }
   drain();
   keep_journal(monotonic_ns());
+  flight_.finish();
   publish_status(monotonic_ns());
 }
 
@@ -84,6 +86,7 @@ void TelemetryThread::drain() {
   Event event;
   while (ports_.told.try_pop(event)) {
     recorder_.take(event);
+    flight_.take(event);
     tell(event);
     keeper_.see(event, status_.message);
   }
@@ -92,12 +95,7 @@ void TelemetryThread::drain() {
   while (ports_.eases.try_pop(ease)) log_->info("{}", telemetry::describe(ease));
   Unwinding unwinding;
   while (ports_.unwindings.try_pop(unwinding)) log_->info("{}", telemetry::describe(unwinding));
-  CycleRecord record;
-  const double tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
-  while (ports_.records.try_pop(record)) {
-    (void)recorder_.take(record);
-    motion_.see(record, tool_mm);
-  }
+  drain_records();
   CycleTiming timing;
   while (ports_.timings.try_pop(timing)) {
     const std::int64_t late_ns = timing.lateness + timing.lost * model_.cycle_ns;
@@ -115,6 +113,24 @@ void TelemetryThread::drain() {
   while (ports_.round_trips.try_pop(took_ns)) book(kRoundTrip).record(took_ns);
   if (ports_.telemetry_view.refresh()) view_ = ports_.telemetry_view.latest();
   if (std::exchange(told_state_, view_.record.state) != view_.record.state) has_news_ = true;
+}
+
+void TelemetryThread::drain_records() {
+  CycleRecord record;
+  const double tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
+  while (ports_.records.try_pop(record)) {
+    (void)recorder_.take(record);
+    // What the drives had said by the time the cycle woke goes with it.
+    const std::int64_t woke_ns = record.setpoint.due_ns + record.lateness_ns;
+    for (const record::DriveReport* report = ports_.drive_reports.peek(0);
+         report != nullptr && report->arrival_ns <= woke_ns;
+         report = ports_.drive_reports.peek(0)) {
+      flight_.take(*report);
+      ports_.drive_reports.drop(1);
+    }
+    flight_.take(record);
+    motion_.see(record, tool_mm);
+  }
 }
 
 void TelemetryThread::tell(const Event& event) {

@@ -15,6 +15,7 @@
 #include "service/interpolator/intake.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/status_clock.hpp"
+#include "service/telemetry/flight_recorder.hpp"
 #include "service/telemetry/journal.hpp"
 #include "service/telemetry/journal_keeper.hpp"
 #include "service/telemetry/motion_watch.hpp"
@@ -31,7 +32,8 @@ class TelemetryThread {
                   const config::ServiceConfig& service, std::uint64_t service_id,
                   dds::RealtimeMode mode, const Intake& intake, StatusClock& status_clock,
                   telemetry::Recorder& recorder, telemetry::Journal& journal,
-                  std::shared_ptr<spdlog::logger> log, Ports& ports);
+                  telemetry::FlightRecorder& flight, std::shared_ptr<spdlog::logger> log,
+                  Ports& ports);
 
   /// Before run(): what the status says until there is something newer.
   void say_first(const std::string& message) { status_.message = message; }
@@ -41,6 +43,7 @@ class TelemetryThread {
 
  private:
   void drain();
+  void drain_records();
   void tell(const Event& event);
   void keep_journal(std::int64_t now_ns);
   void publish_status(std::int64_t now_ns);
@@ -53,6 +56,7 @@ class TelemetryThread {
   StatusClock& status_clock_;
   telemetry::Recorder& recorder_;
   telemetry::Journal& journal_;
+  telemetry::FlightRecorder& flight_;
   std::shared_ptr<spdlog::logger> log_;
   Ports& ports_;
   dds::Writer<dds::Status> statuses_;

@@ -2,116 +2,15 @@
 #include "service/record/recording_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "service/record/mapped_file.hpp"
+#include "service/record/recording_column.hpp"
 #include "service/record/words.hpp"
 
 namespace meridian::record {
 namespace {
-
-enum class Field : std::uint8_t {
-  kSkip,
-  kCycle,
-  kDue,
-  kLine,
-  kKind,
-  kPlace,
-  kVelocity,
-  kSequence,
-  kState,
-  kPlanTime,
-  kRate,
-  kEpoch,
-  kFlags,
-  kLateness,
-  kComputation
-};
-
-struct Column {
-  Field field = Field::kSkip;
-  int place = 0;  ///< in limited.hpp
-  std::string name;
-};
-
-[[nodiscard]] Column find_column(std::string_view name, const MachineModel& model) {
-  static constexpr std::pair<std::string_view, Field> kNames[] = {
-      {"cycle", Field::kCycle},
-      {"due_ns", Field::kDue},
-      {"line", Field::kLine},
-      {"kind", Field::kKind},
-      {"sequence", Field::kSequence},
-      {"state", Field::kState},
-      {"plan_time_s", Field::kPlanTime},
-      {"rate", Field::kRate},
-      {"epoch", Field::kEpoch},
-      {"flags", Field::kFlags},
-      {"lateness_ns", Field::kLateness},
-      {"computation_ns", Field::kComputation}};
-  for (const auto& [known, field] : kNames) {
-    if (name == known) return {field, 0, std::string(name)};
-  }
-  for (int i = 0; i < limited_count(model); ++i) {
-    const JointSpec& spec = limited_spec(model, i);
-    if (name == position_column(spec)) return {Field::kPlace, i, std::string(name)};
-    if (name == velocity_column(spec)) return {Field::kVelocity, i, std::string(name)};
-  }
-  return {Field::kSkip, 0, std::string(name)};
-}
-
-template <class Number>
-[[nodiscard]] bool parse(std::string_view text, Number& value) noexcept {
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end) return false;
-  if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
-  return true;
-}
-
-template <class Word>
-[[nodiscard]] bool take(const std::optional<Word>& found, Word& value) noexcept {
-  if (found) value = *found;
-  return found.has_value();
-}
-
-[[nodiscard]] bool read_field(const Column& column, std::string_view text, RecordingRow& row) {
-  switch (column.field) {
-    case Field::kSkip:
-      return true;
-    case Field::kCycle:
-      return parse(text, row.cycle);
-    case Field::kDue:
-      return parse(text, row.due_ns);
-    case Field::kLine:
-      return parse(text, row.line);
-    case Field::kKind:
-      return take(find_motion_kind(text), row.kind);
-    case Field::kPlace:
-      return parse(text, row.places[column.place]);
-    case Field::kVelocity:
-      return parse(text, row.velocity[column.place]);
-    case Field::kSequence:
-      return parse(text, row.sequence);
-    case Field::kState:
-      return take(find_state(text), row.state);
-    case Field::kPlanTime:
-      return parse(text, row.plan_time_s);
-    case Field::kRate:
-      return parse(text, row.rate);
-    case Field::kEpoch:
-      return parse(text, row.epoch);
-    case Field::kFlags:
-      return parse(text, row.flags);
-    case Field::kLateness:
-      return parse(text, row.lateness_ns);
-    case Field::kComputation:
-      return parse(text, row.computation_ns);
-  }
-  return false;
-}
 
 /// Cuts the first `separator`-ended part off `text`.
 [[nodiscard]] std::string_view cut(std::string_view& text, char separator) noexcept {
@@ -140,7 +39,8 @@ class RecordingReader::Impl {
   std::string_view rest;
   std::string_view first_row;
   std::uint64_t line = 1;
-  bool has_velocity = false, has_plan_time = false;
+  bool has_velocity = false, has_plan_time = false, has_feedback = false;
+  std::vector<std::string> names;  ///< of limited.hpp
   ActuatorStage stage;
   int joint_count = 0;
   bool has_joints = true, has_drives = true;  ///< columns of the stage's joints, of its drives
@@ -172,7 +72,9 @@ class RecordingReader::Impl {
     std::string_view header = cut_line(rest);
     first_row = rest;
     bool has_cycle = false, has_due = false;
-    std::uint32_t positions = 0, velocities = 0;
+    std::uint32_t positions = 0, velocities = 0, feedbacks = 0;
+    bool has_feedback_cycle = false;
+    for (int i = 0; i < limited_count(model); ++i) names.push_back(limited_spec(model, i).name);
     while (!header.empty()) {
       columns.push_back(find_column(cut(header, ','), model));
       const Column& column = columns.back();
@@ -181,6 +83,8 @@ class RecordingReader::Impl {
       has_plan_time |= column.field == Field::kPlanTime;
       if (column.field == Field::kPlace) positions |= 1U << column.place;
       if (column.field == Field::kVelocity) velocities |= 1U << column.place;
+      if (column.field == Field::kFeedback) feedbacks |= 1U << column.place;
+      has_feedback_cycle |= column.field == Field::kFeedbackCycle;
     }
     const std::string remedy =
         "name a recording of machine '" + model.name + "' (docs/recordings.md)";
@@ -203,6 +107,7 @@ class RecordingReader::Impl {
                    remedy);
     }
     has_velocity = velocities == all;
+    has_feedback = has_feedback_cycle && feedbacks == joints;
     return std::nullopt;
   }
 };
@@ -234,7 +139,7 @@ Expected<bool, RecordError> RecordingReader::next(RecordingRow& row) {
     if (text.empty()) break;
     ++count;
     const std::string_view field = cut(text, ',');
-    if (read_field(column, field, row)) continue;
+    if (read_field(column, field, impl_->names, row)) continue;
     return tl::make_unexpected(impl_->error(
         impl_->line,
         "column '" + column.name + "' holds '" + std::string(field.substr(0, 40)) + "'",
@@ -256,6 +161,7 @@ void RecordingReader::rewind() noexcept {
 
 bool RecordingReader::has_velocity() const noexcept { return impl_->has_velocity; }
 bool RecordingReader::has_plan_time() const noexcept { return impl_->has_plan_time; }
+bool RecordingReader::has_feedback() const noexcept { return impl_->has_feedback; }
 const std::string& RecordingReader::path() const noexcept { return impl_->path; }
 
 }  // namespace meridian::record

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,6 +34,16 @@ struct RecordingRow {
   /// Joints, then the drives of the stage; of a recording without their columns as they must be.
   LimitedVector places{};
   LimitedVector velocity{};
+
+  /// What drives reported: of the flight recorder and, in part, of `meridian record`. Drive
+  /// coordinates in drive order.
+  JointVector feedback{};
+  std::uint64_t feedback_cycle = 0;  ///< newest setpoint that the drives had taken
+  std::int64_t feedback_age_ns = -1;
+  std::array<std::uint16_t, kMaxJoints> statusword{}, drive_error{};
+  bool is_emergency_stop = false;
+  Alarm alarm = Alarm::kNone;
+  int alarm_joint = -1;  ///< place in limited.hpp; -1: none
 };
 
 /// Reads a recording row by row, as often as wanted, in constant memory (the file is mapped).
@@ -59,6 +70,8 @@ class RecordingReader {
 
   [[nodiscard]] bool has_velocity() const noexcept;
   [[nodiscard]] bool has_plan_time() const noexcept;
+  /// Whether there is the feedback of every drive, with the setpoint that it had seen.
+  [[nodiscard]] bool has_feedback() const noexcept;
   [[nodiscard]] const std::string& path() const noexcept;
 
  private:

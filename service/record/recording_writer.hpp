@@ -6,21 +6,15 @@
 #include <utility>
 
 #include "meridian/expected.hpp"
-#include "meridian/kinematics/limited.hpp"
+#include "meridian/kinematics/machine_model.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "service/record/csv_file.hpp"
+#include "service/record/record_columns.hpp"
 #include "service/record/record_error.hpp"
 
 namespace meridian::record {
 
-/// Writes a recording: one row per cycle sent (docs/recordings.md).
-///
-///     cycle,due_ns,line,kind,<joint>_mm|_rad ...,<joint>_mm_per_s|_rad_per_s ...,
-///     sequence,state,plan_time_s,rate,epoch,flags,lateness_ns,computation_ns
-///
-/// Behind the joints come the drives of an actuator stage, where the machine has one.
-///
-/// Numbers carry 17 significant digits, so that a reader gets the very same doubles. Memory is
+/// Writes a recording: one row of RecordColumns per cycle sent (docs/recordings.md). Memory is
 /// fixed after create(): rows gather in a buffer that goes to the file when it is full. A full disk
 /// ends the recording and nothing else; what the destructor cannot write is lost, so call close()
 /// where it matters. Context: I/O; one thread.
@@ -43,16 +37,11 @@ class RecordingWriter {
 
  private:
   RecordingWriter(CsvFile file, const MachineModel& model)
-      : file_(std::move(file)),
-        stage_(model.stage),
-        joint_count_(model.joint_count),
-        has_stage_(has_stage(model)) {}
+      : file_(std::move(file)), columns_(model) {}
 
   CsvFile file_;
+  RecordColumns columns_;
   std::uint64_t rows_ = 0;
-  ActuatorStage stage_;
-  int joint_count_ = 0;
-  bool has_stage_ = false;
 };
 
 }  // namespace meridian::record

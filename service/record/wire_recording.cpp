@@ -18,10 +18,6 @@ using text::Count;
 constexpr std::uint64_t kRestart = 1000;
 constexpr double kFirstEdge_ns = 1000;
 
-[[nodiscard]] std::string feedback_column(const JointSpec& joint) {
-  return joint.name + (joint.is_rotary ? "_feedback_rad" : "_feedback_mm");
-}
-
 [[nodiscard]] double upper_edge_ns(std::size_t bucket) {
   return kFirstEdge_ns * std::exp2(static_cast<double>(bucket + 1) / 4);
 }

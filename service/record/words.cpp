@@ -28,10 +28,58 @@ template <class Enum, std::size_t N>
   return i < N ? words[i] : std::string_view("unknown");
 }
 
+/// In the order of Alarm; those of homing are no faults, and beyond them there are none.
+constexpr std::array<std::string_view, 14> kAlarms{
+    "none",           "not_finite",    "travel",          "step",           "unreachable",
+    "drive_fault",    "feedback_lost", "following_error", "emergency_stop", "periods_lost",
+    "enable_timeout", "action_failed", "homing_failed",   "homing_timeout"};
+
 }  // namespace
 
 std::string_view word(MotionKind kind) noexcept { return at(kKinds, kind); }
 std::string_view word(State state) noexcept { return at(kStates, state); }
+std::string_view word(Alarm alarm) noexcept { return at(kAlarms, alarm); }
+
+bool is_of_joint(Alarm alarm) noexcept {
+  switch (alarm) {
+    case Alarm::kNotFinite:
+    case Alarm::kTravel:
+    case Alarm::kStep:
+    case Alarm::kDriveFault:
+    case Alarm::kFeedbackLost:
+    case Alarm::kFollowingError:
+    case Alarm::kEnableTimeout:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string_view drive_state_word(std::uint16_t statusword) noexcept {
+  if (statusword == 0) return "silent";
+  switch (statusword & 0x4FU) {
+    case 0x40:
+      return "switch on disabled";
+    case 0x0F:
+      return "fault reaction";
+    case 0x08:
+      return "fault";
+    default:
+      break;
+  }
+  switch (statusword & 0x6FU) {
+    case 0x21:
+      return "ready to switch on";
+    case 0x23:
+      return "switched on";
+    case 0x27:
+      return "operation enabled";
+    case 0x07:
+      return "quick stop";
+    default:
+      return "not ready";
+  }
+}
 
 std::optional<MotionKind> find_motion_kind(std::string_view wanted) noexcept {
   return find<MotionKind>(kKinds, wanted);
@@ -39,10 +87,18 @@ std::optional<MotionKind> find_motion_kind(std::string_view wanted) noexcept {
 std::optional<State> find_state(std::string_view wanted) noexcept {
   return find<State>(kStates, wanted);
 }
+std::optional<Alarm> find_alarm(std::string_view wanted) noexcept {
+  return find<Alarm>(kAlarms, wanted);
+}
 
 std::string position_column(const JointSpec& joint) {
   return joint.name + (joint.is_rotary ? "_rad" : "_mm");
 }
 std::string velocity_column(const JointSpec& joint) { return position_column(joint) + "_per_s"; }
+std::string feedback_column(const JointSpec& drive) {
+  return drive.name + (drive.is_rotary ? "_feedback_rad" : "_feedback_mm");
+}
+std::string statusword_column(const JointSpec& drive) { return drive.name + "_statusword"; }
+std::string drive_error_column(const JointSpec& drive) { return drive.name + "_error"; }
 
 }  // namespace meridian::record

@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <string>
 #include <thread>
 
 #include "integration/plant.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/record/flight_report.hpp"
 
 namespace meridian::test {
 namespace {
@@ -33,6 +37,17 @@ class Fault : public testing::Test {
     ASSERT_TRUE(plant.wait_for(State::kFault)) << plant.service().said();
     EXPECT_EQ(plant.status().alarm, alarm) << plant.service().said();
     EXPECT_NE(plant.service().said().find("-> FaultStop"), std::string::npos);
+  }
+  /// The file of the flight recorder, which comes when the machine has been at rest for a while.
+  std::filesystem::path wait_for_flight() {
+    std::filesystem::path found;
+    EXPECT_TRUE(eventually([&] {
+      for (const auto& entry : std::filesystem::directory_iterator(plant.faults())) {
+        if (entry.path().extension() == ".csv") found = entry.path();
+      }
+      return !found.empty();
+    })) << plant.service().said();
+    return found;
   }
   void expect_recovery() {
     ASSERT_TRUE(eventually([&] {
@@ -64,6 +79,30 @@ TEST_F(Fault, OfAShaftThatIsStuckIsAFollowingError) {
   const Alarm alarm = plant.status().alarm;
   EXPECT_TRUE(alarm == Alarm::kFollowingError || alarm == Alarm::kDriveFault)
       << plant.service().said();
+
+  // The flight recorder has it: the joint, what was sent before and after, the shaft that stays.
+  const MachineModel model = config::load_machine(machine_file());
+  auto flight = record::RecordingReader::open(wait_for_flight().string(), model);
+  ASSERT_TRUE(flight.has_value()) << flight.error().text();
+  const auto report = record::read_flight(*flight, model);
+  ASSERT_TRUE(report.has_value()) << report.error().text();
+  EXPECT_EQ(report->alarm, alarm);
+  EXPECT_EQ(model.joints[static_cast<std::size_t>(report->joint)].name, "b3");
+  EXPECT_EQ(report->line, plant.status().alarm_line);
+  EXPECT_GT(report->before_s, 1.5) << "the machine was enabled 2.5 s before";
+  EXPECT_GT(report->after_s, report->stop_s + 0.4) << "the stop and some rest";
+  EXPECT_GT(report->stop_s, 0);
+  const auto joint = static_cast<std::size_t>(report->joint);
+  const double allowed = model.joints[joint].limits.following_error;
+  EXPECT_GT(std::abs(report->following[joint].before), 0.5 * allowed) << "feedback departs";
+  EXPECT_GT(std::abs(report->following[joint].after), 0.9 * allowed);
+  const std::size_t other = joint == 1 ? 2 : 1;
+  EXPECT_LT(std::abs(report->following[other].before),
+            0.5 * model.joints[other].limits.following_error);
+  ASSERT_FALSE(report->turns.empty());
+  EXPECT_TRUE(std::any_of(report->turns.begin(), report->turns.end(), [&](const auto& turn) {
+    return turn.drive == report->joint && turn.error == 0x8611;
+  })) << record::to_text(*report, model);
 }
 
 TEST_F(Fault, OfSilentDrivesIsLostFeedback) {

@@ -96,8 +96,8 @@ class Plant {
   /// Changes their machine file: what matches the first becomes the second, at least once each.
   void change_machine(const std::vector<std::pair<std::string, std::string>>& changes);
 
-  /// Start meridiand (best effort, recording on) or the drives, `more` on the command
-  /// line.
+  /// Start meridiand (best effort, recording and flight recorder on) or the drives, `more` on the
+  /// command line.
   Process& start_service(const std::vector<std::string>& more = {});
   Process& start_drives(const std::vector<std::string>& more = {});
   [[nodiscard]] std::unique_ptr<Process> another_service();
@@ -123,6 +123,8 @@ class Plant {
   [[nodiscard]] std::filesystem::path recording() const { return folder_ / "recording.csv"; }
   /// Where the service keeps its journal.
   [[nodiscard]] std::filesystem::path state() const { return folder_ / "state"; }
+  /// Where the flight recorder writes.
+  [[nodiscard]] std::filesystem::path faults() const { return state() / "faults"; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// The machine file that service and drives are started with.
   [[nodiscard]] const std::string& machine() const { return machine_file_; }

@@ -32,6 +32,19 @@ TEST(Tool, VersionIsFine) {
   EXPECT_EQ(outcome.output.rfind("meridian ", 0), 0u) << outcome.output;
 }
 
+TEST(Drives, TakeWhatGoesWrongFromStandardInputAndRefuseWhatTheyDoNotKnow) {
+  const meridian::support::PrivateDomain domain;
+  const std::string machine = "--machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml";
+  const CommandOutput outcome = meridian::test::run_command(
+      "printf 'spike:b3=2\\nexplode\\n' | timeout -s INT 2 " MERIDIAN_BINARY_DIR
+      "/bin/meridian drives " +
+      machine + " --console --domain " + std::to_string(domain.id()) + " 2>&1");
+  EXPECT_NE(outcome.output.find("injected: spike:b3=2"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("'explode': KIND is one of"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("drives stopped"), std::string::npos) << outcome.output;
+  EXPECT_EQ(run_tool("drives " + machine + " --inject explode@1").exit_code, 2);
+}
+
 /// One entry of a help text: what it is about, and what it says about it.
 struct HelpEntry {
   std::string name;  ///< `-o,--output`, `stream`

@@ -21,6 +21,8 @@ TEST(ServiceFile, OfOneLineHasTheDefaults) {
   EXPECT_TRUE(config.tools.empty());
   EXPECT_TRUE(config.recording.empty());
   EXPECT_TRUE(config.state_directory.empty());
+  EXPECT_TRUE(config.flight.folder.empty());
+  EXPECT_EQ(config.flight.seconds, 10);
   EXPECT_EQ(config.realtime.mode, RealtimeMode::kEnforce);
   EXPECT_EQ(config.realtime.cycle_priority, 80);
   EXPECT_EQ(config.realtime.planner_priority, 40);
@@ -35,11 +37,15 @@ TEST(ServiceFile, GivesWhatItSays) {
       "[service]\nmachine = \"/etc/m.toml\"\nauxiliary = \"ignore\"\nrecording = \"r.csv\"\n"
       "state_directory = \"kept\"\n"
       "bridge_cycles = 7\nblock_queue = 5000\noptional_stop = true\nfeedback_timeout_s = 0.25\n"
+      "[flight_recorder]\nfolder = \"faults\"\nseconds = 2.5\nfaults = 7\n"
       "[realtime]\nmode = \"best_effort\"\ncpu = 1\nlock_memory = false\n"
       "[dds]\ndomain = 42\npartition = \"cell 3\"\n");
   const ServiceConfig config = load_service(file.path());
   EXPECT_EQ(config.machine, "/etc/m.toml");
   EXPECT_EQ(config.recording, file.path().parent_path() / "r.csv");
+  EXPECT_EQ(config.flight.folder, file.path().parent_path() / "faults");
+  EXPECT_EQ(config.flight.seconds, 2.5);
+  EXPECT_EQ(config.flight.faults, 7);
   EXPECT_EQ(config.auxiliary, AuxiliaryPolicy::kIgnore);
   EXPECT_TRUE(config.optional_stop);
   EXPECT_EQ(config.state_directory, file.path().parent_path() / "kept");
@@ -78,6 +84,8 @@ TEST(ServiceFile, ThatIsWrongIsRefusedWithLineAndKey) {
       {"[service]\nmachine = \"m\"\nauxiliary = \"skip\"\n", 3, "service.auxiliary", "\"ignore\""},
       {"[service]\nmachine = \"m\"\nblock_queue = 100\n", 3, "service.block_queue", "5000"},
       {"[service]\nmachine = \"m\"\nbridge_cycles = -1\n", 3, "service.bridge_cycles", "0 to"},
+      {"[service]\nmachine = \"m\"\n[flight_recorder]\nseconds = 600\n", 4,
+       "flight_recorder.seconds", "1 to 60"},
       {"[service]\nmachine = \"m\"\n[realtime]\nmode = \"hard\"\n", 4, "realtime.mode",
        "\"enforce\", \"best_effort\""},
       {"[service]\nmachine = \"m\"\n[realtime]\ncycle_priority = 99\n", 4,

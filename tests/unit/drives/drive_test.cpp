@@ -111,7 +111,7 @@ TEST(SimulatedDrive, AStepBeyondTheFollowingErrorFaults) {
 
 TEST(SimulatedDrive, ABlockedShaftEndsInAFollowingError) {
   Drive drive = enabled_drive();
-  drive.block_shaft();
+  drive.block_shaft(true);
   run_steadily(drive);
   EXPECT_EQ(drive.position(), 10);
   EXPECT_EQ(drive.error(), kErrorFollowing);

@@ -33,8 +33,10 @@ std::string events_file(std::uint64_t lost) {
   telemetry::Recorder recorder(path.string(), model);
   const auto log =
       std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::null_sink_mt>());
+  telemetry::Journal journal("", model.name);
+  telemetry::FlightRecorder flight({}, model, log);
   TelemetryThread thread(participant, model, service, 1, dds::RealtimeMode::kBestEffort, *intake,
-                         clock, recorder, log, *ports);
+                         clock, recorder, journal, flight, log, *ports);
   Event hold;
   hold.code = EventCode::kAccepted;
   hold.cycle = 7;

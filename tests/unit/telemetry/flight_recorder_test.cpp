@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/telemetry/flight_recorder.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "service/record/recording_reader.hpp"
+#include "support/machines.hpp"
+
+namespace meridian::telemetry {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A run whose cycles a test lets pass, into anything that keeps them.
+struct Flown {
+  std::uint64_t cycle = 0;
+
+  template <class Keeper>
+  void cycles(Keeper& keeper, int count, State state) {
+    for (int i = 0; i < count; ++i) {
+      CycleRecord record;
+      record.setpoint.cycle = ++cycle;
+      record.setpoint.due_ns = static_cast<std::int64_t>(cycle) * 1'000'000;
+      record.state = state;
+      record::DriveReport report;
+      report.arrival_ns = record.setpoint.due_ns;
+      report.cycle_seen = cycle - 1;
+      report.position[0] = static_cast<double>(cycle);
+      keeper.take(report);
+      keeper.take(record);
+    }
+  }
+  [[nodiscard]] Event alarm(Alarm alarm, int joint) const {
+    Event event;
+    event.code = EventCode::kAlarm;
+    event.cycle = cycle + 1;
+    event.a = static_cast<std::uint64_t>(alarm);
+    event.b = static_cast<std::uint64_t>(joint);
+    event.x = 2.5;
+    event.line = 17;
+    return event;
+  }
+};
+
+TEST(FlightStore, FreezesBehindTheStopAndKeepsTheRowsBefore) {
+  FlightStore store(100, 10);
+  Flown run;
+  run.cycles(store, 100, State::kRunning);
+  store.take(run.alarm(Alarm::kActionFailed, 0), true);  // holds the program, and is no fault
+  run.cycles(store, 150, State::kRunning);
+  store.take(run.alarm(Alarm::kFollowingError, 3), true);
+  run.cycles(store, 20, State::kFaultStop);
+  run.cycles(store, 10, State::kFault);
+  EXPECT_FALSE(store.is_frozen());
+  run.cycles(store, 1, State::kFault);
+  ASSERT_TRUE(store.is_frozen());
+  run.cycles(store, 50, State::kOff);
+  ASSERT_EQ(store.size(), 100U);
+  EXPECT_EQ(store.row(0).record.setpoint.cycle, 182U);
+  EXPECT_EQ(store.row(99).record.setpoint.cycle, 281U);
+  EXPECT_EQ(store.row(99).drives.position[0], 281);
+  EXPECT_EQ(store.fault().record.setpoint.cycle, 251U);
+  ASSERT_EQ(store.alarm_count(), 1U);
+  EXPECT_EQ(store.alarm(0).cycle, 251U);
+  EXPECT_EQ(store.alarm(0).joint, 3);
+}
+
+TEST(FlightStore, KeepsHalfOfItsRowsFromBeforeTheFaultHoweverLongTheStop) {
+  FlightStore store(100, 10);
+  Flown run;
+  run.cycles(store, 200, State::kRunning);
+  run.cycles(store, 300, State::kFaultStop);
+  ASSERT_TRUE(store.is_frozen());
+  EXPECT_EQ(store.fault().record.setpoint.cycle, 201U);
+  EXPECT_LE(store.row(0).record.setpoint.cycle, 152U);
+}
+
+TEST(FlightStore, CountsAFaultThatFindsItFrozenAndBeginsAnewWhenItThaws) {
+  FlightStore store(100, 10);
+  Flown run;
+  run.cycles(store, 30, State::kFaultStop);
+  run.cycles(store, 30, State::kFault);
+  ASSERT_TRUE(store.is_frozen());
+  run.cycles(store, 30, State::kOff);
+  EXPECT_EQ(store.faults_missed(), 0U);
+  run.cycles(store, 30, State::kFault);
+  EXPECT_EQ(store.faults_missed(), 1U);
+  store.thaw();
+  run.cycles(store, 60, State::kFault);
+  EXPECT_FALSE(store.is_frozen()) << "the fault in which it was thawed is no new one";
+  run.cycles(store, 20, State::kOff);
+  run.cycles(store, 20, State::kFault);
+  ASSERT_TRUE(store.is_frozen());
+  EXPECT_EQ(store.row(0).record.setpoint.cycle, 121U);
+}
+
+TEST(FlightStore, FreezesWhatIsThereWhereTheServiceEndsInAFault) {
+  FlightStore store(100, 10);
+  Flown run;
+  run.cycles(store, 30, State::kRunning);
+  store.finish();
+  EXPECT_FALSE(store.is_frozen()) << "there was none";
+  run.cycles(store, 3, State::kFaultStop);
+  store.finish();
+  ASSERT_TRUE(store.is_frozen());
+  EXPECT_EQ(store.size(), 33U);
+}
+
+TEST(FlightStore, OfNoRowsKeepsNothing) {
+  FlightStore store(0, 10);
+  Flown run;
+  run.cycles(store, 100, State::kFault);
+  store.finish();
+  EXPECT_FALSE(store.is_frozen());
+}
+
+class FlightFiles : public testing::Test {
+ protected:
+  FlightFiles()
+      : folder_(fs::temp_directory_path() / ("meridian-flight-" + std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    config_.folder = folder_;
+    config_.seconds = 1;
+  }
+  ~FlightFiles() override { fs::remove_all(folder_); }
+
+  /// A whole life of a recorder, in which `faults` faults come.
+  void live(int faults, bool loses_folder = false) {
+    FlightRecorder recorder(config_, model_, log_);
+    if (loses_folder) fs::remove_all(folder_);
+    std::thread writer([&] { recorder.run(); });
+    Flown run;
+    for (int i = 0; i < faults; ++i) {
+      run.cycles(recorder, 2000, State::kRunning);
+      recorder.take(run.alarm(Alarm::kFollowingError, 2));
+      run.cycles(recorder, 20, State::kFaultStop);
+      run.cycles(recorder, 600, State::kFault);
+      while (recorder.is_writing()) std::this_thread::yield();
+      run.cycles(recorder, 10, State::kOff);
+    }
+    recorder.finish();
+    recorder.stop();
+    writer.join();
+  }
+  [[nodiscard]] std::set<fs::path> files(const char* ending) const {
+    std::set<fs::path> out;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().extension() == ending) out.insert(entry.path());
+    }
+    return out;
+  }
+
+  fs::path folder_;
+  config::FlightConfig config_;
+  MachineModel model_ = test::lai_machine();
+  std::ostringstream said_;
+  std::shared_ptr<spdlog::logger> log_ = std::make_shared<spdlog::logger>(
+      "test", std::make_shared<spdlog::sinks::ostream_sink_mt>(said_));
+};
+
+TEST_F(FlightFiles, NameTheAlarmAndHoldTheCyclesBeforeAndBehindIt) {
+  live(1);
+  ASSERT_EQ(files(".csv").size(), 1U) << said_.str();
+  const fs::path file = *files(".csv").begin();
+  EXPECT_NE(file.string().find("-following_error-" + model_.joints[2].name + ".csv"),
+            std::string::npos)
+      << file;
+  EXPECT_NE(said_.str().find(file.string()), std::string::npos) << said_.str();
+  EXPECT_TRUE(files(".part").empty());
+  auto reader = record::RecordingReader::open(file.string(), model_);
+  ASSERT_TRUE(reader.has_value()) << reader.error().text();
+  record::RecordingRow row;
+  int before = 0, behind = 0;
+  while (*reader->next(row)) {
+    EXPECT_EQ(row.feedback[0], static_cast<double>(row.cycle));
+    EXPECT_EQ(row.alarm, row.cycle < 2001 ? Alarm::kNone : Alarm::kFollowingError);
+    ++(row.cycle < 2001 ? before : behind);
+  }
+  EXPECT_EQ(before + behind, 1000);
+  EXPECT_GE(before, 475);
+  EXPECT_GE(behind, 500);
+  std::ifstream words(*files(".txt").begin());
+  const std::string text{std::istreambuf_iterator<char>(words), {}};
+  EXPECT_NE(text.find("lags by 2.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("line 17"), std::string::npos) << text;
+}
+
+TEST_F(FlightFiles, OfOldFaultsGoWhereThereAreMoreThanAskedFor) {
+  config_.faults = 2;
+  fs::create_directories(folder_);
+  for (const char* name :
+       {"fault-20200101T000000.000Z-travel-b3", "fault-20210101T000000.000Z-x"}) {
+    std::ofstream(folder_ / (std::string(name) + ".csv")) << "old\n";
+    std::ofstream(folder_ / (std::string(name) + ".txt")) << "old\n";
+  }
+  std::ofstream(folder_ / "part.csv") << "not ours\n";
+  live(1);
+  const auto left = files(".csv");
+  EXPECT_EQ(left.size(), 3U);
+  EXPECT_FALSE(fs::exists(folder_ / "fault-20200101T000000.000Z-travel-b3.txt"));
+  EXPECT_TRUE(fs::exists(folder_ / "fault-20210101T000000.000Z-x.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "part.csv"));
+}
+
+TEST_F(FlightFiles, OfEveryFaultHaveTheirOwnNames) {
+  live(2);
+  EXPECT_EQ(files(".csv").size(), 2U) << said_.str();
+}
+
+TEST_F(FlightFiles, ThatCannotBeWrittenAreToldInTheLog) {
+  live(1, true);
+  EXPECT_NE(said_.str().find("cannot be created"), std::string::npos) << said_.str();
+}
+
+TEST_F(FlightFiles, AreNoneWhereTheirFolderCannotBeMadeWhichIsToldAtTheStart) {
+  config_.folder = "/proc/nowhere";
+  live(1);
+  EXPECT_NE(said_.str().find("cannot write to /proc/nowhere"), std::string::npos) << said_.str();
+}
+
+TEST_F(FlightFiles, AreNoneWithoutAFolder) {
+  config_.folder.clear();
+  live(1);
+  EXPECT_FALSE(fs::exists(folder_));
+}
+
+}  // namespace
+}  // namespace meridian::telemetry
