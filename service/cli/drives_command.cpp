@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,28 +35,10 @@ int find_drive(const char* option, const std::string& name, const MachineModel& 
   throw CLI::ValidationError(option, "machine " + model.name + " has no drive " + name);
 }
 
-/// Reads KIND@SECONDS or KIND@SECONDS:DRIVE.
-drives::Injection parse_injection(const std::string& text, const MachineModel& model) {
-  using Kind = drives::Injection::Kind;
-  static const std::map<std::string, Kind> kKinds{{"fault", Kind::kFault},
-                                                  {"blocked", Kind::kBlocked},
-                                                  {"silence", Kind::kSilence},
-                                                  {"emergency", Kind::kEmergency}};
-  const std::size_t at = text.find('@'), colon = text.find(':');
-  const auto kind = kKinds.find(text.substr(0, at));
-  char* end = nullptr;
-  const double after_s = at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 1, &end);
-  const bool is_number =
-      end != nullptr && end != text.c_str() + at + 1 && (*end == '\0' || *end == ':');
-  if (kind == kKinds.end() || !is_number || !(after_s >= 0)) {
-    throw CLI::ValidationError("--inject", "'" + text +
-                                               "' is not fault, blocked, silence or emergency "
-                                               "@SECONDS, then :DRIVE");
-  }
-  drives::Injection injection{kind->second, after_s, 0};
-  if (colon == std::string::npos) return injection;
-  injection.drive = find_drive("--inject", text.substr(colon + 1), model);
-  return injection;
+drives::Injection read_injection(const std::string& text, const MachineModel& model) {
+  const auto injection = drives::parse_injection(text, model);
+  if (!injection) throw CLI::ValidationError("--inject", injection.error());
+  return *injection;
 }
 
 std::vector<drives::HomingPlan> homing_plans(const DrivesOptions& options,
@@ -85,8 +66,7 @@ void run_drives(const DrivesOptions& options) {
       options.lag == "first" ? drives::LagKind::kFirstOrder : drives::LagKind::kSecondOrder,
       options.time_constant_ms * 1e-3};
   for (const std::string& text : options.injections) {
-    const auto injection = drives::parse_injection(text, model);
-    simulated.injections.push_back(injection ? *injection : parse_injection(text, model));
+    simulated.injections.push_back(read_injection(text, model));
   }
   simulated.homing = homing_plans(options, model);
   simulated.is_action_peer = !options.has_no_actions;
