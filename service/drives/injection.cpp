@@ -58,15 +58,17 @@ std::span<const InjectionWord> injection_words() noexcept { return kWords; }
 
 std::string all_injection_words() {
   std::string text;
-  for (const InjectionWord& word : kWords)
-    text += (text.empty() ? "" : ", ") + std::string(word.word);
+  for (const InjectionWord& word : kWords) {
+    if (!text.empty()) text.append(", ");
+    text.append(word.word);
+  }
   return text;
 }
 
 Expected<Injection, std::string> parse_injection(const std::string& text,
                                                  const MachineModel& model) {
   const auto refuse = [&](const std::string& why) {
-    return tl::make_unexpected("'" + text + "': " + why);
+    return tl::make_unexpected(std::string("'").append(text).append("': ").append(why));
   };
   std::string_view rest = text;
   const bool has_value = rest.find('=') != std::string_view::npos;
@@ -83,7 +85,7 @@ Expected<Injection, std::string> parse_injection(const std::string& text,
   if (has_time && !(read_number(time, injection.after_s) && injection.after_s >= 0)) {
     return refuse("behind @ stand seconds");
   }
-  if (has_drive && !word->has_drive) return refuse("'" + std::string(rest) + "' is of no drive");
+  if (has_drive && !word->has_drive) return refuse(std::string(rest).append(" is of no drive"));
   while (has_drive && injection.drive < model.joint_count &&
          drive_spec(model, injection.drive).name != name) {
     ++injection.drive;
@@ -92,7 +94,7 @@ Expected<Injection, std::string> parse_injection(const std::string& text,
     return refuse("machine " + model.name + " has no drive " + std::string(name));
   }
   if (has_value && word->unit == nullptr)
-    return refuse("'" + std::string(rest) + "' takes no value");
+    return refuse(std::string(rest).append(" takes no value"));
   if (has_value && !(read_number(value, injection.value) && std::abs(injection.value) <= 1e6)) {
     return refuse(std::string("behind = stand ") + word->unit);
   }
