@@ -80,7 +80,7 @@ TEST_F(Simulate, EndsWhereTheProgramSwitchesTheMachineOffBehindItsEnd) {
   text.replace(text.rfind("FINI"), 4, "END\nSPINDL/OFF\nCOOLNT/OFF\nFINI");
   const SimulatedRun run = run_simulation(text, model);
   EXPECT_EQ(run.report.outcome, Outcome::kDone);
-  EXPECT_EQ(run.report.blocks_done, 9U);
+  EXPECT_EQ(run.report.blocks_done, 8U);  // 6 of motion, 2 actions
 }
 
 TEST_F(Simulate, IsJudgedByThePolesToleranceWhichTheVerdictNames) {
