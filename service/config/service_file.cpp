@@ -43,6 +43,18 @@ void read_flight(Section section, const std::filesystem::path& folder, FlightCon
   section.finish();
 }
 
+void read_trace(Section section, const std::filesystem::path& folder, TraceConfig& trace) {
+  const std::string name = section.text_or("folder", "");
+  if (!name.empty()) trace.folder = (folder / name).lexically_normal();
+  trace.late_us = section.number_or("late_us", trace.late_us, {0, 1e7});
+  trace.computation_us = section.number_or("computation_us", trace.computation_us, {0, 1e7});
+  trace.before_ms = section.number_or("before_ms", trace.before_ms, {0, 1000});
+  trace.after_ms = section.number_or("after_ms", trace.after_ms, {0, 1000});
+  trace.every_s = section.number_or("every_s", trace.every_s, {0, 1e6});
+  trace.files = section.integer_or("files", trace.files, 1, 1000);
+  section.finish();
+}
+
 void read_service(Section section, const std::filesystem::path& folder, ServiceConfig& config) {
   const auto inside = [&folder](const std::string& path) {
     return path.empty() ? std::filesystem::path() : (folder / path).lexically_normal();
@@ -81,6 +93,7 @@ ServiceConfig load_service(const std::filesystem::path& path) {
   read_flight(file.section_or("flight_recorder"), path.parent_path(), config.flight);
   read_realtime(file.section_or("realtime"), config.realtime);
   read_dds(file.section_or("dds"), config);
+  read_trace(file.section_or("trace"), path.parent_path(), config.trace);
   file.finish();
   return config;
 }

@@ -43,6 +43,16 @@ struct FlightConfig {
   int faults = 20;  ///< so many stay in the folder, the oldest go
 };
 
+/// Traces of slow cycles, docs/realtime.md.
+struct TraceConfig {
+  std::filesystem::path folder;          ///< empty: none
+  double late_us = 0;                    ///< wake-up later than this is slow; 0: half a cycle
+  double computation_us = 0;             ///< computation longer than this is slow; 0: half a cycle
+  double before_ms = 50, after_ms = 20;  ///< what is shown around it
+  double every_s = 10;                   ///< from one file to the next at least
+  int files = 10;                        ///< at most; the worst stay
+};
+
 /// Everything about the service that is not about the machine.
 struct ServiceConfig {
   std::filesystem::path machine;          ///< machine file
@@ -53,6 +63,7 @@ struct ServiceConfig {
 
   FlightConfig flight;
   RealtimeConfig realtime;
+  TraceConfig trace;
 
   int dds_domain = 0;
   std::string dds_partition;  ///< empty: the name of the machine

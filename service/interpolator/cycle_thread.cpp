@@ -25,17 +25,23 @@ void push_or_count(SpscRing<Item, N>& ring, const Item& item,
 
 CycleThread::CycleThread(const MachineModel& model, const CycleOptions& options,
                          Ports& ports) noexcept
-    : model_(model), ports_(ports), state_(options, rate_bounds(model)), motion_(ports.motion) {}
+    : model_(model),
+      ports_(ports),
+      state_(options, rate_bounds(model)),
+      motion_(ports.motion),
+      spans_(ports.spans != nullptr ? &ports.spans->cycle : nullptr) {}
 
 void CycleThread::run() noexcept {
   motion_.set_epoch(state_.epoch);
   CycleClock clock(monotonic_ns(), model_.cycle_ns);
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     sleep_until(clock.next_due_ns());
-    const std::int64_t now_ns = monotonic_ns();
-    gather(clock.woke_at(now_ns), now_ns);
+    times_.woke_ns = monotonic_ns();
+    gather(clock.woke_at(times_.woke_ns), times_.woke_ns);
+    if (spans_.is_on()) times_.gathered_ns = monotonic_ns();
     step(model_, state_, motion_, inputs_, output_);
-    hand_over(now_ns);
+    hand_over();
+    if (spans_.is_on()) tell_spans();
   }
 }
 
@@ -56,12 +62,12 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   inputs_.stops_at_optional = ports_.stops_at_optional.load(std::memory_order_relaxed);
 }
 
-void CycleThread::hand_over(std::int64_t woke_ns) noexcept {
-  const std::int64_t computed_ns = monotonic_ns();
-  computation_ns_ = narrow_ns(computed_ns - woke_ns);
+void CycleThread::hand_over() noexcept {
+  times_.computed_ns = monotonic_ns();
+  computation_ns_ = narrow_ns(times_.computed_ns - times_.woke_ns);
   push_or_count(ports_.setpoints, output_.record.setpoint, ports_.setpoints_overrun);
   ports_.publisher_wake.notify();
-  const std::int64_t handed_ns = monotonic_ns();
+  times_.handed_ns = monotonic_ns();
 
   show();  // before the events: who hears of one sees at least the cycle that told it
   push_or_count(ports_.records, output_.record, ports_.records_overrun);
@@ -71,8 +77,20 @@ void CycleThread::hand_over(std::int64_t woke_ns) noexcept {
   ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
   (void)ports_.timings.try_push({.lateness = output_.record.lateness_ns,
                                  .computation = computation_ns_,
-                                 .wake = narrow_ns(handed_ns - computed_ns),
+                                 .wake = narrow_ns(times_.handed_ns - times_.computed_ns),
                                  .lost = inputs_.lost_periods});
+}
+
+void CycleThread::tell_spans() noexcept {
+  using trace::Doing;
+  const std::uint64_t cycle = inputs_.cycle;
+  const std::int64_t first_due_ns = inputs_.due_ns - inputs_.lost_periods * model_.cycle_ns;
+  spans_.stage(Doing::kWakeUp, first_due_ns, times_.woke_ns, cycle);
+  spans_.stage(Doing::kGather, times_.woke_ns, times_.gathered_ns, cycle);
+  spans_.stage(Doing::kStep, times_.gathered_ns, times_.computed_ns, cycle);
+  spans_.stage(Doing::kWakeOther, times_.computed_ns, times_.handed_ns, cycle);
+  spans_.stage(Doing::kShow, times_.handed_ns, monotonic_ns(), cycle);
+  spans_.publish();
 }
 
 void CycleThread::show() noexcept {

@@ -21,8 +21,9 @@ class CycleThread {
 
  private:
   void gather(const Period& period, std::int64_t now_ns) noexcept;
-  void hand_over(std::int64_t computed_ns) noexcept;
+  void hand_over() noexcept;
   void show() noexcept;
+  void tell_spans() noexcept;
 
   const MachineModel& model_;
   Ports& ports_;
@@ -32,6 +33,10 @@ class CycleThread {
   StepOutput output_;
   CycleView view_;
   std::int32_t computation_ns_ = 0;
+  struct Times {
+    std::int64_t woke_ns = 0, gathered_ns = 0, computed_ns = 0, handed_ns = 0;
+  } times_;  ///< of this cycle; gathered_ns only where it is traced
+  trace::SpanWriter spans_;
 };
 
 }  // namespace meridian::interpolator

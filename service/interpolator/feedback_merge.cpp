@@ -75,12 +75,15 @@ void FeedbackMerge::merge() noexcept {
 }
 
 FeedbackListener::FeedbackListener(dds::Participant& participant, Ports& ports)
-    : ports_(ports), reader_(participant, [this](auto& reader) { on_data(reader); }) {}
+    : ports_(ports),
+      spans_(ports.spans != nullptr ? &ports.spans->receive : nullptr),
+      reader_(participant, [this](auto& reader) { on_data(reader); }) {}
 
 void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept {
   dds::DriveFeedback sample;
   dds::SampleInfo info;
   bool has_news = false;
+  const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
   while (reader.take(sample, info)) {
     if (!info.is_valid) continue;
     const std::int64_t now_ns = monotonic_ns();
@@ -93,6 +96,8 @@ void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept
   ports_.feedback.store(merge_.feedback());
   ports_.drive_words.store(merge_.words());
   ports_.drive_words_for_status.store(merge_.words());
+  if (!spans_.is_on()) return;
+  spans_.write(trace::Doing::kFeedback, begun_ns, monotonic_ns(), merge_.feedback().cycle_seen);
 }
 
 /// Telemetry that is held up loses reports: rows then carry an older one, and its cycle says so.

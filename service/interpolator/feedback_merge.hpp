@@ -55,6 +55,7 @@ class FeedbackListener {
   Ports& ports_;
   FeedbackMerge merge_;
   std::uint64_t answered_ = 0;  ///< newest cycle that a drive has answered
+  trace::SpanWriter spans_;
   dds::Reader<dds::DriveFeedback> reader_;
 };
 

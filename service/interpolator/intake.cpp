@@ -34,7 +34,8 @@ Intake::Intake(dds::Participant& participant, const MachineModel& model,
       batches_(participant),
       requests_(participant),
       credits_(participant),
-      waitset_(participant) {
+      waitset_(participant),
+      spans_(ports.spans != nullptr ? &ports.spans->intake : nullptr) {
   waitset_.attach(batches_);
   waitset_.attach(requests_);
 }
@@ -134,9 +135,11 @@ void Intake::take_batches() {
   dds::Batch batch;
   stream::Accepted accepted;
   while (batches_.take(batch)) {
+    const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
     std::optional<dds::Credit> answer = judge_.on_batch(batch, around(), accepted);
     if (!push(accepted)) answer = judge_.on_queue_full(around());
     publish(answer);
+    if (spans_.is_on()) spans_.write(trace::Doing::kTakeBlocks, begun_ns, monotonic_ns(), pushed_);
   }
 }
 

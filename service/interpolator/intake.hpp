@@ -83,6 +83,8 @@ class Intake {
   std::deque<Ended> ended_;  ///< credits of sessions that are over, to be disposed of in time
   std::atomic<bool> has_action_peer_{false};
 
+  trace::SpanWriter spans_;
+
   mutable std::mutex view_mutex_;
   SessionView view_;
 };

@@ -28,7 +28,7 @@ namespace {
 enum ExitCode { kFine = 0, kCannotStart = 1, kUsage = 2, kConfigRefused = 3 };
 
 struct Options {
-  std::string machine, service, recording, state, faults, frame;
+  std::string machine, service, recording, state, faults, frame, trace;
   int domain = -1;
   bool is_best_effort = false, is_manual = false;
 };
@@ -89,6 +89,7 @@ void make_stacks_small() {
   parts.model.bridge_cycles = config::find_bridge_cycles(parts.service, parts.model);
   parts.domain =
       static_cast<std::uint32_t>(options.domain >= 0 ? options.domain : parts.service.dds_domain);
+  if (!options.trace.empty()) parts.service.trace.folder = options.trace;
   parts.recording =
       !options.recording.empty() ? options.recording : parts.service.recording.string();
   parts.state_folder = state_folder(options.state, parts.service);
@@ -144,6 +145,7 @@ int run(int argc, char** argv) {
   app.add_option("--state", options.state, "folder of the journal of the last executed block");
   app.add_option("--faults", options.faults,
                  "folder where the flight recorder writes the last seconds before every fault");
+  app.add_option("--trace", options.trace, "write traces of slow cycles into this folder");
   app.add_option("--frame", options.frame, "workpiece: x,y,z[,a,b,c] in mm and deg");
   app.add_flag("--best-effort", options.is_best_effort,
                "run without real-time rights where they are missing");

@@ -6,7 +6,11 @@
 namespace meridian::interpolator {
 
 PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports)
-    : ports_(ports), queue_(ports), writer_(ports.motion), planner_(model, tools) {
+    : ports_(ports),
+      queue_(ports),
+      writer_(ports.motion),
+      planner_(model, tools),
+      spans_(ports.spans != nullptr ? &ports.spans->planner : nullptr) {
   if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
 }
 
@@ -26,11 +30,7 @@ bool PlannerThread::work() noexcept {
   if (look.is_emptied) is_refused_ = is_action_told_ = false;
   if (!look.is_in_step) return look.is_emptied;
   if (look.front == nullptr) {
-    if (has_begun_ && !is_refused_) {
-      look_at_stall();
-      const PlanResult result = planner_.advance(writer_);
-      if (result.status == PlanStatus::kRefused) refuse(result.reject);
-    }
+    if (has_begun_ && !is_refused_) advance();
     tell_of_plan();
     return false;
   }
@@ -50,6 +50,14 @@ bool PlannerThread::work() noexcept {
     motion_ns_ = 0;
   }
   return plan(*look.front);
+}
+
+void PlannerThread::advance() noexcept {
+  look_at_stall();
+  const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
+  const PlanResult result = planner_.advance(writer_);
+  if (spans_.is_on()) spans_.write(trace::Doing::kAdvance, begun_ns, monotonic_ns(), 0);
+  if (result.status == PlanStatus::kRefused) refuse(result.reject);
 }
 
 void PlannerThread::look_at_stall() noexcept {
@@ -73,10 +81,13 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   const PlanResult result = planner_.plan(queued.block, writer_);
   last_block_ns_ = monotonic_ns();
   planning_ns_ += last_block_ns_ - begun_ns;
+  const bool has_room = result.status != PlanStatus::kNoRoom;
+  spans_.write(has_room ? trace::Doing::kPlan : trace::Doing::kWaitForRoom, begun_ns,
+               last_block_ns_, queued.block.sequence);
   const bool is_motion =
       queued.block.kind == BlockKind::kCut || queued.block.kind == BlockKind::kRapid;
   if (is_motion && motion_ns_ == 0) motion_ns_ = last_block_ns_;
-  if (result.status != PlanStatus::kNoRoom) {
+  if (has_room) {
     (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
     planning_ns_ = 0;
   }

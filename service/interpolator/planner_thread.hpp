@@ -30,6 +30,8 @@ class PlannerThread {
   void refuse(const BlockReject& reject) noexcept;
   /// What others want to know of what was planned.
   void tell_of_plan() noexcept;
+  /// Goes on with what is there while no block comes.
+  void advance() noexcept;
   /// A program of which no block has come for a while begins with those that are there.
   void look_at_stall() noexcept;
   [[nodiscard]] bool announce_action(const ClBlock& block) noexcept;
@@ -47,6 +49,7 @@ class PlannerThread {
   bool has_begun_ = false;          ///< a plan is being made
   bool is_refused_ = false;         ///< a block was refused: nothing behind it moves
   bool is_action_told_ = false;     ///< of the block at the head of the queue
+  trace::SpanWriter spans_;
 };
 
 }  // namespace meridian::interpolator

@@ -20,6 +20,7 @@
 #include "service/interpolator/sent_times.hpp"
 #include "service/interpolator/wake.hpp"
 #include "service/record/flight_row.hpp"
+#include "service/trace/spans.hpp"
 
 /// Everything that passes between the threads of the service, each with one writer and one reader.
 ///
@@ -84,6 +85,10 @@ struct DriveWords {
 };
 
 struct Ports {
+  explicit Ports(trace::Rings* traced = nullptr) noexcept : spans(traced) {}
+
+  trace::Rings* const spans;  ///< every thread to the tracer; nullptr: nothing is traced
+
   SpscRing<QueuedBlock, 8192> blocks;  ///< look-ahead of at least 5000 blocks
   Wake planner_wake;
   SpscRing<SessionReject, 64> rejects;

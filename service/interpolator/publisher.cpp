@@ -6,7 +6,9 @@
 namespace meridian::interpolator {
 
 Publisher::Publisher(dds::Participant& participant, Ports& ports)
-    : ports_(ports), writer_(participant) {}
+    : ports_(ports),
+      writer_(participant),
+      spans_(ports.spans != nullptr ? &ports.spans->publisher : nullptr) {}
 
 void Publisher::run() noexcept {
   constexpr std::int64_t kLookForStop_ns = 100'000'000;
@@ -18,8 +20,10 @@ void Publisher::run() noexcept {
       sample.sent_minus_due_ns = narrow_ns(now_ns - sample.setpoint.due_ns);
       ports_.sent_times.note(sample.setpoint.cycle, now_ns);
       if (!writer_.write(sample)) ports_.writes_failed.fetch_add(1, std::memory_order_relaxed);
+      const std::int64_t written_ns = monotonic_ns();
       (void)ports_.publish_timings.try_push(
-          {sample.sent_minus_due_ns, narrow_ns(monotonic_ns() - now_ns)});
+          {sample.sent_minus_due_ns, narrow_ns(written_ns - now_ns)});
+      spans_.write(trace::Doing::kWrite, now_ns, written_ns, sample.setpoint.cycle);
     }
     ports_.publisher_wake.wait(seen, kLookForStop_ns);
   }

@@ -19,6 +19,7 @@ class Publisher {
  private:
   Ports& ports_;
   dds::SetpointWriter writer_;
+  trace::SpanWriter spans_;
 };
 
 }  // namespace meridian::interpolator

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 #include <thread>
 #include <utility>
@@ -114,6 +115,8 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       log_(std::move(log)),
       service_id_(draw_id()),
       tool_lengths_(lengths_of(parts_.tools)),
+      rings_(parts_.service.trace.folder.empty() ? nullptr : std::make_unique<trace::Rings>()),
+      ports_(rings_.get()),
       participant_({.domain = parts_.domain,
                     .machine = partition_of(parts_),
                     .transport = realtime.has_priorities() ? dds::Transport::kLoopbackRealtime
@@ -130,7 +133,8 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       journal_(parts_.state_folder, parts_.model.name),
       flight_(parts_.service.flight, parts_.model, log_),
       telemetry_(participant_, parts_.model, parts_.service, service_id_, realtime.mode(), intake_,
-                 status_clock_, recorder_, journal_, flight_, log_, ports_) {
+                 status_clock_, recorder_, journal_, flight_, log_, ports_),
+      tracer_(make_tracer()) {
   ports_.spindle_tool_mm = parts_.model.tool_length_mm;
   ports_.stops_at_optional = parts_.service.optional_stop;
   supervisor_.on_session_event([this](bool has_action_peer) {
@@ -143,6 +147,26 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
 }
 
 Service::~Service() { stop(); }
+
+std::unique_ptr<trace::Tracer> Service::make_tracer() {
+  if (!rings_) return nullptr;
+  const config::TraceConfig& wish = parts_.service.trace;
+  const auto ns = [](double value, double unit_ns) { return std::llround(value * unit_ns); };
+  const auto or_half_a_cycle = [&](double us) {
+    return us > 0 ? ns(us, 1e3) : parts_.model.cycle_ns / 2;
+  };
+  trace::TraceOptions options;
+  options.folder = wish.folder;
+  options.limits = {or_half_a_cycle(wish.late_us), or_half_a_cycle(wish.computation_us)};
+  options.before_ns = ns(wish.before_ms, 1e6);
+  options.after_ns = ns(wish.after_ms, 1e6);
+  options.every_ns = ns(wish.every_s, 1e9);
+  options.most_files = wish.files;
+  const dds::MachineInfo info = machine_info(parts_, service_id_);
+  return std::make_unique<trace::Tracer>(
+      options, trace::TraceOrigin{info.name, info.service_version, info.host}, *rings_,
+      [this](const std::string& text) { log_->warn("{}", text); });
+}
 
 void Service::take_lease() {
   // Others announce themselves every 200 ms; a killed service is forgotten after its lease of 1 s.
@@ -198,6 +222,7 @@ void Service::start() {
     journal_.run([this](const std::string& complaint) { log_->error("{}", complaint); });
   });
   flight_thread_ = Thread(realtime_, {"flight", 0, false}, [this] { flight_.run(); });
+  if (tracer_) add("tracer", 0, false, [this] { tracer_->run(ports_.is_stopping); });
   add("telemetry", 0, false, [this] { telemetry_.run(); });
   add("intake", 0, false, [this] { intake_.run(); });
   add("planner", plan.planner_priority, false, [this] { planner_.run(); });

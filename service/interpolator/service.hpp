@@ -25,6 +25,7 @@
 #include "service/interpolator/status_clock.hpp"
 #include "service/interpolator/supervisor.hpp"
 #include "service/interpolator/telemetry_thread.hpp"
+#include "service/trace/tracer.hpp"
 
 namespace meridian::interpolator {
 
@@ -63,6 +64,7 @@ class Service {
   void stop();
 
  private:
+  [[nodiscard]] std::unique_ptr<trace::Tracer> make_tracer();
   void take_lease();
   void tell_security();
   void tell_last_program();
@@ -72,6 +74,7 @@ class Service {
   std::shared_ptr<spdlog::logger> log_;
   std::uint64_t service_id_;
   stream::ToolLengths tool_lengths_;
+  const std::unique_ptr<trace::Rings> rings_;  ///< nullptr: nothing is traced
   Ports ports_;
   StatusClock status_clock_;
   dds::Participant participant_;
@@ -86,6 +89,7 @@ class Service {
   telemetry::Journal journal_;
   telemetry::FlightRecorder flight_;
   TelemetryThread telemetry_;
+  std::unique_ptr<trace::Tracer> tracer_;
   std::vector<Thread> threads_;
   Thread recorder_thread_, journal_thread_, flight_thread_;
   bool is_stopped_ = false;

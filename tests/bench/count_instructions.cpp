@@ -12,6 +12,7 @@
 #include "bench/ik_workload.hpp"
 #include "bench/planner_workload.hpp"
 #include "bench/smooth_workload.hpp"
+#include "bench/trace_workload.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 3) {
@@ -31,6 +32,8 @@ int main(int argc, char** argv) {
     checksum = meridian::bench::run_robot_6r(count);
   } else if (workload == "cycle") {
     checksum = meridian::bench::run_cycle(count);
+  } else if (workload == "trace_off") {
+    checksum = meridian::bench::run_trace_off(count);
   } else if (workload == "planner") {
     checksum = meridian::bench::run_planner(count);
   } else if (workload == "smooth_block") {

@@ -30,7 +30,7 @@ using stream::StationState;
 bool is_complete(const Station& station) { return station.state() == StationState::kComplete; }
 bool has_ran(const Station& station) { return station.state() == StationState::kRan; }
 
-/// A plant whose service runs with the counters on.
+/// A plant whose service runs with the counters on, and traced: that must cost nothing either.
 class Counters : public testing::Test {
  protected:
   Counters() : watched_(plant_.folder() / "watch") {}
@@ -43,7 +43,7 @@ class Counters : public testing::Test {
       const auto equals = pair.find('=');
       ::setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 1);
     }
-    plant_.start_service();
+    plant_.start_service({"--trace", (plant_.folder() / "traces").string()});
     ::unsetenv("LD_PRELOAD");
     ::unsetenv("MERIDIAN_WATCH");
     plant_.start_drives();

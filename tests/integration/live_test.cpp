@@ -156,6 +156,23 @@ void stall(Plant& plant) {
   plant.service().send_signal(SIGCONT);
 }
 
+/// Of the two stalls at least the first has left a trace, which shows the late cycle as such.
+void expect_trace_of_stall(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    ++count;
+    const std::string trace = read_text(entry.path());
+    EXPECT_NE(trace.find("\"slow: cycle "), std::string::npos) << trace.substr(0, 2000);
+    for (const char* const name : {"wake-up", "step", "DDS write", "feedback"}) {
+      EXPECT_NE(trace.find("{\"name\": \"" + std::string(name)), std::string::npos) << name;
+    }
+    if (std::system("python3 --version > /dev/null 2>&1") != 0) continue;
+    const std::string parse = "python3 -m json.tool '" + entry.path().string() + "' > /dev/null";
+    EXPECT_EQ(std::system(parse.c_str()), 0) << trace.substr(0, 2000);
+  }
+  EXPECT_GE(count, 1U) << "no trace in " << folder;
+}
+
 /// An operator who holds, resumes and turns the override while the program runs, on a host that
 /// takes periods away while the machine changes its speed.
 void operate(Plant& plant) {
@@ -187,9 +204,16 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   const std::string part = (plant.folder() / "part.cls").string();
   std::ofstream(part) << "PARTNO LONG CUTS\nUNITS/MM\nSPINDL/8000,RPM,CLW\nFEDRAT/2000,MMPM\n"
                       << cl_text(small_program(20, 2000, 8)) << "FINI\n";
+  const auto traces = plant.folder() / "traces";
   LiveRun live;
+  const std::string config = (plant.folder() / "service.toml").string();
+  std::ofstream(config) << "[service]\nmachine = \"" << plant.machine()
+                        << "\"\n[trace]\nfolder = \"" << traces.string()
+                        << "\"\nlate_us = 10000\nevery_s = 0\n";
+  live.service = {"--service", config};
   live.operate = [&plant] { operate(plant); };
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
+  expect_trace_of_stall(traces);
   const std::string events = plant.folder() / "recording.events.csv";
   EXPECT_NE(read_text(events).find("feed_planned,1.5,"), std::string::npos);
   expect_same(plant, simulate_part(plant, part, live, {"--events", events}));

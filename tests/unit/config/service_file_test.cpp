@@ -30,6 +30,7 @@ TEST(ServiceFile, OfOneLineHasTheDefaults) {
   EXPECT_EQ(config.dds_domain, 0);
   EXPECT_GE(config.block_queue, 5000);
   EXPECT_FALSE(config.bridge_cycles.has_value());
+  EXPECT_TRUE(config.trace.folder.empty());
 }
 
 TEST(ServiceFile, GivesWhatItSays) {
@@ -39,7 +40,8 @@ TEST(ServiceFile, GivesWhatItSays) {
       "bridge_cycles = 7\nblock_queue = 5000\noptional_stop = true\nfeedback_timeout_s = 0.25\n"
       "[flight_recorder]\nfolder = \"faults\"\nseconds = 2.5\nfaults = 7\n"
       "[realtime]\nmode = \"best_effort\"\ncpu = 1\nlock_memory = false\n"
-      "[dds]\ndomain = 42\npartition = \"cell 3\"\n");
+      "[dds]\ndomain = 42\npartition = \"cell 3\"\n"
+      "[trace]\nfolder = \"traces\"\nlate_us = 80\nfiles = 3\n");
   const ServiceConfig config = load_service(file.path());
   EXPECT_EQ(config.machine, "/etc/m.toml");
   EXPECT_EQ(config.recording, file.path().parent_path() / "r.csv");
@@ -56,6 +58,9 @@ TEST(ServiceFile, GivesWhatItSays) {
   EXPECT_FALSE(config.realtime.lock_memory);
   EXPECT_EQ(config.dds_domain, 42);
   EXPECT_EQ(config.dds_partition, "cell 3");
+  EXPECT_EQ(config.trace.folder, file.path().parent_path() / "traces");
+  EXPECT_EQ(config.trace.late_us, 80);
+  EXPECT_EQ(config.trace.files, 3);
 }
 
 TEST(ServiceFile, BridgesFiftyMillisecondsInBestEffort) {
@@ -96,6 +101,7 @@ TEST(ServiceFile, ThatIsWrongIsRefusedWithLineAndKey) {
        "true"},
       {"[service]\nmachine = \"m\"\n[dds]\ndomain = 231\n", 4, "dds.domain", "0 to 230"},
       {"[service]\nmachine = \"m\"\n[dds]\npartition = 3\n", 4, "dds.partition", "text"},
+      {"[service]\nmachine = \"m\"\n[trace]\nfiles = 0\n", 4, "trace.files", "1 to 1000"},
       {"[service]\nmachine = \"m\"\nmashine = \"m\"\n", 3, "service.mashine", "machine"},
       {"[service]\nmachine = \"m\"\n[dss]\ndomain = 1\n", 3, "dss", "dds"},
   };
