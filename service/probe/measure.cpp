@@ -102,6 +102,7 @@ void take_turns(const Host& host, std::int64_t period_ns, int turns, const fs::p
       run_work(host.domain, folder.path(), host.machine, host.name, period_ns, options.turns);
   m.computation.add(work.computation_ns);
   m.wake = work.wake;
+  m.broken_off = work.broken_off;
   load.reset();
   m.stolen_ms = stolen_ms() - stolen_before_ms;
   return m;

@@ -36,6 +36,7 @@ struct RateMeasurement {
   std::uint64_t lost_periods = 0;       ///< of the service in its turns
   std::uint64_t bare_lost_periods = 0;  ///< of the bare thread in its turns
   double stolen_ms = 0;                 ///< processor time that the host took away meanwhile
+  std::string broken_off;               ///< why the program was not cut to its end; empty: it was
 };
 
 /// Memory that this host has left, MiB.

@@ -57,6 +57,9 @@ void append_measurement(std::string& out, const RateMeasurement& m) {
          "processor time that the host took away: %.0f ms\n",
          Count{m.lost_periods}, Count{m.bare_lost_periods}, Count{m.unseen}, Count{m.sent},
          m.stolen_ms);
+  if (m.broken_off.empty()) return;
+  out += "  NO PROGRAM CAN BE CUT HERE: " + m.broken_off;
+  if (out.back() != '\n') out += '\n';
 }
 
 void append_distribution(std::string& out, const Shown& one) {
@@ -101,10 +104,12 @@ std::vector<Verdict> judge(const RateMeasurement& m, const std::string& budgets_
   hold("cycle_lateness_target", m.lateness.median_p99_us(), m.bare_wake.median_p99_us());
   hold("periods_lost", percent(m.lost_periods, m.lateness.all().samples),
        percent(m.bare_lost_periods, m.bare_wake.all().samples));
-  hold("cycle_share", 100 * computation.p999_us / period_us);
-  hold("cycle_computation_p50", computation.p50_us);
-  hold("cycle_computation_p999", computation.p999_us);
-  hold("publisher_wake", percentile_us(m.wake, 0.5));
+  if (computation.samples > 0) {
+    hold("cycle_share", 100 * computation.p999_us / period_us);
+    hold("cycle_computation_p50", computation.p50_us);
+    hold("cycle_computation_p999", computation.p999_us);
+    hold("publisher_wake", percentile_us(m.wake, 0.5));
+  }
   hold("setpoint_latency_p50", m.one_way.median_p50_us(), m.bare_one_way.median_p50_us());
   hold("setpoint_latency_p99", m.one_way.median_p99_us(), m.bare_one_way.median_p99_us());
   hold("round_trip_p50", percentile_us(m.round_trip, 0.5), m.bare_round_trip.all().p50_us);
@@ -113,6 +118,8 @@ std::vector<Verdict> judge(const RateMeasurement& m, const std::string& budgets_
 }
 
 bool ProbeReport::is_fit() const {
+  const auto is_cut = [](const RateMeasurement& m) { return m.broken_off.empty(); };
+  if (!std::all_of(measurements.begin(), measurements.end(), is_cut)) return false;
   return std::all_of(verdicts.begin(), verdicts.end(), [this](const Verdict& verdict) {
     const bool is_counted =
         verdict.weight == Weight::kJudged || (is_target && verdict.weight == Weight::kTargetHost);
@@ -134,6 +141,11 @@ std::string to_text(const ProbeReport& report) {
   append(out, "\n%s: %s\n", report.is_fit() ? "FIT" : "NOT FIT",
          report.is_target ? "budgets of a target host counted"
                           : "judged in comparison with bare programs of the same run");
+  if (!report.is_fit()) {
+    out +=
+        "what is wrong with the host: meridian doctor; what a slow cycle waited for: meridiand "
+        "--trace FOLDER\n";
+  }
   return out;
 }
 
@@ -146,9 +158,10 @@ std::string to_json(const ProbeReport& report) {
     append(out,
            "%s{\"rate_hz\": %d, \"loaded\": %s, \"periods_lost\": %llu, \"bare_periods_lost\": "
            "%llu, \"setpoints\": %llu, \"setpoints_unseen\": %llu, \"stolen_ms\": %.1f, "
-           "\"distributions\": [",
+           "\"broken_off\": %s, \"distributions\": [",
            separator, m.rate_hz, m.is_loaded ? "true" : "false", Count{m.lost_periods},
-           Count{m.bare_lost_periods}, Count{m.sent}, Count{m.unseen}, m.stolen_ms);
+           Count{m.bare_lost_periods}, Count{m.sent}, Count{m.unseen}, m.stolen_ms,
+           json_quoted(m.broken_off).c_str());
     const char* comma = "";
     for (const Shown& one : distributions(m)) {
       out += comma;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -44,6 +45,18 @@ void run_tool(const Words& words, const fs::path& log, int tries = 1) {
   throw std::runtime_error("meridian " + words.front() + " failed: " + text_of(log));
 }
 
+/// The last error that the service has written to its log; empty: none.
+[[nodiscard]] std::string last_error(const fs::path& log) {
+  std::ifstream file(log);
+  std::string found;
+  for (std::string line; std::getline(file, line);) {
+    if (const std::size_t at = line.find(" error "); at != std::string::npos) {
+      found = line.substr(at + 7);
+    }
+  }
+  return found;
+}
+
 [[nodiscard]] Histogram wake_of(dds::Reader<dds::Latency>& latencies) {
   Histogram wake;
   dds::Latency latency;
@@ -70,14 +83,24 @@ WorkResult run_work(std::uint32_t domain, const fs::path& folder, const std::str
                       {.error_file = (folder / "drives.log").string(), .output_file = "/dev/null"});
   dds::Participant participant({.domain = domain, .machine = name});
   dds::Reader<dds::Latency> latencies(participant);
-  run_tool({"ctl", "enable", "--domain", in, "--wait", "ready", "--wait-time", "20"}, log, 5);
-  ChildProcess station(
-      {meridian, "stream", part, "--domain", in, "--wait-end"},
-      {.error_file = (folder / "station.log").string(), .output_file = "/dev/null"});
-  run_tool({"ctl", "start", "--domain", in}, log, 50);  // refused until the program is loaded
-  station.wait_for_exit(milliseconds(std::llround(seconds * 1000)));
-  std::this_thread::sleep_for(milliseconds(1100));  // latencies are told once a second
   WorkResult result;
+  std::unique_ptr<ChildProcess> station;
+  try {
+    run_tool({"ctl", "enable", "--domain", in, "--wait", "ready", "--wait-time", "20"}, log, 5);
+    station = std::make_unique<ChildProcess>(
+        Words{meridian, "stream", part, "--domain", in, "--wait-end"},
+        ChildProcess::Options{.error_file = (folder / "station.log").string(),
+                              .output_file = "/dev/null"});
+    run_tool({"ctl", "start", "--domain", in}, log, 50);  // refused until the program is loaded
+    const auto code = station->wait_for_exit(milliseconds(std::llround(seconds * 1000)));
+    if (code.value_or(0) != 0) result.broken_off = text_of(folder / "station.log");
+  } catch (const std::runtime_error& error) {
+    result.broken_off = error.what();
+  }
+  if (const std::string why = last_error(folder / "work.log"); !why.empty()) {
+    result.broken_off = why;
+  }
+  std::this_thread::sleep_for(milliseconds(1100));  // latencies are told once a second
   result.wake = wake_of(latencies);
   service.send_signal(SIGTERM);
   if (service.wait_for_exit(milliseconds(12'000)) != 0) {
@@ -88,7 +111,7 @@ WorkResult run_work(std::uint32_t domain, const fs::path& folder, const std::str
     if (time.computation_ns >= 0) result.computation_ns.push_back(time.computation_ns);
     result.lost_periods += time.lost;
   }
-  if (result.computation_ns.empty()) {
+  if (result.computation_ns.empty() && result.broken_off.empty()) {
     throw std::runtime_error("the program never ran: " + text_of(folder / "work.log"));
   }
   return result;

@@ -63,6 +63,19 @@ TEST(Probe, TargetBudgetsDecideOnlyWhereTheyAreAskedFor) {
   EXPECT_NE(to_text(report_of(m, true)).find("outside cycle_lateness_target"), std::string::npos);
 }
 
+TEST(Probe, IsNotFitWhereTheMachineStopsByItself) {
+  RateMeasurement m = measured(25);
+  m.computation = Turns("service, cycle computation");
+  m.broken_off = "cycle 812: no feedback for 0.1 s";
+  const ProbeReport report = report_of(m, false);
+  EXPECT_FALSE(report.is_fit());
+  EXPECT_NE(to_text(report).find("NO PROGRAM CAN BE CUT HERE: cycle 812: no feedback"),
+            std::string::npos);
+  EXPECT_EQ(to_text(report).find("cycle_computation_p50"), std::string::npos)
+      << "nothing was computed";
+  EXPECT_NE(to_json(report).find("\"broken_off\": \"cycle 812"), std::string::npos);
+}
+
 TEST(Probe, IsNotFitWhereAJudgedBudgetIsMissed) {
   EXPECT_FALSE(report_of(measured(60), false).is_fit());
   RateMeasurement losing = measured(25);
