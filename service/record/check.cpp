@@ -120,6 +120,8 @@ class Survey {
     if (has_moved && row.kind == MotionKind::kApproach && has_run_) has_later_program_ = true;
     if (has_later_program_) return;
     if (has_moved) last_move_ = row.cycle;
+    // What lay beside the begin before the approach was the place of another program.
+    if (has_moved && row.kind == MotionKind::kApproach) begins_.clear();
     const double to_begin = distance(row, path_.begin_tool_length_mm(), path_.begin());
     if (begins_.empty() || to_begin < begins_.back().distance) {
       begins_.push_back({to_begin, row.cycle});

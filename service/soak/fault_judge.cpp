@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/soak/fault_judge.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::soak {
 namespace {
@@ -64,6 +68,21 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
   const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
   return is_injected ? Cause::kInjected : Cause::kUnprovoked;
+}
+
+std::string FaultJudge::describe() const {
+  static constexpr std::array<const char*, 12> kAlarms{
+      "none",           "not finite",   "travel",         "step",
+      "unreachable",    "drive fault",  "feedback lost",  "following error",
+      "emergency stop", "periods lost", "enable timeout", "action failed"};
+  std::string out = "alarm: ";
+  out += kAlarms[std::min(static_cast<std::size_t>(alarm_), kAlarms.size() - 1)];
+  text::append(out, ", place %d, %.1f s after enabling", joint_, enabled_s_);
+  if (injected_) {
+    text::append(out, "; planned: %s, place %d, at %.1f s", word(injected_->mishap),
+                 injected_->drive, injected_->at_s);
+  }
+  return out;
 }
 
 }  // namespace meridian::soak

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "meridian/rt/cycle_data.hpp"
 #include "service/dds/messages.hpp"
@@ -27,6 +28,8 @@ class FaultJudge {
   void lose_service() noexcept;
   /// Every status in its order, at `now_s`; the cause once for each Fault, as soon as it is told.
   [[nodiscard]] std::optional<Cause> see(const dds::Status& status, double now_s) noexcept;
+  /// What a report says of the Fault that was judged last: its alarm, and what was planned when.
+  [[nodiscard]] std::string describe() const;
   /// Whether the cause of the Fault that is there is known.
   [[nodiscard]] bool is_judged() const noexcept { return is_judged_; }
 

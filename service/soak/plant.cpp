@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "service/process/programs.hpp"
@@ -53,15 +54,15 @@ void Plant::start_drives(const std::optional<Planned>& mishap, const std::string
                                  "--machine",
                                  machine_,
                                  "--domain",
-                                 domain_,
-                                 "--quiet"};
+                                 domain_};
   if (mishap) {
     words.insert(words.end(), {"--inject", std::string(injection_word(mishap->mishap)) + "@" +
                                                std::to_string(mishap->at_s) + ":" + drive_name});
   }
   drives_.reset();
   drives_ = std::make_unique<ChildProcess>(
-      words, ChildProcess::Options{.error_file = log("drives.log"), .output_file = "/dev/null"});
+      words,
+      ChildProcess::Options{.error_file = log("drives.log"), .output_file = log("drives.out")});
 }
 
 void Plant::start_station(const std::string& program) {
@@ -70,6 +71,17 @@ void Plant::start_station(const std::string& program) {
       std::vector<std::string>{process::program_beside("meridian").string(), "stream", program,
                                "--domain", domain_, "--wait-end"},
       ChildProcess::Options{.error_file = log("station.log"), .output_file = log("station.out")});
+}
+
+std::string Plant::keep_logs(const std::filesystem::path& folder) {
+  if (folder.empty() || kept_ >= kMostKept) return "soak";
+  const std::string name = "fault" + std::to_string(++kept_);
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  for (const char* const from : {"service.log", "drives.out"}) {
+    std::filesystem::copy_file(log(from), folder / (name + "." + from), ignored);
+  }
+  return (folder / name).string();
 }
 
 bool Plant::end_service() {

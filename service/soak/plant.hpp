@@ -27,6 +27,10 @@ class Plant {
   void kill_service() { service_.reset(); }
   void kill_station() { station_.reset(); }
 
+  /// Copies what service and drives said so far into `folder`, at most kMostKept times; returns
+  /// where to, or "soak" where they were not kept.
+  [[nodiscard]] std::string keep_logs(const std::filesystem::path& folder);
+
   [[nodiscard]] process::ChildProcess* service() { return service_.get(); }
   [[nodiscard]] process::ChildProcess* drives() { return drives_.get(); }
   [[nodiscard]] process::ChildProcess* station() { return station_.get(); }
@@ -35,6 +39,8 @@ class Plant {
  private:
   [[nodiscard]] std::string log(const char* name) const { return (folder_ / name).string(); }
 
+  static constexpr int kMostKept = 20;
+  int kept_ = 0;
   std::string machine_, tools_, domain_;
   std::filesystem::path folder_;
   std::unique_ptr<process::ChildProcess> service_, drives_, station_;

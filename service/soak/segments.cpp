@@ -51,6 +51,7 @@ void Segments::add_line(std::string_view line) {
     header_ = line;
     state_column_ = column_of(header_, ",state");
     due_column_ = column_of(header_, ",due_ns");
+    epoch_column_ = column_of(header_, ",epoch");
     return;
   }
   if (header_.empty()) return;
@@ -65,10 +66,12 @@ void Segments::add_line(std::string_view line) {
   const bool rests = is_at_rest(state);
   if (!rests && !segment_.has_run) {
     segment_.has_run = true;
+    epoch_ = cell(line, epoch_column_);
     segment_.begin_ns = std::atoll(std::string(cell(line, due_column_)).c_str());
   }
-  segment_.is_aborted =
-      segment_.is_aborted || state == "aborting" || state == "fault_stop" || state == "fault";
+  segment_.is_aborted = segment_.is_aborted || state == "aborting" || state == "fault_stop" ||
+                        state == "fault" ||
+                        (segment_.has_run && cell(line, epoch_column_) != epoch_);
   rest_rows_ = rests ? rest_rows_ + 1 : 0;
   if (segment_.has_run && rest_rows_ >= kRestRows) end_segment(false);
 }

@@ -15,7 +15,8 @@ struct Segment {
   std::filesystem::path file;  ///< a new one each time; whoever is told removes it
   std::int64_t begin_ns = 0;   ///< when the program was under way first, machine's clock
   bool has_run = false;        ///< a program was on its way
-  bool is_aborted = false;     ///< it was not brought to its end: abort, fault, death
+  bool is_aborted = false;     ///< it was not brought to its end: abort, fault, death. An abort at
+                               ///< rest shows by the next epoch alone
   std::uint64_t rows = 0;
 };
 
@@ -38,7 +39,8 @@ class Segments {
   std::filesystem::path folder_;
   Tell tell_;
   std::string header_, rest_;
-  std::size_t state_column_ = 0, due_column_ = 0;
+  std::size_t state_column_ = 0, due_column_ = 0, epoch_column_ = 0;
+  std::string epoch_;  ///< of the program that is under way
   Segment segment_;
   std::ofstream file_;
   int rest_rows_ = 0, count_ = 0;

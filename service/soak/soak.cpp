@@ -164,7 +164,9 @@ class Soak {
     if (cause == FaultJudge::Cause::kInjected) {
       ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
     } else if (cause == FaultJudge::Cause::kUnprovoked) {
-      report_.violate("a Fault that nothing provoked: " + status.message, "soak");
+      report_.violate(
+          "a Fault that nothing provoked: " + faults_.describe() + "; " + status.message,
+          plant_.keep_logs(kept_beside(options_.report)));
     }
   }
 

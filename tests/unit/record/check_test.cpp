@@ -260,6 +260,14 @@ TEST_F(Check, LeavesALaterProgramAlone) {
   EXPECT_TRUE(report.has_later_program);
 }
 
+TEST_F(Check, TakesAnApproachThatLeavesThePlaceOfTheBeginForNoCut) {
+  records = SampleRun(model, {blocks[0], cut_to(1, {80, -40, 60}, 0.3, 200)}).records;
+  for (CycleRecord& record : records) record.motion = MotionKind::kApproach;
+  options.allow_unfinished = true;
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
 TEST_F(Check, RefusesAJointOutsideItsTravel) {
   model.joints[4].limits.travel_max = 0.34;
   const CheckReport report = run();

@@ -158,10 +158,11 @@ TEST_F(FaultJudgeTest, KnowsWhatTheSoakDidItself) {
 }
 
 /// Rows of `count` cycles in one state, from `first` on.
-std::string rows(const char* state, int first, int count) {
+std::string rows(const char* state, int first, int count, int epoch = 1) {
   std::string text;
   for (int i = first; i < first + count; ++i) {
-    text += std::to_string(i) + "," + std::to_string(i * 1000) + ",0.5," + state + ",1\n";
+    text += std::to_string(i) + "," + std::to_string(i * 1000) + ",0.5," + state + "," +
+            std::to_string(epoch) + "\n";
   }
   return text;
 }
@@ -177,7 +178,7 @@ class SegmentsTest : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  static constexpr const char* kHeader = "cycle,due_ns,x_mm,state,rate\n";
+  static constexpr const char* kHeader = "cycle,due_ns,x_mm,state,epoch\n";
   process::ScratchFolder folder_;
   std::vector<Segment> told_;
   Segments segments_{folder_.path(), [this](const Segment& one) { told_.push_back(one); }};
@@ -198,6 +199,14 @@ TEST_F(SegmentsTest, EndWhereTheMachineRestsBehindAProgram) {
   EXPECT_TRUE(told_[1].is_aborted);
   EXPECT_NE(told_[1].file, told_[0].file);
   EXPECT_EQ(told_[1].rows, 80U);
+}
+
+TEST_F(SegmentsTest, AreAbortedWhereTheMachineRestsInTheNextEpoch) {
+  feed(kHeader + rows("ready", 0, 10) + rows("running", 10, 30) + rows("ready", 40, 60, 2));
+  feed(rows("running", 100, 30, 2) + rows("ready", 130, 60, 2));
+  ASSERT_EQ(told_.size(), 2U);
+  EXPECT_TRUE(told_[0].is_aborted) << "an abort at rest takes no cycle";
+  EXPECT_FALSE(told_[1].is_aborted);
 }
 
 TEST_F(SegmentsTest, EndWithTheServiceWithoutTheRowThatWasBeingWritten) {
