@@ -82,9 +82,9 @@ class Survey {
     }
   }
 
-  /// Whether the path was begun at all.
+  /// Whether the path was begun at all: who comes near its begin in an approach has not.
   [[nodiscard]] bool has_cut(const CheckOptions& options) const noexcept {
-    return !begins_.empty() &&
+    return has_run_ && !begins_.empty() &&
            begins_.back().distance <=
                options.tip_tolerance_mm + kMmPerRad * options.axis_tolerance_rad;
   }

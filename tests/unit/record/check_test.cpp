@@ -268,6 +268,16 @@ TEST_F(Check, TakesAnApproachThatLeavesThePlaceOfTheBeginForNoCut) {
   EXPECT_TRUE(report.passed()) << to_text(report);
 }
 
+TEST_F(Check, TakesAnApproachThatIsBrokenOffBesideTheBeginForNoCut) {
+  records = SampleRun(model,
+                      {cut_to(1, {80, -40, 60}, 0.3, 200), cut_to(1, {80.0009, -40, 20}, 0.3, 200)})
+                .records;
+  for (CycleRecord& record : records) record.motion = MotionKind::kApproach;
+  options.allow_unfinished = true;
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+}
+
 TEST_F(Check, RefusesAJointOutsideItsTravel) {
   model.joints[4].limits.travel_max = 0.34;
   const CheckReport report = run();
