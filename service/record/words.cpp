@@ -28,11 +28,11 @@ template <class Enum, std::size_t N>
   return i < N ? words[i] : std::string_view("unknown");
 }
 
-/// In the order of Alarm; those of homing are no faults, and beyond them there are none.
-constexpr std::array<std::string_view, 14> kAlarms{
+/// In the order of Alarm.
+constexpr std::array<std::string_view, 15> kAlarms{
     "none",           "not_finite",    "travel",          "step",           "unreachable",
     "drive_fault",    "feedback_lost", "following_error", "emergency_stop", "periods_lost",
-    "enable_timeout", "action_failed", "homing_failed",   "homing_timeout"};
+    "enable_timeout", "action_failed", "homing_failed",   "homing_timeout", "reference_lost"};
 
 }  // namespace
 
@@ -49,6 +49,9 @@ bool is_of_joint(Alarm alarm) noexcept {
     case Alarm::kFeedbackLost:
     case Alarm::kFollowingError:
     case Alarm::kEnableTimeout:
+    case Alarm::kHomingFailed:
+    case Alarm::kHomingTimeout:
+    case Alarm::kReferenceLost:
       return true;
     default:
       return false;

@@ -155,6 +155,9 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
               ? quantity(limited_spec(model, joint).limits.following_error, joint, model)
               : "?");
       break;
+    case Alarm::kReferenceLost:
+      text = fmt::format("drive {} has lost its reference; reset, enable, then home it", name);
+      break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";
       break;

@@ -114,6 +114,7 @@ enum class Alarm : std::uint8_t {
   kActionFailed,   ///< an action was refused or timed out (Held, not FaultStop)
   kHomingFailed,   ///< a drive found no reference (Ready, not FaultStop)
   kHomingTimeout,  ///< nor in the time that the machine's file allows (Ready, not FaultStop)
+  kReferenceLost,  ///< of a joint, while a program holds the machine
 };
 
 /// Why a verb was refused.

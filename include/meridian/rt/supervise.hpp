@@ -99,18 +99,47 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
   return mask == 0 ? 0 : std::countr_zero(mask);
 }
 
+/// The first joint whose drive is missing in the feedback, or whose position is no number; 0 where
+/// there is none, because nobody reports.
+[[nodiscard, gnu::noinline]] inline int first_silent_joint(const Cycle& c) noexcept {
+  for (int i = 0; i < c.machine.joint_count; ++i) {
+    const bool is_there = (c.in.feedback.joint_mask >> static_cast<unsigned>(i) & 1U) != 0;
+    if (!is_there || !std::isfinite(c.feedback[static_cast<std::size_t>(i)])) return i;
+  }
+  return 0;
+}
+
+/// Whether a program relies on the references: it goes on, or waits to. One that comes to rest is
+/// let come to rest.
+[[nodiscard]] constexpr bool is_in_program(State state) noexcept {
+  switch (state) {
+    case State::kApproaching:
+    case State::kRunning:
+    case State::kHeld:
+    case State::kStarving:
+    case State::kStarved:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Looks at drives and feedback while they are enabled.
 inline void judge_drives(Cycle& c) noexcept {
   const Feedback& f = c.in.feedback;
   const std::uint32_t all = all_joints(c.machine);
   if (f.emergency_stop) raise(c, Alarm::kEmergencyStop);
   if (!is_feedback_there(c)) {
-    raise(c, Alarm::kFeedbackLost, 0, static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9);
+    raise(c, Alarm::kFeedbackLost, first_silent_joint(c),
+          static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9);
     return;  // what it says is old
   }
   if ((f.fault_mask & all) != 0) raise(c, Alarm::kDriveFault, first_bit(f.fault_mask & all));
   if (c.state.state == State::kEnabling || c.state.state == State::kFaultStop) return;
   if ((f.enabled_mask & all) != all) raise(c, Alarm::kDriveFault, first_bit(~f.enabled_mask & all));
+  if ((f.referenced_mask & all) != all && is_in_program(c.state.state)) {
+    raise(c, Alarm::kReferenceLost, first_bit(~f.referenced_mask & all));
+  }
   double error = 0;
   const int joint = first_joint_behind(c, error);
   if (joint >= 0) raise(c, Alarm::kFollowingError, joint, error);

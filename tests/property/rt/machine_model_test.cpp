@@ -160,7 +160,8 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
         if (is_cut_off) world.in.feedback.enabled_mask = 0;
         world.in.feedback.homing_mask = asked_of(world.state.homing).mode_mask;
         world.in.feedback.homed_mask = cycles % 7 == 0 ? world.in.feedback.homing_mask : 0;
-        if (cycles % 10 == 0) world.in.jog = {++orders, world.state.epoch, 0, 30.0, 0, 0.03};
+        if (cycles % 10 == 0)
+          world.in.jog = {++orders, world.state.epoch, false, 0, 30.0, 0, 0, 0.03};
         world.run();
         ASSERT_NO_FATAL_FAILURE(look("a period"));
       }
