@@ -91,7 +91,12 @@ int run_jog(dds::Participant& participant, stream::OperatorLink& link,
     std::printf("%s at %.6g %s\n", words[0].c_str(), result.position / unit,
                 is_rotary ? "deg" : "mm");
   }
-  if (result.end == stream::JogEnd::kDone) return kFine;
+  if (result.end == stream::JogEnd::kDone && result.has_moved) return kFine;
+  if (result.end == stream::JogEnd::kDone) {
+    std::fprintf(stderr, "meridian: %s did not move: it stands at the end of its travel%s\n",
+                 words[0].c_str(), plan.is_tool ? ", or beside the pole" : "");
+    return kVerdictNo;
+  }
   std::fprintf(stderr, "meridian: the machine stopped jogging: %s\n", result.text.c_str());
   return kVerdictNo;
 }

@@ -31,7 +31,10 @@ JogResult JogHand::jog(const JogPlan& plan, const std::atomic<bool>& is_let_go,
   const auto reply = link_.ask(Verb::kJog, plan.joint + (plan.is_tool ? kMaxJoints : 0), timeout);
   if (!reply || jogs_.matched_readers() == 0) return {JogEnd::kNoAnswer};
   if (!reply->is_accepted) return {JogEnd::kRefused, reply->text};
-  return wait_for_rest(plan, hold(plan, *reply, is_let_go));
+  const JointVector from = joints_of(link_);
+  JogResult result = wait_for_rest(plan, hold(plan, *reply, is_let_go));
+  result.has_moved = joints_of(link_) != from;
+  return result;
 }
 
 void JogHand::send(const JogPlan& plan, std::uint16_t epoch, double velocity) {

@@ -34,6 +34,7 @@ struct JogResult {
   JogEnd end = JogEnd::kDone;
   std::string text{};
   double position = 0;  ///< of the joint at the end; of the tool nothing
+  bool has_moved = false;
 };
 
 /// Holds a joint as long as `plan` says and `is_let_go` is false: says `jog`, then sends its
