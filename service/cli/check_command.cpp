@@ -9,6 +9,7 @@
 
 #include "meridian/units.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/record/check.hpp"
 #include "service/record/compare.hpp"
@@ -114,18 +115,18 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->type_name("A B");
   command
       ->add_option("--tip-tolerance-mm", options->tip_tolerance_mm, "Instead of the machine file's")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_positive());
   command
       ->add_option("--axis-tolerance-deg", options->axis_tolerance_deg,
                    "Instead of the machine file's")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_positive());
   command->add_option("--max-missing", options->check.max_missing, "Cycles that may be missing")
       ->capture_default_str();
   CLI::Option* const factor = command->add_option("--feed-factor", options->check.feed_factor,
                                                   "Highest feed override of the run, 1 is 100 %, "
                                                   "instead of those in the .events.csv beside the "
                                                   "recording");
-  factor->check(CLI::Range(0.01, 10.0))->capture_default_str();
+  factor->check(finite_range(0.01, 10.0))->capture_default_str();
   command->add_flag("--unfinished", options->check.allow_unfinished,
                     "The run was ended before its path was");
   command->add_option("--from-cycle", options->check.from_cycle, "Leave out the cycles before");

@@ -5,6 +5,7 @@
 #include "service/cl/run_cl.hpp"
 #include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 
 namespace meridian::cli {
 
@@ -25,7 +26,7 @@ void add_cl_command(CLI::App& app, int& exit_code) {
       ->add_option("--chord-error", options->run.chord_error_mm,
                    "How far chords may lie from their arc, mm")
       ->capture_default_str()
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(finite_range(1e-6, 1.0));
   add_cl_file_options(*command, options->file);
   add_frame_option(*command, options->file);
   command->callback([options, &exit_code] {

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "meridian/units.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/text/printed.hpp"
 
@@ -32,7 +33,7 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
   command
       .add_option("--feed", options.feed_mm_per_min,
                   "Feed before the first FEDRAT, mm/min, for files that have none")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(finite_range(1e-6, 1e6));
   command
       .add_option("--allow-unknown", options.allow_unknown,
                   "Pass this unknown word to the machine as a vendor word; may be repeated")
@@ -50,7 +51,7 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
       .add_option("--from-line", options.first_line,
                   "Begin with the first block from this line on; tool, spindle and coolant are set "
                   "and the place before it is approached first")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_positive());
 }
 
 void add_join_options(CLI::App& command, JoinOptions& options) {
@@ -61,11 +62,11 @@ void add_join_options(CLI::App& command, JoinOptions& options) {
   command
       .add_option("--tip-tolerance-mm", options.tip_tolerance_mm,
                   "Of smoothing, instead of the machine file's")
-      ->check(CLI::Range(1e-6, 10.0));
+      ->check(finite_range(1e-6, 10.0));
   command
       .add_option("--axis-tolerance-deg", options.axis_tolerance_deg,
                   "Of smoothing, instead of the machine file's")
-      ->check(CLI::Range(1e-6, 10.0));
+      ->check(finite_range(1e-6, 10.0));
 }
 
 std::string options_text(const ClFileOptions& file, const JoinOptions& join) {

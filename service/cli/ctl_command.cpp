@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/hand_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
@@ -66,7 +68,7 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
   double percent = 0;
   bool is_right = has_joints || options.values.size() == (is_override ? 1U : 0U);
   if (is_right && is_override) {
-    is_right = CLI::detail::lexical_cast(options.values.front(), percent);
+    is_right = CLI::detail::lexical_cast(options.values.front(), percent) && std::isfinite(percent);
   }
   if (is_right) return percent / 100;
   std::fprintf(stderr, "meridian: %s takes %s\n", options.verb.c_str(),
@@ -130,23 +132,23 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
                    "joints, default all")
       ->type_name("VALUE");
   command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(finite_range(0.0, 1e6));
   command
       ->add_option("--distance", options->jog.distance,
                    "jog: the joint rests exactly so far from where it began, mm or deg")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(finite_range(0.0, 1e6));
   command
       ->add_option("--dead-man", options->jog.dead_man_ms,
                    "jog: the joint comes to rest where the machine hears nothing for so long, ms")
       ->capture_default_str()
-      ->check(CLI::Range(40.0, 500.0));
+      ->check(finite_range(40.0, 500.0));
   command
       ->add_option("--wait", options->wait,
                    "Wait until the machine is in this state; exit code 1 where it does not come")
       ->type_name("STATE");
   command->add_option("--wait-time", options->wait_s, "How long --wait waits, s")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e7));
+      ->check(finite_range(0.0, 1e7));
   const char* user = std::getenv("USER");
   options->operator_name = user != nullptr ? user : "operator";
   command->add_option("--operator", options->operator_name, "Who asks, for the log")

@@ -7,6 +7,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/injection_console.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
@@ -122,12 +123,12 @@ void add_drives_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"first", "second"}));
   command->add_option("--time-constant", options->time_constant_ms, "Time constant of the lag, ms")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(finite_range(0.0, 1000.0));
   command->add_flag("--no-actions", options->has_no_actions, "Nobody answers actions");
   command->add_flag("--refuse-actions", options->is_refusing_actions, "Every action is refused");
   command->add_option("--action-delay", options->action_delay_s, "Time that an action takes, s")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 3600.0));
+      ->check(finite_range(0.0, 3600.0));
   command->add_flag("--console", options->has_console,
                     "Read KIND[:DRIVE][=VALUE] from standard input, a line each, and let it happen "
                     "at once; 'mend' undoes everything");

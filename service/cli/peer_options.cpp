@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/stream/machine_finder.hpp"
 
 namespace meridian::cli {
@@ -17,7 +18,7 @@ void add_peer_options(CLI::App& command, PeerOptions& options) {
                      "Name of the machine; needed where a domain has more than one");
   command.add_option("--timeout", options.timeout_s, "How long to wait for a service, s")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(finite_range(0.0, 1e6));
 }
 
 std::optional<dds::MachineInfo> find_machine(PeerOptions& options, int& exit_code) {

@@ -10,6 +10,7 @@
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/post/post.hpp"
 #include "service/text/whole_file.hpp"
@@ -105,16 +106,16 @@ void add_post_command(CLI::App& app, int& exit_code) {
       ->add_option("--chord-mm", options->post.chord_mm,
                    "How far the tip may leave its path between two NC blocks; else tip_mm of the "
                    "machine's tolerances")
-      ->check(CLI::Range(1e-4, 10.0));
+      ->check(finite_range(1e-4, 10.0));
   command
       ->add_option("--axis-deg", options->axis_deg,
                    "How far the tool axis may; else axis_deg of the machine's tolerances")
-      ->check(CLI::Range(1e-4, 10.0));
+      ->check(finite_range(1e-4, 10.0));
   command
       ->add_option("--rapid-feed", options->rapid_feed_mm_per_min,
                    "Write rapids as cuts at this feed, mm/min, for controllers whose G0 is not "
                    "straight")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(finite_range(1.0, 1e6));
   command->add_option("--work-offset", options->post.work_offset, "Work offset in force")
       ->check(matches("G5[4-9](\\.1 ?P[0-9]{1,3})?", "G54 to G59 or G54.1 Pn"))
       ->capture_default_str();

@@ -8,6 +8,7 @@
 
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/followed.hpp"
@@ -205,7 +206,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->add_option("--picture", options->picture, "For --read: draw it to this .png or .svg")
       ->needs(read_option);
   command->add_option("--duration", options->duration_s, "End after so many seconds")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_positive());
   command->add_flag("--until-end", options->until_end, "End when the program in the machine ends");
   command->add_option("--max-missing", options->max_missing,
                       "Exit code 1 where more cycles are missing");

@@ -11,6 +11,7 @@
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/record/recording_reader.hpp"
 #include "service/record/recording_writer.hpp"
@@ -205,7 +206,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--override-ramp-s", options->override_ramp_s,
                    "Instead of the machine file's: time of the override from 100 % to 0")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(finite_range(1.0, 1000.0));
   command->add_flag("--optional-stops", options->stops_at_optional, "Optional stops stop");
   add_cl_file_options(*command, options->cl);
   command->callback([options, &exit_code] { exit_code = run(*options); });

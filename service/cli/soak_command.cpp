@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/process/claimed_domain.hpp"
 #include "service/process/programs.hpp"
@@ -28,7 +30,7 @@ struct Options {
   const double number = std::strtod(text.c_str(), &end);
   const std::string unit = end;
   const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  if (!(number > 0) || factor == 0) {
+  if (!(number > 0) || !std::isfinite(number) || factor == 0) {
     throw CLI::ValidationError("--for", "'" + text + "' is no time: 90s, 15m, 8h");
   }
   return number * factor;
@@ -71,7 +73,7 @@ void add_soak_command(CLI::App& app, int& exit_code) {
       ->add_option("--chaos", options->soak.chaos_every_s,
                    "Mishaps every so many seconds on the average: hold, override, abort, a station "
                    "or service that dies, drives that fail; default: none")
-      ->check(CLI::Range(0.5, 1e6));
+      ->check(finite_range(0.5, 1e6));
   command->add_option("--seed", options->soak.seed, "Of programs and mishaps")
       ->capture_default_str();
   command

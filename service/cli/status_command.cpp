@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/dds/followed.hpp"
@@ -171,7 +172,7 @@ void add_status_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--for", options->for_s,
                    "Latencies of this time from now on, s; default: since the service started")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_positive());
   command->add_flag("--watch", options->is_watching, "Print every status until interrupted");
   add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run_status(*options); });

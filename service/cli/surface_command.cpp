@@ -7,6 +7,7 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/surface/patch_file.hpp"
 #include "service/surface/sample_part.hpp"
 #include "service/surface/surface_path.hpp"
@@ -104,7 +105,7 @@ void add_surface_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--chord-error-mm", options->chord_error_mm,
                    "Largest distance of the path from the surface; instead of the file's")
-      ->check(CLI::Range(1e-6, 1e3))
+      ->check(finite_range(1e-6, 1e3))
       ->excludes(points);
   CLI::Option* const lines = command
                                  ->add_option("--lines", options->lines,
@@ -113,7 +114,7 @@ void add_surface_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--scallop-mm", options->scallop_mm,
                    "Largest height of a cusp between lines; instead of the file's")
-      ->check(CLI::Range(1e-6, 1e3))
+      ->check(finite_range(1e-6, 1e3))
       ->excludes(lines);
   command->add_option("--picture", options->picture,
                       "Draw patch, path, curvature and chord error to this .png or .svg");

@@ -77,6 +77,20 @@ TEST(ClCommand, LeavesWhatIsThereWhereItRefuses) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
+TEST(ClCommand, TakesNoNumberThatIsNone) {
+  const std::string machine = " --machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml ";
+  const std::string lines[] = {"cl /no/such --feed=", "cl /no/such --chord-error=",
+                               "check /no/such" + machine + "--tip-tolerance-mm=",
+                               "simulate /no/such" + machine + "--override-ramp-s="};
+  for (const std::string& line : lines) {
+    EXPECT_EQ(run_tool(line + "1").exit_code, 3) << line;  // the file, not the number
+    for (const char* number : {"nan", "-nan", "inf", "0", "-1", "x"}) {
+      EXPECT_EQ(run_tool(line + number).exit_code, 2) << line << number;
+    }
+  }
+  EXPECT_EQ(run_tool("ctl override nan").exit_code, 2);
+}
+
 TEST(ClCommand, KnowsUsage) {
   EXPECT_EQ(run_tool("cl").exit_code, 2);
   EXPECT_EQ(run_tool("cl --units furlong " + kPart).exit_code, 2);
