@@ -6,7 +6,7 @@
 
 /// The motion of one joint that an operator jogs: a velocity is followed by jerk alone, and the
 /// joint comes to rest before the end of its room, whatever is asked for. Units: mm or rad, s.
-/// RT: cycle. Proof: tests/property/rt/jog_law_test.cpp.
+/// RT: cycle. Proof: tests/property/rt/jog_motion_test.cpp.
 namespace meridian {
 
 /// Where a jogged joint is and how it moves.

@@ -15,7 +15,7 @@
 
 /// What one joint may do while the others stand still: as far as its travel and that of the drives
 /// of a stage reach, as fast as both may go. Units: mm or rad, s. RT: cycle.
-/// Proof: tests/unit/rt/jog_room_test.cpp.
+/// Proof: tests/unit/rt/jogging_test.cpp.
 namespace meridian {
 
 /// Share of every limit that a jog uses; the rest is for rounding.

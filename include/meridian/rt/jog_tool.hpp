@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,6 +62,12 @@ template <class S>
   return at;
 }
 
+/// `v` made a unit vector. Eigen's own are no calls for the cycle: they are not noexcept.
+[[nodiscard]] inline Array3 unit_of(const Array3& v) noexcept {
+  const double per = 1 / std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return {v[0] * per, v[1] * per, v[2] * per};
+}
+
 /// Lays a way through where the tool is; false where no solution of the inverse
 /// kinematics gives the joints back.
 [[nodiscard]] inline bool lay_way(const MachineModel& machine, const JointVector& joints,
@@ -70,26 +75,30 @@ template <class S>
                                   ToolWay& way) noexcept {
   constexpr double kSameJoints = 1e-6;
   const ToolPose pose = forward(machine, tool_length_mm, joints);
-  const Vector3 z = to_vector(to_array(pose.axis)).normalized();
-  const Vector3 aside = std::abs(z[0]) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
-  const Vector3 x = (aside - aside.dot(z) * z).normalized(), y = z.cross(x);
-  way.tip = to_array(pose.tip);
-  way.axis = to_array(z);
+  const Array3 z = unit_of({pose.axis[0], pose.axis[1], pose.axis[2]});
+  // W's x, or y, without its part along z.
+  const std::size_t k = std::abs(z[0]) < 0.9 ? 0 : 1;
+  Array3 x{-z[k] * z[0], -z[k] * z[1], -z[k] * z[2]};
+  x[k] += 1;
+  x = unit_of(x);
+  const Array3 y{z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]};
+  way.tip = {pose.tip[0], pose.tip[1], pose.tip[2]};
+  way.axis = z;
   way.is_tilt = direction >= ToolAxis::kTiltX;
   way.tool_length_mm = tool_length_mm;
   switch (direction) {
     case ToolAxis::kX:
     case ToolAxis::kTiltY:  // about y, z turns towards x
-      way.direction = to_array(x);
+      way.direction = x;
       break;
     case ToolAxis::kY:
-      way.direction = to_array(y);
+      way.direction = y;
       break;
     case ToolAxis::kZ:
-      way.direction = to_array(z);
+      way.direction = z;
       break;
     case ToolAxis::kTiltX:  // about x, z turns towards -y
-      way.direction = to_array(Vector3(-y));
+      way.direction = {-y[0], -y[1], -y[2]};
       break;
   }
   for (int branch = 0; branch < branch_count(machine); ++branch) {

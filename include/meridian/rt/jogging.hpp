@@ -12,7 +12,7 @@
 
 /// Jogging: one joint, or the tool, follows the velocity that an operator holds, for as long as
 /// orders keep coming. RT: cycle. Proof: tests/unit/rt/jogging_test.cpp,
-/// tests/property/rt/jog_test.cpp.
+/// tests/property/rt/jog_motion_test.cpp.
 namespace meridian {
 
 /// The first order must come in so long after the verb.
