@@ -140,14 +140,18 @@ Expected<JournalEntry, std::string> parse_journal(std::string_view text, std::st
 
 std::string describe(const JournalEntry& entry) {
   const std::string program = fmt::format("last program: {:.96}", entry.program.data());
-  switch (entry.reached) {
-    case Reached::kEnd:
-      return program + ", ran to its end";
-    case Reached::kDone:
-      return fmt::format("{}, line {} done; go on with --from-line {}", program, entry.line,
-                         entry.line + 1);
-    case Reached::kBegun:
-      break;
+  if (entry.reached == Reached::kEnd) return program + ", ran to its end";
+  if (entry.state == State::kFaultStop || entry.state == State::kFault) {
+    return fmt::format(
+        "{}, line {} at the alarm, what was cut may end earlier (flight record); go on with "
+        "--from-line {} at the latest",
+        program, entry.line, entry.line);
+  }
+  if (entry.reached == Reached::kDone) {
+    return fmt::format(
+        "{}, line {} done up to block {}; go on with --from-line {}, or {} if that was all of line "
+        "{}",
+        program, entry.line, entry.block, entry.line, entry.line + 1, entry.line);
   }
   return fmt::format("{}, line {} {}; go on with --from-line {}", program, entry.line,
                      is_on_path(entry.state) ? "begun at least" : "begun", entry.line);

@@ -53,7 +53,8 @@ void put_text(std::string_view from, std::array<char, N>& to) noexcept {
                                                                 std::string_view machine);
 
 /// What an operator is to know of it after a restart, in one line: the program, how far it came,
-/// and from which line to go on.
+/// and from which line to go on. A line may be many blocks (an arc), so that the next one is right
+/// only if the block named was its last; behind an alarm the drives may have left the path earlier.
 [[nodiscard]] std::string describe(const JournalEntry& entry);
 
 /// The rest of it, for the log: when, from which station, in which state, with which options, and

@@ -6,18 +6,23 @@
 namespace meridian::telemetry {
 
 void JournalKeeper::see(const Event& event, const std::string& alarm_words) noexcept {
+  // In FaultStop the commanded path runs on, whether or not the drives follow: what it passes was
+  // commanded, not cut.
+  const bool is_run_out = entry_.state == State::kFaultStop;
   switch (event.code) {
     case EventCode::kStateChanged:
       enter(static_cast<State>(event.a));
       return;
     case EventCode::kBlockStarted:
     case EventCode::kBlockDone:
+      if (is_run_out) return;
       entry_.block = event.a;
       entry_.line = static_cast<std::uint32_t>(event.b);
       entry_.reached = event.code == EventCode::kBlockDone ? Reached::kDone : Reached::kBegun;
       has_news_ = true;
       return;
     case EventCode::kProgramEnd:
+      if (is_run_out) return;
       entry_.reached = Reached::kEnd;
       return;
     case EventCode::kAlarm:

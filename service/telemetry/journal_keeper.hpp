@@ -11,7 +11,8 @@
 namespace meridian::telemetry {
 
 /// Decides from the events of the cycle when the journal gets a new entry, and which: whenever a
-/// program begins, comes to rest or ends, and once a second while its blocks go on. One thread.
+/// program begins, comes to rest or ends, and once a second while its blocks go on. Behind a fault
+/// it names the block in which the alarm came, not where the commanded path ran out to. One thread.
 /// Proof: tests/unit/telemetry/journal_test.cpp.
 class JournalKeeper {
  public:

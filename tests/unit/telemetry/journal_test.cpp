@@ -106,14 +106,26 @@ TEST(JournalEntry, OfSomebodyElseIsRefusedWithTheReason) {
 
 TEST(JournalEntry, TellsFromWhichLineToGoOn) {
   JournalEntry entry = sample_entry();
-  EXPECT_EQ(describe(entry),
-            "last program: blade = 7.apt, line 4720 done; go on with --from-line 4721");
+  EXPECT_EQ(
+      describe(entry),
+      "last program: blade = 7.apt, line 4720 done up to block 4710; go on with --from-line 4720,"
+      " or 4721 if that was all of line 4720")
+      << "an arc is many blocks of one line";
   entry.reached = Reached::kBegun;
   EXPECT_EQ(describe(entry),
             "last program: blade = 7.apt, line 4720 begun; go on with --from-line 4720");
   entry.state = State::kRunning;
   EXPECT_EQ(describe(entry),
             "last program: blade = 7.apt, line 4720 begun at least; go on with --from-line 4720");
+  for (const State state : {State::kFaultStop, State::kFault}) {
+    for (const Reached reached : {Reached::kBegun, Reached::kDone}) {
+      entry.state = state;
+      entry.reached = reached;
+      EXPECT_EQ(describe(entry),
+                "last program: blade = 7.apt, line 4720 at the alarm, what was cut may end earlier "
+                "(flight record); go on with --from-line 4720 at the latest");
+    }
+  }
   entry.reached = Reached::kEnd;
   EXPECT_EQ(describe(entry), "last program: blade = 7.apt, ran to its end");
   const std::string more = describe_more(sample_entry());
@@ -286,6 +298,32 @@ TEST(JournalKeeper, NotesRestsAtOnceAndWhoseProgramItWas) {
   kept.enter(State::kOff);
   kept.run_for(3000);
   EXPECT_EQ(kept.entries.size(), count) << "the program is over";
+}
+
+TEST(JournalKeeper, NamesTheBlockOfTheAlarmAndNotWhereTheCommandedPathRanOutTo) {
+  Kept kept;
+  for (int program = 0; program < 2; ++program) {
+    kept.begin(0);
+    kept.enter(State::kApproaching);
+    kept.run_for(20);
+    EXPECT_EQ(kept.entries.back().line, 10U) << "the next program begins with its own";
+    kept.enter(State::kRunning);
+    kept.begin(3);
+    kept.tell(EventCode::kAlarm);
+    kept.enter(State::kFaultStop);
+    kept.end(3);
+    kept.begin(4);
+    kept.run_for(2000);
+    kept.end(4);
+    kept.tell(EventCode::kProgramEnd, 1);
+    kept.enter(State::kFault);
+    kept.run_for(20);
+    EXPECT_EQ(kept.entries.back().block, 3U);
+    EXPECT_EQ(kept.entries.back().line, 13U);
+    EXPECT_EQ(kept.entries.back().reached, Reached::kBegun);
+    EXPECT_EQ(kept.entries.back().state, State::kFault);
+    kept.enter(State::kOff);
+  }
 }
 
 TEST(JournalKeeper, NotesTheEndOfAProgram) {
