@@ -163,9 +163,10 @@ std::unique_ptr<trace::Tracer> Service::make_tracer() {
   options.every_ns = ns(wish.every_s, 1e9);
   options.most_files = wish.files;
   const dds::MachineInfo info = machine_info(parts_, service_id_);
-  return std::make_unique<trace::Tracer>(
+  return trace::make_tracer(
       options, trace::TraceOrigin{info.name, info.service_version, info.host}, *rings_,
-      [this](const std::string& text) { log_->warn("{}", text); });
+      [this](const std::string& text) { log_->warn("{}", text); },
+      [this](const std::string& text) { log_->error("{}", text); });
 }
 
 void Service::take_lease() {

@@ -3,14 +3,13 @@
 
 #include <fcntl.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -42,6 +41,30 @@ constexpr std::size_t kMost_bytes = 4096;
   return 0;
 }
 
+/// The journal in `file`, as open() returned it; else what is wrong with it.
+[[nodiscard]] Expected<JournalEntry, std::string> parse_file(int file, const std::string& machine) {
+  const auto why = [](int error) {
+    return tl::make_unexpected(error == ELOOP
+                                   ? std::string("is a symbolic link")
+                                   : fmt::format("cannot be read: {}", std::strerror(error)));
+  };
+  if (file < 0) return why(errno);
+  struct stat facts {};
+  if (::fstat(file, &facts) != 0) return why(errno);
+  if (!S_ISREG(facts.st_mode)) return tl::make_unexpected(std::string("is no regular file"));
+  std::string text(kMost_bytes, '\0');
+  std::size_t size = 0;
+  while (size < text.size()) {
+    const ssize_t count = ::read(file, text.data() + size, text.size() - size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return why(errno);
+    if (count == 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  text.resize(size);
+  return parse_journal(text, machine);
+}
+
 [[nodiscard]] int sync_folder(const std::filesystem::path& folder) noexcept {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return errno;
@@ -54,7 +77,10 @@ constexpr std::size_t kMost_bytes = 4096;
 
 int replace_file(const std::filesystem::path& path, const std::string& text) {
   const std::string beside = path.string() + ".new";
-  const int file = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
+  // A file of its own, whatever lies there: a link is not followed.
+  (void)::unlink(beside.c_str());
+  const int file =
+      ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0640);
   if (file < 0) return errno;
   int error = write_all(file, text);
   if (error == 0 && ::fsync(file) != 0) error = errno;
@@ -80,12 +106,11 @@ Journal::Journal(const std::filesystem::path& folder, std::string machine, Write
 
 std::optional<JournalEntry> Journal::read() {
   if (path_.empty()) return std::nullopt;
-  std::ifstream file(path_, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::string text(kMost_bytes, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-  auto entry = parse_journal(text, machine_);
+  // No link is followed, no pipe waited for.
+  const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
+  if (file < 0 && errno == ENOENT) return std::nullopt;
+  auto entry = parse_file(file, machine_);
+  if (file >= 0) (void)::close(file);
   if (entry) return *entry;
   put_aside(entry.error());
   return std::nullopt;

@@ -28,8 +28,8 @@ class Journal {
   Journal(const std::filesystem::path& folder, std::string machine, Write write = replace_file);
 
   /// What the service before left, nothing where it left none; to be called ahead of run(). A file
-  /// that is no journal of this machine, or torn, is put aside as NAME.refused and complaint() says
-  /// so.
+  /// that is no journal of this machine, torn, unreadable or no regular file is put aside as
+  /// NAME.refused and complaint() says so.
   [[nodiscard]] std::optional<JournalEntry> read();
 
   /// Telemetry thread: this is what is true now.

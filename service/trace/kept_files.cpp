@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +17,16 @@ namespace {
   char text[32];
   const std::size_t length = std::strftime(text, sizeof text, "%Y%m%dT%H%M%SZ", &parts);
   return {text, length};
+}
+
+/// Into a file of its own: what is there under that name goes, a link is not followed.
+[[nodiscard]] bool write_anew(const std::filesystem::path& path, const std::string& text) {
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+  std::FILE* const file = std::fopen(path.c_str(), "wbx");
+  if (file == nullptr) return false;
+  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  return std::fclose(file) == 0 && is_written;
 }
 
 }  // namespace
@@ -45,13 +54,9 @@ std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string
   const std::string name = "slow-" + std::to_string(severity_us) + "us-" + time_now();
   const std::filesystem::path file = folder_ / (name + ".json"), part = folder_ / (name + ".part");
   std::error_code failed;
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out << text;
-    if (!out.flush()) {
-      std::filesystem::remove(part, failed);
-      return {};
-    }
+  if (!write_anew(part, text)) {
+    std::filesystem::remove(part, failed);
+    return {};
   }
   std::filesystem::rename(part, file, failed);
   if (failed) return {};

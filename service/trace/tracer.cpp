@@ -114,4 +114,14 @@ void Tracer::write() {
                     : describe(window.slow) + "; trace: " + file.string());
 }
 
+std::unique_ptr<Tracer> make_tracer(TraceOptions options, TraceOrigin origin, Rings& rings,
+                                    Tracer::Say say, const Tracer::Say& complain) {
+  try {
+    return std::make_unique<Tracer>(std::move(options), std::move(origin), rings, std::move(say));
+  } catch (const std::filesystem::filesystem_error& error) {
+    complain(std::string("no traces: ") + error.what());
+    return nullptr;
+  }
+}
+
 }  // namespace meridian::trace

@@ -7,6 +7,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -69,5 +70,11 @@ class Tracer {
   };
   std::optional<Written> written_;  ///< newest file
 };
+
+/// A tracer; nullptr where its folder cannot be made or read, which `complain` hears: traces are no
+/// reason for a machine to stand.
+[[nodiscard]] std::unique_ptr<Tracer> make_tracer(TraceOptions options, TraceOrigin origin,
+                                                  Rings& rings, Tracer::Say say,
+                                                  const Tracer::Say& complain);
 
 }  // namespace meridian::trace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -172,6 +173,35 @@ TEST_F(TracerTest, WritesSeldomAndKeepsTheWorst) {
   KeptFiles later(options().folder, 2);  // those of earlier services count
   EXPECT_FALSE(later.would_keep(1500 * kUs));
   EXPECT_TRUE(later.would_keep(2500 * kUs));
+}
+
+TEST_F(TracerTest, IsNoneWhereItsFolderCannotBeMadeAndTheReasonIsTold) {
+  TraceOptions options = this->options();
+  options.folder = "/proc/nowhere";
+  const auto tracer = make_tracer(options, TraceOrigin{"lai", "1.0", "host"}, *rings_, {},
+                                  [this](const std::string& text) { said_.push_back(text); });
+  EXPECT_EQ(tracer, nullptr);
+  ASSERT_EQ(said_.size(), 1U);
+  EXPECT_EQ(said_[0].rfind("no traces: ", 0), 0U) << said_[0];
+  EXPECT_NE(said_[0].find("/proc/nowhere"), std::string::npos) << said_[0];
+}
+
+TEST_F(TracerTest, IsNotWrittenThroughALinkThatLiesInItsWay) {
+  KeptFiles kept(options().folder, 5);
+  const auto other = folder_.path() / "other";
+  std::ofstream(other) << "not ours";
+  const std::time_t now = std::time(nullptr);
+  for (std::time_t t = now; t < now + 30; ++t) {  // whatever second it is written in
+    std::tm parts{};
+    ::gmtime_r(&t, &parts);
+    char name[64];
+    (void)std::strftime(name, sizeof name, "slow-2000us-%Y%m%dT%H%M%SZ.part", &parts);
+    std::filesystem::create_symlink(other, options().folder / name);
+  }
+  const auto file = kept.add(2 * kMs, "{}");
+  ASSERT_FALSE(file.empty());
+  EXPECT_EQ(text_of(other), "not ours");
+  EXPECT_EQ(text_of(file), "{}");
 }
 
 TEST_F(TracerTest, KeepsWhatWasBeforeAStallThatOnlyTheCycleSleptThrough) {

@@ -2,6 +2,7 @@
 #include "service/telemetry/journal.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -169,6 +170,35 @@ TEST(Journal, PutsAsideWhatIsTornAndGoesOn) {
   EXPECT_EQ(test::read_text(journal.path()), whole);
 }
 
+TEST(Journal, PutsAsideWhatIsThereAndCannotBeReadAsAFile) {
+  const Folder folder;
+  const std::string whole = to_text(sample_entry(), "lai");
+  const auto expect_aside = [&](const char* what, const std::string& why, const auto& make) {
+    fs::remove_all(folder.path());
+    fs::create_directories(folder.path());
+    Journal journal(folder.path(), "lai");
+    make(journal.path());
+    EXPECT_FALSE(journal.read()) << what;
+    EXPECT_NE(journal.complaint().find(why), std::string::npos)
+        << what << ": " << journal.complaint();
+    EXPECT_FALSE(fs::exists(fs::symlink_status(journal.path()))) << what << " would be replaced";
+    EXPECT_TRUE(fs::exists(fs::symlink_status(journal.path().string() + ".refused"))) << what;
+  };
+  expect_aside("a link", "symbolic link", [&](const fs::path& path) {
+    std::ofstream(folder.path() / "elsewhere") << whole;
+    fs::create_symlink("elsewhere", path);
+  });
+  expect_aside("a folder", "is no regular file",
+               [](const fs::path& path) { fs::create_directory(path); });
+  expect_aside("a pipe that nobody writes", "is no regular file",
+               [](const fs::path& path) { ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0); });
+  if (::geteuid() == 0) return;  // who may read everything
+  expect_aside("somebody else's", "Permission denied", [&](const fs::path& path) {
+    std::ofstream(path) << whole;
+    fs::permissions(path, fs::perms::none);
+  });
+}
+
 TEST(Journal, OfAServiceKilledWhileItWroteIsTheOneBefore) {
   const Folder folder;
   fs::create_directories(folder.path());
@@ -177,6 +207,18 @@ TEST(Journal, OfAServiceKilledWhileItWroteIsTheOneBefore) {
   ASSERT_EQ(replace_file(journal.path(), whole), 0);
   std::ofstream(journal.path().string() + ".new") << whole.substr(0, 40);
   EXPECT_TRUE(journal.read()) << journal.complaint();
+}
+
+TEST(Journal, IsNotWrittenThroughALinkThatLiesInItsWay) {
+  const Folder folder;
+  fs::create_directories(folder.path());
+  const fs::path path = folder.path() / "lai.journal", other = folder.path() / "other";
+  std::ofstream(other) << "not ours";
+  fs::create_symlink(other, path.string() + ".new");
+  ASSERT_EQ(replace_file(path, "text"), 0);
+  EXPECT_EQ(test::read_text(other), "not ours");
+  EXPECT_EQ(test::read_text(path), "text");
+  EXPECT_FALSE(fs::is_symlink(path));
 }
 
 TEST(Journal, OnABlockedDiskHindersNobodyAndGetsTheNewestAfterwards) {
