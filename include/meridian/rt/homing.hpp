@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
 #include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/jog_room.hpp"
 #include "meridian/rt/on_path.hpp"
 
 /// Homing: drives find their references by themselves, in CiA 402 homing mode, one group after the
-/// other in the order of the machine file. The setpoint of a drive that is homing is its feedback.
+/// other in the order of the machine file. The setpoint of a drive that is homing is its feedback;
+/// before and after that it holds its place. The drives of a stage home together, for each of them
+/// carries both joints.
 /// RT: cycle. Proof: tests/unit/rt/homing_test.cpp.
 namespace meridian {
 
@@ -32,10 +36,22 @@ struct HomingAsked {
   return {homing.busy, homing.phase == Phase::kSearch ? homing.busy : 0};
 }
 
-/// The turn of `joint`, from 1 on.
-[[nodiscard]] inline int homing_turn(const CycleOptions& options, int joint) noexcept {
-  const int turn = options.homing_turns[static_cast<std::size_t>(joint)];
-  return turn > 0 ? turn : joint + 1;
+/// The two joints that a stage carries; 0: the machine has none.
+[[nodiscard]] inline std::uint32_t stage_pair(const MachineModel& machine) noexcept {
+  if (!has_stage(machine)) return 0;
+  return 1U << static_cast<unsigned>(machine.stage.linear_joint) |
+         1U << static_cast<unsigned>(machine.stage.rotary_joint);
+}
+
+/// The turn of `joint`, from 1 on; both joints of a stage have the earlier one of theirs.
+[[nodiscard]] inline int homing_turn(const MachineModel& machine, const CycleOptions& options,
+                                     int joint) noexcept {
+  const auto own = [&options](int which) {
+    const int turn = options.homing_turns[static_cast<std::size_t>(which)];
+    return turn > 0 ? turn : which + 1;
+  };
+  if (!jog::is_on_stage(machine, joint)) return own(joint);
+  return std::min(own(machine.stage.linear_joint), own(machine.stage.rotary_joint));
 }
 
 inline void enter_phase(Homing& homing, Homing::Phase next) noexcept {
@@ -44,28 +60,31 @@ inline void enter_phase(Homing& homing, Homing::Phase next) noexcept {
 }
 
 /// Takes the joints whose turn is next. False where none is left.
-inline bool take_group(const CycleOptions& options, Homing& homing) noexcept {
+inline bool take_group(const MachineModel& machine, const CycleOptions& options,
+                       Homing& homing) noexcept {
   int turn = std::numeric_limits<int>::max();
   for (std::uint32_t left = homing.left; left != 0; left &= left - 1) {
-    turn = std::min(turn, homing_turn(options, std::countr_zero(left)));
+    turn = std::min(turn, homing_turn(machine, options, std::countr_zero(left)));
   }
   homing.busy = homing.begun = 0;
   for (std::uint32_t left = homing.left; left != 0; left &= left - 1) {
     const int joint = std::countr_zero(left);
-    if (homing_turn(options, joint) == turn) homing.busy |= 1U << static_cast<unsigned>(joint);
+    if (homing_turn(machine, options, joint) != turn) continue;
+    homing.busy |= 1U << static_cast<unsigned>(joint);
   }
   homing.left &= ~homing.busy;
   enter_phase(homing, Homing::Phase::kBegin);
   return homing.busy != 0;
 }
 
-/// Begins to home the joints of `mask`.
+/// Begins to home the joints of `mask`; one of a stage takes the other along.
 inline void begin_homing(Cycle& c, std::uint32_t mask) noexcept {
   Homing& homing = c.state.homing;
   homing = {};
   homing.is_active = true;
-  homing.left = mask;
-  (void)take_group(c.state.options, homing);
+  const std::uint32_t pair = stage_pair(c.machine);
+  homing.left = (mask & pair) != 0 ? mask | pair : mask;
+  (void)take_group(c.machine, c.state.options, homing);
 }
 
 /// Asks the drives to stop searching; the joints whose turn has not come keep their place.
@@ -83,10 +102,15 @@ inline void fail_homing(Cycle& c, Alarm alarm, std::uint32_t joints) noexcept {
   halt_homing(c);
 }
 
-/// Setpoints of the drives that are homing go where they report to be.
+/// Setpoints of the drives that are in homing mode go where they report to be; whoever is not there
+/// yet, or back already, follows setpoints and must be held. Of a stage both or none.
 inline void let_homing_move(Cycle& c) noexcept {
-  for (std::uint32_t busy = c.state.homing.busy; busy != 0; busy &= busy - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(busy));
+  std::uint32_t moving = c.state.homing.busy & c.in.feedback.homing_mask;
+  const std::uint32_t pair = stage_pair(c.machine);
+  if ((moving & pair) != pair) moving &= ~pair;
+  for (; moving != 0; moving &= moving - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(moving));
+    if (!std::isfinite(c.feedback[i])) continue;  // nobody reports: raise() knows
     c.previous[i] = c.state.joints[i] = c.feedback[i];
   }
 }
@@ -95,11 +119,11 @@ inline void let_homing_move(Cycle& c) noexcept {
 inline void watch_search(Cycle& c) noexcept {
   Homing& homing = c.state.homing;
   const Feedback& f = c.in.feedback;
-  homing.begun |= homing.busy & ~f.homed_mask;
+  homing.begun |= homing.busy & ~f.homed_mask & ~f.homing_error_mask;
   const std::uint32_t seen =
       homing.time > kSearchUnseen_s ? homing.busy : homing.busy & homing.begun;
   const std::uint32_t there = seen & f.homed_mask & f.referenced_mask;
-  const std::uint32_t failed = homing.busy & f.homing_error_mask;
+  const std::uint32_t failed = seen & f.homing_error_mask;  // not the one of the time before
   if (failed != 0) return fail_homing(c, Alarm::kHomingFailed, failed);
   if (there == homing.busy) return enter_phase(homing, Homing::Phase::kLeave);
   if (homing.time > c.state.options.homing_timeout_s) {
@@ -112,7 +136,7 @@ inline void watch_search(Cycle& c) noexcept {
   Homing& homing = c.state.homing;
   const std::uint32_t referenced = homing.busy & c.in.feedback.referenced_mask;
   if (!homing.has_failed && referenced != 0) tell(c, EventCode::kJointsHomed, referenced);
-  if (take_group(c.state.options, homing)) return true;
+  if (take_group(c.machine, c.state.options, homing)) return true;
   homing = {};
   return false;
 }

@@ -30,19 +30,26 @@ inline void begin_jogging(Cycle& c) noexcept {
   c.state.motion = MotionKind::kApproach;
 }
 
-/// Takes a newer order of this epoch, or counts the silence. A hand that let go is not taken again:
-/// an order that was under way for long moves nothing.
+/// A hand that was silent for longer than its dead man's time let go.
+inline void judge_silence(Jogging& jogging) noexcept {
+  if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.is_let_go = true;
+}
+
+/// Counts the silence, also that of periods which nobody saw, and takes a newer order of this epoch
+/// where the hand is still there: one that let go is not taken again, and an order that was under
+/// way for long moves nothing.
 inline void take_order(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   const JogOrder& order = c.in.jog;
-  jogging.silence += c.dt * c.periods;
+  jogging.silence += c.dt * (1.0 + c.in.lost_periods);  // c.periods is 1 where nothing moved
+  judge_silence(jogging);
   if (order.sample > jogging.order.sample && order.epoch == c.state.epoch && !jogging.is_let_go) {
     jogging.has_order = true;
     jogging.order = order;
     jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
     jogging.silence = 0;
+    judge_silence(jogging);
   }
-  if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.is_let_go = true;
 }
 
 /// Narrows the room to the distance that was asked for.

@@ -91,6 +91,16 @@ inline void arrive(Cycle& c) noexcept {
   enter(c, c.state.state == State::kAborting ? State::kReady : State::kFault);
 }
 
+/// One cycle of halting drives that home themselves. A FaultStop is over when they stand, or had
+/// the time to: what they report need not be new.
+inline void come_to_rest_from_homing(Cycle& c) noexcept {
+  const bool goes_on = home(c);
+  const bool is_fault = c.state.state == State::kFaultStop;
+  if (goes_on && !(is_fault && c.state.homing.phase > Homing::Phase::kHalt)) return;
+  c.state.homing = {};
+  arrive(c);
+}
+
 /// One cycle of whatever stops. False if the path gave no joints.
 [[nodiscard]] inline bool come_to_rest(Cycle& c) noexcept {
   if (c.state.jogging.is_active) {
@@ -99,7 +109,7 @@ inline void arrive(Cycle& c) noexcept {
     return step != JogStep::kNoJoints;
   }
   if (c.state.homing.is_active) {
-    if (!home(c)) arrive(c);
+    come_to_rest_from_homing(c);
     return true;
   }
   if (!follow_stop(c)) return false;

@@ -9,6 +9,7 @@
 
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/guard.hpp"
+#include "meridian/rt/homing.hpp"
 #include "meridian/rt/jogging.hpp"
 #include "meridian/rt/on_path.hpp"
 #include "meridian/rt/state_table.hpp"
@@ -43,14 +44,16 @@ inline void tell_alarm(Cycle& c, Alarm alarm, int joint, double value) noexcept 
        value);
 }
 
-/// Tells an alarm and goes to FaultStop on the path; one that is going on goes on.
+/// Tells an alarm and goes to FaultStop on the path, or with drives that are homing told to stop;
+/// one that is going on goes on.
 inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexcept {
   tell_alarm(c, alarm, joint, value);
   if (c.state.state == State::kFaultStop) return;
   c.state.alarm = alarm;
-  c.state.homing = {};
   if (c.state.jogging.is_active) {
     brake_jogging(c, true);
+  } else if (c.state.homing.is_active) {
+    halt_homing(c);
   } else {
     begin_stop(c, StopKind::kFault);
   }

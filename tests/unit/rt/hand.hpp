@@ -28,17 +28,21 @@ struct Hand {
   /// Holds `velocity` for so long; the last order comes 20 ms before the end.
   void hold(int joint, double velocity, double seconds) {
     for (double t = 0; t < seconds; t += 0.02) {
-      const int place = joint < kMaxJoints ? joint : joint - kMaxJoints;
-      world.in.jog = {.sample = ++sample,
-                      .epoch = epoch,
-                      .is_tool = joint >= kMaxJoints,
-                      .joint = static_cast<std::uint8_t>(place),
-                      .velocity = velocity,
-                      .distance = distance,
-                      .tool_length_mm = world.machine.tool_length_mm,
-                      .dead_man_s = 0.1};
+      order(joint, velocity);
       world.run_for(0.02);
     }
+  }
+  /// One order, which the next cycle finds.
+  void order(int joint, double velocity) {
+    const int place = joint < kMaxJoints ? joint : joint - kMaxJoints;
+    world.in.jog = {.sample = ++sample,
+                    .epoch = epoch,
+                    .is_tool = joint >= kMaxJoints,
+                    .joint = static_cast<std::uint8_t>(place),
+                    .velocity = velocity,
+                    .distance = distance,
+                    .tool_length_mm = world.machine.tool_length_mm,
+                    .dead_man_s = 0.1};
   }
   [[nodiscard]] Refusal refusal() const {
     return static_cast<Refusal>(world.last(EventCode::kRefused).x);

@@ -53,6 +53,17 @@ TEST(Jogging, IsNotTakenUpAgainByAnOrderThatComesLate) {
   EXPECT_EQ(hand.world.state.joints, rest) << "nor in Ready";
 }
 
+TEST(Jogging, AStallOfTheHostCountsAgainstTheDeadManAlsoWhereNothingMoved) {
+  Hand hand;
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.hold(0, 0, 0.1);
+  hand.order(0, 300);
+  hand.world.run(static_cast<std::uint32_t>(5 / hand.world.dt()));
+  hand.order(0, 300);  // on its way since before the stall
+  ASSERT_TRUE(hand.world.run_until(State::kReady, 1));
+  EXPECT_EQ(hand.world.state.joints, JointVector{});
+}
+
 TEST(Jogging, OrdersOfAnotherEpochMoveNothing) {
   Hand hand;
   ASSERT_TRUE(hand.lay_on(0));
