@@ -38,7 +38,7 @@ struct RealtimeConfig {
 
 /// The flight recorder: what it keeps of a fault, and where (docs/recordings.md).
 struct FlightConfig {
-  std::filesystem::path folder;  ///< empty: `faults` in the state directory, else nothing
+  std::filesystem::path folder;  ///< empty: faults/MACHINE in the state directory, else none
   double seconds = 10;
   int faults = 20;  ///< so many stay in the folder, the oldest go
 };

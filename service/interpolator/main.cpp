@@ -20,6 +20,7 @@
 #include "service/interpolator/notify.hpp"
 #include "service/interpolator/service.hpp"
 #include "service/manual/manual.hpp"
+#include "service/telemetry/flight_recorder.hpp"
 #include "service/telemetry/log.hpp"
 
 namespace meridian::interpolator {
@@ -95,8 +96,8 @@ void make_stacks_small() {
   parts.state_folder = state_folder(options.state, parts.service);
   config::FlightConfig& flight = parts.service.flight;
   if (!options.faults.empty()) flight.folder = options.faults;
-  if (flight.folder.empty() && !parts.state_folder.empty()) {
-    flight.folder = parts.state_folder / "faults";
+  if (flight.folder.empty()) {
+    flight.folder = telemetry::default_fault_folder(parts.state_folder, parts.model.name);
   }
   return parts;
 }

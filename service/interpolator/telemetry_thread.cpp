@@ -59,6 +59,7 @@ void TelemetryThread::run() noexcept {
   drain();
   keep_journal(monotonic_ns());
   flight_.finish();
+  flight_.tell_missed();
   publish_status(monotonic_ns());
 }
 
@@ -254,6 +255,7 @@ void TelemetryThread::publish_latency(std::int64_t now_ns) {
   latency_ns_ = now_ns;
   if (periods_lost_ > 0) log_->warn("{} periods lost in the last second", periods_lost_);
   periods_lost_ = 0;
+  flight_.tell_missed();
   latency_.time_ns = now_ns;
   (void)latencies_.write(latency_);
 }

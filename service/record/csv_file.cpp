@@ -16,7 +16,16 @@ constexpr std::size_t kBufferBytes = 256 * 1024;
 }  // namespace
 
 Expected<CsvFile, RecordError> CsvFile::create(const std::string& path) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  return open(path, O_TRUNC);
+}
+
+Expected<CsvFile, RecordError> CsvFile::create_anew(const std::string& path) {
+  (void)::unlink(path.c_str());
+  return open(path, O_EXCL | O_NOFOLLOW);
+}
+
+Expected<CsvFile, RecordError> CsvFile::open(const std::string& path, int how) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0644);
   if (file < 0) {
     return tl::make_unexpected(
         RecordError{path, 0, std::string("cannot be created: ") + std::strerror(errno),

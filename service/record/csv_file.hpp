@@ -49,6 +49,8 @@ class CsvFile {
  public:
   /// Creates or empties the file.
   [[nodiscard]] static Expected<CsvFile, RecordError> create(const std::string& path);
+  /// Creates it in the place of what has that name; a link is not followed.
+  [[nodiscard]] static Expected<CsvFile, RecordError> create_anew(const std::string& path);
   /// Writes what is buffered; a failure is lost here, so call close() where it matters.
   ~CsvFile();
   CsvFile(CsvFile&& other) noexcept;
@@ -75,6 +77,7 @@ class CsvFile {
 
  private:
   CsvFile(int file, std::string path);
+  [[nodiscard]] static Expected<CsvFile, RecordError> open(const std::string& path, int how);
 
   std::string path_;
   std::vector<char> buffer_;

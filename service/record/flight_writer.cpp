@@ -8,7 +8,7 @@ namespace meridian::record {
 
 Expected<FlightWriter, RecordError> FlightWriter::create(const std::string& path,
                                                          const MachineModel& model) {
-  auto file = CsvFile::create(path);
+  auto file = CsvFile::create_anew(path);
   if (!file) return tl::make_unexpected(std::move(file.error()));
   std::string text = RecordColumns::header(model) +
                      ",alarm,alarm_joint,feedback_cycle,feedback_age_ns,emergency_stop";

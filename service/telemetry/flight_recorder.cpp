@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <exception>
-#include <fstream>
+#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "meridian/rt/state_table.hpp"
 #include "service/record/flight_writer.hpp"
 #include "service/record/words.hpp"
+#include "service/telemetry/file_name.hpp"
 #include "service/telemetry/words.hpp"
 
 namespace meridian::telemetry {
@@ -27,10 +30,39 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kTail_s = 0.5;
+/// The rows are at most so large: the service locks its memory, and 64 MiB are to do for all of it.
+constexpr std::size_t kRows_bytes = std::size_t{16} << 20U;
 constexpr const char* kPrefix = "fault-";
 
 [[nodiscard]] std::size_t rows_of(double time_s, const MachineModel& model) {
   return static_cast<std::size_t>(time_s * 1e9 / static_cast<double>(model.cycle_ns));
+}
+
+[[nodiscard]] std::size_t rows_that_fit(double time_s, const MachineModel& model) {
+  return std::min(rows_of(time_s, model), kRows_bytes / sizeof(record::FlightRow));
+}
+
+/// Whether a file has a name that this recorder gives: fault-20260412T081530. and `ending`.
+[[nodiscard]] bool is_ours(const fs::path& file, std::string_view ending) {
+  constexpr std::string_view kShape = "fault-00000000T000000.";
+  const std::string name = file.filename().string();
+  if (name.size() < kShape.size() || !name.ends_with(ending)) return false;
+  for (std::size_t i = 0; i < kShape.size(); ++i) {
+    const bool is_digit = std::isdigit(static_cast<unsigned char>(name[i])) != 0;
+    if (kShape[i] == '0' ? !is_digit : name[i] != kShape[i]) return false;
+  }
+  return true;
+}
+
+/// The files of this recorder in `folder`, the oldest first.
+[[nodiscard]] std::vector<fs::path> find_ours(const fs::path& folder, std::string_view ending) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (is_ours(at->path(), ending)) files.push_back(at->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 /// When a due time of the cycle was, by the calendar, UTC.
@@ -59,13 +91,17 @@ constexpr const char* kPrefix = "fault-";
   if (record::is_of_joint(alarm.alarm) && alarm.joint >= 0 && alarm.joint < limited_count(model)) {
     name += "-" + limited_spec(model, alarm.joint).name;
   }
-  std::replace_if(
-      name.begin(), name.end(),
-      [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_';
-      },
-      '_');
-  return name;
+  return plain_name(name);
+}
+
+/// Into a file of its own: what is there under that name goes, a link is not followed. errno tells
+/// why it could not be written.
+[[nodiscard]] bool write_anew(const fs::path& path, const std::string& text) {
+  (void)::unlink(path.c_str());
+  std::FILE* const file = std::fopen(path.c_str(), "wbx");
+  if (file == nullptr) return false;
+  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  return std::fclose(file) == 0 && is_written;
 }
 
 [[nodiscard]] fs::path with_ending(fs::path file, const char* ending) {
@@ -74,20 +110,34 @@ constexpr const char* kPrefix = "fault-";
 
 }  // namespace
 
+fs::path default_fault_folder(const fs::path& state, const std::string& machine) {
+  return state.empty() ? fs::path() : state / "faults" / plain_name(machine);
+}
+
 FlightRecorder::FlightRecorder(const config::FlightConfig& config, const MachineModel& model,
                                std::shared_ptr<spdlog::logger> log)
     : folder_(config.folder),
       most_faults_(static_cast<std::size_t>(config.faults)),
       model_(model),
       log_(std::move(log)),
-      store_(config.folder.empty() ? 0 : rows_of(config.seconds, model), rows_of(kTail_s, model)) {
+      store_(config.folder.empty() ? 0 : rows_that_fit(config.seconds, model),
+             rows_of(kTail_s, model)) {
   if (!is_on()) return;
   std::error_code error;
   fs::create_directories(folder_, error);
   if (!error && ::access(folder_.c_str(), W_OK | X_OK) != 0) {
     error = std::error_code(errno, std::generic_category());
   }
-  if (!error) return;
+  if (!error) {
+    if (store_.room() < rows_of(config.seconds, model)) {
+      log_->warn(
+          "the flight recorder keeps the last {:.1f} s, not {} s: more rows of {} us do not "
+          "fit into its {} MiB",
+          static_cast<double>(store_.room()) * 1e-9 * static_cast<double>(model.cycle_ns),
+          config.seconds, model.cycle_ns / 1000, kRows_bytes >> 20U);
+    }
+    return;
+  }
   log_->error(
       "the flight recorder cannot write to {}, faults leave no record: {}; name a folder "
       "that is writable",
@@ -101,6 +151,7 @@ void FlightRecorder::take(const Event& event) noexcept {
 
 void FlightRecorder::run() noexcept {
   if (!is_on()) return;
+  remove_torn();
   for (bool is_last = false; !is_last;) {
     is_last = is_stopping_.load();
     if (store_.is_frozen()) {
@@ -114,6 +165,15 @@ void FlightRecorder::run() noexcept {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }
+}
+
+void FlightRecorder::tell_missed() noexcept {
+  const std::uint64_t missed = faults_missed();
+  if (missed == told_missed_) return;
+  log_->warn(
+      "{} faults have no record of their own: one before was still being recorded or written",
+      missed - told_missed_);
+  told_missed_ = missed;
 }
 
 void FlightRecorder::write() {
@@ -163,7 +223,7 @@ std::string FlightRecorder::write_words(const fs::path& file, const std::string&
     return cycle_s * static_cast<double>(static_cast<std::int64_t>(cycle - fault.setpoint.cycle));
   };
   const fs::path words = with_ending(file, ".txt");
-  std::ofstream out(words);
+  std::ostringstream out;
   out << "machine " << model_.name << ", fault of " << when << " UTC, cycle "
       << fault.setpoint.cycle << ", block " << fault.sequence << " of line " << fault.setpoint.line
       << "\n\n";
@@ -182,21 +242,20 @@ std::string FlightRecorder::write_words(const fs::path& file, const std::string&
   if (faults_missed() > 0) {
     out << "faults since the start whose record found no room: " << faults_missed() << "\n";
   }
-  out.close();
-  return out ? "" : words.string() + ": " + std::strerror(errno);
+  return write_anew(words, out.str()) ? "" : words.string() + ": " + std::strerror(errno);
+}
+
+/// What a service was killed over.
+void FlightRecorder::remove_torn() const {
+  std::error_code ignored;
+  for (const fs::path& part : find_ours(folder_, ".csv.part")) fs::remove(part, ignored);
 }
 
 /// The oldest go, by the time in their names; the newest stays whatever the calendar says.
 void FlightRecorder::remove_old(const fs::path& newest) const {
-  std::vector<fs::path> files;
+  std::vector<fs::path> files = find_ours(folder_, ".csv");
+  std::erase(files, newest);
   std::error_code error;
-  for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
-    const fs::path& file = at->path();
-    const bool is_ours =
-        file.filename().string().starts_with(kPrefix) && file.extension() == ".csv";
-    if (is_ours && file != newest) files.push_back(file);
-  }
-  std::sort(files.begin(), files.end());
   const std::size_t most_others = most_faults_ - 1;
   for (std::size_t i = 0; i + most_others < files.size(); ++i) {
     fs::remove(files[i], error);

@@ -14,6 +14,11 @@
 
 namespace meridian::telemetry {
 
+/// Where the faults of a machine go if nothing else is said: a folder of its own in `state`; none
+/// where that is empty.
+[[nodiscard]] std::filesystem::path default_fault_folder(const std::filesystem::path& state,
+                                                         const std::string& machine);
+
 /// Keeps the last seconds of what was sent and what drives reported, and writes them to files of
 /// their own for every fault: `fault-TIME-ALARM.csv`, a recording (docs/recordings.md), and beside
 /// it, in words, what happened, `.txt`. Files are written by a thread of its own: a slow or full
@@ -21,7 +26,8 @@ namespace meridian::telemetry {
 class FlightRecorder {
  public:
   /// An empty folder: nothing is kept. Else makes the folder; where it cannot be made or written
-  /// to, the log says so and nothing is kept: that is no reason for a machine to stand.
+  /// to, the log says so and nothing is kept: that is no reason for a machine to stand. Of more
+  /// seconds than 16 MiB hold the last that fit are kept, which is a warning.
   FlightRecorder(const config::FlightConfig& config, const MachineModel& model,
                  std::shared_ptr<spdlog::logger> log);
 
@@ -32,13 +38,20 @@ class FlightRecorder {
   /// Telemetry thread, or nobody any more: nothing comes behind.
   void finish() noexcept { store_.finish(); }
 
-  /// Recorder's thread: writes every fault until stop().
+  /// Telemetry thread, now and then: what was missed since is a warning in the log.
+  void tell_missed() noexcept;
+
+  /// Recorder's thread: removes what a killed service left half written, then writes every fault
+  /// until stop().
   void run() noexcept;
   void stop() noexcept { is_stopping_ = true; }
 
   [[nodiscard]] bool is_on() const noexcept { return !folder_.empty(); }
   /// A fault is on its way to the disk: nothing is kept meanwhile.
   [[nodiscard]] bool is_writing() const noexcept { return is_on() && store_.is_frozen(); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept {
+    return store_.room() * sizeof(record::FlightRow);
+  }
   [[nodiscard]] std::uint64_t faults_missed() const noexcept { return store_.faults_missed(); }
 
  private:
@@ -46,6 +59,7 @@ class FlightRecorder {
   [[nodiscard]] std::string write_rows(const std::filesystem::path& file) const;
   [[nodiscard]] std::string write_words(const std::filesystem::path& file,
                                         const std::string& when) const;
+  void remove_torn() const;
   void remove_old(const std::filesystem::path& newest) const;
 
   std::filesystem::path folder_;
@@ -53,6 +67,7 @@ class FlightRecorder {
   const MachineModel& model_;
   std::shared_ptr<spdlog::logger> log_;
   FlightStore store_;
+  std::uint64_t told_missed_ = 0;
   std::atomic<bool> is_stopping_{false};
 };
 

@@ -12,8 +12,13 @@ void FlightStore::take(const CycleRecord& record) noexcept {
     if (begins) faults_missed_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
+  if (begins && is_armed_) {
+    faults_missed_.fetch_add(1, std::memory_order_relaxed);
+    freeze();
+    return;
+  }
   rows_[count_ % rows_.size()] = {record, newest_};
-  if (begins && !is_armed_) {
+  if (begins) {
     is_armed_ = true;
     fault_ = count_;
     at_rest_ = 0;

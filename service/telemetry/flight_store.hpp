@@ -14,7 +14,9 @@
 namespace meridian::telemetry {
 
 /// The last rows of a run in fixed memory, which freeze where the machine came to rest behind a
-/// fault. At least half of them are from before the fault, however long the stop took. One thread
+/// fault. At most half of them are from behind the begin of the fault, however long the stop took;
+/// so the rest is from before it, if the run was that long since the begin or the last thaw(). A
+/// second fault while the first is still being kept freezes it and counts as missed. One thread
 /// puts in (take, finish), another takes out: what is frozen is the reader's until thaw(), and
 /// meanwhile nothing is kept. Proof: tests/unit/telemetry/flight_recorder_test.cpp.
 class FlightStore {
@@ -37,6 +39,8 @@ class FlightStore {
   [[nodiscard]] bool is_frozen() const noexcept {
     return is_frozen_.load(std::memory_order_acquire);
   }
+  /// Rows that there is room for.
+  [[nodiscard]] std::size_t room() const noexcept { return rows_.size(); }
   [[nodiscard]] std::size_t size() const noexcept { return std::min(count_, rows_.size()); }
   /// Row `i`, 0 the oldest.
   [[nodiscard]] const record::FlightRow& row(std::size_t i) const noexcept {
@@ -58,7 +62,7 @@ class FlightStore {
   /// Gives the store back, empty.
   void thaw() noexcept;
 
-  /// Faults that came while it was frozen, ever. Any thread.
+  /// Faults that came while it was frozen or kept one before, ever. Any thread.
   [[nodiscard]] std::uint64_t faults_missed() const noexcept { return faults_missed_; }
 
  private:

@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -14,21 +13,13 @@
 #include <thread>
 #include <utility>
 
+#include "service/telemetry/file_name.hpp"
+
 namespace meridian::telemetry {
 namespace {
 
 /// No journal is longer; what is, is something else.
 constexpr std::size_t kMost_bytes = 4096;
-
-/// The machine's name as that of a file.
-[[nodiscard]] std::string file_name_of(const std::string& machine) {
-  std::string name = machine;
-  for (char& c : name) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
-    if (!is_plain) c = '_';
-  }
-  return name + ".journal";
-}
 
 /// Writes all of `text`; 0 or errno.
 [[nodiscard]] int write_all(int file, std::string_view text) noexcept {
@@ -93,7 +84,7 @@ int replace_file(const std::filesystem::path& path, const std::string& text) {
 Journal::Journal(const std::filesystem::path& folder, std::string machine, Write write)
     : machine_(std::move(machine)), write_(std::move(write)) {
   if (folder.empty()) return;
-  path_ = folder / file_name_of(machine_);
+  path_ = folder / (plain_name(machine_) + ".journal");
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) {

@@ -42,7 +42,7 @@ class Fault : public testing::Test {
   std::filesystem::path wait_for_flight() {
     std::filesystem::path found;
     EXPECT_TRUE(eventually([&] {
-      for (const auto& entry : std::filesystem::directory_iterator(plant.faults())) {
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(plant.faults())) {
         if (entry.path().extension() == ".csv") found = entry.path();
       }
       return !found.empty();

@@ -123,7 +123,7 @@ class Plant {
   [[nodiscard]] std::filesystem::path recording() const { return folder_ / "recording.csv"; }
   /// Where the service keeps its journal.
   [[nodiscard]] std::filesystem::path state() const { return folder_ / "state"; }
-  /// Where the flight recorder writes.
+  /// Where the flight recorder writes, into a folder of the machine.
   [[nodiscard]] std::filesystem::path faults() const { return state() / "faults"; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// The machine file that service and drives are started with.

@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "service/record/flight_writer.hpp"
 #include "service/record/recording_reader.hpp"
 #include "support/machines.hpp"
 
@@ -102,6 +103,21 @@ TEST(FlightStore, CountsAFaultThatFindsItFrozenAndBeginsAnewWhenItThaws) {
   run.cycles(store, 20, State::kFault);
   ASSERT_TRUE(store.is_frozen());
   EXPECT_EQ(store.row(0).record.setpoint.cycle, 121U);
+}
+
+TEST(FlightStore, FreezesTheFirstOfTwoFaultsWhereTheSecondBeginsAndCountsThat) {
+  FlightStore store(100, 10);
+  Flown run;
+  run.cycles(store, 50, State::kRunning);
+  run.cycles(store, 3, State::kFaultStop);
+  run.cycles(store, 3, State::kFault);
+  run.cycles(store, 2, State::kOff);
+  EXPECT_FALSE(store.is_frozen());
+  run.cycles(store, 1, State::kFault);
+  EXPECT_TRUE(store.is_frozen());
+  EXPECT_EQ(store.faults_missed(), 1U);
+  EXPECT_EQ(store.size(), 58U);
+  EXPECT_EQ(store.fault().record.setpoint.cycle, 51U);
 }
 
 TEST(FlightStore, FreezesWhatIsThereWhereTheServiceEndsInAFault) {
@@ -203,13 +219,69 @@ TEST_F(FlightFiles, OfOldFaultsGoWhereThereAreMoreThanAskedFor) {
     std::ofstream(folder_ / (std::string(name) + ".csv")) << "old\n";
     std::ofstream(folder_ / (std::string(name) + ".txt")) << "old\n";
   }
-  std::ofstream(folder_ / "part.csv") << "not ours\n";
+  const auto others = {"part.csv", "fault-report.csv", "fault-20200101.csv", "fault-1.csv.part"};
+  for (const char* name : others) std::ofstream(folder_ / name) << "not ours\n";
   live(1);
-  const auto left = files(".csv");
-  EXPECT_EQ(left.size(), 3U);
+  EXPECT_EQ(files(".csv").size(), 5U);
+  for (const char* name : others) EXPECT_TRUE(fs::exists(folder_ / name)) << name;
   EXPECT_FALSE(fs::exists(folder_ / "fault-20200101T000000.000Z-travel-b3.txt"));
   EXPECT_TRUE(fs::exists(folder_ / "fault-20210101T000000.000Z-x.csv"));
-  EXPECT_TRUE(fs::exists(folder_ / "part.csv"));
+}
+
+TEST_F(FlightFiles, ThatAKilledServiceLeftHalfWrittenGo) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "fault-20200101T000000.000Z-travel-b3.csv.part") << "torn";
+  live(0);
+  EXPECT_TRUE(files(".part").empty());
+}
+
+TEST_F(FlightFiles, AreNotWrittenThroughALinkThatLiesInTheirWay) {
+  fs::create_directories(folder_);
+  const fs::path other = folder_ / "other", part = folder_ / "fault.csv.part";
+  std::ofstream(other) << "not ours";
+  fs::create_symlink(other, part);
+  auto writer = record::FlightWriter::create(part, model_);
+  ASSERT_TRUE(writer.has_value()) << writer.error().text();
+  EXPECT_TRUE(writer->close());
+  EXPECT_EQ(fs::file_size(other), 8U);
+  EXPECT_FALSE(fs::is_symlink(part));
+}
+
+TEST_F(FlightFiles, OfMoreSecondsThanFitAreCutToThoseAndTheLogSaysHowMany) {
+  model_.cycle_ns = 125'000;
+  config_.seconds = 60;
+  const FlightRecorder recorder(config_, model_, log_);
+  EXPECT_LE(recorder.memory_bytes(), std::size_t{16} << 20U);
+  EXPECT_GE(recorder.memory_bytes(), std::size_t{15} << 20U);
+  EXPECT_NE(said_.str().find(" s, not 60 s"), std::string::npos) << said_.str();
+  said_.str("");
+  config_.seconds = 1;
+  EXPECT_EQ(FlightRecorder(config_, model_, log_).memory_bytes(), 8000 * sizeof(record::FlightRow));
+  EXPECT_EQ(said_.str(), "");
+}
+
+TEST_F(FlightFiles, ThatAreMissingForWantOfTimeAreToldOnce) {
+  FlightRecorder recorder(config_, model_, log_);
+  Flown run;
+  run.cycles(recorder, 2000, State::kRunning);
+  run.cycles(recorder, 1000, State::kFault);
+  recorder.tell_missed();
+  EXPECT_EQ(said_.str(), "");
+  for (int i = 0; i < 2; ++i) {
+    run.cycles(recorder, 10, State::kOff);
+    run.cycles(recorder, 10, State::kFault);
+  }
+  recorder.tell_missed();
+  EXPECT_NE(said_.str().find("2 faults have no record"), std::string::npos) << said_.str();
+  said_.str("");
+  recorder.tell_missed();
+  EXPECT_EQ(said_.str(), "");
+}
+
+TEST_F(FlightFiles, OfTwoMachinesAreInTwoFolders) {
+  EXPECT_EQ(default_fault_folder("/state", "lai"), "/state/faults/lai");
+  EXPECT_EQ(default_fault_folder("/state", "../a b"), "/state/faults/___a_b");
+  EXPECT_EQ(default_fault_folder("", "lai"), "");
 }
 
 TEST_F(FlightFiles, OfEveryFaultHaveTheirOwnNames) {
