@@ -39,6 +39,9 @@ int find_drive(const char* option, const std::string& name, const MachineModel& 
 drives::Injection read_injection(const std::string& text, const MachineModel& model) {
   const auto injection = drives::parse_injection(text, model);
   if (!injection) throw CLI::ValidationError("--inject", injection.error());
+  if (text.find('@') == std::string::npos) {
+    throw CLI::ValidationError("--inject", "'" + text + "': behind KIND stands @SECONDS");
+  }
   return *injection;
 }
 
