@@ -117,6 +117,7 @@ int run(const Options& options) {
   if (options.join.tip_tolerance_mm > 0) model.tolerances.tip_mm = options.join.tip_tolerance_mm;
   if (options.join.axis_tolerance_deg > 0) {
     model.tolerances.axis_rad = units::rad_from_deg(options.join.axis_tolerance_deg);
+    model.tolerances.pole_axis_rad = model.tolerances.axis_rad;
   }
   if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
   if (options.pole_policy == "exact") model.pole_policy = PolePolicy::kExact;

@@ -21,6 +21,7 @@ namespace {
 
 /// Nearer to the pole than this share of the axis tolerance the axis counts as on it.
 constexpr double kOnPoleShare = 0.2;
+constexpr double kBesidePole_rad = 0.05;  // kSamePlace turns the free joint by 2e-8 rad there
 constexpr double kSamePlace = 1e-9;       // mm and of the unit axis: rounding of joints
 constexpr std::size_t kUnwindings = 256;  // that wait to be taken; the oldest go
 
@@ -137,7 +138,11 @@ void SmoothPlanner::Workspace::begin_run() noexcept {
     }
   }
   start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis);
-  run.begin(start, tolerance(), std::max(tolerance().axis_rad, model.tolerances.pole_axis_rad));
+  // What a program asks for holds beside the pole too.
+  const bool is_asked = settings.axis_tolerance_rad > 0;
+  run.begin(start, tolerance(),
+            is_asked ? tolerance().axis_rad
+                     : std::max(tolerance().axis_rad, model.tolerances.pole_axis_rad));
   is_running = true;
 }
 
@@ -146,10 +151,13 @@ void SmoothPlanner::Workspace::end_run() noexcept {
   at.joints = joints = run.joints();
   // Eased beside the pole, or behind a block too short for a span, the tool is not quite where the
   // last block put it: what follows starts from where it is.
+  // Beside the pole rounding of the axis alone turns the free joint.
   const ToolPose there = forward(model, at.tool_length_mm, joints);
-  if ((there.tip - pose.tip).norm() > kSamePlace || (there.axis - pose.axis).norm() > kSamePlace) {
-    pose = there;
-  }
+  const double from_pole = free_joint(model) >= 0 ? pole_distance(model, pose.axis) : 1;
+  const bool is_beside_pole = from_pole >= kPoleEase_rad && from_pole < kBesidePole_rad;
+  const bool is_same =
+      (there.tip - pose.tip).norm() <= kSamePlace && (there.axis - pose.axis).norm() <= kSamePlace;
+  if (is_beside_pole || !is_same) pose = there;
   at.pose = pose;
   at.path_index = run.next_path_index();
   at.window = run.next_window();

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "property/planner/smooth_trace.hpp"
+#include "property/planner/winding_programs.hpp"
+#include "support/family_machines.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
@@ -72,6 +76,60 @@ Pass pass(const MachineModel& model, double distance_deg) {
     out.off_deg = std::max(out.off_deg, units::deg_from_rad(off));
   }
   return out;
+}
+
+/// As CAM writes it: an axis of nine decimals.
+Vector3 printed(const Vector3& axis) {
+  return Vector3(std::round(axis.x() * 1e9), std::round(axis.y() * 1e9),
+                 std::round(axis.z() * 1e9)) /
+         1e9;
+}
+
+TEST(PoleTable, DenseBlocksOverThePoleAreCutWhateverTheirStep) {
+  for (const MachineModel& model :
+       {bench_machine(), lai_machine(), limited(trunnion_machine(), -720, 720),
+        limited(fork_machine(), -720, 720)}) {
+    for (const double step_deg : {0.0005, 0.003, 0.005, 0.01, 0.05}) {
+      for (const double offset_deg : {0.0, 0.005}) {
+        SCOPED_TRACE(testing::Message() << model.name << " " << step_deg << " " << offset_deg);
+        const double most = 12 * step_deg, off = units::rad_from_deg(offset_deg);
+        std::vector<double> along{-1};
+        for (double at = -most; at < most; at += step_deg) along.push_back(at + 0.0001);
+        along.push_back(1);
+        std::vector<ClBlock> blocks;
+        for (const double at_deg : along) {
+          const double at = units::rad_from_deg(at_deg);
+          const Vector3 across(0.6, 0.8, 0), side(-0.8, 0.6, 0);
+          ClBlock block;
+          block.sequence = blocks.size();
+          block.tip_mm = {0.3 * static_cast<double>(blocks.size()), 20, 30};
+          block.axis = to_array(
+              printed(std::cos(off) * (std::sin(at) * across + std::cos(at) * Vector3::UnitZ()) +
+                      std::sin(off) * side));
+          block.feed = 100;
+          block.feed_meaning = FeedMeaning::kTip;
+          blocks.push_back(block);
+        }
+        end_program(blocks);
+        const JointVector start = joints_of(model, blocks[0]);
+        const SmoothTrace trace = plan_smooth(model, blocks, start);
+        EXPECT_EQ(trace.last.status, PlanStatus::kOk)
+            << "block " << trace.last.reject.sequence << " joint " << trace.last.reject.joint
+            << " by " << trace.last.reject.value;
+      }
+    }
+  }
+}
+
+TEST(PoleTable, TheToleranceThatAProgramAsksForHoldsBesideThePole) {
+  MachineModel model = bench_machine();
+  model.tolerances.pole_axis_rad = units::rad_from_deg(0.12);
+  const auto blocks = pass_at(0.05);
+  const double asked = units::rad_from_deg(0.02);
+  const SmoothTrace trace =
+      plan_smooth(model, blocks, joints_of(model, blocks[0]), {Transition::kSmooth, 0, asked});
+  EXPECT_EQ(trace.last.status, PlanStatus::kOk);
+  for (const PoleEase& ease : trace.eases) EXPECT_LE(ease.deviation_rad, asked * kLimit);
 }
 
 TEST(PoleTable, PassesInsideTheToleranceTakeTheSameTimeAndEaseByTheirDistance) {

@@ -327,7 +327,7 @@ TEST_F(Intake, AStationThatDiesLeavesItsBlocksAndHoldsTheMachine) {
   judge_.on_station_lost(kSession);
   const Credit answer = open(0xdef, "cam-2");
   EXPECT_EQ(answer.verdict, Verdict::kRefusedStation);
-  EXPECT_NE(answer.text.find("cam-1 with program part.cls, which is gone; abort"),
+  EXPECT_NE(answer.text.find("cam-1 with program part.cls, which is gone; enable"),
             std::string::npos)
       << answer.text;
 }
