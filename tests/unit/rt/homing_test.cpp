@@ -185,7 +185,7 @@ TEST_F(Homed, DrivesThatFollowSetpointsAreHeldAndDoNotSag) {
   home(4);
   run(0.01);
   EXPECT_EQ(hand.world.state.joints[2], 0) << "not in homing mode yet";
-  is_deaf = true;
+  is_deaf = true, late = -1;
   hand.world.in.feedback.homing_mask = 0;
   ASSERT_TRUE(run_until(State::kReady, 5));
   for (const CycleRecord& record : hand.world.records) EXPECT_EQ(record.joints[2], 0);
