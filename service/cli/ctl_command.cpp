@@ -132,11 +132,11 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
                    "joints, default all")
       ->type_name("VALUE");
   command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
-      ->check(finite_range(0.0, 1e6));
+      ->check(finite_range(1e-3, 1e6));
   command
       ->add_option("--distance", options->jog.distance,
                    "jog: the joint rests exactly so far from where it began, mm or deg")
-      ->check(finite_range(0.0, 1e6));
+      ->check(finite_range(1e-6, 1e6));
   command
       ->add_option("--dead-man", options->jog.dead_man_ms,
                    "jog: the joint comes to rest where the machine hears nothing for so long, ms")

@@ -35,7 +35,7 @@ void jog_fields(Way way, Message& message, Wire& wire) {
   way(message.operator_id, wire.operator_id);
   way(message.sample, wire.sample);
   way(message.epoch_seen, wire.epoch_seen);
-  way(message.is_tool, wire.frame);
+  way(message.frame, wire.frame);
   way(message.joint, wire.joint);
   way(message.velocity, wire.velocity);
   way(message.distance, wire.distance);

@@ -112,7 +112,7 @@ struct Jog {
   std::uint64_t operator_id = 0;
   std::uint64_t sample = 0;
   std::uint16_t epoch_seen = 0;
-  bool is_tool = false;    ///< `joint` is a ToolAxis
+  std::uint8_t frame = 0;  ///< 0: of the joints; 1: of the tool, `joint` is a ToolAxis
   std::uint8_t joint = 0;
   double velocity = 0;
   double distance = 0;

@@ -13,12 +13,13 @@
 namespace meridian::interpolator {
 
 /// Judges what comes in on `jog`: one operator holds the joints, the one whose verb `jog` was
-/// accepted, and each of his samples is newer than the last and quotes the epoch in force. What
-/// anybody else says changes nothing. One thread. Proof:
+/// accepted with the cycle's number for it, and each of his samples is newer than the last and
+/// quotes the epoch in force. What anybody else says changes nothing. One thread. Proof:
 /// tests/unit/interpolator/jog_intake_test.cpp.
 class JogIntake {
  public:
-  void begin(std::uint64_t operator_id) noexcept {
+  void begin(std::uint64_t operator_id, std::uint64_t hand) noexcept {
+    hand_ = hand;
     if (operator_id != holder_) newest_ = 0;
     holder_ = operator_id;
     is_held_ = true;
@@ -31,24 +32,27 @@ class JogIntake {
                                              int joint_count, double tool_length_mm) noexcept {
     const bool is_of_holder = is_held_ && jog.operator_id == holder_ && jog.sample > newest_;
     const bool is_sound = std::isfinite(jog.velocity) && std::isfinite(jog.distance) &&
-                          jog.joint < (jog.is_tool ? kToolAxisCount : joint_count) &&
+                          jog.frame <= 1 &&
+                          jog.joint < (jog.frame == 1 ? kToolAxisCount : joint_count) &&
                           jog.distance >= 0 && jog.dead_man_ns > 0;
     if (!is_of_holder || !is_sound || jog.epoch_seen != epoch) return std::nullopt;
     newest_ = jog.sample;
     return JogOrder{
         .sample = ++orders_,
         .epoch = epoch,
-        .is_tool = jog.is_tool,
+        .is_tool = jog.frame == 1,
         .joint = jog.joint,
         .velocity = jog.velocity,
         .distance = jog.distance,
         .tool_length_mm = tool_length_mm,
-        .dead_man_s = std::min(kLongestDeadMan_s, 1e-9 * static_cast<double>(jog.dead_man_ns))};
+        .dead_man_s = std::min(kLongestDeadMan_s, 1e-9 * static_cast<double>(jog.dead_man_ns)),
+        .hand = hand_};
   }
 
  private:
   bool is_held_ = false;
   std::uint64_t holder_ = 0;  ///< the operator who jogs, or did last
+  std::uint64_t hand_ = 0;    ///< Command::request of his `jog`
   std::uint64_t newest_ = 0, orders_ = 0;
 };
 

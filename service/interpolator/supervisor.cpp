@@ -187,7 +187,10 @@ void Supervisor::answer(const Event& event) {
   const bool is_accepted = event.code == EventCode::kAccepted;
   const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
   const Verb verb = pending->request.verb;
-  if (is_accepted && verb == Verb::kJog) jog_intake_.begin(pending->request.operator_id);
+  if (is_accepted && verb == Verb::kJog) {
+    take_jogs();  // what came before is of the hand before
+    jog_intake_.begin(pending->request.operator_id, pending->key);
+  }
   reply(pending->request, is_accepted, refusal,
         is_accepted ? telemetry::describe(verb, view_.record.state)
                     : telemetry::describe(verb, refusal, view_.record.state));

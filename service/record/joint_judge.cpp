@@ -97,8 +97,11 @@ void JointJudge::judge_stage(const RecordingRow& row) {
 
 void JointJudge::add(const RecordingRow& row, bool has_velocity) {
   const bool is_next = has_row_ && row.cycle == rows_.back().cycle + 1;
-  // While drives home themselves their setpoint is where they are, and jumps where that is found.
-  const bool is_enabled = (row.flags & kSetpointEnabled) != 0 && row.state != State::kHoming;
+  // While drives home themselves their setpoint is where they are, and jumps where that is found;
+  // they still do where that is given up.
+  const bool is_given_up = row.state == State::kAborting || row.state == State::kFaultStop;
+  is_homing_ = row.state == State::kHoming || (is_homing_ && is_given_up);
+  const bool is_enabled = (row.flags & kSetpointEnabled) != 0 && !is_homing_;
   std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
   rows_.back() = row;
   run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;

@@ -41,7 +41,7 @@ void JogHand::send(const JogPlan& plan, std::uint16_t epoch, double velocity) {
   (void)jogs_.write({.operator_id = link_.operator_id(),
                      .sample = ++sample_,
                      .epoch_seen = epoch,
-                     .is_tool = plan.is_tool,
+                     .frame = static_cast<std::uint8_t>(plan.is_tool ? 1 : 0),
                      .joint = static_cast<std::uint8_t>(plan.joint),
                      .velocity = velocity,
                      .distance = plan.distance,

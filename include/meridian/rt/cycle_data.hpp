@@ -67,9 +67,10 @@ struct JogOrder {
   bool is_tool = false;      ///< `joint` is a ToolAxis
   std::uint8_t joint = 0;
   double velocity = 0;
-  double distance = 0;  ///< no farther from where it began; 0: to the end of travel
+  double distance = 0;  ///< no farther from where it rested first; 0: to the end of travel
   double tool_length_mm = 0;
-  double dead_man_s = 0;  ///< without a newer order for so long the joint comes to rest
+  double dead_man_s = 0;   ///< without a newer order for so long the joint comes to rest
+  std::uint64_t hand = 0;  ///< Command::request of the `jog` that it belongs to
 };
 
 /// An operator's word on its way to the cycle. `request` comes back in the reply event.

@@ -86,7 +86,9 @@ struct StopInProgress {
   bool is_off_path = false;  ///< joints = begin + direction · law instead of the path
   /// Along the plan, its rate going down to zero, until there is authority for `law`.
   bool is_by_rate = false;
-  bool is_fault = false;   ///< by the FaultStop limits
+  bool is_fault = false;  ///< by the FaultStop limits
+  /// Drives went on by themselves before it: it began where they are, in travel or out of it.
+  bool may_leave_travel = false;
   StopLaw law;             ///< path length; off the path: seconds at the speed of the begin
   double time = 0;         ///< since it or its law began
   double passed = 0;       ///< path length of the path pieces left behind since it began
@@ -104,10 +106,12 @@ struct Jogging {
   bool is_active = false;
   bool is_let_go = false;  ///< the hand is gone: what moves comes to rest, and that was it
   bool has_order = false;
-  JogOrder order;         ///< in force
-  double silence = 0;     ///< s since it came
-  int joint = -1;         ///< that `axis` moves; from kMaxJoints on a ToolAxis; -1: none yet
-  bool is_ready = false;  ///< `axis` may move
+  JogOrder order;          ///< in force
+  double silence = 0;      ///< s since it came
+  std::uint64_t hand = 0;  ///< orders of another one are void
+  double distance = 0;     ///< that `axis` was laid out for
+  int joint = -1;          ///< that `axis` moves; from kMaxJoints on a ToolAxis; -1: none yet
+  bool is_ready = false;   ///< `axis` may move
   JogAxis axis;
   ToolWay way;  ///< of a ToolAxis
   ToolSurvey survey;

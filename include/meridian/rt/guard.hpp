@@ -32,27 +32,28 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
          q <= std::max(limits.travel_max + kGuardTravel, previous + kGuardOutside);
 }
 
-/// The drives of a stage, judged like joints.
+/// The drives of a stage, judged like joints; without `has_travel` not for their travel.
 [[nodiscard, gnu::noinline]] inline GuardVerdict judge_stage(const MachineModel& machine,
                                                              const JointVector& next,
                                                              const JointVector& previous,
-                                                             double elapsed) noexcept {
+                                                             double elapsed,
+                                                             bool has_travel) noexcept {
   const LimitedVector now = limited_of(machine, next), before = limited_of(machine, previous);
   for (int i = machine.joint_count; i < limited_count(machine); ++i) {
     const auto n = static_cast<std::size_t>(i);
     const JointLimits& limits = limited_spec(machine, i).limits;
     const double u = now[n], step = u - before[n];
     if (!std::isfinite(u)) return {Alarm::kNotFinite, i, u};
-    if (!is_in_travel(limits, u, before[n])) return {Alarm::kTravel, i, u};
+    if (has_travel && !is_in_travel(limits, u, before[n])) return {Alarm::kTravel, i, u};
     if (!(std::abs(step) <= limits.velocity * elapsed + kGuardStep)) return {Alarm::kStep, i, step};
   }
   return {};
 }
 
 /// Judges the next joint setpoint, the last thing before it is sent: finite, inside travel (for the
-/// joints of `has_travel`), and no farther from `previous` (sent `elapsed` seconds ago) than the
-/// velocity limits of joints and drives reach. RT: cycle. Proof: tests/unit/rt/guard_test.cpp,
-/// stage_cycle_test.cpp.
+/// joints of `has_travel`; where there are none, the drives of a stage have none either), and no
+/// farther from `previous` (sent `elapsed` seconds ago) than the velocity limits of joints and
+/// drives reach. RT: cycle. Proof: tests/unit/rt/guard_test.cpp, stage_cycle_test.cpp.
 [[nodiscard]] inline GuardVerdict judge(const MachineModel& machine, const JointVector& next,
                                         const JointVector& velocity, const JointVector& previous,
                                         double elapsed, std::uint32_t has_travel = ~0U) noexcept {
@@ -67,7 +68,8 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
       return {Alarm::kStep, i, step};
     }
   }
-  return has_stage(machine) ? judge_stage(machine, next, previous, elapsed) : GuardVerdict{};
+  return has_stage(machine) ? judge_stage(machine, next, previous, elapsed, has_travel != 0)
+                            : GuardVerdict{};
 }
 
 }  // namespace meridian

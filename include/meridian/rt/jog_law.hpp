@@ -122,14 +122,18 @@ struct JogAxis {
 };
 
 /// Whether `p` and full braking from it stay in the room of `axis`; where that is left already,
-/// whether they lead inwards all the way.
+/// whether they lead inwards all the way and no farther than to the other end.
 [[nodiscard]] inline bool may_be_at(const JogAxis& axis, const JogPoint& p) noexcept {
   constexpr double kRounding = 1e-12;
   double low = p.q, high = p.q;
   const double end = JogRamp(p, 0, axis.rates).spread(p, low, high);
   if (p.q < std::min(axis.low, axis.at.q) || p.q > std::max(axis.high, axis.at.q)) return false;
-  if (p.q > axis.high) return end - low <= kRounding;
-  if (p.q < axis.low) return high - end <= kRounding;
+  if (p.q > axis.high) {
+    return end - low <= kRounding && end >= std::min(axis.low, axis.at.q) - kRounding;
+  }
+  if (p.q < axis.low) {
+    return high - end <= kRounding && end <= std::max(axis.high, axis.at.q) + kRounding;
+  }
   return low >= axis.low && high <= axis.high;
 }
 

@@ -20,11 +20,12 @@ inline constexpr double kFirstOrder_s = 0.5;
 /// No operator may ask for a longer dead man's time.
 inline constexpr double kLongestDeadMan_s = 0.5;
 
-/// Orders of before this are none of this hand's.
-inline void begin_jogging(Cycle& c) noexcept {
+/// Orders of before this, and of another hand than `request`, are none of this hand's.
+inline void begin_jogging(Cycle& c, std::uint64_t request) noexcept {
   Jogging& jogging = c.state.jogging;
   jogging = {};
   jogging.is_active = true;
+  jogging.hand = request;
   jogging.order.sample = c.in.jog.sample;
   jogging.order.dead_man_s = kFirstOrder_s;
   c.state.motion = MotionKind::kApproach;
@@ -43,7 +44,8 @@ inline void take_order(Cycle& c) noexcept {
   const JogOrder& order = c.in.jog;
   jogging.silence += c.dt * (1.0 + c.in.lost_periods);  // c.periods is 1 where nothing moved
   judge_silence(jogging);
-  if (order.sample > jogging.order.sample && order.epoch == c.state.epoch && !jogging.is_let_go) {
+  const bool is_mine = order.hand == jogging.hand && order.epoch == c.state.epoch;
+  if (is_mine && order.sample > jogging.order.sample && !jogging.is_let_go) {
     jogging.has_order = true;
     jogging.order = order;
     jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
@@ -54,6 +56,7 @@ inline void take_order(Cycle& c) noexcept {
 
 /// Narrows the room to the distance that was asked for.
 inline void keep_distance(Jogging& jogging) noexcept {
+  jogging.distance = jogging.order.distance;
   if (!(jogging.order.distance > 0)) return;
   const double from = jogging.axis.at.q;
   jogging.axis.low = std::max(jogging.axis.low, from - jogging.order.distance);
@@ -80,13 +83,18 @@ inline void survey_way(Cycle& c) noexcept {
   return order.joint + (order.is_tool ? kMaxJoints : 0);
 }
 
+/// Whether the hand is on what the order in force is for, and as far as it says.
+[[nodiscard]] inline bool is_in_hand(const Jogging& jogging) noexcept {
+  return joint_of(jogging.order) == jogging.joint && jogging.order.distance == jogging.distance;
+}
+
 /// Puts the hand on what is asked for, where nothing moves and it may be jogged.
 inline void choose_axis(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   const JogOrder& order = jogging.order;
   const int joint = joint_of(order);
   const std::uint32_t referenced = c.in.feedback.referenced_mask;
-  if (joint == jogging.joint) return survey_way(c);
+  if (is_in_hand(jogging)) return survey_way(c);
   if (!jogging.axis.is_at_rest()) return;
   jogging.joint = -1;
   jogging.is_ready = false;
@@ -100,6 +108,7 @@ inline void choose_axis(Cycle& c) noexcept {
                                static_cast<ToolAxis>(order.joint), jogging.way);
   if (!has_way) return;
   jogging.joint = joint;
+  jogging.distance = order.distance;
   jogging.axis = {};
   jogging.survey = ToolSurvey(c.machine, jogging.way, c.state.joints, order.distance);
 }
@@ -141,7 +150,7 @@ enum class JogStep : std::uint8_t {
   Jogging& jogging = c.state.jogging;
   take_order(c);
   choose_axis(c);
-  const bool is_held = !jogging.is_let_go && joint_of(jogging.order) == jogging.joint;
+  const bool is_held = !jogging.is_let_go && is_in_hand(jogging);
   for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
     follow(jogging.axis, is_held ? jogging.order.velocity : 0, c.dt);
   }

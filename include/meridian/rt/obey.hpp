@@ -112,7 +112,7 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
     case State::kRunning:
       return resume(c);
     case State::kJogging:
-      begin_jogging(c);
+      begin_jogging(c, command.request);
       break;
     case State::kHoming:
       begin_homing(c, joints_to_home(c.machine, command.argument));

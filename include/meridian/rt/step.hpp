@@ -159,8 +159,9 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
 }
 
 /// The joints whose position means something: all that a program moves, else those with a
-/// reference.
+/// reference; none where drives ran out by themselves and brake from there.
 [[nodiscard]] inline std::uint32_t joints_with_travel(const Cycle& c) noexcept {
+  if (c.state.stop.may_leave_travel) return 0;
   const State state = c.state.state;
   const bool has_hand = c.state.jogging.is_active || c.state.homing.is_active;
   const bool is_program =

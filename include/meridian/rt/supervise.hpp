@@ -252,6 +252,7 @@ inline void stop_jogging_from_feedback(Cycle& c) noexcept {
     left[i] = std::copysign(std::max(0.0, std::abs(velocity[i]) - lost), velocity[i]);
   }
   begin_stop_off_path(c, c.state.joints, left);
+  c.state.stop.may_leave_travel = true;
   c.elapsed = c.dt;
   c.periods = 1;
 }

@@ -161,7 +161,8 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
         world.in.feedback.homing_mask = asked_of(world.state.homing).mode_mask;
         world.in.feedback.homed_mask = cycles % 7 == 0 ? world.in.feedback.homing_mask : 0;
         if (cycles % 10 == 0)
-          world.in.jog = {++orders, world.state.epoch, false, 0, 30.0, 0, 0, 0.03};
+          world.in.jog = {++orders, world.state.epoch,       false, 0, 30.0, 0, 0,
+                          0.03,     world.state.jogging.hand};
         world.run();
         ASSERT_NO_FATAL_FAILURE(look("a period"));
       }

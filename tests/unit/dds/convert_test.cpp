@@ -86,7 +86,7 @@ TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
   EXPECT_EQ((lost_bytes<Credit, meridian_wire_ClCredit>()), 4);            // 3 padding, 1 text
   EXPECT_EQ((lost_bytes<CommandRequest, meridian_wire_Command>()), 6);     // 5 padding, 1 text
   EXPECT_EQ((lost_bytes<Reply, meridian_wire_Reply>()), 4);            // 2 padding, 1 flag, 1 text
-  EXPECT_EQ((lost_bytes<Jog, meridian_wire_Jog>()), 5);                // 4 padding, 1 flag
+  EXPECT_EQ((lost_bytes<Jog, meridian_wire_Jog>()), 4);                // padding
   EXPECT_EQ((lost_bytes<Action, meridian_wire_Action>()), 4);          // 3 padding, 1 text
   EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
   EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 15);  // 9 padding, 3 flags, 3 texts

@@ -25,13 +25,14 @@ dds::Jog jog_of(std::uint64_t operator_id, std::uint64_t sample) {
 TEST(JogIntake, TakesWhatTheOperatorWhoJogsSays) {
   JogIntake intake;
   EXPECT_FALSE(intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm)) << "nobody jogs";
-  intake.begin(7);
+  intake.begin(7, 31);
   const auto order = intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm);
   ASSERT_TRUE(order);
   EXPECT_EQ(order->joint, 2);
   EXPECT_EQ(order->velocity, 10);
   EXPECT_DOUBLE_EQ(order->dead_man_s, 0.1);
   EXPECT_EQ(order->epoch, kEpoch);
+  EXPECT_EQ(order->hand, 31U) << "the cycle knows whose it is";
   EXPECT_FALSE(intake.take(jog_of(8, 2), kEpoch, kJoints, kTool_mm)) << "another one";
   intake.end();
   EXPECT_FALSE(intake.take(jog_of(7, 2), kEpoch, kJoints, kTool_mm));
@@ -39,22 +40,22 @@ TEST(JogIntake, TakesWhatTheOperatorWhoJogsSays) {
 
 TEST(JogIntake, NeverTakesALateRepeatedOrOldSample) {
   JogIntake intake;
-  intake.begin(7);
+  intake.begin(7, 31);
   ASSERT_TRUE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm));
   EXPECT_FALSE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm));
   EXPECT_FALSE(intake.take(jog_of(7, 4), kEpoch, kJoints, kTool_mm));
   EXPECT_FALSE(intake.take(jog_of(7, 6), kEpoch + 1, kJoints, kTool_mm))
       << "of an epoch that is over";
-  intake.begin(7);
+  intake.begin(7, 31);
   EXPECT_FALSE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm)) << "of the jog before";
   EXPECT_TRUE(intake.take(jog_of(7, 6), kEpoch, kJoints, kTool_mm));
 }
 
 TEST(JogIntake, CountsOrdersOfAllOperatorsAsOneRow) {
   JogIntake intake;
-  intake.begin(7);
+  intake.begin(7, 31);
   const auto first = intake.take(jog_of(7, 5000), kEpoch, kJoints, kTool_mm);
-  intake.begin(9);
+  intake.begin(9, 32);
   const auto second = intake.take(jog_of(9, 1), kEpoch, kJoints, kTool_mm);
   ASSERT_TRUE(first && second);
   EXPECT_GT(second->sample, first->sample);
@@ -62,7 +63,7 @@ TEST(JogIntake, CountsOrdersOfAllOperatorsAsOneRow) {
 
 TEST(JogIntake, PassesOverWhatIsNotSound) {
   JogIntake intake;
-  intake.begin(7);
+  intake.begin(7, 31);
   std::uint64_t sample = 0;
   const auto is_taken = [&](auto change) {
     dds::Jog jog = jog_of(7, ++sample);
@@ -74,7 +75,8 @@ TEST(JogIntake, PassesOverWhatIsNotSound) {
   EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.distance = -1; }));
   EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.joint = kJoints; }));
   EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.dead_man_ns = 0; }));
-  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.is_tool = true, jog.joint = kToolAxisCount; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.frame = 1, jog.joint = kToolAxisCount; }));
+  EXPECT_FALSE(is_taken([](dds::Jog& jog) { jog.frame = 2; })) << "a frame that nobody knows";
   EXPECT_TRUE(is_taken([](dds::Jog& jog) { jog.dead_man_ns = INT64_MAX; })) << "500 ms of it";
 }
 

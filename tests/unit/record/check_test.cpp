@@ -132,6 +132,16 @@ TEST_F(Check, RefusesAJerkSpikeThatNoToleranceSees) {
   EXPECT_NEAR(report.joints[0].jerk.value, wanted, 0.5);
 }
 
+TEST_F(Check, JudgesNoJumpOfDrivesWhoseHomingIsGivenUp) {
+  const std::size_t end = records.size();
+  for (std::size_t i = end - 5; i < end; ++i) records[i].joints[0] += 0.1;
+  EXPECT_TRUE(has(run(), Finding::Kind::kJerk)) << "a jump is one";
+  for (std::size_t i = end - 12; i < end; ++i) {
+    records[i].state = i < end - 8 ? State::kHoming : State::kAborting;
+  }
+  EXPECT_TRUE(run().passed()) << to_text(run());
+}
+
 TEST_F(Check, RefusesVelocityAndAccelerationAboveTheLimit) {
   model.joints[1].limits.velocity = 2;
   EXPECT_TRUE(has(run(), Finding::Kind::kVelocity));

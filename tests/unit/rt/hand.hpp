@@ -23,6 +23,7 @@ struct Hand {
   [[nodiscard]] bool lay_on(int joint) {
     world.command(Verb::kJog, joint);
     epoch = world.state.epoch;
+    number = world.request;
     return world.now() == State::kJogging;
   }
   /// Holds `velocity` for so long; the last order comes 20 ms before the end.
@@ -42,14 +43,15 @@ struct Hand {
                     .velocity = velocity,
                     .distance = distance,
                     .tool_length_mm = world.machine.tool_length_mm,
-                    .dead_man_s = 0.1};
+                    .dead_man_s = 0.1,
+                    .hand = number};
   }
   [[nodiscard]] Refusal refusal() const {
     return static_cast<Refusal>(world.last(EventCode::kRefused).x);
   }
 
   CycleWorld world;
-  std::uint64_t sample = 0;
+  std::uint64_t sample = 0, number = 0;
   std::uint16_t epoch = 1;
   double distance = 0;
 };

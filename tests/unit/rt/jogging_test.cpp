@@ -117,6 +117,31 @@ TEST(Jogging, GoesExactlyTheDistanceThatIsAskedFor) {
   EXPECT_EQ(hand.world.state.velocity[2], 0);
 }
 
+TEST(Jogging, AnotherDistanceCountsFromWhereTheJointRestedFirst) {
+  for (const double first : {0.0, 50.0}) {
+    Hand hand;
+    ASSERT_TRUE(hand.lay_on(2));
+    hand.distance = first;
+    hand.hold(2, -100, 0.2);
+    const std::size_t begin = hand.world.records.size();
+    ASSERT_LT(hand.world.state.velocity[2], -20);
+    hand.distance = 2;
+    hand.hold(2, -100, 1.5);
+    std::size_t n = begin;
+    while (hand.world.records[n].setpoint.velocity[2] != 0) ++n;
+    EXPECT_NEAR(hand.world.state.joints[2], hand.world.records[n].joints[2] - 2, 1e-12);
+    EXPECT_EQ(hand.world.state.velocity[2], 0);
+  }
+}
+
+TEST(Jogging, OrdersOfAnotherHandMoveNothing) {
+  Hand hand;
+  ASSERT_TRUE(hand.lay_on(0));
+  --hand.number;
+  hand.hold(0, 20, 0.3);
+  EXPECT_EQ(hand.world.state.joints, JointVector{});
+}
+
 TEST(Jogging, OneJointRestsBeforeTheNextOneMoves) {
   Hand hand;
   ASSERT_TRUE(hand.lay_on(0));
@@ -163,6 +188,32 @@ TEST(Jogging, MorePeriodsLostThanDrivesBridgeEndInAStopFromFeedback) {
   EXPECT_EQ(hand.world.now(), State::kFaultStop);
   EXPECT_TRUE(hand.world.run_until(State::kFault, 1));
   EXPECT_EQ(static_cast<Alarm>(hand.world.last(EventCode::kAlarm).a), Alarm::kPeriodsLost);
+}
+
+TEST(Jogging, DrivesThatRanOutOfTravelBrakeThereAndDoNotStandStillAtOnce) {
+  for (const MachineModel& machine : {test::lai_machine(), test::hybrid_machine()}) {
+    Hand hand(machine);
+    ASSERT_TRUE(hand.lay_on(1));
+    hand.hold(1, 290, 0.6);
+    JointVector beyond = hand.world.state.joints;
+    double speed = hand.world.state.velocity[1];
+    ASSERT_GT(speed, 30);
+    beyond[1] = machine.joints[1].limits.travel_max + 1;
+    hand.world.in.feedback.position = drives_of(machine, beyond);
+    const std::size_t first = hand.world.records.size();
+    hand.world.run(8);
+    ASSERT_TRUE(hand.world.run_until(State::kFault, 1));
+    EXPECT_EQ(hand.world.count(EventCode::kAlarm), 1);
+    EXPECT_EQ(static_cast<Alarm>(hand.world.last(EventCode::kAlarm).a), Alarm::kPeriodsLost);
+    const double ramp = machine.joints[1].limits.fault_acceleration * hand.world.dt();
+    for (std::size_t n = first; n < hand.world.records.size(); ++n) {
+      const double v = hand.world.records[n].setpoint.velocity[1];
+      if (machine.stage.radius_mm > 0) continue;  // of a drive there, not of the joint
+      EXPECT_LE(std::abs(v - speed), ramp * (n == first ? 10 : 1.001));
+      speed = v;
+    }
+    EXPECT_GT(hand.world.records.back().joints[1], beyond[1] + 0.05) << "braked from there";
+  }
 }
 
 TEST(Jogging, LostPeriodsThatDrivesBridgeCountAgainstTheDeadMan) {
