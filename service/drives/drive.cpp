@@ -62,7 +62,8 @@ void Drive::fail(std::uint16_t error) noexcept {
   if (state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive) return;
   error_ = error;
   state_ = DriveState::kFaultReactionActive;
-  target_velocity_ = servo_.velocity;
+  const double most = limits_.velocity > 0 ? limits_.velocity : INFINITY;
+  target_velocity_ = std::clamp(servo_.velocity, -most, most);  // whatever jump it was to follow
 }
 
 void Drive::work(const DriveInput& input, double dt_s) noexcept {
