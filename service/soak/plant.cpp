@@ -22,6 +22,15 @@ using std::chrono::milliseconds;
 
 }  // namespace
 
+std::string injection_text(const Planned& mishap, const std::string& drive_name) {
+  const bool is_of_drive =
+      mishap.mishap == Mishap::kDriveFault || mishap.mishap == Mishap::kDriveBlocked;
+  std::string text = injection_word(mishap.mishap);
+  text.append("@").append(std::to_string(mishap.at_s));
+  if (is_of_drive) text.append(":").append(drive_name);
+  return text;
+}
+
 Plant::Plant(std::string machine, std::string tools, std::uint32_t domain,
              std::filesystem::path folder)
     : machine_(std::move(machine)),
@@ -56,8 +65,7 @@ void Plant::start_drives(const std::optional<Planned>& mishap, const std::string
                                  "--domain",
                                  domain_};
   if (mishap) {
-    words.insert(words.end(), {"--inject", std::string(injection_word(mishap->mishap)) + "@" +
-                                               std::to_string(mishap->at_s) + ":" + drive_name});
+    words.insert(words.end(), {"--inject", injection_text(*mishap, drive_name)});
   }
   drives_.reset();
   drives_ = std::make_unique<ChildProcess>(
@@ -78,7 +86,7 @@ std::string Plant::keep_logs(const std::filesystem::path& folder) {
   const std::string name = "fault" + std::to_string(++kept_);
   std::error_code ignored;
   std::filesystem::create_directories(folder, ignored);
-  for (const char* const from : {"service.log", "drives.out"}) {
+  for (const char* const from : {"service.log", "drives.out", "drives.log"}) {
     std::filesystem::copy_file(log(from), folder / (name + "." + from), ignored);
   }
   return (folder / name).string();

@@ -12,6 +12,10 @@
 
 namespace meridian::soak {
 
+/// What `meridian drives --inject` takes for a mishap of the drives; `drive_name` is whose it is
+/// where it is of one drive. Proof: tests/unit/soak/soak_test.cpp.
+[[nodiscard]] std::string injection_text(const Planned& mishap, const std::string& drive_name);
+
 /// Service, drives and station as processes; each may die and be started again.
 class Plant {
  public:

@@ -28,8 +28,8 @@ namespace {
 using std::chrono::milliseconds;
 constexpr milliseconds kTick{20}, kAnswer{1500};
 constexpr double kReportEvery_s = 5, kHealthEvery_s = 1;
-/// So often in a row is refused what leads on, until the drives are started anew.
-constexpr int kMostRefused = 15;
+/// So often is asked for what leads on and the state stays, until the drives are started anew.
+constexpr int kMostInVain = 15;
 /// Between the end of a program and the next: its recording is cut there.
 constexpr double kPause_s = 0.3;
 /// A service that is killed is forgotten after its lease; drives that lost it come to rest.
@@ -103,7 +103,7 @@ class Soak {
     plant_.start_drives(injected_, injected_ ? drive_spec(model_, injected_->drive).name : "");
     faults_.begin_drives(injected_);
     ++report_.drive_starts;
-    refused_in_row_ = 0;
+    asked_in_vain_ = 0;
   }
 
   /// Starts again what died or was killed.
@@ -114,6 +114,11 @@ class Soak {
       report_.violate("the service ended by itself with code " + std::to_string(*code), "soak");
       plant_.kill_service();
       service_at_s_ = now_s() + kAfterDeath_s;
+    }
+    if (const auto code = plant_.drives()->wait_for_exit(milliseconds(0))) {
+      report_.violate("the drives ended by themselves with code " + std::to_string(*code),
+                      plant_.keep_logs(kept_beside(options_.report)));
+      start_drives();
     }
     if (plant_.station() != nullptr) {
       const auto code = plant_.station()->wait_for_exit(milliseconds(0));
@@ -147,6 +152,7 @@ class Soak {
   void see(const dds::Status& status) {
     counts_.add(status, report_);
     if (const auto cause = faults_.see(status, now_s())) judge_fault(*cause, status);
+    if (status.state != state_) asked_in_vain_ = 0;
     if (status.state != state_ || is_moving(status.state)) moved_s_ = now_s();
     state_ = status.state;
     if (now_s() - moved_s_ < kStuck_s) return;
@@ -215,11 +221,11 @@ class Soak {
     return reply && reply->is_accepted;
   }
 
-  /// Asks for the way out of Off or Fault. Drives may have fallen ill while no service heard them:
-  /// of those that stay in the way there are new ones.
+  /// Asks for the way out of Off or Fault. Drives may have fallen ill while nobody could stop in
+  /// Fault for it, and a reset, accepted or not, does not mend them: there are new ones then.
   void lead_on(Verb verb) {
-    refused_in_row_ = ask(verb) ? 0 : refused_in_row_ + 1;
-    if (refused_in_row_ >= kMostRefused) start_drives();
+    ask(verb);
+    if (++asked_in_vain_ >= kMostInVain) start_drives();
   }
 
   void mishaps() {
@@ -326,7 +332,7 @@ class Soak {
   StatusCounts counts_;
   State state_ = State::kOff;
   bool is_drive_sick_ = false;
-  int refused_in_row_ = 0;
+  int asked_in_vain_ = 0;
   const std::int64_t begin_ns_ = stream::steady_ns();
   double moved_s_ = 0, ended_s_ = 0, ask_again_s_ = 0, resume_s_ = 0, continue_s_ = 0;
   double service_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;

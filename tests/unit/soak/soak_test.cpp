@@ -9,12 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "service/drives/injection.hpp"
 #include "service/process/programs.hpp"
 #include "service/soak/chaos.hpp"
 #include "service/soak/fault_judge.hpp"
+#include "service/soak/plant.hpp"
 #include "service/soak/segments.hpp"
 #include "service/soak/soak_report.hpp"
 #include "service/soak/timeline.hpp"
+#include "support/machines.hpp"
 
 namespace meridian::soak {
 namespace {
@@ -41,6 +44,21 @@ TEST(Chaos, IsTheSameForTheSameSeedAndHoldsEveryMishap) {
   }
   EXPECT_TRUE(differs);
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(kMishapCount));
+}
+
+TEST(Chaos, AsksOfTheDrivesWhatTheyUnderstand) {
+  const MachineModel model = test::lai_machine();
+  Chaos chaos(7, 10, model.joint_count);
+  std::set<Mishap> seen;
+  for (int i = 0; i < 40; ++i) {
+    const Planned mishap = chaos.next_of_drives();
+    const auto text = injection_text(mishap, drive_spec(model, mishap.drive).name);
+    const auto understood = drives::parse_injection(text, model);
+    ASSERT_TRUE(understood) << understood.error();
+    EXPECT_NEAR(understood->after_s, mishap.at_s, 1e-6);
+    seen.insert(mishap.mishap);
+  }
+  EXPECT_EQ(seen.size(), 4U);
 }
 
 TEST(AskedOverrides, CountFromTheOneInForceOn) {
