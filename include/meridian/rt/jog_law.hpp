@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meridian/rt/ramp_phases.hpp"
+
 /// The motion of one joint that an operator jogs: a velocity is followed by jerk alone, and the
 /// joint comes to rest before the end of its room, whatever is asked for. Units: mm or rad, s.
 /// RT: cycle. Proof: tests/property/rt/jog_motion_test.cpp.
@@ -25,56 +27,30 @@ struct JogRates {
           p.a + t * jerk};
 }
 
-/// The way from a point to a constant velocity in the least time that acceleration and jerk allow:
-///
-///     a  peak ┤   ┌──────┐           three phases: jerk to the peak acceleration (which turns one
-///             │  /        \          that points the wrong way round first), the peak held, jerk
-///           0 ┼─/──────────\────     back to none
-///
-/// Phases may end inside a cycle. The velocity stays between the one that braking from here would
-/// leave and the one that is aimed at.
+/// The way from a point to a constant velocity in the least time that acceleration and jerk allow
+/// (lay_out_ramp()). The velocity stays between the one that braking from here would leave and the
+/// one that is aimed at.
 class JogRamp {
  public:
   JogRamp() = default;
-  JogRamp(const JogPoint& from, double velocity, const JogRates& rates) noexcept : aim_(velocity) {
-    const double j = rates.jerk;
-    const double braked = from.v + 0.5 * from.a * std::abs(from.a) / j;
-    const double way = velocity >= braked ? 1.0 : -1.0;
-    const double slope = way * from.a, distance = way * (velocity - from.v);
-    const double peak =
-        std::min(rates.acceleration, std::sqrt(std::max(0.0, j * distance + 0.5 * slope * slope)));
-    const double gained = (peak * peak - 0.5 * slope * slope) / j;  // in the first and third phase
-    left_[0] = std::max(0.0, (peak - slope) / j);
-    left_[1] = peak > 0 ? std::max(0.0, (distance - gained) / peak) : 0.0;
-    left_[2] = peak / j;
-    jerk_[0] = way * j;
-    jerk_[2] = -way * j;
-    phase_ = 0;
-  }
-
-  [[nodiscard]] bool is_over() const noexcept { return phase_ == kPhases; }
-  [[nodiscard]] double aim() const noexcept { return aim_; }
-  /// Time until the velocity is reached.
-  [[nodiscard]] double time_left() const noexcept {
-    double time = 0;
-    for (int i = phase_; i < kPhases; ++i) time += left_[i];
-    return time;
-  }
+  JogRamp(const JogPoint& from, double velocity, const JogRates& rates) noexcept
+      : aim_(velocity),
+        ramp_(lay_out_ramp(from.v, from.a, velocity, rates.acceleration, rates.jerk)) {}
 
   /// Moves `p`, which is on this way, on by `dt`; at the end of the way the velocity is exact.
   void advance(JogPoint& p, double dt) noexcept {
-    while (phase_ < kPhases && dt >= left_[phase_]) {
-      p = moved(p, jerk_[phase_], left_[phase_]);
-      dt -= left_[phase_];
-      ++phase_;
-      if (phase_ == kPhases) p = {p.q, aim_, 0};
+    while (!ramp_.is_over() && dt >= ramp_.left[ramp_.phase]) {
+      p = moved(p, ramp_.bend[ramp_.phase], ramp_.left[ramp_.phase]);
+      dt -= ramp_.left[ramp_.phase];
+      ++ramp_.phase;
+      if (ramp_.is_over()) p = {p.q, aim_, 0};
     }
-    if (phase_ < kPhases) {
-      p = moved(p, jerk_[phase_], dt);
-      left_[phase_] -= dt;
-    } else {
+    if (ramp_.is_over()) {
       p.q += aim_ * dt;
+      return;
     }
+    p = moved(p, ramp_.bend[ramp_.phase], dt);
+    ramp_.left[ramp_.phase] -= dt;
   }
 
   /// Widens [low, high] by the positions of the rest of the way from `p`; returns the last.
@@ -84,28 +60,26 @@ class JogRamp {
       high = std::max(high, q);
     };
     take(p.q);
-    for (int i = phase_; i < kPhases; ++i) {
+    for (int i = ramp_.phase; i < RampPhases::kCount; ++i) {
       // The turning points of v + a t + j t²/2.
-      const double j = jerk_[i], square = p.a * p.a - 2 * j * p.v;
+      const double j = ramp_.bend[i], square = p.a * p.a - 2 * j * p.v;
       if (j != 0 && square > 0) {
         const double root = std::sqrt(square);
         for (const double t : {(-p.a - root) / j, (-p.a + root) / j}) {
-          if (t > 0 && t < left_[i]) take(moved(p, j, t).q);
+          if (t > 0 && t < ramp_.left[i]) take(moved(p, j, t).q);
         }
-      } else if (j == 0 && p.a != 0 && -p.v / p.a > 0 && -p.v / p.a < left_[i]) {
+      } else if (j == 0 && p.a != 0 && -p.v / p.a > 0 && -p.v / p.a < ramp_.left[i]) {
         take(moved(p, 0, -p.v / p.a).q);
       }
-      p = moved(p, j, left_[i]);
+      p = moved(p, j, ramp_.left[i]);
       take(p.q);
     }
     return p.q;
   }
 
  private:
-  static constexpr int kPhases = 3;
   double aim_ = 0;
-  double jerk_[kPhases] = {}, left_[kPhases] = {};
-  int phase_ = kPhases;
+  RampPhases ramp_;
 };
 
 /// A jogged joint between two cycles. `low` and `high` are the ends of its room; outside of it, it
