@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "meridian/rt/cycle_state.hpp"
-#include "meridian/rt/jog_room.hpp"
+#include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/on_path.hpp"
 
 /// Homing: drives find their references by themselves, in CiA 402 homing mode, one group after the
@@ -36,13 +36,6 @@ struct HomingAsked {
   return {homing.busy, homing.phase == Phase::kSearch ? homing.busy : 0};
 }
 
-/// The two joints that a stage carries; 0: the machine has none.
-[[nodiscard]] inline std::uint32_t stage_pair(const MachineModel& machine) noexcept {
-  if (!has_stage(machine)) return 0;
-  return 1U << static_cast<unsigned>(machine.stage.linear_joint) |
-         1U << static_cast<unsigned>(machine.stage.rotary_joint);
-}
-
 /// The turn of `joint`, from 1 on; both joints of a stage have the earlier one of theirs.
 [[nodiscard]] inline int homing_turn(const MachineModel& machine, const CycleOptions& options,
                                      int joint) noexcept {
@@ -50,7 +43,7 @@ struct HomingAsked {
     const int turn = options.homing_turns[static_cast<std::size_t>(which)];
     return turn > 0 ? turn : which + 1;
   };
-  if (!jog::is_on_stage(machine, joint)) return own(joint);
+  if (!is_on_stage(machine, joint)) return own(joint);
   return std::min(own(machine.stage.linear_joint), own(machine.stage.rotary_joint));
 }
 

@@ -12,6 +12,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/rt/jog_law.hpp"
+#include "meridian/rt/joint_masks.hpp"
 
 /// What one joint may do while the others stand still: as far as its travel and that of the drives
 /// of a stage reach, as fast as both may go. Units: mm or rad, s. RT: cycle.
@@ -125,11 +126,6 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
   }
 }
 
-[[nodiscard]] inline bool is_on_stage(const MachineModel& machine, int joint) noexcept {
-  return has_stage(machine) &&
-         (joint == machine.stage.linear_joint || joint == machine.stage.rotary_joint);
-}
-
 }  // namespace jog
 
 /// Returns the room of `joint` from `joints`, everything at rest. Without a reference it has no
@@ -149,7 +145,7 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
                      kJogShare * limits.jerk};
   room.fault = {room.axis.rates.velocity, kJogShare * limits.fault_acceleration,
                 kJogShare * limits.fault_jerk};
-  if (jog::is_on_stage(machine, joint)) jog::narrow_for_stage(machine, joints, joint, room);
+  if (is_on_stage(machine, joint)) jog::narrow_for_stage(machine, joints, joint, room);
   return room;
 }
 
@@ -157,13 +153,10 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
 /// references, a stage's drives with both of theirs.
 [[nodiscard]] inline bool may_jog(const MachineModel& machine, int joint,
                                   std::uint32_t referenced_mask) noexcept {
-  const std::uint32_t all = (1U << static_cast<unsigned>(machine.joint_count)) - 1U;
+  const std::uint32_t all = all_joints(machine), pair = stage_pair(machine);
   if (joint >= kMaxJoints) return (referenced_mask & all) == all;
   if (joint < 0 || joint >= machine.joint_count) return false;
-  if (!jog::is_on_stage(machine, joint)) return true;
-  const std::uint32_t both = 1U << static_cast<unsigned>(machine.stage.linear_joint) |
-                             1U << static_cast<unsigned>(machine.stage.rotary_joint);
-  return (referenced_mask & both) == both;
+  return !is_on_stage(machine, joint) || (referenced_mask & pair) == pair;
 }
 
 }  // namespace meridian

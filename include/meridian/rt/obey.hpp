@@ -8,6 +8,7 @@
 #include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/homing.hpp"
 #include "meridian/rt/jogging.hpp"
+#include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/stop_motion.hpp"
 #include "meridian/rt/supervise.hpp"

@@ -9,6 +9,7 @@
 #include "meridian/rt/guard.hpp"
 #include "meridian/rt/homing.hpp"
 #include "meridian/rt/jogging.hpp"
+#include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/obey.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/stop_motion.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include "meridian/rt/guard.hpp"
 #include "meridian/rt/homing.hpp"
 #include "meridian/rt/jogging.hpp"
+#include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/on_path.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/stop_motion.hpp"
@@ -18,10 +18,6 @@
 /// What makes the machine stop by itself: drives, feedback, emergency input, lost periods.
 /// RT: cycle.
 namespace meridian {
-
-[[nodiscard]] inline std::uint32_t all_joints(const MachineModel& machine) noexcept {
-  return (1U << static_cast<unsigned>(machine.joint_count)) - 1U;
-}
 
 /// Whether every drive reports a finite position, joints have them, and the report is fresh. Time
 /// that the host stalled does not count against the drives.
@@ -96,10 +92,6 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
     if (is_behind(c.machine.joints[n], error, sent.velocity[n], sent.bridged)) return i;
   }
   return has_stage(c.machine) && busy == 0 ? first_stage_drive_behind(c, sent, error) : -1;
-}
-
-[[nodiscard]] inline int first_bit(std::uint32_t mask) noexcept {
-  return mask == 0 ? 0 : std::countr_zero(mask);
 }
 
 /// The first joint whose drive is missing in the feedback, or whose position is no number; 0 where
