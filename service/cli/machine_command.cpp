@@ -25,6 +25,9 @@ int refuse(const std::string& message) {
 }
 
 int run(const Options& options) {
+  if (text::is_same_file(options.machine.machine, options.pattern)) {
+    return refuse(options.pattern + " is the machine file itself; name another output");
+  }
   const MachineModel model = load_machine(options.machine);
   const inspect::Inspection inspection = inspect::inspect(model);
   std::cout << to_text(inspection, model);

@@ -60,15 +60,14 @@ class Explaining {
   Explaining(const Options& options, const MachineModel& model)
       : options_(options), model_(model), picture_(model) {
     if (!options.explain_table.empty()) {
-      table_.open(options.explain_table, std::ios::binary);
-      table_ << simulate::explained_header(model);
+      table_.emplace(options.explain_table).out() << simulate::explained_header(model);
     }
-    const bool is_wanted = options.is_explained || table_.is_open() || !options.picture.empty();
+    const bool is_wanted = options.is_explained || table_ || !options.picture.empty();
     if (!is_wanted) return;
     explainer_.emplace(
         model,
         [this](const simulate::ExplainedBlock& block) {
-          if (table_.is_open()) table_ << simulate::to_csv(block, model_);
+          if (table_) table_->out() << simulate::to_csv(block, model_);
         },
         [this](const simulate::ExplainedCycle& cycle) {
           if (!options_.picture.empty()) picture_.add(cycle);
@@ -80,10 +79,7 @@ class Explaining {
   /// Writes what was asked for; a message where that fails.
   [[nodiscard]] std::string finish() {
     if (options_.is_explained) std::cout << to_text(explainer_->explanation(), model_);
-    table_.close();
-    if (table_.fail() && !options_.explain_table.empty()) {
-      return options_.explain_table + ": cannot be written";
-    }
+    if (table_ && !table_->commit()) return options_.explain_table + ": cannot be written";
     if (options_.picture.empty()) return "";
     const std::string title =
         std::filesystem::path(options_.file).filename().string() + ", machine " + model_.name;
@@ -95,7 +91,7 @@ class Explaining {
   const Options& options_;
   const MachineModel& model_;
   simulate::FeedPicture picture_;
-  std::ofstream table_;
+  std::optional<text::WholeFile> table_;
   std::optional<simulate::Explainer> explainer_;
 };
 
@@ -110,20 +106,24 @@ int exit_code_of(simulate::Outcome outcome) {
   }
 }
 
+/// As the session of a live station asks for them.
+SmoothSettings settings_of(const JoinOptions& join) {
+  SmoothSettings settings;
+  if (join.transition == "smooth") settings.transition = Transition::kSmooth;
+  if (join.transition == "exact_stop") settings.transition = Transition::kExactStop;
+  settings.tip_tolerance_mm = join.tip_tolerance_mm;
+  settings.axis_tolerance_rad = units::rad_from_deg(join.axis_tolerance_deg);
+  return settings;
+}
+
 int run(const Options& options) {
   MachineModel model = load_machine(options.machine);
-  if (options.join.transition == "smooth") model.transition = Transition::kSmooth;
-  if (options.join.transition == "exact_stop") model.transition = Transition::kExactStop;
-  if (options.join.tip_tolerance_mm > 0) model.tolerances.tip_mm = options.join.tip_tolerance_mm;
-  if (options.join.axis_tolerance_deg > 0) {
-    model.tolerances.axis_rad = units::rad_from_deg(options.join.axis_tolerance_deg);
-    model.tolerances.pole_axis_rad = model.tolerances.axis_rad;
-  }
   if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
   if (options.pole_policy == "exact") model.pole_policy = PolePolicy::kExact;
   if (options.override_ramp_s > 0) model.override_ramp_s = options.override_ramp_s;
   const ToolTable tools = load_tools(options.machine);
   simulate::SimulateOptions simulation;
+  simulation.settings = settings_of(options.join);
   simulation.stops_at_optional = options.stops_at_optional;
   simulation.has_action_peer = options.auxiliary == "ignore";
   if (!options.events.empty()) {
@@ -144,11 +144,13 @@ int run(const Options& options) {
   if (input == nullptr) return refuse(options.file + ": cannot be opened");
   cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
   std::optional<record::RecordingWriter> writer;
-  if (!options.record.empty()) {
-    for (const std::string& read : {options.file, options.events, options.start_from}) {
-      if (!text::is_same_file(read, options.record)) continue;
-      return refuse(options.record + ": is read by this run; name another recording");
+  for (const std::string& read : {options.file, options.events, options.start_from}) {
+    for (const std::string& written : {options.record, options.explain_table, options.picture}) {
+      if (!text::is_same_file(read, written)) continue;
+      return refuse(written + ": is read by this run; name another file to write");
     }
+  }
+  if (!options.record.empty()) {
     auto created = record::RecordingWriter::create(options.record, model);
     if (!created) return refuse(created.error().text());
     writer.emplace(std::move(*created));

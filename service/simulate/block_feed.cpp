@@ -30,9 +30,10 @@ BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const Tool
   if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
 }
 
-void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch) {
+void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch,
+                      const SmoothSettings& settings) {
   judge_.begin(model_.tool_length_mm);
-  planner_.begin(at_rest, model_.tool_length_mm, epoch);
+  planner_.begin(at_rest, model_.tool_length_mm, epoch, settings);
   writer_.forget_ahead();  // what was published has run or is void
   has_begun_ = true;
 }

@@ -27,7 +27,7 @@ class BlockFeed {
   void replay_feed(std::span<const FeedMark> marks) noexcept { planner_.replay_feed(marks); }
 
   /// Starts the program from joints at rest.
-  void begin(const JointVector& at_rest, std::uint16_t epoch);
+  void begin(const JointVector& at_rest, std::uint16_t epoch, const SmoothSettings& settings);
   /// Plans until the port is full, the blocks are through, or one is refused.
   void fill();
 

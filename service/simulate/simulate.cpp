@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/step.hpp"
 #include "service/simulate/block_feed.hpp"
@@ -45,7 +46,7 @@ class Run {
       take(out_.record);
       keep_books(report);
       if (state_.state == State::kReady && !feed_.has_begun()) {
-        feed_.begin(out_.record.joints, state_.epoch);
+        feed_.begin(out_.record.joints, state_.epoch, options_.settings);
       }
     }
     if (options_.explainer != nullptr) options_.explainer->finish();
@@ -72,7 +73,7 @@ class Run {
     in_.cycle += 1 + in_.lost_periods;
     in_.due_ns = static_cast<std::int64_t>(in_.cycle) * model_.cycle_ns;
     in_.now_ns = in_.due_ns;
-    const std::uint32_t all = (1U << static_cast<unsigned>(model_.joint_count)) - 1U;
+    const std::uint32_t all = all_joints(model_);
     const bool is_on = is_enabled(state_.state);
     in_.feedback = {.arrival_ns = in_.now_ns,
                     .cycle_seen = in_.cycle - 1 - in_.lost_periods,
@@ -227,10 +228,7 @@ class Run {
         break;
       case State::kDisabling:  // a live run that was switched off as soon as it was through
       case State::kOff:
-        is_end = start_cycle_ && !has_events;
-        report.outcome = is_program_over_ ? Outcome::kDone : Outcome::kStopped;
-        break;
-      case State::kLoaded:  // the start was refused, or blocks stand behind the end
+      case State::kLoaded:  // the start was refused
         is_end = start_cycle_ && !has_events;
         report.outcome = is_program_over_ ? Outcome::kDone : Outcome::kStopped;
         break;

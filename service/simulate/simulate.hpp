@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/simulate/explainer.hpp"
@@ -18,6 +19,7 @@ namespace meridian::simulate {
 
 struct SimulateOptions {
   std::optional<JointVector> start;  ///< where the drives are when enabled; nothing: home
+  SmoothSettings settings;           ///< what the session of a live station would ask for
   OperatorEvents events;             ///< replayed
   bool has_action_peer = true;       ///< false: programs with action words are refused
   bool stops_at_optional = false;    ///< optional stops stop

@@ -85,13 +85,28 @@ TEST_F(RecordingCommands, CheckSaysNoWhereTheMotionIsNotThatOfTheFile) {
   EXPECT_NE(same.output.find("DIFFERENT"), std::string::npos) << same.output;
 }
 
-TEST_F(RecordingCommands, ASimulationIsNotRecordedOverWhatItReads) {
-  const TextFile copy("UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20\nFINI\n", ".apt");
-  const std::string name = copy.path().string();
-  const CommandOutput refused = run_tool("simulate " + name + kMachine + "--record " + name);
-  EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_NE(refused.output.find("is read by this run"), std::string::npos) << refused.output;
-  EXPECT_EQ(run_tool("simulate " + name + kMachine).exit_code, 0) << "it is still there";
+TEST_F(RecordingCommands, ASimulationIsNotWrittenOverWhatItReads) {
+  for (const char* written : {"--record ", "--explain-table ", "--picture "}) {
+    const CommandOutput refused = run_tool("simulate " + part() + kMachine + written + part());
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_NE(refused.output.find("is read by this run"), std::string::npos) << refused.output;
+    EXPECT_EQ(meridian::test::read_text(part_.path()), kPart);
+  }
+}
+
+TEST(Commands, DoNotWriteOverTheFileThatTheyWorkOn) {
+  const std::string text =
+      meridian::test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
+  const TextFile machine(text, ".toml"), patch("[patch]\n", ".toml");
+  const auto refuses = [](const TextFile& file, const std::string& words) {
+    const CommandOutput refused = run_tool(words + file.path().string());
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_NE(refused.output.find("file itself"), std::string::npos) << refused.output;
+  };
+  refuses(machine, "machine " + machine.path().string() + " --pattern ");
+  EXPECT_EQ(meridian::test::read_text(machine.path()), text);
+  refuses(patch, "surface " + patch.path().string() + " -o ");
+  EXPECT_EQ(meridian::test::read_text(patch.path()), "[patch]\n");
 }
 
 TEST_F(RecordingCommands, CheckSaysWhatIsOddAboutTheFile) {

@@ -96,6 +96,20 @@ TEST_F(Simulate, IsJudgedByThePolesToleranceWhichTheVerdictNames) {
   EXPECT_EQ(to_text(exact).find("of the pole"), std::string::npos) << to_text(exact);
 }
 
+TEST_F(Simulate, JoinsBlocksAsASessionAsksInsteadOfAsTheMachineSays) {
+  MachineModel smooth = model;
+  smooth.transition = Transition::kSmooth;
+  smooth.tolerances.tip_mm = 0.05;
+  SimulateOptions simulation;
+  simulation.settings = {Transition::kSmooth, 0.05, 0};
+  const SimulatedRun asked = run_simulation(kPart, model, simulation);
+  const SimulatedRun own = run_simulation(kPart, smooth), plain = run_simulation(kPart, model);
+  EXPECT_EQ(asked.records.size(), own.records.size());
+  EXPECT_LT(asked.records.size(), plain.records.size());
+  simulation.settings.tip_tolerance_mm = 0.001;
+  EXPECT_GT(run_simulation(kPart, model, simulation).records.size(), asked.records.size());
+}
+
 TEST_F(Simulate, GivesTheSameBitsEveryTime) {
   const SimulatedRun one = run_simulation(kPart, model), two = run_simulation(kPart, model);
   ASSERT_EQ(one.records.size(), two.records.size());
