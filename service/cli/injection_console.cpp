@@ -29,7 +29,11 @@ void InjectionConsole::take(const std::string& line) {
   const auto injection = drives::parse_injection(line, model_);
   if (!injection) {
     std::fprintf(stderr, "%s\n", injection.error().c_str());
-  } else if (injections_.try_push(*injection)) {
+  } else if (line.find('@') != std::string::npos) {
+    std::fprintf(stderr, "'%s': here it happens at once; @SECONDS is for --inject\n", line.c_str());
+  } else if (!injections_.try_push(*injection)) {
+    std::fprintf(stderr, "'%s': too many at once\n", line.c_str());
+  } else {
     std::printf("injected: %s\n", line.c_str());
     std::fflush(stdout);
   }

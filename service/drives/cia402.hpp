@@ -3,18 +3,9 @@
 
 #include <cstdint>
 
-namespace meridian::drives {
+#include "meridian/rt/drive_state.hpp"
 
-/// States of a drive. Source: CiA 402-2 (IEC 61800-7-201), finite state automaton.
-enum class DriveState : std::uint8_t {
-  kSwitchOnDisabled,
-  kReadyToSwitchOn,
-  kSwitchedOn,
-  kOperationEnabled,
-  kQuickStopActive,
-  kFaultReactionActive,
-  kFault
-};
+namespace meridian::drives {
 
 /// Object 603Fh.
 enum ErrorCode : std::uint16_t {
@@ -30,7 +21,7 @@ enum ErrorCode : std::uint16_t {
 /// Proof: tests/unit/drives/cia402_test.cpp.
 [[nodiscard]] constexpr DriveState next_state(DriveState state, std::uint16_t controlword,
                                               std::uint16_t before) noexcept {
-  if (state == DriveState::kFaultReactionActive) return state;
+  if (state == DriveState::kFaultReaction) return state;
   if (state == DriveState::kFault) {
     const bool is_reset = (controlword & ~before & 0x80) != 0;
     return is_reset ? DriveState::kSwitchOnDisabled : state;
@@ -38,8 +29,8 @@ enum ErrorCode : std::uint16_t {
   if ((controlword & 0x02) == 0) return DriveState::kSwitchOnDisabled;  // disable voltage
   if ((controlword & 0x04) == 0) {                                      // quick stop
     const bool is_enabled =
-        state == DriveState::kOperationEnabled || state == DriveState::kQuickStopActive;
-    return is_enabled ? DriveState::kQuickStopActive : DriveState::kSwitchOnDisabled;
+        state == DriveState::kOperationEnabled || state == DriveState::kQuickStop;
+    return is_enabled ? DriveState::kQuickStop : DriveState::kSwitchOnDisabled;
   }
   const bool is_switch_on = (controlword & 0x01) != 0, is_enable = (controlword & 0x09) == 0x09;
   switch (state) {
@@ -60,6 +51,8 @@ enum ErrorCode : std::uint16_t {
 [[nodiscard]] constexpr std::uint16_t statusword(DriveState state) noexcept {
   constexpr std::uint16_t kAlways = 0x210;
   switch (state) {
+    case DriveState::kNotReady:
+      return kAlways;
     case DriveState::kSwitchOnDisabled:
       return kAlways | 0x40;
     case DriveState::kReadyToSwitchOn:
@@ -68,9 +61,9 @@ enum ErrorCode : std::uint16_t {
       return kAlways | 0x23;
     case DriveState::kOperationEnabled:
       return kAlways | 0x27;
-    case DriveState::kQuickStopActive:
+    case DriveState::kQuickStop:
       return kAlways | 0x07;
-    case DriveState::kFaultReactionActive:
+    case DriveState::kFaultReaction:
       return kAlways | 0x0F;
     case DriveState::kFault:
       return kAlways | 0x08;

@@ -59,9 +59,9 @@ void Drive::set_power(bool has_power) noexcept {
 }
 
 void Drive::fail(std::uint16_t error) noexcept {
-  if (state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive) return;
+  if (state_ == DriveState::kFault || state_ == DriveState::kFaultReaction) return;
   error_ = error;
-  state_ = DriveState::kFaultReactionActive;
+  state_ = DriveState::kFaultReaction;
   const double most = limits_.velocity > 0 ? limits_.velocity : INFINITY;
   target_velocity_ = std::clamp(servo_.velocity, -most, most);  // whatever jump it was to follow
 }
@@ -75,10 +75,10 @@ void Drive::work(const DriveInput& input, double dt_s) noexcept {
         take_target(input, dt_s);
       }
       break;
-    case DriveState::kQuickStopActive:
+    case DriveState::kQuickStop:
       ramp_down(dt_s);
       break;
-    case DriveState::kFaultReactionActive:
+    case DriveState::kFaultReaction:
       ramp_down(dt_s);
       if (target_velocity_ == 0) state_ = DriveState::kFault;
       break;
@@ -107,19 +107,13 @@ void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
     target_velocity_ = input.velocity;
     return;
   }
-  if (!is_following_) return;
-  if (input.periods_without <= input.bridge_cycles) {
-    target_ += target_velocity_ * std::min(input.bridged_s, dt_s);
-  } else {
-    miss_setpoints(dt_s);
-  }
+  if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
+  if (is_following_) target_ += target_velocity_ * std::min(input.bridged_s, dt_s);
 }
 
 /// In homing mode setpoints lead nowhere, but a service that sends none any more is gone.
 void Drive::search(const DriveInput& input, double dt_s) noexcept {
-  if (homing_.is_searching() && !input.is_new && input.periods_without > input.bridge_cycles) {
-    return miss_setpoints(dt_s);
-  }
+  if (!input.is_new && input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
   const double renamed = homing_.work(target_, servo_.position, dt_s);
   target_ += renamed;
   servo_.position += renamed;
@@ -127,7 +121,7 @@ void Drive::search(const DriveInput& input, double dt_s) noexcept {
 
 void Drive::miss_setpoints(double dt_s) noexcept {
   error_ = kErrorSetpointsStopped;
-  state_ = DriveState::kFaultReactionActive;
+  state_ = DriveState::kFaultReaction;
   homing_.ask(false);
   ramp_down(dt_s);
 }

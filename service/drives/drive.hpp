@@ -23,8 +23,9 @@ struct DriveInput {
 };
 
 /// One simulated servo drive in cyclic synchronous position mode or homing mode: CiA 402 states,
-/// servo lag, following error, and the watchdog that bridges missing setpoints by the sent velocity
-/// and then ramps down. Time is the argument of work(). Proof: tests/unit/drives/drive_test.cpp.
+/// servo lag, following error, and the watchdog that bridges missing setpoints by the sent
+/// velocity, then ramps down and goes to fault: nobody's drive stays in operation. Time is the
+/// argument of work(). Proof: tests/unit/drives/drive_test.cpp.
 class Drive {
  public:
   /// It stands at `home`, or beside it without a reference (HomingPlan).

@@ -41,18 +41,13 @@ void sleep_until(std::int64_t due_ns) noexcept {
   }
 }
 
-const char* name_of(DriveState state) {
-  constexpr std::array kNames = {
-      "switch on disabled", "ready to switch on", "switched on", "operation enabled",
-      "quick stop",         "fault reaction",     "fault"};
-  return kNames[static_cast<std::size_t>(state)];
-}
-
 /// Says when a drive changed its state.
 class StateTeller {
  public:
   StateTeller(const MachineModel& model, const std::function<void(const std::string&)>& say)
-      : model_(model), say_(say) {}
+      : model_(model), say_(say) {
+    seen_.fill(DriveState::kSwitchOnDisabled);
+  }
 
   void look(const DriveGroup& group) {
     for (int i = 0; i < group.size(); ++i) {
@@ -71,7 +66,7 @@ class StateTeller {
  private:
   const MachineModel& model_;
   const std::function<void(const std::string&)>& say_;
-  std::array<DriveState, kMaxJoints> seen_{};
+  std::array<DriveState, kMaxJoints> seen_;
 };
 
 /// The PLC's end of the wire.

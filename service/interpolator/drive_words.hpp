@@ -3,46 +3,11 @@
 
 #include <cstdint>
 
-/// CiA 402 as a controller sees it: what a statusword says, which controlword comes next.
+#include "meridian/rt/drive_state.hpp"
+
+/// CiA 402 as a controller sees it: what a drive says in homing mode, which controlword comes next.
 /// Proof: tests/unit/interpolator/drive_words_test.cpp.
 namespace meridian::interpolator {
-
-enum class DriveState : std::uint8_t {
-  kNotReady,
-  kSwitchOnDisabled,
-  kReadyToSwitchOn,
-  kSwitchedOn,
-  kOperationEnabled,
-  kQuickStop,
-  kFaultReaction,
-  kFault
-};
-
-/// Source: CiA 402-2, object 6041h, bits 0 to 3, 5 and 6.
-[[nodiscard]] constexpr DriveState drive_state(std::uint16_t statusword) noexcept {
-  switch (statusword & 0x4FU) {
-    case 0x40:
-      return DriveState::kSwitchOnDisabled;
-    case 0x0F:
-      return DriveState::kFaultReaction;
-    case 0x08:
-      return DriveState::kFault;
-    default:
-      break;
-  }
-  switch (statusword & 0x6FU) {
-    case 0x21:
-      return DriveState::kReadyToSwitchOn;
-    case 0x23:
-      return DriveState::kSwitchedOn;
-    case 0x27:
-      return DriveState::kOperationEnabled;
-    case 0x07:
-      return DriveState::kQuickStop;
-    default:
-      return DriveState::kNotReady;
-  }
-}
 
 /// What a statusword says in homing mode. Source: CiA 402-2, bits 10, 12 and 13 of object 6041h.
 struct HomingWord {

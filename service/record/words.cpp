@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "meridian/rt/drive_state.hpp"
+
 namespace meridian::record {
 namespace {
 
@@ -59,29 +61,7 @@ bool is_of_joint(Alarm alarm) noexcept {
 }
 
 std::string_view drive_state_word(std::uint16_t statusword) noexcept {
-  if (statusword == 0) return "silent";
-  switch (statusword & 0x4FU) {
-    case 0x40:
-      return "switch on disabled";
-    case 0x0F:
-      return "fault reaction";
-    case 0x08:
-      return "fault";
-    default:
-      break;
-  }
-  switch (statusword & 0x6FU) {
-    case 0x21:
-      return "ready to switch on";
-    case 0x23:
-      return "switched on";
-    case 0x27:
-      return "operation enabled";
-    case 0x07:
-      return "quick stop";
-    default:
-      return "not ready";
-  }
+  return statusword == 0 ? "silent" : name_of(drive_state(statusword));
 }
 
 std::optional<MotionKind> find_motion_kind(std::string_view wanted) noexcept {

@@ -23,7 +23,6 @@ namespace meridian::record {
 /// Whether the alarm tells a joint.
 [[nodiscard]] bool is_of_joint(Alarm alarm) noexcept;
 /// What a drive's statusword says: "operation enabled", "fault", ...; "silent" for 0.
-/// Source: CiA 402-2, object 6041h, bits 0 to 3, 5 and 6.
 [[nodiscard]] std::string_view drive_state_word(std::uint16_t statusword) noexcept;
 
 [[nodiscard]] std::optional<MotionKind> find_motion_kind(std::string_view word) noexcept;

@@ -36,11 +36,13 @@ TEST(Drives, TakeWhatGoesWrongFromStandardInputAndRefuseWhatTheyDoNotKnow) {
   const meridian::support::PrivateDomain domain;
   const std::string machine = "--machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml";
   const CommandOutput outcome = meridian::test::run_command(
-      "printf 'spike:b3=2\\nexplode\\n' | timeout -s INT 2 " MERIDIAN_BINARY_DIR
+      "printf 'spike:b3=2\\nexplode\\nfault@5:b3\\n' | timeout -s INT 2 " MERIDIAN_BINARY_DIR
       "/bin/meridian drives " +
       machine + " --console --domain " + std::to_string(domain.id()) + " 2>&1");
   EXPECT_NE(outcome.output.find("injected: spike:b3=2"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("'explode': KIND is one of"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("'fault@5:b3': here it happens at once"), std::string::npos)
+      << outcome.output;
   EXPECT_NE(outcome.output.find("drives stopped"), std::string::npos) << outcome.output;
   EXPECT_EQ(run_tool("drives " + machine + " --inject explode@1").exit_code, 2);
 }

@@ -34,15 +34,14 @@ TEST(Cia402, NeverJumpsFromDisabledToEnabled) {
 
 TEST(Cia402, DisableVoltageSwitchesOffFromEverywhereButFault) {
   for (const DriveState state : {DriveState::kReadyToSwitchOn, DriveState::kSwitchedOn,
-                                 DriveState::kOperationEnabled, DriveState::kQuickStopActive}) {
+                                 DriveState::kOperationEnabled, DriveState::kQuickStop}) {
     EXPECT_EQ(next_state(state, kDisableVoltage, kEnable), DriveState::kSwitchOnDisabled);
   }
   EXPECT_EQ(next_state(DriveState::kFault, kDisableVoltage, kEnable), DriveState::kFault);
 }
 
 TEST(Cia402, QuickStopIsHeldWhereTheDriveWasEnabled) {
-  EXPECT_EQ(next_state(DriveState::kOperationEnabled, kQuickStop, kEnable),
-            DriveState::kQuickStopActive);
+  EXPECT_EQ(next_state(DriveState::kOperationEnabled, kQuickStop, kEnable), DriveState::kQuickStop);
   EXPECT_EQ(next_state(DriveState::kSwitchedOn, kQuickStop, kSwitchOn),
             DriveState::kSwitchOnDisabled);
 }
@@ -50,8 +49,7 @@ TEST(Cia402, QuickStopIsHeldWhereTheDriveWasEnabled) {
 TEST(Cia402, AFaultIsResetByTheRisingEdgeAlone) {
   EXPECT_EQ(next_state(DriveState::kFault, kFaultReset, 0), DriveState::kSwitchOnDisabled);
   EXPECT_EQ(next_state(DriveState::kFault, kFaultReset, kFaultReset), DriveState::kFault);
-  EXPECT_EQ(next_state(DriveState::kFaultReactionActive, kFaultReset, 0),
-            DriveState::kFaultReactionActive);
+  EXPECT_EQ(next_state(DriveState::kFaultReaction, kFaultReset, 0), DriveState::kFaultReaction);
 }
 
 TEST(Cia402, StatuswordsAreThoseOfTheStandard) {
@@ -60,8 +58,8 @@ TEST(Cia402, StatuswordsAreThoseOfTheStandard) {
   EXPECT_EQ(statusword(DriveState::kReadyToSwitchOn) & kMask, 0x21);
   EXPECT_EQ(statusword(DriveState::kSwitchedOn) & kMask, 0x23);
   EXPECT_EQ(statusword(DriveState::kOperationEnabled) & kMask, 0x27);
-  EXPECT_EQ(statusword(DriveState::kQuickStopActive) & kMask, 0x07);
-  EXPECT_EQ(statusword(DriveState::kFaultReactionActive) & 0x4F, 0x0F);
+  EXPECT_EQ(statusword(DriveState::kQuickStop) & kMask, 0x07);
+  EXPECT_EQ(statusword(DriveState::kFaultReaction) & 0x4F, 0x0F);
   EXPECT_EQ(statusword(DriveState::kFault) & 0x4F, 0x08);
 }
 

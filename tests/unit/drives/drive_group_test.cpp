@@ -93,6 +93,14 @@ TEST_F(Group, ObeysOneServiceUntilItIsOff) {
   EXPECT_EQ(group_.service_id(), 8u);
 }
 
+TEST_F(Group, ObeysTheNextServiceWhereOneDiedBeforeItsFirstEnabledSetpoint) {
+  enable();
+  send(0, 0);
+  for (int n = 0; n < 10; ++n) group_.work(1);
+  command(0x06, 8);
+  EXPECT_EQ(group_.service_id(), 8U);
+}
+
 TEST_F(Group, DoesNotTakeItsOwnStallForSilenceOfTheService) {
   enable();
   send(1);
@@ -145,8 +153,12 @@ TEST_F(Group, ARestartedServiceMayCountCyclesAnew) {
 TEST_F(Group, InjectsFaultsAfterTheTimeEnabled) {
   group_.inject({Injection::Kind::kFault, 0.005, 3});
   enable();
-  for (int i = 0; i < 4; ++i) group_.work(1);
+  for (int i = 0; i < 4; ++i) {
+    send(0);
+    group_.work(1);
+  }
   EXPECT_EQ(group_.drive(3).error(), kErrorNone);
+  send(0);
   group_.work(1);
   EXPECT_EQ(group_.drive(3).error(), kErrorDevice);
 }

@@ -56,9 +56,21 @@ TEST(SimulatedDrive, StandsWhileItIsNotEnabled) {
 
 TEST(SimulatedDrive, StaysWhereItIsWhenEnabled) {
   Drive drive = enabled_drive();
-  for (int i = 0; i < 10; ++i) drive.work(nothing(i), kPeriod_s);
+  for (int i = 0; i < 3; ++i) drive.work(nothing(i), kPeriod_s);
   EXPECT_EQ(drive.position(), 10);
   EXPECT_EQ(drive.state(), DriveState::kOperationEnabled);
+}
+
+TEST(SimulatedDrive, FaultsWhereItIsEnabledAndNobodySendsSetpoints) {
+  for (const std::uint8_t mode : {dds::kCyclicPositionMode, dds::kHomingMode}) {
+    Drive drive = enabled_drive();
+    drive.take_controlword(0x0F, mode);
+    drive.work({.is_new = true, .is_enabled = false}, kPeriod_s);
+    for (int n = 1; n < 6; ++n) drive.work(nothing(n), kPeriod_s);
+    EXPECT_EQ(drive.state(), DriveState::kFault);
+    EXPECT_EQ(drive.error(), kErrorSetpointsStopped);
+    EXPECT_EQ(drive.position(), 10);
+  }
 }
 
 TEST(SimulatedDrive, DoesNotFollowASetpointThatIsNotEnabled) {
@@ -104,7 +116,7 @@ TEST(SimulatedDrive, RampsDownAndFaultsWhenSetpointsStayAway) {
 TEST(SimulatedDrive, AStepBeyondTheFollowingErrorFaults) {
   Drive drive = enabled_drive();
   drive.work(setpoint(30), kPeriod_s);
-  EXPECT_EQ(drive.state(), DriveState::kFaultReactionActive);
+  EXPECT_EQ(drive.state(), DriveState::kFaultReaction);
   EXPECT_EQ(drive.error(), kErrorFollowing);
   EXPECT_NE(drive.statusword() & kStatusFollowingError, 0);
 }

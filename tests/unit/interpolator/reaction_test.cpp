@@ -112,9 +112,8 @@ TEST(Reaction, OfADriveThatFaultsOrOfTheStopInputIsAFaultStopInTheCycleThatSeesT
 TEST(Reaction, OfDrivesThatGetNoSetpointsIsTheirRampBehindTheBridge) {
   const auto reaction = count_reactions("setpoints lost to the drives' ramp", [](auto& plant) {
     plant.inject("deaf=1000");
-    return cycles_until(plant, [&] {
-      return plant.group.drive(0).state() == drives::DriveState::kFaultReactionActive;
-    });
+    return cycles_until(plant,
+                        [&] { return plant.group.drive(0).state() == DriveState::kFaultReaction; });
   });
   EXPECT_EQ(reaction.least(), machine_at_begin().bridge_cycles + 1);
   EXPECT_EQ(reaction.most(), machine_at_begin().bridge_cycles + 1);

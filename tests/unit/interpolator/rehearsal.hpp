@@ -158,12 +158,12 @@ struct Rehearsal {
   }
   [[nodiscard]] dds::DriveCommand command_of(std::uint16_t drive, State state) const {
     const HomingAsked asked = asked_of(world.state.homing);
-    const interpolator::DriveState is = interpolator::drive_state(merge.words().statusword[drive]);
+    const DriveState is = drive_state(merge.words().statusword[drive]);
     dds::DriveCommand command;
     command.drive = drive;
     command.service_id = 7;
     command.controlword = interpolator::next_controlword(is, is_enabled(state));
-    if (is == interpolator::DriveState::kFault && is_resetting) {
+    if (is == DriveState::kFault && is_resetting) {
       command.controlword = interpolator::controlword::kFaultReset;
     }
     if ((asked.mode_mask >> drive & 1U) != 0) command.mode = dds::kHomingMode;
