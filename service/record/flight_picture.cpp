@@ -12,6 +12,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/plot/gnuplot.hpp"
+#include "service/record/joint_colours.hpp"
 #include "service/record/sent_positions.hpp"
 #include "service/record/words.hpp"
 
@@ -20,8 +21,6 @@ namespace {
 
 constexpr std::size_t kMostMoments = 1500;  ///< of a strip: as many as it has pixels, and more
 constexpr double kNearBefore_s = 0.2, kNearAfter_s = 0.4;
-constexpr const char* kDriveColours[kMaxJoints] = {"#1f5fa8", "#2a9d5c", "#e08214",
-                                                   "#c22f4f", "#7b4fa3", "#444444"};
 
 /// Some neighbouring cycles: the last positions, the largest of the rest.
 struct Moment {
@@ -119,11 +118,12 @@ void print_block(std::FILE* out, const char* name, const Strip& strip, int drive
 
 void print_shares(std::FILE* out, const char* block, const MachineModel& model, const char* label,
                   int (*column)(int)) {
-  std::fprintf(out, "set ylabel '%s'\nset yrange [0:*]\nplot 100 lw 1.5 dt 3 lc '#000000' title '100 %%'",
-               label);
+  std::fprintf(
+      out, "set ylabel '%s'\nset yrange [0:*]\nplot 100 lw 1.5 dt 3 lc '#000000' title '100 %%'",
+      label);
   for (int i = 0; i < model.joint_count; ++i) {
     std::fprintf(out, ", $%s using 1:%d with lines lw 1.5 lc '%s' title %s", block, column(i),
-                 kDriveColours[i], plot::quoted(drive_spec(model, i).name).c_str());
+                 kJointColours[i], plot::quoted(drive_spec(model, i).name).c_str());
   }
   std::fputs("\nset yrange [*:*]\n", out);
 }

@@ -119,7 +119,7 @@ class DriveLook {
       if (row.cycle == report_.cycle) following.at_alarm = error;
       const bool is_before = report_.alarm == Alarm::kNone || row.cycle < report_.cycle;
       double& worst = is_before ? following.before : following.after;
-      if (!(std::abs(error) <= std::abs(worst))) worst = error;
+      if (std::abs(error) > std::abs(worst)) worst = error;
     }
   }
 

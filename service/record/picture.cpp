@@ -8,6 +8,7 @@
 
 #include "meridian/units.hpp"
 #include "service/plot/gnuplot.hpp"
+#include "service/record/joint_colours.hpp"
 #include "service/record/picture_data.hpp"
 
 namespace meridian::record {
@@ -16,8 +17,6 @@ namespace {
 constexpr std::size_t kColumns = 1500;
 constexpr int kWhiskers = 160;  ///< lines along the tool axis, over the whole cut
 constexpr const char* kRateLabels[] = {"velocity", "accel.", "jerk"};
-constexpr const char* kColours[kMaxJoints] = {"#1f5fa8", "#2a9d5c", "#e08214",
-                                              "#c22f4f", "#7b4fa3", "#444444"};
 
 using plot::quoted;
 
@@ -130,7 +129,7 @@ void print_joints(std::FILE* out, const MachineModel& model, bool is_rotary) {
     std::fprintf(out,
                  "%s $columns using 1:%d:%d with filledcurves fs transparent solid 0.5 lc '%s' "
                  "notitle, $columns using 1:%d with lines lw 1.5 lc '%s' title %s",
-                 separator, low, low + 1, kColours[i], low + 1, kColours[i],
+                 separator, low, low + 1, kJointColours[i], low + 1, kJointColours[i],
                  quoted(model.joints[i].name).c_str());
     separator = ",";
   }
@@ -142,7 +141,7 @@ void print_velocities(std::FILE* out, const MachineModel& model) {
   std::fputs("plot 100 lw 2 lc '#cc3333' title 'limit, 100 %'", out);
   for (int i = 0; i < model.joint_count; ++i) {
     std::fprintf(out, ", $columns using 1:(100*$%d) with lines lw 1.5 lc '%s' title %s",
-                 column_of(i) + 2, kColours[i], quoted(model.joints[i].name).c_str());
+                 column_of(i) + 2, kJointColours[i], quoted(model.joints[i].name).c_str());
   }
   std::fputs("\n", out);
 }

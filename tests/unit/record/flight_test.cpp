@@ -53,12 +53,13 @@ FlightRow row_at(std::uint64_t cycle, const MachineModel& model) {
 
 class Flight : public testing::Test {
  protected:
-  Flight() {
+  Flight() { write(row_at); }
+  void write(FlightRow (*row_of)(std::uint64_t, const MachineModel&)) const {
     const ToldAlarm alarm{Alarm::kFollowingError, 1, 1.9, 12, kAlarmed};
     auto writer = FlightWriter::create(file_.path(), model_);
     EXPECT_TRUE(writer.has_value());
     for (std::uint64_t cycle = kBegin; cycle < kEnd; ++cycle) {
-      EXPECT_TRUE(writer->write(row_at(cycle, model_), cycle < kAlarmed ? ToldAlarm{} : alarm));
+      EXPECT_TRUE(writer->write(row_of(cycle, model_), cycle < kAlarmed ? ToldAlarm{} : alarm));
     }
     EXPECT_TRUE(writer->close());
   }
@@ -140,6 +141,19 @@ TEST_F(Flight, ReportTellsAlarmStopFollowingErrorsAndDrives) {
   EXPECT_NE(text.find("operation enabled -> fault reaction (021Fh, error 8611h)"),
             std::string::npos)
       << text;
+}
+
+TEST_F(Flight, ReportTellsTheLargestErrorAlthoughADriveReportedNoNumberBehindIt) {
+  write([](std::uint64_t cycle, const MachineModel& model) {
+    FlightRow row = row_at(cycle, model);
+    if (cycle == kAlarmed - 1) row.drives.position[1] = std::nan("");
+    return row;
+  });
+  RecordingReader reader = open();
+  const auto report = read_flight(reader, model_);
+  ASSERT_TRUE(report.has_value()) << report.error().text();
+  EXPECT_NEAR(report->following[1].before, -0.05 * 36, 1e-9);
+  EXPECT_NEAR(report->following[1].after, -0.05 * 87, 1e-9);
 }
 
 TEST_F(Flight, PictureShowsTheDriveOfTheAlarm) {
