@@ -23,6 +23,7 @@
 #include "service/record/words.hpp"
 #include "service/telemetry/file_name.hpp"
 #include "service/telemetry/words.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::telemetry {
 namespace {
@@ -94,14 +95,20 @@ constexpr const char* kPrefix = "fault-";
   return plain_name(name);
 }
 
-/// Into a file of its own: what is there under that name goes, a link is not followed. errno tells
-/// why it could not be written.
-[[nodiscard]] bool write_anew(const fs::path& path, const std::string& text) {
-  (void)::unlink(path.c_str());
-  std::FILE* const file = std::fopen(path.c_str(), "wbx");
-  if (file == nullptr) return false;
-  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  return std::fclose(file) == 0 && is_written;
+/// The folder, made where it is not there; none, which the log says, where it cannot be written to.
+[[nodiscard]] fs::path writable(const fs::path& folder, spdlog::logger& log) {
+  if (folder.empty()) return folder;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = std::error_code(errno, std::generic_category());
+  }
+  if (!error) return folder;
+  log.error(
+      "the flight recorder cannot write to {}, faults leave no record: {}; name a folder "
+      "that is writable",
+      folder.string(), error.message());
+  return {};
 }
 
 [[nodiscard]] fs::path with_ending(fs::path file, const char* ending) {
@@ -116,33 +123,17 @@ fs::path default_fault_folder(const fs::path& state, const std::string& machine)
 
 FlightRecorder::FlightRecorder(const config::FlightConfig& config, const MachineModel& model,
                                std::shared_ptr<spdlog::logger> log)
-    : folder_(config.folder),
+    : folder_(writable(config.folder, *log)),
       most_faults_(static_cast<std::size_t>(config.faults)),
       model_(model),
       log_(std::move(log)),
-      store_(config.folder.empty() ? 0 : rows_that_fit(config.seconds, model),
-             rows_of(kTail_s, model)) {
-  if (!is_on()) return;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (!error && ::access(folder_.c_str(), W_OK | X_OK) != 0) {
-    error = std::error_code(errno, std::generic_category());
-  }
-  if (!error) {
-    if (store_.room() < rows_of(config.seconds, model)) {
-      log_->warn(
-          "the flight recorder keeps the last {:.1f} s, not {} s: more rows of {} us do not "
-          "fit into its {} MiB",
-          static_cast<double>(store_.room()) * 1e-9 * static_cast<double>(model.cycle_ns),
-          config.seconds, model.cycle_ns / 1000, kRows_bytes >> 20U);
-    }
-    return;
-  }
-  log_->error(
-      "the flight recorder cannot write to {}, faults leave no record: {}; name a folder "
-      "that is writable",
-      folder_.string(), error.message());
-  folder_.clear();
+      store_(is_on() ? rows_that_fit(config.seconds, model) : 0, rows_of(kTail_s, model)) {
+  if (!is_on() || store_.room() >= rows_of(config.seconds, model)) return;
+  log_->warn(
+      "the flight recorder keeps the last {:.1f} s, not {} s: more rows of {} us do not "
+      "fit into its {} MiB",
+      static_cast<double>(store_.room()) * 1e-9 * static_cast<double>(model.cycle_ns),
+      config.seconds, model.cycle_ns / 1000, kRows_bytes >> 20U);
 }
 
 void FlightRecorder::take(const Event& event) noexcept {
@@ -242,7 +233,8 @@ std::string FlightRecorder::write_words(const fs::path& file, const std::string&
   if (faults_missed() > 0) {
     out << "faults since the start whose record found no room: " << faults_missed() << "\n";
   }
-  return write_anew(words, out.str()) ? "" : words.string() + ": " + std::strerror(errno);
+  const int error = text::write_anew(words, out.str());
+  return error == 0 ? "" : words.string() + ": " + std::strerror(error);
 }
 
 /// What a service was killed over.

@@ -23,6 +23,7 @@ namespace meridian::telemetry {
 /// their own for every fault: `fault-TIME-ALARM.csv`, a recording (docs/recordings.md), and beside
 /// it, in words, what happened, `.txt`. Files are written by a thread of its own: a slow or full
 /// disk costs them, which is told in the log, and nothing else.
+/// Proof: tests/unit/telemetry/flight_recorder_test.cpp.
 class FlightRecorder {
  public:
   /// An empty folder: nothing is kept. Else makes the folder; where it cannot be made or written

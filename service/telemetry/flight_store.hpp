@@ -18,7 +18,7 @@ namespace meridian::telemetry {
 /// so the rest is from before it, if the run was that long since the begin or the last thaw(). A
 /// second fault while the first is still being kept freezes it and counts as missed. One thread
 /// puts in (take, finish), another takes out: what is frozen is the reader's until thaw(), and
-/// meanwhile nothing is kept. Proof: tests/unit/telemetry/flight_recorder_test.cpp.
+/// meanwhile nothing is kept. Proof: tests/unit/telemetry/flight_store_test.cpp.
 class FlightStore {
  public:
   static constexpr std::size_t kMostAlarms = 8, kMostEvents = 256;

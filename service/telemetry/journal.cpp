@@ -14,23 +14,13 @@
 #include <utility>
 
 #include "service/telemetry/file_name.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::telemetry {
 namespace {
 
 /// No journal is longer; what is, is something else.
 constexpr std::size_t kMost_bytes = 4096;
-
-/// Writes all of `text`; 0 or errno.
-[[nodiscard]] int write_all(int file, std::string_view text) noexcept {
-  while (!text.empty()) {
-    const ssize_t count = ::write(file, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return count < 0 ? errno : EIO;
-    text.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return 0;
-}
 
 /// The journal in `file`, as open() returned it; else what is wrong with it.
 [[nodiscard]] Expected<JournalEntry, std::string> parse_file(int file, const std::string& machine) {
@@ -66,16 +56,9 @@ constexpr std::size_t kMost_bytes = 4096;
 
 }  // namespace
 
-int replace_file(const std::filesystem::path& path, const std::string& text) {
+int replace_file(const std::filesystem::path& path, const std::string& content) {
   const std::string beside = path.string() + ".new";
-  // A file of its own, whatever lies there: a link is not followed.
-  (void)::unlink(beside.c_str());
-  const int file =
-      ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0640);
-  if (file < 0) return errno;
-  int error = write_all(file, text);
-  if (error == 0 && ::fsync(file) != 0) error = errno;
-  if (::close(file) != 0 && error == 0) error = errno;
+  const int error = text::write_anew(beside, content, text::Sync::kNow);
   if (error != 0) return error;
   if (::rename(beside.c_str(), path.c_str()) != 0) return errno;
   return sync_folder(path.parent_path());

@@ -12,10 +12,10 @@
 
 namespace meridian::telemetry {
 
-/// Puts `text` in the place of what `path` holds, so that after a crash or a loss of power either
-/// is there and whole: a new file, synced, renamed, its folder synced. 0, or the errno of what
-/// failed; then the old one stands. Blocks as long as the disk does.
-[[nodiscard]] int replace_file(const std::filesystem::path& path, const std::string& text);
+/// Puts `content` in the place of what `path` holds, so that after a crash or a loss of power
+/// either is there and whole: a new file, synced, renamed, its folder synced. 0, or the errno of
+/// what failed; then the old one stands. Blocks as long as the disk does.
+[[nodiscard]] int replace_file(const std::filesystem::path& path, const std::string& content);
 
 /// The journal of one machine: the last executed block, in a file that survives the service. It is
 /// written by a thread of its own; a disk that is slow, blocked or full hinders nobody, and the

@@ -13,7 +13,7 @@ namespace meridian::telemetry {
 /// Decides from the events of the cycle when the journal gets a new entry, and which: whenever a
 /// program begins, comes to rest or ends, and once a second while its blocks go on. Behind a fault
 /// it names the block in which the alarm came, not where the commanded path ran out to. One thread.
-/// Proof: tests/unit/telemetry/journal_test.cpp.
+/// Proof: tests/unit/telemetry/journal_keeper_test.cpp.
 class JournalKeeper {
  public:
   static constexpr std::int64_t kPeriod_ns = 1'000'000'000;

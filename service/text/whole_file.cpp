@@ -1,12 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/text/whole_file.hpp"
 
+#include <fcntl.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <system_error>
 #include <utility>
 
 namespace meridian::text {
+namespace {
+
+/// Writes all of `text`; 0 or errno.
+[[nodiscard]] int write_all(int file, std::string_view text) noexcept {
+  while (!text.empty()) {
+    const ssize_t count = ::write(file, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return count < 0 ? errno : EIO;
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return 0;
+}
+
+}  // namespace
 
 WholeFile::WholeFile(std::string name) : name_(std::move(name)) {
   std::error_code ignored;
@@ -38,6 +56,19 @@ bool write_whole(const std::string& name, const std::string& content) {
   WholeFile file(name);
   file.out() << content;
   return file.commit();
+}
+
+int write_anew(const std::filesystem::path& path, std::string_view content, Sync sync) noexcept {
+  constexpr mode_t kAsUmaskSays = 0666;
+  (void)::unlink(path.c_str());
+  const int file =
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kAsUmaskSays);
+  if (file < 0) return errno;
+  int error = write_all(file, content);
+  if (error == 0 && sync == Sync::kNow && ::fsync(file) != 0) error = errno;
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error != 0) (void)::unlink(path.c_str());
+  return error;
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

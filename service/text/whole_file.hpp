@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 namespace meridian::text {
 
@@ -28,6 +30,15 @@ class WholeFile {
 
 /// All of `content` in a file of that name, or what was there before and false.
 [[nodiscard]] bool write_whole(const std::string& name, const std::string& content);
+
+/// Whether a file is to be on disk when it was written, or when the system comes to it.
+enum class Sync { kLater, kNow };
+
+/// All of `content` in a new file `path`: what lies there under that name goes, a link is not
+/// followed. Returns 0, or the errno of what failed; then there is no such file.
+/// Blocks as long as the disk does.
+[[nodiscard]] int write_anew(const std::filesystem::path& path, std::string_view content,
+                             Sync sync = Sync::kLater) noexcept;
 
 /// Whether both names are one file that is there.
 [[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);

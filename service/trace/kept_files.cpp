@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "service/text/whole_file.hpp"
+
 namespace meridian::trace {
 namespace {
 
@@ -17,16 +19,6 @@ namespace {
   char text[32];
   const std::size_t length = std::strftime(text, sizeof text, "%Y%m%dT%H%M%SZ", &parts);
   return {text, length};
-}
-
-/// Into a file of its own: what is there under that name goes, a link is not followed.
-[[nodiscard]] bool write_anew(const std::filesystem::path& path, const std::string& text) {
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
-  std::FILE* const file = std::fopen(path.c_str(), "wbx");
-  if (file == nullptr) return false;
-  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  return std::fclose(file) == 0 && is_written;
 }
 
 }  // namespace
@@ -49,15 +41,12 @@ bool KeptFiles::would_keep(std::int64_t severity_ns) const {
   return kept_.size() < most_ || severity_ns / 1000 > kept_[most_ - 1].severity_us;
 }
 
-std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string& text) {
+std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string& content) {
   const std::int64_t severity_us = severity_ns / 1000;
   const std::string name = "slow-" + std::to_string(severity_us) + "us-" + time_now();
   const std::filesystem::path file = folder_ / (name + ".json"), part = folder_ / (name + ".part");
   std::error_code failed;
-  if (!write_anew(part, text)) {
-    std::filesystem::remove(part, failed);
-    return {};
-  }
+  if (text::write_anew(part, content) != 0) return {};
   std::filesystem::rename(part, file, failed);
   if (failed) return {};
   const auto place = std::find_if(kept_.begin(), kept_.end(), [severity_us](const Kept& kept) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "flown.hpp"
 #include "service/record/flight_writer.hpp"
 #include "service/record/recording_reader.hpp"
 #include "support/machines.hpp"
@@ -21,124 +22,6 @@ namespace meridian::telemetry {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A run whose cycles a test lets pass, into anything that keeps them.
-struct Flown {
-  std::uint64_t cycle = 0;
-
-  template <class Keeper>
-  void cycles(Keeper& keeper, int count, State state) {
-    for (int i = 0; i < count; ++i) {
-      CycleRecord record;
-      record.setpoint.cycle = ++cycle;
-      record.setpoint.due_ns = static_cast<std::int64_t>(cycle) * 1'000'000;
-      record.state = state;
-      record::DriveReport report;
-      report.arrival_ns = record.setpoint.due_ns;
-      report.cycle_seen = cycle - 1;
-      report.position[0] = static_cast<double>(cycle);
-      keeper.take(report);
-      keeper.take(record);
-    }
-  }
-  [[nodiscard]] Event alarm(Alarm alarm, int joint) const {
-    Event event;
-    event.code = EventCode::kAlarm;
-    event.cycle = cycle + 1;
-    event.a = static_cast<std::uint64_t>(alarm);
-    event.b = static_cast<std::uint64_t>(joint);
-    event.x = 2.5;
-    event.line = 17;
-    return event;
-  }
-};
-
-TEST(FlightStore, FreezesBehindTheStopAndKeepsTheRowsBefore) {
-  FlightStore store(100, 10);
-  Flown run;
-  run.cycles(store, 100, State::kRunning);
-  store.take(run.alarm(Alarm::kActionFailed, 0), true);  // holds the program, and is no fault
-  run.cycles(store, 150, State::kRunning);
-  store.take(run.alarm(Alarm::kFollowingError, 3), true);
-  run.cycles(store, 20, State::kFaultStop);
-  run.cycles(store, 10, State::kFault);
-  EXPECT_FALSE(store.is_frozen());
-  run.cycles(store, 1, State::kFault);
-  ASSERT_TRUE(store.is_frozen());
-  run.cycles(store, 50, State::kOff);
-  ASSERT_EQ(store.size(), 100U);
-  EXPECT_EQ(store.row(0).record.setpoint.cycle, 182U);
-  EXPECT_EQ(store.row(99).record.setpoint.cycle, 281U);
-  EXPECT_EQ(store.row(99).drives.position[0], 281);
-  EXPECT_EQ(store.fault().record.setpoint.cycle, 251U);
-  ASSERT_EQ(store.alarm_count(), 1U);
-  EXPECT_EQ(store.alarm(0).cycle, 251U);
-  EXPECT_EQ(store.alarm(0).joint, 3);
-}
-
-TEST(FlightStore, KeepsHalfOfItsRowsFromBeforeTheFaultHoweverLongTheStop) {
-  FlightStore store(100, 10);
-  Flown run;
-  run.cycles(store, 200, State::kRunning);
-  run.cycles(store, 300, State::kFaultStop);
-  ASSERT_TRUE(store.is_frozen());
-  EXPECT_EQ(store.fault().record.setpoint.cycle, 201U);
-  EXPECT_LE(store.row(0).record.setpoint.cycle, 152U);
-}
-
-TEST(FlightStore, CountsAFaultThatFindsItFrozenAndBeginsAnewWhenItThaws) {
-  FlightStore store(100, 10);
-  Flown run;
-  run.cycles(store, 30, State::kFaultStop);
-  run.cycles(store, 30, State::kFault);
-  ASSERT_TRUE(store.is_frozen());
-  run.cycles(store, 30, State::kOff);
-  EXPECT_EQ(store.faults_missed(), 0U);
-  run.cycles(store, 30, State::kFault);
-  EXPECT_EQ(store.faults_missed(), 1U);
-  store.thaw();
-  run.cycles(store, 60, State::kFault);
-  EXPECT_FALSE(store.is_frozen()) << "the fault in which it was thawed is no new one";
-  run.cycles(store, 20, State::kOff);
-  run.cycles(store, 20, State::kFault);
-  ASSERT_TRUE(store.is_frozen());
-  EXPECT_EQ(store.row(0).record.setpoint.cycle, 121U);
-}
-
-TEST(FlightStore, FreezesTheFirstOfTwoFaultsWhereTheSecondBeginsAndCountsThat) {
-  FlightStore store(100, 10);
-  Flown run;
-  run.cycles(store, 50, State::kRunning);
-  run.cycles(store, 3, State::kFaultStop);
-  run.cycles(store, 3, State::kFault);
-  run.cycles(store, 2, State::kOff);
-  EXPECT_FALSE(store.is_frozen());
-  run.cycles(store, 1, State::kFault);
-  EXPECT_TRUE(store.is_frozen());
-  EXPECT_EQ(store.faults_missed(), 1U);
-  EXPECT_EQ(store.size(), 58U);
-  EXPECT_EQ(store.fault().record.setpoint.cycle, 51U);
-}
-
-TEST(FlightStore, FreezesWhatIsThereWhereTheServiceEndsInAFault) {
-  FlightStore store(100, 10);
-  Flown run;
-  run.cycles(store, 30, State::kRunning);
-  store.finish();
-  EXPECT_FALSE(store.is_frozen()) << "there was none";
-  run.cycles(store, 3, State::kFaultStop);
-  store.finish();
-  ASSERT_TRUE(store.is_frozen());
-  EXPECT_EQ(store.size(), 33U);
-}
-
-TEST(FlightStore, OfNoRowsKeepsNothing) {
-  FlightStore store(0, 10);
-  Flown run;
-  run.cycles(store, 100, State::kFault);
-  store.finish();
-  EXPECT_FALSE(store.is_frozen());
-}
 
 class FlightFiles : public testing::Test {
  protected:
@@ -298,6 +181,14 @@ TEST_F(FlightFiles, AreNoneWhereTheirFolderCannotBeMadeWhichIsToldAtTheStart) {
   config_.folder = "/proc/nowhere";
   live(1);
   EXPECT_NE(said_.str().find("cannot write to /proc/nowhere"), std::string::npos) << said_.str();
+  FlightRecorder recorder(config_, model_, log_);
+  EXPECT_EQ(recorder.memory_bytes(), 0U);
+  Flown run;
+  for (int i = 0; i < 3; ++i) {
+    run.cycles(recorder, 1000, State::kFault);
+    run.cycles(recorder, 1000, State::kOff);
+  }
+  EXPECT_EQ(recorder.faults_missed(), 0U);
 }
 
 TEST_F(FlightFiles, AreNoneWithoutAFolder) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/text/whole_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "service/process/programs.hpp"
+
+namespace meridian::text {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WrittenFile : public testing::Test {
+ protected:
+  [[nodiscard]] static std::string read(const fs::path& path) {
+    std::ifstream in(path);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  process::ScratchFolder folder_;
+  fs::path file_ = folder_.path() / "file", other_ = folder_.path() / "other";
+  fs::path nowhere_ = folder_.path() / "no" / "such" / "folder";
+};
+
+TEST_F(WrittenFile, IsReplacedInOneStep) {
+  ASSERT_TRUE(write_whole(file_, "old"));
+  ASSERT_TRUE(write_whole(file_, "new"));
+  EXPECT_EQ(read(file_), "new");
+  EXPECT_FALSE(fs::exists(file_.string() + ".part"));
+  EXPECT_FALSE(write_whole(nowhere_, "x"));
+}
+
+TEST_F(WrittenFile, IsANewOneWhateverLiesThere) {
+  for (const Sync sync : {Sync::kLater, Sync::kNow}) {
+    std::ofstream(other_) << "not ours";
+    fs::remove(file_);
+    fs::create_symlink(other_, file_);
+    ASSERT_EQ(write_anew(file_, "ours", sync), 0);
+    EXPECT_EQ(read(file_), "ours");
+    EXPECT_EQ(read(other_), "not ours");
+    EXPECT_FALSE(fs::is_symlink(file_));
+    ASSERT_EQ(write_anew(file_, "again", sync), 0);
+    EXPECT_EQ(read(file_), "again");
+  }
+}
+
+TEST_F(WrittenFile, IsNotThereWhereItCouldNotBeWrittenAndTheReasonIsTold) {
+  EXPECT_EQ(write_anew(nowhere_, "x"), ENOENT);
+  fs::create_directory(file_);
+  EXPECT_EQ(write_anew(file_, "x"), EEXIST);
+}
+
+}  // namespace
+}  // namespace meridian::text
