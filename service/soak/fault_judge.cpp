@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/soak/fault_judge.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
+#include "service/record/words.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::soak {
@@ -71,15 +69,11 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
 }
 
 std::string FaultJudge::describe() const {
-  static constexpr std::array<const char*, 12> kAlarms{
-      "none",           "not finite",   "travel",         "step",
-      "unreachable",    "drive fault",  "feedback lost",  "following error",
-      "emergency stop", "periods lost", "enable timeout", "action failed"};
-  std::string out = "alarm: ";
-  out += kAlarms[std::min(static_cast<std::size_t>(alarm_), kAlarms.size() - 1)];
-  text::append(out, ", place %d, %.1f s after enabling", joint_, enabled_s_);
+  std::string out = "alarm: " + std::string(record::word(alarm_));
+  if (record::is_of_joint(alarm_)) text::append(out, " of joint %d", joint_);
+  text::append(out, ", %.1f s after enabling", enabled_s_);
   if (injected_) {
-    text::append(out, "; planned: %s, place %d, at %.1f s", word(injected_->mishap),
+    text::append(out, "; planned: %s, joint %d, at %.1f s", word(injected_->mishap),
                  injected_->drive, injected_->at_s);
   }
   return out;

@@ -23,11 +23,11 @@ constexpr auto kLook = std::chrono::milliseconds(5);
 }  // namespace
 
 Judge::Judge(const MachineModel& model, const ToolTable& tools, std::filesystem::path folder,
-             std::filesystem::path kept)
+             const std::filesystem::path& kept)
     : model_(model),
       tools_(tools),
       folder_(std::move(folder)),
-      kept_(std::move(kept)),
+      kept_(kept, "recording", kMostKept),
       segments_(folder_, [this](const Segment& segment) {
         const std::lock_guard lock(mutex_);
         waiting_.push_back(segment);
@@ -129,14 +129,10 @@ Judge::Judged Judge::judge(const Segment& segment) {
   return judged;
 }
 
-void Judge::keep(const Judged& judged, const Segment& segment) {
-  const bool is_wrong = !judged.refusal.empty() || !judged.check.findings.empty();
-  if (!is_wrong || kept_.empty() || kept_count_ >= kMostKept) return;
-  const std::string name = std::to_string(++kept_count_);
-  std::error_code ignored;
-  std::filesystem::create_directories(kept_, ignored);
-  std::filesystem::copy_file(segment.file, kept_ / (name + ".csv"), ignored);
-  std::filesystem::copy_file(judged.where, kept_ / (name + ".cl"), ignored);
+void Judge::keep(Judged& judged, const Segment& segment) {
+  if (judged.refusal.empty() && judged.check.findings.empty()) return;
+  const std::string kept = kept_.keep({{segment.file, ".csv"}, {judged.where, ".cl"}});
+  if (!kept.empty()) judged.where = kept + ".csv";
 }
 
 void Judge::collect(SoakReport& report) {

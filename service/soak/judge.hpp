@@ -12,6 +12,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
+#include "service/soak/evidence.hpp"
 #include "service/soak/segments.hpp"
 #include "service/soak/soak_report.hpp"
 #include "service/soak/timeline.hpp"
@@ -24,9 +25,9 @@ namespace meridian::soak {
 class Judge {
  public:
   /// Makes the pipe in `folder`. Of the first kMostKept segments with something wrong, recording
-  /// and program are put into folder `kept`; empty: none. Throws std::runtime_error.
+  /// and program are put into folder `kept`, anew; empty: none. Throws std::runtime_error.
   Judge(const MachineModel& model, const ToolTable& tools, std::filesystem::path folder,
-        std::filesystem::path kept);
+        const std::filesystem::path& kept);
   ~Judge();
   Judge(const Judge&) = delete;
   Judge& operator=(const Judge&) = delete;
@@ -52,13 +53,13 @@ class Judge {
   void read_pipe();
   void judge_segments();
   [[nodiscard]] Judged judge(const Segment& segment);
-  /// Puts the evidence aside where something is wrong.
-  void keep(const Judged& judged, const Segment& segment);
+  /// Puts the evidence aside where something is wrong, and says so.
+  void keep(Judged& judged, const Segment& segment);
 
   const MachineModel& model_;
   const ToolTable& tools_;
-  std::filesystem::path folder_, kept_;
-  int kept_count_ = 0;
+  std::filesystem::path folder_;
+  Evidence kept_;
   Segments segments_;
   std::mutex mutex_;  ///< of the four below
   SentPrograms programs_;

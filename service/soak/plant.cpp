@@ -3,7 +3,6 @@
 
 #include <csignal>
 #include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "service/process/programs.hpp"
@@ -32,11 +31,12 @@ std::string injection_text(const Planned& mishap, const std::string& drive_name)
 }
 
 Plant::Plant(std::string machine, std::string tools, std::uint32_t domain,
-             std::filesystem::path folder)
+             std::filesystem::path folder, const std::filesystem::path& kept)
     : machine_(std::move(machine)),
       tools_(std::move(tools)),
       domain_(std::to_string(domain)),
-      folder_(std::move(folder)) {}
+      folder_(std::move(folder)),
+      kept_(kept, "fault", kMostKept) {}
 
 void Plant::start_service(const std::filesystem::path& recording) {
   std::vector<std::string> words{process::program_beside("meridiand").string(),
@@ -81,15 +81,11 @@ void Plant::start_station(const std::string& program) {
       ChildProcess::Options{.error_file = log("station.log"), .output_file = log("station.out")});
 }
 
-std::string Plant::keep_logs(const std::filesystem::path& folder) {
-  if (folder.empty() || kept_ >= kMostKept) return "soak";
-  const std::string name = "fault" + std::to_string(++kept_);
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
-  for (const char* const from : {"service.log", "drives.out", "drives.log"}) {
-    std::filesystem::copy_file(log(from), folder / (name + "." + from), ignored);
-  }
-  return (folder / name).string();
+std::string Plant::keep_logs() {
+  const std::string kept = kept_.keep({{log("service.log"), ".service.log"},
+                                       {log("drives.out"), ".drives.out"},
+                                       {log("drives.log"), ".drives.log"}});
+  return kept.empty() ? "soak" : kept;
 }
 
 bool Plant::end_service() {

@@ -9,6 +9,7 @@
 
 #include "service/process/child_process.hpp"
 #include "service/soak/chaos.hpp"
+#include "service/soak/evidence.hpp"
 
 namespace meridian::soak {
 
@@ -19,7 +20,9 @@ namespace meridian::soak {
 /// Service, drives and station as processes; each may die and be started again.
 class Plant {
  public:
-  Plant(std::string machine, std::string tools, std::uint32_t domain, std::filesystem::path folder);
+  /// Logs are kept in folder `kept`, anew; empty: none are.
+  Plant(std::string machine, std::string tools, std::uint32_t domain, std::filesystem::path folder,
+        const std::filesystem::path& kept);
 
   void start_service(const std::filesystem::path& recording);
   /// With something that is to go wrong, or nothing. `name` is that of the drive.
@@ -31,9 +34,9 @@ class Plant {
   void kill_service() { service_.reset(); }
   void kill_station() { station_.reset(); }
 
-  /// Copies what service and drives said so far into `folder`, at most kMostKept times; returns
-  /// where to, or "soak" where they were not kept.
-  [[nodiscard]] std::string keep_logs(const std::filesystem::path& folder);
+  /// Copies what service and drives said so far, at most kMostKept times; returns where to, or
+  /// "soak" where they were not kept.
+  [[nodiscard]] std::string keep_logs();
 
   [[nodiscard]] process::ChildProcess* service() { return service_.get(); }
   [[nodiscard]] process::ChildProcess* drives() { return drives_.get(); }
@@ -44,9 +47,9 @@ class Plant {
   [[nodiscard]] std::string log(const char* name) const { return (folder_ / name).string(); }
 
   static constexpr int kMostKept = 20;
-  int kept_ = 0;
   std::string machine_, tools_, domain_;
   std::filesystem::path folder_;
+  Evidence kept_;
   std::unique_ptr<process::ChildProcess> service_, drives_, station_;
 };
 

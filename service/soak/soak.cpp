@@ -21,6 +21,7 @@
 #include "service/soak/status_counts.hpp"
 #include "service/stream/operator_link.hpp"
 #include "service/stream/steady_ns.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::soak {
 namespace {
@@ -53,7 +54,8 @@ class Soak {
         model_(config::load_machine(options.machine)),
         tools_(options.tools.empty() ? ToolTable{} : config::load_tools(options.tools)),
         judge_(model_, tools_, folder_.path(), kept_beside(options.report)),
-        plant_(options.machine, options.tools, options.domain, folder_.path()),
+        plant_(options.machine, options.tools, options.domain, folder_.path(),
+               kept_beside(options.report)),
         chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.most_feed_override),
         participant_({.domain = options.domain, .machine = model_.name}),
         operator_(participant_, "soak"),
@@ -117,7 +119,7 @@ class Soak {
     }
     if (const auto code = plant_.drives()->wait_for_exit(milliseconds(0))) {
       report_.violate("the drives ended by themselves with code " + std::to_string(*code),
-                      plant_.keep_logs(kept_beside(options_.report)));
+                      plant_.keep_logs());
       start_drives();
     }
     if (plant_.station() != nullptr) {
@@ -172,7 +174,7 @@ class Soak {
     } else if (cause == FaultJudge::Cause::kUnprovoked) {
       report_.violate(
           "a Fault that nothing provoked: " + faults_.describe() + "; " + status.message,
-          plant_.keep_logs(kept_beside(options_.report)));
+          plant_.keep_logs());
     }
   }
 
@@ -296,8 +298,8 @@ class Soak {
     if (options_.report.empty()) return;
     auto text_file = options_.report;
     text_file.replace_extension(".txt");
-    if (!write_whole(options_.report, to_json(report_)) ||
-        !write_whole(text_file, to_text(report_))) {
+    if (!text::write_whole(options_.report, to_json(report_)) ||
+        !text::write_whole(text_file, to_text(report_))) {
       say_("the report " + options_.report.string() + " cannot be written");
     }
   }

@@ -2,8 +2,6 @@
 #include "service/soak/soak_report.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "meridian/units.hpp"
@@ -203,19 +201,6 @@ std::string to_json(const SoakReport& report) {
     separator = ",";
   }
   return out + "]}\n";
-}
-
-bool write_whole(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::path part = file;
-  part += ".part";
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out << text;
-    if (!out.flush()) return false;
-  }
-  std::error_code failed;
-  std::filesystem::rename(part, file, failed);
-  return !failed;
 }
 
 }  // namespace meridian::soak

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -72,9 +71,5 @@ struct SoakReport {
 
 [[nodiscard]] std::string to_text(const SoakReport& report);
 [[nodiscard]] std::string to_json(const SoakReport& report);
-
-/// Replaces `file` in one step: a reader finds the old text or the new one, also where this process
-/// is killed meanwhile. False where it cannot be written.
-[[nodiscard]] bool write_whole(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace meridian::soak

@@ -12,6 +12,7 @@
 #include "service/drives/injection.hpp"
 #include "service/process/programs.hpp"
 #include "service/soak/chaos.hpp"
+#include "service/soak/evidence.hpp"
 #include "service/soak/fault_judge.hpp"
 #include "service/soak/plant.hpp"
 #include "service/soak/segments.hpp"
@@ -102,6 +103,45 @@ TEST(SentPrograms, AreRemovedOnlyWhereTheyWereMadeAndNobodyAsksForThemAnyMore) {
   EXPECT_TRUE(std::filesystem::exists(last));
 }
 
+class EvidenceTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::filesystem::path file(const char* name, const char* text = "new") const {
+    std::filesystem::create_directories(kept_);
+    const auto path = kept_ / name;
+    std::ofstream(path) << text;
+    return path;
+  }
+  [[nodiscard]] std::string read(const char* name) const {
+    std::ifstream in(kept_ / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  process::ScratchFolder folder_;
+  std::filesystem::path kept_ = folder_.path() / "soak.kept";
+};
+
+TEST_F(EvidenceTest, IsNamedByItsNumberAndOfTheFirstFindsAlone) {
+  const auto from = file("source");
+  Evidence evidence(kept_, "recording", 2);
+  EXPECT_EQ(evidence.keep({{from, ".csv"}, {folder_.path() / "none", ".cl"}}),
+            kept_ / "recording1");
+  EXPECT_EQ(evidence.keep({{from, ".csv"}, {from, ".cl"}}), kept_ / "recording2");
+  EXPECT_EQ(evidence.keep({{from, ".csv"}}), "");
+  EXPECT_EQ(read("recording1.csv"), "new");
+  EXPECT_EQ(read("recording2.cl"), "new");
+  EXPECT_EQ(Evidence("", "recording", 2).keep({{from, ".csv"}}), "");
+  EXPECT_EQ(evidence.keep({{folder_.path() / "none", ".csv"}}), "");
+}
+
+TEST_F(EvidenceTest, OfASoakBeforeIsGoneAndNothingElse) {
+  const auto old = {file("recording1.csv", "old"), file("recording12.cl", "old")};
+  const auto others = {file("recording.csv"), file("recording-of-mine.csv"), file("fault1.drives"),
+                       file("recording1")};
+  const Evidence evidence(kept_, "recording", 2);
+  for (const auto& path : old) EXPECT_FALSE(std::filesystem::exists(path)) << path;
+  for (const auto& path : others) EXPECT_TRUE(std::filesystem::exists(path)) << path;
+}
+
 TEST(Faults, AreExplainedByTheirKindTheirDriveAndTheirTime) {
   const Planned fault{Mishap::kDriveFault, 20, 0, 3};
   EXPECT_TRUE(explains(fault, 20, Alarm::kDriveFault, 3));
@@ -163,6 +203,17 @@ TEST_F(FaultJudgeTest, WaitsForTheAlarmThatIsToldBehindTheState) {
   EXPECT_FALSE(see(3, State::kRunning));
   EXPECT_FALSE(see(4, State::kFault));
   EXPECT_EQ(see(5.1, State::kFault), Cause::kUnprovoked) << "one that is never told";
+}
+
+TEST_F(FaultJudgeTest, NamesEveryAlarmAndTheJointOfThoseThatHaveOne) {
+  EXPECT_FALSE(see(0, State::kRunning));
+  EXPECT_TRUE(see(1, State::kFault, Alarm::kReferenceLost));
+  EXPECT_NE(judge_.describe().find("alarm: reference_lost of joint 0,"), std::string::npos)
+      << judge_.describe();
+  EXPECT_FALSE(see(2, State::kRunning));
+  EXPECT_TRUE(see(3, State::kFault, Alarm::kPeriodsLost));
+  EXPECT_NE(judge_.describe().find("alarm: periods_lost, "), std::string::npos)
+      << judge_.describe();
 }
 
 TEST_F(FaultJudgeTest, KnowsWhatTheSoakDidItself) {
@@ -267,18 +318,6 @@ TEST(SoakReport, PassesOnlyWhereNothingWasWrongAndSomethingWasDone) {
   SoakReport threads = good_report();
   ++threads.lives[0].last.process.threads;
   EXPECT_FALSE(threads.passed());
-}
-
-TEST(SoakReport, IsReplacedInOneStep) {
-  const process::ScratchFolder folder;
-  const auto file = folder.path() / "report.json";
-  ASSERT_TRUE(write_whole(file, "old"));
-  ASSERT_TRUE(write_whole(file, to_json(good_report())));
-  std::ifstream in(file);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  EXPECT_EQ(text, to_json(good_report()));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.json.part"));
-  EXPECT_FALSE(write_whole(folder.path() / "no/such/folder.json", "x"));
 }
 
 }  // namespace
