@@ -89,7 +89,7 @@ void TelemetryThread::drain() {
     recorder_.take(event);
     flight_.take(event);
     tell(event);
-    keeper_.see(event, status_.message);
+    keeper_.see(event, alarm_message_);
   }
   recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
   PoleEase ease;
@@ -234,13 +234,9 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.events_overrun = ports_.events_overrun + recorder_.events_lost();
   if (!session.message.empty() && session.message != session_message_) {
     session_message_ = session.message;
-    // In a fault the operator needs its reason and remedy first.
-    const bool is_fault = record.state == State::kFaultStop || record.state == State::kFault;
-    if (!is_fault || status.message.empty()) {
-      status.message = session.message;
-    } else if (!status.message.ends_with(session.message)) {
-      status.message = alarm_message_ + "; " + session.message;
-    }
+    // Of an alarm the operator needs reason and remedy first.
+    status.message = session.message;
+    if (status.alarm != Alarm::kNone) status.message = alarm_message_ + "; " + status.message;
     log_->info("{}", session.message);
   }
   // The clock first: a verb that quotes this status may be here before write() returns.

@@ -10,54 +10,111 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <thread>
 
+#include "service/dds/reader.hpp"
 #include "support/machines.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::interpolator {
 namespace {
 
-/// What the file of events holds after a run in which the verb `hold` was told and `lost` events
-/// found no room on their way.
-std::string events_file(std::uint64_t lost) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("meridian-telemetry-" + std::to_string(::getpid()) + ".csv");
-  const MachineModel model = test::lai_machine();
-  const support::PrivateDomain domain;
-  dds::Participant participant({.domain = domain.id(), .machine = model.name});
-  const auto ports = std::make_unique<Ports>();
-  const config::ServiceConfig service;
-  const stream::ToolLengths tools;
-  const auto intake = std::make_unique<Intake>(participant, model, tools, service, 1, *ports);
-  StatusClock clock;
-  telemetry::Recorder recorder(path.string(), model);
-  const auto log =
+class TelemetryThreadTest : public testing::Test {
+ protected:
+  ~TelemetryThreadTest() override {
+    std::filesystem::remove(path_);
+    std::filesystem::remove(record::operator_events_path(path_.string()));
+  }
+
+  void tell(EventCode code, std::uint64_t a, std::uint64_t b = 0) {
+    Event event;
+    event.code = code;
+    event.cycle = 7;
+    event.a = a;
+    event.b = b;
+    EXPECT_TRUE(ports_->told.try_push(event));
+  }
+  /// A station asks for a session, and intake takes it in.
+  void open_session() {
+    dds::Writer<dds::SessionRequest> station(participant_);
+    dds::SessionRequest request;
+    request.session = 5;
+    request.station = "cam";
+    request.program = "part.apt";
+    (void)station.write(request);
+    std::thread taking([this] { intake_->run(); });
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (intake_->view().session == 0 && std::chrono::steady_clock::now() < patience) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ports_->is_stopping = true;
+    taking.join();
+  }
+  /// Lets the thread drain what was told, and end; the status is its last.
+  void run() {
+    dds::Reader<dds::Status> statuses(participant_);
+    TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
+                           *intake_, clock_, recorder_, journal_, flight_, log_, *ports_);
+    ports_->is_stopping = true;
+    thread.run();
+    while (statuses.take(status_)) {
+    }
+  }
+  /// What the file of events holds afterwards.
+  [[nodiscard]] std::string events() {
+    recorder_.stop();
+    recorder_.run();
+    std::ostringstream text;
+    text << std::ifstream(record::operator_events_path(path_.string())).rdbuf();
+    return text.str();
+  }
+
+  const std::filesystem::path path_ = std::filesystem::temp_directory_path() /
+                                      ("meridian-telemetry-" + std::to_string(::getpid()) + ".csv");
+  const MachineModel model_ = test::lai_machine();
+  const support::PrivateDomain domain_;
+  dds::Participant participant_{{.domain = domain_.id(), .machine = model_.name}};
+  const std::unique_ptr<Ports> ports_ = std::make_unique<Ports>();
+  const config::ServiceConfig service_;
+  const stream::ToolLengths tools_;
+  const std::unique_ptr<Intake> intake_ =
+      std::make_unique<Intake>(participant_, model_, tools_, service_, 1, *ports_);
+  StatusClock clock_;
+  telemetry::Recorder recorder_{path_.string(), model_};
+  const std::shared_ptr<spdlog::logger> log_ =
       std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::null_sink_mt>());
-  telemetry::Journal journal("", model.name);
-  telemetry::FlightRecorder flight({}, model, log);
-  TelemetryThread thread(participant, model, service, 1, dds::RealtimeMode::kBestEffort, *intake,
-                         clock, recorder, journal, flight, log, *ports);
-  Event hold;
-  hold.code = EventCode::kAccepted;
-  hold.cycle = 7;
-  hold.b = static_cast<std::uint64_t>(Verb::kHold);
-  EXPECT_TRUE(ports->told.try_push(hold));
-  ports->events_overrun = lost;
-  ports->is_stopping = true;
-  thread.run();
-  recorder.stop();
-  recorder.run();
-  const std::string events = record::operator_events_path(path.string());
-  std::ostringstream text;
-  text << std::ifstream(events).rdbuf();
-  std::filesystem::remove(path);
-  std::filesystem::remove(events);
-  return text.str();
+  telemetry::Journal journal_{"", model_.name};
+  telemetry::FlightRecorder flight_{{}, model_, log_};
+  dds::Status status_;
+};
+
+TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasDone) {
+  tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
+  run();
+  EXPECT_EQ(events(), "cycle,verb,argument,block,span\n7,hold,0\n");
 }
 
-TEST(TelemetryThread, TellsTheRecorderWhatWasLostOnTheWay) {
-  EXPECT_EQ(events_file(0), "cycle,verb,argument,block,span\n7,hold,0\n");
-  EXPECT_EQ(events_file(2), "cycle,verb,argument,block,span\n7,hold,0\nincomplete\n");
+TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasLostOnTheWay) {
+  tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
+  ports_->events_overrun = 2;
+  run();
+  EXPECT_EQ(events(), "cycle,verb,argument,block,span\n7,hold,0\nincomplete\n");
+}
+
+TEST_F(TelemetryThreadTest, SaysWhatASessionDidBehindTheAlarmThatHoldsTheProgram) {
+  open_session();
+  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));
+  run();
+  EXPECT_EQ(status_.alarm, Alarm::kActionFailed);
+  EXPECT_NE(status_.message.find("action"), std::string::npos) << status_.message;
+  EXPECT_NE(status_.message.find("; station cam opened part.apt"), std::string::npos)
+      << status_.message;
+}
+
+TEST_F(TelemetryThreadTest, SaysWhatASessionDidAloneWhereThereIsNoAlarm) {
+  open_session();
+  run();
+  EXPECT_EQ(status_.message, "station cam opened part.apt");
 }
 
 }  // namespace
