@@ -12,6 +12,10 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kBetweenSamples{20};
 constexpr std::chrono::seconds kBraking{5};  ///< no joint takes longer to come to rest
 constexpr double kSamePlace = 1e-6;          ///< mm or rad
+/// A machine says where it is twenty times a second; one that is silent for so long is gone.
+constexpr std::chrono::seconds kSilence{2};
+/// What the machine says so long after its reply is no older than that.
+constexpr std::chrono::milliseconds kOnItsWay{300};
 
 [[nodiscard]] JointVector joints_of(const OperatorLink& link) {
   return link.status() ? link.status()->joints : JointVector{};
@@ -32,7 +36,9 @@ JogResult JogHand::jog(const JogPlan& plan, const std::atomic<bool>& is_let_go,
   if (!reply || jogs_.matched_readers() == 0) return {JogEnd::kNoAnswer};
   if (!reply->is_accepted) return {JogEnd::kRefused, reply->text};
   const JointVector from = joints_of(link_);
-  JogResult result = wait_for_rest(plan, hold(plan, *reply, is_let_go));
+  const Grip grip = hold(plan, *reply, is_let_go);
+  if (grip == Grip::kLost) return {JogEnd::kNoAnswer};
+  JogResult result = wait_for_rest(plan, grip == Grip::kKept);
   result.has_moved = joints_of(link_) != from;
   return result;
 }
@@ -48,22 +54,26 @@ void JogHand::send(const JogPlan& plan, std::uint16_t epoch, double velocity) {
                      .dead_man_ns = static_cast<std::int64_t>(plan.dead_man_s * 1e9)});
 }
 
-/// False where the machine stopped jogging before the hand let go.
-bool JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
-                   const std::atomic<bool>& is_let_go) {
+JogHand::Grip JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
+                            const std::atomic<bool>& is_let_go) {
   const double from = place_of(link_, plan);
   const auto begin = Clock::now();
   JointVector seen = joints_of(link_);
-  auto moved = begin;  // when the machine was seen to move last
+  auto heard = begin, moved = begin;  // when the machine spoke, and was seen to move, last
   bool has_begun = false;
   for (auto now = begin; !is_let_go; now = Clock::now()) {
     const std::chrono::duration<double> held = now - begin;
     if (plan.time_s > 0 && held.count() >= plan.time_s) break;
     send(plan, reply.epoch, plan.velocity);
     std::this_thread::sleep_until(now + kBetweenSamples);
-    if (!link_.wait_for_status(std::chrono::milliseconds(0))) continue;
-    has_begun = has_begun || link_.status()->state == State::kJogging;
-    if (has_begun && link_.status()->state != State::kJogging) return false;
+    if (!link_.wait_for_status(std::chrono::milliseconds(0))) {
+      if (now - heard > kSilence) return Grip::kLost;
+      continue;
+    }
+    heard = now;
+    const bool is_jogging = link_.status()->state == State::kJogging;
+    has_begun = has_begun || is_jogging || now - begin > kOnItsWay;
+    if (has_begun && !is_jogging) return Grip::kTakenOff;
     if (joints_of(link_) != seen) moved = now;
     seen = joints_of(link_);
     const double place = place_of(link_, plan);
@@ -73,7 +83,7 @@ bool JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
     if (plan.time_s == 0 && (is_there || stands)) break;
   }
   send(plan, reply.epoch, 0);  // brakes at once, not after the dead man's time
-  return true;
+  return Grip::kKept;
 }
 
 JogResult JogHand::wait_for_rest(const JogPlan& plan, bool was_held) {

@@ -26,7 +26,7 @@ struct JogPlan {
 enum class JogEnd : std::uint8_t {
   kDone,      ///< time or distance is over, or the caller let go; the machine is at rest
   kRefused,   ///< `text` says why
-  kNoAnswer,  ///< the service is silent
+  kNoAnswer,  ///< the service is silent, or fell silent
   kTakenOff   ///< the machine left Jogging before: `text` is its message
 };
 
@@ -48,7 +48,12 @@ class JogHand {
 
  private:
   void send(const JogPlan& plan, std::uint16_t epoch, double velocity);
-  [[nodiscard]] bool hold(const JogPlan& plan, const dds::Reply& reply,
+  enum class Grip : std::uint8_t {
+    kKept,      ///< until the hand let go
+    kTakenOff,  ///< the machine stopped jogging before
+    kLost       ///< nobody says any more what the machine does
+  };
+  [[nodiscard]] Grip hold(const JogPlan& plan, const dds::Reply& reply,
                           const std::atomic<bool>& is_let_go);
   [[nodiscard]] JogResult wait_for_rest(const JogPlan& plan, bool was_held);
 

@@ -84,6 +84,14 @@ TEST(ByHand, JogsLosesItsHandIsHomedAndRunsAProgram) {
   EXPECT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(20000)));
   EXPECT_EQ(plant.station().state(), stream::StationState::kRan) << plant.station().message();
 
+  {  // the service is stopped: the hand does not go on for nobody
+    Process hand = ctl({"jog", "b3", "-5"});
+    ASSERT_TRUE(plant.wait_for(State::kJogging)) << hand.said();
+    plant.service().send_signal(SIGSTOP);
+    EXPECT_EQ(hand.wait(milliseconds(8000)), 5) << hand.said();
+    EXPECT_NE(hand.said().find("does not answer"), std::string::npos) << hand.said();
+    plant.service().send_signal(SIGCONT);
+  }
   plant.service().send_signal(SIGTERM);
   ASSERT_EQ(plant.service().wait(milliseconds(8000)), 0) << plant.service().said();
   const double share =
