@@ -6,6 +6,7 @@
 #include "meridian/units.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/dds/messages.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::cli {
@@ -87,7 +88,7 @@ std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
   add("--transition", join.transition);
   add("--tip-tolerance-mm", number(join.tip_tolerance_mm));
   add("--axis-tolerance-deg", number(join.axis_tolerance_deg));
-  return text;
+  return text.size() <= dds::kMostOptions ? text : "(more than a session takes)";
 }
 
 void add_frame_option(CLI::App& command, ClFileOptions& options) {

@@ -34,36 +34,36 @@ struct StatusOptions {
 
 using Histograms = std::vector<dds::NamedHistogram>;
 
-/// The latency topic of one service.
-class LatencyLink {
+/// A topic of one service, read and nothing else: what a viewer may in a secured domain.
+template <class Message>
+class TopicLink {
  public:
-  explicit LatencyLink(dds::Participant& participant)
-      : reader_(participant), waitset_(participant) {
+  explicit TopicLink(dds::Participant& participant) : reader_(participant), waitset_(participant) {
     waitset_.attach(reader_);
   }
 
-  /// Waits for the next snapshot; nothing where none comes.
-  [[nodiscard]] std::optional<dds::Latency> next(std::chrono::milliseconds patience) {
+  /// The newest message, waiting for one; nothing: none came in that time.
+  [[nodiscard]] std::optional<Message> next(std::chrono::milliseconds patience) {
     const auto until = std::chrono::steady_clock::now() + patience;
-    dds::Latency latency;
-    while (!followed_.take(reader_, latency)) {
+    Message message;
+    while (!followed_.take(reader_, message)) {
       const auto left = until - std::chrono::steady_clock::now();
       if (left <= left.zero()) return std::nullopt;
       waitset_.wait(left);
     }
-    return latency;
+    return message;
   }
 
  private:
-  dds::Reader<dds::Latency> reader_;
-  dds::Followed<dds::Latency> followed_;
+  dds::Reader<Message> reader_;
+  dds::Followed<Message> followed_;
   dds::Waitset waitset_;
 };
 
 /// What the service counted since it started or, where --for was given, in that time.
 [[nodiscard]] std::optional<Histograms> measure_latency(dds::Participant& participant,
                                                         const StatusOptions& options) {
-  LatencyLink link(participant);
+  TopicLink<dds::Latency> link(participant);
   const auto patience = options.peer.timeout();
   const auto begin = link.next(patience);
   if (!begin) return std::nullopt;
@@ -110,41 +110,16 @@ int print_latency(dds::Participant& participant, const StatusOptions& options) {
   return options.histograms.empty() ? kFine : write_histograms(*histograms, options.histograms);
 }
 
-/// The machine's status, read and nothing else.
-class StatusLink {
- public:
-  explicit StatusLink(dds::Participant& participant) : reader_(participant), waitset_(participant) {
-    waitset_.attach(reader_);
-  }
-
-  /// The newest status, waiting for one; nothing: time was up.
-  [[nodiscard]] std::optional<dds::Status> wait(std::chrono::milliseconds timeout) {
-    const auto until = std::chrono::steady_clock::now() + timeout;
-    for (;;) {
-      dds::Status status;
-      if (followed_.take(reader_, status)) return status;
-      const auto left = until - std::chrono::steady_clock::now();
-      if (left <= left.zero()) return std::nullopt;
-      waitset_.wait(left);
-    }
-  }
-
- private:
-  dds::Reader<dds::Status> reader_;
-  dds::Followed<dds::Status> followed_;
-  dds::Waitset waitset_;
-};
-
 int run_status(StatusOptions& options) {
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   if (options.is_latency || !options.histograms.empty()) return print_latency(participant, options);
-  StatusLink link(participant);  // reads only: what a viewer may in a secured domain
+  TopicLink<dds::Status> link(participant);
   if (options.is_watching) watch_for_stop();
   do {
-    const auto status = link.wait(options.peer.timeout());
+    const auto status = link.next(options.peer.timeout());
     if (!status) {
       std::fprintf(stderr, "meridian: machine %s does not tell its status\n",
                    options.peer.machine.c_str());
@@ -172,7 +147,7 @@ void add_status_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--for", options->for_s,
                    "Latencies of this time from now on, s; default: since the service started")
-      ->check(finite_positive());
+      ->check(finite_range(1e-3, 1e7));
   command->add_flag("--watch", options->is_watching, "Print every status until interrupted");
   add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run_status(*options); });

@@ -32,6 +32,9 @@ struct Batch {
 /// kBatchBlocks), little-endian in the field order of idl/cl.idl.
 [[nodiscard]] std::uint32_t batch_crc(const Batch& batch) noexcept;
 
+/// So many characters of a station's options travel.
+inline constexpr std::size_t kMostOptions = 191;
+
 enum class SessionRequestKind : std::uint8_t { kOpen, kClose };
 
 enum SessionPolicy : std::uint32_t {
@@ -50,7 +53,7 @@ struct SessionRequest {
   double tip_tolerance_mm = 0;    ///< 0: the machine's
   double axis_tolerance_rad = 0;  ///< 0: the machine's
   std::uint32_t policies = 0;     ///< SessionPolicy, or-ed
-  std::string options{};          ///< of the station's command line, for the journal
+  std::string options{};          ///< of the station's command line, for the journal; kMostOptions
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.
