@@ -65,7 +65,8 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (!is_told || std::exchange(is_judged_, true)) return std::nullopt;
   if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
   const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
-  return is_injected ? Cause::kInjected : Cause::kUnprovoked;
+  if (is_injected) return Cause::kInjected;
+  return alarm_ == Alarm::kPeriodsLost ? Cause::kHost : Cause::kUnprovoked;
 }
 
 std::string FaultJudge::describe() const {

@@ -15,11 +15,12 @@ namespace meridian::soak {
 [[nodiscard]] bool explains(const Planned& injected, double enabled_s, Alarm alarm,
                             int joint) noexcept;
 
-/// Says of every Fault of the machine whether the drives were told to cause it. Proof:
-/// tests/unit/soak/soak_test.cpp.
+/// Says of every Fault of the machine who caused it: the drives, because they were told to; the
+/// soak; the host, which kept the service from more periods in a row than drives bridge; or nobody.
+/// Proof: tests/unit/soak/soak_test.cpp.
 class FaultJudge {
  public:
-  enum class Cause { kInjected, kOwnDoing, kUnprovoked };
+  enum class Cause { kInjected, kOwnDoing, kHost, kUnprovoked };
 
   /// New drives, which nobody has enabled yet, with what they are to suffer. Where the machine was
   /// on, its next Fault is the soak's own doing.

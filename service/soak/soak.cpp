@@ -171,6 +171,8 @@ class Soak {
     is_drive_sick_ = true;
     if (cause == FaultJudge::Cause::kInjected) {
       ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
+    } else if (cause == FaultJudge::Cause::kHost) {
+      ++report_.host_faults;
     } else if (cause == FaultJudge::Cause::kUnprovoked) {
       report_.violate(
           "a Fault that nothing provoked: " + faults_.describe() + "; " + status.message,

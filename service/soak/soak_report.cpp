@@ -82,7 +82,8 @@ void SoakReport::add(const record::CheckReport& check, const std::string& where)
 }
 
 bool SoakReport::passed() const {
-  return violation_count == 0 && finished > 0 && segments_unread == 0 && growth(*this).empty();
+  return violation_count == 0 && host_faults == 0 && finished > 0 && segments_unread == 0 &&
+         growth(*this).empty();
 }
 
 std::vector<std::string> growth(const SoakReport& report) {
@@ -146,6 +147,12 @@ std::string to_text(const SoakReport& report) {
   }
   append(out, "%s: %llu violations of limits, tolerance, sequence or state\n",
          report.passed() ? "PASS" : "FAIL", Count{report.violation_count});
+  if (report.host_faults > 0) {
+    append(out,
+           "HOST NOT FIT: %llu Faults because it kept the service from its processor for longer "
+           "than drives bridge\n",
+           Count{report.host_faults});
+  }
   return out;
 }
 
@@ -162,7 +169,8 @@ std::string to_json(const SoakReport& report) {
     append(out, "%s\"%s\": %llu", i > 0 ? ", " : "", word(static_cast<Mishap>(i)),
            Count{report.mishaps[static_cast<std::size_t>(i)]});
   }
-  append(out, "}, \"asks_refused\": %llu, \"asks_unanswered\": %llu", Count{report.asks_refused},
+  append(out, "}, \"host_faults\": %llu", Count{report.host_faults});
+  append(out, ", \"asks_refused\": %llu, \"asks_unanswered\": %llu", Count{report.asks_refused},
          Count{report.asks_unanswered});
   append(out, ",\n \"recordings\": %llu, \"setpoints\": %llu, \"missing\": %llu,\n",
          Count{report.segments}, Count{report.rows}, Count{report.missing});

@@ -190,7 +190,13 @@ TEST_F(FaultJudgeTest, CountsTheTimeThatDrivesWereEnabled) {
 
 TEST_F(FaultJudgeTest, FindsNoExcuseWhereNothingIsPlanned) {
   EXPECT_FALSE(see(0, State::kRunning));
-  EXPECT_EQ(see(100, State::kFault, Alarm::kPeriodsLost), Cause::kUnprovoked);
+  EXPECT_EQ(see(100, State::kFault, Alarm::kFollowingError), Cause::kUnprovoked);
+}
+
+TEST_F(FaultJudgeTest, BlamesTheHostForPeriodsThatItKeptFromTheService) {
+  judge_.begin_drives(Planned{Mishap::kDriveFault, 90, 0, 2});
+  EXPECT_FALSE(see(0, State::kRunning));
+  EXPECT_EQ(see(100, State::kFault, Alarm::kPeriodsLost), Cause::kHost);
 }
 
 TEST_F(FaultJudgeTest, WaitsForTheAlarmThatIsToldBehindTheState) {
@@ -308,6 +314,10 @@ TEST(SoakReport, PassesOnlyWhereNothingWasWrongAndSomethingWasDone) {
   SoakReport violated = good_report();
   violated.violate("too fast", "part.cl");
   EXPECT_FALSE(violated.passed());
+  SoakReport stalled = good_report();
+  stalled.host_faults = 1;
+  EXPECT_FALSE(stalled.passed());
+  EXPECT_NE(to_text(stalled).find("HOST NOT FIT: 1 Faults"), std::string::npos);
   EXPECT_NE(to_text(violated).find("VIOLATION: too fast (part.cl)"), std::string::npos);
   SoakReport grown = good_report();
   grown.lives[0].last.process.resident_mib = 32;
