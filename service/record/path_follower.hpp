@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstddef>
 
 #include "meridian/geometry/vector3.hpp"
@@ -23,7 +24,18 @@ struct PoseMatch {
 /// ill-posed where the axis turns fast.
 ///
 /// Where several are as good (a path that runs back on itself), the one is taken that lies as far
-/// along as the commanded pose has moved. It looks ahead by ten times that distance.
+/// along as the commanded pose has moved. It looks ahead by ten times that distance; where what it
+/// finds there is half a tolerance off, as far as a tool may turn round before its path does.
+///
+/// The path goes forward alone: no match lies before the earliest place that the tool may have
+/// come to, nowhere farther off than its tolerances.
+///
+///     path  ───────────▶ ┐      commanded: turns round inside the tolerance. Matches run back on
+///     the tool  ──────────▶┐ │      way out until they come to the earliest place, then are found
+///     on the
+///           ◀──────────┘ │      way back.
+///           ◀────────────┘
+///
 /// Proof: tests/unit/record/check_test.cpp.
 class PathFollower {
  public:
@@ -40,6 +52,17 @@ class PathFollower {
   /// Goes on from `match`, which the pose `pose` of a new tool has: joints have not moved.
   void jump(const ToolPose& pose, const PoseMatch& match) noexcept;
 
+  /// A place on the path. Compares as they follow one another.
+  struct Place {
+    std::size_t element = 0;
+    double t = 0;  ///< [0, 1]
+    [[nodiscard]] friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  /// The earliest that the tool may be at.
+  [[nodiscard]] const Place& earliest() const noexcept { return earliest_; }
+  /// Common length at a place.
+  [[nodiscard]] double length_at(const Place& place) const noexcept;
+
   /// max(tip/tolerance, axis/tolerance) of a match.
   [[nodiscard]] double badness(const PoseMatch& match) const noexcept {
     return std::max(match.tip_mm / tip_tolerance_, match.axis_rad / axis_tolerance_);
@@ -52,13 +75,23 @@ class PathFollower {
   [[nodiscard]] PoseMatch match_at(const ToolPose& pose, std::size_t index, double t) const;
   [[nodiscard]] double project(const ToolPose& pose, std::size_t index, double t) const noexcept;
   [[nodiscard]] std::size_t element_at(double s) const noexcept;
-  [[nodiscard]] PoseMatch scan(const ToolPose& pose, double reach, double expected) const;
+  /// Where matches on element `index` begin.
+  [[nodiscard]] double begin_of(std::size_t index) const noexcept {
+    return index == earliest_.element ? earliest_.t : 0.0;
+  }
+  [[nodiscard]] PoseMatch search(const ToolPose& pose, double moved) const;
+  [[nodiscard]] PoseMatch find_best(const ToolPose& pose, const PoseMatch& coarse) const;
+  [[nodiscard]] PoseMatch scan(const ToolPose& pose, double reach, double place_weight,
+                               double expected) const;
   [[nodiscard]] PoseMatch refine(const ToolPose& pose, std::size_t index) const;
+  void raise_earliest(const ToolPose& pose, const PoseMatch& match) noexcept;
+  void leave_behind(std::size_t index, double t, double off) noexcept;
 
   const CheckedPath& path_;
   double tip_tolerance_, axis_tolerance_;
   ToolPose last_{};
   PoseMatch here_;
+  Place earliest_;
   bool is_first_ = true;
 };
 

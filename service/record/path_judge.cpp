@@ -17,10 +17,13 @@ constexpr double kRoundingShare = 1e-6;
 constexpr double kPlace_mm = 1e-11;   // of the tip, by rounding of the joints
 constexpr double kLeastFeed = 1e-12;  // mm/s
 
-/// A vertex is looked for this far before and behind the place where the tool is.
+/// A vertex is looked for this far before and behind the place where the tool is, and twice the
+/// tolerances: the tool and the place that it is held against are both within one of it.
 constexpr double kVertexMargin_mm = 0.1;
 /// A chord between samples cuts no more than this off a smooth way.
 constexpr double kLargestSag_mm = 1e-4;
+/// A block shorter than that turns the axis alone.
+constexpr double kNoTip_mm = 1e-9;
 
 /// How long the rate of plan time takes at most to follow an override: its ramp, and what it needs
 /// to turn round, get going and settle.
@@ -51,6 +54,7 @@ PathJudge::PathJudge(const MachineModel& model, const CheckedPath& path,
       follower_(path, tip_tolerance_, axis_tolerance_),
       tool_length_(path.begin_tool_length_mm()),
       nearest_(path.elements().size() + 1, std::numeric_limits<double>::infinity()),
+      turned_(nearest_),
       in_gap_(path.elements().size() + 1, false) {}
 
 double PathJudge::vertex_s(std::size_t index) const noexcept {
@@ -67,12 +71,27 @@ std::uint32_t PathJudge::vertex_line(std::size_t index) const noexcept {
   return index == 0 ? path_.begin_line() : path_.elements()[index - 1].line;
 }
 
+/// Whether the tip stands on one side of the vertex, while the axis turns.
+bool PathJudge::is_turn(std::size_t index) const noexcept {
+  const auto turns = [](const PathElement& element) {
+    const double tip = element.length - kAxisLength_mm_per_rad * element.axis_turn;
+    return element.axis_turn > 0 && tip < kNoTip_mm;
+  };
+  const auto& elements = path_.elements();
+  return (index > 0 && turns(elements[index - 1])) ||
+         (index < elements.size() && turns(elements[index]));
+}
+
+double PathJudge::axis_tolerance_at(const Vector3& axis) const noexcept {
+  return pole_distance(model_, axis) < kPoleReach_rad ? options_.pole_tolerance_rad
+                                                      : axis_tolerance_;
+}
+
 /// The match of the joints, with the tool that is in the spindle there. At the end of an element
 /// behind which another tool goes on, the new tool is taken as soon as it fits as well.
 PoseMatch PathJudge::match(const JointVector& joints, ToolPose& pose) {
   pose = forward(model_, tool_length_, joints);
-  const bool is_beside_pole = pole_distance(model_, pose.axis) < kPoleReach_rad;
-  allowed_axis_ = is_beside_pole ? options_.pole_tolerance_rad : axis_tolerance_;
+  allowed_axis_ = axis_tolerance_at(pose.axis);
   follower_.set_axis_tolerance(allowed_axis_);
   const PoseMatch with_old = follower_.follow(pose);
   const auto& elements = path_.elements();
@@ -85,13 +104,14 @@ PoseMatch PathJudge::match(const JointVector& joints, ToolPose& pose) {
   if (follower_.badness(with_new) > follower_.badness(with_old)) return with_old;
   tool_length_ = elements[next].tool_length_mm;
   follower_.jump(other, with_new);
-  tip_count_ = 0;
+  pose_count_ = 0;
   pose = other;
   return with_new;
 }
 
 void PathJudge::sample(const JointVector& joints, const Place& place, bool is_setpoint) {
   ToolPose pose;
+  last_element_ = here_.element;
   here_ = match(joints, pose);
   (is_setpoint ? tip_ : tip_between_).raise(here_.tip_mm, place.cycle, place.line);
   (is_setpoint ? axis_ : axis_between_).raise(here_.axis_rad, place.cycle, place.line);
@@ -104,31 +124,71 @@ void PathJudge::sample(const JointVector& joints, const Place& place, bool is_se
     axis_over_.worst.raise(here_.axis_rad, place.cycle, place.line);
     axis_over_.count += is_setpoint ? 1 : 0;
   }
-  pass_vertices(pose, here_.s);
+  pass_vertices(pose);
 }
 
-/// Vertices near the chord from the last sample to this one.
-void PathJudge::pass_vertices(const ToolPose& pose, double s) {
-  tips_ = {tips_[1], tips_[2], pose.tip};
-  tip_count_ = std::min(tip_count_ + 1, 3);
-  const Vector3& from = tip_count_ > 1 ? tips_[1] : tips_[2];
-  const double chord = (pose.tip - from).norm();
-  const double sag =
-      tip_count_ < 3 ? 0.0
-                     : std::min(kLargestSag_mm, (tips_[0] - 2 * tips_[1] + tips_[2]).norm() / 8);
-  const double margin = kVertexMargin_mm + 3 * chord;
-  reached_ = std::max(reached_, s);
-  while (low_ + 1 < nearest_.size() && vertex_s(low_) < reached_ - margin) ++low_;
-  for (std::size_t i = low_; i < nearest_.size() && vertex_s(i) <= s + margin; ++i) {
-    const double distance = distance_to_chord(vertex(i).tip, from, pose.tip);
-    nearest_[i] = std::min(nearest_[i], std::max(0.0, distance - sag));
+/// How far the pose stays away from a vertex on the chord from the last sample to this one, in
+/// tolerances of tip and axis together.
+double PathJudge::miss_of_turn(const ToolPose& vertex) const {
+  const ToolPose& from = poses_[pose_count_ > 1 ? 1 : 2];
+  const Vector3 tip = poses_[2].tip - from.tip, axis = poses_[2].axis - from.axis;
+  const double axis_tolerance = axis_tolerance_at(vertex.axis);
+  const auto miss = [&](double t) {
+    return std::max((from.tip + t * tip - vertex.tip).norm() / tip_tolerance_,
+                    (from.axis + t * axis - vertex.axis).norm() / axis_tolerance);
+  };
+  double low = 0, high = 1;
+  for (int n = 0; n < 30; ++n) {
+    const double left = low + (high - low) / 3, right = high - (high - low) / 3;
+    (miss(left) < miss(right) ? high : low) = miss(left) < miss(right) ? right : left;
+  }
+  return miss(0.5 * (low + high));
+}
+
+/// Holds a vertex against the chord from the last sample to this one. False where the tool is far
+/// from it.
+bool PathJudge::pass_vertex(std::size_t index) {
+  const ToolPose pose = vertex(index);
+  const ToolPose& from = poses_[pose_count_ > 1 ? 1 : 2];
+  const double chord = (poses_[2].tip - from.tip).norm();
+  const double turn = kAxisLength_mm_per_rad * (poses_[2].axis - from.axis).norm();
+  const double axis_tolerance = kAxisLength_mm_per_rad * axis_tolerance_at(pose.axis);
+  const double distance = distance_to_chord(pose.tip, from.tip, poses_[2].tip);
+  const double angle = kAxisLength_mm_per_rad * (poses_[2].axis - pose.axis).norm();
+  const double sag = pose_count_ < 3
+                         ? 0.0
+                         : std::min(kLargestSag_mm,
+                                    (poses_[0].tip - 2 * poses_[1].tip + poses_[2].tip).norm() / 8);
+  nearest_[index] = std::min(nearest_[index], std::max(0.0, distance - sag));
+  if (distance > kVertexMargin_mm + 2 * tip_tolerance_ + 3 * chord) return false;
+  if (is_turn(index)) turned_[index] = std::min(turned_[index], miss_of_turn(pose));
+  return angle <= kVertexMargin_mm + 2 * axis_tolerance + 3 * turn;
+}
+
+/// The vertices between the last sample and this one, and on from either as far as the path stays
+/// near the tool, but none that the tool has left behind.
+void PathJudge::pass_vertices(const ToolPose& pose) {
+  poses_ = {poses_[1], poses_[2], pose};
+  pose_count_ = std::min(pose_count_ + 1, 3);
+  reached_ = std::max(reached_, here_.s);
+  const std::size_t last = nearest_.size() - 1;
+  const std::size_t least = follower_.earliest().element;
+  const std::size_t low = std::max(least, std::min(last_element_, here_.element));
+  const std::size_t high = std::min(last, std::max(last_element_, here_.element) + 1);
+  for (std::size_t i = low + 1; i < high; ++i) static_cast<void>(pass_vertex(i));
+  for (std::size_t i = low; pass_vertex(i) && i > least; --i) {
+  }
+  for (std::size_t i = high; pass_vertex(i) && i < last; ++i) {
   }
 }
 
 void PathJudge::add_gap(double s_from, double s_to) {
-  const double low = std::min(s_from, s_to) - kVertexMargin_mm;
-  const double high = std::max(s_from, s_to) + kVertexMargin_mm;
-  for (std::size_t i = low_; i < in_gap_.size() && vertex_s(i) <= high; ++i) {
+  const double margin =
+      kVertexMargin_mm + 2 * (tip_tolerance_ + kAxisLength_mm_per_rad * axis_tolerance_);
+  const double low = std::min(s_from, s_to) - margin, high = std::max(s_from, s_to) + margin;
+  std::size_t first = here_.element;
+  while (first > 0 && vertex_s(first) >= low) --first;
+  for (std::size_t i = first; i < in_gap_.size() && vertex_s(i) <= high; ++i) {
     if (vertex_s(i) >= low) in_gap_[i] = true;
   }
 }
@@ -191,7 +251,7 @@ void PathJudge::step(bool has_between) {
     }
   }
   const bool is_gap = to.cycle != from.cycle + 1;
-  if (is_gap) tip_count_ = 0;
+  if (is_gap) pose_count_ = 0;
   sample(to.joints, to, true);
   if (is_gap) {
     add_gap(s_from, here_.s);
@@ -258,33 +318,43 @@ void PathJudge::finish(CheckReport& report) {
 }
 
 void PathJudge::finish_vertices(CheckReport& report) const {
-  Excess missed;
+  Excess missed, unturned;
   bool is_unfinished = false;
+  const double surely_reached = follower_.length_at(follower_.earliest());
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
-    const bool is_ahead = vertex_s(i) > reached_ + tip_tolerance_ &&
-                          nearest_[i] > tip_tolerance_ * (1 + kRoundingShare);
-    if (is_ahead && vertex_s(i) > reached_ + kVertexMargin_mm) {
-      is_unfinished = true;
-      if (options_.allow_unfinished) break;
-    }
-    if (is_ahead && options_.allow_unfinished) break;
-    ++report.vertices;
     const bool is_missed = nearest_[i] > tip_tolerance_ * (1 + kRoundingShare);
-    if (is_missed && in_gap_[i]) {
+    const bool is_unturned = is_turn(i) && turned_[i] > 1 + kRoundingShare;
+    const bool is_ahead = vertex_s(i) > surely_reached && (is_missed || is_unturned);
+    if (is_ahead && options_.allow_unfinished) break;
+    if (is_missed && vertex_s(i) > reached_ + kVertexMargin_mm) is_unfinished = true;
+    ++report.vertices;
+    if ((is_missed || is_unturned) && in_gap_[i]) {
       ++report.vertices_in_gaps;
       continue;
     }
     const double distance = std::isfinite(nearest_[i]) ? nearest_[i] : vertex_s(i) - reached_;
     report.vertex_mm.raise(distance, 0, vertex_line(i));
-    if (!is_missed) continue;
-    missed.worst.raise(distance, 0, vertex_line(i));
-    ++missed.count;
+    if (is_missed) {
+      missed.worst.raise(distance, 0, vertex_line(i));
+      ++missed.count;
+    } else if (is_unturned) {
+      unturned.worst.raise(turned_[i] * axis_tolerance_at(vertex(i).axis), 0, vertex_line(i));
+      ++unturned.count;
+    }
   }
   char text[256];
   if (missed.count > 0) {
     std::snprintf(text, sizeof text, "%llu CL vertices were missed, the worst by %.6f mm",
                   static_cast<unsigned long long>(missed.count), missed.worst.value);
     report.findings.push_back({Finding::Kind::kVertex, text, 0, missed.worst.line, missed.count});
+  }
+  if (unturned.count > 0) {
+    std::snprintf(text, sizeof text,
+                  "%llu CL vertices at turns of the axis alone were missed, the worst by %.6f deg",
+                  static_cast<unsigned long long>(unturned.count),
+                  units::deg_from_rad(unturned.worst.value));
+    report.findings.push_back(
+        {Finding::Kind::kVertex, text, 0, unturned.worst.line, unturned.count});
   }
   if (is_unfinished && !options_.allow_unfinished) {
     std::snprintf(text, sizeof text, "the path was cut to %.3f of %.3f mm of its common length",

@@ -36,12 +36,16 @@ class PathJudge {
   void step(bool has_between);
   void sample(const JointVector& joints, const Place& place, bool is_setpoint);
   PoseMatch match(const JointVector& joints, ToolPose& pose);
-  void pass_vertices(const ToolPose& pose, double s);
+  void pass_vertices(const ToolPose& pose);
+  [[nodiscard]] bool pass_vertex(std::size_t index);
+  [[nodiscard]] double miss_of_turn(const ToolPose& vertex) const;
   void judge_speed(const Place& from, const Place& to, double s_from, double s_to);
   void add_gap(double s_from, double s_to);
   [[nodiscard]] double vertex_s(std::size_t index) const noexcept;
   [[nodiscard]] ToolPose vertex(std::size_t index) const noexcept;
   [[nodiscard]] std::uint32_t vertex_line(std::size_t index) const noexcept;
+  [[nodiscard]] bool is_turn(std::size_t index) const noexcept;
+  [[nodiscard]] double axis_tolerance_at(const Vector3& axis) const noexcept;
   void finish_vertices(CheckReport& report) const;
 
   const MachineModel& model_;
@@ -57,12 +61,13 @@ class PathJudge {
   int known_ = 0;                  ///< how many of them are filled
   int run_ = 0;                    ///< consecutive cycles at their end
   PoseMatch here_{};
-  double reached_ = 0;             ///< largest matched length so far
-  std::array<Vector3, 3> tips_{};  ///< of the last samples without a gap, newest last
-  int tip_count_ = 0;
+  double reached_ = 0;               ///< largest matched length so far
+  std::size_t last_element_ = 0;     ///< of the match before here_
+  std::array<ToolPose, 3> poses_{};  ///< the last samples without a gap, newest last
+  int pose_count_ = 0;
   std::vector<double> nearest_;  ///< of each vertex: least distance to the tip's way
+  std::vector<double> turned_;   ///< of those at a turn of the axis alone: in tolerances, both
   std::vector<bool> in_gap_;     ///< passed while cycles are missing
-  std::size_t low_ = 0;          ///< vertices before are behind
   Peak tip_, axis_, tip_between_, axis_between_, feed_, speed_;
   Excess tip_over_, axis_over_, feed_over_, turn_over_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "scratch.hpp"
 #include "support/machines.hpp"
@@ -55,6 +56,13 @@ class Check : public ::testing::Test {
   void expect_only(const CheckReport& report, Finding::Kind kind) {
     EXPECT_TRUE(has(report, kind)) << to_text(report);
     EXPECT_EQ(report.findings.size(), 1U) << to_text(report);
+  }
+
+  /// For runs that are as fast as they like.
+  void lift_joint_limits() {
+    for (JointSpec& joint : model.joints) {
+      joint.limits.velocity = joint.limits.acceleration = joint.limits.jerk = 1e9;
+    }
   }
 
   /// First row of the cut of `line` in which it has begun to move well.
@@ -177,6 +185,73 @@ TEST_F(Check, RefusesACutCorner) {
   const CheckReport report = run();
   EXPECT_TRUE(has(report, Finding::Kind::kTip)) << to_text(report);
   EXPECT_TRUE(has(report, Finding::Kind::kVertex)) << to_text(report);
+}
+
+TEST_F(Check, PassesACornerThatIsCutInsideALargeTolerance) {
+  lift_joint_limits();
+  options.tip_tolerance_mm = 0.3;
+  blocks = {cut_to(1, {80, -40, 20}, 0.3, 30), cut_to(2, {82, -40, 20}, 0.3, 30),
+            cut_to(3, {82, -37, 20}, 0.3, 30)};
+  for (const double off : {0.1, 0.2, 0.4}) {
+    records = SampleRun(model, {blocks[0], cut_to(2, {82 - off, -40, 20}, 0.3, 30),
+                                cut_to(2, {82, -40 + off, 20}, 0.3, 30), blocks[2]})
+                  .records;
+    const CheckReport report = run();
+    EXPECT_TRUE(report.passed()) << to_text(report);
+    EXPECT_NEAR(report.vertex_mm.value, off / std::numbers::sqrt2, 1e-4);
+  }
+  records = SampleRun(model, {blocks[0], cut_to(2, {81.5, -40, 20}, 0.3, 30),
+                              cut_to(2, {82, -39.5, 20}, 0.3, 30), blocks[2]})
+                .records;
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kVertex);
+  EXPECT_NEAR(report.vertex_mm.value, 0.5 / std::numbers::sqrt2, 1e-4) << "off the vertex";
+}
+
+/// To and fro with the axis at a fixed tip, and to and fro with the tip along a line.
+[[nodiscard]] std::vector<ClBlock> turning_blocks(double tilt, double out_mm) {
+  return {cut_to(1, {80, -40, 20}, 0.3, 30),          cut_to(2, {82, -40, 20}, 0.3, 30),
+          cut_to(3, {82, -40, 20}, tilt, 30),         cut_to(4, {82, -40, 20}, 0.3, 30),
+          cut_to(5, {82, -40, 20}, tilt, 30),         cut_to(6, {82, -40, 20}, 0.3, 30),
+          cut_to(7, {82 + out_mm, -40, 20}, 0.3, 30), cut_to(8, {82, -40, 20}, 0.3, 30),
+          cut_to(9, {82, -37, 19}, 0.3, 30)};
+}
+
+TEST_F(Check, PassesAToolThatTurnsRoundInsideTheTolerances) {
+  lift_joint_limits();
+  options.tip_tolerance_mm = 0.01;
+  options.axis_tolerance_rad = units::rad_from_deg(0.1);
+  for (const double share : {0.0, 0.1, 0.5, 0.9, 0.999}) {
+    SCOPED_TRACE(share);
+    for (const double turn : {0.05, 0.01, -0.05}) {
+      blocks = turning_blocks(0.3 + turn, 2);
+      const double early = std::copysign(share * options.axis_tolerance_rad, turn);
+      records =
+          SampleRun(model, turning_blocks(0.3 + turn - early, 2 - share * options.tip_tolerance_mm))
+              .records;
+      const CheckReport report = run();
+      EXPECT_TRUE(report.passed()) << to_text(report);
+      EXPECT_LT(report.axis_rad.value, std::max(0.6, share) * options.axis_tolerance_rad);
+    }
+  }
+}
+
+TEST_F(Check, RefusesATurnOfTheAxisThatIsLeftOut) {
+  lift_joint_limits();
+  options.tip_tolerance_mm = 0.01;
+  options.axis_tolerance_rad = units::rad_from_deg(0.1);
+  for (const double turn_deg : {0.11, 0.2, 0.4, 3.0}) {
+    SCOPED_TRACE(turn_deg);
+    blocks = turning_blocks(0.3 + units::rad_from_deg(turn_deg), 2);
+    records = SampleRun(model, {blocks[0], blocks[1], blocks[6], blocks[7], blocks[8]}).records;
+    const CheckReport report = run();
+    EXPECT_TRUE(has(report, Finding::Kind::kVertex)) << to_text(report);
+    records =
+        SampleRun(model, turning_blocks(0.3 + units::rad_from_deg(turn_deg - 0.10253), 2)).records;
+    const CheckReport early = run();
+    expect_only(early, Finding::Kind::kVertex);
+    EXPECT_NE(early.findings[0].text.find("0.1025"), std::string::npos) << early.findings[0].text;
+  }
 }
 
 TEST_F(Check, RefusesAFeedAboveTheProgrammedOne) {
