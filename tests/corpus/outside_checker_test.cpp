@@ -94,12 +94,7 @@ TEST_F(OutsideChecker, PassesTheHeadOfAFiveAxisFile) {
   const auto file = test::shared_folder() / "cl_corpus" / "ramsai_1-3_plan_5x_depincage_double.apt";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
   const auto head = scratch_ / "head.apt";
-  std::ifstream in(file, std::ios::binary);
-  std::ofstream out(head, std::ios::binary);
-  std::string line;
-  for (int n = 0; n < 60 && std::getline(in, line); ++n) out << line << "\n";
-  out << "FINI\n";
-  out.close();
+  test::write_head(file, 60, head);
   EXPECT_EQ(judge(SimulatedFile(head, test::lai_at("20,-30,50", kCycle_ns))), 0);
 }
 

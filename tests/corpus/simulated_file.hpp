@@ -46,11 +46,23 @@ inline constexpr double kAxisTolerance_deg = 1e-3;
   return options;
 }
 
-[[nodiscard]] inline record::CheckOptions corpus_check() {
+/// From rest to rest by what that planner owes, smooth by the tolerances of the machine.
+[[nodiscard]] inline record::CheckOptions corpus_check(Transition transition) {
   record::CheckOptions options;
+  if (transition == Transition::kSmooth) return options;
   options.tip_tolerance_mm = kTipTolerance_mm;
   options.axis_tolerance_rad = units::rad_from_deg(kAxisTolerance_deg);
   return options;
+}
+
+/// Writes the first lines of a CL file and the end of a program to `head`.
+inline void write_head(const std::filesystem::path& file, int lines,
+                       const std::filesystem::path& head) {
+  std::ifstream in(file, std::ios::binary);
+  std::ofstream out(head, std::ios::binary);
+  std::string line;
+  for (int n = 0; n < lines && std::getline(in, line); ++n) out << line << "\n";
+  out << "FINI\n";
 }
 
 /// A CL file, its path, and the recording of its simulated run, which goes with this object.
@@ -83,7 +95,7 @@ class SimulatedFile {
 
   [[nodiscard]] record::CheckReport check() const {
     auto reader = record::RecordingReader::open(recording_, model);
-    auto verdict = record::check(*reader, path, model, corpus_check());
+    auto verdict = record::check(*reader, path, model, corpus_check(model.transition));
     EXPECT_TRUE(verdict.has_value()) << verdict.error().text();
     verdict->path_name = file_.filename();
     return *verdict;
