@@ -6,6 +6,7 @@
 #include "meridian/units.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/config/range.hpp"
 #include "service/dds/messages.hpp"
 #include "service/text/printed.hpp"
 
@@ -63,11 +64,11 @@ void add_join_options(CLI::App& command, JoinOptions& options) {
   command
       .add_option("--tip-tolerance-mm", options.tip_tolerance_mm,
                   "Of smoothing, instead of the machine file's")
-      ->check(finite_range(1e-6, 10.0));
+      ->check(finite_range(config::kTipTolerance_mm.low, config::kTipTolerance_mm.high));
   command
       .add_option("--axis-tolerance-deg", options.axis_tolerance_deg,
                   "Of smoothing, instead of the machine file's")
-      ->check(finite_range(1e-6, 10.0));
+      ->check(finite_range(config::kAxisTolerance_deg.low, config::kAxisTolerance_deg.high));
 }
 
 std::string options_text(const ClFileOptions& file, const JoinOptions& join) {

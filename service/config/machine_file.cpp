@@ -135,8 +135,8 @@ void read_joint(Section section, JointSpec& joint) {
 namespace {
 
 void read_tolerances(Section section, MachineModel& model) {
-  model.tolerances.tip_mm = section.number("tip_mm", {1e-6, 10});
-  model.tolerances.axis_rad = units::rad_from_deg(section.number("axis_deg", {1e-6, 10}));
+  model.tolerances.tip_mm = section.number("tip_mm", kTipTolerance_mm);
+  model.tolerances.axis_rad = units::rad_from_deg(section.number("axis_deg", kAxisTolerance_deg));
   model.transition =
       static_cast<Transition>(section.choice_or("transition", 0, {"exact_stop", "smooth"}));
   section.finish();

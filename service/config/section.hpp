@@ -6,24 +6,14 @@
 #include <array>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "service/config/config_error.hpp"
+#include "service/config/range.hpp"
 
 namespace meridian::config {
-
-/// A closed range of numbers in the unit of the key. Open ends are the largest double.
-struct Range {
-  double low = -std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::max();
-};
-
-/// What a length, and a length that cannot be nothing, may be in any machine file, mm.
-inline constexpr Range kLength_mm{-1e5, 1e5};
-inline constexpr Range kPositive_mm{1e-3, 1e5};
 
 /// Reads a TOML file. Throws ConfigError where there is none or it is not TOML.
 [[nodiscard]] toml::table parse_file(const std::filesystem::path& path);

@@ -20,16 +20,25 @@ std::string in_hex(std::uint64_t value) {
   return buffer;
 }
 
-bool is_tolerance(double value) { return std::isfinite(value) && value >= 0; }
-
 bool contradicts_itself(const dds::SessionRequest& request) {
   constexpr std::uint32_t kBoth = dds::kPolicyExactStop | dds::kPolicySmooth;
   return (request.policies & kBoth) == kBoth;
 }
 
-/// Whether the tolerances of `request` are none or some.
-bool has_sane_tolerances(const dds::SessionRequest& request) {
-  return is_tolerance(request.tip_tolerance_mm) && is_tolerance(request.axis_tolerance_rad);
+/// Why the tolerances of `request` cannot be planned for; empty: they can, or are none.
+std::string refusal_of_tolerances(const dds::SessionRequest& request) {
+  const auto refusal = [](const char* name, double value, double least, const char* unit) {
+    if (value == 0 || (std::isfinite(value) && value >= least)) return std::string{};
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%s tolerance of the program is %.6g %s; allowed is %.6g %s or more, or 0 for "
+                  "the machine's",
+                  name, value, unit, least, unit);
+    return std::string(text);
+  };
+  std::string tip = refusal("tip", request.tip_tolerance_mm, kLeastTipTolerance_mm, "mm");
+  return tip.empty() ? refusal("axis", request.axis_tolerance_rad, kLeastAxisTolerance_rad, "rad")
+                     : tip;
 }
 
 }  // namespace
@@ -63,9 +72,8 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
                                  : "; wait for its end, or enable the machine and abort it"));
   }
   if (request.session == 0) return refused(Verdict::kRefusedProgram, "0 names no session");
-  if (!has_sane_tolerances(request)) {
-    return refused(Verdict::kRefusedProgram,
-                   "tolerances of the program are negative or no numbers");
+  if (std::string refusal = refusal_of_tolerances(request); !refusal.empty()) {
+    return refused(Verdict::kRefusedProgram, std::move(refusal));
   }
   if (contradicts_itself(request)) {
     return refused(Verdict::kRefusedProgram,

@@ -61,6 +61,10 @@ enum class Transition : std::uint8_t {
   kSmooth      ///< on through blocks, corners rounded inside the tolerances
 };
 
+/// Least tolerances that smooth runs are planned for. Every edge refuses less.
+inline constexpr double kLeastTipTolerance_mm = 1e-3;
+inline constexpr double kLeastAxisTolerance_rad = 1e-4;
+
 /// Deviation that smoothing and pole easing may use together, measured from the programmed path.
 struct Tolerances {
   double tip_mm = 0.01;

@@ -42,8 +42,8 @@ struct SmoothPlanner::Workspace {
         settings.tip_tolerance_mm > 0 ? settings.tip_tolerance_mm : model.tolerances.tip_mm;
     out.axis_rad =
         settings.axis_tolerance_rad > 0 ? settings.axis_tolerance_rad : model.tolerances.axis_rad;
-    out.tip_mm = std::max(out.tip_mm, 1e-3);
-    out.axis_rad = std::max(out.axis_rad, 1e-4);
+    out.tip_mm = std::max(out.tip_mm, kLeastTipTolerance_mm);
+    out.axis_rad = std::max(out.axis_rad, kLeastAxisTolerance_rad);
     const bool eases = free_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
     if (eases) out.pole = to_array(pole_direction(model));
     return out;

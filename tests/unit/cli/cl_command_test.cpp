@@ -91,6 +91,26 @@ TEST(ClCommand, TakesNoNumberThatIsNone) {
   EXPECT_EQ(run_tool("ctl override nan").exit_code, 2);
 }
 
+TEST(ClCommand, TakesNoToleranceBelowWhatIsPlannedFor) {
+  const std::string machine = " --machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml ";
+  struct Line {
+    const char *option, *least, *below;
+  };
+  constexpr Line kLines[] = {{"--tip-tolerance-mm", "0.001", "0.00099"},
+                             {"--axis-tolerance-deg", "0.00573", "0.0057"}};
+  for (const std::string command : {"simulate", "stream"}) {
+    for (const Line& line : kLines) {
+      const std::string begin = command + " /no/such" + machine + line.option + " ";
+      const CommandOutput refused = run_tool(begin + line.below);
+      EXPECT_EQ(refused.exit_code, 2) << refused.output;
+      for (const char* part : {line.option, line.below, line.least}) {
+        EXPECT_NE(refused.output.find(part), std::string::npos) << part << ": " << refused.output;
+      }
+    }
+  }
+  EXPECT_EQ(run_tool("simulate /no/such" + machine + "--tip-tolerance-mm 0.001").exit_code, 3);
+}
+
 TEST(ClCommand, KnowsUsage) {
   EXPECT_EQ(run_tool("cl").exit_code, 2);
   EXPECT_EQ(run_tool("cl --units furlong " + kPart).exit_code, 2);

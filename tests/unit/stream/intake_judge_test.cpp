@@ -53,6 +53,7 @@ class Intake : public testing::Test {
   IntakeJudge judge_{model_, {{1, 80.0}}, 99};
   Surroundings around_{.now_ns = 0, .free_places = 100, .actions = {.is_there = true}};
   Accepted accepted_;
+  std::uint64_t session_ = kSession;
 };
 
 TEST_F(Intake, GrantsTheFreePlacesButOneForTheEnd) {
@@ -297,6 +298,32 @@ TEST_F(Intake, AProgramThatWantsBothTransitionsIsRefused) {
   EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kRefusedProgram);
   request.policies = dds::kPolicySmooth;
   EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kGood);
+}
+
+TEST_F(Intake, AToleranceBelowWhatIsPlannedForIsRefusedByNameAndLeast) {
+  const auto ask = [this](double tip_mm, double axis_rad) {
+    dds::SessionRequest request = open_request(++session_);
+    request.tip_tolerance_mm = tip_mm;
+    request.axis_tolerance_rad = axis_rad;
+    return judge_.on_request(request, around_, 100);
+  };
+  const Credit tip = ask(0.0005, 0);
+  EXPECT_EQ(tip.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(tip.text.find("tip tolerance of the program is 0.0005 mm; allowed is 0.001 mm or more"),
+            std::string::npos)
+      << tip.text;
+  const Credit axis = ask(0.01, 9e-5);
+  EXPECT_EQ(axis.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(axis.text.find("axis tolerance of the program is 9e-05 rad; allowed is 0.0001 rad"),
+            std::string::npos)
+      << axis.text;
+  for (const double wrong : {-1.0, 1e-12, std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(ask(wrong, 0).verdict, Verdict::kRefusedProgram) << wrong;
+    EXPECT_EQ(ask(0, wrong).verdict, Verdict::kRefusedProgram) << wrong;
+  }
+  EXPECT_FALSE(judge_.is_held());
+  EXPECT_EQ(ask(0.001, 1e-4).verdict, Verdict::kGood);
 }
 
 TEST_F(Intake, ThePlannersVerdictEndsTheSessionWithTheSameWords) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/units.hpp"
+
+namespace meridian::config {
+
+/// A closed range of numbers in the unit of the key. Open ends are the largest double.
+struct Range {
+  double low = -std::numeric_limits<double>::max();
+  double high = std::numeric_limits<double>::max();
+};
+
+/// What a length, and a length that cannot be nothing, may be in any machine file, mm.
+inline constexpr Range kLength_mm{-1e5, 1e5};
+inline constexpr Range kPositive_mm{1e-3, 1e5};
+
+/// Tolerances of smooth runs, in machine files and on command lines.
+inline constexpr Range kTipTolerance_mm{kLeastTipTolerance_mm, 10};
+inline constexpr Range kAxisTolerance_deg{0.00573, 10};
+static_assert(units::rad_from_deg(kAxisTolerance_deg.low) >= kLeastAxisTolerance_rad);
+
+}  // namespace meridian::config
