@@ -58,8 +58,12 @@ class RestToRestPlanner {
 
   /// Blocks that are going to be planned, the first motion block of the program first: the approach
   /// and the ways off the pole among them take the branch and winding that carry farthest. They
-  /// must stay until this is called again, or begin().
-  void look_at(std::span<const ClBlock> ahead) noexcept;
+  /// must stay until this is called again, or begin(). A program that leaves travel among them
+  /// whatever is chosen, and where no unwinding helps, is refused with its first motion block, in
+  /// the name of the block that leaves. The slack says how far from the programmed path the blocks
+  /// may be cut: what that can make of a joint's place is no reason to refuse.
+  void look_at(std::span<const ClBlock> ahead, double tip_slack_mm = 0,
+               double axis_slack_rad = 0) noexcept;
 
   /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's
   /// highest feed bounds it.

@@ -102,16 +102,17 @@ void Router::look_along(const ClBlock& block, const ToolPose& start, double tool
   const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
     return one.sequence == block.sequence;
   });
-  if (first == ahead_.end() || ways.count < 2) return;
+  if (first == ahead_.end()) return;
   std::array<AheadWay, kMaxWays> found;
   const auto count = static_cast<std::size_t>(ways.count);
   for (std::size_t n = 0; n < count; ++n) {
-    found[n] = {ways.way[n].branch, ways.way[n].joints[free_joint(model_)], 0, 0, false};
+    found[n] = {ways.way[n].branch, ways.way[n].joints[free_joint(model_)]};
   }
-  look_ahead(model_, tool_length_mm, start, {first, ahead_.end()}, {found.data(), count});
+  look_ahead(model_, tool_length_mm, start, slack_, {first, ahead_.end()}, {found.data(), count});
   for (std::size_t n = 0; n < count; ++n) {
     ways.way[n].carries = found[n].carries;
     ways.way[n].cost += found[n].time_s;
+    if (found[n].end == AheadEnd::kLost) ways.way[n].lost = found[n].lost;
   }
   ways.sort();
 }
@@ -140,19 +141,29 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
     const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
     if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
   }
+  lost_.reset();
+  bool is_tried = false;
   for (int n = 0; n < ways.count; ++n) {
+    const Way& way = ways.way[n];
+    if (way.lost) {
+      if (!lost_) lost_ = way.lost;
+      continue;
+    }
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();
-    const PathFault fault = approach_by(target, ways.way[n], job, trial, out);
+    const PathFault fault = approach_by(target, way, job, trial, out);
     if (!is_fault(fault)) {
       cursor = trial;
       cursor.pose = target;
+      lost_.reset();
       return {};
     }
     out.go_back(mark);
-    if (n == 0) first = fault;
+    if (!is_tried) first = fault;
+    is_tried = true;
   }
-  return first;
+  if (is_tried) lost_.reset();
+  return lost_ ? PathFault{PathFault::Kind::kTravel, lost_->joint, lost_->value} : first;
 }
 
 }  // namespace meridian

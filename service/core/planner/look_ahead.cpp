@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/core/planner/look_ahead.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/kinematics.hpp"
@@ -21,14 +23,23 @@ constexpr double kPoleTolerances = 2.5;  // nearer a smooth run may change the b
 constexpr double kLeastPole_rad = 1e-3;
 constexpr int kMostSteps = 256;  // per block
 constexpr double kMargin = 1e-9;
+constexpr double kBend = 1.5;  // of the joints over the slack: it ends well outside of the pole
+
+/// Whether turning the free joint back may help where it runs out of travel.
+bool may_unwind(const MachineModel& model) noexcept {
+  const JointLimits& limits = model.joints[free_joint(model)].limits;
+  return model.unwind_policy == UnwindPolicy::kRetract &&
+         limits.travel_max - limits.travel_min >= kTurn_rad;
+}
 
 /// One branch, followed from the start with the free joint anywhere.
 class Follower {
  public:
-  Follower(const MachineModel& model, double tool_length_mm, int branch, const ToolPose& start,
-           std::span<AheadWay> ways) noexcept
+  Follower(const MachineModel& model, double tool_length_mm, const AheadSlack& slack, int branch,
+           const ToolPose& start, std::span<AheadWay> ways) noexcept
       : model_(model),
         tool_length_mm_(tool_length_mm),
+        slack_(slack),
         branch_(branch),
         free_(free_joint(model)),
         pole_rad_(std::max(kPoleTolerances * axis_tolerance_beside_pole(model), kLeastPole_rad)),
@@ -45,11 +56,12 @@ class Follower {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
   void follow(const ClBlock& block) noexcept {
+    block_ = &block;
     is_tool_known_ &= block.kind != BlockKind::kTool;
     if (is_motion(block.kind)) run(block);
     if (is_over_) return;
     for (AheadWay& way : ways_) {
-      if (way.branch != branch_ || way.is_out) continue;
+      if (way.branch != branch_ || way.end != AheadEnd::kNone) continue;
       ++way.carries;
       way.time_s = time_s_;
     }
@@ -100,31 +112,64 @@ class Follower {
     }
     time_s_ += time_s;
     joints_ = at.q;
-    bool is_any_inside = false;
+    bool is_any_left = false;
     for (AheadWay& way : ways_) {
-      if (way.branch != branch_ || way.is_out) continue;
-      way.is_out = !is_inside(way.free + joints_[free_] - begin_);
-      is_any_inside |= !way.is_out;
+      if (way.branch != branch_) continue;
+      if (way.end <= AheadEnd::kDoubt) judge(pose, way);
+      is_any_left |= way.end <= AheadEnd::kDoubt;
     }
-    return is_any_inside;
+    return is_any_left;
   }
 
-  [[nodiscard]] bool is_inside(double free) const noexcept {
+  void judge(const ToolPose& pose, AheadWay& way) const noexcept {
     JointVector all = joints_;
-    all[free_] = free;
-    if (is_tool_known_) return first_joint_outside_travel(model_, all, kMargin) < 0;
+    all[free_] += way.free - begin_;
+    const int joint = first_outside(all);
+    if (joint < 0) return;
+    way.end = joint == free_ && may_unwind(model_) ? AheadEnd::kUnwinds : AheadEnd::kDoubt;
+    if (way.end == AheadEnd::kUnwinds) return;
+    const double value = limited_value(model_, all, joint);
+    const JointLimits& limits = limited_spec(model_, joint).limits;
+    const double beyond = std::max(value - limits.travel_max, limits.travel_min - value);
+    if (!(beyond > spread_of(joint, pose))) return;
+    way.end = AheadEnd::kLost;
+    way.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
+  }
+
+  /// Of the joints and drives whose place is known; -1: none.
+  [[nodiscard]] int first_outside(const JointVector& all) const noexcept {
+    if (is_tool_known_) return first_joint_outside_travel(model_, all, kMargin);
     for (int i = 0; i < model_.joint_count; ++i) {
       if (model_.joints[i].is_rotary && !is_inside_travel(model_.joints[i], all[i], kMargin))
-        return false;
+        return i;
     }
-    return true;
+    return -1;
+  }
+
+  /// How far `joint` may be from where it is at `pose` on a path that keeps to the slack.
+  [[nodiscard]] double spread_of(int joint, const ToolPose& pose) const noexcept {
+    const double here = limited_value(model_, joints_, joint);
+    double sum = 0;
+    const auto add = [&](const ToolPose& beside) {
+      const auto at = solve(model_, tool_length_mm_, beside, branch_, joints_);
+      sum += at.status == SolveStatus::kOk ? std::abs(limited_value(model_, at.q, joint) - here)
+                                           : std::numeric_limits<double>::infinity();
+    };
+    const Vector3 across = pose.axis.unitOrthogonal();
+    for (const Vector3& way : {across, Vector3(pose.axis.cross(across))}) {
+      add({pose.tip, (pose.axis + std::tan(slack_.axis_rad) * way).normalized()});
+    }
+    for (int i = 0; i < 3; ++i) add({pose.tip + slack_.tip_mm * Vector3::Unit(i), pose.axis});
+    return kBend * sum;
   }
 
   const MachineModel& model_;
   double tool_length_mm_;
+  AheadSlack slack_;
   int branch_, free_;
   double pole_rad_;
   ToolPose pose_;
+  const ClBlock* block_ = nullptr;  ///< that is followed
   std::span<AheadWay> ways_;
   JointVector joints_{};
   double begin_ = 0;  ///< of the free joint
@@ -137,11 +182,12 @@ class Follower {
 }  // namespace
 
 void look_ahead(const MachineModel& model, double tool_length_mm, const ToolPose& start,
-                std::span<const ClBlock> blocks, std::span<AheadWay> ways) noexcept {
+                const AheadSlack& slack, std::span<const ClBlock> blocks,
+                std::span<AheadWay> ways) noexcept {
   if (blocks.empty()) return;
   const auto to_follow = blocks.front().is_arc ? blocks : blocks.subspan(1);
   for (int branch = 0; branch < branch_count(model); ++branch) {
-    Follower follower(model, tool_length_mm, branch, start, ways);
+    Follower follower(model, tool_length_mm, slack, branch, start, ways);
     for (const ClBlock& block : to_follow) {
       if (follower.is_over()) break;
       follower.follow(block);

@@ -59,9 +59,12 @@ struct RestToRestPlanner::Workspace {
   bool is_staged = false;
   bool is_refused = false;
 
-  void refuse(const ClBlock& block, RejectCode code, int joint, double value) noexcept {
+  void refuse(const BlockReject& reject) noexcept {
     is_refused = true;
-    result = {PlanStatus::kRefused, {block.sequence, block.line, code, joint, value}, 0, {}};
+    result = {PlanStatus::kRefused, reject, 0, {}};
+  }
+  void refuse(const ClBlock& block, RejectCode code, int joint, double value) noexcept {
+    refuse({block.sequence, block.line, code, joint, value});
   }
 
   /// Stages the whole of `block` behind `cursor`, or refuses it.
@@ -137,6 +140,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   PathFault fault;
   if (next.is_first) {
     fault = router.approach(block, next, staging);
+    if (router.lost_block()) return refuse(*router.lost_block());
     result.axis_deviation_rad = router.axis_deviation_rad();
     next.is_first = false;
     count_window(0);
@@ -204,7 +208,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
     cursor.window = w.cursor.window;
   }
   w.cursor = cursor;
-  w.router.look_at({});
+  w.router.look_at({}, {});
   w.cursor.joints = at_rest;
   w.cursor.tool_length_mm = tool_length_mm;
   w.cursor.epoch = epoch;
@@ -225,8 +229,9 @@ PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) n
   return w.is_refused ? w.result : publish(writer);
 }
 
-void RestToRestPlanner::look_at(std::span<const ClBlock> ahead) noexcept {
-  workspace_->router.look_at(ahead);
+void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack_mm,
+                                double axis_slack_rad) noexcept {
+  workspace_->router.look_at(ahead, {tip_slack_mm, axis_slack_rad});
 }
 
 PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const WindingTrial& trial,

@@ -68,7 +68,7 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
     for (int i = 0; i < limited_count(model_); ++i) {
       cost = std::max(cost, std::abs(to[i] - from[i]) / limited_spec(model_, i).limits.velocity);
     }
-    ways.way[ways.count++] = {q, cost, branch, 0};
+    ways.way[ways.count++] = {q, cost, branch, 0, {}};
   };
   for (int branch = 0; branch < branch_count(model_); ++branch) {
     const auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);

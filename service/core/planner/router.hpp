@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "meridian/geometry/vector3.hpp"
@@ -9,6 +10,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "service/core/planner/leg_planner.hpp"
+#include "service/core/planner/look_ahead.hpp"
 #include "service/core/planner/staging.hpp"
 
 namespace meridian {
@@ -39,10 +41,15 @@ class Router {
   /// Blocks that are known, among them those that are planned: where branch and winding can be
   /// chosen, the ways that carry farthest through them come first, of these the cheapest. Empty:
   /// the nearest. They stay as they are until this is called again.
-  void look_at(std::span<const ClBlock> ahead) noexcept { ahead_ = ahead; }
+  void look_at(std::span<const ClBlock> ahead, const AheadSlack& slack) noexcept {
+    ahead_ = ahead;
+    slack_ = slack;
+  }
 
-  /// Brings the first block's begin under the tool.
+  /// Brings the first block's begin under the tool. Ways that are lost (AheadWay) are none: where
+  /// no other is left, lost_block() says why, else it is nothing.
   [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] const std::optional<BlockReject>& lost_block() const noexcept { return lost_; }
 
   /// Turns the free joint by whole `turns` off the part and comes back to where the tool rests, as
   /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
@@ -68,6 +75,7 @@ class Router {
     double cost = 0;
     int branch = 0;
     int carries = 0;  ///< blocks ahead, where they were looked at
+    std::optional<BlockReject> lost;
   };
   struct Ways {
     std::array<Way, kMaxWays> way;
@@ -134,6 +142,8 @@ class Router {
   const MachineModel& model_;
   LegPlanner legs_;
   std::span<const ClBlock> ahead_;
+  AheadSlack slack_;
+  std::optional<BlockReject> lost_;  ///< of the last approach
   double feed_factor_ = 1;
   double deviation_rad_ = 0;
 };

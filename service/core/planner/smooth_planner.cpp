@@ -49,6 +49,16 @@ struct SmoothPlanner::Workspace {
     return out;
   }
 
+  /// Of the axis beside the pole. What a program asks for holds there too.
+  [[nodiscard]] double pole_tolerance_rad() const noexcept {
+    const double axis_rad = tolerance().axis_rad;
+    return settings.axis_tolerance_rad > 0 ? axis_rad
+                                           : std::max(axis_rad, model.tolerances.pole_axis_rad);
+  }
+
+  [[nodiscard]] bool is_smooth() const noexcept {
+    return settings.transition.value_or(model.transition) == Transition::kSmooth;
+  }
   /// `block` as it can be run on through, or nothing where it is done at rest.
   [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
@@ -86,7 +96,7 @@ struct SmoothPlanner::Workspace {
 };
 
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
-  if (settings.transition.value_or(model.transition) != Transition::kSmooth) return {};
+  if (!is_smooth()) return {};
   if (block.kind != BlockKind::kCut || plain.junction().is_first) return {};
   if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return {};
   const auto unit = UnitVector3::near_unit(to_vector(block.axis));
@@ -138,11 +148,7 @@ void SmoothPlanner::Workspace::begin_run() noexcept {
     }
   }
   start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis);
-  // What a program asks for holds beside the pole too.
-  const bool is_asked = settings.axis_tolerance_rad > 0;
-  run.begin(start, tolerance(),
-            is_asked ? tolerance().axis_rad
-                     : std::max(tolerance().axis_rad, model.tolerances.pole_axis_rad));
+  run.begin(start, tolerance(), pole_tolerance_rad());
   is_running = true;
 }
 
@@ -249,7 +255,11 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
 bool SmoothPlanner::plan_what_waits(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.waiting.empty()) return true;
-  w.plain.look_at(w.waiting);
+  if (w.is_smooth()) {
+    w.plain.look_at(w.waiting, w.tolerance().tip_mm, w.pole_tolerance_rad());
+  } else {
+    w.plain.look_at(w.waiting);
+  }
   while (w.first_waiting < w.waiting.size()) {
     if (plan_one(w.waiting[w.first_waiting], writer).status != PlanStatus::kOk) return false;
     ++w.first_waiting;

@@ -81,6 +81,71 @@ TEST(LookAhead, TakesTheBranchOnWhichNoJointLeavesItsTravelLater) {
   }
 }
 
+/// Leans by 0.3 and turns from azimuth 0 to `turn` and back, in steps of 2 deg.
+std::vector<ClBlock> there_and_back(double turn) {
+  std::vector<ClBlock> blocks;
+  const int steps = static_cast<int>(std::ceil(turn / units::rad_from_deg(2)));
+  for (int n = -steps; n <= steps; ++n) {
+    const double azimuth = turn * (1 - std::abs(n) / static_cast<double>(steps));
+    blocks.push_back(
+        leaning(0.3, azimuth, {30 * std::cos(azimuth), 30 * std::sin(azimuth), 0.1 * n}));
+    blocks.back().line = 100 + static_cast<std::uint32_t>(blocks.size());
+  }
+  return blocks;
+}
+
+TEST(LookAhead, RefusesBeforeItStartsWhatNoWindingCarries) {
+  const auto blocks = there_and_back(units::rad_from_deg(150));
+  for (const UnwindPolicy policy : {UnwindPolicy::kRefuse, UnwindPolicy::kRetract}) {
+    // C turns by 150 deg; no whole turn fits into its travel either, so unwinding does not help.
+    MachineModel model = limited(lai_machine(), -70, 70);
+    model.unwind_policy = policy;
+    const JointVector start = joints_of(model, blocks[0]);
+    for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+      auto program = blocks;
+      for (std::size_t n = 0; n < program.size(); ++n) program[n].sequence = n;
+      end_program(program);
+      const SmoothTrace trace = plan_smooth(model, program, start, {transition, 0, 0}, true);
+      ASSERT_EQ(trace.last.status, PlanStatus::kRefused);
+      EXPECT_TRUE(trace.times.empty()) << "it moves";
+      const BlockReject& reject = trace.last.reject;
+      EXPECT_EQ(reject.code, RejectCode::kTravelBetween);
+      EXPECT_EQ(reject.joint, free_joint(model));
+      EXPECT_EQ(reject.line, program[reject.sequence].line);
+      // The same as is found on the way where nothing was looked at.
+      const SmoothTrace cut = plan_smooth(model, program, start, {transition, 0, 0});
+      ASSERT_EQ(cut.last.status, PlanStatus::kRefused);
+      EXPECT_FALSE(cut.times.empty());
+      EXPECT_GE(reject.sequence + 3, cut.last.reject.sequence) << "another winding carries farther";
+      std::printf("%d blocks, refused at %d, found on the way at %d\n",
+                  static_cast<int>(program.size()), static_cast<int>(reject.sequence),
+                  static_cast<int>(cut.last.reject.sequence));
+    }
+  }
+}
+
+TEST(LookAhead, RefusesNothingThatRoundingMayKeepInsideTravel) {
+  const double turn = units::rad_from_deg(100);
+  const auto blocks = there_and_back(turn);
+  MachineModel model = limited(fork_machine(), -360, 360);
+  model.unwind_policy = UnwindPolicy::kRefuse;
+  const JointVector start = joints_of(model, blocks[0]);
+  JointVector at = start, most = start;
+  for (std::size_t n = 0; n <= blocks.size() / 2; ++n) {
+    const int branch = std::abs(solve_block(model, blocks[n], 0, at)[4] - at[4]) < 0.1 ? 0 : 1;
+    at = most = solve_block(model, blocks[n], branch, at);
+  }
+  // The corner is 0.02 deg outside of travel, on a way that is rounded there by more.
+  const double sign = most[3] > start[3] ? 1 : -1;
+  const double end = most[3] - sign * units::rad_from_deg(0.02);
+  const double other = end - sign * units::rad_from_deg(200);
+  model.joints[3].limits.travel_min = std::min(end, other);
+  model.joints[3].limits.travel_max = std::max(end, other);
+  EXPECT_EQ(plan_with_look(model, blocks, start, Transition::kSmooth).status, PlanStatus::kOk);
+  EXPECT_EQ(plan_with_look(model, blocks, start, Transition::kExactStop).status,
+            PlanStatus::kRefused);
+}
+
 /// Half a turn from `begin` about the origin, through +y.
 ClBlock half_turn(const ClBlock& begin) {
   ClBlock arc = begin;
