@@ -29,8 +29,8 @@ struct SmoothSettings {
 
 /// The planner that runs on through blocks: cuts become a band spline, the rolling feed moves along
 /// it in windows that each end in a stop of their own. Everything else is left to the plain planner
-/// and done at rest: approach, rapids, dwells, actions, stops, blocks that linger on the pole or
-/// from which a run would start there. Through and past the pole the free joint may ease the axis
+/// and done at rest: approach, rapids, dwells, actions, stops, blocks that lead off the pole from
+/// rest. Through and past the pole, and lingering there, the free joint may ease the axis
 /// inside its tolerance (docs/motion.md, section 10).
 ///
 /// A cut that was taken (kOk) is published when enough of what follows it is known: up to 172 mm

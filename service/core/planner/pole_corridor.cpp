@@ -14,7 +14,11 @@ namespace {
 constexpr double kNear_rad = 0.05;        // minima farther off turn the free joint gently
 constexpr double kZoneTolerances = 2.5;   // minima farther off leave a zone no room
 constexpr double kDwellTolerances = 0.2;  // nearer, the path counts as on the pole
+constexpr double kStayTolerances = 0.4;   // so far a path that comes back may go meanwhile
 constexpr double kOtherTolerances = 3;    // another minimum nearer than that bounds the reach
+/// A core that is longer than this is not waited for: the free joint comes to rest in it.
+constexpr double kLongCore_mm = 2 * PoleCorridor::kReach_mm;
+constexpr double kLeastHold_mm = 0.5;
 constexpr double kReachShare = 0.98, kHalf = 0.49;
 constexpr double kLeastReach_mm = 1e-3;
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
@@ -58,7 +62,8 @@ void PoleCorridor::begin(const Start& start) noexcept {
   branch_ = out_branch_ = start.branch;
   pending_.clear();
   cut_count_ = 0;
-  is_finished_ = false;
+  is_finished_ = is_held_ = is_out_held_ = has_failed_ = false;
+  entered_ = -1;
   zones_ = 0;
 }
 
@@ -179,66 +184,123 @@ bool PoleCorridor::dwells(Place place) const noexcept {
   return distance_of(place) < kDwellTolerances * tolerance_rad_;
 }
 
+bool PoleCorridor::lingers(Place place) const noexcept {
+  return distance_of(place) < kStayTolerances * tolerance_rad_;
+}
+
+bool PoleCorridor::rests_at(Place place) const noexcept {
+  return is_held_ ? lingers(place) : place == 0 && dwells(place);
+}
+
 void PoleCorridor::follow_core(Place place) noexcept {
   const Place begin = held_.begin_index() * kProbes;
   if (core_.place != place) {
-    core_ = {place, place, place, find_nearest(place)};
-    while (dwells(place) && core_.first > begin && dwells(core_.first - 1)) --core_.first;
+    core_ = {place, place, place, place, find_nearest(place)};
+    const Place first = rests_at(place) ? place : begin;
+    while (dwells(place) && core_.first > first && dwells(core_.first - 1)) --core_.first;
   }
   core_.first = std::max(core_.first, begin);  // what is behind may be gone
-  while (dwells(place) && core_.last + 1 < end_place() && dwells(core_.last + 1)) ++core_.last;
+  if (!is_in_core(place)) return;
+  while (core_.seen + 1 < end_place() && lingers(core_.seen + 1)) {
+    if (dwells(++core_.seen)) core_.last = core_.seen;
+  }
 }
 
-bool PoleCorridor::decide(Place place) noexcept {
-  const double earliest = u_of(std::max(place - 1, held_.begin_index() * kProbes));
-  const auto is_behind = [this](double core_end) {
-    return is_finished_ || held_.is_full() || end_u() > core_end + 2 * kReach_mm + 1;
-  };
-  if (!is_behind(earliest)) return false;
-  follow_core(place);
-  const Place last = core_.last;
-  const double nearest = core_.nearest;
+bool PoleCorridor::is_known_behind(double u) const noexcept {
+  return is_finished_ || held_.is_full() || end_u() > u + 2 * kReach_mm + 1;
+}
+
+PoleCorridor::Place PoleCorridor::find_hold(double begin) const noexcept {
+  const double length = u_of(core_.last) - begin;
+  const bool is_open = !is_finished_ && core_.seen + 1 == end_place();
+  if (!is_open || (length < kLongCore_mm && !held_.is_full())) return -1;
+  const double end = begin + (held_.is_full() ? 0.5 * length : length - kReach_mm);
+  Place place = core_.last;
+  while (place > core_.first && (u_of(place) > end || !dwells(place))) --place;
+  return u_of(place) > begin + kLeastReach_mm ? place : -1;
+}
+
+PolePlace PoleCorridor::place_about(Place place, double left) const noexcept {
   PolePlace around;
-  around.core_begin = around.core_end = nearest;
+  around.core_begin = around.core_end = core_.nearest;
   around.branch = branch_;
-  around.is_dwelling = distance_at(nearest) < kPoleEase_rad;
-  if (dwells(place)) {
-    around.is_start = core_.first == 0;
-    around.is_dwelling = around.is_dwelling || around.is_start || last > core_.first;
-    around.core_begin = std::min(nearest, u_of(core_.first));
-    around.core_end = std::max(nearest, u_of(last));
+  around.is_dwelling = distance_at(core_.nearest) < kPoleEase_rad;
+  if (is_in_core(place)) {
+    around.is_start = rests_at(place);
+    around.is_dwelling = around.is_dwelling || around.is_start || core_.last > core_.first;
+    around.core_begin = around.is_start ? left : std::min(core_.nearest, u_of(core_.first));
+    around.core_end = std::max(core_.nearest, u_of(core_.last));
   }
+  // What rests may end a little farther off than what comes to rest.
+  const double nearly_on = around.is_start ? kStayTolerances : kDwellTolerances;
+  const Place last = around.is_start ? core_.seen : core_.last;
   if (is_finished_ && last + 1 == end_place() &&
-      distance_at(end_u()) < kDwellTolerances * tolerance_rad_) {
+      distance_at(end_u()) < nearly_on * tolerance_rad_) {
     around.is_end = around.is_dwelling = true;
     around.core_end = end_u();
   }
-  if (!is_behind(around.core_end)) return false;
-  scan_ = last + 1;
+  return around;
+}
+
+bool PoleCorridor::decide(Place place) noexcept {
+  if (!is_known_behind(u_of(std::max(place - 1, held_.begin_index() * kProbes)))) return false;
+  follow_core(place);
   const double left = pending_.begin_index() == pending_.end_index()
                           ? emitted_u()
                           : std::max(emitted_u(), pending_.back().end);
+  PolePlace around = place_about(place, left);
+  const Place hold = is_in_core(place) && !around.is_end ? find_hold(around.core_begin) : -1;
+  if (hold >= 0) {
+    around.is_end = around.is_dwelling = true;
+    around.core_end = u_of(hold);
+  } else if (!is_known_behind(around.core_end)) {
+    return false;
+  }
+  scan_ = hold >= 0 ? hold : core_.last + 1;
   const bool is_begun = pending_.end_index() > 0 || emitted_u() > 0;
-  if (around.is_start ? is_begun : around.core_begin <= left) return true;
+  const bool is_behind = around.is_start ? is_begun && !is_held_ : around.core_begin <= left;
+  if (is_behind) return true;
   around.reach = kReach_mm;
   if (!around.is_start) around.reach = kReachShare * (around.core_begin - left);
   if (!around.is_end) {
-    around.reach = std::min(around.reach, find_room_behind(last, around.core_end));
+    around.reach = std::min(around.reach, find_room_behind(core_.last, around.core_end));
   }
+  const double nearest = core_.nearest;
   const bool has_room = !pending_.is_full() && around.reach > kLeastReach_mm &&
                         distance_at(nearest) < kZoneTolerances * tolerance_rad_;
   around.known_end = std::min(end_u(), around.core_end + 2 * kReach_mm);
-  PoleZone zone;
   if (has_room) {
     around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
-    zone = find_pole_zone({model_, *this, programmed_, tool_length_mm_, tolerance_rad_, is_exact_},
-                          around);
+    if (find_zone(around, hold >= 0)) return true;
   }
-  if (zone.end > zone.begin) {
-    take(zone);
-  } else {
-    add_cuts(nearest);
+  has_failed_ = around.is_start;
+  scan_ = core_.last + 1;
+  add_cuts(nearest);
+  return true;
+}
+
+bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
+  const PoleTask task{model_, *this, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
+  PoleZone zone = find_pole_zone(task, around);
+  const double begin = around.core_begin;
+  while (!(zone.end > zone.begin)) {  // hold the free joint farther into the core
+    if (!around.is_start || around.is_end) return false;
+    around.core_begin = 0.5 * (around.core_begin + around.core_end);
+    if (around.core_end - around.core_begin < kLeastHold_mm) return false;
+    zone = find_pole_zone(task, around);
   }
+  zone.is_held = is_held;
+  if (around.core_begin > begin) {
+    PolePlace before = around;
+    before.core_begin = begin;
+    before.core_end = around.core_begin;
+    before.is_end = true;
+    PoleZone rest = find_pole_zone(task, before);
+    if (!(rest.end > rest.begin)) return false;
+    rest.is_held = true;
+    take(rest);
+  }
+  take(zone);
   return true;
 }
 
@@ -247,11 +309,13 @@ void PoleCorridor::take(const PoleZone& zone) noexcept {
   ++zones_;
   branch_ = zone.branch_after;
   known_u_ = zone.end;
+  is_held_ = zone.is_held;
   JointVector reference{};
   if (const int free = free_joint(model_); free >= 0) reference[free] = zone.free.back();
   const BandSpan& span = span_at(zone.end);
   const auto pose = pose_on(span.c, std::clamp(zone.end - span.u0, 0.0, span.length));
-  known_ = solve(model_, tool_length_mm_, pose, branch_, reference).q;
+  known_ = is_held_ ? solve_held(model_, tool_length_mm_, pose, zone.free.back()).q
+                    : solve(model_, tool_length_mm_, pose, branch_, reference).q;
 }
 
 bool PoleCorridor::is_in_zone() const noexcept {
@@ -288,6 +352,7 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
     return;
   }
   branch_ = out_branch_;
+  is_held_ = is_out_held_;
   known_ = joints;
   if (held_.begin_index() != held_.end_index()) known_u_ = emitted_u();
 }
@@ -343,6 +408,7 @@ void PoleCorridor::emit() noexcept {
   }
   if (has_zone && end >= zone.end) {
     out_branch_ = zone.branch_after;
+    is_out_held_ = zone.is_held;
     pending_.drop_before(pending_.begin_index() + 1);
   }
   if (has_pole_ && end > known_u_) {
@@ -358,6 +424,7 @@ void PoleCorridor::emit() noexcept {
 
 const JointSpan* PoleCorridor::next() noexcept {
   if (has_pole_) scan();
+  if (has_failed_) return nullptr;
   if (held_.begin_index() == held_.end_index() || !may_emit()) return nullptr;
   emit();
   return &out_;
@@ -372,10 +439,16 @@ void PoleCorridor::scan() noexcept {
     const Place before = std::max(scan_ - 1, held_.begin_index() * kProbes);
     const double here = distance_of(scan_);
     const double behind = is_last ? distance_at(end_u()) : distance_of(scan_ + 1);
-    const bool is_start = scan_ == 0 && dwells(scan_);
+    if (!dwells(scan_)) {
+      entered_ = -1;
+    } else if (entered_ < 0) {
+      entered_ = scan_;
+    }
+    const bool is_long =
+        entered_ >= held_.begin_index() * kProbes && u_of(scan_) > u_of(entered_) + 0.5 * kReach_mm;
     const bool is_end = is_last && is_finished_ && behind < kDwellTolerances * tolerance_rad_;
     const bool is_minimum =
-        is_start || is_end ||
+        rests_at(scan_) || is_end || is_long ||
         (before < scan_ && here < kNear_rad && here <= distance_of(before) && here < behind);
     if (is_minimum) {
       // Not before a span waits for it: searches are dear, and so no two come at once.

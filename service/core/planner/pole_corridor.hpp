@@ -19,10 +19,11 @@ namespace meridian {
 ///
 /// Where the axis is within 11.5° of the pole, spans are held back by up to 61 mm of u, until it
 /// is known how close they come. What comes out depends on the spans alone, not on when they came.
-/// A machine without a pole gets its spans as they are. Where no zone helps, spans are cut about
-/// the nearest point, so that cells of the feed are as short as the free joint's turn is sharp.
-/// Fixed store. Units: mm, rad. Context: planner thread. Source: docs/motion.md, section 10.
-/// Proof: tests/property/planner/smooth_planner_test.cpp.
+/// Where it stays on the pole, however long, the free joint comes to rest and is held until the
+/// path leads off again. A machine without a pole gets its spans as they are. Where no zone helps,
+/// spans are cut about the nearest point, so that cells of the feed are as short as the free
+/// joint's turn is sharp. Fixed store. Units: mm, rad. Context: planner thread. Source:
+/// docs/motion.md, section 10. Proof: tests/property/planner/smooth_planner_test.cpp.
 class PoleCorridor : private SpanLookup {
  public:
   static constexpr double kReach_mm = 20;  ///< of a zone to either side
@@ -50,6 +51,10 @@ class PoleCorridor : private SpanLookup {
 
   /// Returns the next span, nullptr where more are needed; valid until the next call.
   [[nodiscard]] const JointSpan* next() noexcept;
+
+  /// Whether no way on was found from where the free joint rests. What was handed out stays valid,
+  /// nothing comes behind it.
+  [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
 
   /// The machine turned its free joint by `by` rad (whole turns) ahead of what next() gave last,
   /// and will be at `joints` at its end. What next() gave is not touched, a zone that it lies in
@@ -91,16 +96,34 @@ class PoleCorridor : private SpanLookup {
   struct Core {
     Place place = -1;           ///< the minimum among the probes
     Place first = 0, last = 0;  ///< the run of places on the pole about it
+    Place seen = 0;             ///< farther on the path only lingers beside it
     double nearest = 0;         ///< u
   };
 
   /// Looks at probes as far as enough of what follows is there.
   void scan() noexcept;
-  /// A local minimum of the distance. False: more spans are needed to decide.
+  /// A local minimum of the distance, or a place on the pole. False: more spans are needed to
+  /// decide.
   [[nodiscard]] bool decide(Place place) noexcept;
+  /// The core that was followed about `place`; `left`: where the last zone ends.
+  [[nodiscard]] PolePlace place_about(Place place, double left) const noexcept;
+  /// Takes the best zone about `around`; false: there is none.
+  [[nodiscard]] bool find_zone(PolePlace around, bool is_held) noexcept;
+  /// Where in a core from `begin`, whose end is not known yet, the free joint may come to rest
+  /// meanwhile; -1: its end is waited for.
+  [[nodiscard]] Place find_hold(double begin) const noexcept;
+  /// Whether enough of the path behind `u` is known.
+  [[nodiscard]] bool is_known_behind(double u) const noexcept;
   [[nodiscard]] double find_nearest(Place place) const noexcept;
   /// Whether the path counts as on the pole at `place`.
   [[nodiscard]] bool dwells(Place place) const noexcept;
+  /// Whether it is so close to it that the free joint may be held there.
+  [[nodiscard]] bool lingers(Place place) const noexcept;
+  /// Whether the free joint rests on the way to `place`, and may go on resting there.
+  [[nodiscard]] bool rests_at(Place place) const noexcept;
+  [[nodiscard]] bool is_in_core(Place place) const noexcept {
+    return dwells(place) || rests_at(place);
+  }
   /// Finds what is known of the core about `place`.
   void follow_core(Place place) noexcept;
   [[nodiscard]] double find_room_behind(Place from, double core_end) const noexcept;
@@ -132,6 +155,10 @@ class PoleCorridor : private SpanLookup {
   std::array<double, kCuts> cuts_{};  ///< ascending
   std::size_t cut_count_ = 0;
   bool is_finished_ = false;
+  bool is_held_ = false;      ///< behind all zones the free joint rests, close to the pole
+  bool is_out_held_ = false;  ///< the same where spans are handed out
+  bool has_failed_ = false;
+  Place entered_ = -1;  ///< of the run of places on the pole that scan_ is in
   int zones_ = 0;
   JointSpan out_;
 };

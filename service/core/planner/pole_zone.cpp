@@ -149,7 +149,8 @@ class Search {
   void search(bool has_exact) noexcept {
     const int branches = branch_count(task_.model);
     best_time_ = has_exact ? exact_time() - kLeastGain_s : kNever;
-    for (int n = 0; n < kWidths; ++n) {
+    const bool is_inside_core = place_.is_start && place_.is_end;  // held, whatever the width
+    for (int n = is_inside_core ? kWidths - 1 : 0; n < kWidths; ++n) {
       const double width = place_.reach * std::pow(kLeastShare, 1.0 * n / (kWidths - 1));
       for (const double skew : kSkews) {
         if (skew != 0 && (place_.is_start || place_.is_end)) continue;

@@ -15,6 +15,7 @@ struct PoleZone {
   FreeQuintic free{};         ///< Bernstein values over [begin, end]
   int branch_before = 0, branch_after = 0;
   double deviation_rad = 0;  ///< largest angle to the programmed axis
+  bool is_held = false;      ///< the free joint comes to rest at its end, still close to the pole
 };
 
 /// Finds spans by u.
@@ -29,8 +30,8 @@ struct PolePlace {
   double core_begin = 0, core_end = 0;
   double reach = 0;          ///< farthest from the core that a zone may begin or end
   bool is_dwelling = false;  ///< on the pole for a while: the exact way has no azimuth there
-  bool is_start = false;     ///< the path begins at rest in the core, the free joint anywhere
-  bool is_end = false;       ///< it ends at rest in the core
+  bool is_start = false;     ///< the free joint rests at the begin of the core, anywhere
+  bool is_end = false;       ///< it comes to rest at the end of the core
   int branch = 0;            ///< on the way in
   JointVector joints{};      ///< at the start, or near the begin of the reach for the winding
   double known_end = 0;      ///< how far behind the core joints are to keep travel as well

@@ -62,7 +62,7 @@ struct SmoothPlanner::Workspace {
   /// `block` as it can be run on through, or nothing where it is done at rest.
   [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
-  void begin_run() noexcept;
+  void begin_run(const ClBlock& cut) noexcept;
   void end_run() noexcept;
   /// Publishes what is ready of the run.
   [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
@@ -109,15 +109,17 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
     axis = find_nearest_pole(model, axis);
   }
   block.axis = to_array(axis);
-  // On the pole the free joint is held. Runs go through it, or stay on it all the way; what starts
-  // from it or lingers on it is done at rest, where the free joint can turn.
+  // Runs go through the pole and linger on it, or stay on it all the way with the axis fixed. What
+  // leads off it from rest is done at rest, where the free joint can turn.
   const bool starts_on_pole = is_on_pole(pose.axis);
+  const bool may_linger = model.pole_policy == PolePolicy::kEase;
   if (axis == pose.axis) {
-    return !starts_on_pole || !is_running || is_run_on_pole ? std::optional(block) : std::nullopt;
+    const bool may_go_on = !starts_on_pole || !is_running || is_run_on_pole || may_linger;
+    return may_go_on ? std::optional(block) : std::nullopt;
   }
   if (!find_great_circle(pose.axis, axis).is_unique) return {};
   if (is_running && is_run_on_pole) return {};
-  if (starts_on_pole && (!is_running || is_on_pole(axis))) return {};
+  if (starts_on_pole && !(is_on_pole(axis) ? may_linger : is_running)) return {};
   return block;
 }
 
@@ -125,7 +127,7 @@ bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
   return free_joint(model) >= 0 && pole_distance(model, axis) < kOnPoleShare * tolerance().axis_rad;
 }
 
-void SmoothPlanner::Workspace::begin_run() noexcept {
+void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
   const RestToRestPlanner::Junction at = plain.junction();
   RunStart start;
   start.pose = at.pose;
@@ -147,7 +149,7 @@ void SmoothPlanner::Workspace::begin_run() noexcept {
       start.branch = branch;
     }
   }
-  start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis);
+  start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis) && to_vector(cut.axis) == pose.axis;
   run.begin(start, tolerance(), pole_tolerance_rad());
   is_running = true;
 }
@@ -277,7 +279,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   Workspace& w = *workspace_;
   if (w.is_refused) return w.refusal;
   // Decided once: what the answer depends on changes where the port was full meanwhile.
-  const auto cut = w.is_for_plain ? std::nullopt : w.smoothable(block);
+  auto cut = w.is_for_plain ? std::nullopt : w.smoothable(block);
   w.is_for_plain = !cut;
   if (w.is_running) {
     if (!cut) w.run.finish();
@@ -285,7 +287,11 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     if (w.is_refused) return w.refusal;
     if (status == Status::kNoRoom || (!cut && status != Status::kDone))
       return {PlanStatus::kNoRoom, {}, 0, {}};
-    if (!cut) w.end_run();
+    if (!cut) {
+      w.end_run();
+      cut = w.smoothable(block);  // it may start a run of its own
+      w.is_for_plain = !cut;
+    }
   }
   if (!cut) {
     if (!w.has_factor && block.kind == BlockKind::kCut) {
@@ -306,7 +312,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     }
     return result;
   }
-  if (!w.is_running) w.begin_run();
+  if (!w.is_running) w.begin_run(*cut);
   w.run.take(*cut);
   w.pose = {to_vector(cut->tip_mm), to_vector(cut->axis)};
   (void)w.publish(writer);

@@ -158,9 +158,12 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
         push(*span, feed_override);
         is_held_ = is_just_unwound_ = false;
       }
-    } else if (band_.has_failed()) {
+    } else if (band_.has_failed() || corridor_.has_failed()) {
       const bool has_span = spans_.end_index() > 0;
-      fail({PathFault::Kind::kTooLong, -1, 0}, has_span ? spans_.back().band.sequence : 0,
+      const PathFault fault = band_.has_failed()
+                                  ? PathFault{PathFault::Kind::kTooLong, -1, 0}
+                                  : PathFault{PathFault::Kind::kJump, free_joint(model_), 0};
+      fail(fault, has_span ? spans_.back().band.sequence : 0,
            has_span ? spans_.back().band.line : 0);
     } else if (is_band_finished_ && !is_feed_finished_) {
       is_feed_finished_ = true;

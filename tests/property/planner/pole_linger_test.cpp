@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Paths that linger so close to the pole that the axis tolerance leaves the free joint free: they
+/// run through their blocks like any other.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "property/planner/smooth_trace.hpp"
+#include "support/draws.hpp"
+#include "support/machines.hpp"
+#include "support/program_end.hpp"
+
+namespace meridian::test::pole_linger {
+namespace {
+
+constexpr double kLimit = 1 + 1e-6;
+
+/// Blocks of one length straight along x at 100 mm/s.
+class Way {
+ public:
+  explicit Way(double step_mm) : step_mm_(step_mm) {}
+
+  Way& step(double step_mm) {
+    step_mm_ = step_mm;
+    return *this;
+  }
+
+  /// To an axis of which x and y are given, about `centre`.
+  Way& to(double x, double y, const Vector3& centre = Vector3::UnitZ()) {
+    const Vector3 right = Vector3::UnitY().cross(centre).normalized();
+    ClBlock block;
+    block.sequence = blocks_.size();
+    block.line = 10 + static_cast<std::uint32_t>(blocks_.size());
+    block.tip_mm = {x_mm_ += step_mm_, 20, 30};
+    block.axis = to_array((centre + x * right + y * centre.cross(right)).normalized());
+    block.feed = 100;
+    block.feed_meaning = FeedMeaning::kTip;
+    blocks_.push_back(block);
+    return *this;
+  }
+  [[nodiscard]] std::vector<ClBlock> program() const {
+    auto out = blocks_;
+    end_program(out);
+    return out;
+  }
+
+ private:
+  double step_mm_, x_mm_ = 0;
+  std::vector<ClBlock> blocks_;
+};
+
+/// `count` blocks whose axis wavers within `most_deg` of `centre`.
+Way waver(Way way, int count, double most_deg, const Vector3& centre = Vector3::UnitZ()) {
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> share(-1, 1);
+  const double most = units::rad_from_deg(most_deg) / std::sqrt(2.0);
+  for (int n = 0; n < count; ++n) {
+    const double x = most * share(engine);
+    way.to(x, most * share(engine), centre);
+  }
+  return way;
+}
+
+/// Plans `blocks`, judges limits, tolerance and that all of them are cut.
+SmoothTrace cut(const MachineModel& model, const std::vector<ClBlock>& blocks) {
+  const JointVector start = joints_of(model, blocks[0]);
+  SmoothTrace trace = plan_smooth(model, blocks, start);
+  EXPECT_EQ(trace.last.status, PlanStatus::kOk)
+      << "code " << static_cast<int>(trace.last.reject.code) << " block "
+      << trace.last.reject.sequence << " by " << trace.last.reject.value;
+  if (trace.last.status != PlanStatus::kOk) return trace;
+  EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
+  const auto ways = programmed_ways(blocks);
+  for (const double cycle : {1e-3, 250e-6}) {
+    const auto setpoints = sample(model, trace, cycle, 0.37, start);
+    const LimitUse use = measure_limits(model, setpoints, cycle);
+    EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where << " cycle " << cycle;
+    EXPECT_LE(measure_feed(model, trace, setpoints, cycle), 1.0001);
+    for (std::size_t n = 3; n + 3 < setpoints.size(); n += 29) {
+      const auto k = static_cast<std::size_t>(setpoints[n].piece);
+      const bool is_cut =
+          trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion != MotionKind::kApproach;
+      if (!is_cut || cycle < 1e-3) continue;
+      const ToolPose pose = forward(model, trace.paths[k].tool_length_mm, setpoints[n].q);
+      const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
+                                       model.tolerances.axis_rad);
+      EXPECT_LE(off, kLimit) << "setpoint " << n << " block " << trace.times[k].sequence;
+    }
+  }
+  return trace;
+}
+
+TEST(PoleLinger, AWaveringAxisTakesTheTimeThatItTakesAwayFromThePole) {
+  const Vector3 away(std::sin(0.3), 0, std::cos(0.3));
+  for (const MachineModel& model : {bench_machine(), lai_machine()}) {
+    for (const double most_deg : {0.006, 0.02}) {
+      SCOPED_TRACE(testing::Message() << model.name << ", wavers by " << most_deg << " deg");
+      const double here_s = cut(model, waver(Way(1), 200, most_deg).program()).duration_s();
+      const double away_s = cut(model, waver(Way(1), 200, most_deg, away).program()).duration_s();
+      std::printf("%s, 200 blocks wavering by %.3f deg: %.3f s, away from the pole %.3f s\n",
+                  model.name.c_str(), most_deg, here_s, away_s);
+      EXPECT_LT(here_s, 1.05 * away_s);
+    }
+  }
+}
+
+/// Past the pole at `off_deg`, in steps of `step_mm`, 0.5 deg of axis per mm.
+std::vector<ClBlock> pass_in_steps(double step_mm, double off_deg) {
+  Way way(step_mm);
+  const double off = units::rad_from_deg(off_deg);
+  const int steps = static_cast<int>(std::lround(30 / step_mm));
+  for (int n = -steps; n <= steps; ++n)
+    way.to(std::tan(units::rad_from_deg(0.5 * n * step_mm)), off);
+  return way.program();
+}
+
+TEST(PoleLinger, ShortBlocksPassThePoleAsFastAsLongOnes) {
+  const MachineModel model = bench_machine();
+  for (const double off_deg : {0.0, 0.005}) {
+    const double long_s = cut(model, pass_in_steps(0.1, off_deg)).duration_s();
+    const double short_s = cut(model, pass_in_steps(0.02, off_deg)).duration_s();
+    std::printf("past the pole at %.3f deg: %.3f s in blocks of 0.1 mm, %.3f s of 0.02 mm\n",
+                off_deg, long_s, short_s);
+    EXPECT_LT(short_s, 1.02 * long_s);
+  }
+}
+
+/// Onto the pole from `in_deg`, `count` wavering blocks, off towards `out_deg`.
+std::vector<ClBlock> stay(double in_deg, int count, double out_deg) {
+  const auto at = [](double azimuth_deg, double tilt_deg) {
+    const double azimuth = units::rad_from_deg(azimuth_deg);
+    const double size = std::tan(units::rad_from_deg(tilt_deg));
+    return std::pair(size * std::cos(azimuth), size * std::sin(azimuth));
+  };
+  Way way(1);
+  for (int n = 12; n >= 1; --n) {
+    const auto [x, y] = at(in_deg, n);
+    way.to(x, y);
+  }
+  way = waver(way, count, 0.01);
+  for (int n = 1; n <= 12; ++n) {
+    const auto [x, y] = at(out_deg, n);
+    way.to(x, y);
+  }
+  return way.program();
+}
+
+TEST(PoleLinger, AWayOntoThePoleAndOffAgainRunsThroughHoweverLongItStays) {
+  const MachineModel model = bench_machine();
+  for (const int count : {2, 20, 70, 300}) {
+    for (const double out_deg : {0.0, 90.0, 180.0}) {
+      SCOPED_TRACE(testing::Message() << count << " blocks, off by " << out_deg << " deg");
+      const SmoothTrace trace = cut(model, stay(0, count, out_deg));
+      const double feed_s = 0.01 * (23 + count);
+      std::printf("%d blocks on the pole, off by %.0f deg: %.3f s, feed %.3f s, %zu eases\n", count,
+                  out_deg, trace.duration_s(), feed_s, trace.eases.size());
+      EXPECT_LT(trace.duration_s(), feed_s + (out_deg == 90 ? 2.5 : 1.0));
+      for (std::size_t n = 1; n + 1 < trace.times.size(); ++n) {
+        const bool is_inside = trace.times[n].sequence > 2 && trace.times[n].sequence < 21U + count;
+        EXPECT_FALSE(is_inside && trace.times[n].v == 0)
+            << "rest at block " << trace.times[n].sequence;
+      }
+    }
+  }
+}
+
+/// Seeded: stretches that waver about the pole, as far as three tolerances, that stay on it, and
+/// that lead off and back, in steps of 0.0001 to 3 mm.
+std::vector<ClBlock> linger(std::uint32_t seed) {
+  std::mt19937 engine(seed);
+  const auto uniform = [&engine](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
+  Way way(1);
+  double azimuth = uniform(-3, 3);
+  const auto lean = [&](double tilt_deg, double by_mm) {
+    const double size = std::tan(units::rad_from_deg(tilt_deg));
+    way.step(by_mm).to(size * std::cos(azimuth), size * std::sin(azimuth));
+  };
+  lean(uniform(0, 1) < 0.3 ? 0.01 : 5, 1);
+  for (int section = 0; section < 8; ++section) {
+    const double step = std::pow(10.0, uniform(-4, 0.5)), most = std::pow(10.0, uniform(-3, -0.5));
+    const int count = static_cast<int>(uniform(1, 60));
+    const int kind = static_cast<int>(uniform(0, 5));
+    for (int n = 0; n < count; ++n) {
+      if (kind != 1) azimuth += uniform(-1, 1) * (kind == 0 ? 3 : 0.3);
+      if (kind == 2) azimuth = std::round(azimuth / 1.5) * 1.5;
+      lean(kind == 1 ? 0 : most * (kind == 3 ? 1 : uniform(0, 1)), step);
+    }
+    if (uniform(0, 1) < 0.5) continue;
+    azimuth += uniform(-2, 2);
+    const double farthest = uniform(0.1, 8);
+    const int there = static_cast<int>(uniform(1, 12));
+    for (int n = 1; n <= there; ++n) lean(farthest * n / there, std::max(step, 0.2));
+    if (uniform(0, 1) < 0.5) azimuth += uniform(-0.5, 0.5);
+  }
+  return way.program();
+}
+
+TEST(PoleLinger, KeepsLimitsAndTolerancesHoweverAProgramLingers) {
+  const auto programs = number_of("MERIDIAN_LINGER_PROGRAMS", 6U);
+  const auto first = number_of("MERIDIAN_LINGER_SEED", 1U);
+  MachineModel endless = lai_machine();
+  endless.joints[3].is_endless = true;
+  double time_s = 0;
+  for (std::uint32_t seed = first; seed < first + programs; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const SmoothTrace trace = cut(seed % 2 == 0 ? bench_machine() : endless, linger(seed));
+    time_s += trace.duration_s();
+  }
+  std::printf("%u programs, %.0f s\n", programs, time_s);
+}
+
+TEST(PoleLinger, IsTheSameHoweverTheBlocksArrive) {
+  const MachineModel model = lai_machine();
+  const auto blocks = stay(20, 150, 250);
+  const JointVector start = joints_of(model, blocks[0]);
+  const SmoothTrace once = plan_smooth(model, blocks, start);
+  for (const std::size_t every : {13U, 100000U}) {
+    const SmoothTrace again = plan_smooth(
+        model, blocks, start, {Transition::kSmooth, 0, 0},
+        [every](std::size_t n) { return n % every == 0; }, [](std::size_t) { return false; });
+    ASSERT_EQ(once.times.size(), again.times.size());
+    for (std::size_t n = 0; n < once.times.size(); ++n) {
+      const TimePiece &a = once.times[n], &b = again.times[n];
+      ASSERT_TRUE(a.s0 == b.s0 && a.v == b.v && a.a == b.a && a.j == b.j &&
+                  a.duration == b.duration && a.path_index == b.path_index)
+          << "piece " << n;
+      ASSERT_EQ(once.paths[n].spline, again.paths[n].spline);
+      ASSERT_EQ(once.paths[n].free_quintic, again.paths[n].free_quintic);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meridian::test::pole_linger
