@@ -84,7 +84,7 @@ void joint_info_fields(Way way, Message& message, Wire& wire) {
 template <class Way, class Message, class Wire>
 void machine_info_fields(Way way, Message& message, Wire& wire) {
   way(message.service_id, wire.service_id);
-  way(message.started_ns, wire.started_ns);
+  way(message.served_ns, wire.served_ns);
   way(message.name, wire.name);
   way(message.file_version, wire.file_version);
   way(message.service_version, wire.service_version);

@@ -244,7 +244,7 @@ struct JointInfo {
 /// `machine`: who serves which machine. It is also the service's claim on the machine.
 struct MachineInfo {
   std::uint64_t service_id = 0;
-  std::int64_t started_ns = 0;  ///< system clock, since 1970
+  std::int64_t served_ns = 0;  ///< for how long it had served when it said so, by its own clock
   std::string name{};
   std::string file_version{};
   std::string service_version{};

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
@@ -11,9 +13,11 @@
 namespace meridian::interpolator {
 
 /// One service per machine: each publishes its claim on the machine topic. One that serves already
-/// keeps the machine, whatever the clocks say; of two that start together, or that both serve
-/// because neither heard the other in time, the later gives way. One thread.
-/// Proof: tests/integration/lease_test.cpp.
+/// keeps the machine; of two that start together the one with the smaller service_id goes first. Of
+/// two that both serve, because neither heard the other in time, the one that has served longer
+/// keeps it. Each says for how long, by its own clock, when it hears of the other: the clocks of
+/// two hosts are never compared. Within kSameTime the smaller service_id decides. One thread.
+/// Proof: tests/unit/interpolator/lease_test.cpp, tests/integration/lease_test.cpp.
 class Lease {
  public:
   /// Publishes `claim`.
@@ -26,23 +30,33 @@ class Lease {
                                                             std::chrono::milliseconds patience);
   /// The machine is ours: others hear it.
   void hold();
-  /// Another service that serves the machine and has the older claim, where a busy host let us hear
-  /// of it only after hold().
+  /// Another service that serves the machine and keeps it, where we heard of it only after hold().
+  /// Call it now and then: that answers a service which asks for how long we have served.
   [[nodiscard]] std::optional<dds::MachineInfo> find_older();
 
  private:
-  struct Holder {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kSameTime{1};
+  static constexpr std::chrono::seconds kAnswered{2};  ///< by then both have said for how long
+
+  struct Other {
     dds::MachineInfo info;
     std::uint64_t source = 0;
+    Clock::time_point met{};  ///< when both served first
+    Clock::duration lead{};   ///< by which we had served longer when it last said so
   };
 
-  [[nodiscard]] bool goes_before_us(const dds::MachineInfo& other) const noexcept;
+  void say();
   void look();
+  void take(const dds::MachineInfo& info, std::uint64_t source);
+  [[nodiscard]] Clock::duration served() const noexcept;
+  [[nodiscard]] bool keeps_the_machine(const Other& other) const noexcept;
 
   dds::MachineInfo claim_;
   dds::Reader<dds::MachineInfo> reader_;
   dds::Writer<dds::MachineInfo> writer_;
-  std::optional<Holder> holder_;
+  std::vector<Other> others_;
+  Clock::time_point held_{};
 };
 
 }  // namespace meridian::interpolator

@@ -40,9 +40,6 @@ namespace {
   (void)::gethostname(host.data(), host.size() - 1);
   dds::MachineInfo info;
   info.service_id = service_id;
-  info.started_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                        std::chrono::system_clock::now().time_since_epoch())
-                        .count();
   info.name = model.name;
   info.file_version = model.version;
   info.service_version = kVersion;
@@ -208,8 +205,8 @@ void Service::tell_last_program() {
 }
 
 void Service::keep_lease() {
-  if (ports_.state != State::kOff) return;
-  if (const auto holder = lease_.find_older()) throw served_already(*holder);
+  const auto holder = lease_.find_older();
+  if (holder && ports_.state == State::kOff) throw served_already(*holder);
 }
 
 void Service::start() {

@@ -10,15 +10,15 @@
 namespace meridian::stream {
 namespace {
 
-/// One service per machine: the newest word of the one that serves it. Of two that serve the older
-/// keeps the machine, as between themselves.
+/// One service per machine: the newest word of the one that serves it. Of two that serve, the one
+/// that has served longer keeps the machine, as between themselves.
 void take(const dds::MachineInfo& info, std::vector<dds::MachineInfo>& found) {
   const auto same = std::find_if(found.begin(), found.end(), [&](const dds::MachineInfo& other) {
     return other.name == info.name;
   });
   if (same == found.end()) {
     found.push_back(info);
-  } else if (same->service_id == info.service_id || info.started_ns < same->started_ns) {
+  } else if (same->service_id == info.service_id || info.served_ns > same->served_ns) {
     *same = info;
   }
 }

@@ -50,10 +50,9 @@ TEST(Lease, EndsTheLaterOfTwoServicesThatDidNotHearOfEachOtherInTime) {
 }
 
 /// As a service says it that waits for another one to leave the machine, which stands elsewhere.
-dds::MachineInfo claim_like(const dds::MachineInfo& served, std::int64_t later_ns) {
+dds::MachineInfo claim_like(const dds::MachineInfo& served, std::uint64_t service_id) {
   dds::MachineInfo claim = served;
-  claim.service_id = served.service_id + 1 + (later_ns > 0 ? 1 : 0);
-  claim.started_ns += later_ns;
+  claim.service_id = service_id;
   claim.is_serving = false;
   claim.frame_origin_mm = {9000, 0, 0};
   return claim;
@@ -67,8 +66,8 @@ TEST(Lease, DoesNotShowAServiceThatOnlyWaitsForTheMachineToStationAndOperator) {
   dds::MachineInfo served;
   ASSERT_TRUE(eventually([&] { return machines.take(served) && served.is_serving; }));
   dds::Writer<dds::MachineInfo> claims(plant.participant());
-  ASSERT_TRUE(claims.write(claim_like(served, -1'000'000)));
-  ASSERT_TRUE(claims.write(claim_like(served, 1'000'000)));
+  ASSERT_TRUE(claims.write(claim_like(served, served.service_id - 1)));
+  ASSERT_TRUE(claims.write(claim_like(served, served.service_id + 1)));
 
   Process status({"meridian", "status", "--json", "--domain", plant.domain()},
                  plant.folder() / "status.log");

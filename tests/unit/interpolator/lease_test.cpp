@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/lease.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "support/private_domain.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+using std::chrono::milliseconds;
+using LeaseClock = std::chrono::steady_clock;
+
+/// A service as far as it concerns another one.
+struct Claimant {
+  Claimant(std::uint32_t domain, std::uint64_t id)
+      : participant({.domain = domain, .machine = "m"}), lease(participant, claim(id)) {}
+
+  static dds::MachineInfo claim(std::uint64_t id) {
+    dds::MachineInfo info;
+    info.service_id = id;
+    info.name = "m";
+    return info;
+  }
+
+  dds::Participant participant;
+  Lease lease;
+};
+
+/// Who of two that both serve gives way to the other, 0: nobody in time.
+std::uint64_t who_gives_way(Claimant& one, Claimant& other, milliseconds patience) {
+  const auto end = LeaseClock::now() + patience;
+  while (LeaseClock::now() < end) {
+    if (const auto older = one.lease.find_older()) return older->service_id == 1 ? 2 : 1;
+    if (const auto older = other.lease.find_older()) return older->service_id == 1 ? 2 : 1;
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  return 0;
+}
+
+TEST(Lease, OfTwoThatServeTheOneThatServesLongerKeepsTheMachineWhateverItsNumber) {
+  const support::PrivateDomain domain;
+  Claimant older(domain.id(), 2);
+  older.lease.hold();
+  std::this_thread::sleep_for(milliseconds(700));
+  Claimant later(domain.id(), 1);
+  later.lease.hold();  // it did not hear of the other in time
+  EXPECT_EQ(who_gives_way(older, later, milliseconds(4000)), 1U);
+  EXPECT_FALSE(older.lease.find_older());
+}
+
+TEST(Lease, OfTwoThatServeSinceTheSameTimeTheSmallerNumberKeepsTheMachine) {
+  const support::PrivateDomain domain;
+  Claimant one(domain.id(), 1), other(domain.id(), 2);
+  other.lease.hold();
+  one.lease.hold();
+  EXPECT_EQ(who_gives_way(one, other, milliseconds(6000)), 2U);
+  EXPECT_FALSE(one.lease.find_older());
+}
+
+TEST(Lease, OfTwoThatStartTogetherTheLargerNumberWaits) {
+  const support::PrivateDomain domain;
+  Claimant one(domain.id(), 1), other(domain.id(), 2);
+  const auto holder = other.lease.find_holder(milliseconds(400), milliseconds(400));
+  ASSERT_TRUE(holder);
+  EXPECT_EQ(holder->service_id, 1U);
+  EXPECT_FALSE(one.lease.find_holder(milliseconds(100), milliseconds(1000)));
+}
+
+}  // namespace
+}  // namespace meridian::interpolator
