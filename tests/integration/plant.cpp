@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -27,6 +28,16 @@ namespace {
 
 [[nodiscard]] std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+/// In a child before it becomes its program.
+void go_to(const Place& place) {
+  ::setns(::open(place.network.c_str(), O_RDONLY | O_CLOEXEC), CLONE_NEWNET);
+  if (!place.dds.empty()) ::setenv("CYCLONEDDS_URI", place.dds.c_str(), 1);
+  if (place.uptime_ahead_s == 0 || ::unshare(CLONE_NEWTIME) != 0) return;
+  const std::string offset = "monotonic " + std::to_string(place.uptime_ahead_s) + " 0\n";
+  const int file = ::open("/proc/self/timens_offsets", O_WRONLY | O_CLOEXEC);
+  (void)!::write(file, offset.data(), offset.size());
 }
 
 }  // namespace
@@ -91,6 +102,7 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
+  const Place* const place = place_of ? place_of(arguments) : nullptr;
   pid_ = ::fork();
   if (pid_ != 0) return;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -99,6 +111,7 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
   ::dup2(file, STDERR_FILENO);
   if (terminal != nullptr) ::dup2(terminal->process_end(), STDOUT_FILENO);
   if (input != nullptr) ::dup2(input->read_end(), STDIN_FILENO);
+  if (place != nullptr) go_to(*place);
   ::execv(argv[0], argv.data());
   ::_exit(127);
 }
@@ -154,10 +167,17 @@ std::string machine_file(const std::string& machine) {
 }
 
 Plant::Plant(std::string machine)
+    : Plant(std::move(machine), std::make_shared<support::PrivateDomain>()) {}
+
+Plant::Plant(std::string machine, const Plant& other) : Plant(std::move(machine), other.domain_) {}
+
+Plant::Plant(std::string machine, std::shared_ptr<support::PrivateDomain> domain)
     : machine_(std::move(machine)),
       machine_file_(machine_file(machine_)),
-      folder_(std::filesystem::temp_directory_path() / ("meridian-plant-" + domain())),
-      participant_({.domain = domain_.id(), .machine = machine_}),
+      domain_(std::move(domain)),
+      folder_(std::filesystem::temp_directory_path() /
+              ("meridian-plant-" + this->domain() + "-" + machine_)),
+      participant_({.domain = domain_->id(), .machine = machine_}),
       statuses_(participant_),
       commands_(participant_),
       replies_(participant_),

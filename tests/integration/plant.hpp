@@ -61,9 +61,19 @@ class Terminal {
   std::string shown_;
 };
 
+/// A host that a program may run on instead of the test's (hosts.hpp).
+struct Place {
+  std::string network;      ///< file of its network namespace
+  std::string dds;          ///< CYCLONEDDS_URI there; empty: as for the test
+  long uptime_ahead_s = 0;  ///< of its monotonic clock, where the kernel has time namespaces
+};
+
 /// A program of ours that runs beside the test; killed with it.
 class Process {
  public:
+  /// Where a program with that command line runs; nullptr: beside the test. None: all do.
+  static inline std::function<const Place*(const std::vector<std::string>&)> place_of;
+
   /// Starts build/bin/`arguments[0]`; what it says goes to `log`, its standard output to `terminal`
   /// where one is given. It reads `input` where one is given, else what the test reads.
   Process(const std::vector<std::string>& arguments, std::filesystem::path log,
@@ -89,6 +99,8 @@ class Plant {
  public:
   /// `machine`: one of deploy/machines, but for its approach, which takes no time from a test.
   explicit Plant(std::string machine = "lai");
+  /// In the DDS domain of `other`.
+  Plant(std::string machine, const Plant& other);
   ~Plant();
 
   /// Runs service and drives with another cycle time.
@@ -128,16 +140,17 @@ class Plant {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// The machine file that service and drives are started with.
   [[nodiscard]] const std::string& machine() const { return machine_file_; }
-  [[nodiscard]] std::string domain() const { return std::to_string(domain_.id()); }
+  [[nodiscard]] std::string domain() const { return std::to_string(domain_->id()); }
   [[nodiscard]] dds::Participant& participant() { return participant_; }
   [[nodiscard]] Process& service() { return *service_; }
   [[nodiscard]] Process& drives() { return *drives_; }
 
  private:
+  Plant(std::string machine, std::shared_ptr<support::PrivateDomain> domain);
   void look();
 
   std::string machine_, machine_file_;
-  support::PrivateDomain domain_;
+  std::shared_ptr<support::PrivateDomain> domain_;
   std::filesystem::path folder_;
   dds::Participant participant_;
   dds::Reader<dds::Status> statuses_;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integration/hosts.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "integration/live_run.hpp"
+
+/// Service, drives, station and viewer on hosts of their own, by configuration alone; their
+/// monotonic clocks are days apart.
+namespace meridian::test {
+namespace {
+
+class SeveralHosts : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string why = Hosts::why_not(); !why.empty()) GTEST_SKIP() << why;
+  }
+  void use(Hosts::Wire wire) {
+    hosts = std::make_unique<Hosts>(wire);
+    plant = std::make_unique<Plant>();
+  }
+  [[nodiscard]] std::string write_part(int blocks) const {
+    const std::string part = (plant->folder() / "part.cls").string();
+    write_cl_file(part, blocks);
+    return part;
+  }
+  std::unique_ptr<Hosts> hosts;  ///< outlives what runs on them
+  std::unique_ptr<Plant> plant;
+};
+
+TEST_F(SeveralHosts, CutAProgramAsSimulatedAndAViewerNobodyWasToldOfSeesIt) {
+  use(Hosts::Wire::kBridge);
+  LiveRun live;
+  live.wire = (plant->folder() / "wire.csv").string();
+  run_and_judge(*plant, write_part(8), live);
+  expect_on_wire(*plant, live);
+}
+
+TEST_F(SeveralHosts, CutAProgramAsSimulatedOverAWireThatLosesDoublesDelaysSwapsAndSpoils) {
+  use(Hosts::Wire::kSpoilt);
+  hosts->spoil(
+      {.delay_ms = 2, .jitter_ms = 1, .lost = 2, .twice = 2, .past_others = 2, .wrong = 1});
+  run_and_judge(*plant, write_part(8), {});
+  const std::string said = hosts->wire_said();
+  std::printf("%s", said.c_str());
+  int frames = 0, lost = 0, twice = 0, past_others = 0, wrong = 0;
+  ASSERT_EQ(
+      std::sscanf(said.c_str(), "%d frames, %d lost, %d twice, %d past others, %d with a wrong bit",
+                  &frames, &lost, &twice, &past_others, &wrong),
+      5)
+      << said;
+  EXPECT_GT(frames, 5000);
+  for (const int count : {lost, twice, past_others, wrong}) EXPECT_GT(count, frames / 200) << said;
+}
+
+TEST_F(SeveralHosts, StarveOnThePathWhereTheStationsNetworkIsCutAndGoOnFromThere) {
+  use(Hosts::Wire::kBridge);
+  plant->start_service();
+  plant->start_drives();
+  ASSERT_TRUE(plant->enable()) << plant->service().said();
+  const std::string part = write_part(12);
+  std::stringstream all;
+  all << std::ifstream(part).rdbuf();
+  const std::string text = all.str();
+  const std::size_t half = text.find("DELAY");
+  ASSERT_NE(half, std::string::npos);
+  InputPipe pipe;
+  Process station({"meridian", "stream", "-", "--domain", plant->domain(), "--wait-end"},
+                  plant->folder() / "station.log", &pipe);
+  pipe.write(text.substr(0, half));
+  ASSERT_TRUE(plant->wait_for(State::kLoaded)) << station.said();
+  const auto start = plant->say(Verb::kStart);
+  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_TRUE(plant->wait_for(State::kRunning));
+  hosts->cut(Hosts::kStation);
+  pipe.write(text.substr(half));
+  pipe.close();
+  ASSERT_TRUE(plant->wait_for(State::kStarved, milliseconds(15'000))) << plant->service().said();
+  const dds::Status starved = plant->status();
+  EXPECT_EQ(starved.alarm, Alarm::kNone);
+  std::this_thread::sleep_for(milliseconds(1500));  // each is dead for the other
+  EXPECT_EQ(plant->status().joints, starved.joints);
+
+  hosts->mend(Hosts::kStation);
+  ASSERT_TRUE(eventually([&] { return plant->status().blocks_received > starved.blocks_received; },
+                         milliseconds(10'000)))
+      << station.said();
+  ASSERT_TRUE(eventually([&] {
+    if (plant->status().state != State::kStarved) return true;
+    const auto resume = plant->say(Verb::kResume);
+    return resume && resume->is_accepted;
+  }));
+  ASSERT_EQ(station.wait(milliseconds(20'000)), 0) << station.said() << plant->service().said();
+  plant->service().send_signal(SIGTERM);
+  ASSERT_EQ(plant->service().wait(milliseconds(5000)), 0) << plant->service().said();
+  expect_checked(*plant, part, {});
+}
+
+TEST_F(SeveralHosts, FaultWhereTheDrivesNetworkIsCutAndRunAgainWhereItIsMended) {
+  use(Hosts::Wire::kBridge);
+  plant->start_service();
+  plant->start_drives();
+  ASSERT_TRUE(plant->enable()) << plant->service().said();
+  ASSERT_TRUE(plant->stream(small_program(40, 500), [](const stream::Station& station) {
+    return station.state() == stream::StationState::kComplete;
+  })) << plant->station().message();
+  ASSERT_TRUE(plant->wait_for(State::kLoaded));
+  const auto start = plant->say(Verb::kStart);
+  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_TRUE(plant->wait_for(State::kRunning));
+  hosts->cut(Hosts::kDrives);
+  ASSERT_TRUE(plant->wait_for(State::kFault)) << plant->service().said();
+  EXPECT_EQ(plant->status().alarm, Alarm::kFeedbackLost);
+  hosts->mend(Hosts::kDrives);
+  // Left alone the drives ramped down by their watchdog; reset reaches them once they are back.
+  EXPECT_TRUE(eventually(
+      [&] {
+        const auto reset = plant->say(Verb::kReset);
+        const auto enable = plant->say(Verb::kEnable);
+        return reset && enable && plant->wait_for(State::kReady, milliseconds(500));
+      },
+      milliseconds(15'000)))
+      << plant->service().said();
+}
+
+TEST_F(SeveralHosts, ServeTwoMachinesInOneDomainBesideEachOther) {
+  use(Hosts::Wire::kBridge);
+  Plant other("trunnion-ac", *plant);
+  const auto cut = [](Plant& of, const std::string& machine) {
+    LiveRun live;
+    live.machine = machine;
+    const std::string part = (of.folder() / "part.cls").string();
+    write_cl_file(part, 6, machine);
+    const std::string simulated = simulate_part(of, part, live);
+    ASSERT_NO_FATAL_FAILURE(run_live(of, part, live));
+    expect_same(of, simulated);
+  };
+  std::thread beside([&] { cut(other, "trunnion-ac"); });
+  cut(*plant, "lai");
+  beside.join();
+}
+
+TEST_F(SeveralHosts, WhereTwoServeOneMachineTheLaterGivesWayOnceTheyHearOfEachOther) {
+  use(Hosts::Wire::kBridge);
+  Process& first = plant->start_service();
+  ASSERT_GT(plant->status().service_id, 0U) << first.said();
+  hosts->cut(Hosts::kStation);
+  hosts->move("meridiand", Hosts::kStation);
+  const auto second = plant->another_service();
+  ASSERT_TRUE(
+      eventually([&] { return second->said().find("answering in Off") != std::string::npos; },
+                 milliseconds(6000)))
+      << second->said();
+  hosts->mend(Hosts::kStation);
+  EXPECT_EQ(second->wait(milliseconds(6000)), 1);
+  EXPECT_NE(second->said().find("'lai' is served already"), std::string::npos) << second->said();
+  EXPECT_FALSE(first.wait(milliseconds(200))) << "the first goes on: " << first.said();
+}
+
+}  // namespace
+}  // namespace meridian::test

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "integration/plant.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/interpolator/drive_words.hpp"
+#include "service/record/recording_reader.hpp"
+#include "support/draws.hpp"
+
+/// How long processes take to react, from the recording and the wire. MERIDIAN_REACTIONS=100 in the
+/// environment makes percentiles of it.
+namespace meridian::test {
+namespace {
+
+using record::RecordingRow;
+
+[[nodiscard]] std::int64_t monotonic_now_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+class LiveReaction : public testing::Test {
+ protected:
+  void SetUp() override {
+    plant.start_service();
+    plant.start_drives();
+    ASSERT_TRUE(plant.enable()) << plant.service().said();
+  }
+  void run_program() {
+    ASSERT_TRUE(plant.stream(small_program(250, 120), [](const stream::Station& station) {
+      return station.state() == stream::StationState::kComplete;
+    })) << plant.station().message();
+    ASSERT_TRUE(plant.wait_for(State::kLoaded)) << plant.service().said();
+    const auto start = plant.say(Verb::kStart);
+    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+    ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.service().said();
+  }
+  void say(Verb verb, State then) {
+    const auto reply = plant.say(verb);
+    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
+    ASSERT_TRUE(plant.wait_for(then)) << plant.service().said();
+  }
+  void recover() {
+    ASSERT_TRUE(plant.wait_for(State::kFault)) << plant.service().said();
+    ASSERT_TRUE(eventually([&] {
+      const auto reset = plant.say(Verb::kReset);
+      return reset && reset->is_accepted && plant.wait_for(State::kOff, milliseconds(300)) &&
+             plant.enable();
+    })) << plant.service().said();
+  }
+  /// Some time, of which nobody knows the phase in the cycle.
+  void wait_somewhere() {
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(std::uniform_int_distribution<int>(20'000, 60'000)(engine)));
+  }
+  /// Ends the service and shows its recording row by row.
+  template <class Visit>
+  void read_recording(const Visit& visit) {
+    plant.service().send_signal(SIGTERM);
+    ASSERT_EQ(plant.service().wait(milliseconds(12'000)), 0) << plant.service().said();
+    auto reader = record::RecordingReader::open(plant.recording().string(),
+                                                config::load_machine(machine_file()));
+    ASSERT_TRUE(reader.has_value()) << reader.error().text();
+    RecordingRow row;
+    for (auto has_row = reader->next(row); has_row && *has_row; has_row = reader->next(row)) {
+      visit(row);
+    }
+  }
+  /// When the machine first was in `state` behind each of `asked_ns`, ms behind it.
+  [[nodiscard]] std::vector<double> times_until(State state) {
+    std::vector<double> times_ms;
+    read_recording([&](const RecordingRow& row) {
+      if (times_ms.size() == asked_ns.size() || row.state != state) return;
+      const std::int64_t asked = asked_ns[times_ms.size()];
+      if (row.due_ns >= asked) times_ms.push_back(1e-6 * static_cast<double>(row.due_ns - asked));
+    });
+    EXPECT_EQ(times_ms.size(), asked_ns.size());
+    return times_ms;
+  }
+  static double median(const char* what, const char* unit, std::vector<double> values) {
+    EXPECT_FALSE(values.empty());
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const auto at = [&](std::size_t percent) {
+      return values[std::min(values.size() - 1, values.size() * percent / 100)];
+    };
+    std::printf("%s: %zu times, %s p50 %.2f, p90 %.2f, p99 %.2f, most %.2f\n", what, values.size(),
+                unit, at(50), at(90), at(99), values.back());
+    return at(50);
+  }
+
+  const int repetitions = number_of("MERIDIAN_REACTIONS", 2);
+  std::mt19937 engine{20260412};
+  std::vector<std::int64_t> asked_ns;  ///< when each thing happened
+  Plant plant;
+};
+
+TEST_F(LiveReaction, OfAHoldIsADeceleratingSetpointWithinTwoCycles) {
+  ASSERT_NO_FATAL_FAILURE(run_program());
+  for (int n = 0; n < repetitions; ++n) {
+    wait_somewhere();
+    asked_ns.push_back(monotonic_now_ns());
+    ASSERT_NO_FATAL_FAILURE(say(Verb::kHold, State::kHeld));
+    ASSERT_NO_FATAL_FAILURE(say(Verb::kResume, State::kRunning));
+  }
+  ASSERT_NO_FATAL_FAILURE(say(Verb::kAbort, State::kReady));
+  std::vector<double> times_ms, cycles;
+  int since_seen = -1;  // executed cycles since the one that saw the hold; -1: none to wait for
+  State before = State::kOff;
+  read_recording([&](const RecordingRow& row) {
+    const bool is_seen = row.state == State::kHolding && before != State::kHolding;
+    since_seen = is_seen ? 0 : since_seen < 0 ? -1 : since_seen + 1;
+    before = row.state;
+    if (since_seen < 0 || row.rate >= 1) return;
+    cycles.push_back(since_seen);
+    times_ms.push_back(1e-6 * static_cast<double>(row.due_ns - asked_ns.at(times_ms.size())));
+    since_seen = -1;
+  });
+  ASSERT_EQ(cycles.size(), asked_ns.size());
+  (void)median("hold seen to first decelerating setpoint", "cycles", cycles);
+  (void)median("operator's hold to first decelerating setpoint", "ms", times_ms);
+  EXPECT_LE(*std::max_element(cycles.begin(), cycles.end()), 2);
+}
+
+TEST_F(LiveReaction, OfDrivesThatAreKilledIsAFaultStopWhenTheirLastReportIsTooOld) {
+  constexpr double kFeedbackTimeout_ms = 100;  // of the service file
+  for (int n = 0; n < repetitions; ++n) {
+    ASSERT_NO_FATAL_FAILURE(run_program());
+    wait_somewhere();
+    asked_ns.push_back(monotonic_now_ns());
+    plant.drives().send_signal(SIGKILL);
+    ASSERT_TRUE(plant.drives().wait(milliseconds(2000)));
+    ASSERT_TRUE(plant.wait_for(State::kFault)) << plant.service().said();
+    EXPECT_EQ(plant.status().alarm, Alarm::kFeedbackLost);
+    plant.start_drives();
+    ASSERT_NO_FATAL_FAILURE(recover());
+  }
+  const double p50 = median("drives killed to FaultStop", "ms", times_until(State::kFaultStop));
+  EXPECT_GT(p50, kFeedbackTimeout_ms - 10);
+  EXPECT_LT(p50, kFeedbackTimeout_ms + 50);
+}
+
+TEST_F(LiveReaction, OfAServiceThatIsStoppedIsTheDrivesRampBehindTheBridge) {
+  constexpr double kBridge_ms = 50;  // of a service in best effort
+  dds::Reader<dds::DriveFeedback> feedback(plant.participant());
+  std::vector<double> times_ms;
+  for (int n = 0; n < repetitions; ++n) {
+    ASSERT_NO_FATAL_FAILURE(run_program());
+    wait_somewhere();
+    const std::int64_t begun_ns = monotonic_now_ns();
+    plant.service().send_signal(SIGSTOP);
+    dds::DriveFeedback sample;
+    const bool has_ramped = eventually([&] {
+      while (feedback.take(sample)) {
+        const auto state = drive_state(sample.statusword[0]);
+        if (state == DriveState::kFaultReaction || state == DriveState::kFault) {
+          times_ms.push_back(1e-6 * static_cast<double>(monotonic_now_ns() - begun_ns));
+          return true;
+        }
+      }
+      return false;
+    });
+    plant.service().send_signal(SIGCONT);
+    ASSERT_TRUE(has_ramped) << plant.drives().said();
+    ASSERT_NO_FATAL_FAILURE(recover());
+    while (feedback.take(sample)) continue;
+  }
+  const double p50 = median("service stopped to the drives' ramp", "ms", times_ms);
+  EXPECT_GT(p50, kBridge_ms - 5);
+  EXPECT_LT(p50, kBridge_ms + 50);
+}
+
+}  // namespace
+}  // namespace meridian::test
