@@ -6,8 +6,7 @@
 namespace meridian::soak {
 namespace {
 
-/// A life's first seconds are warm-up; of a short soak's even fewer.
-constexpr double kWarmUp_s = 10;
+constexpr double kWarmUp_s = 10;    ///< of a life
 constexpr double kInterval_s = 10;  ///< what first and last are told of
 
 }  // namespace

@@ -68,7 +68,7 @@ struct SoakReport {
 };
 
 /// What speaks against the service's memory, files and threads; empty where nothing does. The first
-/// minute of a life is warm-up.
+/// ten seconds of a life are warm-up.
 [[nodiscard]] std::vector<std::string> growth(const SoakReport& report);
 
 [[nodiscard]] std::string to_text(const SoakReport& report);
