@@ -42,13 +42,16 @@ class Follower {
         slack_(slack),
         branch_(branch),
         free_(free_joint(model)),
-        pole_rad_(std::max(kPoleTolerances * axis_tolerance_beside_pole(model), kLeastPole_rad)),
+        pole_rad_(
+            std::max(kPoleTolerances * std::max(axis_tolerance_beside_pole(model), slack.axis_rad),
+                     kLeastPole_rad)),
         pose_(start),
         ways_(ways) {
     const auto at = solve(model_, tool_length_mm_, start, branch_, JointVector{});
     const double distance = pole_distance(model_, start.axis);
     is_over_ = at.status != SolveStatus::kOk || distance < kPoleEase_rad;
     has_left_pole_ = distance >= pole_rad_;
+    is_branch_certain_ = has_left_pole_ || !(slack.axis_rad > 0);
     joints_ = at.q;
     begin_ = joints_[free_];
   }
@@ -131,7 +134,7 @@ class Follower {
     const double value = limited_value(model_, all, joint);
     const JointLimits& limits = limited_spec(model_, joint).limits;
     const double beyond = std::max(value - limits.travel_max, limits.travel_min - value);
-    if (!(beyond > spread_of(joint, pose))) return;
+    if (!is_branch_certain_ || !(beyond > spread_of(joint, pose))) return;
     way.end = AheadEnd::kLost;
     way.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
   }
@@ -175,7 +178,8 @@ class Follower {
   double begin_ = 0;  ///< of the free joint
   double time_s_ = 0;
   bool is_over_ = false;
-  bool has_left_pole_ = false;  ///< it was far enough from the pole once
+  bool has_left_pole_ = false;      ///< it was far enough from the pole once
+  bool is_branch_certain_ = false;  ///< a run that keeps to the slack leaves it nowhere
   bool is_tool_known_ = true;
 };
 

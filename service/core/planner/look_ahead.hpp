@@ -40,6 +40,7 @@ struct AheadSlack {
 /// programmed lines, arcs and great circles; the look ends where the axis comes so close to the
 /// pole that the branch may be chosen anew. From a start that is so close it is followed out first;
 /// from a start on the pole it sees nothing.
+/// Where a run within the slack may leave the branch beside the pole it begins at, no way is lost.
 ///
 /// The machine has a free joint. Bounded by the blocks, no memory. Units: mm, rad, s.
 void look_ahead(const MachineModel& model, double tool_length_mm, const ToolPose& start,

@@ -117,9 +117,7 @@ TEST(LookAhead, RefusesBeforeItStartsWhatNoWindingCarries) {
       ASSERT_EQ(cut.last.status, PlanStatus::kRefused);
       EXPECT_FALSE(cut.times.empty());
       EXPECT_GE(reject.sequence + 3, cut.last.reject.sequence) << "another winding carries farther";
-      std::printf("%d blocks, refused at %d, found on the way at %d\n",
-                  static_cast<int>(program.size()), static_cast<int>(reject.sequence),
-                  static_cast<int>(cut.last.reject.sequence));
+      EXPECT_LE(reject.sequence, program.size() / 2) << "C comes back from there";
     }
   }
 }
@@ -144,6 +142,39 @@ TEST(LookAhead, RefusesNothingThatRoundingMayKeepInsideTravel) {
   EXPECT_EQ(plan_with_look(model, blocks, start, Transition::kSmooth).status, PlanStatus::kOk);
   EXPECT_EQ(plan_with_look(model, blocks, start, Transition::kExactStop).status,
             PlanStatus::kRefused);
+}
+
+/// Over the pole at `offset_deg` beside it, from `from_deg` to 10 degrees behind it.
+std::vector<ClBlock> past_the_pole(double from_deg, double offset_deg) {
+  std::vector<ClBlock> blocks;
+  for (const double x_deg : {from_deg, -0.5, -1.0, -2.0, -5.0, -10.0}) {
+    const double x = units::rad_from_deg(x_deg), y = units::rad_from_deg(offset_deg);
+    blocks.push_back(leaning(std::hypot(x, y), std::atan2(y, x), {50 - 5 * x_deg, 0, 0}));
+    blocks.back().sequence = blocks.size() - 1;
+  }
+  end_program(blocks);
+  return blocks;
+}
+
+/// On the programmed great circle C would turn by half a turn, for which it has no travel; the cut
+/// is eased over the pole, where C nearly stands.
+TEST(LookAhead, RefusesNothingThatIsEasedPastThePole) {
+  const MachineModel model = limited(bench_machine(), -60, 60);
+  const double tolerance_deg = units::deg_from_rad(axis_tolerance_beside_pole(model));
+  const double asked = units::rad_from_deg(5 * tolerance_deg);
+  const struct {
+    double from_deg, offset_deg;
+    SmoothSettings settings;
+  } cuts[] = {{tolerance_deg, tolerance_deg / 5, {Transition::kSmooth, 0, 0}},
+              {10, tolerance_deg * 3, {Transition::kSmooth, 0, asked}},
+              {0.5, tolerance_deg * 3, {Transition::kSmooth, 0, asked}}};
+  for (const auto& cut : cuts) {
+    SCOPED_TRACE(testing::Message() << "from " << cut.from_deg << " at " << cut.offset_deg);
+    const auto blocks = past_the_pole(cut.from_deg, cut.offset_deg);
+    const SmoothTrace trace =
+        plan_smooth(model, blocks, joints_of(model, blocks[0]), cut.settings, true);
+    EXPECT_EQ(trace.last.status, PlanStatus::kOk) << "block " << trace.last.reject.sequence;
+  }
 }
 
 /// Half a turn from `begin` about the origin, through +y.
