@@ -12,16 +12,18 @@ constexpr double kNoBound = 1e9;
 using Samples = std::array<double, kSteps + 1>;
 
 /// Largest |f| of a smooth function from its samples: between them a peak rises to about the top of
-/// the parabola through the three samples around it.
+/// the parabola through the three samples around it; beside the first or the last one, through the
+/// three there.
 double peak_of(const Samples& f) noexcept {
   double most = 0;
   for (int k = 0; k <= kSteps; ++k) most = std::max(most, std::abs(f[k]));
   for (int k = 1; k < kSteps; ++k) {
     const double sign = f[k] < 0 ? -1 : 1;
-    const double left = sign * f[k - 1], top = sign * f[k], right = sign * f[k + 1];
-    const double bend = 2 * top - left - right;
-    if (!(bend > 0) || top < left || top < right) continue;
-    most = std::max(most, top + (right - left) * (right - left) / (8 * bend));
+    const double left = sign * f[k - 1], middle = sign * f[k], right = sign * f[k + 1];
+    const double bend = 2 * middle - left - right, slope = right - left;
+    const double before = k == 1 ? 2 : 1, behind = k == kSteps - 1 ? 2 : 1;  // half samples
+    if (!(bend > 0) || -slope > before * bend || slope > behind * bend) continue;
+    most = std::max(most, middle + slope * slope / (8 * bend));
   }
   return most;
 }
@@ -46,18 +48,15 @@ FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& la
   }
   for (int i = 0; i < limits.count; ++i) {
     Samples velocity, acceleration, jerk;
-    double with_filter = 0;
     for (int k = 0; k <= kSteps; ++k) {
       const CellSample& at = cell.at[k];
       velocity[k] = at.d1[i] * v[k];
-      acceleration[k] = at.d1[i] * a[k] + at.d2[i] * b[k];
+      acceleration[k] =
+          std::abs(at.d1[i] * a[k] + at.d2[i] * b[k]) + limits.slope * std::abs(velocity[k]);
       jerk[k] = at.d1[i] * j[k] + 3 * at.d2[i] * v[k] * a[k] + at.d3[i] * v[k] * b[k];
-      with_filter =
-          std::max(with_filter, std::abs(acceleration[k]) + limits.slope * std::abs(velocity[k]));
     }
     use.velocity = std::max(use.velocity, peak_of(velocity) / limits.velocity[i]);
-    use.acceleration = std::max(
-        {use.acceleration, std::max(peak_of(acceleration), with_filter) / limits.acceleration[i]});
+    use.acceleration = std::max(use.acceleration, peak_of(acceleration) / limits.acceleration[i]);
     use.jerk = std::max(use.jerk, peak_of(jerk) / limits.jerk[i]);
   }
   return use;

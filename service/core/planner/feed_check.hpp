@@ -20,9 +20,9 @@ struct CellLaw {
   double b = 0, slope = 0, slope_end = 0;
 };
 
-/// The use of `law` in `cell`: nine samples, and the top of the parabola around every sampled peak.
+/// The use of `law` in `cell`: nine samples, and the tops of the parabolas through three of them.
 /// A b that is not positive somewhere counts as a use without bound. Velocity over the rate
-/// filter's slope counts as acceleration.
+/// filter's slope counts as acceleration. Proof: tests/unit/planner/feed_check_test.cpp.
 [[nodiscard]] FeedUse use_of(const FeedLimits& limits, const FeedCell& cell,
                              const CellLaw& law) noexcept;
 

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace meridian::test::feed_check {
+namespace {
+
+/// One joint with a limit of 1 each, without a rate filter.
+FeedLimits unit_limits() {
+  FeedLimits limits;
+  limits.count = 1;
+  limits.velocity[0] = limits.acceleration[0] = limits.jerk[0] = 1;
+  return limits;
+}
+
+/// A cell in which u runs evenly and the joint's derivative number `order` is `of(k)` at place k.
+template <class Of>
+FeedUse use_at_even_speed(int order, const Of& of, double slope = 0) {
+  FeedCell cell;
+  cell.h = 0.1;
+  for (int k = 0; k <= FeedCell::kSteps; ++k) {
+    CellSample& at = cell.at[static_cast<std::size_t>(k)];
+    at.most_b = 1;
+    (order == 1 ? at.d1 : order == 2 ? at.d2 : at.d3)[0] = of(k);
+  }
+  FeedLimits limits = unit_limits();
+  limits.slope = slope;
+  return use_of(limits, cell, {1, 0, 0});
+}
+
+double use_of_order(const FeedUse& use, int order) {
+  return order == 1 ? use.velocity : order == 2 ? use.acceleration : use.jerk;
+}
+
+TEST(FeedCheck, SeesATopBetweenAnyTwoSamples) {
+  for (int order = 1; order <= 3; ++order) {
+    for (const double sign : {1.0, -1.0}) {
+      for (double top = 0; top <= FeedCell::kSteps; top += 0.1) {
+        SCOPED_TRACE(testing::Message() << "derivative " << order << ", top at " << top);
+        const auto bump = [&](int k) { return sign * (1.02 - 0.02 * (k - top) * (k - top)); };
+        EXPECT_NEAR(use_of_order(use_at_even_speed(order, bump), order), 1.02, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(FeedCheck, TakesNoTopThatLiesOutsideOfTheCell) {
+  const auto rising = [](int k) { return 0.5 + 0.1 * k - 0.005 * k * k; };  // top at 10
+  const double end = rising(FeedCell::kSteps);
+  EXPECT_NEAR(use_at_even_speed(2, rising).acceleration, end, 1e-12);
+  const auto falling = [&](int k) { return rising(FeedCell::kSteps - k); };
+  EXPECT_NEAR(use_at_even_speed(2, falling).acceleration, end, 1e-12);
+}
+
+TEST(FeedCheck, CountsTheRateFilterAsAccelerationBetweenSamplesToo) {
+  const auto bump = [](int k) { return 1 - 0.02 * (k - 3.5) * (k - 3.5); };
+  EXPECT_NEAR(use_at_even_speed(1, bump, 0.25).acceleration, 0.25, 1e-12);
+}
+
+TEST(FeedCheck, TakesAStandstillForAUseWithoutBound) {
+  FeedCell cell;
+  cell.h = 1;
+  EXPECT_GT(use_of(unit_limits(), cell, {1, -2, 0}).jerk, 1e6);
+}
+
+}  // namespace
+}  // namespace meridian::test::feed_check
