@@ -2,7 +2,8 @@
 
 /// Seeded programs that look for trouble, run smoothly through planner, port and cycle while an
 /// operator turns the override, holds and resumes, blocks come late and drives fault: every limit,
-/// the feed and the tolerances, by the setpoints alone. CI runs a few; all of them:
+/// the feed and the tolerances, from the setpoints to the path and from its vertices to the way of
+/// the tool, by the setpoints alone. CI runs a few; all of them:
 ///
 ///     MERIDIAN_SWEEP_PROGRAMS=2000 rt_motion_test --gtest_filter='SmoothSweep*'
 ///
@@ -19,6 +20,7 @@
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/rt/operated_run.hpp"
+#include "property/rt/passed_vertices.hpp"
 #include "support/draws.hpp"
 
 namespace meridian::test::smooth_sweep {
@@ -52,7 +54,7 @@ std::vector<ClBlock> draw_blocks(RandomPrograms& random, std::uint32_t seed, int
 
 struct Sweep {
   LimitShares worst, worst_fault;
-  double feed = 0, off = 0, seconds = 0;
+  double feed = 0, off = 0, missed = 0, seconds = 0;
   int programs = 0, refused = 0, faults = 0, bad = 0;
   std::uint64_t dry = 0;
   Operator random_operator{.least_override = 0, .turns_rapids = true};
@@ -72,28 +74,39 @@ double operate_late(SmoothRunning& run, RandomPrograms& random, double most_s) {
   return t;
 }
 
-/// Largest tip speed of cuts over the feed, and distance from the programmed path in tolerances.
-void judge_path(const MachineModel& machine, const std::vector<ClBlock>& blocks,
-                const SmoothRunning& run, Sweep& sweep, double& feed, double& off) {
+/// What a run makes of its path: largest tip speed of cuts over the feed, distance from the
+/// programmed path and of a vertex from the tool's way, both in tolerances.
+struct PathShares {
+  double feed = 0, off = 0, missed = 0;
+};
+
+PathShares judge_path(const MachineModel& machine, const std::vector<ClBlock>& blocks,
+                      const SmoothRunning& run) {
+  PathShares shares;
   const auto ways = programmed_ways(blocks);
   const auto& records = run.world.records;
   const double limit = std::min(blocks.front().feed, machine.max_feed_mm_per_s);
   std::size_t count = 0;
   Vector3 last = Vector3::Zero();
-  std::uint64_t last_cycle = 0;
+  std::uint64_t last_cycle = 0, before = 0;
+  PassedVertices vertices(blocks, machine.tolerances.tip_mm, machine.tolerances.axis_rad);
   for_each_cut(machine, records, 0, 1, [&](const CycleRecord& record, const ToolPose& pose) {
+    vertices.add(record.sequence, pose, record.setpoint.cycle == before + 1);
+    before = record.setpoint.cycle;
     if (record.setpoint.cycle == last_cycle + 1 && record.motion == MotionKind::kCut) {
       constexpr double kRounding_mm = 1e-11;
-      feed = std::max(feed, ((pose.tip - last).norm() - kRounding_mm) / run.world.dt() / limit);
+      const double way = (pose.tip - last).norm() - kRounding_mm;
+      shares.feed = std::max(shares.feed, way / run.world.dt() / limit);
     }
     last = pose.tip;
     last_cycle = record.motion == MotionKind::kCut ? record.setpoint.cycle : 0;
     if (++count % 61 != 0) return;
-    off = std::max(off, distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
-                                      machine.tolerances.axis_rad));
+    const double off = distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
+                                     machine.tolerances.axis_rad);
+    shares.off = std::max(shares.off, off);
   });
-  sweep.feed = std::max(sweep.feed, feed);
-  sweep.off = std::max(sweep.off, off);
+  shares.missed = vertices.worst(run.is_over());
+  return shares;
 }
 
 void run_program(std::uint32_t seed, Sweep& sweep) {
@@ -114,12 +127,15 @@ void run_program(std::uint32_t seed, Sweep& sweep) {
                               : sweep.random_operator.operate(run, random, kMostSeconds);
   if (run.world.now() == State::kHeld) run.command(Verb::kResume);
   LimitShares shares = shares_of_limits(run.world, 0, false);
-  double feed = 0, off = 0;
-  judge_path(machine, blocks, run, sweep, feed, off);
+  const PathShares path = judge_path(machine, blocks, run);
+  sweep.feed = std::max(sweep.feed, path.feed);
+  sweep.off = std::max(sweep.off, path.off);
+  sweep.missed = std::max(sweep.missed, path.missed);
   sweep.worst.take(shares);
   sweep.dry += run.world.state.starvations;
-  bool is_bad = std::max({shares.v, shares.a, shares.j}) > kLimit || feed > kFeedLimit ||
-                off > kLimit || run.world.count(EventCode::kAlarm) != 0;
+  bool is_bad = std::max({shares.v, shares.a, shares.j}) > kLimit || path.feed > kFeedLimit ||
+                path.off > kLimit || path.missed > kLimit ||
+                run.world.count(EventCode::kAlarm) != 0;
   const std::size_t first = run.world.records.size();
   if (run_into_fault(run, random.uniform(0, 0.5)) && run.world.run_until(State::kFault, 10)) {
     const LimitShares by_fault = shares_of_limits(run.world, first, true);
@@ -130,9 +146,10 @@ void run_program(std::uint32_t seed, Sweep& sweep) {
   if (!is_bad) return;
   ++sweep.bad;
   ADD_FAILURE() << "seed " << seed << ": v " << shares.v << " a " << shares.a << " j " << shares.j
-                << " feed " << feed << " tolerances " << off << ", FaultStops so far v "
-                << sweep.worst_fault.v << " a " << sweep.worst_fault.a << " j "
-                << sweep.worst_fault.j << ", alarms " << run.world.count(EventCode::kAlarm);
+                << " feed " << path.feed << " tolerances " << path.off << ", vertices missed by "
+                << path.missed << ", FaultStops so far v " << sweep.worst_fault.v << " a "
+                << sweep.worst_fault.a << " j " << sweep.worst_fault.j << ", alarms "
+                << run.world.count(EventCode::kAlarm);
 }
 
 /// Programs that rest exactly on the pole where the run before came from its side.
@@ -158,10 +175,11 @@ TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
   for (std::uint32_t seed = first; seed < first + programs; ++seed) run_program(seed, sweep);
   std::printf(
       "%d programs (%d refused), %.0f s, %d holds, %llu times dry, %d FaultStops: v %.6f a %.6f j "
-      "%.6f feed %.6f of the limits, %.4f tolerances; FaultStops v %.4f a %.4f j %.4f; %d bad\n",
+      "%.6f feed %.6f of the limits, %.4f tolerances, vertices %.4f; FaultStops v %.4f a %.4f j "
+      "%.4f; %d bad\n",
       sweep.programs, sweep.refused, sweep.seconds, sweep.random_operator.holds,
       static_cast<unsigned long long>(sweep.dry), sweep.faults, sweep.worst.v, sweep.worst.a,
-      sweep.worst.j, sweep.feed, sweep.off, sweep.worst_fault.v, sweep.worst_fault.a,
+      sweep.worst.j, sweep.feed, sweep.off, sweep.missed, sweep.worst_fault.v, sweep.worst_fault.a,
       sweep.worst_fault.j, sweep.bad);
   EXPECT_LT(sweep.refused, sweep.programs / 4 + 1);
   EXPECT_GT(sweep.seconds, sweep.programs);
