@@ -61,6 +61,16 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   return kVerdictNo;
 }
 
+/// What is wrong with the options beside the verb; nullptr: nothing.
+[[nodiscard]] const char* misplaced(Verb verb, const CtlOptions& options) {
+  if (verb == Verb::kJog) {
+    return options.wait.empty() ? nullptr
+                                : "--wait is not for jog, which ends when the joint rests";
+  }
+  const bool has_jog = options.jog.for_s > 0 || options.jog.distance > 0;
+  return has_jog ? "--for and --distance are for jog alone" : nullptr;
+}
+
 /// The argument of a verb that has one by itself, 0 for others; or says what is wrong.
 std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
@@ -80,6 +90,10 @@ int run_ctl(CtlOptions& options) {
   const Verb verb = verbs().at(options.verb);
   std::optional<double> argument = argument_of(verb, options);
   if (!argument) return kUsage;
+  if (const char* const wrong = misplaced(verb, options)) {
+    std::fprintf(stderr, "meridian: %s\n", wrong);
+    return kUsage;
+  }
   if (!options.wait.empty() && !parse_state(options.wait)) {
     std::fprintf(stderr, "meridian: --wait %s: no such state; there are %s\n", options.wait.c_str(),
                  all_states().c_str());

@@ -16,6 +16,7 @@
 #include "service/record/flight_picture.hpp"
 #include "service/record/flight_report.hpp"
 #include "service/record/wire_recording.hpp"
+#include "service/stream/end_watch.hpp"
 #include "service/stream/steady_ns.hpp"
 
 namespace meridian::cli {
@@ -77,34 +78,6 @@ class Tap {
   dds::Reader<Message> reader_;
 };
 
-/// Sees that a program ran and is over: from the status, and from setpoints for one so short that
-/// no status tells of it.
-class EndWatch {
- public:
-  explicit EndWatch(dds::Participant& participant) : reader_(participant) {}
-
-  void saw(const Setpoint& setpoint) {
-    if ((setpoint.flags & kSetpointMoving) != 0) moved_ = std::max(moved_, setpoint.cycle);
-  }
-  [[nodiscard]] bool is_over() {
-    dds::Status status;
-    if (followed_.take(reader_, status)) {
-      const bool is_idle = status.state == State::kReady || status.state == State::kOff ||
-                           status.state == State::kFault;
-      has_run_ = has_run_ || status.state == State::kRunning;
-      const bool has_moved = moved_ > 0 && status.cycle > moved_;
-      is_over_ = (has_run_ || has_moved) && is_idle;
-    }
-    return is_over_;
-  }
-
- private:
-  dds::Reader<dds::Status> reader_;
-  dds::Followed<dds::Status> followed_;
-  bool has_run_ = false, is_over_ = false;
-  std::uint64_t moved_ = 0;  ///< newest cycle in motion
-};
-
 void take_feedback(const dds::DriveFeedback& feedback, record::WireRow& row) {
   row.feedback_cycle = feedback.cycle_seen;
   for (std::size_t i = 0; i < row.feedback.size(); ++i) {
@@ -125,7 +98,10 @@ int run(Options& options) {
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   const auto setpoints = std::make_unique<Tap<dds::SetpointSample>>(participant);
   const auto feedbacks = std::make_unique<Tap<dds::DriveFeedback>>(participant);
-  EndWatch end(participant);
+  dds::Reader<dds::Status> statuses(participant);
+  dds::Followed<dds::Status> followed;
+  dds::Status status;
+  stream::EndWatch end;
   record::WireBook book(model);
   record::WireRow row;
   watch_for_stop();
@@ -134,6 +110,7 @@ int run(Options& options) {
   const auto begin = std::chrono::steady_clock::now();
   for (bool is_last = false; !is_last;) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    if (followed.take(statuses, status)) end.see(status);
     is_last = stop_flag().load() ||
               (options.duration_s > 0 && passed.count() >= options.duration_s) ||
               (options.until_end && end.is_over());
@@ -148,7 +125,7 @@ int run(Options& options) {
       row.sent_minus_due_ns = setpoint->message.sent_minus_due_ns;
       row.arrival_ns = setpoint->arrival_ns;
       setpoints->pop();
-      end.saw(row.setpoint);
+      end.see(row.setpoint);
       book.add(row);
       (void)writer->write(row);
     }

@@ -111,11 +111,16 @@ int print_latency(dds::Participant& participant, const StatusOptions& options) {
 }
 
 int run_status(StatusOptions& options) {
+  const bool is_latency = options.is_latency || !options.histograms.empty();
+  if (options.for_s > 0 && !is_latency) {
+    std::fprintf(stderr, "meridian: --for is for --latency and --histograms\n");
+    return kUsage;
+  }
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
-  if (options.is_latency || !options.histograms.empty()) return print_latency(participant, options);
+  if (is_latency) return print_latency(participant, options);
   TopicLink<dds::Status> link(participant);
   if (options.is_watching) watch_for_stop();
   do {

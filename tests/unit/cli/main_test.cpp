@@ -26,6 +26,13 @@ TEST(Tool, NoSubcommandIsAUsageError) { EXPECT_EQ(run_tool("").exit_code, 2); }
 
 TEST(Tool, UnknownSubcommandIsAUsageError) { EXPECT_EQ(run_tool("dance").exit_code, 2); }
 
+TEST(Tool, AnOptionThatWouldSayNothingIsAUsageError) {
+  EXPECT_EQ(run_tool("ctl enable --for 2").exit_code, 2);
+  EXPECT_EQ(run_tool("ctl home --distance 2").exit_code, 2);
+  EXPECT_EQ(run_tool("ctl jog b3 5 --wait Ready").exit_code, 2);
+  EXPECT_EQ(run_tool("status --for 2").exit_code, 2);
+}
+
 TEST(Tool, VersionIsFine) {
   const CommandOutput outcome = run_tool("--version");
   EXPECT_EQ(outcome.exit_code, 0);
