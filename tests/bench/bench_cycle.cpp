@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of one cycle while the machine cuts: bench_cycle --benchmark_repetitions=9
+// Time of one cycle while the machine cuts, and of a setpoint on a smooth path:
+// bench_cycle --benchmark_repetitions=9
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "bench/cycle_workload.hpp"
+#include "bench/setpoint_workload.hpp"
 
 namespace meridian {
 namespace {
@@ -57,6 +59,38 @@ void CyclePercentiles(benchmark::State& state) {
   state.counters["samples"] = static_cast<double>(times_ns.size());
 }
 BENCHMARK(CyclePercentiles)->Unit(benchmark::kMillisecond);
+
+/// Medians over batches that take turns: a setpoint on a smooth path (time law, spline, joints and
+/// velocities), the bare inverse kinematics of its pose, and what the one takes on top of the
+/// other.
+void SetpointOnTopOfInverse(benchmark::State& state, bench::SetpointsOf what) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kBatch = 500;
+  const bench::Setpoints setpoints(what);
+  if (setpoints.size() < 100) return state.SkipWithError("no setpoints");
+  std::vector<double> whole_ns, inverse_ns, on_top_ns;
+  for (auto _ : state) {
+    const auto begin = Clock::now();
+    benchmark::DoNotOptimize(setpoints.evaluate(kBatch));
+    const auto middle = Clock::now();
+    benchmark::DoNotOptimize(setpoints.solve_poses(kBatch));
+    const std::chrono::duration<double, std::nano> whole = middle - begin,
+                                                   inverse = Clock::now() - middle;
+    whole_ns.push_back(whole.count() / kBatch);
+    inverse_ns.push_back(inverse.count() / kBatch);
+    on_top_ns.push_back((whole - inverse).count() / kBatch);
+  }
+  const auto median = [](std::vector<double>& times) {
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
+                     times.end());
+    return times[times.size() / 2];
+  };
+  state.counters["setpoint_ns"] = median(whole_ns);
+  state.counters["inverse_ns"] = median(inverse_ns);
+  state.counters["on_top_ns"] = median(on_top_ns);
+}
+BENCHMARK_CAPTURE(SetpointOnTopOfInverse, Spline, bench::SetpointsOf::kSpline);
+BENCHMARK_CAPTURE(SetpointOnTopOfInverse, BesideThePole, bench::SetpointsOf::kPole);
 
 }  // namespace
 }  // namespace meridian

@@ -11,6 +11,7 @@
 #include "bench/cycle_workload.hpp"
 #include "bench/ik_workload.hpp"
 #include "bench/planner_workload.hpp"
+#include "bench/setpoint_workload.hpp"
 #include "bench/smooth_workload.hpp"
 #include "bench/trace_workload.hpp"
 
@@ -32,6 +33,10 @@ int main(int argc, char** argv) {
     checksum = meridian::bench::run_robot_6r(count);
   } else if (workload == "cycle") {
     checksum = meridian::bench::run_cycle(count);
+  } else if (workload == "setpoint_spline") {
+    checksum = meridian::bench::run_setpoints(meridian::bench::SetpointsOf::kSpline, count);
+  } else if (workload == "setpoint_pole") {
+    checksum = meridian::bench::run_setpoints(meridian::bench::SetpointsOf::kPole, count);
   } else if (workload == "trace_off") {
     checksum = meridian::bench::run_trace_off(count);
   } else if (workload == "planner") {

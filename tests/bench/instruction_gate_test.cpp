@@ -73,6 +73,8 @@ TEST(InstructionGate, InverseKinematicsOfRobot6R) {
   expect_within_budget("inverse_kinematics_robot_6r", 4096);
 }
 TEST(InstructionGate, Cycle) { expect_within_budget("cycle", 8000); }
+TEST(InstructionGate, SetpointOnASpline) { expect_within_budget("setpoint_spline", 20000); }
+TEST(InstructionGate, SetpointBesideThePole) { expect_within_budget("setpoint_pole", 20000); }
 TEST(InstructionGate, TracingThatIsOff) { expect_within_budget("trace_off", 8000); }
 TEST(InstructionGate, Planner) { expect_within_budget("planner", 100); }
 TEST(InstructionGate, SmoothPlannerPerBlock) { expect_within_budget("smooth_block", 55); }

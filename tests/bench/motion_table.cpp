@@ -156,7 +156,7 @@ bool print_run(const Program& program, const MachineModel& model) {
       [&](const CycleRecord& record) { is_written = writer->write(record) && is_written; });
   is_written = writer->close() && is_written;
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
-  for (const ClBlock& block : program.blocks()) path.add(block, 0);
+  for (const ClBlock& block : program.blocks()) path.add(block, model.tool_length_mm);
   auto rows = record::RecordingReader::open(recording, model);
   if (report.outcome != simulate::Outcome::kDone || !is_written || !rows) {
     std::printf("%-18s %s\n", name.c_str(), report.reason.c_str());
