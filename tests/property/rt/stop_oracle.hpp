@@ -24,31 +24,39 @@ struct Interval {
   }
 };
 
-/// Time in which the greediest stop comes to rest: at every instant the hardest braking that the
-/// joints' acceleration and jerk allow just there, let go in time to land. It looks no way ahead,
-/// so where limits get tighter it is faster than any stop that keeps them: never too slow an
-/// oracle. On a straight cruise it is the exact optimum but for its step.
-inline double least_stopping_time(const MachineModel& machine, const PathPiece& path,
-                                  PathState state, const JointVector& joints) {
+/// A stop from its begin to rest.
+struct LeastStop {
+  double time_s = 0;
+  double distance_mm = 0;  ///< of path length
+};
+
+/// The greediest stop: at every instant the hardest braking that the joints' acceleration and jerk
+/// allow just there, let go in time to land. It looks no way ahead, so where limits get tighter it
+/// is faster than any stop that keeps them: never too slow an oracle. On a straight cruise it is
+/// the exact optimum but for its step. `joints_at(s)` are the joints along the path, in jets.
+template <class JointsAt>
+[[nodiscard]] LeastStop least_stop(const MachineModel& machine, PathState state,
+                                   const JointsAt& joints_at) {
   constexpr double kStep_s = 1e-4;
-  JointVector reference = joints;
+  const double begin = state.s;
   double time = 0;
   while (state.ds > 1e-9 && time < 20) {
-    const auto q =
-        joints_at(machine, path, Jet<3>::variable(std::min(state.s, path.length)), reference);
+    const Joints<Jet<3>> q = joints_at(state.s);
     Interval accel, jerk;
     for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
       const JointLimits& limits = machine.joints[i].limits;
-      const double d1 = q.q[i].derivative(1), d2 = q.q[i].derivative(2), d3 = q.q[i].derivative(3),
+      const double d1 = q[i].derivative(1), d2 = q[i].derivative(2), d3 = q[i].derivative(3),
                    v = state.ds;
       accel.allow(d1, d2 * v * v, limits.acceleration);
       jerk.allow(d1, 3 * d2 * v * state.dds + d3 * v * v * v, limits.jerk);
-      reference[i] = value_of(q.q[i]);
     }
     const double a = state.dds;
     const double rising = std::max(jerk.high, 1e-6);
     const bool must_let_go = a < 0 && state.ds <= a * a / (2 * rising);
-    if (must_let_go) return time - 2 * state.ds / a;  // constant jerk to rest
+    if (must_let_go) {  // constant jerk to rest
+      const double left = -2 * state.ds / a;
+      return {time + left, state.s - begin + state.ds * left / 3};
+    }
     double j = std::max(jerk.low, (accel.low - a) / kStep_s);
     j = std::min(j, rising);
     state.s += kStep_s * (state.ds + kStep_s * (a / 2 + kStep_s * j / 6));
@@ -56,7 +64,20 @@ inline double least_stopping_time(const MachineModel& machine, const PathPiece& 
     state.dds += kStep_s * j;
     time += kStep_s;
   }
-  return time;
+  return {time, state.s - begin};
+}
+
+/// Time of the greediest stop on one path piece.
+inline double least_stopping_time(const MachineModel& machine, const PathPiece& path,
+                                  const PathState& state, const JointVector& joints) {
+  JointVector reference = joints;
+  const auto along = [&](double s) {
+    const auto at = Jet<3>::variable(std::min(s, path.length));
+    const Joints<Jet<3>> q = joints_at(machine, path, at, reference).q;
+    for (std::size_t i = 0; i < q.size(); ++i) reference[i] = value_of(q[i]);
+    return q;
+  };
+  return least_stop(machine, state, along).time_s;
 }
 
 }  // namespace meridian::test
