@@ -76,8 +76,9 @@ int make_sample(const Options& options) {
 }
 
 int run(const Options& options) {
-  if (text::is_same_file(options.patch, options.output)) {
-    return refuse(options.output + " is the patch file itself; name another output");
+  for (const std::string& written : {options.output, options.picture}) {
+    if (!text::is_same_file(options.patch, written)) continue;
+    return refuse(written + " is the patch file itself; name another output");
   }
   if (options.patch.empty() == options.sample.empty()) {
     std::cerr << "meridian surface: name a patch file, or a part with --sample\n";

@@ -94,6 +94,24 @@ TEST_F(RecordingCommands, ASimulationIsNotWrittenOverWhatItReads) {
   }
 }
 
+TEST_F(RecordingCommands, MachineFileAndToolTableAreNotWrittenOver) {
+  const std::string deploy = MERIDIAN_SOURCE_DIR "/deploy/";
+  const std::string machine = meridian::test::read_text(deploy + "machines/lai.toml");
+  const std::string tools = meridian::test::read_text(deploy + "tools.toml");
+  const TextFile machine_file(machine), tools_file(tools);
+  for (const char* command : {"simulate --record ", "post --output "}) {
+    for (const TextFile* written : {&machine_file, &tools_file}) {
+      const CommandOutput refused =
+          run_tool(command + written->path().string() + " " + part() + " --machine " +
+                   machine_file.path().string() + " --tools " + tools_file.path().string());
+      EXPECT_EQ(refused.exit_code, 3);
+      EXPECT_NE(refused.output.find("is read by this run"), std::string::npos) << refused.output;
+      EXPECT_EQ(meridian::test::read_text(machine_file.path()), machine) << command;
+      EXPECT_EQ(meridian::test::read_text(tools_file.path()), tools) << command;
+    }
+  }
+}
+
 TEST(Commands, DoNotWriteOverTheFileThatTheyWorkOn) {
   const std::string text =
       meridian::test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
