@@ -33,7 +33,8 @@ constexpr double kReportEvery_s = 5, kHealthEvery_s = 1;
 constexpr int kMostInVain = 15;
 /// Between the end of a program and the next: its recording is cut there.
 constexpr double kPause_s = 0.3;
-/// A service that is killed is forgotten after its lease; drives that lost it come to rest.
+/// A service that is killed is forgotten after its lease; drives that lost it come to rest. Drives
+/// that ended by themselves are gone as long.
 constexpr double kAfterDeath_s = 2.5;
 /// Nothing moves for this long although nobody holds the machine: something is stuck.
 constexpr double kStuck_s = 60;
@@ -117,10 +118,13 @@ class Soak {
       plant_.kill_service();
       service_at_s_ = now_s() + kAfterDeath_s;
     }
-    if (const auto code = plant_.drives()->wait_for_exit(milliseconds(0))) {
+    if (plant_.drives() == nullptr) {
+      if (now_s() >= drives_at_s_) start_drives();
+    } else if (const auto code = plant_.drives()->wait_for_exit(milliseconds(0))) {
       report_.violate("the drives ended by themselves with code " + std::to_string(*code),
                       plant_.keep_logs());
-      start_drives();
+      plant_.stop_drives();
+      drives_at_s_ = now_s() + kAfterDeath_s;
     }
     if (plant_.station() != nullptr) {
       const auto code = plant_.station()->wait_for_exit(milliseconds(0));
@@ -339,7 +343,7 @@ class Soak {
   int asked_in_vain_ = 0;
   const std::int64_t begin_ns_ = stream::steady_ns();
   double moved_s_ = 0, ended_s_ = 0, ask_again_s_ = 0, resume_s_ = 0, continue_s_ = 0;
-  double service_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;
+  double service_at_s_ = 0, drives_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;
 };
 
 }  // namespace
