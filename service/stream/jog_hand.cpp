@@ -54,8 +54,17 @@ void JogHand::send(const JogPlan& plan, std::uint16_t epoch, double velocity) {
                      .dead_man_ns = static_cast<std::int64_t>(plan.dead_man_s * 1e9)});
 }
 
+/// However it ends, the machine is told to brake at once, not after the dead man's time: a status
+/// that came late may say that it does not jog while it does.
 JogHand::Grip JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
                             const std::atomic<bool>& is_let_go) {
+  const Grip grip = press(plan, reply, is_let_go);
+  send(plan, reply.epoch, 0);
+  return grip;
+}
+
+JogHand::Grip JogHand::press(const JogPlan& plan, const dds::Reply& reply,
+                             const std::atomic<bool>& is_let_go) {
   const double from = place_of(link_, plan);
   const auto begin = Clock::now();
   JointVector seen = joints_of(link_);
@@ -82,7 +91,6 @@ JogHand::Grip JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
     const bool stands = now - moved > std::chrono::milliseconds(500);
     if (plan.time_s == 0 && (is_there || stands)) break;
   }
-  send(plan, reply.epoch, 0);  // brakes at once, not after the dead man's time
   return Grip::kKept;
 }
 

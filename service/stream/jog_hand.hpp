@@ -55,6 +55,8 @@ class JogHand {
   };
   [[nodiscard]] Grip hold(const JogPlan& plan, const dds::Reply& reply,
                           const std::atomic<bool>& is_let_go);
+  [[nodiscard]] Grip press(const JogPlan& plan, const dds::Reply& reply,
+                           const std::atomic<bool>& is_let_go);
   [[nodiscard]] JogResult wait_for_rest(const JogPlan& plan, bool was_held);
 
   OperatorLink& link_;

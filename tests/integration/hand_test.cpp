@@ -85,11 +85,18 @@ TEST(ByHand, JogsLosesItsHandIsHomedAndRunsAProgram) {
   EXPECT_EQ(plant.station().state(), stream::StationState::kRan) << plant.station().message();
 
   {  // the service is stopped: the hand does not go on for nobody
+    dds::Reader<dds::Jog> jogs(plant.participant());
     Process hand = ctl({"jog", "b3", "-5"});
     ASSERT_TRUE(plant.wait_for(State::kJogging)) << hand.said();
     plant.service().send_signal(SIGSTOP);
     EXPECT_EQ(hand.wait(milliseconds(8000)), 5) << hand.said();
     EXPECT_NE(hand.said().find("does not answer"), std::string::npos) << hand.said();
+    dds::Jog last{.velocity = -1};
+    EXPECT_TRUE(eventually([&] {
+      while (jogs.take(last)) {
+      }
+      return last.velocity == 0;
+    })) << "it let go, and did not leave that to the dead man's time";
     plant.service().send_signal(SIGCONT);
   }
   plant.service().send_signal(SIGTERM);
