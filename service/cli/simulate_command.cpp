@@ -17,6 +17,7 @@
 #include "service/record/recording_writer.hpp"
 #include "service/simulate/feed_picture.hpp"
 #include "service/simulate/simulate.hpp"
+#include "service/stream/smooth_tolerances.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli {
@@ -124,6 +125,11 @@ int run(const Options& options) {
   const ToolTable tools = load_tools(options.machine);
   simulate::SimulateOptions simulation;
   simulation.settings = settings_of(options.join);
+  const SmoothSettings& settings = simulation.settings;
+  const std::string refusal =
+      stream::refusal_of_tolerances(model, settings.transition.value_or(model.transition),
+                                    settings.tip_tolerance_mm, settings.axis_tolerance_rad);
+  if (!refusal.empty()) return refuse(options.machine.machine + ": " + refusal);
   simulation.stops_at_optional = options.stops_at_optional;
   simulation.has_action_peer = options.auxiliary == "ignore";
   if (!options.events.empty()) {

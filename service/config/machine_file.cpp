@@ -135,10 +135,13 @@ void read_joint(Section section, JointSpec& joint) {
 namespace {
 
 void read_tolerances(Section section, MachineModel& model) {
-  model.tolerances.tip_mm = section.number("tip_mm", kTipTolerance_mm);
-  model.tolerances.axis_rad = units::rad_from_deg(section.number("axis_deg", kAxisTolerance_deg));
   model.transition =
       static_cast<Transition>(section.choice_or("transition", 0, {"exact_stop", "smooth"}));
+  const bool is_smooth = model.transition == Transition::kSmooth;
+  model.tolerances.tip_mm =
+      section.number("tip_mm", is_smooth ? kTipTolerance_mm : kRestTipTolerance_mm);
+  model.tolerances.axis_rad = units::rad_from_deg(
+      section.number("axis_deg", is_smooth ? kAxisTolerance_deg : kRestAxisTolerance_deg));
   section.finish();
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/most_tolerances.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::config {
@@ -19,8 +20,13 @@ inline constexpr Range kLength_mm{-1e5, 1e5};
 inline constexpr Range kPositive_mm{1e-3, 1e5};
 
 /// Tolerances of smooth runs, in machine files and on command lines.
-inline constexpr Range kTipTolerance_mm{kLeastTipTolerance_mm, 10};
+inline constexpr Range kTipTolerance_mm{kLeastTipTolerance_mm, kMostTipTolerance_mm};
 inline constexpr Range kAxisTolerance_deg{0.00573, 10};
 static_assert(units::rad_from_deg(kAxisTolerance_deg.low) >= kLeastAxisTolerance_rad);
+static_assert(units::rad_from_deg(kAxisTolerance_deg.high) == kMostAxisTolerance_rad);
+
+/// The same in machine files whose programs end their cuts at rest: nothing is smoothed by them.
+inline constexpr Range kRestTipTolerance_mm{1e-6, kTipTolerance_mm.high};
+inline constexpr Range kRestAxisTolerance_deg{1e-6, kAxisTolerance_deg.high};
 
 }  // namespace meridian::config

@@ -2,9 +2,10 @@
 #include "service/stream/intake_judge.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "service/stream/smooth_tolerances.hpp"
 
 namespace meridian::stream {
 
@@ -25,20 +26,11 @@ bool contradicts_itself(const dds::SessionRequest& request) {
   return (request.policies & kBoth) == kBoth;
 }
 
-/// Why the tolerances of `request` cannot be planned for; empty: they can, or are none.
-std::string refusal_of_tolerances(const dds::SessionRequest& request) {
-  const auto refusal = [](const char* name, double value, double least, const char* unit) {
-    if (value == 0 || (std::isfinite(value) && value >= least)) return std::string{};
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "%s tolerance of the program is %.6g %s; allowed is %.6g %s or more, or 0 for "
-                  "the machine's",
-                  name, value, unit, least, unit);
-    return std::string(text);
-  };
-  std::string tip = refusal("tip", request.tip_tolerance_mm, kLeastTipTolerance_mm, "mm");
-  return tip.empty() ? refusal("axis", request.axis_tolerance_rad, kLeastAxisTolerance_rad, "rad")
-                     : tip;
+/// How the cuts of the program join, as it asks or else as the machine has it.
+Transition transition_of(const dds::SessionRequest& request, const MachineModel& model) {
+  if ((request.policies & dds::kPolicySmooth) != 0) return Transition::kSmooth;
+  const bool is_exact = (request.policies & dds::kPolicyExactStop) != 0;
+  return is_exact ? Transition::kExactStop : model.transition;
 }
 
 }  // namespace
@@ -72,13 +64,13 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
                                  : "; wait for its end, or enable the machine and abort it"));
   }
   if (request.session == 0) return refused(Verdict::kRefusedProgram, "0 names no session");
-  if (std::string refusal = refusal_of_tolerances(request); !refusal.empty()) {
-    return refused(Verdict::kRefusedProgram, std::move(refusal));
-  }
   if (contradicts_itself(request)) {
     return refused(Verdict::kRefusedProgram,
                    "the program asks for exact stop and for smooth transitions");
   }
+  std::string refusal = refusal_of_tolerances(model_, transition_of(request, model_),
+                                              request.tip_tolerance_mm, request.axis_tolerance_rad);
+  if (!refusal.empty()) return refused(Verdict::kRefusedProgram, std::move(refusal));
   if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
       !around.actions.is_ignored) {
     return refused(Verdict::kRefusedProgram,

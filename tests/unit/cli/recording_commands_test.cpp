@@ -112,6 +112,19 @@ TEST_F(RecordingCommands, MachineFileAndToolTableAreNotWrittenOver) {
   }
 }
 
+TEST_F(RecordingCommands, ASmoothSimulationNeedsTolerancesThatAreSmoothedBy) {
+  std::string machine = meridian::test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
+  const std::string tip = "tip_mm = 0.01\n";
+  machine.replace(machine.find(tip), tip.size(), "tip_mm = 0.0005\n");
+  const TextFile file(machine);
+  const std::string line = "simulate " + part() + " --machine " + file.path().string();
+  EXPECT_EQ(run_tool(line).exit_code, 0);
+  const CommandOutput refused = run_tool(line + " --transition smooth");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.output.find("tip tolerance of the machine is 0.0005 mm"), std::string::npos)
+      << refused.output;
+}
+
 TEST(Commands, DoNotWriteOverTheFileThatTheyWorkOn) {
   const std::string text =
       meridian::test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");

@@ -120,6 +120,16 @@ TEST(MachineFile, TakesAPinSlotWithoutRods) {
   EXPECT_NEAR(model.stage_drives[0].home, 0, 1e-12);
 }
 
+TEST(MachineFile, TakesTolerancesFinerThanSmoothRunsHaveWhereItsCutsEndAtRest) {
+  std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
+  const std::string_view tip = "tip_mm = 0.01\n", axis = "axis_deg = 0.1\n";
+  text.replace(text.find(tip), tip.size(), "tip_mm = 0.0005\n");
+  text.replace(text.find(axis), axis.size(), "axis_deg = 0.001\n");
+  const MachineModel model = parse_machine(text, "fine");
+  EXPECT_EQ(model.tolerances.tip_mm, 0.0005);
+  EXPECT_DOUBLE_EQ(model.tolerances.axis_rad, units::rad_from_deg(0.001));
+}
+
 TEST(MachineFile, TakesThePolesPolicyAndTheOverridesRamp) {
   std::string text = test::read_text(kMachines / "lai.toml");
   const auto put = [&text](std::string_view from, std::string_view to) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "intake_under_test.hpp"
+#include "meridian/kinematics/most_tolerances.hpp"
 
 namespace meridian::stream {
 namespace {
@@ -101,16 +102,17 @@ TEST_F(Intake, AToleranceBelowWhatIsPlannedForIsRefusedByNameAndLeast) {
     dds::SessionRequest request = open_request(++session_);
     request.tip_tolerance_mm = tip_mm;
     request.axis_tolerance_rad = axis_rad;
+    request.policies = dds::kPolicySmooth;
     return judge_.on_request(request, around_, 100);
   };
   const Credit tip = ask(0.0005, 0);
   EXPECT_EQ(tip.verdict, Verdict::kRefusedProgram);
-  EXPECT_NE(tip.text.find("tip tolerance of the program is 0.0005 mm; allowed is 0.001 mm or more"),
+  EXPECT_NE(tip.text.find("tip tolerance of the program is 0.0005 mm; allowed is 0.001 to 10 mm"),
             std::string::npos)
       << tip.text;
   const Credit axis = ask(0.01, 9e-5);
   EXPECT_EQ(axis.verdict, Verdict::kRefusedProgram);
-  EXPECT_NE(axis.text.find("axis tolerance of the program is 9e-05 rad; allowed is 0.0001 rad"),
+  EXPECT_NE(axis.text.find("axis tolerance of the program is 9e-05 rad; allowed is 0.0001 to 0.17"),
             std::string::npos)
       << axis.text;
   for (const double wrong : {-1.0, 1e-12, std::numeric_limits<double>::infinity(),
@@ -120,6 +122,56 @@ TEST_F(Intake, AToleranceBelowWhatIsPlannedForIsRefusedByNameAndLeast) {
   }
   EXPECT_FALSE(judge_.is_held());
   EXPECT_EQ(ask(0.001, 1e-4).verdict, Verdict::kGood);
+}
+
+TEST_F(Intake, AToleranceAboveWhatIsPlannedForIsRefusedWhateverTheTransition) {
+  dds::SessionRequest request = open_request();
+  request.tip_tolerance_mm = 10.001;
+  const Credit tip = judge_.on_request(request, around_, 100);
+  EXPECT_EQ(tip.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(tip.text.find("tip tolerance of the program is 10.001 mm"), std::string::npos)
+      << tip.text;
+  request.policies = dds::kPolicySmooth;
+  request.tip_tolerance_mm = kMostTipTolerance_mm;
+  request.axis_tolerance_rad = 0.175;
+  const Credit axis = judge_.on_request(request, around_, 100);
+  EXPECT_EQ(axis.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(axis.text.find("axis tolerance of the program is 0.175 rad"), std::string::npos)
+      << axis.text;
+  request.axis_tolerance_rad = kMostAxisTolerance_rad;
+  EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kGood);
+}
+
+TEST_F(Intake, ARefusalTellsAToleranceThatIsLittleBelowTheLeastFromIt) {
+  dds::SessionRequest request = open_request();
+  request.policies = dds::kPolicySmooth;
+  request.tip_tolerance_mm = 0.00099999999;
+  const Credit refused = judge_.on_request(request, around_, 100);
+  EXPECT_NE(refused.text.find("is 0.00099999999 mm; allowed is 0.001 to 10 mm"), std::string::npos)
+      << refused.text;
+}
+
+TEST_F(Intake, FineTolerancesAreRefusedOnlyWhereTheRunIsSmooth) {
+  const auto ask = [this](double tip_mm, std::uint32_t policies) {
+    dds::SessionRequest request = open_request(++session_);
+    request.tip_tolerance_mm = tip_mm;
+    request.policies = policies;
+    const Credit credit = judge_.on_request(request, around_, 100);
+    static_cast<void>(close(session_));
+    return credit;
+  };
+  EXPECT_EQ(ask(0.0005, 0).verdict, Verdict::kGood) << "the machine's exact stop";
+  EXPECT_EQ(ask(0.0005, dds::kPolicyExactStop).verdict, Verdict::kGood);
+  model_.tolerances.tip_mm = 0.0005;
+  EXPECT_EQ(ask(0, 0).verdict, Verdict::kGood);
+  const Credit of_machine = ask(0, dds::kPolicySmooth);
+  EXPECT_EQ(of_machine.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(of_machine.text.find("tip tolerance of the machine is 0.0005 mm"), std::string::npos)
+      << of_machine.text;
+  EXPECT_EQ(ask(0.001, dds::kPolicySmooth).verdict, Verdict::kGood);
+  model_.transition = Transition::kSmooth;
+  EXPECT_EQ(ask(0.0005, 0).verdict, Verdict::kRefusedProgram) << "the machine's smooth";
+  EXPECT_EQ(ask(0.0005, dds::kPolicyExactStop).verdict, Verdict::kGood);
 }
 
 TEST_F(Intake, ThePlannersVerdictEndsTheSessionWithTheSameWords) {
