@@ -14,6 +14,15 @@ namespace {
 constexpr double kSeenLate_s = 0.5;
 /// The state may be told before the alarm that led there.
 constexpr double kAlarmLate_s = 1;
+/// A processor that was away for so long a moment ago makes peers fall silent and drives lag: half
+/// of what a service waits for feedback by default.
+constexpr double kTooLongAway_s = 0.05;
+
+[[nodiscard]] bool is_of_host(Alarm alarm, double away_s) noexcept {
+  if (alarm == Alarm::kPeriodsLost) return true;
+  const bool is_silence = alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError;
+  return is_silence && away_s >= kTooLongAway_s;
+}
 
 }  // namespace
 
@@ -45,7 +54,8 @@ void FaultJudge::lose_service() noexcept {
   alarm_ = Alarm::kNone;
 }
 
-std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, double now_s) noexcept {
+std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, double now_s,
+                                                 double away_s) noexcept {
   if (is_on_) enabled_s_ += now_s - seen_s_;
   is_on_ = is_enabled(status.state);
   seen_s_ = now_s;
@@ -66,7 +76,7 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
   const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
   if (is_injected) return Cause::kInjected;
-  return alarm_ == Alarm::kPeriodsLost ? Cause::kHost : Cause::kUnprovoked;
+  return is_of_host(alarm_, away_s) ? Cause::kHost : Cause::kUnprovoked;
 }
 
 std::string FaultJudge::describe() const {

@@ -28,7 +28,9 @@ class FaultJudge {
   /// The service is gone, and with it what it was about to tell.
   void lose_service() noexcept;
   /// Every status in its order, at `now_s`; the cause once for each Fault, as soon as it is told.
-  [[nodiscard]] std::optional<Cause> see(const dds::Status& status, double now_s) noexcept;
+  /// `away_s`: how long the host had taken a processor away just before (HostWatch).
+  [[nodiscard]] std::optional<Cause> see(const dds::Status& status, double now_s,
+                                         double away_s = 0) noexcept;
   /// What a report says of the Fault that was judged last: its alarm, and what was planned when.
   [[nodiscard]] std::string describe() const;
   /// Whether the cause of the Fault that is there is known.

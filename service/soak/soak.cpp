@@ -15,6 +15,7 @@
 #include "service/process/programs.hpp"
 #include "service/soak/fault_judge.hpp"
 #include "service/soak/health_watch.hpp"
+#include "service/soak/host_watch.hpp"
 #include "service/soak/judge.hpp"
 #include "service/soak/plant.hpp"
 #include "service/soak/sample_program.hpp"
@@ -38,6 +39,8 @@ constexpr double kPause_s = 0.3;
 constexpr double kAfterDeath_s = 2.5;
 /// Nothing moves for this long although nobody holds the machine: something is stuck.
 constexpr double kStuck_s = 60;
+/// What the host does acts on the machine within this time.
+constexpr double kHostBefore_s = 1;
 
 [[nodiscard]] std::filesystem::path kept_beside(std::filesystem::path report) {
   return report.empty() ? report : report.replace_extension(".kept");
@@ -157,7 +160,8 @@ class Soak {
 
   void see(const dds::Status& status) {
     counts_.add(status, report_);
-    if (const auto cause = faults_.see(status, now_s())) judge_fault(*cause, status);
+    if (const auto cause = faults_.see(status, now_s(), host_.away_s(kHostBefore_s)))
+      judge_fault(*cause, status);
     if (status.state != state_) asked_in_vain_ = 0;
     if (status.state != state_ || is_moving(status.state)) moved_s_ = now_s();
     state_ = status.state;
@@ -300,6 +304,8 @@ class Soak {
 
   void tell() {
     report_.elapsed_s = now_s();
+    report_.host_stalls = host_.stalls();
+    report_.host_longest_s = host_.longest_s();
     judge_.collect(report_);
     if (options_.report.empty()) return;
     auto text_file = options_.report;
@@ -335,6 +341,7 @@ class Soak {
   dds::Participant participant_;
   stream::OperatorLink operator_;
   HealthWatch health_;
+  HostWatch host_;
   FaultJudge faults_;
   std::optional<Planned> next_, injected_;
   StatusCounts counts_;

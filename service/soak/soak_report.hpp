@@ -49,8 +49,10 @@ struct SoakReport {
   std::array<std::uint64_t, kMishapCount> mishaps{};    ///< that came to pass
   std::uint64_t asks_refused = 0, asks_unanswered = 0;  ///< what the operator wanted in vain
   std::uint64_t alarms = 0, service_starts = 0, drive_starts = 0;
-  std::uint64_t host_faults = 0;    ///< the host kept the service from more than drives bridge
-  double tip_mm = 0, axis_rad = 0;  ///< largest deviations
+  std::uint64_t host_faults = 0;  ///< the host kept service or drives from their processors
+  std::uint64_t host_stalls = 0;  ///< so often it took one away for 10 ms or more
+  double host_longest_s = 0;
+  double tip_mm = 0, axis_rad = 0;                  ///< largest deviations
   double velocity = 0, acceleration = 0, jerk = 0;  ///< largest share of a limit
   std::uint64_t cycles_run = 0, periods_lost = 0, overruns = 0, starvations = 0;
   std::vector<Life> lives;

@@ -161,11 +161,12 @@ TEST(Faults, AreExplainedByTheirKindTheirDriveAndTheirTime) {
 
 class FaultJudgeTest : public testing::Test {
  protected:
-  std::optional<FaultJudge::Cause> see(double now_s, State state, Alarm alarm = Alarm::kNone) {
+  std::optional<FaultJudge::Cause> see(double now_s, State state, Alarm alarm = Alarm::kNone,
+                                       double away_s = 0) {
     dds::Status status;
     status.state = state;
     status.alarm = alarm;
-    return judge_.see(status, now_s);
+    return judge_.see(status, now_s, away_s);
   }
   using Cause = FaultJudge::Cause;
   FaultJudge judge_;
@@ -197,6 +198,17 @@ TEST_F(FaultJudgeTest, BlamesTheHostForPeriodsThatItKeptFromTheService) {
   judge_.begin_drives(Planned{Mishap::kDriveFault, 90, 0, 2});
   EXPECT_FALSE(see(0, State::kRunning));
   EXPECT_EQ(see(100, State::kFault, Alarm::kPeriodsLost), Cause::kHost);
+}
+
+TEST_F(FaultJudgeTest, BlamesTheHostForSilenceOnlyWhereAProcessorWasAway) {
+  const auto fault_after = [&](Alarm alarm, double away_s) {
+    EXPECT_FALSE(see(0, State::kRunning));
+    return see(1, State::kFault, alarm, away_s);
+  };
+  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, 0.11), Cause::kHost);
+  EXPECT_EQ(fault_after(Alarm::kFollowingError, 0.06), Cause::kHost);
+  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, 0.03), Cause::kUnprovoked);
+  EXPECT_EQ(fault_after(Alarm::kDriveFault, 0.11), Cause::kUnprovoked);
 }
 
 TEST_F(FaultJudgeTest, WaitsForTheAlarmThatIsToldBehindTheState) {

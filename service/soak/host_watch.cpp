@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/soak/host_watch.hpp"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "service/process/processors.hpp"
+#include "service/stream/steady_ns.hpp"
+
+namespace meridian::soak {
+namespace {
+
+constexpr std::int64_t kNap_ns = 5'000'000;
+
+[[nodiscard]] bool rise_on(int cpu) noexcept {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(cpu, &one);
+  const sched_param top{.sched_priority = sched_get_priority_max(SCHED_FIFO)};
+  return pthread_setaffinity_np(pthread_self(), sizeof(one), &one) == 0 &&
+         pthread_setschedparam(pthread_self(), SCHED_FIFO, &top) == 0;
+}
+
+}  // namespace
+
+HostWatch::HostWatch() {
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (!CPU_ISSET(cpu, &process::initial_cpus())) continue;
+    threads_.emplace_back([this, cpu](const std::stop_token& stop) { watch(cpu, stop); });
+  }
+}
+
+HostWatch::~HostWatch() = default;
+
+void HostWatch::watch(int cpu, const std::stop_token& stop) {
+  if (!rise_on(cpu)) return;
+  while (!stop.stop_requested()) {
+    const std::int64_t due_ns = stream::steady_ns() + kNap_ns;
+    std::this_thread::sleep_for(std::chrono::nanoseconds(kNap_ns));
+    const std::int64_t now_ns = stream::steady_ns();
+    if (now_ns - due_ns >= kStall_ns) note({now_ns, now_ns - due_ns, cpu});
+  }
+}
+
+void HostWatch::note(const Stall& stall) {
+  const std::lock_guard lock(mutex_);
+  if (stalls_.size() == kMostStalls) stalls_.erase(stalls_.begin());
+  stalls_.push_back(stall);
+  ++count_;
+  longest_ns_ = std::max(longest_ns_, stall.length_ns);
+}
+
+double HostWatch::away_s(double last_s) const {
+  const std::int64_t since_ns = stream::steady_ns() - static_cast<std::int64_t>(last_s * 1e9);
+  std::array<std::int64_t, CPU_SETSIZE> away_ns{};
+  const std::lock_guard lock(mutex_);
+  for (const Stall& stall : stalls_) {
+    if (stall.end_ns >= since_ns) away_ns[static_cast<std::size_t>(stall.cpu)] += stall.length_ns;
+  }
+  return static_cast<double>(*std::ranges::max_element(away_ns)) * 1e-9;
+}
+
+std::uint64_t HostWatch::stalls() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
+double HostWatch::longest_s() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<double>(longest_ns_) * 1e-9;
+}
+
+}  // namespace meridian::soak
