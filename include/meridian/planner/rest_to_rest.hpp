@@ -65,6 +65,11 @@ class RestToRestPlanner {
   void look_at(std::span<const ClBlock> ahead, double tip_slack_mm = 0,
                double axis_slack_rad = 0) noexcept;
 
+  /// Where a block begins nearer to the pole than `rad` and the free joint would leave its travel
+  /// on it, the joint is turned at rest to another branch or winding that carries it, with the axis
+  /// inside `rad` (PlanResult::axis_deviation_rad). 0, which begin() sets: never.
+  void set_free_cone(double rad) noexcept;
+
   /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's
   /// highest feed bounds it.
   void set_feed_factor(double factor) noexcept;

@@ -105,6 +105,28 @@ PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const J
   return first;
 }
 
+PathFault Router::leave_otherwise(const PathPiece& path, const ToolPose& end, const Job& job,
+                                  const PathFault& fault, PlanCursor& cursor,
+                                  Staging& out) noexcept {
+  Ways ways = find_ways(end, cursor);
+  look_along(job.block, end, cursor.tool_length_mm, ways);
+  const ToolPose rest = pose_at(path, 0.0);
+  for (int n = 0; n < ways.count; ++n) {
+    const JointVector& joints = ways.way[n].joints;
+    PlanCursor trial = cursor;
+    const Staging::Mark mark = out.mark();
+    const double free = follow_back(path, joints, 0.0, cursor.tool_length_mm);
+    if (!is_fault(turn_free(rest, free, job, trial, out)) &&
+        !is_fault(run_solved(path, job, 1.0, trial, out))) {
+      deviation_rad_ = std::max(deviation_rad_, pole_distance(model_, rest.axis));
+      cursor = trial;
+      return {};
+    }
+    out.go_back(mark);
+  }
+  return fault;
+}
+
 bool Router::is_straight_passage(const PathPiece& path, double free_end,
                                  const PlanCursor& cursor) noexcept {
   PathPiece held = path;

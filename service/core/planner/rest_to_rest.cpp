@@ -216,6 +216,11 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.is_staged = false;
   w.is_refused = false;
   w.router.set_feed_factor(1);
+  w.router.set_free_cone(0);
+}
+
+void RestToRestPlanner::set_free_cone(double rad) noexcept {
+  workspace_->router.set_free_cone(rad);
 }
 
 void RestToRestPlanner::set_feed_factor(double factor) noexcept {

@@ -185,8 +185,16 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
     const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
     const double share = passage.nearest_turn / path.axis_turn;
     const bool passes = passage.offset < kPoleEase_rad && share > 0 && share < 1;
+    const PlanCursor rest = cursor;
+    const Staging::Mark mark = out.mark();
     fault = passes ? pass_pole(path, end, share, job, cursor, out)
                    : run_solved(path, job, 1.0, cursor, out);
+    const bool is_out = fault.kind == PathFault::Kind::kTravel && fault.joint == free;
+    if (is_out && pole_distance(model_, rest.pose.axis) < free_cone_rad_) {
+      out.go_back(mark);
+      cursor = rest;
+      fault = leave_otherwise(path, end, job, fault, cursor, out);
+    }
   }
   cursor.pose = end;
   return fault;

@@ -46,6 +46,10 @@ class Router {
     slack_ = slack;
   }
 
+  /// Nearer to the pole than `rad` the free joint may be turned at rest, the axis inside that of
+  /// where it was programmed.
+  void set_free_cone(double rad) noexcept { free_cone_rad_ = rad; }
+
   /// Brings the first block's begin under the tool. Ways that are lost (AheadWay) are none: where
   /// no other is left, lost_block() says why, else it is nothing.
   [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
@@ -130,6 +134,11 @@ class Router {
                                      PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault pass_pole(const PathPiece& path, const ToolPose& end, double share,
                                     const Job& job, PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` begins beside the pole, and the free joint runs out of travel on the branch in force:
+  /// turn it at rest to another branch or winding, then go. `fault`: of the branch in force.
+  [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,
+                                          const Job& job, const PathFault& fault,
+                                          PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] bool is_straight_passage(const PathPiece& path, double free_end,
                                          const PlanCursor& cursor) noexcept;
   [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
@@ -145,6 +154,7 @@ class Router {
   AheadSlack slack_;
   std::optional<BlockReject> lost_;  ///< of the last approach
   double feed_factor_ = 1;
+  double free_cone_rad_ = 0;
   double deviation_rad_ = 0;
 };
 

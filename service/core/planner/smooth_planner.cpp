@@ -24,6 +24,7 @@ constexpr double kOnPoleShare = 0.2;
 constexpr double kBesidePole_rad = 0.05;  // kSamePlace turns the free joint by 2e-8 rad there
 constexpr double kSamePlace = 1e-9;       // mm and of the unit axis: rounding of joints
 constexpr std::size_t kUnwindings = 256;  // that wait to be taken; the oldest go
+constexpr std::size_t kEases = 256;       // the same
 
 /// Whether there is a branch to choose.
 bool has_branches(const MachineModel& model) noexcept { return free_joint(model) >= 0; }
@@ -32,7 +33,12 @@ bool has_branches(const MachineModel& model) noexcept { return free_joint(model)
 
 struct SmoothPlanner::Workspace {
   Workspace(const MachineModel& m, ToolTable t)
-      : model(m), plain(m, std::move(t)), raise(m), run(m, raise), unwindings(kUnwindings) {
+      : model(m),
+        plain(m, std::move(t)),
+        raise(m),
+        run(m, raise),
+        plain_eases(kEases),
+        unwindings(kUnwindings) {
     if (has_branches(m)) waiting.reserve(kLookAhead);
   }
 
@@ -88,7 +94,7 @@ struct SmoothPlanner::Workspace {
   bool is_run_on_pole = false;
   bool is_refused = false;
   PlanResult refusal;
-  PoleEase plain_ease;  ///< of the last block from rest to rest; no deviation: none
+  IndexRing<PoleEase> plain_eases;  ///< of blocks from rest to rest
   IndexRing<Unwinding> unwindings;
   std::vector<ClBlock> waiting;   ///< the begin of the program, until it was looked at
   std::size_t first_waiting = 0;  ///< that is not planned
@@ -225,6 +231,8 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (w.is_running) w.end_run();  // no index comes twice
   w.plain.begin(at_rest, tool_length_mm, epoch);
   w.settings = settings;
+  const bool may_ease = w.is_smooth() && w.model.pole_policy == PolePolicy::kEase;
+  if (may_ease) w.plain.set_free_cone(kOnPoleShare * w.tolerance().axis_rad);
   w.raise.begin();
   w.is_refused = w.is_for_plain = w.has_factor = false;
   w.waiting.clear();
@@ -306,9 +314,10 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
       w.note(result.unwinding);
       w.pose = w.plain.junction().pose;
       w.joints = w.plain.joints();
-      w.plain_ease = {
-          block.sequence,     block.sequence, block.line, block.line, result.axis_deviation_rad,
-          EaseReason::kOnPole};
+      if (result.axis_deviation_rad > 0) {
+        w.plain_eases.push_over_oldest({block.sequence, block.sequence, block.line, block.line,
+                                        result.axis_deviation_rad, EaseReason::kOnPole});
+      }
     }
     return result;
   }
@@ -332,11 +341,7 @@ bool SmoothPlanner::take_unwinding(Unwinding& out) noexcept {
 
 bool SmoothPlanner::take_ease(PoleEase& out) noexcept {
   Workspace& w = *workspace_;
-  if (w.run.take_ease(out)) return true;
-  if (!(w.plain_ease.deviation_rad > 0)) return false;
-  out = w.plain_ease;
-  w.plain_ease.deviation_rad = 0;
-  return true;
+  return w.run.take_ease(out) || w.plain_eases.take_oldest(out);
 }
 
 bool SmoothPlanner::take_feed_mark(FeedMark& out) noexcept { return workspace_->raise.take(out); }

@@ -343,6 +343,48 @@ TEST(Unwinding, IsNotAskedForWhereTheTurnOfCFits) {
   EXPECT_EQ(trace.last.status, PlanStatus::kOk) << trace.last.reject.value;
 }
 
+/// Onto 0.01 deg beside the pole, a rest there, and off again farther round, where C has no travel
+/// left on the branch that it came on.
+TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
+  const auto lean = [](double tilt_deg, double azimuth_deg, double x) {
+    return leaning(units::rad_from_deg(tilt_deg), units::rad_from_deg(azimuth_deg), {x, 20, 0});
+  };
+  for (MachineModel model :
+       {limited(lai_machine(), -400, 400), limited(fork_machine(), -400, 400)}) {
+    for (const UnwindPolicy policy : {UnwindPolicy::kRefuse, UnwindPolicy::kRetract}) {
+      for (const double farther_deg : {70.0, -70.0}) {
+        SCOPED_TRACE(testing::Message() << model.name << " by " << farther_deg);
+        std::vector<ClBlock> blocks;
+        for (int n = 12; n >= 1; --n) blocks.push_back(lean(n, 80, 12 - n));
+        blocks.push_back(lean(0.01, 80, 12));
+        blocks.emplace_back().kind = BlockKind::kDwell;
+        for (int n = 1; n <= 12; ++n) blocks.push_back(lean(n, 80 + farther_deg, 12 + n));
+        for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
+        end_program(blocks);
+        const int free = free_joint(model);
+        const JointVector start = solve_block(model, blocks[0], 0);
+        const double sign =
+            solve_block(model, lean(12, 81, 0), 0, start)[free] > start[free] ? 1 : -1;
+        const double end = start[free] + std::copysign(units::rad_from_deg(20), sign * farther_deg);
+        const double other = end - std::copysign(units::rad_from_deg(200), sign * farther_deg);
+        MachineModel turned = model;
+        turned.unwind_policy = policy;
+        turned.joints[free].limits.travel_min = std::min(end, other);
+        turned.joints[free].limits.travel_max = std::max(end, other);
+        const SmoothTrace trace = plan_smooth(turned, blocks, start, {Transition::kSmooth, 0, 0},
+                                              policy == UnwindPolicy::kRefuse);
+        Found found;
+        judge(turned, trace, blocks, start, found);
+        if (HasFatalFailure()) return;
+        EXPECT_EQ(found.unwindings, 0);
+        double told = 0;
+        for (const PoleEase& ease : trace.eases) told = std::max(told, ease.deviation_rad);
+        EXPECT_GE(told, units::rad_from_deg(0.0099)) << "C was turned beside the pole";
+      }
+    }
+  }
+}
+
 TEST(Unwinding, IsRefusedWhereNoWindingCarriesTheBlock) {
   const MachineModel model = limited(lai_machine(), -100, 100);  // no whole turn inside travel
   for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
