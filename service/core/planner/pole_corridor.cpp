@@ -256,7 +256,7 @@ bool PoleCorridor::decide(Place place) noexcept {
   } else if (!is_known_behind(around.core_end)) {
     return false;
   }
-  scan_ = hold >= 0 ? hold : core_.last + 1;
+  scan_ = std::max(place, core_.last) + 1;  // never back to where nothing is taken
   const bool is_begun = pending_.end_index() > 0 || emitted_u() > 0;
   const bool is_behind = around.is_start ? is_begun && !is_held_ : around.core_begin <= left;
   if (is_behind) return true;
@@ -271,10 +271,12 @@ bool PoleCorridor::decide(Place place) noexcept {
   around.known_end = std::min(end_u(), around.core_end + 2 * kReach_mm);
   if (has_room) {
     around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
-    if (find_zone(around, hold >= 0)) return true;
+    if (find_zone(around, hold >= 0)) {
+      if (hold >= 0) scan_ = hold;
+      return true;
+    }
   }
   has_failed_ = around.is_start;
-  scan_ = core_.last + 1;
   add_cuts(nearest);
   return true;
 }
@@ -346,6 +348,8 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   pending_.drop_before(pending_.end_index());
   cut_count_ = 0;
   scan_ = held_.begin_index() * kProbes;
+  entered_ = -1;
+  core_ = {};
   if (keeps_zone) {
     for (double& value : zone.free) value += by;
     take(zone);
