@@ -13,8 +13,8 @@ namespace meridian::test {
 
 /// Four hosts on the network of deploy/cyclonedds-hosts.xml, as network namespaces: the service's,
 /// the drives', the station's and a fourth that nobody was told of. While it lives, programs run on
-/// the host of their name (Process), each with a monotonic clock of its own, and the calling thread
-/// is on the fourth.
+/// the host of their name (Process), each with a monotonic clock of its own where the kernel gives
+/// programs such (it says where not), and the calling thread is on the fourth.
 class Hosts {
  public:
   enum Name { kService, kDrives, kStation, kViewer };

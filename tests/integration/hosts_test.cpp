@@ -149,6 +149,15 @@ TEST_F(SeveralHosts, ServeTwoMachinesInOneDomainBesideEachOther) {
   beside.join();
 }
 
+TEST(HostOfAProgram, ThatIsNotThereEndsTheProgramInsteadOfRunningItBesideTheTest) {
+  const Plant plant;
+  const Place nowhere{.network = "/run/netns/meridian-nowhere"};
+  Process::place_of = [&](const auto&) { return &nowhere; };
+  Process program({"meridian", "--version"}, plant.folder() / "nowhere.log");
+  Process::place_of = nullptr;
+  EXPECT_EQ(program.wait(milliseconds(5000)), 126) << program.said();
+}
+
 TEST_F(SeveralHosts, WhereTwoServeOneMachineTheLaterGivesWayOnceTheyHearOfEachOther) {
   use(Hosts::Wire::kBridge);
   Process& first = plant->start_service();
@@ -161,7 +170,7 @@ TEST_F(SeveralHosts, WhereTwoServeOneMachineTheLaterGivesWayOnceTheyHearOfEachOt
                  milliseconds(6000)))
       << second->said();
   hosts->mend(Hosts::kStation);
-  EXPECT_EQ(second->wait(milliseconds(6000)), 1);
+  EXPECT_EQ(second->wait(milliseconds(10'000)), 1);
   EXPECT_NE(second->said().find("'lai' is served already"), std::string::npos) << second->said();
   EXPECT_FALSE(first.wait(milliseconds(200))) << "the first goes on: " << first.said();
 }

@@ -32,15 +32,21 @@ namespace {
 
 /// In a child before it becomes its program.
 void go_to(const Place& place) {
-  ::setns(::open(place.network.c_str(), O_RDONLY | O_CLOEXEC), CLONE_NEWNET);
+  const int network = ::open(place.network.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_there = ::setns(network, CLONE_NEWNET) == 0 &&
+                        (place.uptime_ahead_s == 0 || set_uptime_ahead(place.uptime_ahead_s));
+  if (!is_there) ::_exit(126);
   if (!place.dds.empty()) ::setenv("CYCLONEDDS_URI", place.dds.c_str(), 1);
-  if (place.uptime_ahead_s == 0 || ::unshare(CLONE_NEWTIME) != 0) return;
-  const std::string offset = "monotonic " + std::to_string(place.uptime_ahead_s) + " 0\n";
-  const int file = ::open("/proc/self/timens_offsets", O_WRONLY | O_CLOEXEC);
-  (void)!::write(file, offset.data(), offset.size());
 }
 
 }  // namespace
+
+bool set_uptime_ahead(long seconds) {
+  if (::unshare(CLONE_NEWTIME) != 0) return false;
+  const std::string offset = "monotonic " + std::to_string(seconds) + " 0\n";
+  const int file = ::open("/proc/self/timens_offsets", O_WRONLY | O_CLOEXEC);
+  return ::write(file, offset.data(), offset.size()) == static_cast<ssize_t>(offset.size());
+}
 
 bool eventually(const std::function<bool()>& condition, milliseconds patience) {
   const auto end = std::chrono::steady_clock::now() + patience;

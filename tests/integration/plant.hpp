@@ -65,13 +65,18 @@ class Terminal {
 struct Place {
   std::string network;      ///< file of its network namespace
   std::string dds;          ///< CYCLONEDDS_URI there; empty: as for the test
-  long uptime_ahead_s = 0;  ///< of its monotonic clock, where the kernel has time namespaces
+  long uptime_ahead_s = 0;  ///< of its monotonic clock; not 0 only where set_uptime_ahead() works
 };
+
+/// Sets the monotonic clock of the program that the calling process becomes next. False: this
+/// kernel lends it none of its own.
+[[nodiscard]] bool set_uptime_ahead(long seconds);
 
 /// A program of ours that runs beside the test; killed with it.
 class Process {
  public:
-  /// Where a program with that command line runs; nullptr: beside the test. None: all do.
+  /// Where a program with that command line runs; nullptr: beside the test. None: all do. One that
+  /// cannot go there ends with exit code 126.
   static inline std::function<const Place*(const std::vector<std::string>&)> place_of;
 
   /// Starts build/bin/`arguments[0]`; what it says goes to `log`, its standard output to `terminal`
