@@ -5,25 +5,29 @@
 #include <thread>
 
 namespace meridian::interpolator {
+namespace {
+
+[[nodiscard]] std::int64_t now_ns() noexcept {
+  return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+}  // namespace
 
 Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim)
-    : claim_(claim), reader_(participant), writer_(participant) {
+    : claim_(claim), reader_(participant), writer_(participant), judge_(claim.service_id) {
   say();
 }
 
 void Lease::hold() {
-  claim_.is_serving = true;
-  held_ = Clock::now();
+  judge_.hold(now_ns());
   say();
 }
 
-Lease::Clock::duration Lease::served() const noexcept {
-  return claim_.is_serving ? Clock::now() - held_ : Clock::duration{};
-}
-
 void Lease::say() {
-  claim_.served_ns = std::chrono::nanoseconds(served()).count();
-  (void)writer_.write(claim_);
+  const LeaseJudge::Word word = judge_.word(now_ns());
+  claim_.is_serving = word.is_serving;
+  claim_.served_ns = word.served_ns;
+  if (writer_.write(claim_)) judge_.on_said(word, now_ns());
 }
 
 void Lease::take(const dds::MachineInfo& info, std::uint64_t source) {
@@ -31,13 +35,10 @@ void Lease::take(const dds::MachineInfo& info, std::uint64_t source) {
     return known.info.service_id == info.service_id;
   });
   if (other == others_.end()) other = others_.insert(others_.end(), Other{});
-  const bool is_met = other->met != Clock::time_point{};
-  other->info = info;
-  other->source = source;
-  other->lead = served() - std::chrono::nanoseconds(info.served_ns);
-  if (is_met || !claim_.is_serving || !info.is_serving) return;
-  other->met = Clock::now();
-  say();
+  *other = {.info = info, .source = source};
+  judge_.hear(
+      {.service_id = info.service_id, .is_serving = info.is_serving, .served_ns = info.served_ns},
+      now_ns());
 }
 
 void Lease::look() {
@@ -46,30 +47,30 @@ void Lease::look() {
   while (reader_.take(info, sample)) {
     if (sample.is_valid && info.service_id != claim_.service_id) take(info, sample.source);
   }
-  std::erase_if(others_, [this](const Other& other) { return !reader_.has_source(other.source); });
+  std::erase_if(others_, [this](const Other& other) {
+    const bool is_gone = !reader_.has_source(other.source);
+    if (is_gone) judge_.forget(other.info.service_id);
+    return is_gone;
+  });
 }
 
-bool Lease::keeps_the_machine(const Other& other) const noexcept {
-  const bool goes_first = other.info.service_id < claim_.service_id;
-  if (!claim_.is_serving) return other.info.is_serving || goes_first;
-  if (!other.info.is_serving) return false;
-  if (other.lead < Clock::duration{}) return true;
-  return goes_first && other.lead < kSameTime && Clock::now() - other.met > kAnswered;
-}
-
-std::optional<dds::MachineInfo> Lease::find_older() {
+std::optional<dds::MachineInfo> Lease::find_keeper(bool may_leave) {
+  const std::int64_t before_ns = now_ns();
   look();
-  const auto older = std::find_if(others_.begin(), others_.end(),
-                                  [this](const Other& other) { return keeps_the_machine(other); });
-  if (older == others_.end()) return std::nullopt;
-  return older->info;
+  judge_.judge(before_ns, may_leave);
+  if (judge_.has_to_speak(before_ns)) say();
+  const auto keeper = judge_.keeper(before_ns);
+  if (!keeper) return std::nullopt;
+  return std::find_if(others_.begin(), others_.end(),
+                      [&](const Other& other) { return other.info.service_id == *keeper; })
+      ->info;
 }
 
 std::optional<dds::MachineInfo> Lease::find_holder(std::chrono::milliseconds start_window,
                                                    std::chrono::milliseconds patience) {
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
-    const auto holder = find_older();
+    const auto holder = find_keeper(true);
     const auto waited = std::chrono::steady_clock::now() - start;
     if (!holder && waited >= start_window) return std::nullopt;
     if (holder && waited >= patience) return holder;

@@ -205,8 +205,8 @@ void Service::tell_last_program() {
 }
 
 void Service::keep_lease() {
-  const auto holder = lease_.find_older();
-  if (holder && ports_.state == State::kOff) throw served_already(*holder);
+  const auto keeper = lease_.find_keeper(ports_.state == State::kOff);
+  if (keeper) throw served_already(*keeper);
 }
 
 void Service::start() {

@@ -53,8 +53,9 @@ class Service {
   Service& operator=(const Service&) = delete;
 
   void start();
-  /// In Off, the thread that made the service: throws StartError where an older service of the same
-  /// machine was heard of only now. A machine that is on goes on; drives obey one service.
+  /// In Off, the thread that made the service: throws StartError where another service of the same
+  /// machine was heard of only now and keeps it. A machine that is on goes on; drives obey one
+  /// service.
   void keep_lease();
   /// Counts up with every cycle: one that stands still is a cycle that hangs.
   [[nodiscard]] std::uint32_t heartbeat() const noexcept { return ports_.publisher_wake.look(); }

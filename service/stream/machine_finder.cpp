@@ -11,7 +11,9 @@ namespace meridian::stream {
 namespace {
 
 /// One service per machine: the newest word of the one that serves it. Of two that serve, the one
-/// that has served longer keeps the machine, as between themselves.
+/// that has served longer, as between themselves, where both have said so within half a second, as
+/// they do once they have heard of each other. Until then the older words of one may hide that, and
+/// it is the one that said the more when it spoke last.
 void take(const dds::MachineInfo& info, std::vector<dds::MachineInfo>& found) {
   const auto same = std::find_if(found.begin(), found.end(), [&](const dds::MachineInfo& other) {
     return other.name == info.name;

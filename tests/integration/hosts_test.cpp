@@ -151,7 +151,7 @@ TEST_F(SeveralHosts, ServeTwoMachinesInOneDomainBesideEachOther) {
 
 TEST(HostOfAProgram, ThatIsNotThereEndsTheProgramInsteadOfRunningItBesideTheTest) {
   const Plant plant;
-  const Place nowhere{.network = "/run/netns/meridian-nowhere"};
+  const Place nowhere{.network = "/run/netns/meridian-nowhere", .dds = {}};
   Process::place_of = [&](const auto&) { return &nowhere; };
   Process program({"meridian", "--version"}, plant.folder() / "nowhere.log");
   Process::place_of = nullptr;
