@@ -39,7 +39,9 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"override", Verb::kFeedOverride},
                                                   {"rapid-override", Verb::kRapidOverride},
                                                   {"jog", Verb::kJog},
-                                                  {"home", Verb::kHome}};
+                                                  {"home", Verb::kHome},
+                                                  {"single-block", Verb::kSingleBlock},
+                                                  {"optional-stop", Verb::kOptionalStop}};
   return kVerbs;
 }
 
@@ -71,8 +73,16 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   return has_jog ? "--for and --distance are for jog alone" : nullptr;
 }
 
+std::optional<double> switch_of(const CtlOptions& options) {
+  const std::string value = options.values.size() == 1 ? options.values.front() : "";
+  if (value == "on" || value == "off") return value == "on" ? 1 : 0;
+  std::fprintf(stderr, "meridian: %s takes on or off\n", options.verb.c_str());
+  return std::nullopt;
+}
+
 /// The argument of a verb that has one by itself, 0 for others; or says what is wrong.
 std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
+  if (verb == Verb::kSingleBlock || verb == Verb::kOptionalStop) return switch_of(options);
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
   const bool has_joints = verb == Verb::kJog || verb == Verb::kHome;
   double percent = 0;
@@ -134,7 +144,7 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
       ->add_option(
           "verb", options->verb,
           "enable, disable, start, hold, resume, abort, reset, override, rapid-override, jog, "
-          "home")
+          "home, single-block, optional-stop")
       ->required()
       ->check(CLI::IsMember(names))
       ->type_name("VERB");
@@ -143,7 +153,7 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
                    "override: 0 to feed_override_max_percent of the machine's file (150), "
                    "rapid-override: 0 to 100 %; jog: JOINT (or tool-x, -y, -z, -a, -b) and its "
                    "velocity in mm/s or deg/s; home: "
-                   "joints, default all")
+                   "joints, default all; single-block, optional-stop: on or off")
       ->type_name("VALUE");
   command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
       ->check(finite_range(1e-3, 1e6));

@@ -57,9 +57,11 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
     if (status.block_count > 0) append(text, " of %llu", Count{status.block_count});
     append(text, ", line %u\n", status.line);
   }
-  append(text, "feed      %.1f of %.1f mm/min, override %.0f %%, rapid override %.0f %%\n",
+  append(text, "feed      %.1f of %.1f mm/min, override %.0f %%, rapid override %.0f %%%s%s\n",
          status.feed_achieved_mm_per_min, status.feed_programmed_mm_per_min,
-         status.feed_override * 100, status.rapid_override * 100);
+         status.feed_override * 100, status.rapid_override * 100,
+         status.is_single_block ? ", single block" : "",
+         status.stops_at_optional ? ", optional stops" : "");
   append(text, "buffer    %u blocks, %u pieces, %.2f s planned; starved %llu times\n",
          status.blocks_queued, status.pieces_queued, status.planned_s, Count{status.starvations});
   append(text, "joints   ");
@@ -100,6 +102,8 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   add("feed_achieved_mm_per_min", "%.6g", status.feed_achieved_mm_per_min);
   add("feed_override", "%.6g", status.feed_override);
   add("rapid_override", "%.6g", status.rapid_override);
+  append(text, "\"single_block\":%s,\"optional_stop\":%s,",
+         status.is_single_block ? "true" : "false", status.stops_at_optional ? "true" : "false");
   add("plan_time_s", "%.6f", status.plan_time_s);
   append(text,
          "\"cycles_run\":%llu,\"periods_lost\":%llu,\"starvations\":%llu,"

@@ -41,6 +41,8 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.feed_achieved_mm_per_min, wire.feed_achieved_mm_per_min);
   way(message.feed_override, wire.feed_override);
   way(message.rapid_override, wire.rapid_override);
+  way(message.is_single_block, wire.is_single_block);
+  way(message.stops_at_optional, wire.stops_at_optional);
   way(message.rate, wire.rate);
   way(message.plan_time_s, wire.plan_time_s);
   way(message.joints, wire.joints);

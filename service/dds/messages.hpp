@@ -208,6 +208,8 @@ struct Status {
   double feed_achieved_mm_per_min = 0;
   double feed_override = 1;
   double rapid_override = 1;
+  bool is_single_block = false;
+  bool stops_at_optional = false;
   double rate = 1;
   double plan_time_s = 0;
   JointVector joints{};

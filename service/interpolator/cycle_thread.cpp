@@ -59,7 +59,6 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   inputs_.computation_ns = computation_ns_;
   inputs_.has_command = ports_.commands.try_pop(inputs_.command);
   inputs_.session = ports_.session.load(std::memory_order_relaxed);
-  inputs_.stops_at_optional = ports_.stops_at_optional.load(std::memory_order_relaxed);
 }
 
 void CycleThread::hand_over() noexcept {
@@ -99,6 +98,8 @@ void CycleThread::show() noexcept {
   view_.alarm = state_.alarm;
   view_.feed_override = state_.feed_override;
   view_.rapid_override = state_.rapid_override;
+  view_.is_single_block = state_.single_block.is_on;
+  view_.stops_at_optional = state_.stops_at_optional;
   const TimePiece* piece = motion_.piece();
   const PathPiece* path = motion_.path();
   if (piece == nullptr) {

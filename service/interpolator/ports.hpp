@@ -54,6 +54,7 @@ struct CycleView {
   std::uint16_t epoch = 0;
   Alarm alarm = Alarm::kNone;
   double feed_override = 1, rapid_override = 1;
+  bool is_single_block = false, stops_at_optional = false;
   double feed_mm_per_s = 0;  ///< programmed, of the last motion of the program; 0: rapid
   std::uint8_t branch = 0;   ///< of the path piece in force
   bool is_at_pole = false;   ///< the free joint turns on the pole
@@ -120,9 +121,8 @@ struct Ports {
   LatestValue<DriveWords> drive_words, drive_words_for_status;
 
   std::atomic<bool> is_stopping{false};
-  std::atomic<State> state{State::kOff};  ///< of the machine, for who needs no more than that
-  std::atomic<std::uint64_t> session{0};  ///< that holds the machine
-  std::atomic<bool> stops_at_optional{false};
+  std::atomic<State> state{State::kOff};   ///< of the machine, for who needs no more than that
+  std::atomic<std::uint64_t> session{0};   ///< that holds the machine
   std::atomic<double> spindle_tool_mm{0};  ///< gauge line to tip of the tool in the spindle
   QueueMarkWord queue_mark;                ///< intake to planner: what of `blocks` is good
   std::atomic<double> planned_s{0};        ///< plan time of the program that was published

@@ -86,6 +86,7 @@ namespace {
   options.feedback_timeout_s = service.feedback_timeout_s;
   options.homing_timeout_s = homing.timeout_s;
   options.homing_turns = homing.turns;
+  options.stops_at_optional = service.optional_stop;
   return options;
 }
 
@@ -133,7 +134,6 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                  status_clock_, recorder_, journal_, flight_, log_, ports_),
       tracer_(make_tracer()) {
   ports_.spindle_tool_mm = parts_.model.tool_length_mm;
-  ports_.stops_at_optional = parts_.service.optional_stop;
   supervisor_.on_session_event([this](bool has_action_peer) {
     intake_.set_action_peer(has_action_peer);
     intake_.wake();

@@ -10,14 +10,14 @@ namespace meridian::interpolator {
 /// When telemetry published its last statuses; the commands thread asks. Any thread.
 class StatusClock {
  public:
-  void published(std::uint64_t sequence, std::int64_t now_ns) {
+  void published(const dds::Status& status, std::int64_t now_ns) {
     const std::lock_guard lock(mutex_);
-    times_.published(sequence, now_ns);
+    times_.published(status.status_sequence, now_ns, stream::rest_of(status.state, status.block));
   }
   [[nodiscard]] Refusal judge(const dds::CommandRequest& request, std::uint64_t service_id,
-                              std::uint16_t epoch, std::int64_t now_ns) const {
+                              std::uint16_t epoch, std::int64_t now_ns, std::uint64_t rest) const {
     const std::lock_guard lock(mutex_);
-    return stream::judge_freshness(request, service_id, epoch, times_, now_ns);
+    return stream::judge_freshness(request, service_id, epoch, times_, now_ns, rest);
   }
 
  private:

@@ -97,7 +97,9 @@ void Supervisor::take_command(const dds::CommandRequest& request) {
   }
   // Whoever saw a status that is younger than the last look at the cycle is not late.
   if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
-  const Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns());
+  const std::uint64_t rest = stream::rest_of(view_.record.state, view_.record.sequence);
+  const Refusal refusal =
+      status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns(), rest);
   if (is_switching_off_ || refusal != Refusal::kNone) {
     const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
     reply(request, false, why,

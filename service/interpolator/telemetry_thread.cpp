@@ -215,6 +215,8 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.limiting_joint = is_on_path(record.state) ? motion_.limiting_joint() : -1;
   status.feed_override = view_.feed_override;
   status.rapid_override = view_.rapid_override;
+  status.is_single_block = view_.is_single_block;
+  status.stops_at_optional = view_.stops_at_optional;
   status.rate = record.rate;
   status.plan_time_s = record.plan_time_s;
   status.joints = record.joints;
@@ -240,7 +242,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
     log_->info("{}", session.message);
   }
   // The clock first: a verb that quotes this status may be here before write() returns.
-  status_clock_.published(status.status_sequence, now_ns);
+  status_clock_.published(status, now_ns);
   (void)statuses_.write(status);
   status_ns_ = now_ns;
   has_news_ = false;

@@ -38,8 +38,12 @@ template <class Number>
   return std::nullopt;
 }
 
+[[nodiscard]] bool is_switch(Verb verb) {
+  return verb == Verb::kSingleBlock || verb == Verb::kOptionalStop;
+}
+
 [[nodiscard]] bool needs_argument(Verb verb) {
-  return verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
+  return verb == Verb::kFeedOverride || verb == Verb::kRapidOverride || is_switch(verb);
 }
 
 /// "'text' what".
@@ -81,6 +85,9 @@ struct EventRow {
     return is_count ? "" : about(row.word, "needs a whole number");
   }
   row.event.verb = *verb;
+  if (is_switch(*verb) && (argument.empty() || (value != 0 && value != 1))) {
+    return about(row.word, "needs 1 (on) or 0 (off)");
+  }
   if (needs_argument(*verb) && argument.empty()) return about(row.word, "needs its factor");
   const double most = *verb == Verb::kFeedOverride ? most_feed : 1;
   if (needs_argument(*verb) && !(value >= 0 && value <= most)) {
@@ -100,7 +107,7 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
         {cycle, static_cast<int>(row.event.argument), row.word == record::kPeriodsBridgedWord});
   } else if (row.word == record::kActionAnsweredWord) {
     events.answers.push_back({cycle, row.event.argument != 0});
-  } else if (row.event.verb != Verb::kStart) {
+  } else if (row.event.verb != Verb::kStart || cycle > 0) {
     events.verbs.push_back({cycle, row.event.verb, row.event.argument});
   }
 }
@@ -117,10 +124,11 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
          parse(span, mark.span);
 }
 
-/// Of what came before the start, the overrides in force then.
-void keep_overrides(const std::vector<EventRow>& rows, std::int64_t start,
-                    std::vector<OperatorEvent>& verbs) {
-  for (const Verb verb : {Verb::kFeedOverride, Verb::kRapidOverride}) {
+/// Of what came before the start, the overrides and switches in force then.
+void keep_settings(const std::vector<EventRow>& rows, std::int64_t start,
+                   std::vector<OperatorEvent>& verbs) {
+  for (const Verb verb :
+       {Verb::kFeedOverride, Verb::kRapidOverride, Verb::kSingleBlock, Verb::kOptionalStop}) {
     const EventRow* last = nullptr;
     for (const EventRow& row : rows) {
       if (row.event.cycle < start && row.word == name_of(verb)) last = &row;
@@ -159,7 +167,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
     if (row.word == name_of(Verb::kStart) && !start) start = row.event.cycle;
     rows.push_back(row);
   }
-  if (start) keep_overrides(rows, *start, events.verbs);
+  if (start) keep_settings(rows, *start, events.verbs);
   for (const EventRow& row : rows) keep(row, start.value_or(0), events);
   return events;
 }

@@ -29,11 +29,10 @@ class Run {
         motion_(*port_),
         feed_(reader, model, tools, *port_, options.has_action_peer, options.explainer),
         meter_(model),
-        state_(CycleOptions{}, rate_bounds(model)) {
+        state_({.stops_at_optional = options.stops_at_optional}, rate_bounds(model)) {
     for (int i = 0; i < model.joint_count; ++i) drives_[i] = drive_spec(model, i).home;
     if (options.start) drives_ = *options.start;
     in_.session = 1;
-    in_.stops_at_optional = options.stops_at_optional;
     if (!options.events.feed_marks.empty()) feed_.replay_feed(options.events.feed_marks);
   }
 
@@ -235,6 +234,10 @@ class Run {
       case State::kStarved:
         is_end = feed_.is_over();
         report.outcome = Outcome::kStarved;
+        break;
+      case State::kStepping:  // who steps is who sends it on
+        is_end = !has_events;
+        report.outcome = Outcome::kStopped;
         break;
       case State::kHeld:
         is_end = !has_events && !is_at_program_stop();

@@ -214,6 +214,7 @@ class Soak {
         ask(Verb::kStart);
         break;
       case State::kHeld:
+      case State::kStepping:
         if (now >= resume_s_) ask(Verb::kResume);
         break;
       case State::kStarved:

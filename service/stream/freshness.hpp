@@ -15,8 +15,9 @@ namespace meridian::stream {
 inline constexpr std::int64_t kFreshness_ns = 500'000'000;
 
 /// Whether `verb` can set something in motion or make it faster. Hold, abort, disable and reset
-/// only ever stop: they are never stale.
-[[nodiscard]] constexpr bool needs_freshness(Verb verb) noexcept {
+/// only ever stop, and so do single block and optional stops that are switched on: they are never
+/// stale.
+[[nodiscard]] constexpr bool needs_freshness(Verb verb, double argument) noexcept {
   switch (verb) {
     case Verb::kEnable:
     case Verb::kStart:
@@ -26,6 +27,9 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
     case Verb::kJog:
     case Verb::kHome:
       return true;
+    case Verb::kSingleBlock:
+    case Verb::kOptionalStop:
+      return argument != 1;
     case Verb::kDisable:
     case Verb::kHold:
     case Verb::kAbort:
@@ -35,11 +39,22 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
   return true;
 }
 
+/// Names the block behind which a machine in `state` rests that runs `block`; 0: behind none.
+[[nodiscard]] constexpr std::uint64_t rest_of(State state, std::uint64_t block) noexcept {
+  return state == State::kStepping ? block + 1 : 0;
+}
+
 /// Remembers when the service published its last statuses, by its own clock.
 class StatusTimes {
  public:
-  void published(std::uint64_t sequence, std::int64_t now_ns) noexcept {
-    entries_[sequence % kEntries] = {sequence, now_ns};
+  /// `rest`: behind which block the machine rested then, see rest_of().
+  void published(std::uint64_t sequence, std::int64_t now_ns, std::uint64_t rest = 0) noexcept {
+    entries_[sequence % kEntries] = {sequence, now_ns, rest};
+  }
+  /// What was told of the rest with status `sequence`; 0: none, or forgotten.
+  [[nodiscard]] std::uint64_t rest_told(std::uint64_t sequence) const noexcept {
+    const Entry& entry = entries_[sequence % kEntries];
+    return entry.sequence == sequence ? entry.rest : 0;
   }
   /// Whether status `sequence` was published no longer than kFreshness_ns ago. A sequence that was
   /// never published, or so long ago that it is forgotten, was not.
@@ -55,23 +70,28 @@ class StatusTimes {
   struct Entry {
     std::uint64_t sequence = 0;
     std::int64_t time_ns = kNever;
+    std::uint64_t rest = 0;
   };
   std::array<Entry, kEntries> entries_{};
 };
 
 /// Returns kStale where a verb that moves quotes an old epoch, another service or a status older
-/// than 500 ms by the service's own clock (or none), else kNone.
+/// than 500 ms by the service's own clock (or none), else kNone. Behind a block (`rest`, see
+/// rest_of()) start and resume are stale too where that status told of another rest: said twice
+/// they send on once.
 /// Proof: tests/unit/stream/freshness_test.cpp.
 [[nodiscard]] inline Refusal judge_freshness(const dds::CommandRequest& request,
                                              std::uint64_t service_id, std::uint16_t epoch,
-                                             const StatusTimes& times,
-                                             std::int64_t now_ns) noexcept {
-  if (!needs_freshness(request.verb)) return Refusal::kNone;
+                                             const StatusTimes& times, std::int64_t now_ns,
+                                             std::uint64_t rest = 0) noexcept {
+  if (!needs_freshness(request.verb, request.argument)) return Refusal::kNone;
   const bool is_same_service =
       request.service_id_seen == 0 || request.service_id_seen == service_id;
   const bool is_fresh =
       is_same_service && request.epoch_seen == epoch && times.is_fresh(request.status_seen, now_ns);
-  return is_fresh ? Refusal::kNone : Refusal::kStale;
+  const bool sends_on = request.verb == Verb::kStart || request.verb == Verb::kResume;
+  const bool is_of_rest = !sends_on || rest == 0 || times.rest_told(request.status_seen) == rest;
+  return is_fresh && is_of_rest ? Refusal::kNone : Refusal::kStale;
 }
 
 }  // namespace meridian::stream

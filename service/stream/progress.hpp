@@ -63,7 +63,7 @@ class ProgressMeter {
 
   [[nodiscard]] static bool is_under_way(State state) noexcept {
     return state == State::kApproaching || is_running(state) || state == State::kHeld ||
-           state == State::kStarved || state == State::kAborting;
+           state == State::kStarved || state == State::kStepping || state == State::kAborting;
   }
 
   TimeTable times_;

@@ -43,8 +43,8 @@ void JournalKeeper::enter(State state) noexcept {
     if (state != State::kFaultStop) entry_.alarm = {};  // whatever it was, the program goes on
     return;
   }
-  // Held and Starved go on; whatever else is at rest has done with the program.
-  has_program_ = state == State::kHeld || state == State::kStarved;
+  // Held, Starved and Stepping go on; whatever else is at rest has done with the program.
+  has_program_ = state == State::kHeld || state == State::kStarved || state == State::kStepping;
 }
 
 bool JournalKeeper::is_due(std::int64_t steady_ns) const noexcept {

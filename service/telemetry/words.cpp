@@ -45,6 +45,7 @@ namespace {
       return "stream a program first";
     case State::kHeld:
     case State::kStarved:
+    case State::kStepping:
       return "resume or abort";
     default:
       return "wait until the machine has come to rest";
@@ -194,6 +195,9 @@ std::string describe(Verb verb, State state) {
   if (verb == Verb::kFeedOverride || verb == Verb::kRapidOverride) {
     return fmt::format("{} set", name_of(verb));
   }
+  if (verb == Verb::kSingleBlock || verb == Verb::kOptionalStop) {
+    return fmt::format("{} set; the machine is {}", name_of(verb), name_of(state));
+  }
   return fmt::format("{} accepted; the machine is {}", name_of(verb), name_of(state));
 }
 
@@ -219,6 +223,8 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       break;
     case Refusal::kOutOfRange:
       why = verb == Verb::kJog || verb == Verb::kHome ? "the machine has no such joint"
+            : verb == Verb::kSingleBlock || verb == Verb::kOptionalStop
+                ? "the value is out of range: on or off"
             : verb == Verb::kFeedOverride
                 ? "the value is out of range: from 0 to what the machine's file allows "
                   "(feed_override_max_percent)"
@@ -229,6 +235,11 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       break;
     case Refusal::kFaultPresent:
       why = "a fault is present; mend its cause, then reset";
+      break;
+    case Refusal::kSlowRamp:
+      why =
+          "the machine's override_ramp_s is longer than 2 s: blocks could not be braked for in "
+          "time";
       break;
   }
   return fmt::format("{} refused: {}", name_of(verb), why);

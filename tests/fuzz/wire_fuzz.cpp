@@ -174,7 +174,8 @@ class Listeners {
     times_.published(5, now_ns_);
     const Refusal refusal = stream::judge_freshness(request, 7, 1, times_, now_ns_);
     if (static_cast<int>(request.verb) >= kVerbCount) return;  // as the supervisor does
-    require(refusal == Refusal::kNone || stream::needs_freshness(request.verb), "a stop is stale");
+    require(refusal == Refusal::kNone || stream::needs_freshness(request.verb, request.argument),
+            "a stop is stale");
     static_cast<void>(effect_of(State::kRunning, request.verb));
   }
   void take_reply(Supplies& in) {

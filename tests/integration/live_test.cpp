@@ -220,5 +220,64 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   expect_checked(plant, part, live);  // the feed times the override in force
 }
 
+/// An operator who steps through five blocks, lets the program run up to the first optional stop,
+/// through the second, and steps through two somewhere in the last cuts.
+void step_through(Plant& plant) {
+  const auto say = [&plant](Verb verb, double argument = 0) {
+    const auto reply = plant.say(verb, argument);
+    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
+  };
+  say(Verb::kSingleBlock, 1);
+  say(Verb::kOptionalStop, 1);
+  say(Verb::kStart);
+  std::uint64_t block = UINT64_MAX;  // in front of the first
+  const auto rests_behind_another = [&plant, &block] {
+    const dds::Status& status = plant.status();
+    return status.state == State::kStepping && status.block != block;
+  };
+  for (int n = 0; n < 5; ++n) {
+    ASSERT_TRUE(eventually(rests_behind_another)) << plant.service().said();
+    EXPECT_TRUE(plant.status().is_single_block && plant.status().stops_at_optional);
+    EXPECT_EQ(plant.status().block, block + 1);
+    block = plant.status().block;
+    if (n == 4) say(Verb::kSingleBlock, 0);
+    say(n % 2 == 0 ? Verb::kStart : Verb::kResume);
+  }
+  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.service().said();
+  say(Verb::kOptionalStop, 0);
+  say(Verb::kResume);
+  ASSERT_TRUE(eventually([&plant, block] {
+    const dds::Status& status = plant.status();
+    return status.block > block + 16 && status.state == State::kRunning;
+  })) << plant.status().block;
+  say(Verb::kSingleBlock, 1);
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_TRUE(eventually(rests_behind_another)) << plant.service().said();
+    block = plant.status().block;
+    if (n == 1) say(Verb::kSingleBlock, 0);
+    say(Verb::kResume);
+  }
+}
+
+TEST(Live, RestsBehindBlocksAndAtOptionalStopsAndIsReplayedBitForBit) {
+  Plant plant;
+  const std::string part = (plant.folder() / "part.cls").string();
+  const auto blocks = small_program(50, 2000, 4);
+  const auto first = blocks.begin(), third = blocks.end();
+  const auto middle = first + 10, second = first + 16;
+  std::ofstream(part) << "PARTNO STEPPED\nUNITS/MM\nFEDRAT/2000,MMPM\n"
+                      << cl_text({first, middle}) << "OPSTOP\n"
+                      << cl_text({first, second}, 10) << "OPSTOP\n"
+                      << cl_text({first, third}, 16) << "FINI\n";
+  LiveRun live;
+  live.station = {"--transition", "smooth"};
+  live.operate = [&plant] { step_through(plant); };
+  ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
+  const std::string events = plant.folder() / "recording.events.csv";
+  expect_same(plant,
+              simulate_part(plant, part, live, {"--transition", "smooth", "--events", events}));
+  expect_checked(plant, part, live);
+}
+
 }  // namespace
 }  // namespace meridian::test

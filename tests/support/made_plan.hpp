@@ -22,6 +22,8 @@ class MadePlan {
 
   [[nodiscard]] const JointVector& joints() const { return joints_; }
 
+  double block_end_s = 0;  ///< where blocks end on their paths, mm; 0: at the end
+
   /// Pieces that follow carry `epoch`.
   void set_epoch(std::uint16_t epoch) { epoch_ = epoch; }
 
@@ -41,7 +43,7 @@ class MadePlan {
   void cut_over_two_paths(const Vector3& delta, const PathLimits& limits) {
     const double length = delta.norm();
     const ProfilePhases phases = phases_of(rest_to_rest_with_reserve(length, limits), length);
-    const PathPiece first = stage_path(delta / 2, MotionKind::kCut);
+    const PathPiece first = stage_path(delta / 2, MotionKind::kCut, false);
     const PathPiece second = stage_path(delta / 2, MotionKind::kCut);
     for (int i = 0; i < phases.count; ++i) {
       ProfilePhase phase = phases.phase[static_cast<std::size_t>(i)];
@@ -96,7 +98,7 @@ class MadePlan {
   }
 
  private:
-  PathPiece stage_path(const Vector3& delta, MotionKind motion) {
+  PathPiece stage_path(const Vector3& delta, MotionKind motion, bool ends_block = true) {
     PathPiece path;
     path.index = index_++;
     path.sequence = sequence_;
@@ -112,6 +114,7 @@ class MadePlan {
     pose_.tip += delta;
     joints_ = solve(machine_, machine_.tool_length_mm, pose_, 0, joints_).q;
     path.joints_end = joints_;
+    if (ends_block) path.marks.add({block_end_s > 0 ? block_end_s : path.length, 0, path.line});
     (void)writer_.stage(path);
     return path;
   }

@@ -7,6 +7,7 @@
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/joints.hpp"
+#include "meridian/path/block_marks.hpp"
 #include "meridian/path/cl_block.hpp"
 
 namespace meridian {
@@ -79,6 +80,7 @@ struct PathPiece {
   JointVector
       joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve
   JointVector joints_end{};  ///< joints at s = length, windings included
+  BlockMarks marks;          ///< blocks that end on the piece
 };
 static_assert(std::is_trivially_copyable_v<PathPiece>);
 

@@ -203,6 +203,29 @@ class MotionReader {
     return port_.times.peek(piece_ != nullptr ? i : i - 1);
   }
 
+  /// Where the kMove piece `piece` ahead runs; nullptr if that is not there. Only while path() is.
+  [[nodiscard]] const PathPiece* path_of(const TimePiece& piece) noexcept {
+    const PathPiece* path = port_.paths.peek(piece.path_index - path_->index);
+    return path != nullptr && path->index == piece.path_index ? path : nullptr;
+  }
+
+  /// The path piece `i` places behind path(), whatever the rules say about it; nullptr if it is not
+  /// there.
+  [[nodiscard]] const PathPiece* path_ahead(std::size_t i) noexcept { return port_.paths.peek(i); }
+
+  /// Whether a tail that starts `i` places behind the piece in force will be run as it stands now.
+  [[nodiscard]] bool will_run_tail(std::size_t i) noexcept {
+    const std::size_t place = piece_ != nullptr ? i : i - 1;
+    return !continues_past(*port_.times.peek(place), place);
+  }
+
+  /// The tail that starts with `tail`, ahead, is run whatever is published meanwhile. The planner
+  /// hears of it now, and goes on from its end.
+  void keep_tail(const TimePiece& tail) noexcept {
+    kept_tail_ = pack(tail);
+    port_.tail_entered.store(kept_tail_, std::memory_order_release);
+  }
+
   /// Only at rest: from now on pieces of `epoch` alone are taken; what the port holds of another is
   /// dropped as advance() comes to it.
   void set_epoch(std::uint16_t epoch) noexcept {
@@ -226,14 +249,16 @@ class MotionReader {
     if (next.epoch != epoch_) return false;
     if (next.is_tail) {
       if (is_past_tail_) return next.window == last_.window;
-      return !continues_past(next);
+      return !continues_past(next, 0);
     }
     return !is_past_tail_ || next.is_from_rest;
   }
 
-  /// Whether the window behind the tail that starts with `tail` is there and goes on in motion.
-  [[nodiscard]] bool continues_past(const TimePiece& tail) noexcept {
-    for (std::size_t i = 1;; ++i) {
+  /// Whether the window behind the tail that starts with `tail`, at `place` of the ring, is there,
+  /// goes on in motion and may.
+  [[nodiscard]] bool continues_past(const TimePiece& tail, std::size_t place) noexcept {
+    if (pack(tail) == kept_tail_) return false;
+    for (std::size_t i = place + 1;; ++i) {
       const TimePiece* later = port_.times.peek(i);
       if (later == nullptr || later->epoch != epoch_) return false;
       if (later->window != tail.window) return !later->is_from_rest;
@@ -278,7 +303,8 @@ class MotionReader {
   const TimePiece* piece_ = nullptr;
   const PathPiece* path_ = nullptr;
   WindowName last_;
-  std::uint64_t begun_ = 0;  ///< what window_begun holds
+  std::uint64_t begun_ = 0;      ///< what window_begun holds
+  std::uint64_t kept_tail_ = 0;  ///< window whose tail is run, packed; 0: none
   std::uint16_t epoch_ = 0;
   bool is_past_tail_ = false;  ///< a tail was entered: only a window from rest may follow
 };

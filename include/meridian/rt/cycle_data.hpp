@@ -129,6 +129,7 @@ enum class Refusal : std::uint8_t {
   kStale,
   kFaultPresent,
   kProgramPresent,  ///< a station holds the machine: what it sends is planned from where it stands
+  kSlowRamp,        ///< the machine's override ramp is too long for single block
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

@@ -30,6 +30,7 @@ struct CycleOptions {
   double feedback_timeout_s = 0.02;  ///< feedback older than it is lost
   double homing_timeout_s = 60;      ///< a drive must find its reference within it
   std::array<int, kMaxJoints> homing_turns{};  ///< of each joint, from 1 on; 0: its place
+  bool stops_at_optional = false;              ///< until the operator says otherwise
 };
 
 /// The answer of the action peer to an action; an answer is given to exactly one step().
@@ -52,7 +53,6 @@ struct CycleInputs {
   ActionAnswer action;
   JogOrder jog;               ///< newest of the operator who jogs
   std::uint64_t session = 0;  ///< open session, 0: none; starvation ends by itself only in its own
-  bool stops_at_optional = false;  ///< the operator asked for optional stops
 };
 static_assert(std::is_trivially_copyable_v<CycleInputs>);
 
@@ -137,6 +137,18 @@ struct Homing {
   std::uint64_t settled_cycle = 0;  ///< the setpoint of this cycle stays
 };
 
+/// The program rests behind every block, until the operator sends it on.
+struct SingleBlock {
+  bool is_on = false;
+  bool is_behind = false;        ///< at rest at the end of a block, which is done
+  bool is_braking = false;       ///< the rate goes down to rest at the end of `sequence`
+  int pieces = 0;                ///< is_braking: that end before the time piece on which it lies
+  double time = 0;               ///< is_braking: plan time on that piece
+  std::uint64_t sequence = 0;    ///< of the block that ends there
+  std::uint32_t line = 0;        ///< its source line
+  std::uint64_t next_block = 0;  ///< ends of blocks before it are behind the machine
+};
+
 /// What the action peer said about the action that the cycle waits for.
 enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
 
@@ -149,7 +161,7 @@ enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
 /// State of the cycle between two step() calls. Built once, no allocation afterwards.
 struct CycleState {
   explicit CycleState(const CycleOptions& chosen = {}, const RateBounds& rates = {}) noexcept
-      : options(chosen), rate(rates) {}
+      : options(chosen), rate(rates), stops_at_optional(chosen.stops_at_optional) {}
 
   CycleOptions options;
   State state = State::kOff;
@@ -164,6 +176,8 @@ struct CycleState {
   double piece_time = 0;    ///< plan time since the piece in force began
   double program_time = 0;  ///< plan time from the program's start to the begin of that piece
   PathState on_path{};  ///< s in the path piece in force; ṡ, s̈ as they are, override included
+  bool stops_at_optional = false;  ///< optional stops stop
+  SingleBlock single_block;
   StopInProgress stop;
   Jogging jogging;
   Homing homing;

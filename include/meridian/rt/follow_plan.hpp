@@ -5,6 +5,8 @@
 
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/on_path.hpp"
+#include "meridian/rt/single_block.hpp"
+#include "meridian/rt/state_table.hpp"
 
 /// The program's motion in plan time: Approaching, Running, Starving, and the rests between.
 /// RT: cycle.
@@ -39,7 +41,7 @@ inline void aim_rate(Cycle& c) noexcept {
   // It comes in mid-cut and ends in the cut: whoever slowed the cut down slowed it too.
   if (motion == MotionKind::kUnwind) wanted = std::min(wanted, c.state.rapid_override);
   if (is_plan_at_rest(c)) {
-    c.state.rate.reset(std::min(wanted, 1.0));
+    c.state.rate.reset(rate_from_rest(c, std::min(wanted, 1.0)));
   } else {
     c.state.rate.aim(wanted);
   }
@@ -60,7 +62,7 @@ inline void wait_for_action(Cycle& c) noexcept {
     tell(c, EventCode::kActionDue, c.state.sequence, c.state.line);
     c.state.action = ActionState::kWaiting;
   } else if (c.state.action == ActionState::kDone) {
-    next_piece(c);
+    leave_barrier(c);
   } else if (c.state.action == ActionState::kRefused ||
              c.state.barrier_time > c.state.options.action_timeout_s) {
     fail_action(c);
@@ -80,14 +82,14 @@ inline void wait_at_barrier(Cycle& c) noexcept {
   c.state.barrier_time += c.dt;
   switch (piece.kind) {
     case TimeKind::kDwell:
-      if (c.state.barrier_time >= piece.duration - 1e-6 * c.dt) next_piece(c);
+      if (c.state.barrier_time >= piece.duration - 1e-6 * c.dt) leave_barrier(c);
       return;
     case TimeKind::kAction:
       return wait_for_action(c);
     case TimeKind::kStop:
       return stop_at_barrier(c);
     case TimeKind::kOptionalStop:
-      if (c.in.stops_at_optional) return stop_at_barrier(c);
+      if (c.state.stops_at_optional) return stop_at_barrier(c);
       next_piece(c);
       return;
     case TimeKind::kEnd:
@@ -114,13 +116,21 @@ inline void wait_at_barrier(Cycle& c) noexcept {
 /// One period of plan time on the motion in force and those behind it, up to the next barrier.
 /// False if the path cannot be evaluated.
 [[nodiscard]] inline bool move_one_period(Cycle& c) noexcept {
-  aim_rate(c);
-  c.state.piece_time += c.state.rate.advance(c.dt);
+  SingleBlock& single = c.state.single_block;
+  if (!single.is_braking) aim_rate(c);
+  const bool seeks_end = single.is_on && !single.is_braking;
+  c.state.piece_time += seeks_end ? advance_to_block_end(c) : c.state.rate.advance(c.dt);
+  if (single.is_braking) {
+    follow_braking_rate(c);
+    return true;
+  }
   for (int n = 0; n < kMostPieces && is_on_move(c); ++n) {
     const double beyond = c.state.piece_time - c.reader.piece()->duration;
     if (beyond < 0) return true;
     const TimePiece& piece = *c.reader.piece();
-    if (!settle_at_end(c, state_at(piece, piece.duration))) return false;
+    const PathState end = state_at(piece, piece.duration);
+    if (!settle_at_end(c, end)) return false;
+    if (single.is_on && rests_behind_motion(c, end)) return true;
     if (!next_piece(c) || !is_on_move(c)) continue;
     c.state.piece_time = is_plan_at_rest(c) ? take_up_override(c, beyond) : beyond;
   }
@@ -146,10 +156,11 @@ inline void wait_at_barrier(Cycle& c) noexcept {
     }
     if (is_on_move(c)) {
       if (!move_one_period(c)) return false;
+      if (c.state.state == State::kStepping) return put_at_plan_time(c);
     } else {
       if (c.state.state == State::kStarving) enter(c, State::kRunning);
       wait_at_barrier(c);
-      if (c.state.state == State::kHeld || c.state.state == State::kReady) return true;
+      if (!is_on_path(c.state.state)) return true;
     }
   }
   if (!is_on_move(c)) {

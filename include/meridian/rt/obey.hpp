@@ -19,6 +19,7 @@ namespace meridian {
 /// At rest: everything planned is void, and all that travels later carries the next epoch.
 inline void drop_program(Cycle& c) noexcept {
   c.state.has_block = false;
+  c.state.single_block.is_braking = c.state.single_block.is_behind = false;
   c.state.piece_time = 0;
   c.state.program_time = 0;
   c.state.epoch = static_cast<std::uint16_t>(c.state.epoch + 1);
@@ -49,6 +50,10 @@ inline void drop_program(Cycle& c) noexcept {
                                                                   : Refusal::kNotReferenced;
 }
 
+/// Single block is offered up to this override ramp: braking takes half of it in plan time, which
+/// must be well in sight (a smooth plan is published some 2 s ahead).
+inline constexpr double kMostStepRamp_s = 2;
+
 /// Why a verb that the table allows is refused now; kNone: it is not.
 [[nodiscard]] inline Refusal condition_of(Cycle& c, const Command& command) noexcept {
   const Feedback& f = c.in.feedback;
@@ -59,8 +64,13 @@ inline void drop_program(Cycle& c) noexcept {
       return f.emergency_stop || (f.fault_mask & all) != 0 ? Refusal::kFaultPresent
                                                            : Refusal::kNone;
     case Verb::kStart:
-      return (f.referenced_mask & all) == all ? Refusal::kNone : Refusal::kNotReferenced;
+      if ((f.referenced_mask & all) != all) return Refusal::kNotReferenced;
+      return !c.state.single_block.is_behind || leave_block(c) ? Refusal::kNone
+                                                               : Refusal::kNoProgram;
     case Verb::kResume:
+      if (c.state.single_block.is_behind) {
+        return leave_block(c) ? Refusal::kNone : Refusal::kNoProgram;
+      }
       return c.reader.piece() != nullptr || next_piece(c) ? Refusal::kNone : Refusal::kNoProgram;
     case Verb::kReset:
       return f.emergency_stop ? Refusal::kFaultPresent : Refusal::kNone;
@@ -70,6 +80,13 @@ inline void drop_program(Cycle& c) noexcept {
       return command.argument >= 0 && command.argument <= most ? Refusal::kNone
                                                                : Refusal::kOutOfRange;
     }
+    case Verb::kSingleBlock:
+      if (command.argument == 1 && c.machine.override_ramp_s > kMostStepRamp_s) {
+        return Refusal::kSlowRamp;
+      }
+      [[fallthrough]];
+    case Verb::kOptionalStop:
+      return command.argument == 0 || command.argument == 1 ? Refusal::kNone : Refusal::kOutOfRange;
     case Verb::kJog:
     case Verb::kHome:
       return condition_of_hand(c, command);
@@ -81,7 +98,8 @@ inline void drop_program(Cycle& c) noexcept {
 /// Steps over a program stop that the machine is held at, and goes on.
 inline void resume(Cycle& c) noexcept {
   const TimeKind kind = c.reader.piece()->kind;
-  if (kind == TimeKind::kStop || kind == TimeKind::kOptionalStop) next_piece(c);
+  const bool is_held = c.state.state == State::kHeld && c.state.barrier_time > 0;
+  if (is_held && (kind == TimeKind::kStop || kind == TimeKind::kOptionalStop)) next_piece(c);
   enter(c, running_state(c));
 }
 
@@ -104,6 +122,7 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
       break;
     case State::kApproaching:
       c.state.program_time = 0;
+      c.state.single_block.next_block = 0;
       tell_block(c);
       break;
     case State::kHolding:
@@ -148,6 +167,9 @@ inline void obey(Cycle& c) noexcept {
     c.reader.ask_feed(command.argument);
   }
   if (command.verb == Verb::kRapidOverride) c.state.rapid_override = command.argument;
+  if (command.verb == Verb::kOptionalStop) c.state.stops_at_optional = command.argument != 0;
+  // A brake that is on stays on, whatever is said: no end is left out by that.
+  if (command.verb == Verb::kSingleBlock) c.state.single_block.is_on = command.argument != 0;
 }
 
 }  // namespace meridian

@@ -17,6 +17,9 @@ namespace meridian {
 /// bound and not a rule.
 inline constexpr int kMostPieces = 64;
 
+/// A plan that is no faster rests: rounding of its end is 1e-12 of its speed.
+inline constexpr double kRest_mm_per_s = 1e-6;
+
 /// Whether the piece in force is a motion.
 [[nodiscard]] inline bool is_on_move(const Cycle& c) noexcept {
   const TimePiece* piece = c.reader.piece();
@@ -55,6 +58,7 @@ inline void rest(Cycle& c) noexcept {
 inline void tell_block(Cycle& c) noexcept {
   const TimePiece& piece = *c.reader.piece();
   if (c.state.has_block && c.state.sequence == piece.sequence) return;
+  if (piece.sequence < c.state.single_block.next_block) return;  // the path piece began in it
   if (c.state.has_block) tell(c, EventCode::kBlockDone, c.state.sequence, c.state.line);
   c.state.has_block = piece.kind != TimeKind::kEnd;
   c.state.sequence = piece.sequence;
@@ -102,7 +106,6 @@ inline bool next_piece(Cycle& c) noexcept {
 /// Puts the joints at the end of the piece in force if the plan rests there: where nothing follows,
 /// its path is gone once the next piece was asked for. False if no joints are there.
 [[nodiscard]] inline bool settle_at_end(Cycle& c, const PathState& end) noexcept {
-  constexpr double kRest_mm_per_s = 1e-6;  // rounding of a plan's end is 1e-12 of its speed
   return end.ds > kRest_mm_per_s || put_on_path(c, end.s, 0);
 }
 

@@ -50,6 +50,25 @@ class RateFilter {
     ramp_ = lay_out_ramp(now_.w, now_.slope, target_, bounds_.slope, bounds_.curvature);
   }
 
+  /// Plan time that passes until the rate is 0 where it is aimed there now: the least that there
+  /// is.
+  [[nodiscard]] double plan_time_to_rest() const noexcept {
+    constexpr double kForever_s = 1e9;
+    RateFilter braking = *this;
+    braking.aim(0);
+    return braking.advance(kForever_s);
+  }
+
+  /// The largest steady rate from which `plan_time` is enough to come to rest:
+  /// w²/2Ω₁ + w Ω₁/2Ω₂ = plan_time, or √(w³/Ω₂) where the slope stays below Ω₁.
+  [[nodiscard]] double rate_with_rest_in(double plan_time) const noexcept {
+    const double slope = bounds_.slope, c = bounds_.curvature;
+    if (!(plan_time > 0)) return 0;
+    if (plan_time * c * c <= slope * slope * slope) return std::cbrt(plan_time * plan_time * c);
+    const double half = slope / (2 * c);
+    return slope * (std::sqrt(half * half + 2 * plan_time / slope) - half);
+  }
+
   /// Moves on by `dt` and returns the plan time that passes meanwhile, never negative.
   double advance(double dt) noexcept {
     double plan_time = 0;

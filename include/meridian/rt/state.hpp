@@ -22,9 +22,10 @@ enum class State : std::uint8_t {
   kFaultStop,
   kFault,
   kJogging,
-  kHoming
+  kHoming,
+  kStepping
 };
-inline constexpr int kStateCount = 16;
+inline constexpr int kStateCount = 17;
 
 /// What an operator asks for.
 enum class Verb : std::uint8_t {
@@ -39,7 +40,9 @@ enum class Verb : std::uint8_t {
   kRapidOverride,  ///< argument: factor, 0 to 1
   kJog,            ///< argument: the joint that is jogged first; a ToolAxis + kMaxJoints
   kHome,           ///< argument: mask of the joints, 0: all
+  kSingleBlock,    ///< argument: 1 on, 0 off
+  kOptionalStop,   ///< argument: 1 on, 0 off
 };
-inline constexpr int kVerbCount = 11;
+inline constexpr int kVerbCount = 13;
 
 }  // namespace meridian

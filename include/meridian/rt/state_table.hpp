@@ -47,23 +47,24 @@ inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisab
 /// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
 /// checked after it, in rt/obey.hpp, and can only refuse more.
 inline constexpr std::array<Row, kStateCount> kTable{{
-    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home
-    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo},
-    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo},
-    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom},
-    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken},
-    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo},
-    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo},
-    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo},
-    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken},
-    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo},
-    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken},
-    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo},
-    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo},
-    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken},
-    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken},
-    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo},
-    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo},
+    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional
+    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue},
+    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue},
+    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue},
+    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue},
+    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
+    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue},
+    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue},
+    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue},
+    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue},
+    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue},
 }};
 // clang-format on
 
@@ -78,21 +79,21 @@ inline constexpr std::array<Row, kStateCount> kTable{{
   constexpr std::array<const char*, kStateCount> kNames{
       "Off",       "Enabling", "Ready",    "Loaded",  "Approaching", "Running",
       "Holding",   "Held",     "Starving", "Starved", "Aborting",    "Disabling",
-      "FaultStop", "Fault",    "Jogging",  "Homing"};
+      "FaultStop", "Fault",    "Jogging",  "Homing",  "Stepping"};
   return kNames[static_cast<std::size_t>(state)];
 }
 
 [[nodiscard]] constexpr const char* name_of(Verb verb) noexcept {
   constexpr std::array<const char*, kVerbCount> kNames{
-      "enable", "disable",       "start",          "hold", "resume", "abort",
-      "reset",  "feed_override", "rapid_override", "jog",  "home"};
+      "enable",        "disable",        "start", "hold", "resume",       "abort",        "reset",
+      "feed_override", "rapid_override", "jog",   "home", "single_block", "optional_stop"};
   return kNames[static_cast<std::size_t>(verb)];
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 9> kNames{"none",       "wrong state",   "not referenced",
-                                              "no program", "no feedback",   "out of range",
-                                              "stale",      "fault present", "program present"};
+  constexpr std::array<const char*, 10> kNames{
+      "none",         "wrong state", "not referenced", "no program",      "no feedback",
+      "out of range", "stale",       "fault present",  "program present", "slow ramp"};
   return kNames[static_cast<std::size_t>(refusal)];
 }
 

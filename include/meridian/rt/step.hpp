@@ -141,6 +141,7 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
     case State::kStarving:
       return follow_plan(c);
     case State::kHeld:
+    case State::kStepping:
       rest(c);
       return true;
     case State::kStarved:

@@ -8,6 +8,7 @@
 #include "meridian/rt/cycle_state.hpp"
 #include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/on_path.hpp"
+#include "meridian/rt/single_block.hpp"
 #include "meridian/rt/stop_authority.hpp"
 
 /// Stops: hold, abort and FaultStop, on the path and, where it cannot be evaluated, beside it.
@@ -31,6 +32,30 @@ inline void lay_out_stop(Cycle& c, const PathState& begin,
   stop.begin = c.state.joints;
 }
 
+/// Path length to the end of the block that the rate brakes for.
+[[nodiscard]] inline double way_to_block_end(Cycle& c) noexcept {
+  const SingleBlock& single = c.state.single_block;
+  MotionAhead ahead(c.reader);
+  const TimePiece* piece = c.reader.piece();
+  double way = -c.state.on_path.s;
+  for (int n = 0; n < single.pieces; ++n) {
+    const TimePiece* next = ahead.next();
+    if (next == nullptr) break;
+    const PathPiece* path = c.reader.path_of(*piece);
+    if (next->path_index != piece->path_index && path != nullptr) way += path->length;
+    piece = next;
+  }
+  return way + state_at(*piece, single.time).s;
+}
+
+/// Whether a hold from `begin` with `authority` would end behind the end of a block that the rate
+/// brakes for: the brake is the shorter way to rest then.
+[[nodiscard]] inline bool passes_block_end(Cycle& c, const PathState& begin,
+                                           const StopAuthority& authority) noexcept {
+  if (!c.state.single_block.is_braking || !(authority.jerk > 0)) return false;
+  return StopLaw(begin, authority).distance() > way_to_block_end(c) + kSameEnd_mm;
+}
+
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
 /// at once. A stop that was going on is laid out anew with the authority of `kind`. Without
 /// authority it goes on as it was, or along the plan, for whose rate every plan leaves room.
@@ -47,6 +72,7 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     if (!(begin.ds > 0)) begin = {state_at(piece, c.state.piece_time).s, 0, 0, 0};
     authority = authority_of(piece, kind, begin);
     authority = {authority.accel * share, authority.jerk * share};
+    if (kind == StopKind::kHold && passes_block_end(c, begin, authority)) authority = {};
   }
   const bool was_by_rate = stop.is_active && stop.is_by_rate;
   const bool has_authority = authority.jerk > 0 || !(begin.ds > 0);
@@ -164,6 +190,7 @@ inline void end_stop_here(Cycle& c) noexcept {
     if (beyond < 0) return c.state.rate.rate() > 0 || !c.state.rate.is_settled();
     if (!settle_at_end(c, state_at(piece, piece.duration))) return false;
     if (!next_piece(c) || !is_on_move(c) || is_plan_at_rest(c)) return false;
+    if (c.state.single_block.pieces > 0) --c.state.single_block.pieces;
     c.state.piece_time = beyond;
   }
   return true;
@@ -176,6 +203,7 @@ inline void leave_plan(Cycle& c) noexcept {
   const StopKind kind = stop.is_fault ? StopKind::kFault : StopKind::kHold;
   const StopAuthority authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
   if (!(authority.jerk > 0)) return;
+  if (!stop.is_fault && passes_block_end(c, c.state.on_path, authority)) return;
   stop.rate_begin = c.state.rate.rate();
   lay_out_stop(c, c.state.on_path, authority);
 }
@@ -241,6 +269,7 @@ inline void finish_stop(Cycle& c) noexcept {
          stop.stopping_distance);
   }
   c.state.stop = {};
+  c.state.single_block.is_braking = false;
   c.state.rate.reset(0);
 }
 

@@ -113,6 +113,7 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
     case State::kHeld:
     case State::kStarving:
     case State::kStarved:
+    case State::kStepping:
       return true;
     default:
       return false;

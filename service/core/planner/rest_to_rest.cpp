@@ -77,6 +77,13 @@ struct RestToRestPlanner::Workspace {
   /// `block` behind it; or tells why that cannot be: `fault` of the block without one.
   [[nodiscard]] PathFault unwind(const ClBlock& block, const PathFault& fault,
                                  const WindingTrial* trial) noexcept;
+  /// The last motion staged ends `block`.
+  void mark_end(const ClBlock& block) noexcept {
+    if (staging.path_count == 0) return;
+    PathPiece& last = staging.paths[staging.path_count - 1];
+    last.marks.add(
+        {last.length, static_cast<std::uint32_t>(block.sequence - last.sequence), block.line});
+  }
   /// All of what is staged is there.
   void finish_staging() noexcept {
     next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
@@ -161,7 +168,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     }
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
   }
-  if (fault.kind == PathFault::Kind::kNone) return;
+  if (fault.kind == PathFault::Kind::kNone) return mark_end(block);
   RejectCode code = code_of(fault.kind);
   if (code == RejectCode::kTravelBetween) {
     if (!router.is_reachable(block, next)) {

@@ -13,6 +13,8 @@ namespace {
 /// More spans than the feed keeps cells: every cell lies in one span.
 constexpr std::size_t kSpans = 2048;
 constexpr std::size_t kEases = 256;  // that wait to be taken; the oldest go
+constexpr std::size_t kBlockEnds = 8192;
+constexpr double kSamePlace_mm = 1e-9;  // of u, where spans were cut
 
 /// What the feed leaves to the rate filter of this machine's cycle.
 FeedSettings feed_settings(const MachineModel& model) noexcept {
@@ -40,6 +42,7 @@ SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise)
       authority_(model),
       travel_(model),
       spans_(kSpans),
+      ends_(kBlockEnds),
       eases_(kEases) {}
 
 void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
@@ -49,6 +52,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
                    pole_tolerance_rad, start.is_on_pole});
   begin_feed(start.branch);
+  ends_.clear();
   const int free = free_joint(model_);
   follows_free_ = model_.unwind_policy == UnwindPolicy::kRetract && free >= 0 &&
                   !model_.joints[free].is_endless;
@@ -181,6 +185,7 @@ void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
   const FeedFactors factors = raise_.next(span.band.sequence, feed_override, least_time(span.band));
   spans_.push(span);
   spans_.back().feed_factor = factors.label;
+  mark_block_ends(spans_.back());
   JointSpan planned = span;
   if (factors.planned > 1) {
     BandSpan& band = planned.band;
@@ -190,6 +195,28 @@ void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
     if (most > 0) band.feed_mm_per_s = std::min(band.feed_mm_per_s, most);
   }
   (void)feed_.push(planned);
+}
+
+void SmoothRun::note_block_ends() noexcept {
+  for (std::uint32_t n = 0; const auto end = band_.next_block_end(); ++n) {
+    if (n < BlockMarks::kMost) {
+      ends_.push_over_oldest(*end);
+    } else {
+      ends_.back() = *end;
+    }
+  }
+}
+
+void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
+  const BandSpan& band = span.band;
+  span.marks = {};
+  for (std::int64_t i = ends_.begin_index(); i < ends_.end_index(); ++i) {
+    const BlockEnd& end = ends_[i];
+    if (end.u > band.u0 + band.length + kSamePlace_mm) break;
+    const auto ahead = static_cast<std::uint32_t>(end.sequence - band.sequence);
+    span.marks.add({std::clamp(end.u - band.u0, 0.0, band.length), ahead, end.line});
+    ends_.drop_before(i + 1);
+  }
 }
 
 /// Names the block of the span on which the feed found a fault.
@@ -230,6 +257,7 @@ const JointSpan* SmoothRun::next_span() noexcept {
     if (const JointSpan* span = corridor_.next()) return span;
     if (is_band_finished_) return nullptr;
     const BandSpan* band = band_.next();
+    if (band != nullptr) note_block_ends();
     while (const auto mark = band_.next_axis()) {
       if (mark->u > 0) corridor_.mark(mark->u, to_vector(mark->axis));
     }

@@ -100,6 +100,10 @@ class SmoothRun : public WindingTrial {
   void push(const JointSpan& span, double feed_override) noexcept;
   /// The next span that joints follow, nullptr where there is none yet.
   [[nodiscard]] const JointSpan* next_span() noexcept;
+  /// Remembers where blocks end on the span that the band gave last.
+  void note_block_ends() noexcept;
+  /// Marks the ends of blocks on `span`, the next one.
+  void mark_block_ends(JointSpan& span) noexcept;
   /// Follows the free joint over `span`, the next one. False: it would leave its travel, and
   /// unwind_at() names where; nothing is followed then.
   [[nodiscard]] bool follow(const JointSpan& span) noexcept;
@@ -125,6 +129,7 @@ class SmoothRun : public WindingTrial {
   FeedAuthority authority_;
   FreeTravel travel_;
   IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
+  IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
   RunStart start_;
   std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
   JointVector span_joints_{};       ///< at the end of the last of them

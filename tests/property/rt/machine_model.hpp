@@ -246,6 +246,10 @@ class OperatedMachine {
         n.is_moving = false;
         enter(n, State::kHeld);
       });
+      add(", comes to a block's end", [](Machine& n) {
+        n.is_moving = false;
+        enter(n, State::kStepping);
+      });
       add(", comes to the program's end", [](Machine& n) {
         n.is_moving = n.has_piece = false;
         enter(n, State::kReady);

@@ -66,7 +66,7 @@ class PlannedRun {
  public:
   PlannedRun(const MachineModel& machine, const std::vector<ClBlock>& blocks,
              const JointVector& start, std::size_t blocks_before_start = ~std::size_t{0},
-             const std::vector<FeedMark>* replayed = nullptr)
+             const std::vector<FeedMark>* replayed = nullptr, bool is_stepped = false)
       : most_blocks(blocks_before_start),
         world(machine, start),
         planner_(world.machine),
@@ -82,6 +82,7 @@ class PlannedRun {
     if constexpr (requires { planner_.look_no_further(); }) planner_.look_no_further();
     plan();
     is_started_ = is_started_ && !is_refused_ && world.run_until(State::kLoaded, 1);
+    if (is_stepped) world.command(Verb::kSingleBlock, 1);
     if (is_started_) world.command(Verb::kStart);
   }
 

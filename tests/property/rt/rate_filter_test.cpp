@@ -197,5 +197,36 @@ TEST(RateFilter, IgnoresANaNAndLimitsTheTarget) {
   EXPECT_EQ(filter.target(), 0.0);
 }
 
+TEST(RateFilter, KnowsThePlanTimeThatBrakingTakes) {
+  std::mt19937_64 draw(kSeed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int n = 0; n < kDraws; ++n) {
+    const RateBounds bounds{0.2 + unit(draw), 4 + 30 * unit(draw)};
+    RateFilter filter(bounds);
+    filter.reset(unit(draw));
+    filter.aim(unit(draw));
+    (void)filter.advance(0.3 * unit(draw));
+    const double told = filter.plan_time_to_rest();
+    filter.aim(0);
+    double passed = 0;
+    while (!filter.is_settled()) passed += filter.advance(1e-3);
+    EXPECT_NEAR(told, passed, 1e-12);
+  }
+}
+
+TEST(RateFilter, KnowsTheRateFromWhichAPlanTimeIsEnoughToRest) {
+  std::mt19937_64 draw(kSeed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int n = 0; n < kDraws; ++n) {
+    const RateBounds bounds{0.2 + unit(draw), 4 + 30 * unit(draw)};
+    RateFilter filter(bounds);
+    const double rate = std::pow(unit(draw), 4);
+    filter.reset(rate);
+    EXPECT_NEAR(filter.rate_with_rest_in(filter.plan_time_to_rest()), rate, 1e-12);
+  }
+  EXPECT_EQ(RateFilter().rate_with_rest_in(0), 0);
+  EXPECT_EQ(RateFilter().rate_with_rest_in(-1), 0);
+}
+
 }  // namespace
 }  // namespace meridian::test::rate_filter

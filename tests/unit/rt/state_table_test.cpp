@@ -37,11 +37,11 @@ TEST(StateTable, IsTheTableOfTheDocument) {
   EXPECT_EQ(text.substr(first, end - first), testing::state_table_text());
 }
 
-TEST(StateTable, StartsMotionFromLoadedAndFromNowhereElse) {
+TEST(StateTable, StartsMotionFromLoadedAndFromBehindABlockAndFromNowhereElse) {
   for (int s = 0; s < kStateCount; ++s) {
     const auto state = static_cast<State>(s);
     const bool goes = effect_of(state, Verb::kStart).effect == Effect::kGo;
-    EXPECT_EQ(goes, state == State::kLoaded) << name_of(state);
+    EXPECT_EQ(goes, state == State::kLoaded || state == State::kStepping) << name_of(state);
   }
 }
 
@@ -66,6 +66,14 @@ TEST(StateTable, LaysHandsOnAMachineThatIsReadyAndOnNoOther) {
     EXPECT_EQ(effect_of(state, Verb::kHold).next, State::kAborting);
     EXPECT_EQ(effect_of(state, Verb::kAbort).next, State::kAborting);
     EXPECT_EQ(effect_of(state, Verb::kStart).effect, Effect::kRefused);
+  }
+}
+
+TEST(StateTable, SetsSingleBlockAndOptionalStopInEveryState) {
+  for (int s = 0; s < kStateCount; ++s) {
+    for (const Verb verb : {Verb::kSingleBlock, Verb::kOptionalStop}) {
+      EXPECT_EQ(effect_of(static_cast<State>(s), verb).effect, Effect::kSet);
+    }
   }
 }
 

@@ -115,12 +115,24 @@ TEST(StepBarriers, AProgramStopIsHeldUntilTheOperatorResumes) {
 TEST(StepBarriers, AnOptionalStopIsHeldOnlyWhereTheOperatorAskedForIt) {
   for (const bool is_asked : {false, true}) {
     Program p;
-    p.world.in.stops_at_optional = is_asked;
+    p.world.command(Verb::kOptionalStop, is_asked ? 1 : 0);
     p.plan.cut({5, 0, 0}, kLimits);
     p.plan.barrier(TimeKind::kOptionalStop);
     p.plan.barrier(TimeKind::kEnd);
     p.run(3);
     EXPECT_EQ(p.world.now(), is_asked ? State::kHeld : State::kReady);
+  }
+}
+
+TEST(StepBarriers, ASwitchIsOnOrOffAndNothingElse) {
+  Program p;
+  for (const Verb verb : {Verb::kSingleBlock, Verb::kOptionalStop}) {
+    for (const double no_switch : {-1.0, 0.5, 2.0, std::nan("")}) {
+      p.world.command(verb, no_switch);
+      EXPECT_EQ(test::refusal_of(p.world), Refusal::kOutOfRange);
+    }
+    p.world.command(verb, 1);
+    EXPECT_EQ(p.world.last(EventCode::kAccepted).b, static_cast<std::uint64_t>(verb));
   }
 }
 

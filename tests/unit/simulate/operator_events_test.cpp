@@ -28,6 +28,24 @@ TEST(OperatorEvents, CountAsTheyAreWithoutAStart) {
   EXPECT_TRUE(read_operator_events("", "e.csv")->verbs.empty());
 }
 
+TEST(OperatorEvents, HoldTheSwitchesOfTheStartAndEveryStartBehindABlock) {
+  const auto events = read_operator_events(
+      "900,optional_stop,1\n910,single_block,0\n920,single_block,1\n1000,start\n1500,start\n"
+      "1600,single_block,0\n",
+      "e.csv", 1.5);
+  ASSERT_TRUE(events);
+  const std::vector<OperatorEvent> expected{{-1, Verb::kSingleBlock, 1},
+                                            {-1, Verb::kOptionalStop, 1},
+                                            {500, Verb::kStart, 0},
+                                            {600, Verb::kSingleBlock, 0}};
+  ASSERT_EQ(events->verbs.size(), expected.size());
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    EXPECT_EQ(events->verbs[n].cycle, expected[n].cycle);
+    EXPECT_EQ(events->verbs[n].verb, expected[n].verb);
+    EXPECT_EQ(events->verbs[n].argument, expected[n].argument);
+  }
+}
+
 TEST(OperatorEvents, SayWhatTheHostDid) {
   const auto events = read_operator_events(
       "900,periods_lost,3\n1000,periods_lost,2\n1000,start,0\n1100,action_answered,1\n"
@@ -84,6 +102,8 @@ TEST(OperatorEvents, AreRefusedWithTheirLine) {
       {"5,action_answered,2\n", "'action_answered' needs a whole number"},
       {"5,feed_planned,1.1,x,0\n", "'feed_planned' is no verb"},
       {"5,hold,1,2\n", "more than cycle, verb and argument"},
+      {"5,single_block\n", "needs 1 (on) or 0 (off)"},
+      {"5,optional_stop,0.5\n", "needs 1 (on) or 0 (off)"},
   };
   for (const Case& c : cases) {
     const auto events = read_operator_events(c.text, "e.csv");

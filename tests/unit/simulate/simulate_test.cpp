@@ -205,6 +205,19 @@ TEST_F(Simulate, PlansForOverridesAboveTheFeedAsTheOperatorOrTheFileOfALiveRunSa
   EXPECT_EQ(run_simulation(kPart, model, simulation).report.program_s, plain.report.program_s);
 }
 
+TEST_F(Simulate, RestsBehindABlockUntilItsEventsSendItOnAndNoLonger) {
+  SimulateOptions simulation;
+  const auto late = static_cast<std::int64_t>(run_simulation(kPart, model).report.cycles);
+  simulation.events.verbs = {{-1, Verb::kSingleBlock, 1}, {late, Verb::kResume, 0}};
+  for (const bool is_aborted : {false, true}) {
+    if (is_aborted) simulation.events.verbs.push_back({3 * late, Verb::kAbort, 0});
+    const SimulatedRun run = run_simulation(kPart, model, simulation);
+    EXPECT_EQ(run.report.outcome, Outcome::kStopped);
+    EXPECT_EQ(run.report.blocks_done, 2U);
+    EXPECT_EQ(run.records.back().state, is_aborted ? State::kReady : State::kStepping);
+  }
+}
+
 TEST_F(Simulate, GoesOnFromAProgramStopWhenTheOperatorOfTheEventsDid) {
   constexpr const char* kWithStop =
       "UNITS / MM\nFEDRAT / 300, MMPM\nGOTO / 80, -40, 20, 0, 0, 1\nSTOP\nGOTO / 95, -40, 20\n"

@@ -57,9 +57,35 @@ TEST_F(Freshness, VerbsThatOnlyStopAreNeverStale) {
 }
 
 TEST_F(Freshness, VerbsThatMoveOrSpeedUpAreJudged) {
-  for (const Verb verb :
-       {Verb::kEnable, Verb::kStart, Verb::kResume, Verb::kFeedOverride, Verb::kRapidOverride}) {
+  for (const Verb verb : {Verb::kEnable, Verb::kStart, Verb::kResume, Verb::kFeedOverride,
+                          Verb::kRapidOverride, Verb::kSingleBlock, Verb::kOptionalStop}) {
     EXPECT_EQ(at_10_s(verb, 1), Refusal::kStale);
+  }
+}
+
+TEST(FreshnessOfSwitches, OnIsNeverStale) {
+  for (const Verb verb : {Verb::kSingleBlock, Verb::kOptionalStop}) {
+    EXPECT_FALSE(needs_freshness(verb, 1));
+    EXPECT_TRUE(needs_freshness(verb, 0));
+  }
+}
+
+TEST(FreshnessOfRests, StartAndResumeThatQuoteOneStatusSendOnOnce) {
+  StatusTimes times;
+  times.published(5, 0, rest_of(State::kStepping, 7));
+  times.published(6, 1, rest_of(State::kRunning, 8));
+  for (const Verb verb : {Verb::kStart, Verb::kResume}) {
+    dds::CommandRequest request;
+    request.verb = verb;
+    request.epoch_seen = 1;
+    const auto judged = [&](std::uint64_t seen, State state, std::uint64_t block) {
+      request.status_seen = seen;
+      return judge_freshness(request, 1, 1, times, 2, rest_of(state, block));
+    };
+    EXPECT_EQ(judged(5, State::kStepping, 7), Refusal::kNone);
+    EXPECT_EQ(judged(5, State::kStepping, 8), Refusal::kStale);
+    EXPECT_EQ(judged(6, State::kStepping, 8), Refusal::kStale);
+    EXPECT_EQ(judged(6, State::kHeld, 8), Refusal::kNone);
   }
 }
 

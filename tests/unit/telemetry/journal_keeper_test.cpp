@@ -72,6 +72,11 @@ TEST(JournalKeeper, NotesRestsAtOnceAndWhoseProgramItWas) {
   EXPECT_EQ(kept.entries.back().state, State::kHeld);
   kept.enter(State::kRunning);
   kept.end(3);
+  kept.enter(State::kStepping);
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().state, State::kStepping);
+  EXPECT_EQ(kept.entries.back().reached, Reached::kDone);
+  kept.enter(State::kRunning);
   kept.tell(EventCode::kAlarm);
   kept.enter(State::kFaultStop);
   kept.enter(State::kFault);
