@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "meridian/kinematics/most_tolerances.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::config {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "meridian/kinematics/most_tolerances.hpp"
+#include "meridian/kinematics/machine_model.hpp"
 
 namespace meridian::stream {
 namespace {

@@ -20,7 +20,8 @@
 namespace meridian {
 
 /// What a program may ask for instead of what the machine's file says. Tolerances are at least
-/// kLeastTipTolerance_mm and kLeastAxisTolerance_rad; less, which no edge lets in, counts as these.
+/// kLeastTipTolerance_mm and kLeastAxisTolerance_rad; less, which no edge lets into a
+/// smooth run, counts as these.
 struct SmoothSettings {
   std::optional<Transition> transition;
   double tip_tolerance_mm = 0;    ///< 0: the machine's

@@ -204,7 +204,7 @@ std::vector<ClBlock> linger(std::uint32_t seed) {
 }
 
 TEST(PoleLinger, KeepsLimitsAndTolerancesHoweverAProgramLingers) {
-  const auto programs = number_of("MERIDIAN_LINGER_PROGRAMS", 6U);
+  const auto programs = number_of("MERIDIAN_LINGER_PROGRAMS", static_cast<unsigned>(draws(6)));
   const auto first = number_of("MERIDIAN_LINGER_SEED", 1U);
   MachineModel endless = lai_machine();
   endless.joints[3].is_endless = true;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "intake_under_test.hpp"
-#include "meridian/kinematics/most_tolerances.hpp"
+#include "meridian/kinematics/machine_model.hpp"
 
 namespace meridian::stream {
 namespace {
