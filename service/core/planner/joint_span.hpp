@@ -17,7 +17,7 @@ struct JointSpan {
   double axis_deviation_rad = 0;  ///< largest angle by which driving the free joint moves the axis
   EaseReason reason = EaseReason::kBeside;  ///< why, where driven
   double feed_factor = 1;                   ///< FeedFactors::label
-  BlockMarks marks;                         ///< blocks that end on the span
+  BlockMarks marks{};                       ///< blocks that end on the span
 };
 
 /// The piece that the cycle runs on `span`. Joints and names are filled in by the planner.
