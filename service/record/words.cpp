@@ -9,10 +9,15 @@
 namespace meridian::record {
 namespace {
 
-constexpr std::array<std::string_view, 5> kKinds{"approach", "cut", "rapid", "pole_turn", "unwind"};
-constexpr std::array<std::string_view, kStateCount> kStates{
-    "off",      "enabling", "ready",    "loaded",    "approaching", "running", "holding", "held",
-    "starving", "starved",  "aborting", "disabling", "fault_stop",  "fault",   "jogging", "homing"};
+using namespace std::string_view_literals;
+
+constexpr auto kKinds =
+    std::to_array({"approach"sv, "cut"sv, "rapid"sv, "pole_turn"sv, "unwind"sv});
+constexpr auto kStates =
+    std::to_array({"off"sv, "enabling"sv, "ready"sv, "loaded"sv, "approaching"sv, "running"sv,
+                   "holding"sv, "held"sv, "starving"sv, "starved"sv, "aborting"sv, "disabling"sv,
+                   "fault_stop"sv, "fault"sv, "jogging"sv, "homing"sv, "stepping"sv});
+static_assert(kStates.size() == kStateCount);
 
 template <class Enum, std::size_t N>
 [[nodiscard]] std::optional<Enum> find(const std::array<std::string_view, N>& words,

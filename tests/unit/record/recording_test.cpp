@@ -67,6 +67,15 @@ TEST(Recording, GivesBackEveryDoubleBitForBit) {
   EXPECT_EQ(row.cycle, 0U);
 }
 
+TEST(Recording, HasAWordForEveryStateAndReadsNoStateWhereNoneStands) {
+  for (int i = 0; i < kStateCount; ++i) {
+    const auto state = static_cast<State>(i);
+    EXPECT_FALSE(word(state).empty()) << i;
+    EXPECT_EQ(find_state(word(state)), state) << i;
+  }
+  EXPECT_EQ(find_state(""), std::nullopt);
+}
+
 TEST(Recording, HasTheColumnsThatOutsideToolsRead) {
   const Scratch file(".csv");
   CycleRecord record;
