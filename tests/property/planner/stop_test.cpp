@@ -8,6 +8,7 @@
 #include "meridian/rt/stop_law.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 
 /// The authority that the planner grants a stop: never more than the joints have, hardly less.
@@ -133,7 +134,7 @@ TEST(StopAuthority, LeavesRoomForRoundingBesideThePole) {
 }
 
 TEST(StopAuthority, KeepsTheLimitsAndWastesLittleFromAnywhere) {
-  constexpr int kPrograms = 1500;
+  constexpr int kPrograms = draws(1500);
   double largest_use = 0, largest_ratio = 0, sum_ratio = 0;
   int stops = 0, slow = 0;
   for (int n = 0; n < kPrograms; ++n) {
