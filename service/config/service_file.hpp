@@ -17,7 +17,7 @@ enum class RealtimeMode : std::uint8_t {
   kBestEffort  ///< what is missing is done without, and told
 };
 
-/// What happens to auxiliary, tool and stop blocks.
+/// What happens to auxiliary and tool blocks. Program stops hold until resume with both.
 enum class AuxiliaryPolicy : std::uint8_t {
   kWait,   ///< publish the action, rest until it is done; without an action peer the program is
            ///< refused

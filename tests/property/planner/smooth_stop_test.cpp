@@ -169,7 +169,7 @@ void stop_from(const MachineModel& model, const Trace& trace, OnPlan at, StopKin
 }
 
 /// A longer run: MERIDIAN_STOP_SEED=100 MERIDIAN_STOP_PROGRAMS=200
-/// build/dev/bin/smooth_property_test --gtest_filter='SmoothStop*'
+/// build/release/bin/smooth_property_test --gtest_filter='SmoothStop*'
 TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
   const int first = number_of("MERIDIAN_STOP_SEED", 1);
   const int programs = number_of("MERIDIAN_STOP_PROGRAMS", kPrograms);
