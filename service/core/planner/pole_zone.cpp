@@ -17,6 +17,7 @@ constexpr int kWidths = 24;
 constexpr double kLeastShare = 1e-3;  // narrowest half width over the widest
 constexpr double kSkews[] = {0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6};
 constexpr int kSamples = 96;
+constexpr std::size_t kKinks = 192;
 constexpr double kToleranceShare = 0.998;  // samples are not everywhere
 constexpr double kMostBend = 1e3;          // rad: φ'' h² at an end, beyond it the end is no guide
 constexpr double kLeastGain_s = 1e-3;
@@ -131,7 +132,12 @@ class Search {
         place_(place),
         free_(free_joint(task.model)),
         before_(task, place, -1),
-        behind_(task, place, 1) {}
+        behind_(task, place, 1) {
+    if (task.is_exact) return;  // there the smoothed axis counts, which has no kinks
+    const double begin = place.core_begin - (place.is_start ? 0 : place.reach);
+    const double end = place.core_end + (place.is_end ? 0 : place.reach);
+    kink_count_ = task.programmed.find_kinks(begin, end, kinks_);
+  }
 
   PoleZone run() noexcept {
     const bool is_exact_kept = !place_.is_dwelling && keeps_travel_exactly();
@@ -192,7 +198,10 @@ class Search {
   void try_zone(PoleZone zone, double outside) noexcept {
     if (!(outside < best_time_) || !fit(zone) || !is_inside(zone, kSamples / 8)) return;
     const double time = outside + time_on(zone, best_time_ - outside);
-    if (!(time < best_time_) || !is_inside(zone, kSamples) || !keeps_travel_behind(zone)) return;
+    if (!(time < best_time_) || !is_inside(zone, kSamples) || !is_inside_at_kinks(zone) ||
+        !keeps_travel_behind(zone)) {
+      return;
+    }
     best_time_ = time;
     best_ = zone;
   }
@@ -229,24 +238,43 @@ class Search {
     return true;
   }
 
+  /// Angle at the share `t` of the zone to the programmed axis; infinite where a joint leaves
+  /// travel.
+  [[nodiscard]] double off_at(const PoleZone& zone, double t) const noexcept {
+    const double u = zone.begin + t * (zone.end - zone.begin);
+    const ToolPose pose = pose_of<double>(task_, u);
+    const auto at = solve_held(task_.model, task_.tool_length_mm, pose, quintic_at(zone.free, t));
+    if (at.status == SolveStatus::kUnreachable) return kNever;
+    if (first_joint_outside_travel(task_.model, at.q, kTravelMargin) >= 0) return kNever;
+    const Vector3 axis = forward(task_.model, task_.tool_length_mm, at.q).axis;
+    return task_.is_exact ? angle_between(pose.axis, axis) : task_.programmed.angle_to(u, axis);
+  }
+
+  /// Remembers the largest angle `off`; false where it leaves the tolerance.
+  bool is_within(PoleZone& zone, double off) const noexcept {
+    if (!(off <= kToleranceShare * task_.tolerance_rad)) return false;
+    zone.deviation_rad = std::max(zone.deviation_rad, off);
+    return true;
+  }
+
   /// Tolerance and travel at `samples` places.
   bool is_inside(PoleZone& zone, int samples) const noexcept {
     double before = 0, last = 0;  // deviations
     for (int k = 0; k <= samples; ++k) {
-      const double t = 1.0 * k / samples;
-      const double u = zone.begin + t * (zone.end - zone.begin);
-      const ToolPose pose = pose_of<double>(task_, u);
-      const auto at = solve_held(task_.model, task_.tool_length_mm, pose, quintic_at(zone.free, t));
-      if (at.status == SolveStatus::kUnreachable) return false;
-      if (first_joint_outside_travel(task_.model, at.q, kTravelMargin) >= 0) return false;
-      const Vector3 axis = forward(task_.model, task_.tool_length_mm, at.q).axis;
-      const double off =
-          task_.is_exact ? angle_between(pose.axis, axis) : task_.programmed.angle_to(u, axis);
-      const double most = std::max(off, k < 2 ? 0.0 : top_of(before, last, off));
-      if (!(most <= kToleranceShare * task_.tolerance_rad)) return false;
-      zone.deviation_rad = std::max(zone.deviation_rad, most);
+      const double off = off_at(zone, 1.0 * k / samples);
+      if (!is_within(zone, std::max(off, k < 2 ? 0.0 : top_of(before, last, off)))) return false;
       before = last;
       last = off;
+    }
+    return true;
+  }
+
+  /// The same where the programmed axis turns sharply: what smoothing takes of the tolerance there
+  /// is too narrow for even places.
+  bool is_inside_at_kinks(PoleZone& zone) const noexcept {
+    for (std::size_t n = 0; n < kink_count_; ++n) {
+      const double share = (kinks_[n] - zone.begin) / (zone.end - zone.begin);
+      if (share > 0 && share < 1 && !is_within(zone, off_at(zone, share))) return false;
     }
     return true;
   }
@@ -284,6 +312,8 @@ class Search {
   const PolePlace& place_;
   int free_;
   OutsideTime before_, behind_;
+  std::array<double, kKinks> kinks_{};  ///< u
+  std::size_t kink_count_ = 0;
   double best_time_ = 0;
   PoleZone best_;
   bool looks_behind_ = true;

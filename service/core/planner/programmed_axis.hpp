@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "meridian/geometry/vector3.hpp"
@@ -28,6 +30,10 @@ class ProgrammedAxis {
   /// it is not known.
   [[nodiscard]] double angle_to(double u, const Vector3& axis) const noexcept;
 
+  /// Where between `begin` and `end` its direction changes at once, ascending: of every part of
+  /// the way, as many as `kinks` has room for, the sharpest. Returns how many.
+  std::size_t find_kinks(double begin, double end, std::span<double> kinks) const noexcept;
+
  private:
   struct Mark {
     double u = 0;
@@ -37,6 +43,11 @@ class ProgrammedAxis {
   [[nodiscard]] const Mark& mark(std::int64_t n) const noexcept {
     return marks_[static_cast<std::size_t>(n % kCapacity)];
   }
+  /// The newest mark at or ahead of `u`, as long as another one is behind it.
+  [[nodiscard]] std::int64_t mark_before(double u) const noexcept;
+  /// By how much the turn per u changes at the mark, rad/mm.
+  [[nodiscard]] double kink_at(std::int64_t n) const noexcept;
+
   std::vector<Mark> marks_;
   std::int64_t first_ = 0, last_ = 0;  ///< marks from first_ to last_ - 1
 };

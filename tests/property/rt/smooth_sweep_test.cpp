@@ -168,6 +168,13 @@ TEST(SmoothSweep, KnowsTheWindingWhereAZoneBegins) {
   EXPECT_EQ(sweep.refused, 0);
 }
 
+/// A program with a corner of the axis between two of the places along a zone.
+TEST(SmoothSweep, EasesNoCornerOutOfTheTolerance) {
+  Sweep sweep;
+  run_program(1434, sweep);
+  EXPECT_EQ(sweep.refused, 0);
+}
+
 TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
   const std::uint32_t first = number_of("MERIDIAN_SWEEP_SEED", 1);
   const std::uint32_t programs =
