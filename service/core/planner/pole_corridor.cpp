@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
@@ -11,16 +10,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kNear_rad = 0.05;        // minima farther off turn the free joint gently
-constexpr double kZoneTolerances = 2.5;   // minima farther off leave a zone no room
-constexpr double kDwellTolerances = 0.2;  // nearer, the path counts as on the pole
-constexpr double kStayTolerances = 0.4;   // so far a path that comes back may go meanwhile
-constexpr double kOtherTolerances = 3;    // another minimum nearer than that bounds the reach
-/// A core that is longer than this is not waited for: the free joint comes to rest in it.
-constexpr double kLongCore_mm = 2 * PoleCorridor::kReach_mm;
 constexpr double kLeastHold_mm = 0.5;
-constexpr double kReachShare = 0.98, kHalf = 0.49;
-constexpr double kLeastReach_mm = 1e-3;
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kLeastPart_mm = 1e-6;
 constexpr double kTravelMargin = 1e-9;
@@ -28,7 +18,7 @@ constexpr double kTravelMargin = 1e-9;
 constexpr double kMostTurn_rad = 0.5, kLeastStep_mm = 1e-8;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
 /// of axis, so a zone beside them still has half of its reach.
-constexpr double kOutOfReach_rad = 0.5 * PoleCorridor::kReach_mm / kAxisLength_mm_per_rad;
+constexpr double kOutOfReach_rad = 0.5 * kPoleReach_mm / kAxisLength_mm_per_rad;
 
 /// `span` from x = `from` on, `length` long.
 BandSpan part_of_span(const BandSpan& span, double from, double length) noexcept {
@@ -46,7 +36,7 @@ BandSpan part_of_span(const BandSpan& span, double from, double length) noexcept
 }  // namespace
 
 PoleCorridor::PoleCorridor(const MachineModel& model)
-    : model_(model), held_(kHeld), pending_(kPending) {}
+    : model_(model), probes_(model), cores_(probes_), pending_(kPending) {}
 
 void PoleCorridor::begin(const Start& start) noexcept {
   has_pole_ = free_joint(model_) >= 0 && !start.is_on_pole;
@@ -54,82 +44,14 @@ void PoleCorridor::begin(const Start& start) noexcept {
   is_exact_ = model_.pole_policy == PolePolicy::kExact;
   tolerance_rad_ = is_exact_ ? kPoleEase_rad : std::max(start.tolerance_rad, kPoleEase_rad);
   programmed_.begin(start.axis);
-  held_.clear();
-  scan_ = 0;
-  core_ = {};
+  probes_.begin(has_pole_);
+  cores_.begin(tolerance_rad_);
   emitted_x_ = known_u_ = 0;
   known_ = start.joints;
   branch_ = out_branch_ = start.branch;
   pending_.clear();
   cut_count_ = 0;
   is_finished_ = is_held_ = is_out_held_ = has_failed_ = false;
-  entered_ = -1;
-  zones_ = 0;
-}
-
-void PoleCorridor::push(const BandSpan& span) noexcept {
-  Held held;
-  held.band = span;
-  if (has_pole_) {
-    for (int k = 0; k < kProbes; ++k) {
-      const ToolPose pose = pose_on(span.c, span.length * k / kProbes);
-      held.distance[static_cast<std::size_t>(k)] = pole_distance(model_, pose.axis);
-    }
-  }
-  held_.push(held);
-}
-
-const BandSpan& PoleCorridor::span_at(double u) const noexcept {
-  std::int64_t low = held_.begin_index(), high = held_.end_index();
-  while (high - low > 1) {
-    const std::int64_t middle = (low + high) / 2;
-    (held_[middle].band.u0 <= u ? low : high) = middle;
-  }
-  return held_[low].band;
-}
-
-double PoleCorridor::u_of(Place place) const noexcept {
-  const BandSpan& span = held_[place / kProbes].band;
-  return span.u0 + span.length * static_cast<double>(place % kProbes) / kProbes;
-}
-
-double PoleCorridor::distance_of(Place place) const noexcept {
-  return held_[place / kProbes].distance[static_cast<std::size_t>(place % kProbes)];
-}
-
-double PoleCorridor::distance_at(double u) const noexcept {
-  const BandSpan& span = span_at(u);
-  return pole_distance(model_, pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length)).axis);
-}
-
-double PoleCorridor::end_u() const noexcept {
-  return held_.back().band.u0 + held_.back().band.length;
-}
-
-double PoleCorridor::find_nearest(Place place) const noexcept {
-  double a = place > held_.begin_index() * kProbes ? u_of(place - 1) : u_of(place);
-  double b = place + 1 < end_place() ? u_of(place + 1) : end_u();
-  for (int n = 0; n < 60; ++n) {
-    const double x = a + 0.382 * (b - a), y = a + 0.618 * (b - a);
-    if (distance_at(x) < distance_at(y)) {
-      b = y;
-    } else {
-      a = x;
-    }
-  }
-  return 0.5 * (a + b);
-}
-
-double PoleCorridor::find_room_behind(Place from, double core_end) const noexcept {
-  double room = std::min(kReach_mm, kReachShare * (end_u() - core_end));
-  for (Place n = from + 2; n + 1 < end_place() && u_of(n) < core_end + 2 * kReach_mm; ++n) {
-    const double here = distance_of(n);
-    const bool is_minimum = here < distance_of(n - 1) && here < distance_of(n + 1);
-    if (is_minimum && here < kOtherTolerances * tolerance_rad_) {
-      return std::min(room, kHalf * (u_of(n) - core_end));
-    }
-  }
-  return room;
 }
 
 void PoleCorridor::add_cut(double u) noexcept {
@@ -141,12 +63,12 @@ void PoleCorridor::add_cut(double u) noexcept {
 
 void PoleCorridor::add_cuts(double nearest) noexcept {
   // The free joint turns over a width of distance/|d axis/du|.
-  const BandSpan& span = span_at(nearest);
+  const BandSpan& span = probes_.span_at(nearest);
   const auto pose =
       pose_on(span.c, Jet<1>::variable(std::clamp(nearest - span.u0, 0.0, span.length)));
   double rate = 0;
   for (int i = 0; i < 3; ++i) rate += pose.axis[i].derivative(1) * pose.axis[i].derivative(1);
-  const double width = distance_at(nearest) / std::max(std::sqrt(rate), 1e-9);
+  const double width = probes_.distance_at(nearest) / std::max(std::sqrt(rate), 1e-9);
   add_cut(nearest);
   double off = kFirstCut * std::max(width, 1e-5);
   for (int n = 0; n < 28 && off < kFarthestCut_mm; ++n, off *= kCutGrowth) {
@@ -160,12 +82,12 @@ JointVector PoleCorridor::follow_to(double u) const noexcept {
   JointVector joints = known_;
   double at = known_u_, step = 0;
   while (at < u) {
-    const BandSpan& span = span_at(at);
-    const double whole = std::max(span.length / kProbes, kLeastPart_mm);
+    const BandSpan& span = probes_.span_at(at);
+    const double whole = std::max(span.length / PoleProbes::kProbes, kLeastPart_mm);
     step = std::min(step > 0 ? 2 * step : whole, whole);
     for (;; step *= 0.5) {  // so short that a turn of the free joint is seen
       const double next = std::min(u, at + step);
-      const BandSpan& there = span_at(next);
+      const BandSpan& there = probes_.span_at(next);
       const auto pose = pose_on(there.c, std::clamp(next - there.u0, 0.0, there.length));
       const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
       const bool is_there = solved.status != SolveStatus::kUnreachable;
@@ -180,109 +102,41 @@ JointVector PoleCorridor::follow_to(double u) const noexcept {
   return joints;
 }
 
-bool PoleCorridor::dwells(Place place) const noexcept {
-  return distance_of(place) < kDwellTolerances * tolerance_rad_;
+SettledPath PoleCorridor::settled() const noexcept {
+  const bool has_zone = pending_.begin_index() != pending_.end_index();
+  SettledPath out;
+  out.end = has_zone ? std::max(emitted_u(), pending_.back().end) : emitted_u();
+  out.is_begun = pending_.end_index() > 0 || emitted_u() > 0;
+  out.is_held = is_held_;
+  out.is_whole = is_finished_;
+  out.branch = branch_;
+  return out;
 }
 
-bool PoleCorridor::lingers(Place place) const noexcept {
-  return distance_of(place) < kStayTolerances * tolerance_rad_;
-}
-
-bool PoleCorridor::rests_at(Place place) const noexcept {
-  return is_held_ ? lingers(place) : place == 0 && dwells(place);
-}
-
-void PoleCorridor::follow_core(Place place) noexcept {
-  const Place begin = held_.begin_index() * kProbes;
-  if (core_.place != place) {
-    core_ = {place, place, place, place, find_nearest(place)};
-    const Place first = rests_at(place) ? place : begin;
-    while (dwells(place) && core_.first > first && dwells(core_.first - 1)) --core_.first;
-  }
-  core_.first = std::max(core_.first, begin);  // what is behind may be gone
-  if (!is_in_core(place)) return;
-  while (core_.seen + 1 < end_place() && lingers(core_.seen + 1)) {
-    if (dwells(++core_.seen)) core_.last = core_.seen;
+void PoleCorridor::scan() noexcept {
+  if (probes_.is_empty()) return;
+  while (cores_.find_next(settled())) {
+    // Not before a span waits for it: searches are dear, and so no two come at once.
+    if (may_emit() && !probes_.is_full()) return;
+    PoleCore core;
+    const PoleCores::Answer answer = cores_.decide(core);
+    if (answer == PoleCores::Answer::kNeedsSpans) return;
+    if (answer == PoleCores::Answer::kFound) settle(core);
   }
 }
 
-bool PoleCorridor::is_known_behind(double u) const noexcept {
-  return is_finished_ || held_.is_full() || end_u() > u + 2 * kReach_mm + 1;
-}
-
-PoleCorridor::Place PoleCorridor::find_hold(double begin) const noexcept {
-  const double length = u_of(core_.last) - begin;
-  const bool is_open = !is_finished_ && core_.seen + 1 == end_place();
-  if (!is_open || (length < kLongCore_mm && !held_.is_full())) return -1;
-  const double end = begin + (held_.is_full() ? 0.5 * length : length - kReach_mm);
-  Place place = core_.last;
-  while (place > core_.first && (u_of(place) > end || !dwells(place))) --place;
-  return u_of(place) > begin + kLeastReach_mm ? place : -1;
-}
-
-PolePlace PoleCorridor::place_about(Place place, double left) const noexcept {
-  PolePlace around;
-  around.core_begin = around.core_end = core_.nearest;
-  around.branch = branch_;
-  around.is_dwelling = distance_at(core_.nearest) < kPoleEase_rad;
-  if (is_in_core(place)) {
-    around.is_start = rests_at(place);
-    around.is_dwelling = around.is_dwelling || around.is_start || core_.last > core_.first;
-    around.core_begin = around.is_start ? left : std::min(core_.nearest, u_of(core_.first));
-    around.core_end = std::max(core_.nearest, u_of(core_.last));
-  }
-  // What rests may end a little farther off than what comes to rest.
-  const double nearly_on = around.is_start ? kStayTolerances : kDwellTolerances;
-  const Place last = around.is_start ? core_.seen : core_.last;
-  if (is_finished_ && last + 1 == end_place() &&
-      distance_at(end_u()) < nearly_on * tolerance_rad_) {
-    around.is_end = around.is_dwelling = true;
-    around.core_end = end_u();
-  }
-  return around;
-}
-
-bool PoleCorridor::decide(Place place) noexcept {
-  if (!is_known_behind(u_of(std::max(place - 1, held_.begin_index() * kProbes)))) return false;
-  follow_core(place);
-  const double left = pending_.begin_index() == pending_.end_index()
-                          ? emitted_u()
-                          : std::max(emitted_u(), pending_.back().end);
-  PolePlace around = place_about(place, left);
-  const Place hold = is_in_core(place) && !around.is_end ? find_hold(around.core_begin) : -1;
-  if (hold >= 0) {
-    around.is_end = around.is_dwelling = true;
-    around.core_end = u_of(hold);
-  } else if (!is_known_behind(around.core_end)) {
-    return false;
-  }
-  scan_ = std::max(place, core_.last) + 1;  // never back to where nothing is taken
-  const bool is_begun = pending_.end_index() > 0 || emitted_u() > 0;
-  const bool is_behind = around.is_start ? is_begun && !is_held_ : around.core_begin <= left;
-  if (is_behind) return true;
-  around.reach = kReach_mm;
-  if (!around.is_start) around.reach = kReachShare * (around.core_begin - left);
-  if (!around.is_end) {
-    around.reach = std::min(around.reach, find_room_behind(core_.last, around.core_end));
-  }
-  const double nearest = core_.nearest;
-  const bool has_room = !pending_.is_full() && around.reach > kLeastReach_mm &&
-                        distance_at(nearest) < kZoneTolerances * tolerance_rad_;
-  around.known_end = std::min(end_u(), around.core_end + 2 * kReach_mm);
-  if (has_room) {
+void PoleCorridor::settle(PoleCore& core) noexcept {
+  PolePlace& around = core.around;
+  if (core.has_room && !pending_.is_full()) {
     around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
-    if (find_zone(around, hold >= 0)) {
-      if (hold >= 0) scan_ = hold;
-      return true;
-    }
+    if (find_zone(around, core.hold >= 0)) return cores_.take(core);
   }
   has_failed_ = around.is_start;
-  add_cuts(nearest);
-  return true;
+  add_cuts(core.nearest);
 }
 
 bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
-  const PoleTask task{model_, *this, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
+  const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
   PoleZone zone = find_pole_zone(task, around);
   const double begin = around.core_begin;
   while (!(zone.end > zone.begin)) {  // hold the free joint farther into the core
@@ -308,13 +162,12 @@ bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
 
 void PoleCorridor::take(const PoleZone& zone) noexcept {
   pending_.push(zone);
-  ++zones_;
   branch_ = zone.branch_after;
   known_u_ = zone.end;
   is_held_ = zone.is_held;
   JointVector reference{};
   if (const int free = free_joint(model_); free >= 0) reference[free] = zone.free.back();
-  const BandSpan& span = span_at(zone.end);
+  const BandSpan& span = probes_.span_at(zone.end);
   const auto pose = pose_on(span.c, std::clamp(zone.end - span.u0, 0.0, span.length));
   known_ = is_held_ ? solve_held(model_, tool_length_mm_, pose, zone.free.back()).q
                     : solve(model_, tool_length_mm_, pose, branch_, reference).q;
@@ -331,7 +184,7 @@ bool PoleCorridor::fits_zone(double by) const noexcept {
   const PoleZone& zone = pending_[pending_.begin_index()];
   for (int n = 0; n <= kSamples; ++n) {
     const double u = emitted_u() + n * (zone.end - emitted_u()) / kSamples;
-    const BandSpan& span = span_at(u);
+    const BandSpan& span = probes_.span_at(u);
     const double free = quintic_at(zone.free, (u - zone.begin) / (zone.end - zone.begin)) + by;
     const ToolPose pose = pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length));
     const auto at = solve_held(model_, tool_length_mm_, pose, free);
@@ -344,12 +197,9 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   if (free_joint(model_) < 0) return;
   const bool keeps_zone = is_in_zone();
   PoleZone zone = keeps_zone ? pending_[pending_.begin_index()] : PoleZone{};
-  zones_ -= static_cast<int>(pending_.end_index() - pending_.begin_index());
   pending_.drop_before(pending_.end_index());
   cut_count_ = 0;
-  scan_ = held_.begin_index() * kProbes;
-  entered_ = -1;
-  core_ = {};
+  cores_.begin_again();
   if (keeps_zone) {
     for (double& value : zone.free) value += by;
     take(zone);
@@ -358,23 +208,23 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   branch_ = out_branch_;
   is_held_ = is_out_held_;
   known_ = joints;
-  if (held_.begin_index() != held_.end_index()) known_u_ = emitted_u();
+  if (!probes_.is_empty()) known_u_ = emitted_u();
 }
 
 bool PoleCorridor::may_emit() const noexcept {
-  const Held& front = held_[held_.begin_index()];
   if (!has_pole_) return true;
-  if (is_finished_ && scan_ >= end_place()) return true;
-  const double end = front.band.u0 + front.band.length;
-  const double judged = u_of(std::min(scan_, end_place() - 1));
+  const PoleProbes::Place last = probes_.end_place() - 1, place = cores_.place();
+  if (is_finished_ && place > last) return true;
+  const BandSpan& front = probes_.front();
+  const double end = front.u0 + front.length, judged = probes_.u_of(std::min(place, last));
   if (end > judged) return false;
-  const bool is_out_of_reach = *std::min_element(front.distance.begin(), front.distance.end()) >
-                               kOutOfReach_rad + front.band.length / kAxisLength_mm_per_rad;
-  return is_out_of_reach || held_.is_full() || end <= judged - kReach_mm;
+  const bool is_out_of_reach =
+      probes_.front_distance() > kOutOfReach_rad + front.length / kAxisLength_mm_per_rad;
+  return is_out_of_reach || probes_.is_full() || end <= judged - kPoleReach_mm;
 }
 
 void PoleCorridor::emit() noexcept {
-  const BandSpan& span = held_[held_.begin_index()].band;
+  const BandSpan& span = probes_.front();
   const double begin = span.u0 + emitted_x_, last = span.u0 + span.length;
   double end = last;
   const auto cut_at = [&](double u) {
@@ -422,46 +272,16 @@ void PoleCorridor::emit() noexcept {
   emitted_x_ += length;
   if (is_rest) {
     emitted_x_ = 0;
-    held_.drop_before(held_.begin_index() + 1);
+    probes_.drop_front();
   }
 }
 
 const JointSpan* PoleCorridor::next() noexcept {
   if (has_pole_) scan();
   if (has_failed_) return nullptr;
-  if (held_.begin_index() == held_.end_index() || !may_emit()) return nullptr;
+  if (probes_.is_empty() || !may_emit()) return nullptr;
   emit();
   return &out_;
-}
-
-void PoleCorridor::scan() noexcept {
-  if (held_.begin_index() == held_.end_index()) return;
-  scan_ = std::max(scan_, held_.begin_index() * kProbes);
-  while (scan_ < end_place()) {
-    const bool is_last = scan_ + 1 == end_place();
-    if (is_last && !is_finished_ && !held_.is_full()) return;
-    const Place before = std::max(scan_ - 1, held_.begin_index() * kProbes);
-    const double here = distance_of(scan_);
-    const double behind = is_last ? distance_at(end_u()) : distance_of(scan_ + 1);
-    if (!dwells(scan_)) {
-      entered_ = -1;
-    } else if (entered_ < 0) {
-      entered_ = scan_;
-    }
-    const bool is_long =
-        entered_ >= held_.begin_index() * kProbes && u_of(scan_) > u_of(entered_) + 0.5 * kReach_mm;
-    const bool is_end = is_last && is_finished_ && behind < kDwellTolerances * tolerance_rad_;
-    const bool is_minimum =
-        rests_at(scan_) || is_end || is_long ||
-        (before < scan_ && here < kNear_rad && here <= distance_of(before) && here < behind);
-    if (is_minimum) {
-      // Not before a span waits for it: searches are dear, and so no two come at once.
-      if (may_emit() && !held_.is_full()) return;
-      if (!decide(scan_)) return;
-    } else {
-      ++scan_;
-    }
-  }
 }
 
 }  // namespace meridian

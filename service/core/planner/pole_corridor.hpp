@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <vector>
+#include <cstddef>
 
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/joint_span.hpp"
+#include "service/core/planner/pole_cores.hpp"
+#include "service/core/planner/pole_probes.hpp"
 #include "service/core/planner/pole_zone.hpp"
 
 namespace meridian {
@@ -18,16 +19,16 @@ namespace meridian {
 ///     push(span) ... finish() ─▶ next() ... next() until it returns nullptr
 ///
 /// Where the axis is within 11.5° of the pole, spans are held back by up to 61 mm of u, until it
-/// is known how close they come. What comes out depends on the spans alone, not on when they came.
+/// is known how close they come, on the pole by up to 101 mm. What comes out depends on the spans
+/// alone, not on when they came.
 /// Where it stays on the pole, however long, the free joint comes to rest and is held until the
 /// path leads off again. A machine without a pole gets its spans as they are. Where no zone helps,
 /// spans are cut about the nearest point, so that cells of the feed are as short as the free
 /// joint's turn is sharp. Fixed store. Units: mm, rad. Context: planner thread. Source:
-/// docs/motion.md, section 10. Proof: tests/property/planner/smooth_planner_test.cpp.
-class PoleCorridor : private SpanLookup {
+/// docs/motion.md, section 10. Proof: tests/property/planner/smooth_planner_test.cpp and
+/// pole_linger_test.cpp.
+class PoleCorridor {
  public:
-  static constexpr double kReach_mm = 20;  ///< of a zone to either side
-
   explicit PoleCorridor(const MachineModel& model);
 
   /// Where a path starts, at rest.
@@ -45,7 +46,7 @@ class PoleCorridor : private SpanLookup {
   void mark(double u, const Vector3& axis) noexcept { programmed_.add(u, axis); }
 
   /// Takes the next span. Only after next() returned nullptr.
-  void push(const BandSpan& span) noexcept;
+  void push(const BandSpan& span) noexcept { probes_.push(span); }
   /// No more spans.
   void finish() noexcept { is_finished_ = true; }
 
@@ -65,68 +66,19 @@ class PoleCorridor : private SpanLookup {
   /// joint turned by `by`.
   [[nodiscard]] bool fits_zone(double by) const noexcept;
 
-  /// Zones since begin(), and the farthest that any moved the axis from the programmed one.
-  [[nodiscard]] int zones() const noexcept { return zones_; }
-
  private:
-  static constexpr int kProbes = 6;  ///< of the distance to the pole, per span
-  static constexpr std::size_t kHeld = 4096;
   static constexpr std::size_t kCuts = 128;
   static constexpr std::size_t kPending = 64;
 
-  struct Held {
-    BandSpan band;
-    std::array<double, kProbes> distance{};  ///< to the pole, at equal steps from its begin
-  };
-  /// A place among the probes: span number times kProbes plus probe.
-  using Place = std::int64_t;
+  [[nodiscard]] double emitted_u() const noexcept { return probes_.front().u0 + emitted_x_; }
+  [[nodiscard]] SettledPath settled() const noexcept;
 
-  [[nodiscard]] const BandSpan& span_at(double u) const noexcept override;
-  [[nodiscard]] double u_of(Place place) const noexcept;
-  [[nodiscard]] double distance_of(Place place) const noexcept;
-  [[nodiscard]] double distance_at(double u) const noexcept;
-  [[nodiscard]] Place end_place() const noexcept { return held_.end_index() * kProbes; }
-  [[nodiscard]] double end_u() const noexcept;
-  [[nodiscard]] double emitted_u() const noexcept {
-    return held_[held_.begin_index()].band.u0 + emitted_x_;
-  }
-
-  /// Where the path is closest to the pole: what is known of it stays while spans behind it come,
-  /// so that a way along the pole is walked once, however long.
-  struct Core {
-    Place place = -1;           ///< the minimum among the probes
-    Place first = 0, last = 0;  ///< the run of places on the pole about it
-    Place seen = 0;             ///< farther on the path only lingers beside it
-    double nearest = 0;         ///< u
-  };
-
-  /// Looks at probes as far as enough of what follows is there.
+  /// Looks for cores as far as enough of what follows is there.
   void scan() noexcept;
-  /// A local minimum of the distance, or a place on the pole. False: more spans are needed to
-  /// decide.
-  [[nodiscard]] bool decide(Place place) noexcept;
-  /// The core that was followed about `place`; `left`: where the last zone ends.
-  [[nodiscard]] PolePlace place_about(Place place, double left) const noexcept;
+  /// Takes a zone about `core`, or cuts the spans there.
+  void settle(PoleCore& core) noexcept;
   /// Takes the best zone about `around`; false: there is none.
   [[nodiscard]] bool find_zone(PolePlace around, bool is_held) noexcept;
-  /// Where in a core from `begin`, whose end is not known yet, the free joint may come to rest
-  /// meanwhile; -1: its end is waited for.
-  [[nodiscard]] Place find_hold(double begin) const noexcept;
-  /// Whether enough of the path behind `u` is known.
-  [[nodiscard]] bool is_known_behind(double u) const noexcept;
-  [[nodiscard]] double find_nearest(Place place) const noexcept;
-  /// Whether the path counts as on the pole at `place`.
-  [[nodiscard]] bool dwells(Place place) const noexcept;
-  /// Whether it is so close to it that the free joint may be held there.
-  [[nodiscard]] bool lingers(Place place) const noexcept;
-  /// Whether the free joint rests on the way to `place`, and may go on resting there.
-  [[nodiscard]] bool rests_at(Place place) const noexcept;
-  [[nodiscard]] bool is_in_core(Place place) const noexcept {
-    return dwells(place) || rests_at(place);
-  }
-  /// Finds what is known of the core about `place`.
-  void follow_core(Place place) noexcept;
-  [[nodiscard]] double find_room_behind(Place from, double core_end) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;
   /// Joints of the exact way at `u`, the windings followed from where they are known.
@@ -143,9 +95,8 @@ class PoleCorridor : private SpanLookup {
   bool is_exact_ = false;  ///< of the policies the one that never eases
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
   ProgrammedAxis programmed_;
-  IndexRing<Held> held_;
-  Place scan_ = 0;        ///< first probe that is not judged
-  Core core_;             ///< that is being decided
+  PoleProbes probes_;  ///< spans that are held back
+  PoleCores cores_;
   double emitted_x_ = 0;  ///< of the first span held, what is out already
   double known_u_ = 0;    ///< winding and branch behind all zones are known there
   JointVector known_{};
@@ -158,8 +109,6 @@ class PoleCorridor : private SpanLookup {
   bool is_held_ = false;      ///< behind all zones the free joint rests, close to the pole
   bool is_out_held_ = false;  ///< the same where spans are handed out
   bool has_failed_ = false;
-  Place entered_ = -1;  ///< of the run of places on the pole that scan_ is in
-  int zones_ = 0;
   JointSpan out_;
 };
 

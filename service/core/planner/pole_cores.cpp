@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/pole_cores.hpp"
+
+#include <algorithm>
+
+#include "meridian/planner/rest_to_rest.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kNear_rad = 0.05;        // minima farther off turn the free joint gently
+constexpr double kZoneTolerances = 2.5;   // minima farther off leave a zone no room
+constexpr double kDwellTolerances = 0.2;  // nearer, the path counts as on the pole
+constexpr double kStayTolerances = 0.4;   // so far a path that comes back may go meanwhile
+constexpr double kOtherTolerances = 3;    // another minimum nearer than that bounds the reach
+/// A core that is longer than this is not waited for: the free joint comes to rest in it.
+constexpr double kLongCore_mm = 2 * kPoleReach_mm;
+constexpr double kReachShare = 0.98, kHalf = 0.49;
+constexpr double kLeastReach_mm = 1e-3;
+
+}  // namespace
+
+void PoleCores::begin(double tolerance_rad) noexcept {
+  tolerance_rad_ = tolerance_rad;
+  settled_ = {};
+  place_ = 0;
+  entered_ = -1;
+  run_ = {};
+}
+
+void PoleCores::begin_again() noexcept {
+  place_ = probes_.begin_place();
+  entered_ = -1;
+  run_ = {};
+}
+
+bool PoleCores::dwells(Place place) const noexcept {
+  return probes_.distance_of(place) < kDwellTolerances * tolerance_rad_;
+}
+
+bool PoleCores::lingers(Place place) const noexcept {
+  return probes_.distance_of(place) < kStayTolerances * tolerance_rad_;
+}
+
+bool PoleCores::rests_at(Place place) const noexcept {
+  return settled_.is_held ? lingers(place) : place == 0 && dwells(place);
+}
+
+bool PoleCores::find_next(const SettledPath& settled) noexcept {
+  settled_ = settled;
+  if (probes_.is_empty()) return false;
+  for (place_ = std::max(place_, probes_.begin_place()); place_ < probes_.end_place(); ++place_) {
+    const bool is_last = place_ + 1 == probes_.end_place();
+    if (is_last && !settled.is_whole && !probes_.is_full()) return false;
+    if (!dwells(place_)) {
+      entered_ = -1;
+    } else if (entered_ < 0) {
+      entered_ = place_;
+    }
+    if (is_minimum(is_last)) return true;
+  }
+  return false;
+}
+
+bool PoleCores::is_minimum(bool is_last) const noexcept {
+  const Place begin = probes_.begin_place(), before = std::max(place_ - 1, begin);
+  const double here = probes_.distance_of(place_);
+  const double behind =
+      is_last ? probes_.distance_at(probes_.end_u()) : probes_.distance_of(place_ + 1);
+  const bool is_long =
+      entered_ >= begin && probes_.u_of(place_) > probes_.u_of(entered_) + 0.5 * kPoleReach_mm;
+  const bool is_end = is_last && settled_.is_whole && behind < kDwellTolerances * tolerance_rad_;
+  return rests_at(place_) || is_end || is_long ||
+         (before < place_ && here < kNear_rad && here <= probes_.distance_of(before) &&
+          here < behind);
+}
+
+void PoleCores::follow() noexcept {
+  const Place begin = probes_.begin_place();
+  if (run_.place != place_) {
+    run_ = {place_, place_, place_, place_, probes_.find_nearest(place_)};
+    const Place first = rests_at(place_) ? place_ : begin;
+    while (dwells(place_) && run_.first > first && dwells(run_.first - 1)) --run_.first;
+  }
+  run_.first = std::max(run_.first, begin);  // what is behind may be gone
+  if (!is_in_core(place_)) return;
+  while (run_.seen + 1 < probes_.end_place() && lingers(run_.seen + 1)) {
+    if (dwells(++run_.seen)) run_.last = run_.seen;
+  }
+}
+
+bool PoleCores::is_known_behind(double u) const noexcept {
+  return settled_.is_whole || probes_.is_full() || probes_.end_u() > u + 2 * kPoleReach_mm + 1;
+}
+
+PoleCores::Place PoleCores::find_hold(double begin) const noexcept {
+  const double length = probes_.u_of(run_.last) - begin;
+  const bool is_open = !settled_.is_whole && run_.seen + 1 == probes_.end_place();
+  if (!is_open || (length < kLongCore_mm && !probes_.is_full())) return -1;
+  const double end = begin + (probes_.is_full() ? 0.5 * length : length - kPoleReach_mm);
+  Place place = run_.last;
+  while (place > run_.first && (probes_.u_of(place) > end || !dwells(place))) --place;
+  return probes_.u_of(place) > begin + kLeastReach_mm ? place : -1;
+}
+
+double PoleCores::find_room_behind(double core_end) const noexcept {
+  const double room = std::min(kPoleReach_mm, kReachShare * (probes_.end_u() - core_end));
+  for (Place n = run_.last + 2;
+       n + 1 < probes_.end_place() && probes_.u_of(n) < core_end + 2 * kPoleReach_mm; ++n) {
+    const double here = probes_.distance_of(n);
+    const bool is_minimum = here < probes_.distance_of(n - 1) && here < probes_.distance_of(n + 1);
+    if (is_minimum && here < kOtherTolerances * tolerance_rad_) {
+      return std::min(room, kHalf * (probes_.u_of(n) - core_end));
+    }
+  }
+  return room;
+}
+
+PolePlace PoleCores::around() const noexcept {
+  PolePlace around;
+  around.core_begin = around.core_end = run_.nearest;
+  around.branch = settled_.branch;
+  around.is_dwelling = probes_.distance_at(run_.nearest) < kPoleEase_rad;
+  if (is_in_core(place_)) {
+    around.is_start = rests_at(place_);
+    around.is_dwelling = around.is_dwelling || around.is_start || run_.last > run_.first;
+    around.core_begin =
+        around.is_start ? settled_.end : std::min(run_.nearest, probes_.u_of(run_.first));
+    around.core_end = std::max(run_.nearest, probes_.u_of(run_.last));
+  }
+  // What rests may end a little farther off than what comes to rest.
+  const double nearly_on = around.is_start ? kStayTolerances : kDwellTolerances;
+  const Place last = around.is_start ? run_.seen : run_.last;
+  if (settled_.is_whole && last + 1 == probes_.end_place() &&
+      probes_.distance_at(probes_.end_u()) < nearly_on * tolerance_rad_) {
+    around.is_end = around.is_dwelling = true;
+    around.core_end = probes_.end_u();
+  }
+  return around;
+}
+
+PoleCores::Answer PoleCores::decide(PoleCore& out) noexcept {
+  if (!is_known_behind(probes_.u_of(std::max(place_ - 1, probes_.begin_place())))) {
+    return Answer::kNeedsSpans;
+  }
+  follow();
+  out = {around(), run_.nearest, false, -1};
+  PolePlace& around = out.around;
+  if (is_in_core(place_) && !around.is_end) out.hold = find_hold(around.core_begin);
+  if (out.hold >= 0) {
+    around.is_end = around.is_dwelling = true;
+    around.core_end = probes_.u_of(out.hold);
+  } else if (!is_known_behind(around.core_end)) {
+    return Answer::kNeedsSpans;
+  }
+  place_ = std::max(place_, run_.last) + 1;  // never back to where nothing is taken
+  const bool is_passed =
+      around.is_start ? settled_.is_begun && !settled_.is_held : around.core_begin <= settled_.end;
+  if (is_passed) return Answer::kPassed;
+  around.reach = kPoleReach_mm;
+  if (!around.is_start) around.reach = kReachShare * (around.core_begin - settled_.end);
+  if (!around.is_end) around.reach = std::min(around.reach, find_room_behind(around.core_end));
+  around.known_end = std::min(probes_.end_u(), around.core_end + 2 * kPoleReach_mm);
+  out.has_room = around.reach > kLeastReach_mm &&
+                 probes_.distance_at(run_.nearest) < kZoneTolerances * tolerance_rad_;
+  return Answer::kFound;
+}
+
+}  // namespace meridian
