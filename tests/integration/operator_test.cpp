@@ -65,6 +65,19 @@ class Operator : public testing::Test {
   return blocks;
 }
 
+/// As with_spindle(), an optional stop in front of it and coolant behind it, in line 78.
+[[nodiscard]] std::vector<ClBlock> with_optional_stop(const std::vector<ClBlock>& plain) {
+  std::vector<ClBlock> blocks = with_spindle(plain);
+  ClBlock coolant = blocks[2], stop;
+  coolant.action = ActionKind::kCoolantFlood;
+  coolant.line = 78;
+  stop.kind = BlockKind::kOptionalStop;
+  blocks.insert(blocks.begin() + 3, coolant);
+  blocks.insert(blocks.begin() + 2, stop);
+  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].sequence = i;
+  return blocks;
+}
+
 [[nodiscard]] double speed_of(const record::RecordingRow& row) {
   double square = 0;
   for (const double v : row.velocity) square += v * v;
@@ -146,14 +159,20 @@ TEST_F(Operator, AbortsAProgramAndItsSessionWithIt) {
   EXPECT_EQ(start->refusal, Refusal::kNoProgram) << start->text;
 }
 
-TEST_F(Operator, WaitsForActionsAtRest) {
-  load(with_spindle(small_program(4, 3000)));
+TEST_F(Operator, WaitsForActionsAtRestBehindAnOptionalStopToo) {
+  load(with_optional_stop(small_program(4, 3000)));
+  say(Verb::kOptionalStop, 1);
   say(Verb::kStart);
+  ASSERT_TRUE(plant.wait_for(State::kHeld));
+  say(Verb::kResume);
   ASSERT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(10000)))
       << plant.service().said();
   EXPECT_EQ(plant.station().state(), StationState::kRan) << plant.station().message();
-  EXPECT_NE(plant.service().said().find("waiting for the action of line 77"), std::string::npos)
-      << plant.service().said();
+  for (const char* line : {"77", "78"}) {
+    EXPECT_NE(plant.service().said().find(std::string("waiting for the action of line ") + line),
+              std::string::npos)
+        << plant.service().said();
+  }
 }
 
 TEST_F(Operator, SeesTheAlarmOfAFailedActionUntilTheProgramGoesOnOrIsOver) {

@@ -69,9 +69,12 @@ inline void wait_for_action(Cycle& c) noexcept {
   }
 }
 
-/// One period at a program stop: Held; the piece in force stays until resume() steps over it.
+/// One period at a program stop: Held; the piece in force stays until resume() steps over it. An
+/// optional one is no action: the action peer does not hear of it.
 inline void stop_at_barrier(Cycle& c) noexcept {
-  tell(c, EventCode::kActionDue, c.state.sequence, c.state.line);
+  if (c.reader.piece()->kind == TimeKind::kStop) {
+    tell(c, EventCode::kActionDue, c.state.sequence, c.state.line);
+  }
   enter(c, State::kHeld);
 }
 

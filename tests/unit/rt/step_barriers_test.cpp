@@ -121,6 +121,7 @@ TEST(StepBarriers, AnOptionalStopIsHeldOnlyWhereTheOperatorAskedForIt) {
     p.plan.barrier(TimeKind::kEnd);
     p.run(3);
     EXPECT_EQ(p.world.now(), is_asked ? State::kHeld : State::kReady);
+    EXPECT_EQ(p.world.count(EventCode::kActionDue), 0) << "the planner announces none";
   }
 }
 
