@@ -23,6 +23,7 @@ class MadePlan {
   [[nodiscard]] const JointVector& joints() const { return joints_; }
 
   double block_end_s = 0;  ///< where blocks end on their paths, mm; 0: at the end
+  double stop_share = 1;   ///< of the limits that stops may use; 0: there is no authority
 
   /// Pieces that follow carry `epoch`.
   void set_epoch(std::uint16_t epoch) { epoch_ = epoch; }
@@ -128,10 +129,10 @@ class MadePlan {
     piece.v = phase.v;
     piece.a = phase.a;
     piece.j = phase.j;
-    piece.stop_accel = limits.acceleration;
-    piece.stop_jerk = limits.jerk;
-    piece.fault_accel = 2 * limits.acceleration;
-    piece.fault_jerk = 4 * limits.jerk;
+    piece.stop_accel = stop_share * limits.acceleration;
+    piece.stop_jerk = stop_share * limits.jerk;
+    piece.fault_accel = 2 * stop_share * limits.acceleration;
+    piece.fault_jerk = 4 * stop_share * limits.jerk;
     (void)writer_.stage(piece);
   }
   /// The last three phases of a profile, `by` further on.

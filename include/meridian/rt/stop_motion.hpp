@@ -30,6 +30,7 @@ inline void lay_out_stop(Cycle& c, const PathState& begin,
   stop.time = 0;
   stop.is_by_rate = false;
   stop.begin = c.state.joints;
+  c.state.single_block.is_braking = false;
 }
 
 /// Path length to the end of the block that the rate brakes for.
@@ -48,12 +49,13 @@ inline void lay_out_stop(Cycle& c, const PathState& begin,
   return way + state_at(*piece, single.time).s;
 }
 
-/// Whether a hold from `begin` with `authority` would end behind the end of a block that the rate
-/// brakes for: the brake is the shorter way to rest then.
+/// Whether a hold from `begin` with `authority` would end at the end of a block that the rate
+/// brakes for, which rounding may make behind it, or beyond: the brake is no longer way to rest
+/// then.
 [[nodiscard]] inline bool passes_block_end(Cycle& c, const PathState& begin,
                                            const StopAuthority& authority) noexcept {
   if (!c.state.single_block.is_braking || !(authority.jerk > 0)) return false;
-  return StopLaw(begin, authority).distance() > way_to_block_end(c) + kSameEnd_mm;
+  return StopLaw(begin, authority).distance() > way_to_block_end(c) - kSameEnd_mm;
 }
 
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
@@ -181,13 +183,17 @@ inline void end_stop_here(Cycle& c) noexcept {
   c.state.stop.begin = c.state.joints;
 }
 
-/// One period of a stop along the plan. False where the plan rests before its rate does.
+/// One period of a stop along the plan, no farther than to the end of a block that the rate brakes
+/// for. False where it is over, or the plan rests before its rate does.
 [[nodiscard]] inline bool slow_down_one_period(Cycle& c) noexcept {
+  const SingleBlock& single = c.state.single_block;
   c.state.piece_time += c.state.rate.advance(c.dt);
   for (int n = 0; n < kMostPieces; ++n) {
     const TimePiece& piece = *c.reader.piece();
+    const bool is_last = single.is_braking && single.pieces == 0;
+    if (is_last) c.state.piece_time = std::min(c.state.piece_time, single.time);
     const double beyond = c.state.piece_time - piece.duration;
-    if (beyond < 0) return c.state.rate.rate() > 0 || !c.state.rate.is_settled();
+    if (is_last || beyond < 0) return c.state.rate.rate() > 0 || !c.state.rate.is_settled();
     if (!settle_at_end(c, state_at(piece, piece.duration))) return false;
     if (!next_piece(c) || !is_on_move(c) || is_plan_at_rest(c)) return false;
     if (c.state.single_block.pieces > 0) --c.state.single_block.pieces;

@@ -29,6 +29,32 @@ struct Stepped : test::Program {
   }
 };
 
+/// On the way to rest in mid-cut, at a block's end at 60 mm and `by`.
+struct Braking : test::Program {
+  Braking(double by, double stop_share) {
+    plan.block_end_s = 60 + by;
+    plan.stop_share = stop_share;
+    plan.cut({80, 0, 0}, kLimits);
+    plan.barrier(TimeKind::kEnd);
+    world.command(Verb::kSingleBlock, 1);
+    run(0);
+    while (!world.state.single_block.is_braking) world.run();
+  }
+  /// Held after so many cycles more, and sent on: whether it rests at the end all the same.
+  [[nodiscard]] bool rests_there_behind_hold(int cycles) {
+    for (int n = 0; n < cycles; ++n) world.run();
+    if (world.now() != State::kRunning) return true;  // it rests already
+    world.command(Verb::kHold);
+    EXPECT_TRUE(world.run_until(State::kHeld, kLong_s));
+    world.command(Verb::kResume);
+    while (world.now() == State::kRunning) world.run();
+    return world.now() == State::kStepping && std::abs(tip_x() - plan.block_end_s) < 1e-9;
+  }
+  [[nodiscard]] double tip_x() const {
+    return forward(machine, machine.tool_length_mm, world.records.back().joints).tip.x();
+  }
+};
+
 /// Where the tail of a cut over 200 mm begins that cruises for a second, and its length.
 std::pair<double, double> tail_of_long_cut() {
   Program p;
@@ -191,6 +217,33 @@ TEST(StepSingleBlock, RestsInATailThatItBrakesForWhateverIsPublishedMeanwhile) {
               1e-9);
   p.world.command(Verb::kResume);
   EXPECT_TRUE(p.world.run_until(State::kStarved, kLong_s));
+}
+
+/// Along the plan, which has no authority for a law of the hold: it rests at the end but for
+/// rounding, and never behind it.
+TEST(StepSingleBlock, LeavesNoEndOutBehindAHoldThatGoesAlongThePlan) {
+  int left_out = 0;
+  for (int cycles = 0; cycles < 1110; cycles += 7) {
+    left_out += !Braking(0.01 * cycles, 0).rests_there_behind_hold(cycles);
+  }
+  EXPECT_EQ(left_out, 0);
+}
+
+TEST(StepSingleBlock, LeavesNoEndOutBehindAHoldWhoseLawWouldEndJustBehindIt) {
+  constexpr int kCycles = 700;
+  Braking p(0, 1);
+  for (int n = 0; n < kCycles; ++n) p.world.run();
+  const PathState& at = p.world.state.on_path;
+  double longer = 0.03, shorter = 0.07;  // shares of the limits that the hold may use
+  double beyond = 0;
+  for (int n = 0; n < 50 && !(beyond > 1e-7 && beyond < 4e-7); ++n) {
+    const double share = 0.5 * (longer + shorter);
+    const StopLaw law(at, {share * kLimits.acceleration, share * kLimits.jerk});
+    beyond = at.s + law.distance() - p.plan.block_end_s;
+    (beyond > 0 ? longer : shorter) = share;
+  }
+  ASSERT_TRUE(beyond > 1e-7 && beyond < 4e-7) << beyond;
+  EXPECT_TRUE(Braking(0, longer).rests_there_behind_hold(kCycles));
 }
 
 TEST(StepSingleBlock, MayBeAbortedAndSwitchedOffBehindABlock) {
