@@ -13,11 +13,20 @@ using namespace std::string_view_literals;
 
 constexpr auto kKinds =
     std::to_array({"approach"sv, "cut"sv, "rapid"sv, "pole_turn"sv, "unwind"sv});
+static_assert(kKinds.size() == static_cast<std::size_t>(MotionKind::kUnwind) + 1);
+
 constexpr auto kStates =
     std::to_array({"off"sv, "enabling"sv, "ready"sv, "loaded"sv, "approaching"sv, "running"sv,
                    "holding"sv, "held"sv, "starving"sv, "starved"sv, "aborting"sv, "disabling"sv,
                    "fault_stop"sv, "fault"sv, "jogging"sv, "homing"sv, "stepping"sv});
 static_assert(kStates.size() == kStateCount);
+
+constexpr auto kAlarms =
+    std::to_array({"none"sv, "not_finite"sv, "travel"sv, "step"sv, "unreachable"sv, "drive_fault"sv,
+                   "feedback_lost"sv, "following_error"sv, "emergency_stop"sv, "periods_lost"sv,
+                   "enable_timeout"sv, "action_failed"sv, "homing_failed"sv, "homing_timeout"sv,
+                   "reference_lost"sv});
+static_assert(kAlarms.size() == static_cast<std::size_t>(Alarm::kReferenceLost) + 1);
 
 template <class Enum, std::size_t N>
 [[nodiscard]] std::optional<Enum> find(const std::array<std::string_view, N>& words,
@@ -34,12 +43,6 @@ template <class Enum, std::size_t N>
   const auto i = static_cast<std::size_t>(value);
   return i < N ? words[i] : std::string_view("unknown");
 }
-
-/// In the order of Alarm.
-constexpr std::array<std::string_view, 15> kAlarms{
-    "none",           "not_finite",    "travel",          "step",           "unreachable",
-    "drive_fault",    "feedback_lost", "following_error", "emergency_stop", "periods_lost",
-    "enable_timeout", "action_failed", "homing_failed",   "homing_timeout", "reference_lost"};
 
 }  // namespace
 
