@@ -102,9 +102,8 @@ void Drive::work(const DriveInput& input, double dt_s) noexcept {
 void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
   if (input.is_new) {
     is_following_ = input.is_enabled;
-    if (!is_following_) return;
-    target_ = input.position;
-    target_velocity_ = input.velocity;
+    target_velocity_ = is_following_ ? input.velocity : 0;
+    if (is_following_) target_ = input.position;
     return;
   }
   if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
@@ -113,7 +112,7 @@ void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
 
 /// In homing mode setpoints lead nowhere, but a service that sends none any more is gone.
 void Drive::search(const DriveInput& input, double dt_s) noexcept {
-  if (!input.is_new && input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
+  if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
   const double renamed = homing_.work(target_, servo_.position, dt_s);
   target_ += renamed;
   servo_.position += renamed;

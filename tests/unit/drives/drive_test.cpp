@@ -64,6 +64,7 @@ TEST(SimulatedDrive, StaysWhereItIsWhenEnabled) {
 TEST(SimulatedDrive, FaultsWhereItIsEnabledAndNobodySendsSetpoints) {
   for (const std::uint8_t mode : {dds::kCyclicPositionMode, dds::kHomingMode}) {
     Drive drive = enabled_drive();
+    drive.work(setpoint(10, kVelocity), kPeriod_s);  // of before, which it does not ramp down from
     drive.take_controlword(0x0F, mode);
     drive.work({.is_new = true, .is_enabled = false}, kPeriod_s);
     for (int n = 1; n < 6; ++n) drive.work(nothing(n), kPeriod_s);
