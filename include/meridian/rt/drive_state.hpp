@@ -18,7 +18,7 @@ enum class DriveState : std::uint8_t {
 };
 
 /// What a statusword says. Source: CiA 402-2, object 6041h, bits 0 to 3, 5 and 6.
-/// Proof: tests/unit/interpolator/drive_words_test.cpp.
+/// Proof: tests/unit/rt/drive_state_test.cpp.
 [[nodiscard]] constexpr DriveState drive_state(std::uint16_t statusword) noexcept {
   switch (statusword & 0x4FU) {
     case 0x40:

@@ -52,6 +52,13 @@ TEST(Cia402, AFaultIsResetByTheRisingEdgeAlone) {
   EXPECT_EQ(next_state(DriveState::kFaultReaction, kFaultReset, 0), DriveState::kFaultReaction);
 }
 
+TEST(Cia402, StatuswordsSayWhatAControllerReads) {
+  for (int n = 0; n <= static_cast<int>(DriveState::kFault); ++n) {
+    const auto state = static_cast<DriveState>(n);
+    EXPECT_EQ(drive_state(statusword(state)), state) << name_of(state);
+  }
+}
+
 TEST(Cia402, StatuswordsAreThoseOfTheStandard) {
   constexpr std::uint16_t kMask = 0x6F;
   EXPECT_EQ(statusword(DriveState::kSwitchOnDisabled) & 0x4F, 0x40);

@@ -3,29 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 namespace meridian::interpolator {
 namespace {
-
-struct Case {
-  std::uint16_t statusword;
-  DriveState state;
-};
-
-TEST(DriveWords, ReadsEveryStateWhateverTheOtherBitsSay) {
-  const std::vector<Case> cases = {
-      {0x00, DriveState::kNotReady},         {0x40, DriveState::kSwitchOnDisabled},
-      {0x21, DriveState::kReadyToSwitchOn},  {0x23, DriveState::kSwitchedOn},
-      {0x27, DriveState::kOperationEnabled}, {0x07, DriveState::kQuickStop},
-      {0x0F, DriveState::kFaultReaction},    {0x08, DriveState::kFault}};
-  for (const Case& one : cases) {
-    for (const int others : {0x0000, 0x0010, 0x0080, 0x1600, 0xFF90}) {
-      EXPECT_EQ(drive_state(static_cast<std::uint16_t>(one.statusword | others)), one.state)
-          << std::hex << one.statusword << " | " << others;
-    }
-  }
-}
 
 TEST(DriveWords, WalksFromSwitchOnDisabledToOperationEnabled) {
   EXPECT_EQ(next_controlword(DriveState::kSwitchOnDisabled, true), 0x06);
