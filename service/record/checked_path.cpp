@@ -15,6 +15,10 @@ constexpr double kLargestPart_rad = std::numbers::pi / 12;
 
 }  // namespace
 
+double PathElement::tip_length() const noexcept {
+  return length - kAxisLength_mm_per_rad * axis_turn;
+}
+
 ToolPose PathElement::pose(double t) const noexcept {
   ToolPose out{tip_begin + t * tip_delta, axis_begin};
   if (arc_sweep != 0) {

@@ -20,9 +20,9 @@ struct PathElement {
   double arc_sweep = 0;  ///< 0: straight
   Vector3 axis_begin;
   Vector3 axis_normal;
-  double axis_turn = 0;
-  double s = 0;       ///< common length at its begin: tip length + 50 mm per rad of axis turn
-  double length = 0;  ///< of it
+  double axis_turn = 0;  ///< rad, [0, π]
+  double s = 0;          ///< common length at its begin: tip length + 50 mm per rad of axis turn
+  double length = 0;     ///< of it
   double feed_mm_per_s = kNoFeed;   ///< fastest tip allowed
   double turn_rad_per_s = kNoFeed;  ///< fastest tool axis allowed (inverse time)
   double tool_length_mm = 0;        ///< gauge line to tip while it is cut
@@ -31,6 +31,8 @@ struct PathElement {
 
   static constexpr double kNoFeed = std::numeric_limits<double>::infinity();
 
+  /// Of `length`, what the tip goes.
+  [[nodiscard]] double tip_length() const noexcept;
   /// Pose at `t` in [0, 1].
   [[nodiscard]] ToolPose pose(double t) const noexcept;
   /// Derivative of pose by t.

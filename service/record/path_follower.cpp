@@ -160,9 +160,8 @@ PoseMatch PathFollower::search(const ToolPose& pose, double moved) const {
 /// tolerance and `off` is farther from it than a tolerance.
 void PathFollower::leave_behind(std::size_t index, double t, double off) noexcept {
   const PathElement& element = path_.elements()[index];
-  const double turn = std::abs(element.axis_turn);
-  const double tip = element.length - kAxisLength_mm_per_rad * turn;
-  const double tolerances = std::max(tip / tip_tolerance_, turn / axis_tolerance_);
+  const double tolerances =
+      std::max(element.tip_length() / tip_tolerance_, element.axis_turn / axis_tolerance_);
   if (!(tolerances > 0)) return;
   earliest_ = std::max(earliest_, Place{index, t - kArcShare * (1 + off) / tolerances});
 }

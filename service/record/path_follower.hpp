@@ -30,11 +30,10 @@ struct PoseMatch {
 /// The path goes forward alone: no match lies before the earliest place that the tool may have
 /// come to, nowhere farther off than its tolerances.
 ///
-///     path  ───────────▶ ┐      commanded: turns round inside the tolerance. Matches run back on
-///     the tool  ──────────▶┐ │      way out until they come to the earliest place, then are found
-///     on the
-///           ◀──────────┘ │      way back.
-///           ◀────────────┘
+///     path ──────────▶┐     The tool turns round earlier, inside the tolerance. Matches run back
+///     tool ───────▶┐  │     along the way out as far as the earliest place; from there on they are
+///          ◀───────┘  │     found on the way back.
+///          ◀──────────┘
 ///
 /// Proof: tests/unit/record/check_test.cpp.
 class PathFollower {

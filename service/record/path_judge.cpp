@@ -74,8 +74,7 @@ std::uint32_t PathJudge::vertex_line(std::size_t index) const noexcept {
 /// Whether the tip stands on one side of the vertex, while the axis turns.
 bool PathJudge::is_turn(std::size_t index) const noexcept {
   const auto turns = [](const PathElement& element) {
-    const double tip = element.length - kAxisLength_mm_per_rad * element.axis_turn;
-    return element.axis_turn > 0 && tip < kNoTip_mm;
+    return element.axis_turn > 0 && element.tip_length() < kNoTip_mm;
   };
   const auto& elements = path_.elements();
   return (index > 0 && turns(elements[index - 1])) ||
@@ -338,7 +337,7 @@ void PathJudge::finish_vertices(CheckReport& report) const {
       missed.worst.raise(distance, 0, vertex_line(i));
       ++missed.count;
     } else if (is_unturned) {
-      unturned.worst.raise(turned_[i] * axis_tolerance_at(vertex(i).axis), 0, vertex_line(i));
+      unturned.worst.raise(turned_[i], 0, vertex_line(i));
       ++unturned.count;
     }
   }
@@ -350,9 +349,9 @@ void PathJudge::finish_vertices(CheckReport& report) const {
   }
   if (unturned.count > 0) {
     std::snprintf(text, sizeof text,
-                  "%llu CL vertices at turns of the axis alone were missed, the worst by %.6f deg",
-                  static_cast<unsigned long long>(unturned.count),
-                  units::deg_from_rad(unturned.worst.value));
+                  "%llu CL vertices at turns of the axis alone were missed, the worst by %.3f "
+                  "tolerances of tip and axis together",
+                  static_cast<unsigned long long>(unturned.count), unturned.worst.value);
     report.findings.push_back(
         {Finding::Kind::kVertex, text, 0, unturned.worst.line, unturned.count});
   }
