@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/rt/obey.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
 
@@ -231,15 +232,18 @@ std::string describe(Verb verb, Refusal refusal, State state) {
                 : "the value is out of range: from 0 to 100 %";
       break;
     case Refusal::kStale:
-      why = "what you saw is older than 500 ms or of an earlier epoch; look again, then repeat";
+      why =
+          "what you saw is older than 500 ms, of an earlier epoch, or of a rest that is behind the "
+          "machine; look again, then repeat";
       break;
     case Refusal::kFaultPresent:
       why = "a fault is present; mend its cause, then reset";
       break;
     case Refusal::kSlowRamp:
-      why =
-          "the machine's override_ramp_s is longer than 2 s: blocks could not be braked for in "
-          "time";
+      why = fmt::format(
+          "the machine's override_ramp_s is longer than {} s: blocks could not be braked for in "
+          "time",
+          kMostStepRamp_s);
       break;
   }
   return fmt::format("{} refused: {}", name_of(verb), why);

@@ -36,14 +36,18 @@ TEST(Words, TellWhereTheAxisIsEasedByHowMuchAndWhy) {
 TEST(Words, SayEveryAlarmDifferently) {
   const MachineModel model = test::lai_machine();
   std::set<std::string> texts;
-  for (int alarm = 0; alarm <= static_cast<int>(Alarm::kActionFailed); ++alarm) {
-    texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 3, model));
+  constexpr int kLast = static_cast<int>(Alarm::kReferenceLost);
+  for (int alarm = 0; alarm <= kLast; ++alarm) {
+    texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 0, model));
   }
-  EXPECT_EQ(texts.size(), static_cast<std::size_t>(Alarm::kActionFailed) + 1);
+  EXPECT_EQ(texts.size(), std::size_t{kLast} + 1);
+  EXPECT_EQ(texts.count(""), 0U);
+  EXPECT_EQ(describe(static_cast<Alarm>(kLast + 1), 1, 2.5, 0, model), "") << "there are more";
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  for (int refusal = 1; refusal <= static_cast<int>(Refusal::kFaultPresent); ++refusal) {
+  constexpr int kLast = static_cast<int>(Refusal::kSlowRamp);
+  for (int refusal = 1; refusal <= kLast; ++refusal) {
     for (int state = 0; state < kStateCount; ++state) {
       const std::string text =
           describe(Verb::kStart, static_cast<Refusal>(refusal), static_cast<State>(state));
@@ -51,6 +55,8 @@ TEST(Words, TellTheRemedyWithEveryRefusal) {
       EXPECT_GT(text.size(), std::string("start refused: ").size() + 10) << text;
     }
   }
+  EXPECT_EQ(describe(Verb::kStart, static_cast<Refusal>(kLast + 1), State::kOff), "start refused: ")
+      << "there are more";
 }
 
 TEST(Words, NameBothStatesOfAChange) {
