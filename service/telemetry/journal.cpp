@@ -21,6 +21,8 @@ namespace {
 
 /// No journal is longer; what is, is something else.
 constexpr std::size_t kMost_bytes = 4096;
+/// Stations and programs are named in it: it is not everybody's.
+constexpr mode_t kMode = 0640;
 
 /// The journal in `file`, as open() returned it; else what is wrong with it.
 [[nodiscard]] Expected<JournalEntry, std::string> parse_file(int file, const std::string& machine) {
@@ -58,7 +60,7 @@ constexpr std::size_t kMost_bytes = 4096;
 
 int replace_file(const std::filesystem::path& path, const std::string& content) {
   const std::string beside = path.string() + ".new";
-  const int error = text::write_anew(beside, content, text::Sync::kNow);
+  const int error = text::write_anew(beside, content, text::Sync::kNow, kMode);
   if (error != 0) return error;
   if (::rename(beside.c_str(), path.c_str()) != 0) return errno;
   return sync_folder(path.parent_path());

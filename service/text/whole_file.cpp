@@ -58,11 +58,10 @@ bool write_whole(const std::string& name, const std::string& content) {
   return file.commit();
 }
 
-int write_anew(const std::filesystem::path& path, std::string_view content, Sync sync) noexcept {
-  constexpr mode_t kAsUmaskSays = 0666;
+int write_anew(const std::filesystem::path& path, std::string_view content, Sync sync,
+               mode_t mode) noexcept {
   (void)::unlink(path.c_str());
-  const int file =
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kAsUmaskSays);
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
   if (file < 0) return errno;
   int error = write_all(file, content);
   if (error == 0 && sync == Sync::kNow && ::fsync(file) != 0) error = errno;

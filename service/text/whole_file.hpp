@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -35,10 +37,10 @@ class WholeFile {
 enum class Sync { kLater, kNow };
 
 /// All of `content` in a new file `path`: what lies there under that name goes, a link is not
-/// followed. Returns 0, or the errno of what failed; then there is no such file.
-/// Blocks as long as the disk does.
+/// followed. Its mode is `mode` less the umask. Returns 0, or the errno of what failed; then there
+/// is no such file. Blocks as long as the disk does.
 [[nodiscard]] int write_anew(const std::filesystem::path& path, std::string_view content,
-                             Sync sync = Sync::kLater) noexcept;
+                             Sync sync = Sync::kLater, mode_t mode = 0666) noexcept;
 
 /// Whether both names are one file that is there.
 [[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);

@@ -220,6 +220,16 @@ TEST(Journal, IsNotWrittenThroughALinkThatLiesInItsWay) {
   EXPECT_FALSE(fs::is_symlink(path));
 }
 
+TEST(Journal, IsReadByItsOwnerAndTheirGroupAlone) {
+  const Folder folder;
+  fs::create_directories(folder.path());
+  const fs::path path = folder.path() / "lai.journal";
+  const mode_t umask_before = ::umask(0);
+  EXPECT_EQ(replace_file(path, "text"), 0);
+  (void)::umask(umask_before);
+  EXPECT_EQ(fs::status(path).permissions(), static_cast<fs::perms>(0640));
+}
+
 TEST(Journal, OnABlockedDiskHindersNobodyAndGetsTheNewestAfterwards) {
   const Folder folder;
   std::promise<void> disk;
