@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
+#include "meridian/rt/supervise.hpp"
 #include "meridian/units.hpp"
 #include "service/interpolator/monotonic.hpp"
 #include "service/telemetry/words.hpp"
@@ -15,6 +16,15 @@ namespace meridian::interpolator {
 namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
+
+/// As if an operator had said so ahead of the first cycle: what a replay begins with.
+[[nodiscard]] Event optional_stop_on() noexcept {
+  Event event;
+  event.code = EventCode::kAccepted;
+  event.b = static_cast<std::uint64_t>(Verb::kOptionalStop);
+  event.x = 1;
+  return event;
+}
 
 }  // namespace
 
@@ -47,6 +57,7 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
 
 void TelemetryThread::run() noexcept {
   const auto status_period_ns = static_cast<std::int64_t>(1e9 / service_.status_rate_hz);
+  if (service_.optional_stop) recorder_.take(optional_stop_on());
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
     const std::int64_t now_ns = monotonic_ns();
@@ -225,7 +236,8 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.drives_fault_mask = words_.fault_mask;
   status.blocks_queued = static_cast<std::uint32_t>(ports_.blocks.size());
   status.pieces_queued = static_cast<std::uint32_t>(ports_.motion.times.size());
-  const double done_s = is_on_path(record.state) ? record.plan_time_s : 0;
+  const bool is_begun = is_on_path(record.state) || is_in_program(record.state);
+  const double done_s = is_begun ? record.plan_time_s : 0;
   status.planned_s = std::max(0.0, ports_.planned_s.load(std::memory_order_relaxed) - done_s);
   if (status.pieces_queued == 0) status.planned_s = 0;
   status.cycles_run = view_.cycles_run;

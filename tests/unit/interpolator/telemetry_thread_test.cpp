@@ -75,7 +75,7 @@ class TelemetryThreadTest : public testing::Test {
   const support::PrivateDomain domain_;
   dds::Participant participant_{{.domain = domain_.id(), .machine = model_.name}};
   const std::unique_ptr<Ports> ports_ = std::make_unique<Ports>();
-  const config::ServiceConfig service_;
+  config::ServiceConfig service_;
   const stream::ToolLengths tools_;
   const std::unique_ptr<Intake> intake_ =
       std::make_unique<Intake>(participant_, model_, tools_, service_, 1, *ports_);
@@ -88,10 +88,32 @@ class TelemetryThreadTest : public testing::Test {
   dds::Status status_;
 };
 
+TEST_F(TelemetryThreadTest, TellsThePlanTimeAheadWhereAProgramMovesAndWhereItRests) {
+  MotionWriter planner(ports_->motion);
+  ASSERT_TRUE(planner.stage(TimePiece{}));
+  planner.publish();
+  ports_->planned_s = 5;
+  for (const State state : {State::kRunning, State::kHeld, State::kStarved, State::kStepping}) {
+    CycleView view;
+    view.record.state = state;
+    view.record.plan_time_s = 3;
+    ports_->telemetry_view.store(view);
+    run();
+    EXPECT_EQ(status_.planned_s, 2) << name_of(state);
+  }
+}
+
 TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasDone) {
   tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
   run();
   EXPECT_EQ(events(), "cycle,verb,argument,block,span\n7,hold,0\n");
+}
+
+TEST_F(TelemetryThreadTest, TellsTheRecorderThatOptionalStopsStopWhereTheServiceBeginsSo) {
+  service_.optional_stop = true;
+  tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kStart));
+  run();
+  EXPECT_EQ(events(), "cycle,verb,argument,block,span\n0,optional_stop,1\n7,start,0\n");
 }
 
 TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasLostOnTheWay) {
