@@ -7,7 +7,8 @@
 
 namespace meridian::interpolator {
 
-/// When telemetry published its last statuses; the commands thread asks. Any thread.
+/// When telemetry published its last statuses; the commands thread asks. Any thread. A verb that is
+/// never stale waits for nobody: hold and abort go past what telemetry, of normal priority, locks.
 class StatusClock {
  public:
   void published(const dds::Status& status, std::int64_t now_ns) {
@@ -16,6 +17,7 @@ class StatusClock {
   }
   [[nodiscard]] Refusal judge(const dds::CommandRequest& request, std::uint64_t service_id,
                               std::uint16_t epoch, std::int64_t now_ns, std::uint64_t rest) const {
+    if (!stream::needs_freshness(request.verb, request.argument)) return Refusal::kNone;
     const std::lock_guard lock(mutex_);
     return stream::judge_freshness(request, service_id, epoch, times_, now_ns, rest);
   }
