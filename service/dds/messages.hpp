@@ -53,7 +53,7 @@ struct SessionRequest {
   double tip_tolerance_mm = 0;    ///< 0: the machine's
   double axis_tolerance_rad = 0;  ///< 0: the machine's
   std::uint32_t policies = 0;     ///< SessionPolicy, or-ed
-  std::string options{};          ///< of the station's command line, for the journal; kMostOptions
+  std::string options{};  ///< of the station's command line, at most kMostOptions characters
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.
@@ -252,7 +252,7 @@ struct MachineInfo {
   std::string service_version{};
   std::string host{};
   std::uint32_t pid = 0;
-  bool is_serving = false;  ///< false: claims the machine, waits whether another one holds it
+  bool is_serving = false;  ///< false: claims the machine and waits, or gives way to another one
   std::string kinematics{};
   std::string clock = "monotonic";
   std::int64_t cycle_ns = 0;

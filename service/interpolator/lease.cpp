@@ -4,14 +4,9 @@
 #include <algorithm>
 #include <thread>
 
+#include "service/interpolator/monotonic.hpp"
+
 namespace meridian::interpolator {
-namespace {
-
-[[nodiscard]] std::int64_t now_ns() noexcept {
-  return std::chrono::steady_clock::now().time_since_epoch().count();
-}
-
-}  // namespace
 
 Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim)
     : claim_(claim), reader_(participant), writer_(participant), judge_(claim.service_id) {
@@ -19,15 +14,15 @@ Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim)
 }
 
 void Lease::hold() {
-  judge_.hold(now_ns());
+  judge_.hold(monotonic_ns());
   say();
 }
 
 void Lease::say() {
-  const LeaseJudge::Word word = judge_.word(now_ns());
+  const LeaseJudge::Word word = judge_.word(monotonic_ns());
   claim_.is_serving = word.is_serving;
   claim_.served_ns = word.served_ns;
-  if (writer_.write(claim_)) judge_.on_said(word, now_ns());
+  if (writer_.write(claim_)) judge_.on_said(word, monotonic_ns());
 }
 
 void Lease::take(const dds::MachineInfo& info, std::uint64_t source) {
@@ -38,7 +33,7 @@ void Lease::take(const dds::MachineInfo& info, std::uint64_t source) {
   *other = {.info = info, .source = source};
   judge_.hear(
       {.service_id = info.service_id, .is_serving = info.is_serving, .served_ns = info.served_ns},
-      now_ns());
+      monotonic_ns());
 }
 
 void Lease::look() {
@@ -55,7 +50,7 @@ void Lease::look() {
 }
 
 std::optional<dds::MachineInfo> Lease::find_keeper(bool may_leave) {
-  const std::int64_t before_ns = now_ns();
+  const std::int64_t before_ns = monotonic_ns();
   look();
   judge_.judge(before_ns, may_leave);
   if (judge_.has_to_speak(before_ns)) say();

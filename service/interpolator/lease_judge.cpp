@@ -8,7 +8,6 @@ namespace meridian::interpolator {
 void LeaseJudge::hold(std::int64_t now_ns) noexcept { held_ns_ = now_ns; }
 
 void LeaseJudge::hear(const Word& word, std::int64_t now_ns) {
-  if (word.service_id == service_id_) return;
   auto other = std::find_if(others_.begin(), others_.end(), [&](const Other& known) {
     return known.service_id == word.service_id;
   });

@@ -37,7 +37,7 @@ class LeaseJudge {
 
   /// The machine is ours from now on.
   void hold(std::int64_t now_ns) noexcept;
-  /// `now_ns` is not before the word was taken.
+  /// What another service says; `now_ns` is not before the word was taken.
   void hear(const Word& word, std::int64_t now_ns);
   /// That service is not there any more.
   void forget(std::uint64_t service_id);

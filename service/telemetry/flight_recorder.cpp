@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <exception>
@@ -96,7 +96,7 @@ constexpr const char* kPrefix = "fault-";
 }
 
 /// The folder, made where it is not there; none, which the log says, where it cannot be written to.
-[[nodiscard]] fs::path writable(const fs::path& folder, spdlog::logger& log) {
+[[nodiscard]] fs::path make_writable(const fs::path& folder, spdlog::logger& log) {
   if (folder.empty()) return folder;
   std::error_code error;
   fs::create_directories(folder, error);
@@ -123,7 +123,7 @@ fs::path default_fault_folder(const fs::path& state, const std::string& machine)
 
 FlightRecorder::FlightRecorder(const config::FlightConfig& config, const MachineModel& model,
                                std::shared_ptr<spdlog::logger> log)
-    : folder_(writable(config.folder, *log)),
+    : folder_(make_writable(config.folder, *log)),
       most_faults_(static_cast<std::size_t>(config.faults)),
       model_(model),
       log_(std::move(log)),

@@ -33,8 +33,10 @@ struct Claimant {
 std::uint64_t who_gives_way(Claimant& one, Claimant& other, milliseconds patience) {
   const auto end = LeaseClock::now() + patience;
   while (LeaseClock::now() < end) {
-    if (const auto older = one.lease.find_keeper(true)) return older->service_id == 1 ? 2 : 1;
-    if (const auto older = other.lease.find_keeper(true)) return older->service_id == 1 ? 2 : 1;
+    for (Claimant* const claimant : {&one, &other}) {
+      const auto keeper = claimant->lease.find_keeper(true);
+      if (keeper) return keeper->service_id == 1 ? 2 : 1;
+    }
     std::this_thread::sleep_for(milliseconds(20));
   }
   return 0;
