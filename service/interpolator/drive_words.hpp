@@ -4,8 +4,9 @@
 #include <cstdint>
 
 #include "meridian/rt/drive_state.hpp"
+#include "service/dds/messages.hpp"
 
-/// CiA 402 as a controller sees it: what a drive says in homing mode, which controlword comes next.
+/// CiA 402 as a controller sees it: what a drive says in homing mode, which words it is sent next.
 /// Proof: tests/unit/interpolator/drive_words_test.cpp.
 namespace meridian::interpolator {
 
@@ -49,6 +50,34 @@ inline constexpr std::uint16_t kStartHoming = 0x10;  ///< in homing mode, beside
       return controlword::kDisableVoltage;
   }
   return controlword::kDisableVoltage;
+}
+
+/// What the machine asks of one drive.
+struct DriveTask {
+  bool is_enabled = false;    ///< to be in operation
+  bool is_homing = false;     ///< to be in homing mode
+  bool is_searching = false;  ///< its reference, in that mode
+  bool is_reset = false;      ///< of a fault: the operator said so
+};
+
+/// Objects 6040h and 6060h.
+struct DriveOrder {
+  std::uint16_t controlword = controlword::kDisableVoltage;
+  std::uint8_t mode = dds::kCyclicPositionMode;
+};
+
+/// Returns what a drive that says `statusword` is sent next; one that is not heard counts as
+/// switched off.
+[[nodiscard]] constexpr DriveOrder next_order(bool is_heard, std::uint16_t statusword,
+                                              const DriveTask& task) noexcept {
+  const DriveState state = is_heard ? drive_state(statusword) : DriveState::kSwitchOnDisabled;
+  DriveOrder order{next_controlword(state, task.is_enabled)};
+  if (state == DriveState::kFault && task.is_reset) order.controlword = controlword::kFaultReset;
+  if (task.is_homing) order.mode = dds::kHomingMode;
+  if (state == DriveState::kOperationEnabled && task.is_searching) {
+    order.controlword |= controlword::kStartHoming;
+  }
+  return order;
 }
 
 }  // namespace meridian::interpolator

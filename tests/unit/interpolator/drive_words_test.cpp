@@ -26,6 +26,22 @@ TEST(DriveWords, NeverResetsAFaultByItself) {
   }
 }
 
+TEST(DriveWords, ResetAFaultWhereTheOperatorSaidSo) {
+  const DriveTask task{.is_enabled = true, .is_reset = true};
+  EXPECT_EQ(next_order(true, 0x0208, task).controlword, 0x80);
+  EXPECT_EQ(next_order(true, 0x020F, task).controlword, 0x00) << "still reacting";
+  EXPECT_EQ(next_order(true, 0x0223, task).controlword, 0x0F) << "no fault";
+  EXPECT_EQ(next_order(false, 0x0208, task).controlword, 0x06) << "not heard";
+}
+
+TEST(DriveWords, BeginASearchInOperationEnabledAlone) {
+  const DriveTask task{.is_enabled = true, .is_homing = true, .is_searching = true};
+  EXPECT_EQ(next_order(true, 0x0223, task).controlword, 0x0F);
+  EXPECT_EQ(next_order(true, 0x0223, task).mode, dds::kHomingMode);
+  EXPECT_EQ(next_order(true, 0x0227, task).controlword, 0x1F);
+  EXPECT_EQ(next_order(true, 0x0227, {}).mode, dds::kCyclicPositionMode);
+}
+
 TEST(DriveWords, ReadsWhatADriveSaysInHomingMode) {
   EXPECT_TRUE(homing_word(0x0627).is_still) << "not begun, or interrupted";
   EXPECT_FALSE(homing_word(0x0627).is_attained);

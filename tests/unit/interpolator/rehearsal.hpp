@@ -113,11 +113,11 @@ struct Rehearsal {
     wait(0.2);
     is_resetting = false;
   }
-  /// Largest distance of the commanded tip from the programmed line in FaultStop, mm.
+  /// Largest distance of the tip that drives are to follow from the programmed line, mm.
   [[nodiscard]] double deviation(std::size_t first) const {
     double worst = 0;
     for (std::size_t n = first; n < world.records.size(); ++n) {
-      if (world.records[n].state != State::kFaultStop) continue;
+      if ((world.records[n].setpoint.flags & kSetpointEnabled) == 0) continue;
       const ToolPose pose = forward(model, model.tool_length_mm, world.records[n].joints);
       worst = std::max(worst, std::hypot(pose.tip[1], pose.tip[2]));
     }
@@ -158,18 +158,18 @@ struct Rehearsal {
   }
   [[nodiscard]] dds::DriveCommand command_of(std::uint16_t drive, State state) const {
     const HomingAsked asked = asked_of(world.state.homing);
-    const DriveState is = drive_state(merge.words().statusword[drive]);
+    const interpolator::DriveWords& words = merge.words();
+    const interpolator::DriveOrder next =
+        interpolator::next_order((words.joint_mask >> drive & 1U) != 0, words.statusword[drive],
+                                 {.is_enabled = is_enabled(state),
+                                  .is_homing = (asked.mode_mask >> drive & 1U) != 0,
+                                  .is_searching = (asked.start_mask >> drive & 1U) != 0,
+                                  .is_reset = is_resetting});
     dds::DriveCommand command;
     command.drive = drive;
     command.service_id = 7;
-    command.controlword = interpolator::next_controlword(is, is_enabled(state));
-    if (is == DriveState::kFault && is_resetting) {
-      command.controlword = interpolator::controlword::kFaultReset;
-    }
-    if ((asked.mode_mask >> drive & 1U) != 0) command.mode = dds::kHomingMode;
-    if ((asked.start_mask >> drive & 1U) != 0) {
-      command.controlword |= interpolator::controlword::kStartHoming;
-    }
+    command.controlword = next.controlword;
+    command.mode = next.mode;
     return command;
   }
 };
