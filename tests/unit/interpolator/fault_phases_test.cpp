@@ -61,7 +61,7 @@ void starve(Rehearsal& plant) {
   EXPECT_EQ(plant.world.now(), State::kStarving);
 }
 
-const std::array<Phase, 21> kPhases{{
+const std::array<Phase, 23> kPhases{{
     {"Off", Way::kNone, [](Rehearsal& plant) { plant.cycle(); }},
     {"Enabling", Way::kNone,
      [](Rehearsal& plant) {
@@ -105,6 +105,15 @@ const std::array<Phase, 21> kPhases{{
        hold(plant);
        EXPECT_TRUE(plant.until(State::kHeld, 1));
      }},
+    {"Stepping", Way::kOnLine,
+     [](Rehearsal& plant) {
+       EXPECT_TRUE(plant.enable());
+       plant.say(Verb::kSingleBlock, 1);
+       plant.plan.cut({10, 0, 0}, kRehearsalLimits);
+       plant.plan.cut({10, 0, 0}, kRehearsalLimits);
+       plant.run(0);
+       EXPECT_TRUE(plant.until(State::kStepping, 1));
+     }},
     {"Running, resumed", Way::kOnLine,
      [](Rehearsal& plant) {
        hold(plant);
@@ -123,6 +132,12 @@ const std::array<Phase, 21> kPhases{{
        cut_and_run(plant, 0.3);
        plant.say(Verb::kAbort);
        plant.wait(0.02);
+     }},
+    {"Disabling", Way::kNone,
+     [](Rehearsal& plant) {
+       EXPECT_TRUE(plant.enable());
+       plant.say(Verb::kDisable);
+       EXPECT_EQ(plant.world.now(), State::kDisabling);
      }},
     {"Jogging", Way::kElsewhere, lay_hand_on},
     {"Jogging, let go", Way::kElsewhere,
@@ -175,9 +190,17 @@ std::string letter_of(Alarm alarm) {
 
 /// The machine can be enabled again once everything is mended.
 void expect_recovery(Rehearsal& plant) {
+  const bool is_fault = plant.world.now() == State::kFault;
   plant.mend();
-  EXPECT_TRUE(plant.do_drives_stand());
-  plant.say(Verb::kReset);
+  if (is_fault) {
+    EXPECT_TRUE(plant.do_drives_stand());
+    plant.say(Verb::kReset);
+  } else {
+    plant.say(Verb::kAbort);
+    plant.wait(0.5);
+    plant.say(Verb::kDisable);
+    EXPECT_TRUE(plant.until(State::kOff, 1) && plant.do_drives_stand());
+  }
   ASSERT_EQ(plant.world.now(), State::kOff);
   EXPECT_TRUE(plant.enable()) << "it works again";
 }
@@ -197,14 +220,13 @@ std::string outcome(const Phase& phase, const char* fault) {
   if (phase.way != Way::kNone) {
     EXPECT_LE(plant->acceleration(first), 1 + 1e-6);
   }
-  if (!is_fault) {
-    EXPECT_NE(plant->world.now(), State::kFaultStop);
-    return "·";
-  }
+  EXPECT_NE(plant->world.now(), State::kFaultStop);
   const Alarm alarm = plant->world.state.alarm;
-  EXPECT_EQ(plant->world.records.back().setpoint.flags & kSetpointEnabled, 0);
+  if (is_fault) {
+    EXPECT_EQ(plant->world.records.back().setpoint.flags & kSetpointEnabled, 0);
+  }
   expect_recovery(*plant);
-  return letter_of(alarm);
+  return is_fault ? letter_of(alarm) : "·";
 }
 
 std::string faults_and_phases() {
