@@ -16,6 +16,7 @@ namespace meridian::interpolator {
 namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
+constexpr std::size_t kMostMessage = 191;  // characters of one in the status
 
 /// As if an operator had said so ahead of the first cycle: what a replay begins with.
 [[nodiscard]] Event optional_stop_on() noexcept {
@@ -142,7 +143,19 @@ void TelemetryThread::drain_records() {
     }
     flight_.take(record);
     motion_.see(record, tool_mm);
+    program_.see(record, view_.feed_override, view_.rapid_override);
   }
+}
+
+bool TelemetryThread::tell_program() {
+  const auto summary = program_.take();
+  if (!summary) return false;
+  const double period_s = 1e-9 * static_cast<double>(model_.cycle_ns);
+  const std::string alarm = status_.alarm == Alarm::kNone ? "" : alarm_message_ + "; ";
+  const std::size_t room = kMostMessage - std::min(kMostMessage, alarm.size());
+  status_.message = alarm + describe(*summary, status_.program, period_s, room);
+  log_->info("{}", describe(*summary, status_.program, period_s, SIZE_MAX));
+  return true;
 }
 
 void TelemetryThread::tell(const Event& event) {
@@ -202,7 +215,13 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   const CycleRecord& record = view_.record;
   const SessionView session = intake_.view();
   dds::Status& status = status_;
-  if (status.session != session.session && session.session != 0) status.blocks_done = 0;
+  const bool is_other_session = status.session != session.session;
+  const bool is_last = ports_.is_stopping.load(std::memory_order_relaxed);
+  // Whoever hears that a session is over hears how its program went: the cycle that ended it is
+  // among the records by now, its alarm among the events.
+  if (is_other_session) drain();
+  const bool has_told_program = (is_other_session || is_last) && tell_program();
+  if (is_other_session && session.session != 0) status.blocks_done = 0;
   if (status.state == State::kFault && record.state == State::kOff) status.alarm = Alarm::kNone;
   ++status.status_sequence;
   status.time_ns = now_ns;
@@ -248,10 +267,12 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.events_overrun = ports_.events_overrun + recorder_.events_lost();
   if (!session.message.empty() && session.message != session_message_) {
     session_message_ = session.message;
-    // Of an alarm the operator needs reason and remedy first.
-    status.message = session.message;
-    if (status.alarm != Alarm::kNone) status.message = alarm_message_ + "; " + status.message;
     log_->info("{}", session.message);
+    if (!has_told_program) {
+      // Of an alarm the operator needs reason and remedy first.
+      status.message = session.message;
+      if (status.alarm != Alarm::kNone) status.message = alarm_message_ + "; " + status.message;
+    }
   }
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);

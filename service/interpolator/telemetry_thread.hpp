@@ -19,6 +19,7 @@
 #include "service/telemetry/journal.hpp"
 #include "service/telemetry/journal_keeper.hpp"
 #include "service/telemetry/motion_watch.hpp"
+#include "service/telemetry/program_summary.hpp"
 #include "service/telemetry/recorder.hpp"
 
 namespace meridian::interpolator {
@@ -44,6 +45,8 @@ class TelemetryThread {
  private:
   void drain();
   void drain_records();
+  /// Tells how the program went that is over; false: none is.
+  bool tell_program();
   void tell(const Event& event);
   void keep_journal(std::int64_t now_ns);
   void publish_status(std::int64_t now_ns);
@@ -66,6 +69,7 @@ class TelemetryThread {
   dds::Status status_;
   DriveWords words_;
   telemetry::MotionWatch motion_;
+  telemetry::ProgramWatch program_;
   telemetry::JournalKeeper keeper_;
   enum Book : std::size_t {
     kLateness,  ///< lost periods are counted as if they had been executed (Histogram::record_every)

@@ -72,6 +72,20 @@ class Newsreader {
   bool has_state_ = false;
 };
 
+/// The first status without the session says how its program went; the credit comes before it.
+void hear_end(StationLink& link, std::uint64_t session, Newsreader& news) {
+  constexpr std::chrono::milliseconds kLook{50};
+  constexpr std::int64_t kPatience_ns = 1'000'000'000;
+  const std::int64_t begin_ns = steady_ns();
+  while (steady_ns() - begin_ns < kPatience_ns) {
+    link.work(kLook);
+    const auto status = link.take_status();
+    if (!status) continue;
+    news.status(*status);
+    if (status->session != session) return;
+  }
+}
+
 }  // namespace
 
 StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options,
@@ -135,6 +149,9 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
       return StreamEnd::kNoPeer;
     }
   }
+  const dds::Verdict verdict = station.credit().verdict;
+  const bool has_ended = verdict == dds::Verdict::kRan || verdict == dds::Verdict::kAborted;
+  if (has_ended) hear_end(link, request.session, news);
   switch (station.state()) {
     case StationState::kComplete:
     case StationState::kRan:

@@ -154,6 +154,9 @@ TEST_F(Operator, AbortsAProgramAndItsSessionWithIt) {
   ASSERT_TRUE(plant.wait_for(State::kReady));
   EXPECT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(3000)));
   EXPECT_EQ(plant.station().credit().verdict, dds::Verdict::kAborted);
+  EXPECT_TRUE(eventually([&] {
+    return plant.status().message.find(" was aborted in block ") != std::string::npos;
+  })) << plant.status().message;
   const auto start = plant.say(Verb::kStart);
   ASSERT_TRUE(start);
   EXPECT_EQ(start->refusal, Refusal::kNoProgram) << start->text;

@@ -34,6 +34,14 @@ class TelemetryThreadTest : public testing::Test {
     event.b = b;
     EXPECT_TRUE(ports_->told.try_push(event));
   }
+  /// The next cycle's record.
+  void record(State state) {
+    CycleRecord record;
+    record.setpoint.cycle = ++cycle_;
+    record.setpoint.epoch = state == State::kFault ? 2 : 1;
+    record.state = state;
+    EXPECT_TRUE(ports_->records.try_push(record));
+  }
   /// A station asks for a session, and intake takes it in.
   void open_session() {
     dds::Writer<dds::SessionRequest> station(participant_);
@@ -86,6 +94,7 @@ class TelemetryThreadTest : public testing::Test {
   telemetry::Journal journal_{"", model_.name};
   telemetry::FlightRecorder flight_{{}, model_, log_};
   dds::Status status_;
+  std::uint64_t cycle_ = 0;
 };
 
 TEST_F(TelemetryThreadTest, TellsThePlanTimeAheadWhereAProgramMovesAndWhereItRests) {
@@ -137,6 +146,22 @@ TEST_F(TelemetryThreadTest, SaysWhatASessionDidAloneWhereThereIsNoAlarm) {
   open_session();
   run();
   EXPECT_EQ(status_.message, "station cam opened part.apt");
+}
+
+TEST_F(TelemetryThreadTest, SaysHowTheProgramWentBehindTheAlarmThatEndedIt) {
+  for (const State state : {State::kApproaching, State::kFaultStop, State::kFault}) record(state);
+  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kEmergencyStop));
+  run();
+  EXPECT_EQ(status_.message,
+            "emergency stop input is open; release it, then reset; the program ended by a fault in "
+            "block 0, line 0: 0 blocks in 0.0 s");
+}
+
+TEST_F(TelemetryThreadTest, SaysHowTheProgramWentNotThatItsSessionIsThere) {
+  open_session();
+  for (const State state : {State::kApproaching, State::kRunning, State::kReady}) record(state);
+  run();
+  EXPECT_EQ(status_.message, "the program ran to its end: 0 blocks in 0.0 s");
 }
 
 }  // namespace
