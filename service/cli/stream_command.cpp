@@ -137,11 +137,12 @@ void add_stream_command(CLI::App& app, int& exit_code) {
       ->required();
   command->add_flag("--no-preflight", options->has_no_preflight,
                     "Stream at once, for endless sources; what is wrong is found on the way");
-  command->add_option(
-      "--machine", options->machine_file,
-      "Judge reach and travel in the preflight by this machine file; default: the one that "
-      "the service tells");
-  command->add_option("--tools", options->tool_file, "... and this tool table");
+  CLI::Option* const machine =
+      command->add_option("--machine", options->machine_file,
+                          "Judge reach and travel in the preflight by this machine file; default: "
+                          "the one that the service tells");
+  command->add_option("--tools", options->tool_file, "... and this tool table; only with --machine")
+      ->needs(machine);
   command->add_flag("--wait-end", options->stream.is_waiting_for_end,
                     "Stay until the machine ran the program");
   std::array<char, 64> host{};

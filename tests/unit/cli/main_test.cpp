@@ -31,6 +31,7 @@ TEST(Tool, AnOptionThatWouldSayNothingIsAUsageError) {
   EXPECT_EQ(run_tool("ctl home --distance 2").exit_code, 2);
   EXPECT_EQ(run_tool("ctl jog b3 5 --wait Ready").exit_code, 2);
   EXPECT_EQ(run_tool("status --for 2").exit_code, 2);
+  EXPECT_EQ(run_tool("stream /no/such --tools /no/such").exit_code, 2);
 }
 
 TEST(Tool, VersionIsFine) {
