@@ -91,9 +91,9 @@ void add_post_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "post",
-      "Write the NC program of a CL file. Branch, winding and poles as the service decides them; "
-      "what cannot be expressed is refused with its line, and nothing is written then "
-      "(docs/postprocessor.md)");
+      "Write the NC program of a CL file. Poles and ways between blocks as the service has them "
+      "from rest to rest; begins on the nearest branch and winding; what cannot be expressed is "
+      "refused with its line, and nothing is written then (docs/postprocessor.md)");
   add_cl_file(*command, options->file);
   add_machine_options(*command, options->machine, true);
   command->add_option("-o,--output", options->output, "Write to this file; else standard output");

@@ -143,7 +143,9 @@ int run(int argc, char** argv) {
   app.add_option("--service", options.service, "service file (TOML)");
   app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
   app.add_option("--record", options.recording, "write the recording of record here (CSV)");
-  app.add_option("--state", options.state, "folder of the journal of the last executed block");
+  app.add_option("--state", options.state,
+                 "folder of the journal of the last executed block and, unless --faults names one, "
+                 "of the flight recorder's files");
   app.add_option("--faults", options.faults,
                  "folder where the flight recorder writes the last seconds before every fault");
   app.add_option("--trace", options.trace, "write traces of slow cycles into this folder");
