@@ -24,9 +24,10 @@ bool StationLink::has_service() const noexcept {
          credits_.matched_writers() > 0;
 }
 
-void StationLink::work(std::chrono::milliseconds timeout) {
+bool StationLink::work(std::chrono::milliseconds timeout) {
   dds::Credit credit;
-  while (credits_.take(credit)) station_.on_credit(credit, steady_ns());
+  bool has_credit = false;
+  for (; credits_.take(credit); has_credit = true) station_.on_credit(credit, steady_ns());
   // Asked before the service knows this station, the answer could pass it by.
   if (station_.state() != StationState::kOpening || has_service()) {
     if (const auto request = station_.due_request(steady_ns())) {
@@ -47,6 +48,7 @@ void StationLink::work(std::chrono::milliseconds timeout) {
   constexpr std::chrono::milliseconds kGather{2};
   if (station_.is_gathering()) timeout = std::min(timeout, kGather);
   if (sent < kBatchesAtOnce) waitset_.wait(timeout);
+  return has_credit;
 }
 
 std::optional<dds::Status> StationLink::take_status() {

@@ -21,8 +21,9 @@ class StationLink {
   /// Throws DdsError.
   StationLink(dds::Participant& participant, Station& station);
 
-  /// Sends and receives what there is; waits at most `timeout` where there is nothing.
-  void work(std::chrono::milliseconds timeout);
+  /// Sends and receives what there is; waits at most `timeout` where there is nothing. Whether a
+  /// credit came: a word from the service.
+  bool work(std::chrono::milliseconds timeout);
   /// Ends a work() that waits, or the next one; from any thread.
   void wake() noexcept { waitset_.wake(); }
   /// Gives the machine back and lets the word get out.

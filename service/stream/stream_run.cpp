@@ -132,10 +132,11 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
       listener.say("interrupted: the machine runs the blocks that it has and stops");
       return StreamEnd::kInterrupted;
     }
-    link.work(kIdle);
+    const bool has_credit = link.work(kIdle);
     say_warnings();
     news.station(station.message());
     const std::int64_t now_ns = steady_ns();
+    if (has_credit) heard_ns = now_ns;
     if (const auto status = link.take_status()) {
       heard_ns = now_ns;
       const bool is_ours = status->session == request.session;
