@@ -16,14 +16,12 @@ namespace {
 /// Cuts a file of the corpus live, and judges it by simulation and checker.
 void cut(Plant& plant, const std::filesystem::path& part) {
   const std::string tools = (plant.folder() / "tools.toml").string();
-  const std::string service = (plant.folder() / "service.toml").string();
   std::ofstream(tools) << "[[tool]]\nnumber = 1\nlength_mm = 110\nradius_mm = 5\n"
                           "[[tool]]\nnumber = 45\nlength_mm = 110\nradius_mm = 5\n";
-  std::ofstream(service) << "[service]\nmachine = \"" << machine_file()
-                         << "\"\ntools = \"tools.toml\"\n";
   const std::string frame = "--frame=20,-30,50";
   LiveRun live;
-  live.service = {"--service", service, frame};
+  live.service = {frame};
+  live.settings = "tools = \"tools.toml\"\n";
   live.reader = {"--units", "mm"};
   live.simulate = {frame, "--tools", tools};
   live.patience = std::chrono::hours(1);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -51,8 +52,18 @@ void write_cl_file(const std::string& path, int blocks, const std::string& machi
        << cl_text(program, half) << "FINI\n";
 }
 
+std::string service_file(const Plant& plant, const std::string& more) {
+  constexpr std::int64_t kBridge_ns = 100'000'000;
+  const std::int64_t cycles = kBridge_ns / config::load_machine(plant.machine()).cycle_ns;
+  const std::string file = (plant.folder() / "service.toml").string();
+  std::ofstream(file) << "[service]\nmachine = \"" << plant.machine()
+                      << "\"\nbridge_cycles = " << cycles << "\nfeedback_timeout_s = 0.3\n"
+                      << more;
+  return file;
+}
+
 void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
-  plant.start_service(live.service);
+  plant.start_service(joined({"--service", service_file(plant, live.settings)}, live.service));
   plant.start_drives();
   ASSERT_TRUE(plant.enable()) << plant.service().said();
   Process station(joined(joined({"meridian", "stream", part, "--domain", plant.domain(),
@@ -65,8 +76,7 @@ void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
   if (live.operate) {
     ASSERT_NO_FATAL_FAILURE(live.operate());
   } else {
-    const auto start = plant.say(Verb::kStart);
-    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   }
   ASSERT_TRUE(eventually(
       [&] {

@@ -15,6 +15,7 @@ namespace meridian::test {
 struct LiveRun {
   std::string machine = "lai";          ///< one of deploy/machines, that of the plant
   std::vector<std::string> service;     ///< meridiand
+  std::string settings;                 ///< more of the service file: see service_file()
   std::vector<std::string> reader;      ///< how the part is read: stream, simulate and check
   std::vector<std::string> station;     ///< stream
   std::vector<std::string> simulate;    ///< machine and workpiece: simulate and check
@@ -26,6 +27,10 @@ struct LiveRun {
 
 /// The small program as a CL file, with a dwell and an action in it.
 void write_cl_file(const std::string& path, int blocks, const std::string& machine = "lai");
+
+/// A service file for `plant` on a host that takes processors away: drives bridge 100 ms, and
+/// feedback may be 0.3 s old. `more`: further lines of its section, and further sections.
+[[nodiscard]] std::string service_file(const Plant& plant, const std::string& more = "");
 
 /// Cuts `part` from enabling to the end of the service.
 void run_live(Plant& plant, const std::string& part, const LiveRun& live);

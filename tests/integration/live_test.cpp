@@ -176,27 +176,23 @@ void expect_trace_of_stall(const std::filesystem::path& folder) {
 /// An operator who holds, resumes and turns the override while the program runs, on a host that
 /// takes periods away while the machine changes its speed.
 void operate(Plant& plant) {
-  const auto say = [&plant](Verb verb, double argument = 0) {
-    const auto reply = plant.say(verb, argument);
-    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
-  };
-  say(Verb::kStart);
-  ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.service().said();
-  say(Verb::kFeedOverride, 0.45);
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
+  ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kFeedOverride, 0.45));
   stall(plant);
   std::this_thread::sleep_for(milliseconds(400));
-  say(Verb::kHold);
-  ASSERT_TRUE(plant.wait_for(State::kHeld));
-  say(Verb::kFeedOverride, 1.0);
-  say(Verb::kResume);
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kHold));
+  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kFeedOverride, 1.0));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kResume));
   stall(plant);
   std::this_thread::sleep_for(milliseconds(350));
-  say(Verb::kFeedOverride, 0.8);
-  say(Verb::kHold);
-  ASSERT_TRUE(plant.wait_for(State::kHeld));
-  say(Verb::kRapidOverride, 0.5);
-  say(Verb::kFeedOverride, 1.5);
-  say(Verb::kResume);
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kFeedOverride, 0.8));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kHold));
+  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kRapidOverride, 0.5));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kFeedOverride, 1.5));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kResume));
 }
 
 TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
@@ -206,11 +202,7 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
                       << cl_text(small_program(20, 2000, 8)) << "FINI\n";
   const auto traces = plant.folder() / "traces";
   LiveRun live;
-  const std::string config = (plant.folder() / "service.toml").string();
-  std::ofstream(config) << "[service]\nmachine = \"" << plant.machine()
-                        << "\"\n[trace]\nfolder = \"" << traces.string()
-                        << "\"\nlate_us = 10000\nevery_s = 0\n";
-  live.service = {"--service", config};
+  live.settings = "[trace]\nfolder = \"" + traces.string() + "\"\nlate_us = 10000\nevery_s = 0\n";
   live.operate = [&plant] { operate(plant); };
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
   expect_trace_of_stall(traces);
@@ -220,42 +212,47 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   expect_checked(plant, part, live);  // the feed times the override in force
 }
 
+/// Sends on from behind a block; what follows may not have been planned yet.
+void send_on(Plant& plant, Verb verb) { plant.must(verb, 0, Refusal::kNoProgram); }
+
 /// An operator who steps through five blocks, lets the program run up to the first optional stop,
 /// through the second, and steps through two somewhere in the last cuts.
 void step_through(Plant& plant) {
-  const auto say = [&plant](Verb verb, double argument = 0) {
-    const auto reply = plant.say(verb, argument);
-    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
-  };
-  say(Verb::kSingleBlock, 1);
-  say(Verb::kOptionalStop, 1);
-  say(Verb::kStart);
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kSingleBlock, 1));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kOptionalStop, 1));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   std::uint64_t block = UINT64_MAX;  // in front of the first
-  const auto rests_behind_another = [&plant, &block] {
-    const dds::Status& status = plant.status();
+  const auto rests_behind_another = [&block](const dds::Status& status) {
     return status.state == State::kStepping && status.block != block;
   };
   for (int n = 0; n < 5; ++n) {
-    ASSERT_TRUE(eventually(rests_behind_another)) << plant.service().said();
+    ASSERT_TRUE(plant.runs_until(rests_behind_another)) << plant.standing();
     EXPECT_TRUE(plant.status().is_single_block && plant.status().stops_at_optional);
     EXPECT_EQ(plant.status().block, block + 1);
     block = plant.status().block;
-    if (n == 4) say(Verb::kSingleBlock, 0);
-    say(n % 2 == 0 ? Verb::kStart : Verb::kResume);
+    if (n == 4) {
+      ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kSingleBlock, 0));
+    }
+    ASSERT_NO_FATAL_FAILURE(send_on(plant, n % 2 == 0 ? Verb::kStart : Verb::kResume));
   }
-  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.service().said();
-  say(Verb::kOptionalStop, 0);
-  say(Verb::kResume);
-  ASSERT_TRUE(eventually([&plant, block] {
-    const dds::Status& status = plant.status();
-    return status.block > block + 16 && status.state == State::kRunning;
-  })) << plant.status().block;
-  say(Verb::kSingleBlock, 1);
+  ASSERT_TRUE(plant.runs_until([](const auto& status) { return status.state == State::kHeld; }))
+      << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kOptionalStop, 0));
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kResume));
+  ASSERT_TRUE(plant.runs_until(
+      [block](const dds::Status& status) {
+        return status.block > block + 16 && status.state == State::kRunning;
+      },
+      milliseconds(15'000)))
+      << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kSingleBlock, 1));
   for (int n = 0; n < 2; ++n) {
-    ASSERT_TRUE(eventually(rests_behind_another)) << plant.service().said();
+    ASSERT_TRUE(plant.runs_until(rests_behind_another)) << plant.standing();
     block = plant.status().block;
-    if (n == 1) say(Verb::kSingleBlock, 0);
-    say(Verb::kResume);
+    if (n == 1) {
+      ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kSingleBlock, 0));
+    }
+    ASSERT_NO_FATAL_FAILURE(send_on(plant, Verb::kResume));
   }
 }
 

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
 #include "service/config/machine_file.hpp"
 
@@ -268,6 +269,25 @@ bool Plant::wait_for(State state, milliseconds patience) {
   return eventually([&] { return status().state == state; }, patience);
 }
 
+bool Plant::runs_until(const std::function<bool(const dds::Status&)>& condition,
+                       milliseconds patience) {
+  bool is_so = false;
+  (void)eventually(
+      [&] {
+        is_so = condition(status());
+        return is_so || status_->state == State::kFaultStop || status_->state == State::kFault;
+      },
+      patience);
+  return is_so;
+}
+
+std::string Plant::standing() {
+  const dds::Status& now = status();
+  return std::string("machine is ") + name_of(now.state) + ", alarm " +
+         std::to_string(static_cast<int>(now.alarm)) + ", block " + std::to_string(now.block) +
+         ": " + now.message;
+}
+
 std::optional<dds::Reply> Plant::say(Verb verb, double argument) {
   return say_having_seen(verb, status(), argument);
 }
@@ -296,6 +316,17 @@ std::optional<dds::Reply> Plant::say_having_seen(Verb verb, const dds::Status& s
     return false;
   });
   return has_reply ? std::optional(reply) : std::nullopt;
+}
+
+void Plant::must(Verb verb, double argument, Refusal passing) {
+  std::optional<dds::Reply> reply;
+  (void)eventually([&] {
+    reply = say(verb, argument);
+    return !reply || (reply->refusal != Refusal::kStale && reply->refusal != passing);
+  });
+  ASSERT_TRUE(reply && reply->is_accepted)
+      << "verb " << static_cast<int>(verb) << ": " << (reply ? reply->text : "no reply") << "; "
+      << standing();
 }
 
 bool Plant::enable() {

@@ -122,10 +122,18 @@ class Plant {
   /// The newest status; waits for a first one.
   [[nodiscard]] const dds::Status& status();
   [[nodiscard]] bool wait_for(State state, milliseconds patience = milliseconds(8000));
+  /// Waits until `condition` is true of the status; false as soon as a Fault is in its way.
+  [[nodiscard]] bool runs_until(const std::function<bool(const dds::Status&)>& condition,
+                                milliseconds patience = milliseconds(8000));
+  /// How the machine stands, for who waited in vain: state, alarm, block and message.
+  [[nodiscard]] std::string standing();
   /// Says a verb as an operator who has just looked; nothing where no reply came.
   [[nodiscard]] std::optional<dds::Reply> say(Verb verb, double argument = 0);
   [[nodiscard]] std::optional<dds::Reply> say_having_seen(Verb verb, const dds::Status& seen,
                                                           double argument = 0);
+  /// Says it until it is not refused as stale, nor as `passing`: what is refused does nothing. It
+  /// must be accepted then: call under ASSERT_NO_FATAL_FAILURE.
+  void must(Verb verb, double argument = 0, Refusal passing = Refusal::kStale);
   [[nodiscard]] bool enable();
 
   /// Streams `blocks` and goes on until `until` is true of the station, or time is up.
