@@ -13,12 +13,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <system_error>
 
 namespace meridian::test {
 namespace {
@@ -26,10 +29,11 @@ namespace {
 constexpr std::array<const char*, 4> kNames{"service", "drives", "station", "viewer"};
 constexpr const char* kInterface = "eth1";  // as the shipped configuration calls it
 
-/// Runs `ip` with `words`; false where it fails.
-bool ip(const std::string& words) {
-  return std::system(("PATH=$PATH:/usr/sbin:/sbin ip " + words + " 2>/dev/null").c_str()) == 0;
+/// Runs a tool of iproute2; false where it fails.
+bool run_tool(const std::string& line) {
+  return std::system(("PATH=$PATH:/usr/sbin:/sbin " + line + " 2>/dev/null").c_str()) == 0;
 }
+bool ip(const std::string& words) { return run_tool("ip " + words); }
 
 void must(const std::string& words) { EXPECT_TRUE(ip(words)) << "ip " << words; }
 
@@ -63,6 +67,20 @@ void make_checksums() {
   return ::waitpid(child, &status, 0) == child && status == 0;
 }
 
+/// Network namespaces outlive a test that was killed, whose process is in their name.
+void remove_left_behind() {
+  std::error_code none;
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("/run/netns", none)) {
+    names.push_back(entry.path().filename());
+  }
+  for (const std::string& name : names) {
+    int pid = 0;
+    const bool is_ours = std::sscanf(name.c_str(), "meridian-%d-", &pid) == 1 && pid > 0;
+    if (is_ours && ::kill(pid, 0) != 0 && errno == ESRCH) (void)ip("netns del " + name);
+  }
+}
+
 [[nodiscard]] std::string port(int host) { return "port" + std::to_string(host); }
 
 }  // namespace
@@ -84,6 +102,7 @@ Hosts::Hosts(Wire wire)
     : prefix_("meridian-" + std::to_string(::getpid()) + "-"),
       folder_(std::filesystem::temp_directory_path() / (prefix_ + "hosts")),
       home_(::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC)) {
+  remove_left_behind();
   std::filesystem::create_directories(folder_);
   write_configuration();
   switch_.network = "/run/netns/" + space("switch");
@@ -158,18 +177,13 @@ const Place* Hosts::place_of(const std::vector<std::string>& arguments) const {
   return &places_[found == names_.end() ? kViewer : found->second];
 }
 
-void Hosts::cut(Name host) {
-  EXPECT_EQ(std::system(("PATH=$PATH:/usr/sbin:/sbin bridge -n " + space("switch") +
-                         " link set dev " + port(host) + " state 0")
-                            .c_str()),
-            0);
-}
+void Hosts::cut(Name host) { set_port_state(host, "0"); }
 
-void Hosts::mend(Name host) {
-  EXPECT_EQ(std::system(("PATH=$PATH:/usr/sbin:/sbin bridge -n " + space("switch") +
-                         " link set dev " + port(host) + " state 3")
-                            .c_str()),
-            0);
+void Hosts::mend(Name host) { set_port_state(host, "3"); }
+
+void Hosts::set_port_state(Name host, const char* state) const {
+  EXPECT_TRUE(
+      run_tool("bridge -n " + space("switch") + " link set dev " + port(host) + " state " + state));
 }
 
 void Hosts::spoil(const Spoilt& spoilt) {

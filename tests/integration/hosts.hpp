@@ -53,6 +53,7 @@ class Hosts {
   [[nodiscard]] std::string space(const std::string& name) const;
   void connect(int host);
   void write_configuration();
+  void set_port_state(Name host, const char* state) const;
   [[nodiscard]] const Place* place_of(const std::vector<std::string>& arguments) const;
 
   std::string prefix_;

@@ -8,6 +8,7 @@
 #include <netinet/if_ether.h>
 #include <netpacket/packet.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -140,6 +141,9 @@ class SpoiltWire {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Every cycle of the machine passes here: where the right is there, before what is no machine.
+  const sched_param before_others{.sched_priority = 60};
+  (void)::sched_setscheduler(0, SCHED_FIFO, &before_others);
   SpoiltWire wire;
   for (int i = 1; i < argc; ++i) wire.add(argv[i]);
   wire.run();
