@@ -47,8 +47,7 @@ class BadInput : public testing::Test {
   /// Starts the machine and waits until it has run out of blocks.
   void run_out() {
     ASSERT_TRUE(plant.wait_for(State::kLoaded)) << plant.service().said();
-    const auto start = plant.say(Verb::kStart);
-    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
     ASSERT_TRUE(plant.wait_for(State::kStarved, milliseconds(20000))) << plant.service().said();
   }
 
@@ -233,8 +232,7 @@ TEST_F(BadInput, ABatchOfAnOldSessionMovesNothing) {
   const std::vector<ClBlock> blocks = small_program(6, kFeed_mm_per_min);
   station.send(0, {blocks.begin(), blocks.begin() + 3});
   ASSERT_TRUE(plant.wait_for(State::kLoaded));
-  const auto abort = plant.say(Verb::kAbort);
-  ASSERT_TRUE(abort && abort->is_accepted) << (abort ? abort->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kAbort));
   ASSERT_TRUE(station.wait_for(Verdict::kAborted));
   ASSERT_TRUE(plant.wait_for(State::kReady));
   station.send(3, {blocks.begin() + 3, blocks.end()}, true);

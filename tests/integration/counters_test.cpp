@@ -58,10 +58,7 @@ class Counters : public testing::Test {
     ASSERT_TRUE(plant_.wait_for(State::kLoaded)) << plant_.service().said();
   }
 
-  void say(Verb verb, double argument = 0) {
-    const auto reply = plant_.say(verb, argument);
-    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
-  }
+  void say(Verb verb, double argument = 0) { ASSERT_NO_FATAL_FAILURE(plant_.must(verb, argument)); }
 
   /// A program from its first block to its end, held and resumed on the way, at changing override.
   void run_program(int blocks) {

@@ -30,8 +30,7 @@ class Fault : public testing::Test {
       return station.state() == StationState::kComplete;
     })) << plant.station().message();
     ASSERT_TRUE(plant.wait_for(State::kLoaded));
-    const auto start = plant.say(Verb::kStart);
-    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   }
   void expect_fault(Alarm alarm) {
     ASSERT_TRUE(plant.wait_for(State::kFault)) << plant.service().said();
@@ -157,8 +156,7 @@ TEST_F(Fault, OfTheServiceItselfLeavesAMachineThatWaitsForEnableAndStart) {
   std::this_thread::sleep_for(milliseconds(300));
   EXPECT_EQ(plant.status().joints, before) << "nothing moves by itself";
   // Left alone the drives' watchdog took them to fault; the operator resets it in Off.
-  const auto reset = plant.say(Verb::kReset);
-  ASSERT_TRUE(reset && reset->is_accepted) << (reset ? reset->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kReset));
   EXPECT_TRUE(plant.enable()) << plant.service().said();
 }
 
@@ -195,8 +193,7 @@ TEST(StationFault, LeavesAMachineThatRunsWhatItWasGivenStopsOnThePathAndWaits) {
   ASSERT_TRUE(eventually([&] { return plant.status().blocks_received >= program.size(); }))
       << station.said();
   ASSERT_TRUE(plant.wait_for(State::kLoaded));
-  const auto start = plant.say(Verb::kStart);
-  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   ASSERT_TRUE(plant.wait_for(State::kRunning));
   station.send_signal(SIGKILL);
   ASSERT_TRUE(station.wait(milliseconds(2000)));
@@ -213,8 +210,7 @@ TEST(StationFault, LeavesAMachineThatRunsWhatItWasGivenStopsOnThePathAndWaits) {
   std::this_thread::sleep_for(milliseconds(300));
   EXPECT_EQ(plant.status().state, State::kStarved) << "it waits for the operator";
   EXPECT_EQ(plant.status().joints, starved.joints);
-  const auto abort = plant.say(Verb::kAbort);
-  ASSERT_TRUE(abort && abort->is_accepted) << (abort ? abort->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kAbort));
   ASSERT_TRUE(plant.wait_for(State::kReady)) << plant.service().said();
   EXPECT_TRUE(eventually([&] { return plant.status().session == 0; })) << "the machine is free";
 }

@@ -79,8 +79,7 @@ TEST(ByHand, JogsLosesItsHandIsHomedAndRunsAProgram) {
       << plant.status().joints[0];
   ASSERT_TRUE(plant.stream(program, is_complete)) << plant.station().message();
   ASSERT_TRUE(plant.wait_for(State::kLoaded));
-  const auto start = plant.say(Verb::kStart);
-  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   EXPECT_TRUE(plant.stream_on([](const Station& s) { return s.is_over(); }, milliseconds(20000)));
   EXPECT_EQ(plant.station().state(), stream::StationState::kRan) << plant.station().message();
 

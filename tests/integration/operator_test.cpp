@@ -30,10 +30,7 @@ class Operator : public testing::Test {
     })) << plant.station().message();
     ASSERT_TRUE(plant.wait_for(State::kLoaded));
   }
-  void say(Verb verb, double argument = 0) {
-    const auto reply = plant.say(verb, argument);
-    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
-  }
+  void say(Verb verb, double argument = 0) { ASSERT_NO_FATAL_FAILURE(plant.must(verb, argument)); }
   /// Ends the service and reads what it recorded.
   std::vector<record::RecordingRow> rows() {
     plant.service().send_signal(SIGTERM);

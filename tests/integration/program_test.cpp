@@ -34,8 +34,7 @@ TEST_F(Program, RunsFromEnableToEndAndRecordsEveryCycleThatWasSent) {
                              return is_complete(station) && plant.status().state == State::kLoaded;
                            }))
       << plant.station().message() << plant.service().said();
-  const auto start = plant.say(Verb::kStart);
-  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   ASSERT_TRUE(plant.stream_on(has_ran, milliseconds(20000)))
       << plant.station().message() << plant.service().said();
   EXPECT_TRUE(plant.wait_for(State::kReady));
@@ -45,8 +44,7 @@ TEST_F(Program, RunsFromEnableToEndAndRecordsEveryCycleThatWasSent) {
   const dds::Status after = plant.status();
   EXPECT_EQ(after.records_overrun + after.events_overrun + after.setpoints_overrun, 0U);
 
-  const auto disable = plant.say(Verb::kDisable);
-  ASSERT_TRUE(disable && disable->is_accepted) << (disable ? disable->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kDisable));
   ASSERT_TRUE(plant.wait_for(State::kOff));
   plant.service().send_signal(SIGTERM);
   EXPECT_EQ(plant.service().wait(milliseconds(3000)), 0) << plant.service().said();
@@ -69,8 +67,7 @@ TEST_F(Program, NeverMovesByBlocksAlone) {
 TEST_F(Program, StopsOnThePathAndSwitchesOffWhenTheServiceIsAskedToEnd) {
   ASSERT_TRUE(plant.stream(small_program(40, 500), is_complete));
   ASSERT_TRUE(plant.wait_for(State::kLoaded));
-  const auto start = plant.say(Verb::kStart);
-  ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   ASSERT_TRUE(plant.wait_for(State::kRunning));
   plant.service().send_signal(SIGTERM);
   EXPECT_EQ(plant.service().wait(milliseconds(5000)), 0);
@@ -95,8 +92,7 @@ TEST_F(Program, RunsASecondProgramAfterTheFirst) {
   for (int round = 0; round < 2; ++round) {
     ASSERT_TRUE(plant.stream(small_program(3, 5000), is_complete)) << plant.station().message();
     ASSERT_TRUE(plant.wait_for(State::kLoaded)) << plant.service().said();
-    const auto start = plant.say(Verb::kStart);
-    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
     ASSERT_TRUE(plant.stream_on(has_ran, milliseconds(15000)))
         << plant.station().message() << plant.service().said();
     ASSERT_TRUE(plant.wait_for(State::kReady));

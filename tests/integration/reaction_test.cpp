@@ -42,13 +42,11 @@ class LiveReaction : public testing::Test {
       return station.state() == stream::StationState::kComplete;
     })) << plant.station().message();
     ASSERT_TRUE(plant.wait_for(State::kLoaded)) << plant.service().said();
-    const auto start = plant.say(Verb::kStart);
-    ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
     ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.service().said();
   }
   void say(Verb verb, State then) {
-    const auto reply = plant.say(verb);
-    ASSERT_TRUE(reply && reply->is_accepted) << (reply ? reply->text : "no reply");
+    ASSERT_NO_FATAL_FAILURE(plant.must(verb));
     ASSERT_TRUE(plant.wait_for(then)) << plant.service().said();
   }
   void recover() {
