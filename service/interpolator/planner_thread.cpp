@@ -45,6 +45,7 @@ bool PlannerThread::work() noexcept {
                    view.epoch, look.front->settings);
     writer_.forget_ahead();  // in Ready all that was published has run or is void
     published_before_s_ = writer_.published_s();
+    tell(Approach{});
     tell_of_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
     motion_ns_ = 0;
@@ -108,11 +109,17 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
 
 void PlannerThread::tell_of_plan() noexcept {
   ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
+  if (Approach approach; planner_.take_approach(approach)) tell(approach);
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
   for (Unwinding one; planner_.take_unwinding(one);) (void)ports_.unwindings.try_push(one);
   for (FeedMark mark; planner_.take_feed_mark(mark);) {
     if (!ports_.feed_marks.try_push(mark)) ports_.events_overrun.fetch_add(1);
   }
+}
+
+void PlannerThread::tell(const Approach& approach) noexcept {
+  ports_.approach.store(approach);
+  ports_.approach_for_status.store(approach);
 }
 
 bool PlannerThread::announce_action(const ClBlock& block) noexcept {

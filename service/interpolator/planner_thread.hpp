@@ -30,6 +30,8 @@ class PlannerThread {
   void refuse(const BlockReject& reject) noexcept;
   /// What others want to know of what was planned.
   void tell_of_plan() noexcept;
+  /// How the program is approached; of one that begins nothing is known yet.
+  void tell(const Approach& approach) noexcept;
   /// Goes on with what is there while no block comes.
   void advance() noexcept;
   /// A program of which no block has come for a while begins with those that are there.

@@ -6,6 +6,7 @@
 
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/approach.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
@@ -95,9 +96,10 @@ struct Ports {
   SpscRing<SessionReject, 64> rejects;
   SpscRing<PlannedAction, 4096> actions;  ///< more than a planner takes before it publishes
   MotionPort motion;
-  SpscRing<PoleEase, 256> eases;        ///< planner to telemetry
-  SpscRing<Unwinding, 256> unwindings;  ///< planner to telemetry
-  SpscRing<FeedMark, 256> feed_marks;   ///< planner to telemetry
+  LatestValue<Approach> approach, approach_for_status;  ///< planner to commands, to telemetry
+  SpscRing<PoleEase, 256> eases;                        ///< planner to telemetry
+  SpscRing<Unwinding, 256> unwindings;                  ///< planner to telemetry
+  SpscRing<FeedMark, 256> feed_marks;                   ///< planner to telemetry
 
   SpscRing<Command, 64> commands;
   LatestValue<Feedback> feedback;

@@ -194,9 +194,17 @@ void Supervisor::answer(const Event& event) {
     jog_intake_.begin(pending->request.operator_id, pending->key);
   }
   reply(pending->request, is_accepted, refusal,
-        is_accepted ? telemetry::describe(verb, view_.record.state)
-                    : telemetry::describe(verb, refusal, view_.record.state));
+        is_accepted ? what_happens(verb) : telemetry::describe(verb, refusal, view_.record.state));
   pending->key = 0;
+}
+
+std::string Supervisor::what_happens(Verb verb) {
+  const bool is_declared = verb == Verb::kStart && ports_.approach.refresh();
+  const Approach& approach = ports_.approach.latest();
+  if (!is_declared || !approach.is_planned || approach.epoch != view_.epoch) {
+    return telemetry::describe(verb, view_.record.state);
+  }
+  return "start accepted; " + telemetry::describe(approach, model_);
 }
 
 void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <utility>
 
 #include "meridian/kinematics/machine_model.hpp"
@@ -57,6 +58,8 @@ class Supervisor {
   void send(const dds::CommandRequest& request, Verb verb, double argument);
   void take_events();
   void answer(const Event& event);
+  /// What an accepted verb leads to; a program's start to its approach.
+  [[nodiscard]] std::string what_happens(Verb verb);
   void reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
              const std::string& text);
   void publish_action(const Event& event);

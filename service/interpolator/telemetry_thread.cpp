@@ -182,6 +182,10 @@ void TelemetryThread::tell(const Event& event) {
         status_.alarm = Alarm::kNone;
         has_news_ = true;
       }
+      if (!approach_.empty() && static_cast<State>(event.a) == State::kApproaching &&
+          static_cast<State>(event.b) == State::kLoaded) {
+        status_.message = approach_;
+      }
       break;
     case EventCode::kStopped:
       status_.stop_time_s = 1e-9 * static_cast<double>(event.a);
@@ -209,6 +213,16 @@ void TelemetryThread::tell(const Event& event) {
             : weight == telemetry::Weight::kWarning ? spdlog::level::warn
                                                     : spdlog::level::info,
             "cycle {}: {}", event.cycle, words);
+}
+
+void TelemetryThread::declare_approach() {
+  if (!ports_.approach_for_status.refresh()) return;
+  const Approach& approach = ports_.approach_for_status.latest();
+  approach_.clear();
+  if (!approach.is_planned) return;
+  approach_ = telemetry::describe(approach, model_);
+  log_->info("{}", approach_);
+  if (status_.alarm == Alarm::kNone) status_.message = approach_;
 }
 
 void TelemetryThread::publish_status(std::int64_t now_ns) {
@@ -274,6 +288,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
       if (status.alarm != Alarm::kNone) status.message = alarm_message_ + "; " + status.message;
     }
   }
+  declare_approach();  // behind the word that the program is in, which it comes from
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);
   (void)statuses_.write(status);

@@ -48,6 +48,8 @@ class TelemetryThread {
   /// Tells how the program went that is over; false: none is.
   bool tell_program();
   void tell(const Event& event);
+  /// Tells how a program will be approached that was planned meanwhile.
+  void declare_approach();
   void keep_journal(std::int64_t now_ns);
   void publish_status(std::int64_t now_ns);
   void publish_latency(std::int64_t now_ns);
@@ -92,6 +94,7 @@ class TelemetryThread {
   bool has_news_ = true;
   std::string session_message_;  ///< newest of intake that was told
   std::string alarm_message_;    ///< of the newest alarm
+  std::string approach_;         ///< how the program that was planned last is approached
 };
 
 }  // namespace meridian::interpolator

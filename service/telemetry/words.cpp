@@ -3,6 +3,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
+
+#include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/obey.hpp"
 #include "meridian/rt/state_table.hpp"
@@ -51,6 +54,24 @@ namespace {
     default:
       return "wait until the machine has come to rest";
   }
+}
+
+/// "b3 -12.5, b2 +3 mm, theta1 +35 deg": those that move.
+[[nodiscard]] std::string joints_moved(const Approach& approach, const MachineModel& model) {
+  constexpr double kShown = 5e-5;  // mm or deg
+  std::string text, unit;
+  for (int joint = 0; joint < model.joint_count; ++joint) {
+    const auto i = static_cast<std::size_t>(joint);
+    const bool is_rotary = model.joints[i].is_rotary;
+    const double way = approach.to[i] - approach.from[i];
+    const double by = is_rotary ? units::deg_from_rad(way) : way;
+    if (std::abs(by) < kShown) continue;
+    const std::string own = is_rotary ? " deg" : " mm";
+    if (!text.empty()) text += (own == unit ? "" : unit) + ", ";
+    text += fmt::format("{} {:+.4g}", joint_name(joint, model), by);
+    unit = own;
+  }
+  return text + unit;
 }
 
 }  // namespace
@@ -261,6 +282,23 @@ std::string describe(const Unwinding& unwinding) {
       "off the part",
       unwinding.line, unwinding.turns, units::deg_from_rad(unwinding.from_rad),
       unwinding.retract_mm);
+}
+
+std::string describe(const Approach& approach, const MachineModel& model) {
+  const std::string head = fmt::format("approach to line {}: ", approach.line);
+  const std::string joints = joints_moved(approach, model);
+  if (joints.empty()) return head + "none, the tool is there";
+  const auto lift = [](const char* way, double by_mm) {
+    return by_mm > 0 ? fmt::format("{} {:.4g} mm, ", way, by_mm) : "";
+  };
+  std::string text = head + lift("up", approach.retract) + "joints straight " + joints + ", " +
+                     lift("down", approach.descent);
+  text += fmt::format("{:.4g} mm in {:.1f} s, branch {}", approach.length, approach.time,
+                      approach.branch);
+  const int free = free_joint(model);
+  if (free < 0) return text;
+  const double at = approach.to[static_cast<std::size_t>(free)];
+  return text + fmt::format(", {} at {:.4g} deg", joint_name(free, model), units::deg_from_rad(at));
 }
 
 }  // namespace meridian::telemetry

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/planner/approach.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/unwinding.hpp"
 #include "meridian/rt/cycle_data.hpp"
@@ -23,6 +24,9 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 /// Where the tool axis will be moved beside the pole, by how much and why.
 [[nodiscard]] std::string describe(const PoleEase& ease);
 [[nodiscard]] std::string describe(const Unwinding& unwinding);
+/// How the machine will come to a program's first motion: joints with what they move by, time,
+/// branch and winding.
+[[nodiscard]] std::string describe(const Approach& approach, const MachineModel& model);
 /// Answer to an operator whose verb was accepted; `state` is the one it led to.
 [[nodiscard]] std::string describe(Verb verb, State state);
 /// Answer to an operator whose verb was refused in `state`, with the remedy.

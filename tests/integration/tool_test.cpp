@@ -61,6 +61,7 @@ TEST_F(Tool, StreamsAPartFromOpenToEnd) {
   const std::string said = stream.said();
   EXPECT_NE(said.find("program good.apt is in: 4 blocks"), std::string::npos) << said;
   EXPECT_NE(said.find("machine is Running"), std::string::npos) << said;
+  EXPECT_NE(said.find("approach to line 4: "), std::string::npos) << said;
   EXPECT_NE(said.find("program good.apt ran to its end: 3 blocks in "), std::string::npos) << said;
   EXPECT_EQ(said.find('\r'), std::string::npos) << "in a pipe plain lines";
 }

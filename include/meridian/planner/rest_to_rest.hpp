@@ -11,6 +11,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/approach.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/unwinding.hpp"
 
@@ -76,6 +77,9 @@ class RestToRestPlanner {
 
   /// Plans and publishes one block.
   [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
+
+  /// Takes the approach of the program, once, when it is published; false: not by now.
+  [[nodiscard]] bool take_approach(Approach& out) noexcept;
 
   /// Where another planner takes over from this one, or gives back: the pose and joints at the end
   /// of what was published, and the names that come next in the epoch.

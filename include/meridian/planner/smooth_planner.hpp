@@ -11,6 +11,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/approach.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
@@ -77,6 +78,9 @@ class SmoothPlanner {
 
   /// No block comes for a while: the program begins with those that are there.
   void look_no_further() noexcept;
+
+  /// Takes the approach of the program, once, when it is published; false: not by now.
+  [[nodiscard]] bool take_approach(Approach& out) noexcept;
 
   /// Takes the oldest unwinding of what was planned so far; false if there is none. At most 256
   /// wait, then the oldest go.

@@ -76,15 +76,17 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   PathFault fault;
   const double apart = largest_difference(way.joints, cursor.joints);
   const double clearance = model_.clearance_mm;
-  double down = 0;
+  double up = 0, down = 0;
   if (apart > kNearby) {
-    const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
+    up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
     if (up > 0) {
       fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
       if (is_fault(fault)) return fault;
     }
     down = find_clearance(target, way.joints, cursor.tool_length_mm, clearance);
   }
+  way_in_.retract = up;
+  way_in_.descent = down;
   const JointVector over =
       down > 0 ? solve_near(lifted(target, down), way.joints, cursor.tool_length_mm).q : way.joints;
   if (largest_difference(over, cursor.joints) > kThere) {
@@ -95,6 +97,19 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
     fault = run_lift(make_line(lifted(target, down), target), job, cursor, out);
   }
   return fault;
+}
+
+void Router::describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
+                             const Staging::Mark& begin, const Staging& staged) noexcept {
+  way_in_.is_planned = true;
+  way_in_.epoch = from.epoch;
+  way_in_.sequence = job.block.sequence;
+  way_in_.line = job.block.line;
+  way_in_.from = from.joints;
+  way_in_.to = way.joints;
+  way_in_.branch = static_cast<std::uint8_t>(way.branch);
+  for (int n = begin.paths; n < staged.path_count; ++n) way_in_.length += staged.paths[n].length;
+  for (int n = begin.times; n < staged.time_count; ++n) way_in_.time += staged.times[n].duration;
 }
 
 void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
@@ -151,8 +166,10 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
     }
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();
+    way_in_ = {};
     const PathFault fault = approach_by(target, way, job, trial, out);
     if (!is_fault(fault)) {
+      describe_way_in(way, job, cursor, mark, out);
       cursor = trial;
       cursor.pose = target;
       lost_.reset();

@@ -2,6 +2,7 @@
 #include "meridian/planner/rest_to_rest.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "meridian/geometry/great_circle.hpp"
@@ -53,9 +54,10 @@ struct RestToRestPlanner::Workspace {
   ToolTable tools;
   Router router;
   Staging staging;
-  PlanCursor cursor;  ///< end of what is published
-  PlanCursor next;    ///< end of what is staged
-  PlanResult result;  ///< of what is staged
+  PlanCursor cursor;                                  ///< end of what is published
+  PlanCursor next;                                    ///< end of what is staged
+  PlanResult result;                                  ///< of what is staged
+  std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
   bool is_staged = false;
   bool is_refused = false;
 
@@ -148,6 +150,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   if (next.is_first) {
     fault = router.approach(block, next, staging);
     if (router.lost_block()) return refuse(*router.lost_block());
+    staged_approach = router.way_in();
     result.axis_deviation_rad = router.axis_deviation_rad();
     next.is_first = false;
     count_window(0);
@@ -220,6 +223,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.cursor.tool_length_mm = tool_length_mm;
   w.cursor.epoch = epoch;
   w.cursor.pose = forward(w.model, tool_length_mm, at_rest);
+  w.staged_approach = w.approach = std::nullopt;
   w.is_staged = false;
   w.is_refused = false;
   w.router.set_feed_factor(1);
@@ -239,6 +243,13 @@ PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) n
   if (w.is_refused) return w.result;
   if (!w.is_staged) w.stage(block);
   return w.is_refused ? w.result : publish(writer);
+}
+
+bool RestToRestPlanner::take_approach(Approach& out) noexcept {
+  Workspace& w = *workspace_;
+  if (!w.approach) return false;
+  out = *std::exchange(w.approach, std::nullopt);
+  return true;
 }
 
 void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack_mm,
@@ -280,6 +291,7 @@ PlanResult RestToRestPlanner::publish(MotionWriter& writer) noexcept {
     return {PlanStatus::kNoRoom, {}, 0, {}};
   }
   writer.publish();
+  if (w.staged_approach) w.approach = std::exchange(w.staged_approach, std::nullopt);
   w.cursor = w.next;
   w.is_staged = false;
   return w.result;

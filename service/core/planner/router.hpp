@@ -9,6 +9,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/approach.hpp"
 #include "service/core/planner/leg_planner.hpp"
 #include "service/core/planner/look_ahead.hpp"
 #include "service/core/planner/staging.hpp"
@@ -54,6 +55,8 @@ class Router {
   /// no other is left, lost_block() says why, else it is nothing.
   [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] const std::optional<BlockReject>& lost_block() const noexcept { return lost_; }
+  /// The way that the last approach() found.
+  [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }
 
   /// Turns the free joint by whole `turns` off the part and comes back to where the tool rests, as
   /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
@@ -143,6 +146,9 @@ class Router {
                                          const PlanCursor& cursor) noexcept;
   [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
                                       PlanCursor& cursor, Staging& out) noexcept;
+  /// Fills in what is known of the way once it is staged from `begin` on.
+  void describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
+                       const Staging::Mark& begin, const Staging& staged) noexcept;
   /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel; 0: not at
   /// all.
   [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
@@ -153,6 +159,7 @@ class Router {
   std::span<const ClBlock> ahead_;
   AheadSlack slack_;
   std::optional<BlockReject> lost_;  ///< of the last approach
+  Approach way_in_;                  ///< of the last approach
   double feed_factor_ = 1;
   double free_cone_rad_ = 0;
   double deviation_rad_ = 0;

@@ -335,6 +335,10 @@ PlanResult SmoothPlanner::advance(MotionWriter& writer) noexcept {
   return w.is_refused ? w.refusal : PlanResult{};
 }
 
+bool SmoothPlanner::take_approach(Approach& out) noexcept {
+  return workspace_->plain.take_approach(out);
+}
+
 bool SmoothPlanner::take_unwinding(Unwinding& out) noexcept {
   return workspace_->unwindings.take_oldest(out);
 }

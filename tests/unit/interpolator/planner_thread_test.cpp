@@ -66,6 +66,16 @@ class PlannerThreadTest : public testing::Test {
     return reader_.piece() != nullptr;
   }
 
+  /// Whether the newest approach that operators hear of is one in `epoch`.
+  [[nodiscard]] bool is_approach_declared(std::uint16_t epoch) {
+    Approach way;
+    for (int i = 0; i < 500 && !(way.is_planned && way.epoch == epoch); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      ports_->approach.load(way);
+    }
+    return way.is_planned && way.epoch == epoch;
+  }
+
   const MachineModel machine_;
   const std::unique_ptr<Ports> ports_ = std::make_unique<Ports>();
   MotionReader reader_{ports_->motion};
@@ -77,6 +87,7 @@ class PlannerThreadTest : public testing::Test {
 TEST_F(PlannerThreadTest, PlansAProgramBehindOneThatWasAbortedWithSecondsOfPlanAhead) {
   ASSERT_NO_FATAL_FAILURE(push_program());
   ASSERT_TRUE(has_piece());
+  EXPECT_TRUE(is_approach_declared(1));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));  // as far ahead as it goes
   EXPECT_FALSE(ports_->blocks.empty()) << "the whole program is planned: nothing is far ahead";
   reader_.set_epoch(2);
@@ -84,6 +95,7 @@ TEST_F(PlannerThreadTest, PlansAProgramBehindOneThatWasAbortedWithSecondsOfPlanA
   ports_->queue_mark.store({pushed_, 2});
   ASSERT_NO_FATAL_FAILURE(push_program());
   EXPECT_TRUE(has_piece()) << "what is void was waited for";
+  EXPECT_TRUE(is_approach_declared(2));
 }
 
 }  // namespace

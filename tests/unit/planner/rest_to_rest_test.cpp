@@ -94,6 +94,36 @@ TEST(RestToRest, ApproachesTheFirstBlockUpAcrossAndDown) {
   EXPECT_LT(angle_between(at.axis, tilted(0.3, 1)), 1e-12);
 }
 
+TEST(RestToRest, DeclaresTheApproachOnceWhenItIsPublished) {
+  Bench bench;
+  Approach way;
+  EXPECT_FALSE(bench.planner.take_approach(way));
+  ASSERT_EQ(bench.plan(block_of(BlockKind::kDwell, 0)).status, PlanStatus::kOk);
+  EXPECT_FALSE(bench.planner.take_approach(way));
+  bench.forget();
+  ASSERT_EQ(bench.plan_and_take(cut(1, {50, 0, 20}, tilted(0.3, 1))).status, PlanStatus::kOk);
+  ASSERT_TRUE(bench.planner.take_approach(way));
+  EXPECT_TRUE(way.is_planned);
+  EXPECT_EQ(way.sequence, 1U);
+  EXPECT_EQ(way.line, 101U);
+  EXPECT_EQ(way.from, bench.start);
+  const PathPiece& last = bench.paths.back();
+  EXPECT_EQ(way.branch, last.branch);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(way.to[i], last.joints_end[i], 1e-9) << i;
+  EXPECT_EQ(way.retract, bench.model.clearance_mm);
+  EXPECT_EQ(way.descent, bench.model.clearance_mm);
+  double length = 0;
+  for (std::size_t i = 0; i < bench.paths.size(); ++i) {
+    const bool is_new = i == 0 || bench.paths[i].index != bench.paths[i - 1].index;
+    if (is_new) length += bench.paths[i].length;
+  }
+  EXPECT_NEAR(way.length, length, 1e-9);
+  EXPECT_NEAR(way.time, bench.duration(), 1e-9);
+  EXPECT_FALSE(bench.planner.take_approach(way));
+  ASSERT_EQ(bench.plan(cut(2, {60, 0, 20}, tilted(0.3, 1))).status, PlanStatus::kOk);
+  EXPECT_FALSE(bench.planner.take_approach(way)) << "one for a program";
+}
+
 TEST(RestToRest, RetractsOnlyAsFarAsTravelAllows) {
   MachineModel model = test::lai_machine();
   model.joints[2].limits.travel_min = -40;  // b4 rises towards minus

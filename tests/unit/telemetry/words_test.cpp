@@ -33,6 +33,26 @@ TEST(Words, TellWhereTheAxisIsEasedByHowMuchAndWhy) {
   EXPECT_EQ(describe(ease), "lines 41 to 43: tool axis eased by 0.0500 deg, through the pole");
 }
 
+TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
+  const MachineModel model = test::lai_machine();
+  Approach way;
+  way.is_planned = true;
+  way.line = 12;
+  way.from = {10, 20, -30, 0.5, 0.1, 0};
+  way.to = {-2.5, 20, -130, 0.5 + units::rad_from_deg(360), 0, 0};
+  way.retract = 20;
+  way.descent = 50;
+  way.length = 345.678;
+  way.time = 3.21;
+  way.branch = 1;
+  EXPECT_EQ(describe(way, model),
+            "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360, "
+            "theta2 -5.73 deg, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg");
+  way.retract = way.descent = 0;
+  way.to = way.from;
+  EXPECT_EQ(describe(way, model), "approach to line 12: none, the tool is there");
+}
+
 TEST(Words, SayEveryAlarmDifferently) {
   const MachineModel model = test::lai_machine();
   std::set<std::string> texts;
