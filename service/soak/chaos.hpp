@@ -21,6 +21,10 @@ enum class Mishap : std::uint8_t {
 };
 inline constexpr int kMishapCount = 10;
 [[nodiscard]] const char* word(Mishap mishap) noexcept;
+/// Whether it is of one drive, Planned::drive.
+[[nodiscard]] constexpr bool is_of_drive(Mishap mishap) noexcept {
+  return mishap == Mishap::kDriveFault || mishap == Mishap::kDriveBlocked;
+}
 
 struct Planned {
   Mishap mishap{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/soak/fault_judge.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
@@ -17,11 +18,16 @@ constexpr double kAlarmLate_s = 1;
 /// A processor that was away for so long a moment ago makes peers fall silent and drives lag: half
 /// of what a service waits for feedback by default.
 constexpr double kTooLongAway_s = 0.05;
+/// Drives of a service in best effort bridge at least 50 ms; a stall that begins within a nap of
+/// HostWatch, 5 ms, is seen by so much too short.
+constexpr double kBridgeAway_s = 0.045;
 
-[[nodiscard]] bool is_of_host(Alarm alarm, double away_s) noexcept {
-  if (alarm == Alarm::kPeriodsLost) return true;
-  const bool is_silence = alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError;
-  return is_silence && away_s >= kTooLongAway_s;
+/// How long a processor must have been away to make `alarm`; nothing: no stall makes it.
+[[nodiscard]] std::optional<double> away_for(Alarm alarm, const Witness& witness) noexcept {
+  if (alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError) return kTooLongAway_s;
+  const bool is_of_bridge =
+      alarm == Alarm::kPeriodsLost || (alarm == Alarm::kDriveFault && witness.misses_setpoints);
+  return is_of_bridge ? std::optional(kBridgeAway_s) : std::nullopt;
 }
 
 }  // namespace
@@ -49,13 +55,15 @@ void FaultJudge::begin_drives(const std::optional<Planned>& injected) noexcept {
   enabled_s_ = 0;
 }
 
+void FaultJudge::lose_drives() noexcept { begin_drives(std::nullopt); }
+
 void FaultJudge::lose_service() noexcept {
   is_on_ = is_faulty_ = is_judged_ = is_own_doing_ = false;
   alarm_ = Alarm::kNone;
 }
 
 std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, double now_s,
-                                                 double away_s) noexcept {
+                                                 const Witness& witness) noexcept {
   if (is_on_) enabled_s_ += now_s - seen_s_;
   is_on_ = is_enabled(status.state);
   seen_s_ = now_s;
@@ -63,8 +71,12 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (!is_stopping) {
     is_faulty_ = is_judged_ = false;
     alarm_ = Alarm::kNone;
+    witness_ = {};
     return std::nullopt;
   }
+  witness_.away_s = std::max(witness_.away_s, witness.away_s);
+  witness_.is_watched = witness.is_watched;
+  witness_.misses_setpoints |= witness.misses_setpoints;
   if (alarm_ == Alarm::kNone) {
     alarm_ = status.alarm;
     joint_ = status.alarm_joint;
@@ -76,16 +88,23 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
   const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
   if (is_injected) return Cause::kInjected;
-  return is_of_host(alarm_, away_s) ? Cause::kHost : Cause::kUnprovoked;
+  const auto least_s = away_for(alarm_, witness_);
+  if (!least_s) return Cause::kUnprovoked;
+  if (!witness_.is_watched) return Cause::kUnwatched;
+  return witness_.away_s >= *least_s ? Cause::kHost : Cause::kUnprovoked;
 }
 
 std::string FaultJudge::describe() const {
   std::string out = "alarm: " + std::string(record::word(alarm_));
   if (record::is_of_joint(alarm_)) text::append(out, " of joint %d", joint_);
   text::append(out, ", %.1f s after enabling", enabled_s_);
+  if (witness_.away_s > 0) {
+    text::append(out, ", a processor away for %.0f ms", 1e3 * witness_.away_s);
+  }
   if (injected_) {
-    text::append(out, "; planned: %s, joint %d, at %.1f s", word(injected_->mishap),
-                 injected_->drive, injected_->at_s);
+    text::append(out, "; planned: %s", word(injected_->mishap));
+    if (is_of_drive(injected_->mishap)) text::append(out, " of joint %d", injected_->drive);
+    text::append(out, " at %.1f s", injected_->at_s);
   }
   return out;
 }

@@ -15,22 +15,33 @@ namespace meridian::soak {
 [[nodiscard]] bool explains(const Planned& injected, double enabled_s, Alarm alarm,
                             int joint) noexcept;
 
+/// What is seen of a Fault beside the status.
+struct Witness {
+  double away_s = 0;              ///< so long the host had taken a processor away just before
+  bool is_watched = true;         ///< false: nobody had the right to see that (HostWatch)
+  bool misses_setpoints = false;  ///< a drive says that they stayed away
+};
+
 /// Says of every Fault of the machine who caused it: the drives, because they were told to; the
-/// soak; the host, which kept the service from more periods in a row than drives bridge; or nobody.
+/// soak, which changed drives or lost them; the host, where it was seen to take a processor away
+/// for longer than drives bridge or the service waits for them, or where nobody watched it; or
+/// nobody.
 /// Proof: tests/unit/soak/soak_test.cpp.
 class FaultJudge {
  public:
-  enum class Cause { kInjected, kOwnDoing, kHost, kUnprovoked };
+  enum class Cause { kInjected, kOwnDoing, kHost, kUnwatched, kUnprovoked };
 
   /// New drives, which nobody has enabled yet, with what they are to suffer. Where the machine was
   /// on, its next Fault is the soak's own doing.
   void begin_drives(const std::optional<Planned>& injected) noexcept;
+  /// The drives are gone. Where the machine was on, its next Fault follows from that.
+  void lose_drives() noexcept;
   /// The service is gone, and with it what it was about to tell.
   void lose_service() noexcept;
   /// Every status in its order, at `now_s`; the cause once for each Fault, as soon as it is told.
-  /// `away_s`: how long the host had taken a processor away just before (HostWatch).
+  /// What a witness saw at any time of the stop counts.
   [[nodiscard]] std::optional<Cause> see(const dds::Status& status, double now_s,
-                                         double away_s = 0) noexcept;
+                                         const Witness& witness) noexcept;
   /// What a report says of the Fault that was judged last: its alarm, and what was planned when.
   [[nodiscard]] std::string describe() const;
   /// Whether the cause of the Fault that is there is known.
@@ -42,6 +53,7 @@ class FaultJudge {
   bool is_on_ = false, is_faulty_ = false, is_judged_ = false, is_own_doing_ = false;
   Alarm alarm_ = Alarm::kNone;  ///< first of the stop that is going on
   int joint_ = 0;
+  Witness witness_;  ///< of that stop
 };
 
 }  // namespace meridian::soak

@@ -38,6 +38,7 @@ HostWatch::~HostWatch() = default;
 
 void HostWatch::watch(int cpu, const std::stop_token& stop) {
   if (!rise_on(cpu)) return;
+  ++watched_;
   while (!stop.stop_requested()) {
     const std::int64_t due_ns = stream::steady_ns() + kNap_ns;
     std::this_thread::sleep_for(std::chrono::nanoseconds(kNap_ns));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <thread>
@@ -25,6 +27,9 @@ class HostWatch {
   [[nodiscard]] std::uint64_t stalls() const;
   [[nodiscard]] double longest_s() const;
 
+  /// Whether every processor is watched.
+  [[nodiscard]] bool is_watching() const noexcept { return watched_ == threads_.size(); }
+
   static constexpr std::int64_t kStall_ns = 10'000'000;
 
  private:
@@ -40,6 +45,7 @@ class HostWatch {
   std::vector<Stall> stalls_;  ///< the newest kMostStalls
   std::uint64_t count_ = 0;
   std::int64_t longest_ns_ = 0;
+  std::atomic<std::size_t> watched_ = 0;
   std::vector<std::jthread> threads_;
   static constexpr std::size_t kMostStalls = 1000;
 };

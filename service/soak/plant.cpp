@@ -22,11 +22,9 @@ using std::chrono::milliseconds;
 }  // namespace
 
 std::string injection_text(const Planned& mishap, const std::string& drive_name) {
-  const bool is_of_drive =
-      mishap.mishap == Mishap::kDriveFault || mishap.mishap == Mishap::kDriveBlocked;
   std::string text = injection_word(mishap.mishap);
   text.append("@").append(std::to_string(mishap.at_s));
-  if (is_of_drive) text.append(":").append(drive_name);
+  if (is_of_drive(mishap.mishap)) text.append(":").append(drive_name);
   return text;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/soak/soak.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
+#include "service/drives/cia402.hpp"
 #include "service/probe/budgets.hpp"
 #include "service/probe/figures.hpp"
 #include "service/process/processors.hpp"
@@ -63,6 +65,7 @@ class Soak {
         chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.most_feed_override),
         participant_({.domain = options.domain, .machine = model_.name}),
         operator_(participant_, "soak"),
+        feedback_reader_(participant_),
         health_(participant_, report_) {
     report_.machine = model_.name;
     report_.host = probe::host_text();
@@ -103,11 +106,14 @@ class Soak {
     moved_s_ = now_s();
   }
 
+  /// New drives; those that ended by themselves stay away for a while first.
   void start_drives() {
+    if (now_s() < drives_at_s_) return;
     injected_.reset();
     if (options_.chaos_every_s > 0) injected_ = chaos_.next_of_drives();
     plant_.start_drives(injected_, injected_ ? drive_spec(model_, injected_->drive).name : "");
     faults_.begin_drives(injected_);
+    feedback_ = {};
     ++report_.drive_starts;
     asked_in_vain_ = 0;
   }
@@ -122,11 +128,12 @@ class Soak {
       service_at_s_ = now_s() + kAfterDeath_s;
     }
     if (plant_.drives() == nullptr) {
-      if (now_s() >= drives_at_s_) start_drives();
+      start_drives();
     } else if (const auto code = plant_.drives()->wait_for_exit(milliseconds(0))) {
       report_.violate("the drives ended by themselves with code " + std::to_string(*code),
                       plant_.keep_logs());
       plant_.stop_drives();
+      faults_.lose_drives();
       drives_at_s_ = now_s() + kAfterDeath_s;
     }
     if (plant_.station() != nullptr) {
@@ -160,8 +167,8 @@ class Soak {
 
   void see(const dds::Status& status) {
     counts_.add(status, report_);
-    if (const auto cause = faults_.see(status, now_s(), host_.away_s(kHostBefore_s)))
-      judge_fault(*cause, status);
+    const Witness witness{host_.away_s(kHostBefore_s), host_.is_watching(), misses_setpoints()};
+    if (const auto cause = faults_.see(status, now_s(), witness)) judge_fault(*cause, status);
     if (status.state != state_) asked_in_vain_ = 0;
     if (status.state != state_ || is_moving(status.state)) moved_s_ = now_s();
     state_ = status.state;
@@ -173,6 +180,13 @@ class Soak {
     break_off();
   }
 
+  /// Whether a drive has stopped because setpoints stayed away.
+  [[nodiscard]] bool misses_setpoints() {
+    while (feedback_reader_.take(feedback_)) continue;
+    return std::ranges::find(feedback_.error, drives::kErrorSetpointsStopped) !=
+           feedback_.error.end();
+  }
+
   /// What the drives suffer of is over with their process.
   void judge_fault(FaultJudge::Cause cause, const dds::Status& status) {
     ++report_.alarms;
@@ -181,10 +195,13 @@ class Soak {
       ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
     } else if (cause == FaultJudge::Cause::kHost) {
       ++report_.host_faults;
-    } else if (cause == FaultJudge::Cause::kUnprovoked) {
-      report_.violate(
-          "a Fault that nothing provoked: " + faults_.describe() + "; " + status.message,
-          plant_.keep_logs());
+      say_("a Fault of the host (" + plant_.keep_logs() + "): " + faults_.describe());
+    } else if (cause != FaultJudge::Cause::kOwnDoing) {
+      const bool is_unwatched = cause == FaultJudge::Cause::kUnwatched;
+      report_.violate(std::string(is_unwatched ? "a Fault that may be of the host, not watched: "
+                                               : "a Fault that nothing provoked: ") +
+                          faults_.describe() + "; " + status.message,
+                      plant_.keep_logs());
     }
   }
 
@@ -214,7 +231,6 @@ class Soak {
         ask(Verb::kStart);
         break;
       case State::kHeld:
-      case State::kStepping:
         if (now >= resume_s_) ask(Verb::kResume);
         break;
       case State::kStarved:
@@ -305,6 +321,7 @@ class Soak {
 
   void tell() {
     report_.elapsed_s = now_s();
+    report_.is_host_watched = host_.is_watching();
     report_.host_stalls = host_.stalls();
     report_.host_longest_s = host_.longest_s();
     judge_.collect(report_);
@@ -341,6 +358,8 @@ class Soak {
   Chaos chaos_;
   dds::Participant participant_;
   stream::OperatorLink operator_;
+  dds::Reader<dds::DriveFeedback> feedback_reader_;
+  dds::DriveFeedback feedback_;  ///< the newest
   HealthWatch health_;
   HostWatch host_;
   FaultJudge faults_;

@@ -134,8 +134,12 @@ std::string to_text(const SoakReport& report) {
   append(out, "  cycles %llu, periods lost %llu, starved %llu times, overruns %llu\n",
          Count{report.cycles_run}, Count{report.periods_lost}, Count{report.starvations},
          Count{report.overruns});
-  append(out, "  host took a processor away for 10 ms and more: %llu times, at most %.1f ms\n",
-         Count{report.host_stalls}, 1e3 * report.host_longest_s);
+  if (report.is_host_watched) {
+    append(out, "  host took a processor away for 10 ms and more: %llu times, at most %.1f ms\n",
+           Count{report.host_stalls}, 1e3 * report.host_longest_s);
+  } else {
+    out += "  host not watched: no right to real time\n";
+  }
   append_lives(out, report);
   out += "  latency, us               p50       p99     p99.9       max   p99 first    p99 last\n";
   for (const auto& [name, drift] : report.latencies) {
@@ -172,8 +176,10 @@ std::string to_json(const SoakReport& report) {
     append(out, "%s\"%s\": %llu", i > 0 ? ", " : "", word(static_cast<Mishap>(i)),
            Count{report.mishaps[static_cast<std::size_t>(i)]});
   }
-  append(out, "}, \"host_faults\": %llu, \"host_stalls\": %llu, \"host_longest_ms\": %.3f",
-         Count{report.host_faults}, Count{report.host_stalls}, 1e3 * report.host_longest_s);
+  append(out, "}, \"host_faults\": %llu, \"host_watched\": %s", Count{report.host_faults},
+         report.is_host_watched ? "true" : "false");
+  append(out, ", \"host_stalls\": %llu, \"host_longest_ms\": %.3f", Count{report.host_stalls},
+         1e3 * report.host_longest_s);
   append(out, ", \"asks_refused\": %llu, \"asks_unanswered\": %llu", Count{report.asks_refused},
          Count{report.asks_unanswered});
   append(out, ",\n \"recordings\": %llu, \"setpoints\": %llu, \"missing\": %llu,\n",

@@ -50,6 +50,7 @@ struct SoakReport {
   std::uint64_t asks_refused = 0, asks_unanswered = 0;  ///< what the operator wanted in vain
   std::uint64_t alarms = 0, service_starts = 0, drive_starts = 0;
   std::uint64_t host_faults = 0;  ///< the host kept service or drives from their processors
+  bool is_host_watched = false;   ///< else what follows says nothing
   std::uint64_t host_stalls = 0;  ///< so often it took one away for 10 ms or more
   double host_longest_s = 0;
   double tip_mm = 0, axis_rad = 0;                  ///< largest deviations

@@ -32,6 +32,7 @@ TEST(HostWatch, SeesThatProcessorsWereAwayAndForgetsWhatIsLongAgo) {
   sched_setscheduler(0, SCHED_OTHER, &none);
   const HostWatch host;
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(host.is_watching());
   const auto before = host.stalls();
   stop_for(std::chrono::milliseconds(120));
   std::this_thread::sleep_for(std::chrono::milliseconds(30));

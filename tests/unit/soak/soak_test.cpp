@@ -162,11 +162,11 @@ TEST(Faults, AreExplainedByTheirKindTheirDriveAndTheirTime) {
 class FaultJudgeTest : public testing::Test {
  protected:
   std::optional<FaultJudge::Cause> see(double now_s, State state, Alarm alarm = Alarm::kNone,
-                                       double away_s = 0) {
+                                       const Witness& witness = {}) {
     dds::Status status;
     status.state = state;
     status.alarm = alarm;
-    return judge_.see(status, now_s, away_s);
+    return judge_.see(status, now_s, witness);
   }
   using Cause = FaultJudge::Cause;
   FaultJudge judge_;
@@ -194,21 +194,57 @@ TEST_F(FaultJudgeTest, FindsNoExcuseWhereNothingIsPlanned) {
   EXPECT_EQ(see(100, State::kFault, Alarm::kFollowingError), Cause::kUnprovoked);
 }
 
-TEST_F(FaultJudgeTest, BlamesTheHostForPeriodsThatItKeptFromTheService) {
+TEST_F(FaultJudgeTest, BlamesTheHostOnlyWhereAProcessorWasSeenToBeAway) {
   judge_.begin_drives(Planned{Mishap::kDriveFault, 90, 0, 2});
-  EXPECT_FALSE(see(0, State::kRunning));
-  EXPECT_EQ(see(100, State::kFault, Alarm::kPeriodsLost), Cause::kHost);
+  const auto fault_after = [&](Alarm alarm, const Witness& witness) {
+    EXPECT_FALSE(see(0, State::kRunning));
+    return see(1, State::kFault, alarm, witness);
+  };
+  EXPECT_EQ(fault_after(Alarm::kPeriodsLost, {.away_s = 0.06}), Cause::kHost);
+  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, {.away_s = 0.11}), Cause::kHost);
+  EXPECT_EQ(fault_after(Alarm::kFollowingError, {.away_s = 0.06}), Cause::kHost);
+  EXPECT_EQ(fault_after(Alarm::kPeriodsLost, {.away_s = 0.03}), Cause::kUnprovoked);
+  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, {.away_s = 0.03}), Cause::kUnprovoked);
+  EXPECT_EQ(fault_after(Alarm::kPeriodsLost, {.is_watched = false}), Cause::kUnwatched);
+  EXPECT_EQ(fault_after(Alarm::kTravel, {.is_watched = false}), Cause::kUnprovoked);
 }
 
-TEST_F(FaultJudgeTest, BlamesTheHostForSilenceOnlyWhereAProcessorWasAway) {
-  const auto fault_after = [&](Alarm alarm, double away_s) {
-    EXPECT_FALSE(see(0, State::kRunning));
-    return see(1, State::kFault, alarm, away_s);
+TEST_F(FaultJudgeTest, BlamesTheHostForADriveFaultOnlyWhereTheDriveMissedSetpoints) {
+  const auto fault_after = [&](const Witness& witness) {
+    EXPECT_FALSE(see(0, State::kReady));
+    return see(1, State::kFault, Alarm::kDriveFault, witness);
   };
-  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, 0.11), Cause::kHost);
-  EXPECT_EQ(fault_after(Alarm::kFollowingError, 0.06), Cause::kHost);
-  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, 0.03), Cause::kUnprovoked);
-  EXPECT_EQ(fault_after(Alarm::kDriveFault, 0.11), Cause::kUnprovoked);
+  EXPECT_EQ(fault_after({.away_s = 0.06, .misses_setpoints = true}), Cause::kHost);
+  EXPECT_EQ(fault_after({.away_s = 0.03, .misses_setpoints = true}), Cause::kUnprovoked);
+  EXPECT_EQ(fault_after({.away_s = 0.11}), Cause::kUnprovoked);
+}
+
+TEST_F(FaultJudgeTest, CountsWhatWasSeenSinceTheStopBeganAndForgetsItBehindIt) {
+  EXPECT_FALSE(see(0, State::kRunning));
+  EXPECT_FALSE(see(1, State::kFaultStop, Alarm::kFeedbackLost, {.away_s = 0.11}));
+  EXPECT_EQ(see(2.5, State::kFault, Alarm::kFeedbackLost), Cause::kHost);
+  EXPECT_NE(judge_.describe().find("a processor away for 110 ms"), std::string::npos)
+      << judge_.describe();
+  EXPECT_FALSE(see(3, State::kRunning));
+  EXPECT_EQ(see(4, State::kFault, Alarm::kFeedbackLost), Cause::kUnprovoked);
+}
+
+TEST_F(FaultJudgeTest, SeesNoSecondFaultInWhatFollowsFromDrivesThatEnded) {
+  judge_.begin_drives(Planned{Mishap::kDriveFault, 90, 0, 2});
+  EXPECT_FALSE(see(0, State::kRunning));
+  judge_.lose_drives();
+  EXPECT_EQ(see(0.2, State::kFault, Alarm::kFeedbackLost), Cause::kOwnDoing);
+}
+
+TEST_F(FaultJudgeTest, NamesTheJointOfWhatIsPlannedForOneDriveAlone) {
+  const auto described = [&](Mishap mishap) {
+    judge_.begin_drives(Planned{mishap, 10, 0, 3});
+    return judge_.describe();
+  };
+  EXPECT_NE(described(Mishap::kDriveFault).find("planned: drive fault of joint 3 at 10.0 s"),
+            std::string::npos);
+  EXPECT_NE(described(Mishap::kDrivesSilent).find("planned: drives silent at 10.0 s"),
+            std::string::npos);
 }
 
 TEST_F(FaultJudgeTest, WaitsForTheAlarmThatIsToldBehindTheState) {
@@ -330,6 +366,7 @@ TEST(SoakReport, PassesOnlyWhereNothingWasWrongAndSomethingWasDone) {
   stalled.host_faults = 1;
   EXPECT_FALSE(stalled.passed());
   EXPECT_NE(to_text(stalled).find("HOST NOT FIT: 1 Faults"), std::string::npos);
+  EXPECT_NE(to_text(stalled).find("host not watched: no right to real time"), std::string::npos);
   EXPECT_NE(to_text(violated).find("VIOLATION: too fast (part.cl)"), std::string::npos);
   SoakReport grown = good_report();
   grown.lives[0].last.process.resident_mib = 32;
