@@ -82,8 +82,8 @@ int run_cl(const RunOptions& options, std::ostream& out, std::ostream& err) {
   if (options.file == "-") std::ios::sync_with_stdio(false);
   std::istream& in = options.file == "-" ? std::cin : file;
   if (options.output.empty()) return read_through(options, in, out, err);
-  if (text::is_same_file(options.file, options.output)) {
-    err << options.output << ": is the CL file itself; name another output\n";
+  if (const auto lost = text::refusal_to_write({options.file}, {options.output}); !lost.empty()) {
+    err << lost << "\n";
     return kInputRefused;
   }
   text::WholeFile target(options.output);

@@ -25,9 +25,9 @@ int refuse(const std::string& message) {
 }
 
 int run(const Options& options) {
-  if (text::is_same_file(options.machine.machine, options.pattern)) {
-    return refuse(options.pattern + " is the machine file itself; name another output");
-  }
+  const std::string lost =
+      text::refusal_to_write({options.machine.machine}, {options.picture, options.pattern});
+  if (!lost.empty()) return refuse(lost);
   const MachineModel model = load_machine(options.machine);
   const inspect::Inspection inspection = inspect::inspect(model);
   std::cout << to_text(inspection, model);

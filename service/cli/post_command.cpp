@@ -44,10 +44,9 @@ int run(Options options) {
   if (options.rapid_feed_mm_per_min) {
     options.post.rapid_feed_mm_per_s = units::per_s_from_per_min(*options.rapid_feed_mm_per_min);
   }
-  for (const std::string& read : {options.file, options.machine.machine, options.machine.tools}) {
-    if (!text::is_same_file(read, options.output)) continue;
-    return refuse(options.output + ": is read by this run; name another file to write");
-  }
+  const std::string lost = text::refusal_to_write(
+      {options.file, options.machine.machine, options.machine.tools}, {options.output});
+  if (!lost.empty()) return refuse(lost);
   std::ifstream file;
   std::istream* const input = open_cl_file(options.file, file);
   if (input == nullptr) return refuse(options.file + ": cannot be opened");

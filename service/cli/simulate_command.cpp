@@ -150,13 +150,11 @@ int run(const Options& options) {
   if (input == nullptr) return refuse(options.file + ": cannot be opened");
   cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
   std::optional<record::RecordingWriter> writer;
-  for (const std::string& read : {options.file, options.events, options.start_from,
-                                  options.machine.machine, options.machine.tools}) {
-    for (const std::string& written : {options.record, options.explain_table, options.picture}) {
-      if (!text::is_same_file(read, written)) continue;
-      return refuse(written + ": is read by this run; name another file to write");
-    }
-  }
+  const std::string lost =
+      text::refusal_to_write({options.file, options.events, options.start_from,
+                              options.machine.machine, options.machine.tools},
+                             {options.record, options.explain_table, options.picture});
+  if (!lost.empty()) return refuse(lost);
   if (!options.record.empty()) {
     auto created = record::RecordingWriter::create(options.record, model);
     if (!created) return refuse(created.error().text());

@@ -76,10 +76,9 @@ int make_sample(const Options& options) {
 }
 
 int run(const Options& options) {
-  for (const std::string& written : {options.output, options.picture}) {
-    if (!text::is_same_file(options.patch, written)) continue;
-    return refuse(written + " is the patch file itself; name another output");
-  }
+  const std::string lost =
+      text::refusal_to_write({options.patch}, {options.output, options.picture});
+  if (!lost.empty()) return refuse(lost);
   if (options.patch.empty() == options.sample.empty()) {
     std::cerr << "meridian surface: name a patch file, or a part with --sample\n";
     return kUsage;

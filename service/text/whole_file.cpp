@@ -5,6 +5,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
@@ -22,6 +23,24 @@ namespace {
     text.remove_prefix(static_cast<std::size_t>(count));
   }
   return 0;
+}
+
+[[nodiscard]] bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(a, b, ignored);
+}
+
+/// Whether what is written to `b` replaces what is written to `a`. A pipe or a terminal takes both.
+[[nodiscard]] bool is_same_output(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (a.empty() || b.empty()) return false;
+  if (std::filesystem::exists(a, ignored)) {
+    return std::filesystem::is_regular_file(a, ignored) && is_same_file(a, b);
+  }
+  const auto place = [&ignored](const std::string& name) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(name, ignored), ignored);
+  };
+  return place(a) == place(b);
 }
 
 }  // namespace
@@ -70,9 +89,19 @@ int write_anew(const std::filesystem::path& path, std::string_view content, Sync
   return error;
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return std::filesystem::equivalent(a, b, ignored);
+std::string refusal_to_write(const std::vector<std::string>& read,
+                             const std::vector<std::string>& written) {
+  for (auto one = written.begin(); one != written.end(); ++one) {
+    const auto is_read = [one](const std::string& other) { return is_same_file(*one, other); };
+    const auto is_twice = [one](const std::string& other) { return is_same_output(*one, other); };
+    if (std::any_of(read.begin(), read.end(), is_read)) {
+      return *one + ": is read by this run; name another file to write";
+    }
+    if (std::any_of(written.begin(), one, is_twice)) {
+      return *one + ": is written twice by this run; name another file to write";
+    }
+  }
+  return "";
 }
 
 }  // namespace meridian::text

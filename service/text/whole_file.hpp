@@ -7,12 +7,13 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace meridian::text {
 
 /// A file of a tool's output that is there whole or as it was before: it is written beside its
 /// place, as NAME.part, and put there by commit(). What is no regular file (a pipe, a terminal) is
-/// written to at once and stays what it is. Proof: tests/unit/cli/recording_commands_test.cpp.
+/// written to at once and stays what it is. Proof: tests/unit/text/whole_file_test.cpp.
 class WholeFile {
  public:
   explicit WholeFile(std::string name);
@@ -42,7 +43,9 @@ enum class Sync { kLater, kNow };
 [[nodiscard]] int write_anew(const std::filesystem::path& path, std::string_view content,
                              Sync sync = Sync::kLater, mode_t mode = 0666) noexcept;
 
-/// Whether both names are one file that is there.
-[[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);
+/// Why a run that reads the files `read` may not write `written`: it would lose one of them. A
+/// line that names it; empty: it may. Names that are empty name no file.
+[[nodiscard]] std::string refusal_to_write(const std::vector<std::string>& read,
+                                           const std::vector<std::string>& written);
 
 }  // namespace meridian::text

@@ -66,7 +66,7 @@ TEST(ClCommand, LeavesWhatIsThereWhereItRefuses) {
   const std::string name = part.path().string();
   const CommandOutput itself = run_tool("cl " + name + " -o " + name);
   EXPECT_EQ(itself.exit_code, 3);
-  EXPECT_NE(itself.output.find("is the CL file itself"), std::string::npos) << itself.output;
+  EXPECT_NE(itself.output.find("is read by this run"), std::string::npos) << itself.output;
   EXPECT_EQ(text_of(part), program);
   const TextFile bad("UNITS/MM\nFEDRAT/60\nGOTO/1,2,3\nGOTO/1,2,three\n", ".apt");
   EXPECT_EQ(run_tool("cl " + bad.path().string() + " -o " + kept.path().string()).exit_code, 3);

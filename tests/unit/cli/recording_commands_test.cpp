@@ -94,6 +94,21 @@ TEST_F(RecordingCommands, ASimulationIsNotWrittenOverWhatItReads) {
   }
 }
 
+TEST_F(RecordingCommands, ASimulationWritesNoFileTwice) {
+  const TextFile there("kept\n", ".csv");
+  const std::string one = there.path().string();
+  const std::string none = one.substr(0, one.size() - 4) + "-new.csv";
+  for (const std::string& name : {one, none}) {
+    const CommandOutput refused =
+        run_tool("simulate " + part() + kMachine + "--record " + name + " --explain-table " + name);
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_NE(refused.output.find("is written twice by this run"), std::string::npos)
+        << refused.output;
+  }
+  EXPECT_EQ(meridian::test::read_text(there.path()), "kept\n");
+  EXPECT_FALSE(std::filesystem::exists(none));
+}
+
 TEST_F(RecordingCommands, MachineFileAndToolTableAreNotWrittenOver) {
   const std::string deploy = MERIDIAN_SOURCE_DIR "/deploy/";
   const std::string machine = meridian::test::read_text(deploy + "machines/lai.toml");

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "service/process/programs.hpp"
 
@@ -54,6 +55,19 @@ TEST_F(WrittenFile, IsNotThereWhereItCouldNotBeWrittenAndTheReasonIsTold) {
   EXPECT_EQ(write_anew(nowhere_, "x"), ENOENT);
   fs::create_directory(file_);
   EXPECT_EQ(write_anew(file_, "x"), EEXIST);
+}
+
+TEST_F(WrittenFile, IsNeitherReadNorWrittenASecondTimeByTheSameRun) {
+  const std::string there = file_, none = other_;
+  ASSERT_TRUE(write_whole(there, "x"));
+  fs::create_symlink(file_, folder_.path() / "link");
+  const std::string link = folder_.path() / "link", roundabout = folder_.path() / "." / "other";
+  EXPECT_EQ(refusal_to_write({there, ""}, {none, "", ""}), "");
+  EXPECT_EQ(refusal_to_write({there}, {none, link}).find(link + ": is read by this run"), 0U);
+  for (const auto& [one, same] : {std::pair(there, link), std::pair(none, roundabout)}) {
+    EXPECT_EQ(refusal_to_write({}, {one, same}).find(same + ": is written twice"), 0U) << same;
+  }
+  EXPECT_EQ(refusal_to_write({}, {"/dev/null", "/dev/null"}), "");
 }
 
 }  // namespace
