@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -25,6 +26,7 @@ struct CtlOptions {
   std::string verb, wait, operator_name;
   std::vector<std::string> values;
   JogOptions jog;
+  std::vector<const CLI::Option*> of_jog;  ///< what is said of a jog alone
   double wait_s = 60;
 };
 
@@ -69,8 +71,9 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
     return options.wait.empty() ? nullptr
                                 : "--wait is not for jog, which ends when the joint rests";
   }
-  const bool has_jog = options.jog.for_s > 0 || options.jog.distance > 0;
-  return has_jog ? "--for and --distance are for jog alone" : nullptr;
+  const bool has_jog = std::any_of(options.of_jog.begin(), options.of_jog.end(),
+                                   [](const CLI::Option* option) { return option->count() > 0; });
+  return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
 }
 
 std::optional<double> switch_of(const CtlOptions& options) {
@@ -140,11 +143,7 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
       "ctl", "Ask the machine for something, print `accepted` or `refused` and why");
   std::vector<std::string> names;
   for (const auto& [name, verb] : verbs()) names.push_back(name);
-  command
-      ->add_option(
-          "verb", options->verb,
-          "enable, disable, start, hold, resume, abort, reset, override, rapid-override, jog, "
-          "home, single-block, optional-stop")
+  command->add_option("verb", options->verb, CLI::detail::join(names, ", "))
       ->required()
       ->check(CLI::IsMember(names))
       ->type_name("VERB");
@@ -155,24 +154,32 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
                    "velocity in mm/s or deg/s; home: "
                    "joints, default all; single-block, optional-stop: on or off")
       ->type_name("VALUE");
-  command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
-      ->check(finite_range(1e-3, 1e6));
-  command
-      ->add_option("--distance", options->jog.distance,
-                   "jog: the joint rests exactly so far from where it began, mm or deg")
-      ->check(finite_range(1e-6, 1e6));
-  command
-      ->add_option("--dead-man", options->jog.dead_man_ms,
-                   "jog: the joint comes to rest where the machine hears nothing for so long, ms")
-      ->capture_default_str()
-      ->check(finite_range(40.0, 500.0));
-  command
-      ->add_option("--wait", options->wait,
-                   "Wait until the machine is in this state; exit code 1 where it does not come")
-      ->type_name("STATE");
+  CLI::Option* const time =
+      command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
+          ->check(finite_range(1e-3, 1e6));
+  CLI::Option* const distance =
+      command
+          ->add_option("--distance", options->jog.distance,
+                       "jog: the joint rests exactly so far from where it began, mm or deg")
+          ->check(finite_range(1e-6, 1e6));
+  CLI::Option* const dead_man =
+      command
+          ->add_option(
+              "--dead-man", options->jog.dead_man_ms,
+              "jog: the joint comes to rest where the machine hears nothing for so long, ms")
+          ->capture_default_str()
+          ->check(finite_range(40.0, 500.0));
+  options->of_jog = {time, distance, dead_man};
+  CLI::Option* const wait =
+      command
+          ->add_option(
+              "--wait", options->wait,
+              "Wait until the machine is in this state; exit code 1 where it does not come")
+          ->type_name("STATE");
   command->add_option("--wait-time", options->wait_s, "How long --wait waits, s")
       ->capture_default_str()
-      ->check(finite_range(0.0, 1e7));
+      ->check(finite_range(0.0, 1e7))
+      ->needs(wait);
   const char* user = std::getenv("USER");
   options->operator_name = user != nullptr ? user : "operator";
   command->add_option("--operator", options->operator_name, "Who asks, for the log")

@@ -29,6 +29,8 @@ TEST(Tool, UnknownSubcommandIsAUsageError) { EXPECT_EQ(run_tool("dance").exit_co
 TEST(Tool, AnOptionThatWouldSayNothingIsAUsageError) {
   EXPECT_EQ(run_tool("ctl enable --for 2").exit_code, 2);
   EXPECT_EQ(run_tool("ctl home --distance 2").exit_code, 2);
+  EXPECT_EQ(run_tool("ctl enable --dead-man 100").exit_code, 2);
+  EXPECT_EQ(run_tool("ctl enable --wait-time 5").exit_code, 2);
   EXPECT_EQ(run_tool("ctl jog b3 5 --wait Ready").exit_code, 2);
   EXPECT_EQ(run_tool("status --for 2").exit_code, 2);
   EXPECT_EQ(run_tool("stream /no/such --tools /no/such").exit_code, 2);
