@@ -34,9 +34,10 @@ std::string refusal_of(const ToleranceBounds& bounds, double asked, double of_ma
   const double value = is_asked ? asked : of_machine;
   if (value > 0 && value <= bounds.most && (!is_smooth || value >= bounds.least)) return {};
   return std::string(bounds.name) + " tolerance of the " + (is_asked ? "program" : "machine") +
-         " is " + in_full(value) + " " + bounds.unit + "; allowed is " + in_full(bounds.least) +
-         " to " + in_full(bounds.most) + " " + bounds.unit +
-         (is_asked ? ", or 0 for the machine's" : " where a run is smooth");
+         " is " + in_full(value) + " " + bounds.unit + "; allowed is " +
+         (is_smooth ? in_full(bounds.least) + " to " : "more than 0, up to ") +
+         in_full(bounds.most) + " " + bounds.unit + (is_smooth ? " where a run is smooth" : "") +
+         (is_asked ? ", or 0 for the machine's" : "");
 }
 
 }  // namespace

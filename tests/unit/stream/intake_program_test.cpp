@@ -129,7 +129,9 @@ TEST_F(Intake, AToleranceAboveWhatIsPlannedForIsRefusedWhateverTheTransition) {
   request.tip_tolerance_mm = 10.001;
   const Credit tip = judge_.on_request(request, around_, 100);
   EXPECT_EQ(tip.verdict, Verdict::kRefusedProgram);
-  EXPECT_NE(tip.text.find("tip tolerance of the program is 10.001 mm"), std::string::npos)
+  EXPECT_NE(
+      tip.text.find("tip tolerance of the program is 10.001 mm; allowed is more than 0, up to "),
+      std::string::npos)
       << tip.text;
   request.policies = dds::kPolicySmooth;
   request.tip_tolerance_mm = kMostTipTolerance_mm;
