@@ -39,12 +39,13 @@ enum class Sync { kLater, kNow };
 
 /// All of `content` in a new file `path`: what lies there under that name goes, a link is not
 /// followed. Its mode is `mode` less the umask. Returns 0, or the errno of what failed; then there
-/// is no such file. Blocks as long as the disk does.
+/// is no such file. Blocks as long as the disk does. Proof: tests/unit/text/whole_file_test.cpp.
 [[nodiscard]] int write_anew(const std::filesystem::path& path, std::string_view content,
                              Sync sync = Sync::kLater, mode_t mode = 0666) noexcept;
 
 /// Why a run that reads the files `read` may not write `written`: it would lose one of them. A
 /// line that names it; empty: it may. Names that are empty name no file.
+/// Proof: tests/unit/text/whole_file_test.cpp.
 [[nodiscard]] std::string refusal_to_write(const std::vector<std::string>& read,
                                            const std::vector<std::string>& written);
 

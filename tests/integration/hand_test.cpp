@@ -36,7 +36,7 @@ using stream::Station;
 }
 
 /// A machine whose drives do not know where they are, up to its first program.
-TEST(ByHand, JogsLosesItsHandIsHomedAndRunsAProgram) {
+TEST(ByHand, JogsLosesItsHandIsHomedRunsAProgramAndIsLetGoWhereTheServiceFallsSilent) {
   Plant plant;
   plant.start_service();
   plant.start_drives({"--unreferenced", "all"});

@@ -18,7 +18,7 @@ void write_program(const fs::path& path, const std::string& line) {
   fs::permissions(path, fs::perms::owner_all);
 }
 
-TEST(SoakCommand, StartsDrivesThatEndAtOnceAgainOnlyAfterAPause) {
+TEST(SoakCommand, StartsDrivesThatEndAtOnceNotAgainBeforeAPause) {
   const process::ScratchFolder beside;
   fs::copy_file(MERIDIAN_BINARY_DIR "/bin/meridian", beside.path() / "soaker");
   write_program(beside.path() / "meridian", "exit 1");
