@@ -43,7 +43,8 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"jog", Verb::kJog},
                                                   {"home", Verb::kHome},
                                                   {"single-block", Verb::kSingleBlock},
-                                                  {"optional-stop", Verb::kOptionalStop}};
+                                                  {"optional-stop", Verb::kOptionalStop},
+                                                  {"dry-run", Verb::kDryRun}};
   return kVerbs;
 }
 
@@ -85,7 +86,9 @@ std::optional<double> switch_of(const CtlOptions& options) {
 
 /// The argument of a verb that has one by itself, 0 for others; or says what is wrong.
 std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
-  if (verb == Verb::kSingleBlock || verb == Verb::kOptionalStop) return switch_of(options);
+  const bool is_switch =
+      verb == Verb::kSingleBlock || verb == Verb::kOptionalStop || verb == Verb::kDryRun;
+  if (is_switch) return switch_of(options);
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
   const bool has_joints = verb == Verb::kJog || verb == Verb::kHome;
   double percent = 0;
@@ -152,7 +155,7 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
                    "override: 0 to feed_override_max_percent of the machine's file (150), "
                    "rapid-override: 0 to 100 %; jog: JOINT (or tool-x, -y, -z, -a, -b) and its "
                    "velocity in mm/s or deg/s; home: "
-                   "joints, default all; single-block, optional-stop: on or off")
+                   "joints, default all; single-block, optional-stop, dry-run: on or off")
       ->type_name("VALUE");
   CLI::Option* const time =
       command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")

@@ -51,7 +51,7 @@ int refuse(const std::string& message) {
       return tl::make_unexpected(
           record::RecordError{file, 0, "the drives are never enabled in it", "name another"});
     }
-    if ((row.flags & kSetpointEnabled) != 0) return drives_at(model, row.places);
+    if (is_leading(row.flags)) return drives_at(model, row.places);
   }
 }
 

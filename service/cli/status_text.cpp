@@ -48,8 +48,9 @@ std::string all_states() {
 
 std::string describe(const dds::Status& status, const dds::MachineInfo& machine) {
   std::string text;
-  append(text, "machine   %s: %s%s\n", machine.name.c_str(), text_of(status.state),
-         status.alarm != Alarm::kNone ? " (alarm)" : "");
+  append(text, "machine   %s: %s%s%s\n", machine.name.c_str(), text_of(status.state),
+         status.alarm != Alarm::kNone ? " (alarm)" : "",
+         status.is_dry_run ? ", dry run: no drive moves" : "");
   if (!status.message.empty()) append(text, "message   %s\n", status.message.c_str());
   if (status.session != 0) {
     append(text, "program   %s from station %s\n", status.program.c_str(), status.station.c_str());
@@ -102,8 +103,9 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   add("feed_achieved_mm_per_min", "%.6g", status.feed_achieved_mm_per_min);
   add("feed_override", "%.6g", status.feed_override);
   add("rapid_override", "%.6g", status.rapid_override);
-  append(text, "\"single_block\":%s,\"optional_stop\":%s,",
-         status.is_single_block ? "true" : "false", status.stops_at_optional ? "true" : "false");
+  append(text, "\"single_block\":%s,\"optional_stop\":%s,\"dry_run\":%s,",
+         status.is_single_block ? "true" : "false", status.stops_at_optional ? "true" : "false",
+         status.is_dry_run ? "true" : "false");
   add("plan_time_s", "%.6f", status.plan_time_s);
   append(text,
          "\"cycles_run\":%llu,\"periods_lost\":%llu,\"starvations\":%llu,"

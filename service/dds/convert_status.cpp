@@ -43,6 +43,7 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.rapid_override, wire.rapid_override);
   way(message.is_single_block, wire.is_single_block);
   way(message.stops_at_optional, wire.stops_at_optional);
+  way(message.is_dry_run, wire.is_dry_run);
   way(message.rate, wire.rate);
   way(message.plan_time_s, wire.plan_time_s);
   way(message.joints, wire.joints);

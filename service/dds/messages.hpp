@@ -210,6 +210,7 @@ struct Status {
   double rapid_override = 1;
   bool is_single_block = false;
   bool stops_at_optional = false;
+  bool is_dry_run = false;
   double rate = 1;
   double plan_time_s = 0;
   JointVector joints{};

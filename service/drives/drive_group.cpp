@@ -57,6 +57,7 @@ void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
 }
 
 void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
+  if ((setpoint.setpoint.flags & kSetpointDry) != 0) return;
   if (!is_dead_ && setpoint_faults_.lets_pass(setpoint)) accept(setpoint);
 }
 

@@ -100,6 +100,7 @@ void CycleThread::show() noexcept {
   view_.rapid_override = state_.rapid_override;
   view_.is_single_block = state_.single_block.is_on;
   view_.stops_at_optional = state_.stops_at_optional;
+  view_.is_dry_run = state_.is_dry_run;
   const TimePiece* piece = motion_.piece();
   const PathPiece* path = motion_.path();
   if (piece == nullptr) {

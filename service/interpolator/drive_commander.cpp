@@ -12,10 +12,11 @@ DriveCommander::DriveCommander(dds::Participant& participant, int drive_count,
 
 void DriveCommander::work(const CycleView& view, const DriveWords& words,
                           std::int64_t now_ns) noexcept {
+  const bool is_wanted = is_enabled(view.record.state) && !view.is_dry_run;
   for (int drive = 0; drive < drive_count_; ++drive) {
     const auto i = static_cast<std::size_t>(drive);
     const DriveOrder next = next_order((words.joint_mask >> drive & 1U) != 0, words.statusword[i],
-                                       {.is_enabled = is_enabled(view.record.state),
+                                       {.is_enabled = is_wanted,
                                         .is_homing = (view.homing.mode_mask >> drive & 1U) != 0,
                                         .is_searching = (view.homing.start_mask >> drive & 1U) != 0,
                                         .is_reset = now_ns < reset_until_ns_});

@@ -55,7 +55,7 @@ struct CycleView {
   std::uint16_t epoch = 0;
   Alarm alarm = Alarm::kNone;
   double feed_override = 1, rapid_override = 1;
-  bool is_single_block = false, stops_at_optional = false;
+  bool is_single_block = false, stops_at_optional = false, is_dry_run = false;
   double feed_mm_per_s = 0;  ///< programmed, of the last motion of the program; 0: rapid
   std::uint8_t branch = 0;   ///< of the path piece in force
   bool is_at_pole = false;   ///< the free joint turns on the pole

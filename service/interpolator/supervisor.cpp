@@ -42,7 +42,7 @@ Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
 
 void Supervisor::run() noexcept {
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
-    if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
+    refresh_view();
     ports_.drive_words.refresh();
     ports_.state.store(view_.record.state, std::memory_order_relaxed);
     take_commands();
@@ -55,6 +55,19 @@ void Supervisor::run() noexcept {
     look_for_action_peer();
     waitset_.wait(kLookAtRings);
   }
+}
+
+void Supervisor::refresh_view() {
+  if (!ports_.commands_view.refresh()) return;
+  view_ = ports_.commands_view.latest();
+  if (std::exchange(is_dry_run_, view_.is_dry_run) == view_.is_dry_run) return;
+  if (is_dry_run_) {
+    tool_before_mm_ = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
+  } else {
+    ports_.spindle_tool_mm.store(tool_before_mm_, std::memory_order_relaxed);
+  }
+  looked_ns_ = 0;
+  look_for_action_peer();
 }
 
 void Supervisor::switch_off() noexcept {
@@ -96,10 +109,11 @@ void Supervisor::take_command(const dds::CommandRequest& request) {
     return;
   }
   // Whoever saw a status that is younger than the last look at the cycle is not late.
-  if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
+  refresh_view();
   const std::uint64_t rest = stream::rest_of(view_.record.state, view_.record.sequence);
-  const Refusal refusal =
-      status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns(), rest);
+  Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns(), rest);
+  // Whoever enables has not seen the dry run begin or end that is on its way to the cycle.
+  if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) refusal = Refusal::kStale;
   if (is_switching_off_ || refusal != Refusal::kNone) {
     const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
     reply(request, false, why,
@@ -108,7 +122,8 @@ void Supervisor::take_command(const dds::CommandRequest& request) {
     return;
   }
   const State state = view_.record.state;
-  const bool may_reset_drives = state == State::kFault || state == State::kOff;
+  const bool may_reset_drives =
+      !view_.is_dry_run && (state == State::kFault || state == State::kOff);
   if (request.verb == Verb::kReset && may_reset_drives && delayed_until_ns_ == 0) {
     drives_.reset_faults(monotonic_ns());
     delayed_reset_ = request;
@@ -116,6 +131,12 @@ void Supervisor::take_command(const dds::CommandRequest& request) {
     return;
   }
   send(request, request.verb, request.argument);
+}
+
+bool Supervisor::is_pending(Verb verb) const noexcept {
+  return std::any_of(pending_.begin(), pending_.end(), [verb](const Pending& pending) {
+    return pending.key != 0 && pending.request.verb == verb;
+  });
 }
 
 void Supervisor::send_delayed_reset() {
@@ -185,7 +206,7 @@ void Supervisor::answer(const Event& event) {
     return place.key != 0 && place.key == event.a;
   });
   if (pending == pending_.end()) return;
-  if (ports_.commands_view.refresh()) view_ = ports_.commands_view.latest();
+  refresh_view();
   const bool is_accepted = event.code == EventCode::kAccepted;
   const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
   const Verb verb = pending->request.verb;
@@ -218,7 +239,7 @@ void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Ref
                          .refusal = refusal,
                          .state = view_.record.state,
                          .epoch = view_.epoch,
-                         .text = text};
+                         .text = is_accepted && view_.is_dry_run ? text + " (dry run)" : text};
   (void)replies_.write(reply);
   answered_[answered_at_++ % answered_.size()] = {request.operator_id, request.request, reply};
 }
@@ -232,7 +253,8 @@ void Supervisor::publish_action(const Event& event) {
     if (!ports_.actions.try_pop(action_)) return;
   }
   is_action_open_ = true;
-  if (service_.auxiliary == config::AuxiliaryPolicy::kIgnore) {
+  // Of a dry run neither: no tool is changed where the machine only would be.
+  if (service_.auxiliary == config::AuxiliaryPolicy::kIgnore || view_.is_dry_run) {
     settle_action(true);
     return;
   }
@@ -274,7 +296,8 @@ void Supervisor::look_for_action_peer() {
   constexpr std::int64_t kLook_ns = 100'000'000;
   if (monotonic_ns() - looked_ns_ < kLook_ns) return;
   looked_ns_ = monotonic_ns();
-  const bool is_there = actions_.matched_readers() > 0 && actions_done_.matched_writers() > 0;
+  const bool is_there =
+      is_dry_run_ || (actions_.matched_readers() > 0 && actions_done_.matched_writers() > 0);
   if (std::exchange(has_action_peer_, is_there) != is_there && tell_intake_) tell_intake_(is_there);
 }
 

@@ -56,6 +56,7 @@ class Supervisor {
   void take_jogs();
   void take_command(const dds::CommandRequest& request);
   void send(const dds::CommandRequest& request, Verb verb, double argument);
+  [[nodiscard]] bool is_pending(Verb verb) const noexcept;
   void take_events();
   void answer(const Event& event);
   /// What an accepted verb leads to; a program's start to its approach.
@@ -70,6 +71,8 @@ class Supervisor {
   void send_delayed_reset();
   void work_on_switching_off();
   void look_for_action_peer();
+  /// The newest view of the cycle, and what follows from a dry run that began or ended by it.
+  void refresh_view();
 
   const MachineModel& model_;
   const ToolTable& tools_;
@@ -96,7 +99,9 @@ class Supervisor {
   PlannedAction action_{};  ///< newest that was due
   std::uint64_t action_id_ = 0;
   bool is_action_open_ = false;
-  bool has_action_peer_ = false;
+  bool has_action_peer_ = false;  ///< or a dry run, which needs none
+  bool is_dry_run_ = false;
+  double tool_before_mm_ = 0;  ///< in the spindle when the dry run began
   std::atomic<bool> is_switching_off_{false}, is_off_{false};
   std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
   dds::CommandRequest delayed_reset_;  ///< waits until drives left their fault

@@ -261,6 +261,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.rapid_override = view_.rapid_override;
   status.is_single_block = view_.is_single_block;
   status.stops_at_optional = view_.stops_at_optional;
+  status.is_dry_run = view_.is_dry_run;
   status.rate = record.rate;
   status.plan_time_s = record.plan_time_s;
   status.joints = record.joints;

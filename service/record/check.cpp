@@ -114,7 +114,7 @@ class Survey {
   /// The cut begins where the joints leave the place nearest to the path's begin for the first
   /// time, and ends with the last motion of the program: that of the next begins with its approach.
   void find_ends(const RecordingRow& row, bool has_moved) {
-    const bool is_enabled = (row.flags & kSetpointEnabled) != 0;
+    const bool is_enabled = is_leading(row.flags);
     if (rows_ > 0 && (!has_moved || !is_enabled)) return;
     if (has_moved && row.kind != MotionKind::kApproach) has_run_ = true;
     if (has_moved && row.kind == MotionKind::kApproach && has_run_) has_later_program_ = true;

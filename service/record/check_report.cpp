@@ -133,6 +133,10 @@ std::string to_text(const CheckReport& report) {
     append(text, "FaultStop  %llu cycles, judged by the FaultStop limits\n",
            static_cast<Count>(report.fault_stop_cycles));
   }
+  if (report.dry_cycles > 0) {
+    append(text, "dry run    %llu cycles: no drive followed them\n",
+           static_cast<Count>(report.dry_cycles));
+  }
   if (report.passed()) return text + "PASS\n";
   text += "FAIL\n";
   for (const Finding& finding : report.findings) {
@@ -177,8 +181,8 @@ std::string to_json(const CheckReport& report) {
     append(text, "  \"stage_determinant_mm_per_rad\": %.9g,\n", report.stage.determinant_mm);
     append_peak(text, "stage_apart_mm", report.stage.apart_mm);
   }
-  append(text, "  \"fault_stop_cycles\": %llu,\n  \"joints\": [",
-         static_cast<Count>(report.fault_stop_cycles));
+  append(text, "  \"fault_stop_cycles\": %llu,\n  \"dry_cycles\": %llu,\n  \"joints\": [",
+         static_cast<Count>(report.fault_stop_cycles), static_cast<Count>(report.dry_cycles));
   for (int i = 0; i < report.joint_count; ++i) {
     const JointUse& use = report.joints[i];
     const char* unit = report.is_rotary[i] ? "deg" : "mm";

@@ -85,6 +85,7 @@ struct CheckReport {
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows
   std::uint64_t fault_stop_cycles = 0;
+  std::uint64_t dry_cycles = 0;  ///< of a dry run: no drive followed
   bool has_stage = false;
   StageUse stage;
   int joint_count = 0;  ///< the drives of the stage are counted

@@ -37,7 +37,7 @@ class Motion {
       auto read = reader_.next(row);
       if (!read) return std::move(read.error());
       if (!*read) return std::nullopt;
-      const bool is_enabled = (row.flags & kSetpointEnabled) != 0;
+      const bool is_enabled = is_leading(row.flags);
       if (has_before && is_enabled && row.joints != before.joints) break;
       has_before = is_enabled;
       before = row;
@@ -51,8 +51,7 @@ class Motion {
     before = row;
     auto read = reader_.next(row);
     if (!read) return std::move(read.error());
-    is_there =
-        *read && (row.flags & kSetpointEnabled) != 0 && row.plan_time_s >= before.plan_time_s;
+    is_there = *read && is_leading(row.flags) && row.plan_time_s >= before.plan_time_s;
     if (!is_there) return std::nullopt;
     ++rows;
     missing += row.cycle - before.cycle - 1;

@@ -55,6 +55,7 @@ class Finder {
       due_ns_ = row.due_ns;
     }
     if (row.state == State::kFaultStop) ++stop_rows_;
+    if ((row.flags & kSetpointDryEnabled) != 0) report_.is_dry_run = true;
     last_ = row;
   }
 
@@ -170,6 +171,7 @@ std::string to_text(const FlightReport& report, const MachineModel& model) {
     append(text, " in cycle %llu, block %llu of line %u, %s before\n", Count{report.cycle},
            Count{report.block}, report.line, name_of(report.state));
   }
+  if (report.is_dry_run) text += "dry run    no drive followed\n";
   append(text, "kept       %.3f s before it, %.3f s behind; %llu cycles, %llu missing\n",
          report.before_s, report.after_s, Count{report.rows}, Count{report.missing});
   if (report.stop_s > 0) append(text, "stop       FaultStop for %.3f s\n", report.stop_s);

@@ -101,11 +101,12 @@ void JointJudge::add(const RecordingRow& row, bool has_velocity) {
   // they still do where that is given up.
   const bool is_given_up = row.state == State::kAborting || row.state == State::kFaultStop;
   is_homing_ = row.state == State::kHoming || (is_homing_ && is_given_up);
-  const bool is_enabled = (row.flags & kSetpointEnabled) != 0 && !is_homing_;
+  const bool is_enabled = is_leading(row.flags) && !is_homing_;
   std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
   rows_.back() = row;
   run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;
   if ((row.flags & kSetpointFaultStop) != 0) ++fault_rows_;
+  if ((row.flags & kSetpointDryEnabled) != 0) ++dry_rows_;
   if (has_stage(model_)) judge_stage(row);
   for (int i = 0; i < limited_count(model_); ++i) {
     const double q = row.places[i];
@@ -134,6 +135,7 @@ void JointJudge::finish(CheckReport& report) const {
         {Finding::Kind::kStage, text, unfit_.use.cycle, unfit_.use.line, unfit_.count});
   }
   report.fault_stop_cycles = fault_rows_;
+  report.dry_cycles = dry_rows_;
   report.sent_velocity = sent_peak_;
   for (int i = 0; i < report.joint_count; ++i) {
     const JointSpec& joint = limited_spec(model_, i);

@@ -45,7 +45,7 @@ class JointJudge {
   StageUse stage_use_;
   Excess unfit_;
   Peak sent_peak_;
-  std::uint64_t fault_rows_ = 0;
+  std::uint64_t fault_rows_ = 0, dry_rows_ = 0;
 };
 
 }  // namespace meridian::record

@@ -22,8 +22,9 @@ Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const s
 
 bool is_replayed(const Event& event) noexcept {
   const auto verb = static_cast<Verb>(event.b);
-  const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;  // no program is there then
-  return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_by_hand) ||
+  // No program is there then.
+  const bool is_outside = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kDryRun;
+  return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_outside) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
          event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned;
 }

@@ -28,7 +28,7 @@ template <class Use>
     auto read = recording.next(row);
     if (!read) return std::move(read.error());
     if (!*read) return std::nullopt;
-    if ((row.flags & kSetpointEnabled) != 0) use(row);
+    if (is_leading(row.flags)) use(row);
   }
 }
 

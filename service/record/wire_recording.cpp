@@ -101,7 +101,9 @@ void WireBook::add(const WireRow& row) {
     last_due_ = setpoint.due_ns;
   }
   ++received_;
-  sent_[setpoint.cycle % kRemembered] = {setpoint.cycle, setpoint.position};
+  const bool is_dry = (setpoint.flags & kSetpointDry) != 0;
+  dry_ += is_dry ? 1U : 0U;
+  if (!is_dry) sent_[setpoint.cycle % kRemembered] = {setpoint.cycle, setpoint.position};
   const std::int64_t age = row.arrival_ns - setpoint.due_ns;
   oldest_ns_ = std::max(oldest_ns_, age);
   const double octaves = std::log2(std::max(1.0, static_cast<double>(age) / kFirstEdge_ns));
@@ -126,6 +128,7 @@ std::string WireBook::to_text() const {
   if (gap_count_ > gaps_.size()) {
     add("  and %llu gaps more\n", static_cast<Count>(gap_count_ - gaps_.size()));
   }
+  if (dry_ > 0) add("dry run    %llu of them: no drive followed\n", static_cast<Count>(dry_));
   if (off_grid_ > 0) add("  %llu due times off the grid\n", static_cast<Count>(off_grid_));
   if (restarts_ > 0) {
     add("  the service was started anew %llu times\n", static_cast<Count>(restarts_));

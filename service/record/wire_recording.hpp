@@ -70,7 +70,7 @@ class WireBook {
   const MachineModel& model_;
   std::int64_t cycle_ns_;
   std::uint64_t received_ = 0, missing_ = 0, longest_gap_ = 0, duplicates_ = 0, restarts_ = 0;
-  std::uint64_t gap_count_ = 0, off_grid_ = 0;
+  std::uint64_t gap_count_ = 0, off_grid_ = 0, dry_ = 0;
   std::uint64_t last_cycle_ = 0;
   std::int64_t last_due_ = 0;
   std::vector<Gap> gaps_;

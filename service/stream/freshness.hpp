@@ -15,8 +15,8 @@ namespace meridian::stream {
 inline constexpr std::int64_t kFreshness_ns = 500'000'000;
 
 /// Whether `verb` can set something in motion or make it faster. Hold, abort, disable and reset
-/// only ever stop, and so do single block and optional stops that are switched on: they are never
-/// stale.
+/// only ever stop, and so do single block, optional stops and the dry run that are switched on:
+/// they are never stale.
 [[nodiscard]] constexpr bool needs_freshness(Verb verb, double argument) noexcept {
   switch (verb) {
     case Verb::kEnable:
@@ -29,6 +29,7 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
       return true;
     case Verb::kSingleBlock:
     case Verb::kOptionalStop:
+    case Verb::kDryRun:
       return argument != 1;
     case Verb::kDisable:
     case Verb::kHold:

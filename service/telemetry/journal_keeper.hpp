@@ -12,8 +12,9 @@ namespace meridian::telemetry {
 
 /// Decides from the events of the cycle when the journal gets a new entry, and which: whenever a
 /// program begins, comes to rest or ends, and once a second while its blocks go on. Behind a fault
-/// it names the block in which the alarm came, not where the commanded path ran out to. One thread.
-/// Proof: tests/unit/telemetry/journal_keeper_test.cpp.
+/// it names the block in which the alarm came, not where the commanded path ran out to. A dry run
+/// cuts nothing: what was noted before stays. One thread. Proof:
+/// tests/unit/telemetry/journal_keeper_test.cpp.
 class JournalKeeper {
  public:
   static constexpr std::int64_t kPeriod_ns = 1'000'000'000;
@@ -41,6 +42,7 @@ class JournalKeeper {
   bool has_program_ = false;  ///< one was started and is not over
   bool is_urgent_ = false;    ///< begun, at rest or over
   bool has_news_ = false;     ///< a block began or ended
+  bool is_dry_run_ = false;
   std::int64_t noted_ns_ = 0;
 };
 

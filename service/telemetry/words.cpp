@@ -30,8 +30,13 @@ namespace {
   return fmt::format("{:.6g} mm", value);
 }
 
+[[nodiscard]] bool is_switch(Verb verb) {
+  return verb == Verb::kSingleBlock || verb == Verb::kOptionalStop || verb == Verb::kDryRun;
+}
+
 [[nodiscard]] std::string remedy_for_wrong_state(Verb verb, State state) {
   const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;
+  if (verb == Verb::kDryRun) return "it begins and ends in Off alone; disable first";
   switch (state) {
     case State::kJogging:
       return is_by_hand ? "somebody jogs; wait until the joints are let go"
@@ -98,6 +103,10 @@ std::string describe(const Event& event, const MachineModel& model) {
       return fmt::format("state {} -> {}", name_of(static_cast<State>(event.b)),
                          name_of(static_cast<State>(event.a)));
     case EventCode::kAccepted:
+      if (static_cast<Verb>(event.b) == Verb::kDryRun) {
+        return event.x != 0 ? "dry run on: drives stay off, actions are done at once"
+                            : "dry run off: drives may be enabled";
+      }
       return fmt::format("{} accepted", name_of(static_cast<Verb>(event.b)));
     case EventCode::kRefused:
       return fmt::format("{} refused: {}", name_of(static_cast<Verb>(event.b)),
@@ -181,6 +190,11 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
     case Alarm::kReferenceLost:
       text = fmt::format("drive {} has lost its reference; reset, enable, then home it", name);
       break;
+    case Alarm::kDriveEnabled:
+      text = fmt::format(
+          "drive {} is enabled in a dry run, and not by this service; switch it off, then reset",
+          name);
+      break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";
       break;
@@ -217,7 +231,7 @@ std::string describe(Verb verb, State state) {
   if (verb == Verb::kFeedOverride || verb == Verb::kRapidOverride) {
     return fmt::format("{} set", name_of(verb));
   }
-  if (verb == Verb::kSingleBlock || verb == Verb::kOptionalStop) {
+  if (is_switch(verb)) {
     return fmt::format("{} set; the machine is {}", name_of(verb), name_of(state));
   }
   return fmt::format("{} accepted; the machine is {}", name_of(verb), name_of(state));
@@ -245,8 +259,7 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       break;
     case Refusal::kOutOfRange:
       why = verb == Verb::kJog || verb == Verb::kHome ? "the machine has no such joint"
-            : verb == Verb::kSingleBlock || verb == Verb::kOptionalStop
-                ? "the value is out of range: on or off"
+            : is_switch(verb)                         ? "the value is out of range: on or off"
             : verb == Verb::kFeedOverride
                 ? "the value is out of range: from 0 to what the machine's file allows "
                   "(feed_override_max_percent)"
@@ -265,6 +278,14 @@ std::string describe(Verb verb, Refusal refusal, State state) {
           "the machine's override_ramp_s is longer than {} s: blocks could not be braked for in "
           "time",
           kMostStepRamp_s);
+      break;
+    case Refusal::kDriveEnabled:
+      why =
+          "a drive is enabled, or was when it was heard last; see that it is off, or start the "
+          "service anew where it is gone";
+      break;
+    case Refusal::kDryRun:
+      why = "this is a dry run: every joint has its reference, and no drive searches for one";
       break;
   }
   return fmt::format("{} refused: {}", name_of(verb), why);

@@ -64,7 +64,11 @@ std::string service_file(const Plant& plant, const std::string& more) {
 
 void run_live(Plant& plant, const std::string& part, const LiveRun& live) {
   plant.start_service(joined({"--service", service_file(plant, live.settings)}, live.service));
-  plant.start_drives();
+  if (live.is_dry_run) {
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kDryRun, 1));
+  } else {
+    plant.start_drives();
+  }
   ASSERT_TRUE(plant.enable()) << plant.service().said();
   Process station(joined(joined({"meridian", "stream", part, "--domain", plant.domain(),
                                  "--machine-name", live.machine, "--wait-end"},

@@ -22,7 +22,8 @@ struct LiveRun {
   std::function<void()> operate;        ///< instead of a plain start
   std::function<void()> watch = [] {};  ///< called again and again while the part is cut
   milliseconds patience{60'000};
-  std::string wire;  ///< file for `meridian record` beside the station; empty: none
+  bool is_dry_run = false;  ///< without drives
+  std::string wire;         ///< file for `meridian record` beside the station; empty: none
 };
 
 /// The small program as a CL file, with a dwell and an action in it.

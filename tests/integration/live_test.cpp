@@ -15,6 +15,7 @@
 
 #include "integration/live_run.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/rt/drive_state.hpp"
 #include "meridian/units.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/record/recording_reader.hpp"
@@ -274,6 +275,51 @@ TEST(Live, RestsBehindBlocksAndAtOptionalStopsAndIsReplayedBitForBit) {
   expect_same(plant,
               simulate_part(plant, part, live, {"--transition", "smooth", "--events", events}));
   expect_checked(plant, part, live);
+}
+
+/// What drives reported, every sample of it.
+struct Stand {
+  explicit Stand(Plant& plant) : reports(plant.participant()) {}
+  void look(const MachineModel& model) {
+    for (dds::DriveFeedback report; reports.take(report); ++seen) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
+        moved = std::max(moved, std::abs(report.position[i] - model.joints[i].home));
+        were_on |= drive_state(report.statusword[i]) == DriveState::kOperationEnabled;
+      }
+    }
+  }
+  dds::Reader<dds::DriveFeedback> reports;
+  double moved = 0;
+  bool were_on = false;
+  int seen = 0;
+};
+
+/// Nobody awaits its actions, no drive is there; those that come in the middle of it stay off.
+TEST(Live, CutsDryWithoutDrivesAsTheSimulationDoesAndDrivesThatComeStandStill) {
+  Plant plant;
+  const MachineModel model = config::load_machine(plant.machine());
+  const std::string part = (plant.folder() / "part.cls").string();
+  write_cl_file(part, 16);
+  Stand stand(plant);
+  LiveRun live;
+  live.is_dry_run = true;
+  live.wire = (plant.folder() / "wire.csv").string();
+  live.operate = [&] {
+    EXPECT_TRUE(plant.status().is_dry_run);
+    plant.start_drives();
+    ASSERT_TRUE(eventually([&] { return stand.look(model), stand.seen > 0; }));
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
+  };
+  live.watch = [&] { stand.look(model); };
+  ASSERT_NO_FATAL_FAILURE(run_and_judge(plant, part, live));
+  EXPECT_GT(stand.seen, 100);
+  EXPECT_EQ(stand.moved, 0);
+  EXPECT_FALSE(stand.were_on);
+  expect_on_wire(plant, live);
+  auto rows = record::RecordingReader::open(plant.recording(), model);
+  for (record::RecordingRow row; rows && rows->next(row).value_or(false);) {
+    ASSERT_EQ(row.flags & kSetpointEnabled, 0) << row.cycle;
+  }
 }
 
 }  // namespace

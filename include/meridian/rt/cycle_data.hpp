@@ -14,10 +14,18 @@ namespace meridian {
 
 /// Flags of a setpoint, as sent to the drives.
 enum SetpointFlag : std::uint16_t {
-  kSetpointEnabled = 1,    ///< drives follow this setpoint
-  kSetpointMoving = 2,     ///< commanded velocity is not zero
-  kSetpointFaultStop = 4,  ///< part of a FaultStop
+  kSetpointEnabled = 1,      ///< drives follow this setpoint
+  kSetpointMoving = 2,       ///< commanded velocity is not zero
+  kSetpointFaultStop = 4,    ///< part of a FaultStop
+  kSetpointDry = 8,          ///< of a dry run: no drive follows it, whatever the other flags say
+  kSetpointDryEnabled = 16,  ///< of a dry run in the place of kSetpointEnabled, which none has
 };
+
+/// Whether the machine leads the joints by this setpoint, be it that nobody follows (dry run);
+/// else it is where the drives are.
+[[nodiscard]] constexpr bool is_leading(std::uint16_t flags) noexcept {
+  return (flags & (kSetpointEnabled | kSetpointDryEnabled)) != 0;
+}
 
 /// What one cycle commands to the drives.
 struct Setpoint {
@@ -116,6 +124,7 @@ enum class Alarm : std::uint8_t {
   kHomingFailed,   ///< a drive found no reference (Ready, not FaultStop)
   kHomingTimeout,  ///< nor in the time that the machine's file allows (Ready, not FaultStop)
   kReferenceLost,  ///< of a joint, while a program holds the machine
+  kDriveEnabled,   ///< a drive reports operation enabled in a dry run
 };
 
 /// Why a verb was refused.
@@ -130,6 +139,8 @@ enum class Refusal : std::uint8_t {
   kFaultPresent,
   kProgramPresent,  ///< a station holds the machine: what it sends is planned from where it stands
   kSlowRamp,        ///< the machine's override ramp is too long for single block
+  kDriveEnabled,    ///< no dry run while a drive reports operation enabled, or did so last
+  kDryRun,          ///< in a dry run nothing is homed
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

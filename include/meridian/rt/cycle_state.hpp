@@ -177,6 +177,7 @@ struct CycleState {
   double program_time = 0;  ///< plan time from the program's start to the begin of that piece
   PathState on_path{};  ///< s in the path piece in force; ṡ, s̈ as they are, override included
   bool stops_at_optional = false;  ///< optional stops stop
+  bool is_dry_run = false;         ///< drives stay off; see rt/dry_run.hpp
   SingleBlock single_block;
   StopInProgress stop;
   Jogging jogging;
@@ -209,7 +210,8 @@ struct Cycle {
   int periods;                  ///< that motion goes on by: 1 and those that were lost
   JointVector previous;         ///< where the joints were before: last setpoint, or feedback
   double elapsed;               ///< s since `previous`
-  const JointVector& feedback;  ///< position of in.feedback as joints
+  const Feedback& drives;       ///< in.feedback; in a dry run what the drives would report
+  const JointVector& feedback;  ///< position of `drives` as joints
 };
 
 /// The joints are where the drives are.
@@ -217,7 +219,7 @@ inline void take_over_feedback(Cycle& c) noexcept {
   c.state.joints = c.feedback;
   if (!has_stage(c.machine)) return;
   c.state.latched_joints = c.feedback;
-  c.state.latched_drives = c.in.feedback.position;
+  c.state.latched_drives = c.drives.position;
 }
 
 /// Adds an event; cycle, line and epoch are filled in. RT: cycle.

@@ -98,7 +98,7 @@ inline void fail_homing(Cycle& c, Alarm alarm, std::uint32_t joints) noexcept {
 /// Setpoints of the drives that are in homing mode go where they report to be; whoever is not there
 /// yet, or back already, follows setpoints and must be held. Of a stage both or none.
 inline void let_homing_move(Cycle& c) noexcept {
-  std::uint32_t moving = c.state.homing.busy & c.in.feedback.homing_mask;
+  std::uint32_t moving = c.state.homing.busy & c.drives.homing_mask;
   const std::uint32_t pair = stage_pair(c.machine);
   if ((moving & pair) != pair) moving &= ~pair;
   for (; moving != 0; moving &= moving - 1) {
@@ -111,7 +111,7 @@ inline void let_homing_move(Cycle& c) noexcept {
 /// One cycle of searching.
 inline void watch_search(Cycle& c) noexcept {
   Homing& homing = c.state.homing;
-  const Feedback& f = c.in.feedback;
+  const Feedback& f = c.drives;
   homing.begun |= homing.busy & ~f.homed_mask & ~f.homing_error_mask;
   const std::uint32_t seen =
       homing.time > kSearchUnseen_s ? homing.busy : homing.busy & homing.begun;
@@ -127,7 +127,7 @@ inline void watch_search(Cycle& c) noexcept {
 /// The group is done: the next one's turn, or the end. False at the end.
 [[nodiscard]] inline bool finish_group(Cycle& c) noexcept {
   Homing& homing = c.state.homing;
-  const std::uint32_t referenced = homing.busy & c.in.feedback.referenced_mask;
+  const std::uint32_t referenced = homing.busy & c.drives.referenced_mask;
   if (!homing.has_failed && referenced != 0) tell(c, EventCode::kJointsHomed, referenced);
   if (take_group(c.machine, c.state.options, homing)) return true;
   homing = {};
@@ -139,7 +139,7 @@ inline void watch_search(Cycle& c) noexcept {
 [[nodiscard]] inline bool follow_homing(Cycle& c, bool& is_stuck) noexcept {
   using Phase = Homing::Phase;
   Homing& homing = c.state.homing;
-  const Feedback& f = c.in.feedback;
+  const Feedback& f = c.drives;
   rest(c);
   homing.time += c.dt * c.periods;
   const bool is_late = homing.time > kChangeMode_s;

@@ -93,7 +93,7 @@ inline void choose_axis(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   const JogOrder& order = jogging.order;
   const int joint = joint_of(order);
-  const std::uint32_t referenced = c.in.feedback.referenced_mask;
+  const std::uint32_t referenced = c.drives.referenced_mask;
   if (is_in_hand(jogging)) return survey_way(c);
   if (!jogging.axis.is_at_rest()) return;
   jogging.joint = -1;

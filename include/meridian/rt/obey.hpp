@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/dry_run.hpp"
 #include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/homing.hpp"
 #include "meridian/rt/jogging.hpp"
@@ -27,6 +28,15 @@ inline void drop_program(Cycle& c) noexcept {
   tell(c, EventCode::kEpochAdvanced, c.state.epoch);
 }
 
+/// Begins or ends the dry run: what was sent for the one is not run as the other, and where the
+/// drives are, only they know.
+inline void set_dry_run(Cycle& c, bool is_on) noexcept {
+  if (c.state.is_dry_run == is_on) return;
+  c.state.is_dry_run = is_on;
+  if (!is_on) c.state.joints = {};
+  drop_program(c);
+}
+
 /// The joints that `home` names; 0: none, or what is no mask.
 [[nodiscard]] inline std::uint32_t joints_to_home(const MachineModel& machine,
                                                   double argument) noexcept {
@@ -40,14 +50,30 @@ inline void drop_program(Cycle& c) noexcept {
 [[nodiscard]] inline Refusal condition_of_hand(const Cycle& c, const Command& command) noexcept {
   if (c.in.session != 0) return Refusal::kProgramPresent;
   if (command.verb == Verb::kHome) {
+    if (c.state.is_dry_run) return Refusal::kDryRun;
     return joints_to_home(c.machine, command.argument) != 0 ? Refusal::kNone : Refusal::kOutOfRange;
   }
   const double what = command.argument, tool = what - kMaxJoints;
   const bool is_joint = what >= 0 && what < c.machine.joint_count;
   if (!is_joint && !(tool >= 0 && tool < kToolAxisCount)) return Refusal::kOutOfRange;
   const auto joint = static_cast<int>(what);
-  return may_jog(c.machine, joint, c.in.feedback.referenced_mask) ? Refusal::kNone
-                                                                  : Refusal::kNotReferenced;
+  return may_jog(c.machine, joint, c.drives.referenced_mask) ? Refusal::kNone
+                                                             : Refusal::kNotReferenced;
+}
+
+/// Why the machine may not be enabled now: of a dry run, because the emergency input is open or a
+/// drive is on.
+[[nodiscard]] inline Refusal condition_of_enable(const Cycle& c) noexcept {
+  const bool is_dry = c.state.is_dry_run;
+  if (is_dry && is_drive_enabled(c)) return Refusal::kDriveEnabled;
+  if (!is_dry && !is_feedback_there(c)) return Refusal::kNoFeedback;
+  const bool has_fault = !is_dry && (c.drives.fault_mask & all_joints(c.machine)) != 0;
+  return c.drives.emergency_stop || has_fault ? Refusal::kFaultPresent : Refusal::kNone;
+}
+
+[[nodiscard]] inline Refusal condition_of_dry_run(const Cycle& c, double argument) noexcept {
+  if (argument != 0 && argument != 1) return Refusal::kOutOfRange;
+  return argument == 1 && is_drive_enabled(c) ? Refusal::kDriveEnabled : Refusal::kNone;
 }
 
 /// Single block is offered up to this override ramp: braking takes half of it in plan time, which
@@ -56,13 +82,13 @@ inline constexpr double kMostStepRamp_s = 2;
 
 /// Why a verb that the table allows is refused now; kNone: it is not.
 [[nodiscard]] inline Refusal condition_of(Cycle& c, const Command& command) noexcept {
-  const Feedback& f = c.in.feedback;
+  const Feedback& f = c.drives;
   const std::uint32_t all = all_joints(c.machine);
   switch (command.verb) {
     case Verb::kEnable:
-      if (!is_feedback_there(c)) return Refusal::kNoFeedback;
-      return f.emergency_stop || (f.fault_mask & all) != 0 ? Refusal::kFaultPresent
-                                                           : Refusal::kNone;
+      return condition_of_enable(c);
+    case Verb::kDryRun:
+      return condition_of_dry_run(c, command.argument);
     case Verb::kStart:
       if ((f.referenced_mask & all) != all) return Refusal::kNotReferenced;
       return !c.state.single_block.is_behind || leave_block(c) ? Refusal::kNone
@@ -114,7 +140,11 @@ inline void begin_rest(Cycle& c) noexcept {
 inline void go(Cycle& c, State next, const Command& command) noexcept {
   switch (next) {
     case State::kEnabling:
-      take_over_feedback(c);
+      if (c.state.is_dry_run) {
+        stand_dry(c);
+      } else {
+        take_over_feedback(c);
+      }
       c.previous = c.state.joints;
       break;
     case State::kDisabling:
@@ -170,6 +200,7 @@ inline void obey(Cycle& c) noexcept {
   if (command.verb == Verb::kOptionalStop) c.state.stops_at_optional = command.argument != 0;
   // A brake that is on stays on, whatever is said: no end is left out by that.
   if (command.verb == Verb::kSingleBlock) c.state.single_block.is_on = command.argument != 0;
+  if (command.verb == Verb::kDryRun) set_dry_run(c, command.argument != 0);
 }
 
 }  // namespace meridian

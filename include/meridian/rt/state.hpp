@@ -42,7 +42,8 @@ enum class Verb : std::uint8_t {
   kHome,           ///< argument: mask of the joints, 0: all
   kSingleBlock,    ///< argument: 1 on, 0 off
   kOptionalStop,   ///< argument: 1 on, 0 off
+  kDryRun,         ///< argument: 1 on, 0 off
 };
-inline constexpr int kVerbCount = 13;
+inline constexpr int kVerbCount = 14;
 
 }  // namespace meridian

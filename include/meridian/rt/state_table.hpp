@@ -47,24 +47,24 @@ inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisab
 /// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
 /// checked after it, in rt/obey.hpp, and can only refuse more.
 inline constexpr std::array<Row, kStateCount> kTable{{
-    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional
-    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue},
-    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue},
-    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue},
-    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue},
-    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue},
-    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue},
-    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue},
-    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue},
-    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue},
-    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue},
+    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional dry
+    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kValue},
+    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue, kNo},
+    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo},
+    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo},
+    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo},
+    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
+    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken},
+    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken},
+    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo},
+    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo},
+    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue, kNo},
 }};
 // clang-format on
 
@@ -85,15 +85,16 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 
 [[nodiscard]] constexpr const char* name_of(Verb verb) noexcept {
   constexpr std::array<const char*, kVerbCount> kNames{
-      "enable",        "disable",        "start", "hold", "resume",       "abort",        "reset",
-      "feed_override", "rapid_override", "jog",   "home", "single_block", "optional_stop"};
+      "enable", "disable",      "start",         "hold",           "resume",
+      "abort",  "reset",        "feed_override", "rapid_override", "jog",
+      "home",   "single_block", "optional_stop", "dry_run"};
   return kNames[static_cast<std::size_t>(verb)];
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 10> kNames{
-      "none",         "wrong state", "not referenced", "no program",      "no feedback",
-      "out of range", "stale",       "fault present",  "program present", "slow ramp"};
+  constexpr std::array<const char*, 12> kNames{
+      "none",  "wrong state",   "not referenced",  "no program", "no feedback",   "out of range",
+      "stale", "fault present", "program present", "slow ramp",  "drive enabled", "dry run"};
   return kNames[static_cast<std::size_t>(refusal)];
 }
 

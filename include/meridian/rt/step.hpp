@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/dry_run.hpp"
 #include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/guard.hpp"
 #include "meridian/rt/homing.hpp"
@@ -51,16 +53,16 @@ inline void be_ready(Cycle& c) noexcept {
 inline void wait_for_drives_on(Cycle& c) noexcept {
   const std::uint32_t all = all_joints(c.machine);
   rest(c);
-  if ((c.in.feedback.enabled_mask & all) == all) {
+  if ((c.drives.enabled_mask & all) == all) {
     be_ready(c);
   } else if (c.state.state_time > c.state.options.enable_timeout_s) {
-    raise(c, Alarm::kEnableTimeout, first_bit(~c.in.feedback.enabled_mask & all));
+    raise(c, Alarm::kEnableTimeout, first_bit(~c.drives.enabled_mask & all));
   }
 }
 
 inline void wait_for_drives_off(Cycle& c) noexcept {
   rest(c);
-  const bool is_off = (c.in.feedback.enabled_mask & all_joints(c.machine)) == 0;
+  const bool is_off = (c.drives.enabled_mask & all_joints(c.machine)) == 0;
   if (is_off || c.state.state_time > c.state.options.disable_timeout_s) enter(c, State::kOff);
 }
 
@@ -168,7 +170,7 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
   const bool has_hand = c.state.jogging.is_active || c.state.homing.is_active;
   const bool is_program =
       is_on_path(state) && state != State::kFaultStop && state != State::kJogging && !has_hand;
-  return is_program ? ~0U : c.in.feedback.referenced_mask;
+  return is_program ? ~0U : c.drives.referenced_mask;
 }
 
 /// The last look before a setpoint leaves. One that must not be sent is replaced by a stop of every
@@ -221,7 +223,8 @@ inline void write_record(Cycle& c) noexcept {
   bool is_moving = false;
   for (const double v : state.velocity) is_moving |= v != 0;
   unsigned flags = 0;
-  if (is_enabled(state.state)) flags |= kSetpointEnabled;
+  if (is_enabled(state.state)) flags |= state.is_dry_run ? kSetpointDryEnabled : kSetpointEnabled;
+  if (state.is_dry_run) flags |= kSetpointDry;
   if (is_moving) flags |= kSetpointMoving;
   if (state.state == State::kFaultStop) flags |= kSetpointFaultStop;
   out.setpoint = {c.in.cycle,
@@ -260,13 +263,23 @@ inline void step(const MachineModel& machine, CycleState& state, MotionReader& r
                  const CycleInputs& in, StepOutput& out) noexcept {
   const double dt = static_cast<double>(machine.cycle_ns) * 1e-9;
   const int periods = 1 + static_cast<int>(in.lost_periods);
+  std::optional<Feedback> dry;
+  if (state.is_dry_run && is_enabled(state.state)) dry = dry_feedback(machine, state, in);
+  const Feedback& drives = dry ? *dry : in.feedback;
+  const bool is_converted = dry || has_stage(machine);
   JointVector converted;
-  if (has_stage(machine)) converted = joints_of(machine, in.feedback.position);
-  Cycle c{machine,      state,
-          reader,       in,
-          out,          dt,
-          periods,      state.joints,
-          dt * periods, has_stage(machine) ? converted : in.feedback.position};
+  if (is_converted) converted = dry ? state.joints : joints_of(machine, drives.position);
+  Cycle c{machine,
+          state,
+          reader,
+          in,
+          out,
+          dt,
+          periods,
+          state.joints,
+          dt * periods,
+          drives,
+          is_converted ? converted : drives.position};
   const JointVector last_velocity = state.velocity;
   out.event_count = 0;
   out.events_dropped = 0;

@@ -22,7 +22,7 @@ namespace meridian {
 /// Whether every drive reports a finite position, joints have them, and the report is fresh. Time
 /// that the host stalled does not count against the drives.
 [[nodiscard]] inline bool is_feedback_there(const Cycle& c) noexcept {
-  const Feedback& f = c.in.feedback;
+  const Feedback& f = c.drives;
   const double age = static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9;
   for (const double q : c.feedback) {
     if (!std::isfinite(q)) return false;
@@ -67,7 +67,7 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
 [[nodiscard, gnu::noinline]] inline int first_stage_drive_behind(const Cycle& c,
                                                                  const SentSetpoint& sent,
                                                                  double& error) noexcept {
-  const LimitedVector seen = limited_of(c.machine, {}, c.in.feedback.position);
+  const LimitedVector seen = limited_of(c.machine, {}, c.drives.position);
   const LimitedVector position = limited_of(c.machine, {}, sent.drive_position);
   const LimitedVector velocity = limited_of(c.machine, {}, sent.drive_velocity);
   for (int i = c.machine.joint_count; i < limited_count(c.machine); ++i) {
@@ -81,7 +81,7 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
 /// The joint, or drive of the stage, whose feedback is farther from the setpoint that it saw than
 /// its limit; -1: none. Drives that are homing follow nothing.
 [[nodiscard]] inline int first_joint_behind(const Cycle& c, double& error) noexcept {
-  const Feedback& f = c.in.feedback;
+  const Feedback& f = c.drives;
   const SentSetpoint& sent = c.state.sent[f.cycle_seen % kSentCycles];
   if (sent.cycle != f.cycle_seen || f.cycle_seen == 0) return -1;
   const std::uint32_t busy = c.state.homing.busy;
@@ -98,7 +98,7 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
 /// there is none, because nobody reports.
 [[nodiscard, gnu::noinline]] inline int first_silent_joint(const Cycle& c) noexcept {
   for (int i = 0; i < c.machine.joint_count; ++i) {
-    const bool is_there = (c.in.feedback.joint_mask >> static_cast<unsigned>(i) & 1U) != 0;
+    const bool is_there = (c.drives.joint_mask >> static_cast<unsigned>(i) & 1U) != 0;
     if (!is_there || !std::isfinite(c.feedback[static_cast<std::size_t>(i)])) return i;
   }
   return 0;
@@ -122,9 +122,11 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
 
 /// Looks at drives and feedback while they are enabled.
 inline void judge_drives(Cycle& c) noexcept {
-  const Feedback& f = c.in.feedback;
+  const Feedback& f = c.drives;
   const std::uint32_t all = all_joints(c.machine);
+  const std::uint32_t are_on = c.in.feedback.enabled_mask & all;
   if (f.emergency_stop) raise(c, Alarm::kEmergencyStop);
+  if (c.state.is_dry_run && are_on != 0) raise(c, Alarm::kDriveEnabled, first_bit(are_on));
   if (!is_feedback_there(c)) {
     raise(c, Alarm::kFeedbackLost, first_silent_joint(c),
           static_cast<double>(c.in.now_ns - f.arrival_ns) * 1e-9);

@@ -23,14 +23,16 @@ using Table = std::function<VerbEffect(State, Verb)>;
 struct Machine {
   State state = State::kOff;
   bool has_fault = false, is_emergency = false, has_feedback = true;  ///< what the drives report
-  bool is_on = false;        ///< every drive reports operation enabled
-  int waiting = 0;           ///< pieces in the queue, at most two
-  bool has_piece = false;    ///< one is in force
-  bool is_moving = false;    ///< the joints are under way
-  bool may_go_on = false;    ///< starved for a short time, by the session that is still there
-  bool has_session = false;  ///< a station holds the machine
-  bool is_granted = false;   ///< ghost: an operator's start or resume stands behind the motion
-  bool is_clear = true;      ///< ghost: no fault since the last reset
+  bool is_on = false;           ///< every drive reports operation enabled
+  int waiting = 0;              ///< pieces in the queue, at most two
+  bool has_piece = false;       ///< one is in force
+  bool is_moving = false;       ///< the joints are under way
+  bool may_go_on = false;       ///< starved for a short time, by the session that is still there
+  bool has_session = false;     ///< a station holds the machine
+  bool is_granted = false;      ///< ghost: an operator's start or resume stands behind the motion
+  bool is_clear = true;         ///< ghost: no fault since the last reset
+  bool is_dry_run = false;      ///< drives stay off
+  bool is_place_known = false;  ///< ghost: where the joints are was taken from the drives
   std::string wrong{};
 
   bool operator==(const Machine&) const = default;
@@ -38,8 +40,9 @@ struct Machine {
 
 [[nodiscard]] inline std::string key_of(const Machine& m) {
   std::string key = name_of(m.state);
-  for (const bool b : {m.has_fault, m.is_emergency, m.has_feedback, m.is_on, m.has_piece,
-                       m.is_moving, m.may_go_on, m.has_session, m.is_granted, m.is_clear}) {
+  for (const bool b :
+       {m.has_fault, m.is_emergency, m.has_feedback, m.is_on, m.has_piece, m.is_moving, m.may_go_on,
+        m.has_session, m.is_granted, m.is_clear, m.is_dry_run, m.is_place_known}) {
     key += b ? '1' : '0';
   }
   return key + std::to_string(m.waiting) + m.wrong;
@@ -51,6 +54,9 @@ struct Machine {
   if (m.is_moving && !is_on_path(m.state)) return "motion in a state of rest";
   if (m.is_moving && !m.is_granted) return "motion that no operator started";
   if (m.is_moving && !m.is_clear && m.state != State::kFaultStop) return "motion after a fault";
+  if (is_enabled(m.state) && !m.is_dry_run && !m.is_place_known) {
+    return "drives are led from a place that they did not report";
+  }
   return "";
 }
 
@@ -107,12 +113,28 @@ class OperatedMachine {
   static void supervise(Machine& m) {
     if (!is_enabled(m.state)) return;
     const bool is_judged = m.state != State::kEnabling && m.state != State::kFaultStop;
+    if (m.is_dry_run) {
+      if (m.is_emergency || m.is_on) raise(m);
+      return;
+    }
     if (m.is_emergency || !m.has_feedback || m.has_fault || (is_judged && !m.is_on)) raise(m);
+  }
+  [[nodiscard]] static bool may_enable(const Machine& m) {
+    if (m.is_dry_run) return !m.is_on && !m.is_emergency;
+    return m.has_feedback && !m.is_emergency && !m.has_fault;
+  }
+  static void set_dry_run(Machine& m) {
+    if (!m.is_dry_run && m.is_on) return;
+    m.is_dry_run = !m.is_dry_run;
+    drop_program(m);
   }
   void obey(Machine& m, Verb verb) const {
     const VerbEffect effect = table_(m.state, verb);
+    if (effect.effect == Effect::kSet && verb == Verb::kDryRun) return set_dry_run(m);
     if (effect.effect != Effect::kGo) return;
-    if (verb == Verb::kEnable && (!m.has_feedback || m.is_emergency || m.has_fault)) return;
+    if (verb == Verb::kEnable && !may_enable(m)) return;
+    if (verb == Verb::kEnable) m.is_place_known = !m.is_dry_run;
+    if (verb == Verb::kHome && m.is_dry_run) return;
     if (verb == Verb::kReset && m.is_emergency) return;
     if (verb == Verb::kResume && !m.has_piece && m.waiting == 0) return;
     if ((verb == Verb::kJog || verb == Verb::kHome) && m.has_session) return;
@@ -173,7 +195,7 @@ class OperatedMachine {
     }
     switch (m.state) {
       case State::kEnabling:
-        if (m.is_on)
+        if (m.is_on || m.is_dry_run)
           add(", drives are on", [](Machine& n) { drop_program(n), enter(n, State::kReady); });
         add(", drives took too long", [](Machine& n) { raise(n); });
         return;

@@ -57,6 +57,13 @@ TEST(MachineStates, CatchATableThatDisablesInMotion) {
             "the program is dropped in motion");
 }
 
+TEST(MachineStates, CatchATableThatEndsADryRunWhileTheMachineIsOn) {
+  const Table loose = [](State s, Verb v) {
+    return s == State::kReady && v == Verb::kDryRun ? state_table::kValue : effect_of(s, v);
+  };
+  EXPECT_EQ(check(loose).complaint, "drives are led from a place that they did not report");
+}
+
 TEST(MachineStates, CatchATableThatResetDoesNotLeave) {
   const Table stuck = [](State s, Verb v) {
     return s == State::kFault ? state_table::kNo : effect_of(s, v);
@@ -96,7 +103,7 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
     std::optional<MadePlan> plan;
     std::uint16_t epoch = 0;
     State before = State::kOff;
-    bool is_granted = false, is_clear = true, is_cut_off = false;
+    bool is_granted = false, is_clear = true, is_cut_off = false, was_dry_run = false;
     const auto look = [&](const char* step) {
       for (std::size_t i = 0; i < world.out.event_count; ++i) {
         const Event& event = world.out.events[i];
@@ -119,6 +126,10 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
       ASSERT_FALSE(is_moving && !is_on_path(now)) << name_of(now) << " by " << step;
       ASSERT_FALSE(is_moving && !is_granted) << name_of(now) << " by " << step;
       ASSERT_FALSE(is_moving && !is_clear && now != State::kFaultStop) << name_of(now);
+      const std::uint16_t flags = world.out.record.setpoint.flags;
+      ASSERT_FALSE(world.state.is_dry_run && (flags & kSetpointEnabled) != 0) << name_of(now);
+      ASSERT_FALSE(was_dry_run != world.state.is_dry_run && now != State::kOff) << name_of(now);
+      was_dry_run = world.state.is_dry_run;
       if (!is_on_path(now) && now != State::kStarved) is_granted = false;
       before = now;
     };
@@ -152,6 +163,9 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
         is_cut_off = draw(6) == 0;
       } else if (what == 16) {
         world.in.session = static_cast<std::uint64_t>(draw(3));
+      } else if (what == 18) {
+        world.command(Verb::kDryRun, world.state.is_dry_run || draw(2) == 0 ? 0 : 1);
+        ASSERT_NO_FATAL_FAILURE(look("dry_run"));
       } else if (what == 17 && draw(6) == 0) {
         world.run(20);
         ASSERT_NO_FATAL_FAILURE(look("lost periods"));

@@ -83,6 +83,24 @@ TEST_F(Group, ASetpointThatIsNoNumberIsNotFollowed) {
   EXPECT_EQ(group_.feedback().position[0], 1) << "sums of such numbers overflow";
 }
 
+TEST_F(Group, ASetpointOfADryRunIsAsIfNoneHadCome) {
+  enable();
+  send(1);
+  group_.work(1);
+  for (const unsigned more : {0U, unsigned{kSetpointDryEnabled}, unsigned{kSetpointEnabled}}) {
+    send(2, static_cast<std::uint16_t>(kSetpointDry | more), 50);
+    group_.work(1);
+    EXPECT_EQ(group_.feedback().position[0], 1);
+    EXPECT_EQ(group_.feedback().cycle_seen, 101U);
+  }
+  for (int n = 0; n < model_.bridge_cycles; ++n) {
+    send(2, kSetpointDry | kSetpointDryEnabled, 50);
+    group_.work(1);
+  }
+  EXPECT_NE(group_.drive(0).state(), DriveState::kOperationEnabled) << "and so it is missed";
+  EXPECT_EQ(group_.feedback().position[0], 1);
+}
+
 TEST_F(Group, ObeysOneServiceUntilItIsOff) {
   enable();
   command(0x00, 8);

@@ -168,6 +168,16 @@ TEST_F(Check, JudgesFaultStopRowsByTheirOwnLimits) {
   EXPECT_EQ(report.fault_stop_cycles, records.size());
 }
 
+TEST_F(Check, JudgesADryRunAsAnyOtherAndSaysThatItWasOne) {
+  for (CycleRecord& record : records) record.setpoint.flags = kSetpointDry | kSetpointDryEnabled;
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.dry_cycles, records.size());
+  EXPECT_NE(to_text(report).find("dry run "), std::string::npos);
+  model.joints[1].limits.velocity = 2;
+  EXPECT_TRUE(has(run(), Finding::Kind::kVelocity));
+}
+
 TEST_F(Check, RefusesASkippedVertexThoughEveryPoseIsOnThePath) {
   std::vector<ClBlock> shortened = blocks;
   shortened.erase(shortened.begin() + 2, shortened.begin() + 4);  // never out to 82.02

@@ -59,6 +59,23 @@ TEST(WireBook, CountsGapsDoublesAndRestarts) {
   EXPECT_EQ(text.find("off the grid"), std::string::npos) << text;
 }
 
+TEST(WireBook, HoldsNoDriveAgainstTheSetpointsOfADryRun) {
+  const MachineModel model = test::lai_machine();
+  for (const bool is_dry : {false, true}) {
+    WireBook book(model);
+    WireRow row = row_at(1);
+    if (is_dry) row.setpoint.flags = kSetpointDry | kSetpointDryEnabled;
+    book.add(row);
+    row.setpoint.cycle = 2;
+    row.feedback_cycle = 1;
+    row.feedback[0] = row.setpoint.position[0] + 4;
+    book.add(row);
+    const std::string text = book.to_text();
+    EXPECT_EQ(text.find("b3 4.0") == std::string::npos, is_dry) << text;
+    EXPECT_EQ(text.find("dry run    2 of them") != std::string::npos, is_dry) << text;
+  }
+}
+
 TEST(WireBook, CountsDueTimesOffTheGrid) {
   const MachineModel model = test::lai_machine();
   WireBook book(model);

@@ -134,7 +134,8 @@ TEST(StageCycle, AStopBesideThePathKeepsTheDrivesFaultLimits) {
   const double dt = cut.world.dt();
   CycleState& state = cut.world.state;
   CycleWorld& w = cut.world;
-  Cycle c{w.machine, state, w.reader, w.in, w.out, dt, 1, state.joints, dt, state.joints};
+  Cycle c{w.machine, state,        w.reader, w.in,          w.out,       dt,
+          1,         state.joints, dt,       w.in.feedback, state.joints};
   begin_stop_off_path(c, state.joints, velocity);
   ASSERT_FALSE(is_stop_over(state.stop));
   std::vector<LimitedVector> at;

@@ -77,6 +77,13 @@ TEST(StateTable, SetsSingleBlockAndOptionalStopInEveryState) {
   }
 }
 
+TEST(StateTable, SetsTheDryRunInOffAlone) {
+  for (int s = 0; s < kStateCount; ++s) {
+    const auto state = static_cast<State>(s);
+    EXPECT_EQ(effect_of(state, Verb::kDryRun).effect == Effect::kSet, state == State::kOff);
+  }
+}
+
 TEST(StateTable, LeavesFaultOnlyByReset) {
   for (int v = 0; v < kVerbCount; ++v) {
     const auto verb = static_cast<Verb>(v);

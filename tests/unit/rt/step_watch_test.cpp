@@ -81,6 +81,18 @@ const Scenario kScenarios[] = {
        run_on(p, State::kFault);
      },
      State::kFault},
+    {"DryRun",
+     [](Program& p) {
+       p.world.command(Verb::kDisable);
+       (void)p.world.run_until(State::kOff, 1);
+       p.world.are_drives_alive = false;
+       p.world.command(Verb::kDryRun, 1);
+       (void)p.world.enable();
+       p.world.command(Verb::kDisable);
+       (void)p.world.run_until(State::kOff, 1);
+       p.world.command(Verb::kDryRun, 0);
+     },
+     State::kOff},
     {"DriveFault",
      [](Program& p) {
        p.run(0.2);

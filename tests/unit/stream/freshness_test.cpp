@@ -57,14 +57,15 @@ TEST_F(Freshness, VerbsThatOnlyStopAreNeverStale) {
 }
 
 TEST_F(Freshness, VerbsThatMoveOrSpeedUpAreJudged) {
-  for (const Verb verb : {Verb::kEnable, Verb::kStart, Verb::kResume, Verb::kFeedOverride,
-                          Verb::kRapidOverride, Verb::kSingleBlock, Verb::kOptionalStop}) {
+  for (const Verb verb :
+       {Verb::kEnable, Verb::kStart, Verb::kResume, Verb::kFeedOverride, Verb::kRapidOverride,
+        Verb::kSingleBlock, Verb::kOptionalStop, Verb::kDryRun}) {
     EXPECT_EQ(at_10_s(verb, 1), Refusal::kStale);
   }
 }
 
 TEST(FreshnessOfSwitches, OnIsNeverStale) {
-  for (const Verb verb : {Verb::kSingleBlock, Verb::kOptionalStop}) {
+  for (const Verb verb : {Verb::kSingleBlock, Verb::kOptionalStop, Verb::kDryRun}) {
     EXPECT_FALSE(needs_freshness(verb, 1));
     EXPECT_TRUE(needs_freshness(verb, 0));
   }

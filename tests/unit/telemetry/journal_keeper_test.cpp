@@ -11,8 +11,8 @@ namespace {
 /// The events of a program, told to a keeper that is asked every 10 ms.
 class Kept {
  public:
-  void tell(EventCode code, std::uint64_t a = 0, std::uint64_t b = 0) {
-    keeper_.see({.code = code, .a = a, .b = b}, code == EventCode::kAlarm ? "a fault" : "");
+  void tell(EventCode code, std::uint64_t a = 0, std::uint64_t b = 0, double x = 0) {
+    keeper_.see({.code = code, .a = a, .b = b, .x = x}, code == EventCode::kAlarm ? "a fault" : "");
   }
   void enter(State state) { tell(EventCode::kStateChanged, static_cast<std::uint64_t>(state)); }
   void begin(std::uint64_t block) { tell(EventCode::kBlockStarted, block, block + 10); }
@@ -56,6 +56,26 @@ TEST(JournalKeeper, NotesABlockThatIsAtMostASecondOldWhileTheProgramRuns) {
   EXPECT_LE(kept.entries.size(), 6U) << "a disk is not written to without end";
   EXPECT_EQ(kept.entries.back().reached, Reached::kBegun);
   EXPECT_STREQ(kept.entries.back().program.data(), "part.apt");
+}
+
+TEST(JournalKeeper, NotesNothingOfADryRun) {
+  Kept kept;
+  const auto verb = static_cast<std::uint64_t>(Verb::kDryRun);
+  const auto cut = [&kept] {
+    kept.begin(0);
+    kept.enter(State::kApproaching);
+    kept.enter(State::kRunning);
+    kept.run_for(1500);
+    kept.end(0);
+    kept.enter(State::kReady);
+    kept.run_for(1500);
+  };
+  kept.tell(EventCode::kAccepted, 1, verb, 1);
+  cut();
+  EXPECT_TRUE(kept.entries.empty()) << "nothing was cut: what was noted before stays";
+  kept.tell(EventCode::kAccepted, 2, verb, 0);
+  cut();
+  EXPECT_FALSE(kept.entries.empty());
 }
 
 TEST(JournalKeeper, NotesRestsAtOnceAndWhoseProgramItWas) {

@@ -56,7 +56,7 @@ TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
 TEST(Words, SayEveryAlarmDifferently) {
   const MachineModel model = test::lai_machine();
   std::set<std::string> texts;
-  constexpr int kLast = static_cast<int>(Alarm::kReferenceLost);
+  constexpr int kLast = static_cast<int>(Alarm::kDriveEnabled);
   for (int alarm = 0; alarm <= kLast; ++alarm) {
     texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 0, model));
   }
@@ -66,7 +66,7 @@ TEST(Words, SayEveryAlarmDifferently) {
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kSlowRamp);
+  constexpr int kLast = static_cast<int>(Refusal::kDryRun);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     for (int state = 0; state < kStateCount; ++state) {
       const std::string text =
@@ -77,6 +77,17 @@ TEST(Words, TellTheRemedyWithEveryRefusal) {
   }
   EXPECT_EQ(describe(Verb::kStart, static_cast<Refusal>(kLast + 1), State::kOff), "start refused: ")
       << "there are more";
+}
+
+TEST(Words, TellWhetherTheDryRunIsOnAndWhereItMayBeSwitched) {
+  const MachineModel model = test::lai_machine();
+  Event event{.code = EventCode::kAccepted, .b = static_cast<std::uint64_t>(Verb::kDryRun), .x = 1};
+  EXPECT_EQ(describe(event, model).rfind("dry run on: ", 0), 0U);
+  event.x = 0;
+  EXPECT_EQ(describe(event, model).rfind("dry run off: ", 0), 0U);
+  EXPECT_EQ(
+      describe(Verb::kDryRun, Refusal::kWrongState, State::kRunning),
+      "dry_run refused: not in state Running; it begins and ends in Off alone; disable first");
 }
 
 TEST(Words, NameBothStatesOfAChange) {

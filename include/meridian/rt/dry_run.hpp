@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/joint_masks.hpp"
+#include "meridian/rt/state_table.hpp"
+#include "meridian/rt/supervise.hpp"
+
+/// Dry run: the machine runs as ever while its drives stay off. What they report is not asked for
+/// but for the emergency input, and for a drive that is on; they would be where they were sent.
+/// RT: cycle. Proof: tests/unit/rt/dry_run_test.cpp.
+namespace meridian {
+
+/// What drives would report that are where the last setpoint sent them.
+[[nodiscard, gnu::noinline]] inline Feedback dry_feedback(const MachineModel& machine,
+                                                          const CycleState& state,
+                                                          const CycleInputs& in) noexcept {
+  const std::uint32_t all = all_joints(machine);
+  Feedback dry;
+  dry.arrival_ns = in.now_ns;
+  dry.cycle_seen = in.cycle - in.lost_periods - 1;
+  dry.position =
+      has_stage(machine) ? state.sent[dry.cycle_seen % kSentCycles].drive_position : state.joints;
+  dry.joint_mask = dry.enabled_mask = dry.referenced_mask = all;
+  dry.emergency_stop = in.feedback.emergency_stop;
+  return dry;
+}
+
+/// Whether a drive reports operation enabled, or did so last.
+[[nodiscard]] inline bool is_drive_enabled(const Cycle& c) noexcept {
+  return (c.in.feedback.enabled_mask & all_joints(c.machine)) != 0;
+}
+
+/// The joints are where the drives are, where all of them report and have their references, else at
+/// home.
+inline void stand_dry(Cycle& c) noexcept {
+  const std::uint32_t all = all_joints(c.machine);
+  if (is_feedback_there(c) && (c.drives.referenced_mask & all) == all) {
+    return take_over_feedback(c);
+  }
+  JointVector home{};
+  for (int i = 0; i < c.machine.joint_count; ++i) {
+    home[static_cast<std::size_t>(i)] = drive_spec(c.machine, i).home;
+  }
+  c.state.joints = has_stage(c.machine) ? joints_of(c.machine, home) : home;
+  c.state.latched_joints = c.state.joints;
+  c.state.latched_drives = home;
+}
+
+}  // namespace meridian

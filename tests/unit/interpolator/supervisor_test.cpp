@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/supervisor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "service/interpolator/drive_words.hpp"
+#include "service/interpolator/monotonic.hpp"
+#include "support/machines.hpp"
+#include "support/private_domain.hpp"
+
+namespace meridian::interpolator {
+namespace {
+
+[[nodiscard]] bool comes(const std::function<bool()>& condition) {
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > patience) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+/// The commands thread, with the test for cycle, operator and drives.
+class SupervisorTest : public testing::Test {
+ protected:
+  SupervisorTest() {
+    ports_->spindle_tool_mm = kToolBefore_mm;
+    DriveWords words;
+    words.joint_mask = 0x1F;
+    words.statusword.fill(0x231);  // ready to switch on
+    ports_->drive_words.store(words);
+    dds::Status status;
+    status.status_sequence = 5;
+    clock_.published(status, monotonic_ns());
+  }
+  ~SupervisorTest() override {
+    ports_->is_stopping = true;
+    thread_.join();
+  }
+  void show(State state, bool is_dry_run) {
+    CycleView view;
+    view.cycles_run = ++shown_;
+    view.epoch = 1;
+    view.record.state = state;
+    view.is_dry_run = is_dry_run;
+    ports_->commands_view.store(view);
+  }
+  void ask(Verb verb, double argument = 0) {
+    dds::CommandRequest request;
+    request.operator_id = 9;
+    request.request = ++request_;
+    request.verb = verb;
+    request.argument = argument;
+    request.epoch_seen = 1;
+    request.status_seen = 5;
+    (void)commands_.write(request);
+  }
+  [[nodiscard]] bool has_reply(Verb verb, Refusal refusal) {
+    dds::Reply reply;
+    return comes([&] { return replies_.take(reply); }) && reply.verb == verb &&
+           reply.refusal == refusal;
+  }
+  /// The cycle takes the next command, which must be `verb`.
+  [[nodiscard]] std::optional<Command> take(Verb verb) {
+    Command command;
+    const bool is_there = comes([&] { return ports_->commands.try_pop(command); });
+    return is_there && command.verb == verb ? std::optional(command) : std::nullopt;
+  }
+  /// The controlword that drive 0 heard last.
+  [[nodiscard]] std::uint16_t controlword() {
+    dds::DriveCommand command;
+    while (drive_commands_.take(command)) {
+      if (command.drive == 0) controlword_ = command.controlword;
+    }
+    return controlword_;
+  }
+
+  static constexpr double kToolBefore_mm = 111, kTool_mm = 180;
+  const MachineModel model_ = test::lai_machine();
+  const ToolTable tools_{{{7, kTool_mm, 5}}};
+  const config::ServiceConfig service_;
+  const support::PrivateDomain domain_;
+  dds::Participant participant_{{.domain = domain_.id(), .machine = model_.name}};
+  dds::Writer<dds::CommandRequest> commands_{participant_};
+  dds::Reader<dds::Reply> replies_{participant_};
+  dds::Reader<dds::DriveCommand> drive_commands_{participant_};
+  dds::Reader<dds::Action> actions_{participant_};
+  const std::unique_ptr<Ports> ports_ = std::make_unique<Ports>();
+  StatusClock clock_;
+  Supervisor supervisor_{participant_, model_, tools_, service_, 1, clock_, *ports_};
+  std::uint64_t shown_ = 0, request_ = 0;
+  std::uint16_t controlword_ = 0;
+  std::thread thread_{[this] { supervisor_.run(); }};
+};
+
+TEST_F(SupervisorTest, SwitchesNoDriveOnInADryRun) {
+  show(State::kEnabling, false);
+  EXPECT_TRUE(comes([this] { return controlword() == controlword::kSwitchOn; }));
+  show(State::kOff, true);
+  EXPECT_TRUE(comes([this] { return controlword() == controlword::kShutdown; }));
+  show(State::kRunning, true);
+  // Commands are repeated at 10 Hz.
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  EXPECT_EQ(controlword(), controlword::kShutdown);
+}
+
+TEST_F(SupervisorTest, DoesTheActionsOfADryRunItselfAndTheSpindleKeepsItsTool) {
+  show(State::kOff, true);
+  show(State::kRunning, true);
+  PlannedAction planned{.epoch = 1, .block = {}};
+  planned.block.kind = BlockKind::kTool;
+  planned.block.action = ActionKind::kToolChange;
+  planned.block.value = 7;
+  planned.block.sequence = 12;
+  ASSERT_TRUE(comes([&] { return ports_->actions.try_push(planned); }));
+  Event due;
+  due.code = EventCode::kActionDue;
+  due.a = 12;
+  due.epoch = 1;
+  ASSERT_TRUE(comes([this] { return ports_->state == State::kRunning; }));
+  ASSERT_TRUE(ports_->events.try_push(due));
+  ASSERT_TRUE(comes([this] {
+    ports_->action_answer.refresh();
+    return ports_->action_answer.latest().is_answered;
+  }));
+  EXPECT_TRUE(ports_->action_answer.latest().is_done);
+  EXPECT_EQ(ports_->action_answer.latest().sequence, 12U);
+  EXPECT_EQ(ports_->spindle_tool_mm, kTool_mm) << "what the dry program goes on with";
+  dds::Action action;
+  EXPECT_FALSE(actions_.take(action)) << "nobody changes a tool";
+  show(State::kOff, false);
+  EXPECT_TRUE(comes([this] { return ports_->spindle_tool_mm == kToolBefore_mm; }));
+}
+
+TEST_F(SupervisorTest, RefusesToEnableWhileADryRunIsOnItsWay) {
+  show(State::kOff, true);
+  ask(Verb::kDryRun, 0);
+  const auto dry_run = take(Verb::kDryRun);
+  ASSERT_TRUE(dry_run);
+  ask(Verb::kEnable);
+  EXPECT_TRUE(has_reply(Verb::kEnable, Refusal::kStale));
+  show(State::kOff, false);
+  Event accepted;
+  accepted.code = EventCode::kAccepted;
+  accepted.a = dry_run->request;
+  ASSERT_TRUE(ports_->events.try_push(accepted));
+  EXPECT_TRUE(has_reply(Verb::kDryRun, Refusal::kNone));
+  ask(Verb::kEnable);
+  EXPECT_TRUE(take(Verb::kEnable));
+}
+
+}  // namespace
+}  // namespace meridian::interpolator
