@@ -115,7 +115,7 @@ SettledPath PoleCorridor::settled() const noexcept {
 
 void PoleCorridor::scan() noexcept {
   if (probes_.is_empty()) return;
-  while (cores_.find_next(settled())) {
+  while (!has_failed_ && cores_.find_next(settled())) {
     // Not before a span waits for it: searches are dear, and so no two come at once.
     if (may_emit() && !probes_.is_full()) return;
     PoleCore core;
@@ -127,12 +127,16 @@ void PoleCorridor::scan() noexcept {
 
 void PoleCorridor::settle(PoleCore& core) noexcept {
   PolePlace& around = core.around;
-  if (core.has_room && !pending_.is_full()) {
+  const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
+  if (core.has_room && waiting + kMostZones <= kPending) {
     around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
     if (find_zone(around, core.hold >= 0)) return cores_.take(core);
   }
-  has_failed_ = around.is_start;
-  add_cuts(core.nearest);
+  if (around.is_start) {
+    has_failed_ = true;
+  } else {
+    add_cuts(core.nearest);
+  }
 }
 
 bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
@@ -278,8 +282,7 @@ void PoleCorridor::emit() noexcept {
 
 const JointSpan* PoleCorridor::next() noexcept {
   if (has_pole_) scan();
-  if (has_failed_) return nullptr;
-  if (probes_.is_empty() || !may_emit()) return nullptr;
+  if (has_failed_ || probes_.is_empty() || !may_emit()) return nullptr;
   emit();
   return &out_;
 }

@@ -69,6 +69,7 @@ class PoleCorridor {
  private:
   static constexpr std::size_t kCuts = 128;
   static constexpr std::size_t kPending = 64;
+  static constexpr std::size_t kMostZones = 2;  ///< about one core
 
   [[nodiscard]] double emitted_u() const noexcept { return probes_.front().u0 + emitted_x_; }
   [[nodiscard]] SettledPath settled() const noexcept;
