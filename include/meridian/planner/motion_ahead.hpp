@@ -25,33 +25,30 @@ class MotionAhead {
       if (piece == nullptr || piece->epoch != reader_.epoch()) return nullptr;
       if (is_in_tail_ && !(piece->is_tail && piece->window == window_)) return nullptr;
       if (piece->is_tail && !is_in_tail_) {
-        if (piece->window == skipped_window_ && has_skipped_) continue;
-        if (!reader_.will_run_tail(place_)) {
-          skipped_window_ = piece->window;
-          has_skipped_ = true;
+        if (const std::size_t behind = reader_.find_behind_tail(place_); behind > 0) {
+          place_ = behind - 1;
           continue;
         }
         is_in_tail_ = true;
         window_ = piece->window;
         tail_ = piece;
       }
-      return is_from_rest(*piece) ? nullptr : piece;
+      return begins_at_rest(*piece) ? nullptr : piece;
     }
   }
+
+  /// Places that were gone over so far, of tails that are skipped too.
+  [[nodiscard]] std::size_t places() const noexcept { return place_; }
 
   /// The begin of a tail that next() went into and the cycle has not yet; nullptr: none.
   [[nodiscard]] const TimePiece* tail() const noexcept { return tail_; }
 
  private:
-  [[nodiscard]] static bool is_from_rest(const TimePiece& piece) noexcept {
-    return piece.kind != TimeKind::kMove || (piece.v == 0 && piece.a == 0);
-  }
-
   MotionReader& reader_;
   std::size_t place_ = 0;
   const TimePiece* tail_ = nullptr;
-  std::uint32_t window_ = 0, skipped_window_ = 0;
-  bool is_in_tail_ = false, has_skipped_ = false;
+  std::uint32_t window_ = 0;
+  bool is_in_tail_ = false;
 };
 
 }  // namespace meridian

@@ -26,7 +26,8 @@ namespace meridian {
 struct MotionPort {
   SpscRing<PathPiece, 4096> paths;
   SpscRing<TimePiece, 16384> times;
-  /// Epoch and window whose tail the cycle entered last, packed by MotionReader; 0: none yet.
+  /// Epoch and window whose tail the cycle entered, or committed to (keep_tail()), last, packed by
+  /// MotionReader; 0: none yet.
   std::atomic<std::uint64_t> tail_entered{0};
   /// Epoch and window that the cycle is in or was in last, packed the same way.
   std::atomic<std::uint64_t> window_begun{0};
@@ -90,8 +91,8 @@ class MotionWriter {
   /// Plan time published ever, tails included, s.
   [[nodiscard]] double published_s() const noexcept { return published_s_; }
 
-  /// The newest window whose tail the cycle entered: it will take up only a window that starts from
-  /// rest there.
+  /// The newest window whose tail the cycle entered, or committed to (keep_tail()): it will take up
+  /// only a window that starts from rest there.
   [[nodiscard]] std::optional<WindowName> tail_entered() const noexcept {
     return unpack(port_.tail_entered.load(std::memory_order_acquire));
   }
@@ -156,6 +157,7 @@ class MotionWriter {
 /// * A tail is skipped if a piece of the next window that is not from rest is there when the cycle
 ///   comes to the tail. Once entered, a tail is run to its end, and later pieces are dropped until
 ///   a window that starts from rest.
+/// * A tail that is kept (keep_tail()) is run whatever is there when the cycle comes to it.
 /// * Pieces of another epoch than the one set are dropped.
 ///
 /// RT: cycle; bounded by kMostDrops per call. Proof: tests/unit/planner/motion_port_test.cpp.
@@ -213,10 +215,12 @@ class MotionReader {
   /// there.
   [[nodiscard]] const PathPiece* path_ahead(std::size_t i) noexcept { return port_.paths.peek(i); }
 
-  /// Whether a tail that starts `i` places behind the piece in force will be run as it stands now.
-  [[nodiscard]] bool will_run_tail(std::size_t i) noexcept {
-    const std::size_t place = piece_ != nullptr ? i : i - 1;
-    return !continues_past(*port_.times.peek(place), place);
+  /// A tail starts `i` places behind the piece in force. How many places behind it the window
+  /// begins that goes on in the tail's place; 0: as it stands now the tail is run.
+  [[nodiscard]] std::size_t find_behind_tail(std::size_t i) noexcept {
+    const std::size_t front = piece_ != nullptr ? 0 : 1;
+    const std::size_t behind = find_continuation(*port_.times.peek(i - front), i - front);
+    return behind > 0 ? behind + front : 0;
   }
 
   /// The tail that starts with `tail`, ahead, is run whatever is published meanwhile. The planner
@@ -249,19 +253,19 @@ class MotionReader {
     if (next.epoch != epoch_) return false;
     if (next.is_tail) {
       if (is_past_tail_) return next.window == last_.window;
-      return !continues_past(next, 0);
+      return find_continuation(next, 0) == 0;
     }
     return !is_past_tail_ || next.is_from_rest;
   }
 
-  /// Whether the window behind the tail that starts with `tail`, at `place` of the ring, is there,
-  /// goes on in motion and may.
-  [[nodiscard]] bool continues_past(const TimePiece& tail, std::size_t place) noexcept {
-    if (pack(tail) == kept_tail_) return false;
+  /// The place in the ring of the window behind the tail that starts with `tail`, at `place`; 0
+  /// where it is not there, starts from rest or may not go on.
+  [[nodiscard]] std::size_t find_continuation(const TimePiece& tail, std::size_t place) noexcept {
+    if (pack(tail) == kept_tail_) return 0;
     for (std::size_t i = place + 1;; ++i) {
       const TimePiece* later = port_.times.peek(i);
-      if (later == nullptr || later->epoch != epoch_) return false;
-      if (later->window != tail.window) return !later->is_from_rest;
+      if (later == nullptr || later->epoch != epoch_) return 0;
+      if (later->window != tail.window) return later->is_from_rest ? 0 : i;
     }
   }
 

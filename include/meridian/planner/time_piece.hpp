@@ -63,4 +63,9 @@ struct TimePiece {
 };
 static_assert(std::is_trivially_copyable_v<TimePiece>);
 
+/// Whether the plan rests where `piece` begins.
+[[nodiscard]] inline bool begins_at_rest(const TimePiece& piece) noexcept {
+  return piece.kind != TimeKind::kMove || (piece.v == 0 && piece.a == 0);
+}
+
 }  // namespace meridian

@@ -76,12 +76,9 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
   return argument == 1 && is_drive_enabled(c) ? Refusal::kDriveEnabled : Refusal::kNone;
 }
 
-/// Single block is offered up to this override ramp: braking takes half of it in plan time, which
-/// must be well in sight (a smooth plan is published some 2 s ahead).
-inline constexpr double kMostStepRamp_s = 2;
-
-/// Why a verb that the table allows is refused now; kNone: it is not.
-[[nodiscard]] inline Refusal condition_of(Cycle& c, const Command& command) noexcept {
+/// Why a verb that the table allows is refused now; kNone: it is not, and what a start or a resume
+/// goes on with is taken up.
+[[nodiscard]] inline Refusal take_up(Cycle& c, const Command& command) noexcept {
   const Feedback& f = c.drives;
   const std::uint32_t all = all_joints(c.machine);
   switch (command.verb) {
@@ -183,7 +180,7 @@ inline void obey(Cycle& c) noexcept {
   const Command& command = c.in.command;
   const VerbEffect effect = effect_of(c.state.state, command.verb);
   const bool is_asked = effect.effect == Effect::kGo || effect.effect == Effect::kSet;
-  const Refusal refusal = is_asked ? condition_of(c, command) : effect.refusal;
+  const Refusal refusal = is_asked ? take_up(c, command) : effect.refusal;
   if (refusal != Refusal::kNone) {
     tell(c, EventCode::kRefused, command.request, static_cast<std::uint64_t>(command.verb),
          static_cast<double>(refusal));

@@ -28,9 +28,7 @@ inline constexpr double kRest_mm_per_s = 1e-6;
 
 /// Whether the plan rests just here, so that its rate may be anything.
 [[nodiscard]] inline bool is_plan_at_rest(const Cycle& c) noexcept {
-  if (!is_on_move(c)) return true;
-  const TimePiece& piece = *c.reader.piece();
-  return c.state.piece_time == 0 && piece.v == 0 && piece.a == 0;
+  return !is_on_move(c) || (c.state.piece_time == 0 && begins_at_rest(*c.reader.piece()));
 }
 
 /// Puts the joints at path length `s` of the path piece in force, moving with `speed` along it.

@@ -13,9 +13,8 @@
 /// Single block: the program comes to rest at the end of each block. Where the plan runs on through
 /// it the rate of plan time goes down to zero there, for which every plan leaves room.
 ///
-///     rate 1 ┤───────.                 D: plan time that passes from here to rest, the rate
-///     braking
-///            │        '·.              as hard as it may; R: plan time to the end of a block.
+///     rate 1 ┤───────.                 D: plan time from here to rest, braking as hard as
+///            │        '·.              may be; R: plan time to the end of a block.
 ///          0 ┼────────────'·█──▶ R     Braking begins at the very instant at which D = R.
 ///
 /// D is the least that there is, so R - D never grows: the nearest end with R >= D is the next that
@@ -24,9 +23,13 @@
 /// tests/property/rt/single_block_test.cpp.
 namespace meridian {
 
-/// Pieces that are looked at in one cycle. Where they last less than it takes to come to rest the
-/// rate goes down until they do.
-inline constexpr int kMostPiecesAhead = 1024;
+/// Single block is offered up to this override ramp: braking takes half of it in plan time, which
+/// must be well in sight (docs/decisions/0011-single-block.md).
+inline constexpr double kMostStepRamp_s = 2;
+/// Places of the port that are gone over in one look, but for the tail that it ends in or behind.
+/// Where they last less than it takes to come to rest the rate goes down until they do; of dense
+/// smooth plans up to 1900 last as long as it takes at most.
+inline constexpr std::size_t kMostPlacesAhead = 3072;
 /// Nearer to a rest of the plan than this a block ends there.
 inline constexpr double kSameEnd_mm = 5e-7;
 /// Far above the rounding of sums of plan time.
@@ -35,7 +38,7 @@ inline constexpr double kLeast_s = 1e-12;
 /// How far the end of a block is away on the plan ahead.
 struct BlockEndAhead {
   bool is_found = false;
-  bool is_limited = false;          ///< not found among the most pieces that are looked at
+  bool is_limited = false;          ///< not found among the most places that are gone over
   double plan_time = 0;             ///< from here; not found: to where it was sought
   int pieces = 0;                   ///< ends of time pieces in between
   double time = 0;                  ///< on its time piece
@@ -80,7 +83,7 @@ struct BlockEndAhead {
   const TimePiece* piece = c.reader.piece();
   double begin = -c.state.piece_time;
   while (piece != nullptr && begin <= most) {
-    if (out.pieces == kMostPiecesAhead) {
+    if (ahead.places() >= kMostPlacesAhead) {
       out.is_limited = true;
       break;
     }

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "meridian/planner/motion_ahead.hpp"
+
 namespace meridian {
 namespace {
 
@@ -31,6 +33,7 @@ struct Script {
     time.is_from_rest = is_from_rest;
     time.is_tail = is_tail;
     time.duration = duration;
+    time.v = is_from_rest && !is_tail ? 0 : 1;
     ASSERT_TRUE(writer.stage(path) && writer.stage(time));
   }
 
@@ -101,6 +104,72 @@ TEST(MotionPort, OnceInATailTakesOnlyAWindowFromRest) {
   script.move(4, 50, false);
   script.writer.publish();
   EXPECT_EQ(script.run(), (Names{12, 40, 50}));
+}
+
+TEST(MotionPort, RunsATailThatIsKeptWhateverIsPublishedAndTheWriterSeesItAtOnce) {
+  Script script;
+  script.move(0, 10, true);
+  script.move(0, 11, true, true);
+  script.move(0, 12, true, true);
+  script.writer.publish();
+  ASSERT_EQ(script.reader.advance()->sequence, 10U);
+  script.reader.keep_tail(*script.reader.look_ahead(1));
+  ASSERT_TRUE(script.writer.tail_entered().has_value());
+  EXPECT_EQ(script.writer.tail_entered()->window, 0U);
+  script.move(1, 20, false);
+  script.move(2, 30, true);
+  script.writer.publish();
+  EXPECT_EQ(script.reader.find_behind_tail(1), 0U);
+  EXPECT_EQ(script.run(), (Names{11, 12, 30}));
+}
+
+/// A window without a tail, two tails that are skipped, one that is run, and what may follow it.
+Script long_script() {
+  Script script;
+  script.move(0, 10, true);
+  script.move(1, 20, false);
+  script.move(1, 21, false, true);
+  script.move(1, 22, false, true);
+  script.move(2, 30, false);
+  script.move(2, 31, false, true);
+  script.move(3, 40, false);
+  script.move(3, 41, false, true);
+  script.move(3, 42, false, true);
+  script.move(4, 50, true);
+  script.writer.publish();
+  return script;
+}
+
+TEST(MotionPort, TheMotionAheadIsWhatIsRunAsFarAsTheNextRest) {
+  Script script = long_script();
+  ASSERT_EQ(script.reader.advance()->sequence, 10U);
+  MotionAhead ahead(script.reader);
+  Names seen;
+  const TimePiece* tail = nullptr;
+  while (const TimePiece* piece = ahead.next()) {
+    seen.push_back(piece->sequence);
+    EXPECT_EQ(script.reader.path_of(*piece)->sequence, piece->sequence);
+    if (tail == nullptr) tail = ahead.tail();
+  }
+  ASSERT_NE(tail, nullptr);
+  EXPECT_EQ(tail->sequence, 41U);
+  EXPECT_EQ(ahead.places(), 9U) << "of the rest, and of what is skipped on the way";
+  seen.push_back(50);  // it starts from rest
+  EXPECT_EQ(seen, script.run());
+}
+
+TEST(MotionPort, TheMotionAheadOfATailThatIsRunEndsWithIt) {
+  Script script = long_script();
+  while (script.reader.advance()->sequence != 41) {
+  }
+  script.move(5, 60, false);
+  script.writer.publish();
+  MotionAhead ahead(script.reader);
+  ASSERT_NE(ahead.next(), nullptr);
+  EXPECT_EQ(ahead.tail(), nullptr) << "the cycle is in it";
+  EXPECT_EQ(ahead.next(), nullptr);
+  EXPECT_EQ(script.reader.path_ahead(1)->sequence, 42U);
+  EXPECT_EQ(script.reader.path_ahead(4), nullptr);
 }
 
 TEST(MotionPort, DropsWhatBelongsToAnotherEpoch) {
