@@ -42,8 +42,8 @@ template <class Number>
   return verb == Verb::kSingleBlock || verb == Verb::kOptionalStop;
 }
 
-[[nodiscard]] bool needs_argument(Verb verb) {
-  return verb == Verb::kFeedOverride || verb == Verb::kRapidOverride || is_switch(verb);
+[[nodiscard]] bool is_override(Verb verb) {
+  return verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
 }
 
 /// "'text' what".
@@ -88,9 +88,9 @@ struct EventRow {
   if (is_switch(*verb) && (argument.empty() || (value != 0 && value != 1))) {
     return about(row.word, "needs 1 (on) or 0 (off)");
   }
-  if (needs_argument(*verb) && argument.empty()) return about(row.word, "needs its factor");
+  if (is_override(*verb) && argument.empty()) return about(row.word, "needs its factor");
   const double most = *verb == Verb::kFeedOverride ? most_feed : 1;
-  if (needs_argument(*verb) && !(value >= 0 && value <= most)) {
+  if (is_override(*verb) && !(value >= 0 && value <= most)) {
     std::string fault = about(argument, "is no factor from 0 to ");
     text::append(fault, "%.4g", most);
     return fault;

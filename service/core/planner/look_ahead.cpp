@@ -32,6 +32,9 @@ bool may_unwind(const MachineModel& model) noexcept {
          limits.travel_max - limits.travel_min >= kTurn_rad;
 }
 
+/// Whether a way that came to `end` may still turn out otherwise.
+bool is_open(AheadEnd end) noexcept { return end == AheadEnd::kNone || end == AheadEnd::kDoubt; }
+
 /// One branch, followed from the start with the free joint anywhere.
 class Follower {
  public:
@@ -118,8 +121,8 @@ class Follower {
     bool is_any_left = false;
     for (AheadWay& way : ways_) {
       if (way.branch != branch_) continue;
-      if (way.end <= AheadEnd::kDoubt) judge(pose, way);
-      is_any_left |= way.end <= AheadEnd::kDoubt;
+      if (is_open(way.end)) judge(pose, way);
+      is_any_left |= is_open(way.end);
     }
     return is_any_left;
   }

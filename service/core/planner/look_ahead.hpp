@@ -13,7 +13,8 @@ namespace meridian {
 /// What became of a way as far as it was looked at.
 enum class AheadEnd : std::uint8_t {
   kNone,     ///< all is inside travel
-  kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it
+  kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it or
+             ///< on a branch that is not certain
   kUnwinds,  ///< the free joint runs out of travel and may be turned back there
   kLost      ///< something leaves its travel for certain: the program cannot be cut this way
 };

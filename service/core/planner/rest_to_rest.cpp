@@ -83,8 +83,7 @@ struct RestToRestPlanner::Workspace {
   void mark_end(const ClBlock& block) noexcept {
     if (staging.path_count == 0) return;
     PathPiece& last = staging.paths[staging.path_count - 1];
-    last.marks.add(
-        {last.length, static_cast<std::uint32_t>(block.sequence - last.sequence), block.line});
+    last.marks.add({last.length, 0, block.line});
   }
   /// All of what is staged is there.
   void finish_staging() noexcept {
