@@ -28,11 +28,21 @@ double peak_of(const Samples& f) noexcept {
   return most;
 }
 
+/// Whether the law stands still inside the cell.
+bool comes_to_rest(const CellLaw& law, double second, double h) noexcept {
+  const bool has_least = second > 0 && law.slope < 0 && -law.slope < second * h;
+  return has_least && !(2 * law.b * second > law.slope * law.slope);
+}
+
 }  // namespace
 
 FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& law) noexcept {
   FeedUse use;
   const double second = (law.slope_end - law.slope) / cell.h;
+  if (comes_to_rest(law, second, cell.h)) {
+    use.jerk = kNoBound;
+    return use;
+  }
   Samples b, v, a, j;
   for (int k = 0; k <= kSteps; ++k) {
     const double x = cell.h * k / kSteps;
