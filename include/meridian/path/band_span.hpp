@@ -27,11 +27,14 @@ struct BandSpan {
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
   /// Bound of the tip speed |dP/dt|: the least programmed feed of the blocks that the span touches;
-  /// infinite where none has a tip feed (inverse time).
+  /// where one is in inverse time also the fastest that a block within 5 mm of u asks for.
   double feed_mm_per_s = std::numeric_limits<double>::infinity();
   /// Bound of du/dt: the least that an inverse-time feed on the span asks for; infinite where none
-  /// is programmed. It bounds pure rotations too, which tip feed does not.
+  /// is programmed.
   double u_speed_mm_per_s = std::numeric_limits<double>::infinity();
+  /// Bound of the axis speed |dK/dt|: where a block of the span is in inverse time the fastest that
+  /// one within 5 mm of u asks for; infinite else.
+  double turn_rad_per_s = std::numeric_limits<double>::infinity();
 };
 static_assert(std::is_trivially_copyable_v<BandSpan>);
 

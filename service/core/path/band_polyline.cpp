@@ -92,14 +92,25 @@ void BandPolyline::take(const ClBlock& block) noexcept {
   }
   steps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
   step_ = 0;
-  const bool is_inverse = block.feed_meaning == FeedMeaning::kInverseTime;
-  const double infinite = std::numeric_limits<double>::infinity();
-  pattern_.feed_mm_per_s = is_inverse ? infinite : block.feed;
-  pattern_.u_speed_mm_per_s = is_inverse ? block.feed * piece_->length : infinite;
-  pattern_.block_feed_mm_per_s = is_inverse ? block.feed * tip_length(*piece_) : block.feed;
+  take_feed(block);
   pattern_.sequence = block.sequence;
   pattern_.line = block.line;
   cut();
+}
+
+/// What tip and axis hardly do counts as a tolerance over the reach: the smooth path needs that.
+void BandPolyline::take_feed(const ClBlock& block) noexcept {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const bool is_inverse = block.feed_meaning == FeedMeaning::kInverseTime;
+  const double tip = tip_length(*piece_), reaches = piece_->length / kSpeedReach_mm;
+  const double turn = std::max(piece_->axis_turn, tolerance_.axis_rad * reaches);
+  const double per_s = is_inverse ? block.feed : block.feed / tip;
+  pattern_.feed_mm_per_s = is_inverse ? kInfinite : block.feed;
+  pattern_.u_speed_mm_per_s = is_inverse ? block.feed * piece_->length : kInfinite;
+  pattern_.block_feed_mm_per_s = is_inverse ? block.feed * tip : block.feed;
+  pattern_.asked_mm_per_s =
+      is_inverse ? block.feed * std::max(tip, tolerance_.tip_mm * reaches) : block.feed;
+  pattern_.asked_rad_per_s = turn > 0 ? per_s * turn : 0;
 }
 
 bool BandPolyline::cut() noexcept {

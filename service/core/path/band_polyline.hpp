@@ -25,6 +25,10 @@ inline constexpr std::int64_t kVertexReach = 2048;
 /// Blocks whose end is nearer than this to the vertex before count as no way at all.
 inline constexpr double kLeastStep_mm = 1e-6;
 
+/// Within this of u before and behind a place in inverse time blocks say how fast tip and axis may
+/// be there: as far as a corner is felt at the widest gaps (docs/motion.md, 1.5).
+inline constexpr double kSpeedReach_mm = 5;
+
 /// One corner of the CL polyline with the segment that ends in it.
 struct BandVertex {
   Vector6 x{};            ///< tip, axis
@@ -38,6 +42,8 @@ struct BandVertex {
   double feed_mm_per_s = std::numeric_limits<double>::infinity();
   double u_speed_mm_per_s = std::numeric_limits<double>::infinity();
   double block_feed_mm_per_s = 0;
+  double asked_mm_per_s = 0;   ///< tip speed that the block asks for
+  double asked_rad_per_s = 0;  ///< the same of the axis
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
   bool ends_block = false;
@@ -81,6 +87,7 @@ class BandPolyline {
  private:
   template <class Is>
   [[nodiscard]] std::int64_t find_first(std::int64_t low, Is is_it) const noexcept;
+  void take_feed(const ClBlock& block) noexcept;
   void add(const ToolPose& pose, bool ends_block) noexcept;
 
   IndexRing<BandVertex> ring_;

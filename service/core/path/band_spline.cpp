@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "service/core/path/band_hull.hpp"
 #include "service/core/path/band_knots.hpp"
 #include "service/core/path/band_polyline.hpp"
 #include "service/core/path/band_smoother.hpp"
+#include "service/core/path/speed_reach.hpp"
 
 namespace meridian {
 namespace {
@@ -37,6 +39,7 @@ struct BandSpline::Workspace {
     gaps.begin();
     knots.begin();
     points.clear();
+    speeds.begin();
     first = 1;
     checked = 4;
     next_span = committed = 4;
@@ -153,6 +156,11 @@ struct BandSpline::Workspace {
       span.u_speed_mm_per_s = std::min(span.u_speed_mm_per_s, line[i].u_speed_mm_per_s);
       if (i >= line.last() || line[i].u >= knots.t(s + 1)) break;
     }
+    speeds.go_to(line, span.u0, knots.t(s + 1), i);
+    if (std::isfinite(span.u_speed_mm_per_s)) {
+      span.feed_mm_per_s = std::min(span.feed_mm_per_s, speeds.tip_mm_per_s());
+      span.turn_rad_per_s = speeds.turn_rad_per_s();
+    }
   }
 
   BandTuning tuning;
@@ -161,6 +169,7 @@ struct BandSpline::Workspace {
   BandKnots knots;
   ControlPoints points;
   BandSmoother smoother;
+  SpeedReach speeds;
   BandStatistics statistics;
   BandSpan span;
   std::int64_t first = 1;      ///< first control point that is not final

@@ -36,6 +36,7 @@ class IndexRing {
     if (is_full()) ++begin_;
     push(item);
   }
+  void drop_last() noexcept { --end_; }
   /// Takes the oldest element; false if there is none.
   [[nodiscard]] bool take_oldest(T& out) noexcept {
     if (begin_ == end_) return false;

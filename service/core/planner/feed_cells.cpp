@@ -25,6 +25,12 @@ constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
 
 double square(double x) noexcept { return x * x; }
 
+double speed_square(const Vec3<Jet<3>>& x) noexcept {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) sum += square(x[i].derivative(1));
+  return sum;
+}
+
 /// Share of jerk left beside what rounding of the axis near the pole shows as in third differences.
 double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
                          const Pose<double>& pose) noexcept {
@@ -92,11 +98,15 @@ PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& re
                                    quintic_at(span.free, Jet<3>::variable(x) / span.band.length))
                       : solve(model_, tool_length_mm_, pose, span.branch, reference);
   if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
-  double tip_speed = 0;
-  for (int i = 0; i < 3; ++i) tip_speed += square(pose.tip[i].derivative(1));
+  const double tip_speed = speed_square(pose.tip);
   const double share = square(settings_.feed_share);
   double b = std::min(1 / kNone, share * square(span.band.u_speed_mm_per_s));
   b = std::min(b, share * square(span.band.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
+  if (std::isfinite(span.band.turn_rad_per_s)) {
+    const double turn_speed =
+        speed_square(span.is_free_driven ? forward(model_, tool_length_mm_, at.q).axis : pose.axis);
+    b = std::min(b, share * square(span.band.turn_rad_per_s) / std::max(turn_speed, square(kNone)));
+  }
   const auto take = [&](int i, const Jet<3>& q) {
     const double d1 = out.d1[i] = q.derivative(1);
     const double d2 = out.d2[i] = q.derivative(2);

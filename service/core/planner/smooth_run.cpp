@@ -189,12 +189,17 @@ void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
   JointSpan planned = span;
   if (factors.planned > 1) {
     BandSpan& band = planned.band;
-    const double most = model_.max_feed_mm_per_s;
     band.u_speed_mm_per_s *= factors.planned;
+    band.turn_rad_per_s *= factors.planned;
     band.feed_mm_per_s *= factors.planned;
-    if (most > 0) band.feed_mm_per_s = std::min(band.feed_mm_per_s, most);
+    limit_feed(band);
   }
   (void)feed_.push(planned);
+}
+
+void SmoothRun::limit_feed(BandSpan& span) const noexcept {
+  const double most = model_.max_feed_mm_per_s;
+  if (most > 0) span.feed_mm_per_s = std::min(span.feed_mm_per_s, most);
 }
 
 void SmoothRun::note_block_ends() noexcept {
@@ -262,7 +267,9 @@ const JointSpan* SmoothRun::next_span() noexcept {
       if (mark->u > 0) corridor_.mark(mark->u, to_vector(mark->axis));
     }
     if (band != nullptr) {
-      corridor_.push(*band);
+      BandSpan limited = *band;
+      limit_feed(limited);
+      corridor_.push(limited);
     } else if (band_.is_done()) {
       is_band_finished_ = true;
       corridor_.finish();

@@ -100,6 +100,8 @@ class SmoothRun : public WindingTrial {
   void push(const JointSpan& span, double feed_override) noexcept;
   /// The next span that joints follow, nullptr where there is none yet.
   [[nodiscard]] const JointSpan* next_span() noexcept;
+  /// No faster than the machine's highest feed.
+  void limit_feed(BandSpan& span) const noexcept;
   /// Remembers where blocks end on the span that the band gave last.
   void note_block_ends() noexcept;
   /// Marks the ends of blocks on `span`, the next one.

@@ -149,14 +149,16 @@ TEST(BandStream, NamesBlocksAndBoundsFeedsOfAllThatASpanTouches) {
     const double end = span.u0 + span.length;
     const double slowest = span.u0 < 20 ? 40 : span.u0 < 50 ? 60 : 1e300;
     if (span.u0 >= 50) {
-      EXPECT_GT(span.feed_mm_per_s, slowest);
+      EXPECT_NEAR(span.feed_mm_per_s, end < 55 ? 60 : 20, 1e-9) << "the fastest within 5 mm";
     } else {
       EXPECT_EQ(span.feed_mm_per_s, slowest) << span.u0;
     }
     if (end > 50) {
       EXPECT_NEAR(span.u_speed_mm_per_s, 20, 1e-9);
+      EXPECT_LT(span.turn_rad_per_s, 0.1) << "no block turns the axis";
     } else {
       EXPECT_GT(span.u_speed_mm_per_s, 1e300) << span.u0;
+      EXPECT_GT(span.turn_rad_per_s, 1e300) << span.u0;
     }
     EXPECT_EQ(span.sequence, span.u0 < 20 ? 3U : span.u0 < 50 ? 5U : 9U) << span.u0;
   }
