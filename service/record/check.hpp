@@ -38,7 +38,8 @@ struct CheckOptions {
 /// * rows of kind `unwind` leave the path along the tool axis alone, turn the free joint by whole
 ///   turns off the part, and come back to where they left;
 /// * tip speed never above the programmed feed, times the feed override in force or in force as
-///   long before as the machine takes to follow; inverse time: nor the turn of the axis;
+///   long before as the machine takes to follow; inverse time: tip and axis never faster than the
+///   fastest block within 5 mm asks for, and no block in less than its time;
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.

@@ -61,6 +61,8 @@ std::string_view word(Finding::Kind kind) noexcept {
       return "feed";
     case Finding::Kind::kTurnRate:
       return "turn_rate";
+    case Finding::Kind::kBlockTime:
+      return "block_time";
     case Finding::Kind::kVelocity:
       return "velocity";
     case Finding::Kind::kAcceleration:

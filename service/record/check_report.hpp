@@ -46,6 +46,7 @@ struct Finding {
     kUnfinished,
     kFeed,
     kTurnRate,
+    kBlockTime,
     kVelocity,
     kAcceleration,
     kJerk,

@@ -75,6 +75,7 @@ void CheckedPath::add(const ClBlock& block, double new_tool_length_mm) {
   element.tool_length_mm = tool_length_mm_;
   element.line = block.line;
   double tip_length = element.tip_delta.norm();
+  const double turn_length = kAxisLength_mm_per_rad * circle.turn;
   int parts = 1;
   if (block.is_arc) {
     const Vector3 normal = to_vector(block.normal);
@@ -87,13 +88,17 @@ void CheckedPath::add(const ClBlock& block, double new_tool_length_mm) {
     tip_length = std::hypot(block.sweep_rad * element.arc_x.norm(), element.tip_delta.norm());
     parts = std::max(1, static_cast<int>(std::ceil(block.sweep_rad / kLargestPart_rad)));
   }
-  if (block.feed_meaning == FeedMeaning::kTip) {
-    element.feed_mm_per_s = std::min(block.feed, max_feed_mm_per_s_);
-  } else if (block.feed_meaning == FeedMeaning::kInverseTime) {
-    element.feed_mm_per_s = std::min(block.feed * tip_length, max_feed_mm_per_s_);
-    element.turn_rad_per_s = block.feed * circle.turn;
+  const double way_length = std::hypot(tip_length, turn_length);
+  if (block.feed_meaning != FeedMeaning::kNone) {
+    element.is_timed = block.feed_meaning == FeedMeaning::kInverseTime;
+    const double per_s = element.is_timed ? block.feed : block.feed / tip_length;
+    element.feed_mm_per_s =
+        std::min(element.is_timed ? per_s * tip_length : block.feed, max_feed_mm_per_s_);
+    element.turn_rad_per_s = circle.turn > 0 ? per_s * circle.turn : 0;
+    element.way_mm_per_s = way_length > 0 ? per_s * way_length : 0;
   }
-  element.length = (tip_length + kAxisLength_mm_per_rad * circle.turn) / parts;
+  element.length = (tip_length + turn_length) / parts;
+  element.way_length = way_length / parts;
   const PathElement whole = element;
   for (int i = 0; i < parts; ++i) {
     if (parts > 1) {
@@ -113,11 +118,27 @@ void CheckedPath::add(const ClBlock& block, double new_tool_length_mm) {
     }
     element.arc_sweep = block.is_arc ? block.sweep_rad / parts : 0;
     element.s = length_;
+    element.way = way_;
     length_ += element.length;
+    way_ += element.way_length;
     elements_.push_back(element);
   }
   tip_length_mm_ += tip_length;
   end_ = goal;
+}
+
+std::size_t CheckedPath::element_at(double s) const noexcept {
+  const auto after =
+      std::upper_bound(elements_.begin(), elements_.end(), s,
+                       [](double value, const PathElement& element) { return value < element.s; });
+  return after == elements_.begin() ? 0 : static_cast<std::size_t>(after - elements_.begin()) - 1;
+}
+
+double CheckedPath::way_at(double s) const noexcept {
+  const PathElement& element = elements_[element_at(s)];
+  if (!(element.length > 0)) return element.way;
+  const double share = std::clamp((s - element.s) / element.length, 0.0, 1.0);
+  return element.way + share * element.way_length;
 }
 
 }  // namespace meridian::record

@@ -20,14 +20,18 @@ struct PathElement {
   double arc_sweep = 0;  ///< 0: straight
   Vector3 axis_begin;
   Vector3 axis_normal;
-  double axis_turn = 0;  ///< rad, [0, π]
-  double s = 0;          ///< common length at its begin: tip length + 50 mm per rad of axis turn
-  double length = 0;     ///< of it
-  double feed_mm_per_s = kNoFeed;   ///< fastest tip allowed
-  double turn_rad_per_s = kNoFeed;  ///< fastest tool axis allowed (inverse time)
-  double tool_length_mm = 0;        ///< gauge line to tip while it is cut
-  std::uint32_t line = 0;           ///< source line of its block
-  bool is_block_end = true;         ///< false between the parts of an arc
+  double axis_turn = 0;   ///< rad, [0, π]
+  double s = 0;           ///< common length at its begin: tip length + 50 mm per rad of axis turn
+  double length = 0;      ///< of it
+  bool is_timed = false;  ///< its block is in inverse time
+  double feed_mm_per_s = kNoFeed;   ///< tip speed that its block asks for, at most the machine's
+  double turn_rad_per_s = kNoFeed;  ///< the same of the axis; infinite in rapids
+  double way = 0;         ///< at its begin: root of the squares of tip length and 50 mm per rad
+  double way_length = 0;  ///< of it
+  double way_mm_per_s = kNoFeed;  ///< that its block asks for
+  double tool_length_mm = 0;      ///< gauge line to tip while it is cut
+  std::uint32_t line = 0;         ///< source line of its block
+  bool is_block_end = true;       ///< false between the parts of an arc
 
   static constexpr double kNoFeed = std::numeric_limits<double>::infinity();
 
@@ -58,6 +62,9 @@ class CheckedPath {
   [[nodiscard]] std::uint32_t begin_line() const noexcept { return begin_line_; }
   [[nodiscard]] std::uint64_t motion_block_count() const noexcept { return motion_blocks_; }
   [[nodiscard]] double tip_length_mm() const noexcept { return tip_length_mm_; }
+  /// The element at common length `s`, and the way there. There is one at least.
+  [[nodiscard]] std::size_t element_at(double s) const noexcept;
+  [[nodiscard]] double way_at(double s) const noexcept;
   /// Common length of all elements.
   [[nodiscard]] double length() const noexcept { return length_; }
 
@@ -66,7 +73,7 @@ class CheckedPath {
   ToolPose begin_{}, end_{};
   double tool_length_mm_, begin_tool_length_mm_;
   double max_feed_mm_per_s_;
-  double length_ = 0, tip_length_mm_ = 0;
+  double length_ = 0, way_ = 0, tip_length_mm_ = 0;
   std::uint64_t motion_blocks_ = 0;
   std::uint32_t begin_line_ = 0;
   bool has_begin_ = false;

@@ -64,14 +64,6 @@ double PathFollower::project(const ToolPose& pose, std::size_t index, double t) 
   return t;
 }
 
-std::size_t PathFollower::element_at(double s) const noexcept {
-  const auto& elements = path_.elements();
-  const auto after =
-      std::upper_bound(elements.begin(), elements.end(), s,
-                       [](double value, const PathElement& element) { return value < element.s; });
-  return after == elements.begin() ? 0 : static_cast<std::size_t>(after - elements.begin()) - 1;
-}
-
 double PathFollower::length_at(const Place& place) const noexcept {
   if (path_.elements().empty()) return 0;
   const PathElement& element = path_.elements()[place.element];
@@ -82,8 +74,8 @@ double PathFollower::length_at(const Place& place) const noexcept {
 PoseMatch PathFollower::scan(const ToolPose& pose, double reach, double place_weight,
                              double expected) const {
   const auto& elements = path_.elements();
-  const std::size_t low = element_at(here_.s - 0.2 * reach - 0.02);
-  const std::size_t high = std::min(element_at(here_.s + reach) + 1, elements.size() - 1);
+  const std::size_t low = path_.element_at(here_.s - 0.2 * reach - 0.02);
+  const std::size_t high = std::min(path_.element_at(here_.s + reach) + 1, elements.size() - 1);
   PoseMatch best = here_;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t index = std::max(low > 0 ? low - 1 : 0, earliest_.element); index <= high;
@@ -199,7 +191,7 @@ PoseMatch PathFollower::follow(const ToolPose& pose) {
       (pose.tip - last_.tip).norm() + kAxisLength_mm_per_rad * angle_between(pose.axis, last_.axis);
   last_ = pose;
   const double expected = here_.s + moved;
-  const std::size_t nearby = element_at(std::min(expected, path_.length()));
+  const std::size_t nearby = path_.element_at(std::min(expected, path_.length()));
   const double length = path_.elements()[nearby].length;
   const double start =
       length > 0 ? std::clamp((expected - path_.elements()[nearby].s) / length, 0.0, 1.0) : 0.0;

@@ -73,7 +73,6 @@ class PathFollower {
  private:
   [[nodiscard]] PoseMatch match_at(const ToolPose& pose, std::size_t index, double t) const;
   [[nodiscard]] double project(const ToolPose& pose, std::size_t index, double t) const noexcept;
-  [[nodiscard]] std::size_t element_at(double s) const noexcept;
   /// Where matches on element `index` begin.
   [[nodiscard]] double begin_of(std::size_t index) const noexcept {
     return index == earliest_.element ? earliest_.t : 0.0;

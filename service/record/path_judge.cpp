@@ -16,6 +16,7 @@ namespace {
 constexpr double kRoundingShare = 1e-6;
 constexpr double kPlace_mm = 1e-11;   // of the tip, by rounding of the joints
 constexpr double kLeastFeed = 1e-12;  // mm/s
+constexpr double kLeastTurn_rad_per_s = 1e-9;
 
 /// A vertex is looked for this far before and behind the place where the tool is, and twice the
 /// tolerances: the tool and the place that it is held against are both within one of it.
@@ -24,6 +25,9 @@ constexpr double kVertexMargin_mm = 0.1;
 constexpr double kLargestSag_mm = 1e-4;
 /// A block shorter than that turns the axis alone.
 constexpr double kNoTip_mm = 1e-9;
+/// In inverse time blocks within this way of a place say how fast tip and axis may be there.
+constexpr double kSpeedReach_mm = 5;
+constexpr double kNoFeed = PathElement::kNoFeed;
 
 /// How long the rate of plan time takes at most to follow an override: its ramp, and what it needs
 /// to turn round, get going and settle.
@@ -52,6 +56,7 @@ PathJudge::PathJudge(const MachineModel& model, const CheckedPath& path,
       period_(static_cast<double>(model.cycle_ns) * 1e-9),
       overrides_(options.overrides, ramp_cycles(model)),
       follower_(path, tip_tolerance_, axis_tolerance_),
+      times_(path, tip_tolerance_ + kAxisLength_mm_per_rad * axis_tolerance_, period_, options),
       tool_length_(path.begin_tool_length_mm()),
       nearest_(path.elements().size() + 1, std::numeric_limits<double>::infinity()),
       turned_(nearest_),
@@ -192,27 +197,49 @@ void PathJudge::add_gap(double s_from, double s_to) {
   }
 }
 
-/// Tip and axis between two consecutive setpoints against the fastest feed programmed on the way.
+/// The fastest that blocks on a stretch of the path ask for; where one is in inverse time also
+/// those within reach, and where all are the axis is bounded too. No block in inverse time counts
+/// for less than a tolerance over the reach.
+PathJudge::Speeds PathJudge::asked_about(double s_low, double s_high) const noexcept {
+  const auto& elements = path_.elements();
+  std::size_t first = path_.element_at(s_low), last = path_.element_at(s_high);
+  bool is_timed = false, bounds_axis = true;
+  for (std::size_t i = first; i <= last; ++i) {
+    is_timed = is_timed || elements[i].is_timed;
+    bounds_axis = bounds_axis && elements[i].is_timed;
+  }
+  if (is_timed) {
+    const auto has_feed = [&](std::size_t i) { return elements[i].feed_mm_per_s < kNoFeed; };
+    const double from = path_.way_at(s_low) - kSpeedReach_mm;
+    const double to = path_.way_at(s_high) + kSpeedReach_mm;
+    while (first > 0 && elements[first].way >= from && has_feed(first - 1)) --first;
+    while (last + 1 < elements.size() && elements[last + 1].way <= to && has_feed(last + 1)) ++last;
+  }
+  Speeds out{0, bounds_axis ? 0 : kNoFeed};
+  for (std::size_t i = first; i <= last; ++i) {
+    const PathElement& element = elements[i];
+    const double reaches_per_s = element.way_mm_per_s / kSpeedReach_mm;
+    const double least_tip = element.is_timed ? tip_tolerance_ * reaches_per_s : 0;
+    out.tip_mm_per_s = std::max({out.tip_mm_per_s, element.feed_mm_per_s, least_tip});
+    out.turn_rad_per_s =
+        std::max({out.turn_rad_per_s, element.turn_rad_per_s, axis_tolerance_ * reaches_per_s});
+  }
+  return out;
+}
+
+/// Tip and axis between two consecutive setpoints against the fastest that is asked for there.
 void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, double s_to) {
   const ToolPose a = forward(model_, tool_length_, from.joints);
   const ToolPose b = forward(model_, tool_length_, to.joints);
   const double speed = (b.tip - a.tip).norm() / period_;
   speed_.raise(speed, to.cycle, to.line);
-  const auto& elements = path_.elements();
-  if (elements.empty() || speed == 0) return;
+  if (path_.elements().empty()) return;
   const double margin = tip_tolerance_ + kAxisLength_mm_per_rad * axis_tolerance_;
-  const double low = std::min(s_from, s_to) - margin, high = std::max(s_from, s_to) + margin;
-  auto element = std::upper_bound(elements.begin(), elements.end(), low,
-                                  [](double s, const PathElement& e) { return s < e.s; });
-  if (element != elements.begin()) --element;
-  double feed = 0, turn = 0;
-  for (; element != elements.end() && element->s <= high; ++element) {
-    feed = std::max(feed, element->feed_mm_per_s);
-    turn = std::max(turn, element->turn_rad_per_s);
-  }
+  const Speeds asked =
+      asked_about(std::min(s_from, s_to) - margin, std::max(s_from, s_to) + margin);
   const double factor = options_.overrides.empty() ? options_.feed_factor : overrides_.at(to.cycle);
-  double allowed = feed * factor;
-  if (factor > 1 && model_.max_feed_mm_per_s > 0) {
+  double allowed = asked.tip_mm_per_s * factor;
+  if (model_.max_feed_mm_per_s > 0 && std::isfinite(allowed)) {
     allowed = std::min(allowed, model_.max_feed_mm_per_s);
   }
   // At an override of 0 the tip stands but for the last bit of its place.
@@ -223,8 +250,9 @@ void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, d
     ++feed_over_.count;
   }
   const double rate = angle_between(a.axis, b.axis) / period_;
-  if (turn > 0 && rate > turn * factor * (1 + kRoundingShare) + 1e-9) {
-    turn_over_.worst.raise(rate / turn, to.cycle, to.line);
+  const double allowed_turn = asked.turn_rad_per_s * factor;
+  if (rate > allowed_turn * (1 + kRoundingShare) + kLeastTurn_rad_per_s) {
+    turn_over_.worst.raise(rate / std::max(allowed_turn, kLeastTurn_rad_per_s), to.cycle, to.line);
     ++turn_over_.count;
   }
 }
@@ -252,11 +280,16 @@ void PathJudge::step(bool has_between) {
   const bool is_gap = to.cycle != from.cycle + 1;
   if (is_gap) pose_count_ = 0;
   sample(to.joints, to, true);
+  if (!path_.elements().empty()) {
+    const double passed = path_.way_at(follower_.length_at(follower_.earliest()));
+    times_.add(path_.way_at(reached_), passed, to.cycle);
+  }
   if (is_gap) {
     add_gap(s_from, here_.s);
-  } else {
+  } else if (is_under_way_) {
     judge_speed(from, to, s_from, here_.s);
   }
+  is_under_way_ = true;
 }
 
 void PathJudge::add(const RecordingRow& row) {
@@ -313,6 +346,7 @@ void PathJudge::finish(CheckReport& report) {
                   turn_over_.worst.value);
     find(Finding::Kind::kTurnRate, turn_over_);
   }
+  times_.finish(report);
   finish_vertices(report);
 }
 

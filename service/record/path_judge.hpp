@@ -9,6 +9,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/record/check.hpp"
 #include "service/record/path_follower.hpp"
+#include "service/record/time_judge.hpp"
 
 namespace meridian::record {
 
@@ -39,6 +40,11 @@ class PathJudge {
   void pass_vertices(const ToolPose& pose);
   [[nodiscard]] bool pass_vertex(std::size_t index);
   [[nodiscard]] double miss_of_turn(const ToolPose& vertex) const;
+  /// How fast tip and axis may be.
+  struct Speeds {
+    double tip_mm_per_s = 0, turn_rad_per_s = 0;
+  };
+  [[nodiscard]] Speeds asked_about(double s_low, double s_high) const noexcept;
   void judge_speed(const Place& from, const Place& to, double s_from, double s_to);
   void add_gap(double s_from, double s_to);
   [[nodiscard]] double vertex_s(std::size_t index) const noexcept;
@@ -56,8 +62,10 @@ class PathJudge {
   double exceeded_axis_ = 0;  ///< what was allowed where the axis was farthest off
   FeedInForce overrides_;
   PathFollower follower_;
+  TimeJudge times_;
   double tool_length_;
   std::array<Place, 4> places_{};  ///< newest last
+  bool is_under_way_ = false;      ///< the first step may begin in the approach
   int known_ = 0;                  ///< how many of them are filled
   int run_ = 0;                    ///< consecutive cycles at their end
   PoseMatch here_{};

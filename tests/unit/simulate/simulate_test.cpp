@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/simulated_run.hpp"
 
@@ -108,6 +112,51 @@ TEST_F(Simulate, JoinsBlocksAsASessionAsksInsteadOfAsTheMachineSays) {
   EXPECT_LT(asked.records.size(), plain.records.size());
   simulation.settings.tip_tolerance_mm = 0.001;
   EXPECT_GT(run_simulation(kPart, model, simulation).records.size(), asked.records.size());
+}
+
+/// Moves, turns of the axis alone and both, each with a time of its own, that go to and fro.
+[[nodiscard]] std::string in_inverse_time(std::uint32_t seed) {
+  std::mt19937 engine(seed);
+  const auto draw = [&](double low, double high) {
+    return std::exp(std::uniform_real_distribution<double>(std::log(low), std::log(high))(engine));
+  };
+  std::string text = "UNITS / MM\nMULTAX / ON\n";
+  double x = 80, y = -40, tilt = 0.3, side = 1;
+  for (int n = 0; n < 50; ++n, side = -side) {
+    const int kind = n % 5;
+    const double length = kind == 1 ? 0 : draw(0.1, 15);
+    const double before = tilt;
+    if (kind != 2) tilt = std::clamp(tilt + side * draw(0.002, 0.3), 0.1, 0.9);
+    const double turn = std::abs(tilt - before);
+    (kind == 3 ? y : x) += side * length;
+    char line[160];
+    std::snprintf(
+        line, sizeof line, "FEDRAT / INVERS, %.6f\nGOTO / %.9f, %.9f, 20, %.12f, 0, %.12f\n",
+        60 * draw(2, 100) / std::hypot(length, 50 * turn), x, y, std::sin(tilt), std::cos(tilt));
+    text += line;
+  }
+  return text + "FINI\n";
+}
+
+TEST_F(Simulate, CutsBlocksInInverseTimeAsCheckJudgesThem) {
+  for (JointSpec& joint : model.joints) {
+    joint.limits.velocity *= 8;
+    joint.limits.acceleration *= 40;
+    joint.limits.jerk *= 200;
+  }
+  const auto programs = test::number_of<std::uint32_t>("MERIDIAN_INVERSE_PROGRAMS", 1);
+  for (const Transition transition : {Transition::kSmooth, Transition::kExactStop}) {
+    model.transition = transition;
+    for (std::uint32_t seed = 1; seed <= programs; ++seed) {
+      const std::string text = in_inverse_time(seed);
+      const SimulatedRun run = run_simulation(text, model);
+      ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
+      options = {};
+      const CheckReport report = check(run, text.c_str());
+      EXPECT_TRUE(report.passed()) << "seed " << seed << '\n' << to_text(report);
+      EXPECT_GT(report.feed.value, 0.99);
+    }
+  }
 }
 
 TEST_F(Simulate, GivesTheSameBitsEveryTime) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/record/time_judge.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace meridian::record {
+namespace {
+
+constexpr double kRoundingShare = 1e-6;
+/// Tolerances by which a match may lag where a tool turns round ahead of its path, and the ends.
+constexpr double kLag = 10;
+
+[[nodiscard]] double highest_override(const CheckOptions& options) {
+  if (options.overrides.empty()) return options.feed_factor;
+  double most = 1;
+  for (const FeedOverride& set : options.overrides) most = std::max(most, set.factor);
+  return most;
+}
+
+}  // namespace
+
+TimeJudge::TimeJudge(const CheckedPath& path, double tolerance_mm, double period_s,
+                     const CheckOptions& options)
+    : path_(path), tolerance_(tolerance_mm), period_(period_s), factor_(highest_override(options)) {
+  entered_.reserve(path.elements().size());
+  worst_.kind = Finding::Kind::kBlockTime;
+}
+
+void TimeJudge::add(double matched, double passed, std::uint64_t cycle) {
+  const auto& elements = path_.elements();
+  while (entered_.size() < elements.size() &&
+         matched >= elements[entered_.size()].way + tolerance_) {
+    entered_.push_back(cycle);
+  }
+  for (; left_ < entered_.size(); ++left_) {
+    const PathElement& element = elements[left_];
+    if (passed < element.way + element.way_length - tolerance_) return;
+    judge(element, entered_[left_], cycle);
+  }
+}
+
+void TimeJudge::judge(const PathElement& element, std::uint64_t begin, std::uint64_t end) {
+  const double way = element.way_length - kLag * tolerance_;
+  if (!element.is_timed || !(way > 0)) return;
+  const double least = way / (element.way_mm_per_s * factor_);
+  const double share = static_cast<double>(end - begin + 1) * period_ / least;
+  if (share >= 1 - kRoundingShare) return;
+  ++worst_.count;
+  if (share >= worst_share_) return;
+  worst_share_ = share;
+  worst_.cycle = end;
+  worst_.line = element.line;
+  char text[128];
+  std::snprintf(text, sizeof text, "a block takes %.6f of its inverse time", share);
+  worst_.text = text;
+}
+
+void TimeJudge::finish(CheckReport& report) const {
+  if (worst_.count > 0) report.findings.push_back(worst_);
+}
+
+}  // namespace meridian::record
