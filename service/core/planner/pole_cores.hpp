@@ -56,12 +56,8 @@ class PoleCores {
 
   /// Goes on to the next place to decide; false: there is none as far as the path is known.
   [[nodiscard]] bool find_next(const SettledPath& settled) noexcept;
-  /// Decides the place that was found. The core goes on as far as its path comes back to the pole
-  /// inside the tolerance.
+  /// Decides the place that was found.
   [[nodiscard]] Answer decide(PoleCore& out) noexcept;
-  /// Where no zone was found about `core`: the same one only as far as the free joint may be held
-  /// whatever it is. False: it is no shorter.
-  [[nodiscard]] bool shorten(PoleCore& core) noexcept;
   /// The zone about `core` was taken: what is behind it comes next.
   void take(const PoleCore& core) noexcept {
     if (core.hold >= 0) place_ = core.hold;
@@ -71,30 +67,19 @@ class PoleCores {
   [[nodiscard]] Place place() const noexcept { return place_; }
 
  private:
-  // Distances from the pole, in tolerances.
-  static constexpr double kDwell = 0.2;    ///< nearer, the path counts as on the pole
-  static constexpr double kStay = 0.4;     ///< so far a path that comes back may go meanwhile
-  static constexpr double kFarStay = 1.0;  ///< the same where the free joint happens to fit
-  static constexpr double kOther = 3;      ///< a minimum nearer than that bounds the reach
-  static constexpr double kZone = 2.5;     ///< minima farther off leave a zone no room
-
   /// What is known of a core stays while spans behind it come, so that a way along the pole is
   /// walked once, however long.
   struct Run {
     Place place = -1;           ///< the minimum among the probes
-    double stay = 0;            ///< tolerances: farther off it ends
     Place first = 0, last = 0;  ///< the run of places on the pole about it
     Place seen = 0;             ///< farther on the path only lingers beside it
     double nearest = 0;         ///< u
   };
 
   [[nodiscard]] bool is_minimum(bool is_last) const noexcept;
-  [[nodiscard]] Answer decide_at(Place place, double stay, PoleCore& out) noexcept;
-  /// Finds what is known of the core about `place` that stays within `stay` tolerances.
-  void follow(Place place, double stay) noexcept;
+  /// Finds what is known of the core about the place.
+  void follow() noexcept;
   [[nodiscard]] PolePlace around() const noexcept;
-  /// Where a core that what is settled reaches into may begin instead.
-  [[nodiscard]] double find_begin_behind(double u) const noexcept;
   /// Where in a core from `begin`, whose end is not known yet, the free joint may come to rest
   /// meanwhile; -1: its end is waited for.
   [[nodiscard]] Place find_hold(double begin) const noexcept;
@@ -102,12 +87,9 @@ class PoleCores {
   /// Whether enough of the path behind `u` is known.
   [[nodiscard]] bool is_known_behind(double u) const noexcept;
   /// Whether the path counts as on the pole at `place`.
-  [[nodiscard]] bool dwells(Place place) const noexcept { return is_within(place, kDwell); }
-  /// Whether it is so close to it that the free joint may be held there, whatever it is.
-  [[nodiscard]] bool lingers(Place place) const noexcept { return is_within(place, kStay); }
-  [[nodiscard]] bool is_within(Place place, double tolerances) const noexcept {
-    return probes_.distance_of(place) < tolerances * tolerance_rad_;
-  }
+  [[nodiscard]] bool dwells(Place place) const noexcept;
+  /// Whether it is so close to it that the free joint may be held there.
+  [[nodiscard]] bool lingers(Place place) const noexcept;
   /// Whether the free joint rests on the way to `place`, and may go on resting there.
   [[nodiscard]] bool rests_at(Place place) const noexcept;
   [[nodiscard]] bool is_in_core(Place place) const noexcept {

@@ -126,22 +126,17 @@ void PoleCorridor::scan() noexcept {
 }
 
 void PoleCorridor::settle(PoleCore& core) noexcept {
-  do {
-    if (take_zone(core)) return cores_.take(core);
-  } while (cores_.shorten(core));
-  if (core.around.is_start) {
+  PolePlace& around = core.around;
+  const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
+  if (core.has_room && waiting + kMostZones <= kPending) {
+    around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
+    if (find_zone(around, core.hold >= 0)) return cores_.take(core);
+  }
+  if (around.is_start) {
     has_failed_ = true;
   } else {
     add_cuts(core.nearest);
   }
-}
-
-bool PoleCorridor::take_zone(PoleCore& core) noexcept {
-  const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
-  if (!core.has_room || waiting + kMostZones > kPending) return false;
-  PolePlace& around = core.around;
-  around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
-  return find_zone(around, core.hold >= 0);
 }
 
 bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
@@ -164,13 +159,6 @@ bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
     if (!(rest.end > rest.begin)) return false;
     rest.is_held = true;
     take(rest);
-  }
-  const bool rests_early = around.is_end && zone.end < around.core_end;
-  if (rests_early) {
-    const PoleZone rest = rest_behind(zone, around.core_end);
-    zone.is_held = true;
-    take(zone);
-    zone = rest;
   }
   take(zone);
   return true;

@@ -78,7 +78,6 @@ class PoleCorridor {
   void scan() noexcept;
   /// Takes a zone about `core`, or cuts the spans there.
   void settle(PoleCore& core) noexcept;
-  [[nodiscard]] bool take_zone(PoleCore& core) noexcept;
   /// Takes the best zone about `around`; false: there is none.
   [[nodiscard]] bool find_zone(PolePlace around, bool is_held) noexcept;
   void add_cuts(double nearest) noexcept;

@@ -24,8 +24,6 @@ constexpr double kLeastGain_s = 1e-3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTravelMargin = 1e-9;
 constexpr double kLeastPart_mm = 1e-4;
-constexpr int kEnds = 7;  // each half as far into the core as the one before
-constexpr double kLeastCore_mm = 1;
 
 template <class S>
 Pose<S> pose_of(const BandSpan& span, double u) noexcept {
@@ -155,45 +153,26 @@ class Search {
  private:
   /// All candidates, against the exact way where there is one.
   void search(bool has_exact) noexcept {
+    const int branches = branch_count(task_.model);
     best_time_ = has_exact ? exact_time() - kLeastGain_s : kNever;
     const bool is_inside_core = place_.is_start && place_.is_end;  // held, whatever the width
     for (int n = is_inside_core ? kWidths - 1 : 0; n < kWidths; ++n) {
       const double width = place_.reach * std::pow(kLeastShare, 1.0 * n / (kWidths - 1));
-      if (place_.is_end) {
-        try_ends(width);
-      } else {
-        for (const double skew : kSkews) {
-          if (skew == 0 || !place_.is_start) try_skew(width, skew);
+      for (const double skew : kSkews) {
+        if (skew != 0 && (place_.is_start || place_.is_end)) continue;
+        const double before = width * (1 - skew) / (1 + std::abs(skew));
+        const double behind = width * (1 + skew) / (1 + std::abs(skew));
+        PoleZone zone;
+        zone.branch_before = place_.branch;
+        zone.begin = place_.is_start ? place_.core_begin : snapped(place_.core_begin - before);
+        zone.end = place_.is_end ? place_.core_end : snapped(place_.core_end + behind);
+        const double outside =
+            (place_.is_start ? 0 : before_.to(before)) + (place_.is_end ? 0 : behind_.to(behind));
+        for (int branch = 0; branch < branches; ++branch) {
+          zone.branch_after = branch;
+          try_zone(zone, outside);
         }
       }
-    }
-  }
-
-  void try_skew(double width, double skew) noexcept {
-    const double before = width * (1 - skew) / (1 + std::abs(skew));
-    const double behind = width * (1 + skew) / (1 + std::abs(skew));
-    PoleZone zone;
-    zone.branch_before = place_.branch;
-    zone.begin = place_.is_start ? place_.core_begin : snapped(place_.core_begin - before);
-    zone.end = snapped(place_.core_end + behind);
-    const double outside = (place_.is_start ? 0 : before_.to(before)) + behind_.to(behind);
-    for (int branch = 0; branch < branch_count(task_.model); ++branch) {
-      zone.branch_after = branch;
-      try_zone(zone, outside);
-    }
-  }
-
-  /// Coming to rest at the end of the core or earlier: a turn that is fast where the core begins
-  /// goes the farther on the longer the zone is.
-  void try_ends(double width) noexcept {
-    PoleZone zone;
-    zone.branch_before = zone.branch_after = place_.branch;
-    zone.begin = place_.is_start ? place_.core_begin : snapped(place_.core_begin - width);
-    const double core = place_.core_end - place_.core_begin;
-    const bool has_choice = !place_.is_start && core > kLeastCore_mm;
-    for (int n = 0; n < (has_choice ? kEnds : 1); ++n) {
-      zone.end = n == 0 ? place_.core_end : snapped(place_.core_begin + std::ldexp(core, -n));
-      try_zone(zone, place_.is_start ? 0 : before_.to(width));
     }
   }
 
@@ -218,15 +197,11 @@ class Search {
 
   void try_zone(PoleZone zone, double outside) noexcept {
     if (!(outside < best_time_) || !fit(zone) || !is_inside(zone, kSamples / 8)) return;
-    double time = outside + time_on(zone, best_time_ - outside);
-    if (!(time < best_time_) || !is_inside(zone, kSamples) || !is_inside_at_kinks(zone)) return;
-    if (place_.is_end && zone.end < place_.core_end) {
-      PoleZone rest = rest_behind(zone, place_.core_end);
-      time += time_on(rest, best_time_ - time);
-      if (!(time < best_time_) || !is_inside(rest, kSamples) || !is_inside_at_kinks(rest)) return;
-      zone.deviation_rad = std::max(zone.deviation_rad, rest.deviation_rad);
+    const double time = outside + time_on(zone, best_time_ - outside);
+    if (!(time < best_time_) || !is_inside(zone, kSamples) || !is_inside_at_kinks(zone) ||
+        !keeps_travel_behind(zone)) {
+      return;
     }
-    if (!keeps_travel_behind(zone)) return;
     best_time_ = time;
     best_ = zone;
   }
@@ -348,15 +323,6 @@ class Search {
 
 PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept {
   return Search(task, place).run();
-}
-
-PoleZone rest_behind(const PoleZone& zone, double end) noexcept {
-  PoleZone rest = zone;
-  rest.begin = zone.end;
-  rest.end = end;
-  rest.free.fill(zone.free.back());
-  rest.branch_before = rest.branch_after = zone.branch_after;
-  return rest;
 }
 
 FreeQuintic part_of(const FreeQuintic& whole, double from, double to) noexcept {

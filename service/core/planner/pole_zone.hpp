@@ -50,17 +50,13 @@ struct PoleTask {
 /// Picks the zone with the least time over the whole reach; begin == end: the exact way has it.
 ///
 /// Candidates are quintics that meet the exact free joint with two derivatives at both ends, on
-/// either branch behind: 24 widths, 7 skews. One that comes to rest in the core may do so ahead of
-/// core_end, at 7 places, from where rest_behind() goes on. A candidate whose tool axis leaves the
-/// tolerance about the programmed axis, or whose joints leave travel there or behind, as far as the
-/// path is known, is none. Neither is the exact way where joints leave travel on it; where nothing
-/// is left, travel behind the zone is not asked for. Time is counted without regard to what lies
-/// around: the largest of |P'|/F, |q'|/V, √(|q''|/A), ∛(|q'''|/J) over all joints. Source:
-/// docs/motion.md, section 10. Bounded work, no memory.
+/// either branch behind: 24 widths, 7 skews. A candidate whose tool axis leaves the tolerance about
+/// the programmed axis, or whose joints leave travel there or behind, as far as the path is known,
+/// is none. Neither is the exact way where joints leave travel on it; where nothing is left, travel
+/// behind the zone is not asked for. Time is counted without regard to
+/// what lies around: the largest of |P'|/F, |q'|/V, √(|q''|/A), ∛(|q'''|/J) over all joints.
+/// Source: docs/motion.md, section 10. Bounded work, no memory.
 [[nodiscard]] PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept;
-
-/// The free joint at rest from the end of `zone` to `end`.
-[[nodiscard]] PoleZone rest_behind(const PoleZone& zone, double end) noexcept;
 
 /// The part of a quintic between shares `from` < `to` of its range.
 [[nodiscard]] FreeQuintic part_of(const FreeQuintic& whole, double from, double to) noexcept;

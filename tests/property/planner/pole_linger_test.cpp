@@ -179,31 +179,6 @@ TEST(PoleLinger, AWayOntoThePoleAndOffAgainRunsThroughHoweverLongItStays) {
   }
 }
 
-/// Onto the pole, one block off it by `off_deg` across the way in, `count` wavering blocks, off.
-std::vector<ClBlock> stay_behind_a_step(double off_deg, int count) {
-  Way way(1);
-  for (int n = 12; n >= 0; --n) way.to(std::tan(units::rad_from_deg(n)), 0);
-  way.to(0, std::tan(units::rad_from_deg(off_deg)));
-  way = waver(way, count, 0.012);
-  for (int n = 1; n <= 12; ++n) way.to(0, std::tan(units::rad_from_deg(n)));
-  return way.program();
-}
-
-TEST(PoleLinger, ABlockOffThePoleAheadOfAStayCostsNoSecondTurn) {
-  const MachineModel model = lai_machine();
-  const double on_s = cut(model, stay_behind_a_step(0, 80)).duration_s();
-  struct Step {
-    double off_deg, most;
-  };
-  for (const Step step : cases<Step>({{0.05, 1.02}, {0.12, 1.3}, {0.08, 1.02}})) {
-    SCOPED_TRACE(testing::Message() << step.off_deg << " deg off");
-    const double time_s = cut(model, stay_behind_a_step(step.off_deg, 80)).duration_s();
-    std::printf("a block %.2f deg off ahead of a stay: %.3f s, on it %.3f s\n", step.off_deg,
-                time_s, on_s);
-    EXPECT_LT(time_s, step.most * on_s);
-  }
-}
-
 /// Seeded: stretches that waver about the pole, as far as three tolerances, that stay on it, and
 /// that lead off and back, in steps of 0.0001 to 3 mm.
 std::vector<ClBlock> linger(std::uint32_t seed) {
