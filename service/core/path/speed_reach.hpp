@@ -28,7 +28,7 @@ class LargestAhead {
     }
   }
   /// Infinite where nothing is asked for.
-  [[nodiscard]] double value() const noexcept {
+  [[nodiscard]] double largest() const noexcept {
     return is_empty() ? std::numeric_limits<double>::infinity() : ring_[ring_.begin_index()].value;
   }
 
@@ -68,8 +68,8 @@ class SpeedReach {
     turn_.drop_to(u1 - kSpeedReach_mm);
   }
 
-  [[nodiscard]] double tip_mm_per_s() const noexcept { return tip_.value(); }
-  [[nodiscard]] double turn_rad_per_s() const noexcept { return turn_.value(); }
+  [[nodiscard]] double tip_mm_per_s() const noexcept { return tip_.largest(); }
+  [[nodiscard]] double turn_rad_per_s() const noexcept { return turn_.largest(); }
 
  private:
   static constexpr std::size_t kCapacity = 4 * static_cast<std::size_t>(kVertexReach);
