@@ -61,7 +61,8 @@ enum class Transition : std::uint8_t {
   kSmooth      ///< on through blocks, corners rounded inside the tolerances
 };
 
-/// Least tolerances that smooth runs are planned for: every edge refuses less where a run is smooth.
+/// Least tolerances that smooth runs are planned for: every edge refuses less where a run is
+/// smooth.
 inline constexpr double kLeastTipTolerance_mm = 1e-3;
 inline constexpr double kLeastAxisTolerance_rad = 1e-4;
 /// Largest that may be asked for, 10 mm and 10 degrees: every edge refuses more.
