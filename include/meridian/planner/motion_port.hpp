@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -187,9 +188,10 @@ class MotionReader {
     for (int drops = 0; drops < kMostDrops;) {
       const TimePiece* next = port_.times.peek(0);
       if (next == nullptr) return nullptr;
-      if (!may_run(*next)) {
-        port_.times.drop(1);
-        ++drops;
+      if (const std::size_t skipped = count_skipped(*next); skipped > 0) {
+        const auto now = std::min<std::size_t>(skipped, kMostDrops - drops);
+        port_.times.drop(now);
+        drops += static_cast<int>(now);
         continue;
       }
       if (next->kind == TimeKind::kMove && !find_path(*next, drops)) return nullptr;
@@ -248,14 +250,15 @@ class MotionReader {
   }
 
  private:
-  /// Whether `next` is what follows; else it is dropped.
-  [[nodiscard]] bool may_run(const TimePiece& next) noexcept {
-    if (next.epoch != epoch_) return false;
+  /// How many pieces from `next` on are skipped, those of a tail all at once; 0: it is what
+  /// follows.
+  [[nodiscard]] std::size_t count_skipped(const TimePiece& next) noexcept {
+    if (next.epoch != epoch_) return 1;
     if (next.is_tail) {
-      if (is_past_tail_) return next.window == last_.window;
-      return find_continuation(next, 0) == 0;
+      if (is_past_tail_) return next.window == last_.window ? 0 : 1;
+      return find_continuation(next, 0);
     }
-    return !is_past_tail_ || next.is_from_rest;
+    return !is_past_tail_ || next.is_from_rest ? 0 : 1;
   }
 
   /// The place in the ring of the window behind the tail that starts with `tail`, at `place`; 0
