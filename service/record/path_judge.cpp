@@ -56,7 +56,7 @@ PathJudge::PathJudge(const MachineModel& model, const CheckedPath& path,
       period_(static_cast<double>(model.cycle_ns) * 1e-9),
       overrides_(options.overrides, ramp_cycles(model)),
       follower_(path, tip_tolerance_, axis_tolerance_),
-      times_(path, tip_tolerance_ + kAxisLength_mm_per_rad * axis_tolerance_, period_, options),
+      times_(path, reach_of_match(), period_, options),
       tool_length_(path.begin_tool_length_mm()),
       nearest_(path.elements().size() + 1, std::numeric_limits<double>::infinity()),
       turned_(nearest_),
@@ -84,6 +84,12 @@ bool PathJudge::is_turn(std::size_t index) const noexcept {
   const auto& elements = path_.elements();
   return (index > 0 && turns(elements[index - 1])) ||
          (index < elements.size() && turns(elements[index]));
+}
+
+/// How far along the way a place of the path may lie from where its pose is matched, mm.
+double PathJudge::reach_of_match() const noexcept {
+  return tip_tolerance_ +
+         kAxisLength_mm_per_rad * std::max(axis_tolerance_, options_.pole_tolerance_rad);
 }
 
 double PathJudge::axis_tolerance_at(const Vector3& axis) const noexcept {
@@ -234,7 +240,7 @@ void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, d
   const double speed = (b.tip - a.tip).norm() / period_;
   speed_.raise(speed, to.cycle, to.line);
   if (path_.elements().empty()) return;
-  const double margin = tip_tolerance_ + kAxisLength_mm_per_rad * axis_tolerance_;
+  const double margin = reach_of_match();
   const Speeds asked =
       asked_about(std::min(s_from, s_to) - margin, std::max(s_from, s_to) + margin);
   const double factor = options_.overrides.empty() ? options_.feed_factor : overrides_.at(to.cycle);

@@ -52,6 +52,7 @@ class PathJudge {
   [[nodiscard]] std::uint32_t vertex_line(std::size_t index) const noexcept;
   [[nodiscard]] bool is_turn(std::size_t index) const noexcept;
   [[nodiscard]] double axis_tolerance_at(const Vector3& axis) const noexcept;
+  [[nodiscard]] double reach_of_match() const noexcept;
   void finish_vertices(CheckReport& report) const;
 
   const MachineModel& model_;

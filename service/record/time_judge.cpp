@@ -36,21 +36,25 @@ void TimeJudge::add(double matched, double passed, std::uint64_t cycle) {
   for (; left_ < entered_.size(); ++left_) {
     const PathElement& element = elements[left_];
     if (passed < element.way + element.way_length - tolerance_) return;
-    judge(element, entered_[left_], cycle);
+    way_ += element.way_length;
+    if (!element.is_block_end) continue;
+    judge(element, entered_[first_], cycle);
+    first_ = left_ + 1;
+    way_ = 0;
   }
 }
 
-void TimeJudge::judge(const PathElement& element, std::uint64_t begin, std::uint64_t end) {
-  const double way = element.way_length - kLag * tolerance_;
-  if (!element.is_timed || !(way > 0)) return;
-  const double least = way / (element.way_mm_per_s * factor_);
+void TimeJudge::judge(const PathElement& last, std::uint64_t begin, std::uint64_t end) {
+  const double way = way_ - kLag * tolerance_;
+  if (!last.is_timed || !(way > 0)) return;
+  const double least = way / (last.way_mm_per_s * factor_);
   const double share = static_cast<double>(end - begin + 1) * period_ / least;
   if (share >= 1 - kRoundingShare) return;
   ++worst_.count;
   if (share >= worst_share_) return;
   worst_share_ = share;
   worst_.cycle = end;
-  worst_.line = element.line;
+  worst_.line = last.line;
   char text[128];
   std::snprintf(text, sizeof text, "a block takes %.6f of its inverse time", share);
   worst_.text = text;

@@ -11,7 +11,7 @@ namespace meridian::record {
 
 /// Judges how long blocks in inverse time take: no less than they ask for, at the highest override.
 /// Where the tool is on its path is known to some tolerances, so each is judged on its inner part.
-/// Units: mm, s.
+/// Units: mm, s. Proof: tests/unit/record/time_judge_test.cpp, check_test.cpp.
 class TimeJudge {
  public:
   /// `tolerance_mm`: of a matched place on the way, tip and axis together.
@@ -24,12 +24,15 @@ class TimeJudge {
   void finish(CheckReport& report) const;
 
  private:
-  void judge(const PathElement& element, std::uint64_t begin, std::uint64_t end);
+  /// The block that ends with `last`.
+  void judge(const PathElement& last, std::uint64_t begin, std::uint64_t end);
 
   const CheckedPath& path_;
   double tolerance_, period_, factor_;
   std::vector<std::uint64_t> entered_;  ///< cycle in which an element's inner part was reached
   std::size_t left_ = 0;                ///< elements whose inner part is behind the tool
+  std::size_t first_ = 0;               ///< first element of the block that is being left
+  double way_ = 0;                      ///< of its elements that were left
   Finding worst_;
   double worst_share_ = 1;
 };
