@@ -15,6 +15,8 @@ namespace meridian::soak {
 namespace {
 
 constexpr std::int64_t kNap_ns = 5'000'000;
+/// A processor that comes back for no longer than two naps does no more than begin to catch up.
+constexpr std::int64_t kOneStall_ns = 2 * kNap_ns;
 
 [[nodiscard]] bool rise_on(int cpu) noexcept {
   cpu_set_t one;
@@ -57,12 +59,20 @@ void HostWatch::note(const Stall& stall) {
 
 double HostWatch::away_s(double last_s) const {
   const std::int64_t since_ns = stream::steady_ns() - static_cast<std::int64_t>(last_s * 1e9);
-  std::array<std::int64_t, CPU_SETSIZE> away_ns{};
+  struct Away {
+    std::int64_t end_ns = 0, length_ns = 0;
+  };
+  std::array<Away, CPU_SETSIZE> away{};
+  std::int64_t longest_ns = 0;
   const std::lock_guard lock(mutex_);
   for (const Stall& stall : stalls_) {
-    if (stall.end_ns >= since_ns) away_ns[static_cast<std::size_t>(stall.cpu)] += stall.length_ns;
+    if (stall.end_ns < since_ns) continue;
+    Away& here = away[static_cast<std::size_t>(stall.cpu)];
+    const bool goes_on = stall.end_ns - stall.length_ns - here.end_ns <= kOneStall_ns;
+    here = {stall.end_ns, stall.length_ns + (goes_on ? here.length_ns : 0)};
+    longest_ns = std::max(longest_ns, here.length_ns);
   }
-  return static_cast<double>(*std::ranges::max_element(away_ns)) * 1e-9;
+  return static_cast<double>(longest_ns) * 1e-9;
 }
 
 std::uint64_t HostWatch::stalls() const {

@@ -21,7 +21,8 @@ class HostWatch {
   HostWatch(const HostWatch&) = delete;
   HostWatch& operator=(const HostWatch&) = delete;
 
-  /// How long the processor that was away for longest was away in the last `last_s`, s.
+  /// How long the processor that was away for longest was away in the last `last_s`, s. Stalls that
+  /// follow one another at once are one.
   [[nodiscard]] double away_s(double last_s) const;
   /// Over all of its life: stalls of at least kStall_ns, and the longest, s.
   [[nodiscard]] std::uint64_t stalls() const;

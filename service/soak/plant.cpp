@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/soak/plant.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "service/process/programs.hpp"
@@ -44,6 +46,8 @@ void Plant::start_service(const std::filesystem::path& recording) {
                                  domain_,
                                  "--record",
                                  recording.string(),
+                                 "--faults",
+                                 flights().string(),
                                  "--best-effort"};
   if (!tools_.empty()) {
     const auto file = folder_ / "service.toml";
@@ -83,7 +87,19 @@ std::string Plant::keep_logs() {
   const std::string kept = kept_.keep({{log("service.log"), ".service.log"},
                                        {log("drives.out"), ".drives.out"},
                                        {log("drives.log"), ".drives.log"}});
+  flight_of_ = kept;
   return kept.empty() ? "soak" : kept;
+}
+
+void Plant::keep_flight() {
+  std::error_code error;
+  std::filesystem::path newest;  // names begin with the time of the fault
+  for (std::filesystem::directory_iterator at(flights(), error), end; !error && at != end;
+       at.increment(error)) {
+    if (at->path().extension() == ".csv") newest = std::max(newest, at->path());
+  }
+  const std::string stem = std::exchange(flight_of_, "");
+  if (!newest.empty()) std::filesystem::copy_file(newest, stem + ".flight.csv", error);
 }
 
 bool Plant::end_service() {

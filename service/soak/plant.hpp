@@ -37,6 +37,10 @@ class Plant {
   /// Copies what service and drives said so far, at most kMostKept times; returns where to, or
   /// "soak" where they were not kept.
   [[nodiscard]] std::string keep_logs();
+  /// Copies what the flight recorder wrote of the fault whose logs were kept last, as
+  /// NAMEn.flight.csv; the service has it ready about a second behind the fault.
+  void keep_flight();
+  [[nodiscard]] bool awaits_flight() const { return !flight_of_.empty(); }
 
   [[nodiscard]] process::ChildProcess* service() { return service_.get(); }
   [[nodiscard]] process::ChildProcess* drives() { return drives_.get(); }
@@ -45,11 +49,13 @@ class Plant {
 
  private:
   [[nodiscard]] std::string log(const char* name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::filesystem::path flights() const { return folder_ / "flights"; }
 
   static constexpr int kMostKept = 20;
   std::string machine_, tools_, domain_;
   std::filesystem::path folder_;
   Evidence kept_;
+  std::string flight_of_;  ///< stem of the logs whose flight is not kept yet
   std::unique_ptr<process::ChildProcess> service_, drives_, station_;
 };
 

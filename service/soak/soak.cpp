@@ -39,6 +39,7 @@ constexpr double kPause_s = 0.3;
 /// A service that is killed is forgotten after its lease; drives that lost it come to rest. Drives
 /// that ended by themselves are gone as long.
 constexpr double kAfterDeath_s = 2.5;
+constexpr double kFlightWritten_s = 3;  // half a second of record behind the fault, then the disk
 /// Nothing moves for this long although nobody holds the machine: something is stuck.
 constexpr double kStuck_s = 60;
 /// What the host does acts on the machine within this time.
@@ -120,6 +121,7 @@ class Soak {
 
   /// Starts again what died or was killed.
   void keep_alive() {
+    if (plant_.awaits_flight() && now_s() >= flight_at_s_) plant_.keep_flight();
     if (plant_.service() == nullptr) {
       if (now_s() >= service_at_s_) start_service();
     } else if (const auto code = plant_.service()->wait_for_exit(milliseconds(0))) {
@@ -131,7 +133,7 @@ class Soak {
       start_drives();
     } else if (const auto code = plant_.drives()->wait_for_exit(milliseconds(0))) {
       report_.violate("the drives ended by themselves with code " + std::to_string(*code),
-                      plant_.keep_logs());
+                      keep_evidence());
       plant_.stop_drives();
       faults_.lose_drives();
       drives_at_s_ = now_s() + kAfterDeath_s;
@@ -195,14 +197,19 @@ class Soak {
       ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
     } else if (cause == FaultJudge::Cause::kHost) {
       ++report_.host_faults;
-      say_("a Fault of the host (" + plant_.keep_logs() + "): " + faults_.describe());
+      say_("a Fault of the host (" + keep_evidence() + "): " + faults_.describe());
     } else if (cause != FaultJudge::Cause::kOwnDoing) {
       const bool is_unwatched = cause == FaultJudge::Cause::kUnwatched;
       report_.violate(std::string(is_unwatched ? "a Fault that may be of the host, not watched: "
                                                : "a Fault that nothing provoked: ") +
                           faults_.describe() + "; " + status.message,
-                      plant_.keep_logs());
+                      keep_evidence());
     }
+  }
+
+  [[nodiscard]] std::string keep_evidence() {
+    flight_at_s_ = now_s() + kFlightWritten_s;
+    return plant_.keep_logs();
   }
 
   /// From anywhere back to a machine that can be switched on.
@@ -370,7 +377,7 @@ class Soak {
   int asked_in_vain_ = 0;
   const std::int64_t begin_ns_ = stream::steady_ns();
   double moved_s_ = 0, ended_s_ = 0, ask_again_s_ = 0, resume_s_ = 0, continue_s_ = 0;
-  double service_at_s_ = 0, drives_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;
+  double service_at_s_ = 0, drives_at_s_ = 0, flight_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;
 };
 
 }  // namespace
