@@ -41,7 +41,7 @@ struct TimePiece {
   double s0 = 0, v = 0, a = 0;  ///< state at t = 0: mm, mm/s, mm/s²
   double j = 0;                 ///< mm/s³
   double k = 0;                 ///< 1/s²
-  double feed_mm_per_s = 0;     ///< programmed tip feed, 0 for rapid
+  double feed_mm_per_s = 0;     ///< tip feed that bounds it, 0 for rapid
   /// The tip is nowhere on the piece faster than the programmed feed times this, at least 1: plan
   /// time runs at no more than the feed override over it (docs/motion.md, section 9).
   double feed_factor = 1;

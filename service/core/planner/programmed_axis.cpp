@@ -70,10 +70,12 @@ double ProgrammedAxis::kink_at(std::int64_t n) const noexcept {
 std::size_t ProgrammedAxis::find_kinks(double begin, double end,
                                        std::span<double> kinks) const noexcept {
   const double parts = static_cast<double>(kinks.size()) / (end - begin);
+  const double last_part = static_cast<double>(kinks.size()) - 1;  // rounding may find one more
   std::size_t count = 0;
   double part = -1, sharpest = kLeastKink_per_mm;
   for (std::int64_t n = mark_before(begin) + 1; n + 1 < last_ && mark(n).u < end; ++n) {
-    const double u = mark(n).u, here = std::floor((u - begin) * parts), kink = kink_at(n);
+    const double u = mark(n).u, kink = kink_at(n);
+    const double here = std::min(std::floor((u - begin) * parts), last_part);
     if (here > part) sharpest = kLeastKink_per_mm;
     if (!(kink > sharpest)) continue;
     if (here > part) ++count;
