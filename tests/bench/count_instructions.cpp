@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
     checksum = meridian::bench::run_robot_6r(count);
   } else if (workload == "cycle") {
     checksum = meridian::bench::run_cycle(count);
+  } else if (workload == "cycle_single_block") {
+    checksum = meridian::bench::run_stepped_cycle(count);
   } else if (workload == "setpoint_spline") {
     checksum = meridian::bench::run_setpoints(meridian::bench::SetpointsOf::kSpline, count);
   } else if (workload == "setpoint_pole") {

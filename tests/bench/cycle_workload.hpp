@@ -1,47 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 
 #include "bench/planned_path.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "meridian/rt/step.hpp"
 #include "support/machines.hpp"
 
 /// One workload for the benchmark that measures time and for the gate that counts instructions.
 namespace meridian::bench {
 
-/// The cycle of a machine that runs a program: drives follow at once, the clock never slips. When
-/// the planned blocks are used up they are planned again, so that it can run for ever.
-class RunningCycle {
+/// The cycle of a machine with a planner: drives follow at once, the clock never slips.
+template <class Planner>
+class DrivenCycle {
  public:
-  RunningCycle()
-      : machine_(test::lai_machine()),
-        planner_(machine_),
-        port_(std::make_unique<MotionPort>()),
-        writer_(*port_),
-        reader_(*port_) {
-    reader_.set_epoch(state_.epoch);
-    in_.feedback.joint_mask = 31;
-    in_.feedback.referenced_mask = 31;
-    in_.session = 1;
-    run();
-    command(Verb::kEnable);
-    for (int i = 0; i < 8; ++i) {
-      run();
-    }
-    planner_.begin(in_.feedback.position, machine_.tool_length_mm, state_.epoch);
-    plan();
-    run();
-    command(Verb::kStart);
-    // Past the approach: what is measured is cutting.
-    for (int i = 0; i < 120'000 && !(state_.state == State::kRunning && state_.sequence > 2); ++i) {
-      run();
-    }
-  }
-
   /// One cycle; returns the bits of a joint.
   std::uint64_t run() noexcept {
     ++in_.cycle;
@@ -61,33 +38,109 @@ class RunningCycle {
     return bits;
   }
 
+  [[nodiscard]] State state() const noexcept { return state_.state; }
+  [[nodiscard]] const CycleRecord& record() const noexcept { return out_.record; }
+
+ protected:
+  /// Enabled, and ready to plan from where it stands.
+  explicit DrivenCycle(const MachineModel& machine) : machine_(machine), planner_(machine_) {
+    reader_.set_epoch(state_.epoch);
+    in_.feedback.joint_mask = 31;
+    in_.feedback.referenced_mask = 31;
+    in_.session = 1;
+    run();
+    command(Verb::kEnable);
+    for (int i = 0; i < 8; ++i) {
+      run();
+    }
+    planner_.begin(in_.feedback.position, machine_.tool_length_mm, state_.epoch);
+  }
+
+  void command(Verb verb, double argument = 0) {
+    in_.has_command = true;
+    in_.command = {++request_, verb, argument};
+    run();
+  }
+
+  MachineModel machine_;
+  Planner planner_;
+  std::unique_ptr<MotionPort> port_ = std::make_unique<MotionPort>();
+  MotionWriter writer_{*port_};
+  MotionReader reader_{*port_};
+  CycleState state_;
+  CycleInputs in_;
+  StepOutput out_;
+  std::uint64_t request_ = 0;
+};
+
+/// One that runs a program. When the planned blocks are used up they are planned again, so that it
+/// can run for ever.
+class RunningCycle : public DrivenCycle<RestToRestPlanner> {
+ public:
+  RunningCycle() : DrivenCycle(test::lai_machine()) {
+    plan();
+    run();
+    command(Verb::kStart);
+    // Past the approach: what is measured is cutting.
+    for (int i = 0; i < 120'000 && !(state_.state == State::kRunning && state_.sequence > 2); ++i) {
+      run();
+    }
+  }
+
   /// Planner thread's part: fills the port as far as it goes.
   void plan() {
     while (planner_.plan(block_on_path(next_block_), writer_).status == PlanStatus::kOk) {
       ++next_block_;
     }
   }
-
-  [[nodiscard]] State state() const noexcept { return state_.state; }
   [[nodiscard]] bool needs_plan() const noexcept { return port_->times.size() < 4096; }
-  [[nodiscard]] const CycleRecord& record() const noexcept { return out_.record; }
 
  private:
-  void command(Verb verb) {
-    in_.has_command = true;
-    in_.command = {++request_, verb, 0};
+  std::uint64_t next_block_ = 0;
+};
+
+/// One that cuts a block of 70 mm smoothly at its full rate, its axis turning, single block being
+/// on: the end of the block is sought in every cycle and not in sight.
+class SteppedCycle : public DrivenCycle<SmoothPlanner> {
+ public:
+  SteppedCycle() : DrivenCycle(smooth_machine()) {
+    planner_.look_no_further();
+    for (std::uint64_t n = 0; n < 3; ++n) {
+      (void)planner_.plan(long_block(n), writer_);
+      (void)planner_.advance(writer_);
+    }
     run();
+    command(Verb::kSingleBlock, 1);
+    command(Verb::kStart);
+    for (int i = 0; i < 120'000 && !is_at_feed(); ++i) {
+      if (state_.state == State::kStepping) command(Verb::kResume);
+      run();
+      (void)planner_.advance(writer_);
+    }
   }
 
-  MachineModel machine_;
-  RestToRestPlanner planner_;
-  std::unique_ptr<MotionPort> port_;
-  MotionWriter writer_;
-  MotionReader reader_;
-  CycleState state_;
-  CycleInputs in_;
-  StepOutput out_;
-  std::uint64_t request_ = 0, next_block_ = 0;
+  [[nodiscard]] bool is_at_feed() const noexcept {
+    return state_.state == State::kRunning && state_.sequence == 1 && record().rate == 1;
+  }
+
+ private:
+  [[nodiscard]] static MachineModel smooth_machine() {
+    MachineModel machine = test::lai_machine();
+    machine.transition = Transition::kSmooth;
+    return machine;
+  }
+  [[nodiscard]] static ClBlock long_block(std::uint64_t n) {
+    ClBlock block;
+    block.kind = n < 2 ? BlockKind::kCut : BlockKind::kEnd;
+    block.sequence = n;
+    block.tip_mm = {n == 0 ? -35.0 : 35.0, 0, 0};
+    const double tilt = n == 0 ? 0.2 : 0.25, azimuth = n == 0 ? 0.3 : 0.48;
+    block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                  std::cos(tilt)};
+    block.feed = 20;
+    block.feed_meaning = FeedMeaning::kTip;
+    return block;
+  }
 };
 
 /// Runs `n` cycles of a machine that cuts; returns a checksum of the setpoints, 0 if it does not
@@ -99,6 +152,16 @@ class RunningCycle {
     sum += cycle.run();
   }
   return cycle.state() == State::kRunning ? sum | 1U : 0;
+}
+
+/// The same of one that looks for the end of its block. At most 2500: then it is in sight.
+[[nodiscard]] inline std::uint64_t run_stepped_cycle(int n) {
+  SteppedCycle cycle;
+  std::uint64_t sum = 0;
+  for (int i = 0; i < n; ++i) {
+    sum += cycle.run();
+  }
+  return cycle.is_at_feed() ? sum | 1U : 0;
 }
 
 }  // namespace meridian::bench

@@ -73,6 +73,9 @@ TEST(InstructionGate, InverseKinematicsOfRobot6R) {
   expect_within_budget("inverse_kinematics_robot_6r", 4096);
 }
 TEST(InstructionGate, Cycle) { expect_within_budget("cycle", 8000); }
+TEST(InstructionGate, CycleThatSeeksTheEndOfItsBlock) {
+  expect_within_budget("cycle_single_block", 1000);
+}
 TEST(InstructionGate, SetpointOnASpline) { expect_within_budget("setpoint_spline", 20000); }
 TEST(InstructionGate, SetpointBesideThePole) { expect_within_budget("setpoint_pole", 20000); }
 TEST(InstructionGate, TracingThatIsOff) { expect_within_budget("trace_off", 8000); }
