@@ -34,6 +34,8 @@ struct Batch {
 
 /// So many characters of a station's options travel.
 inline constexpr std::size_t kMostOptions = 191;
+/// Characters of a reply's text and of a status' message; what is longer is cut.
+inline constexpr std::size_t kMostText = 191;
 
 enum class SessionRequestKind : std::uint8_t { kOpen, kClose };
 

@@ -16,6 +16,7 @@ namespace {
 /// Rings of the cycle cannot wake a DDS waitset: look at them so often.
 constexpr auto kLookAtRings = std::chrono::milliseconds(2);
 constexpr std::int64_t kResetDrives_ns = 300'000'000;
+const std::string kDry = "dry run: ", kStarted = "start accepted; ";
 
 }  // namespace
 
@@ -225,7 +226,8 @@ std::string Supervisor::what_happens(Verb verb) {
   if (!is_declared || !approach.is_planned || approach.epoch != view_.epoch) {
     return telemetry::describe(verb, view_.record.state);
   }
-  return "start accepted; " + telemetry::describe(approach, model_);
+  const std::size_t taken = kStarted.size() + (view_.is_dry_run ? kDry.size() : 0);
+  return kStarted + telemetry::describe(approach, model_, dds::kMostText - taken);
 }
 
 void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
@@ -239,7 +241,7 @@ void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Ref
                          .refusal = refusal,
                          .state = view_.record.state,
                          .epoch = view_.epoch,
-                         .text = is_accepted && view_.is_dry_run ? text + " (dry run)" : text};
+                         .text = is_accepted && view_.is_dry_run ? kDry + text : text};
   (void)replies_.write(reply);
   answered_[answered_at_++ % answered_.size()] = {request.operator_id, request.request, reply};
 }

@@ -16,7 +16,6 @@ namespace meridian::interpolator {
 namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
-constexpr std::size_t kMostMessage = 191;  // characters of one in the status
 
 /// As if an operator had said so ahead of the first cycle: what a replay begins with.
 [[nodiscard]] Event optional_stop_on() noexcept {
@@ -152,7 +151,7 @@ bool TelemetryThread::tell_program() {
   if (!summary) return false;
   const double period_s = 1e-9 * static_cast<double>(model_.cycle_ns);
   const std::string alarm = status_.alarm == Alarm::kNone ? "" : alarm_message_ + "; ";
-  const std::size_t room = kMostMessage - std::min(kMostMessage, alarm.size());
+  const std::size_t room = dds::kMostText - std::min(dds::kMostText, alarm.size());
   status_.message = alarm + describe(*summary, status_.program, period_s, room);
   log_->info("{}", describe(*summary, status_.program, period_s, SIZE_MAX));
   return true;
@@ -220,8 +219,8 @@ void TelemetryThread::declare_approach() {
   const Approach& approach = ports_.approach_for_status.latest();
   approach_.clear();
   if (!approach.is_planned) return;
-  approach_ = telemetry::describe(approach, model_);
-  log_->info("{}", approach_);
+  approach_ = telemetry::describe(approach, model_, dds::kMostText);
+  log_->info("{}", telemetry::describe(approach, model_, SIZE_MAX));
   if (status_.alarm == Alarm::kNone) status_.message = approach_;
 }
 

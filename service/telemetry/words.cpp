@@ -79,6 +79,14 @@ namespace {
   return text + unit;
 }
 
+/// ", theta1 at 388.6 deg": where the free joint ends, of machines that have one.
+[[nodiscard]] std::string winding(const Approach& approach, const MachineModel& model) {
+  const int free = free_joint(model);
+  if (free < 0) return "";
+  const double at = approach.to[static_cast<std::size_t>(free)];
+  return fmt::format(", {} at {:.4g} deg", joint_name(free, model), units::deg_from_rad(at));
+}
+
 }  // namespace
 
 Weight weight_of(const Event& event) noexcept {
@@ -305,21 +313,20 @@ std::string describe(const Unwinding& unwinding) {
       unwinding.retract_mm);
 }
 
-std::string describe(const Approach& approach, const MachineModel& model) {
+std::string describe(const Approach& approach, const MachineModel& model, std::size_t room) {
   const std::string head = fmt::format("approach to line {}: ", approach.line);
   const std::string joints = joints_moved(approach, model);
   if (joints.empty()) return head + "none, the tool is there";
   const auto lift = [](const char* way, double by_mm) {
     return by_mm > 0 ? fmt::format("{} {:.4g} mm, ", way, by_mm) : "";
   };
-  std::string text = head + lift("up", approach.retract) + "joints straight " + joints + ", " +
-                     lift("down", approach.descent);
-  text += fmt::format("{:.4g} mm in {:.1f} s, branch {}", approach.length, approach.time,
-                      approach.branch);
-  const int free = free_joint(model);
-  if (free < 0) return text;
-  const double at = approach.to[static_cast<std::size_t>(free)];
-  return text + fmt::format(", {} at {:.4g} deg", joint_name(free, model), units::deg_from_rad(at));
+  const std::string ways = lift("up", approach.retract) + "joints straight " + joints + ", " +
+                           lift("down", approach.descent);
+  const std::string trip = fmt::format("{:.4g} mm in {:.1f} s, branch {}", approach.length,
+                                       approach.time, approach.branch);
+  const std::string turned = winding(approach, model);
+  if ((head + ways + trip + turned).size() <= room) return head + ways + trip + turned;
+  return (head + ways + trip).size() <= room ? head + ways + trip : head + trip;
 }
 
 }  // namespace meridian::telemetry

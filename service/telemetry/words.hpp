@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
@@ -24,9 +25,11 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 /// Where the tool axis will be moved beside the pole, by how much and why.
 [[nodiscard]] std::string describe(const PoleEase& ease);
 [[nodiscard]] std::string describe(const Unwinding& unwinding);
-/// How the machine will come to a program's first motion: joints with what they move by, time,
-/// branch and winding.
-[[nodiscard]] std::string describe(const Approach& approach, const MachineModel& model);
+/// How the machine will come to a program's first motion, in at most `room` characters where they
+/// hold what cannot be left out: line, length, time and branch; then joints with what they move by;
+/// then the winding.
+[[nodiscard]] std::string describe(const Approach& approach, const MachineModel& model,
+                                   std::size_t room);
 /// Answer to an operator whose verb was accepted; `state` is the one it led to.
 [[nodiscard]] std::string describe(Verb verb, State state);
 /// Answer to an operator whose verb was refused in `state`, with the remedy.

@@ -7,10 +7,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "service/interpolator/drive_words.hpp"
 #include "service/interpolator/monotonic.hpp"
+#include "service/telemetry/words.hpp"
 #include "support/machines.hpp"
 #include "support/private_domain.hpp"
 
@@ -153,6 +155,34 @@ TEST_F(SupervisorTest, RefusesToEnableWhileADryRunIsOnItsWay) {
   EXPECT_TRUE(has_reply(Verb::kDryRun, Refusal::kNone));
   ask(Verb::kEnable);
   EXPECT_TRUE(take(Verb::kEnable));
+}
+
+TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe) {
+  show(State::kLoaded, true);
+  Approach way;
+  way.is_planned = true;
+  way.epoch = 1;
+  way.to = {-1234, -1234, -1234, -2, -2};
+  way.retract = 12.3;
+  way.length = 1234;
+  const std::string before = "dry run: start accepted; ";
+  std::set<std::size_t> sizes;
+  for (way.line = 1; way.line <= 100'000; way.line *= 10) {  // a character more each time
+    ports_->approach.store(way);
+    ask(Verb::kStart);
+    const auto start = take(Verb::kStart);
+    ASSERT_TRUE(start);
+    Event accepted;
+    accepted.code = EventCode::kAccepted;
+    accepted.a = start->request;
+    ASSERT_TRUE(ports_->events.try_push(accepted));
+    dds::Reply reply;
+    ASSERT_TRUE(comes([&] { return replies_.take(reply); }));
+    EXPECT_EQ(reply.text, before + telemetry::describe(way, model_, 191 - before.size()));
+    sizes.insert(reply.text.size());
+  }
+  EXPECT_TRUE(sizes.contains(191)) << *sizes.rbegin();
+  EXPECT_LT(*sizes.begin(), 175U) << "there was room for all of every one";
 }
 
 }  // namespace

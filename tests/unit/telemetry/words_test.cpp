@@ -45,12 +45,30 @@ TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
   way.length = 345.678;
   way.time = 3.21;
   way.branch = 1;
-  EXPECT_EQ(describe(way, model),
+  EXPECT_EQ(describe(way, model, 1000),
             "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360, "
             "theta2 -5.73 deg, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg");
   way.retract = way.descent = 0;
   way.to = way.from;
-  EXPECT_EQ(describe(way, model), "approach to line 12: none, the tool is there");
+  EXPECT_EQ(describe(way, model, 1000), "approach to line 12: none, the tool is there");
+}
+
+TEST(Words, LeaveWholePartsOfAnApproachOutWhereThereIsNoRoomForThem) {
+  const MachineModel model = test::lai_machine();
+  Approach way;
+  way.line = 1234567;
+  way.to = {-1234, -1234, -1234, units::rad_from_deg(-123.4), units::rad_from_deg(-123.4)};
+  way.retract = way.descent = 123.4;
+  way.length = 1234;
+  way.time = 123.4;
+  const std::string least = "approach to line 1234567: 1234 mm in 123.4 s, branch 0";
+  const std::string all = describe(way, model, 1000);
+  EXPECT_EQ(describe(way, model, all.size()), all);
+  const std::string without_winding = describe(way, model, all.size() - 1);
+  EXPECT_EQ(without_winding + ", theta1 at -123.4 deg", all);
+  EXPECT_EQ(describe(way, model, without_winding.size()), without_winding);
+  EXPECT_EQ(describe(way, model, without_winding.size() - 1), least);
+  EXPECT_EQ(describe(way, model, 0), least);
 }
 
 TEST(Words, SayEveryAlarmDifferently) {
