@@ -99,6 +99,7 @@ void ProgramWatch::see(const CycleRecord& record, double feed_override,
 
 void ProgramWatch::begin(const CycleRecord& record) noexcept {
   now_ = {};
+  now_.is_dry_run = (record.setpoint.flags & kSetpointDry) != 0;
   is_on_ = true;
   has_fault_ = false;
   epoch_ = record.setpoint.epoch;
@@ -128,9 +129,9 @@ std::optional<ProgramSummary> ProgramWatch::take() noexcept {
 
 std::string describe(const ProgramSummary& summary, const std::string& program, double period_s,
                      std::size_t room) {
-  const std::string went =
-      fmt::format(" {}: {} blocks in {:.1f} s", end_of(summary), summary.blocks,
-                  static_cast<double>(summary.whole) * period_s);
+  const std::string went = fmt::format(" {}{}: {} blocks in {:.1f} s", end_of(summary),
+                                       summary.is_dry_run ? " (dry run)" : "", summary.blocks,
+                                       static_cast<double>(summary.whole) * period_s);
   const std::string parts = parts_of(summary, period_s);
   const std::string no_name = "the program";
   const std::string name = program.empty() ? no_name : "program " + program;

@@ -36,6 +36,7 @@ struct ProgramSummary {
   std::uint64_t block = 0;     ///< sequence of the last; in a fault of that in force when it came
   std::uint32_t line = 0;      ///< its source line
   bool is_block_done = false;  ///< it ended before the program did
+  bool is_dry_run = false;     ///< no drive followed
 };
 
 /// Makes a summary of each program out of the records of the cycles: no event is waited for.
@@ -61,7 +62,8 @@ class ProgramWatch {
 };
 
 /// A sentence of at most `room` characters, where that holds what cannot be left out: how the
-/// program ended, blocks and time; then its name, `program`, and its times by parts.
+/// program ended, whether it was dry, blocks and time; then its name, `program`, and its times by
+/// parts.
 [[nodiscard]] std::string describe(const ProgramSummary& summary, const std::string& program,
                                    double period_s, std::size_t room);
 

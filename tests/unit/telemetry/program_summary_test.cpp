@@ -15,10 +15,12 @@ class Watched {
  public:
   CycleRecord record;  ///< what stays from one to the next
   double feed_override = 1, rapid_override = 1;
+  bool is_dry_run = false;
 
   void run(State state, int cycles, bool is_moving = false) {
     record.state = state;
     record.setpoint.flags = is_moving ? kSetpointMoving : kSetpointEnabled;
+    if (is_dry_run) record.setpoint.flags |= kSetpointDry;
     for (int n = 0; n < cycles; ++n) {
       ++record.setpoint.cycle;
       watch.see(record, feed_override, rapid_override);
@@ -122,6 +124,20 @@ TEST(ProgramSummary, NamesTheBlockInWhichTheFaultCameNotWhereTheCommandedPathRan
   EXPECT_EQ(describe(*summary, "a", kPeriod_s, 1000),
             "program a ended by a fault in block 5, line 15: 5 blocks in 0.3 s (approach 0.1, cut "
             "0.2)");
+}
+
+TEST(ProgramSummary, SaysOfADryRunThatItWasOneHoweverLittleRoomThereIs) {
+  Watched w;
+  for (const bool is_dry : {true, false}) {
+    w.is_dry_run = is_dry;
+    w.move(State::kApproaching, MotionKind::kApproach, 100);
+    w.run(State::kReady, 1);
+    const auto summary = w.watch.take();
+    ASSERT_TRUE(summary);
+    EXPECT_EQ(describe(*summary, "a", kPeriod_s, 0),
+              is_dry ? "the program ran to its end (dry run): 0 blocks in 0.1 s"
+                     : "the program ran to its end: 0 blocks in 0.1 s");
+  }
 }
 
 TEST(ProgramSummary, TellsOfAFaultAtRestThatNoRecordShowsTheStopOf) {
