@@ -47,6 +47,7 @@ class Finder {
     }
     if (row.alarm != Alarm::kNone && report_.alarm == Alarm::kNone) {
       report_.alarm = row.alarm;
+      report_.is_dry_run = (row.flags & kSetpointDry) != 0;
       report_.joint = row.alarm_joint;
       report_.cycle = row.cycle;
       report_.line = row.line;
@@ -55,7 +56,6 @@ class Finder {
       due_ns_ = row.due_ns;
     }
     if (row.state == State::kFaultStop) ++stop_rows_;
-    if ((row.flags & kSetpointDryEnabled) != 0) report_.is_dry_run = true;
     last_ = row;
   }
 

@@ -29,7 +29,7 @@ struct Following {
 };
 
 struct FlightReport {
-  bool is_dry_run = false;  ///< no drive followed
+  bool is_dry_run = false;  ///< the alarm is of one: no drive followed
   Alarm alarm = Alarm::kNone;
   int joint = -1;             ///< place in limited.hpp; -1: none
   std::uint64_t cycle = 0;    ///< of the alarm, or the first

@@ -218,6 +218,7 @@ std::string FlightRecorder::write_words(const fs::path& file, const std::string&
   out << "machine " << model_.name << ", fault of " << when << " UTC, cycle "
       << fault.setpoint.cycle << ", block " << fault.sequence << " of line " << fault.setpoint.line
       << "\n\n";
+  if ((fault.setpoint.flags & kSetpointDry) != 0) out << "dry run: no drive followed\n\n";
   if (store_.alarm_count() == 0) out << "its alarm is not known\n";
   for (std::size_t i = 0; i < store_.alarm_count(); ++i) {
     const record::ToldAlarm& alarm = store_.alarm(i);

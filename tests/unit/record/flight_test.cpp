@@ -143,6 +143,25 @@ TEST_F(Flight, ReportTellsAlarmStopFollowingErrorsAndDrives) {
       << text;
 }
 
+TEST_F(Flight, ReportCallsADryRunWhatTheAlarmIsOfWhateverWasBefore) {
+  for (const bool is_dry : {false, true}) {
+    write(is_dry ? [](std::uint64_t cycle, const MachineModel& model) {
+      FlightRow row = row_at(cycle, model);
+      if (cycle >= kAlarmed - 5) row.record.setpoint.flags = kSetpointDry;
+      return row;
+    } : [](std::uint64_t cycle, const MachineModel& model) {
+      FlightRow row = row_at(cycle, model);
+      if (cycle < kAlarmed - 5) row.record.setpoint.flags = kSetpointDry | kSetpointDryEnabled;
+      return row;
+    });
+    RecordingReader reader = open();
+    const auto report = read_flight(reader, model_);
+    ASSERT_TRUE(report.has_value()) << report.error().text();
+    const std::string text = to_text(*report, model_);
+    EXPECT_EQ(text.find("dry run    no drive followed") != std::string::npos, is_dry) << text;
+  }
+}
+
 TEST_F(Flight, ReportTellsTheLargestErrorAlthoughADriveReportedNoNumberBehindIt) {
   write([](std::uint64_t cycle, const MachineModel& model) {
     FlightRow row = row_at(cycle, model);

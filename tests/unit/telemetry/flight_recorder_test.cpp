@@ -34,11 +34,12 @@ class FlightFiles : public testing::Test {
   ~FlightFiles() override { fs::remove_all(folder_); }
 
   /// A whole life of a recorder, in which `faults` faults come.
-  void live(int faults, bool loses_folder = false) {
+  void live(int faults, bool loses_folder = false, std::uint16_t flags = 0) {
     FlightRecorder recorder(config_, model_, log_);
     if (loses_folder) fs::remove_all(folder_);
     std::thread writer([&] { recorder.run(); });
     Flown run;
+    run.flags = flags;
     for (int i = 0; i < faults; ++i) {
       run.cycles(recorder, 2000, State::kRunning);
       recorder.take(run.alarm(Alarm::kFollowingError, 2));
@@ -92,6 +93,16 @@ TEST_F(FlightFiles, NameTheAlarmAndHoldTheCyclesBeforeAndBehindIt) {
   const std::string text{std::istreambuf_iterator<char>(words), {}};
   EXPECT_NE(text.find("lags by 2.5"), std::string::npos) << text;
   EXPECT_NE(text.find("line 17"), std::string::npos) << text;
+}
+
+TEST_F(FlightFiles, SayInWordsThatTheFaultWasOfADryRun) {
+  for (const bool is_dry : {false, true}) {
+    live(1, false, is_dry ? kSetpointDry : 0);
+    std::ifstream words(*files(".txt").begin());
+    const std::string text{std::istreambuf_iterator<char>(words), {}};
+    EXPECT_EQ(text.find("dry run: no drive followed\n") != std::string::npos, is_dry) << text;
+    fs::remove_all(folder_);
+  }
 }
 
 TEST_F(FlightFiles, OfOldFaultsGoWhereThereAreMoreThanAskedFor) {

@@ -11,6 +11,7 @@ namespace meridian::telemetry {
 /// A run whose cycles a test lets pass, into anything that keeps them.
 struct Flown {
   std::uint64_t cycle = 0;
+  std::uint16_t flags = 0;  ///< of every setpoint
 
   template <class Keeper>
   void cycles(Keeper& keeper, int count, State state) {
@@ -18,6 +19,7 @@ struct Flown {
       CycleRecord record;
       record.setpoint.cycle = ++cycle;
       record.setpoint.due_ns = static_cast<std::int64_t>(cycle) * 1'000'000;
+      record.setpoint.flags = flags;
       record.state = state;
       record::DriveReport report;
       report.arrival_ns = record.setpoint.due_ns;
