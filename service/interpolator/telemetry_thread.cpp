@@ -124,6 +124,7 @@ void TelemetryThread::drain() {
   while (ports_.plan_times.try_pop(took_ns)) book(kPlanning).record(took_ns);
   while (ports_.round_trips.try_pop(took_ns)) book(kRoundTrip).record(took_ns);
   if (ports_.telemetry_view.refresh()) view_ = ports_.telemetry_view.latest();
+  keeper_.set_dry_run(view_.is_dry_run);
   if (std::exchange(told_state_, view_.record.state) != view_.record.state) has_news_ = true;
 }
 

@@ -9,9 +9,6 @@ void JournalKeeper::see(const Event& event, const std::string& alarm_words) noex
   // In FaultStop the commanded path runs on, whether or not the drives follow: what it passes was
   // commanded, not cut.
   const bool is_run_out = entry_.state == State::kFaultStop;
-  if (event.code == EventCode::kAccepted && event.b == static_cast<std::uint64_t>(Verb::kDryRun)) {
-    is_dry_run_ = event.x != 0;
-  }
   if (is_dry_run_) return;
   switch (event.code) {
     case EventCode::kStateChanged:

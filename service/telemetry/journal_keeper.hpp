@@ -25,6 +25,10 @@ class JournalKeeper {
     std::string station, program, options;
   };
 
+  /// Whether the events to come are of a dry run. It changes in Off alone, where nothing is noted:
+  /// the newest view of the cycle is good enough, and is there where events were lost.
+  void set_dry_run(bool is_dry_run) noexcept { is_dry_run_ = is_dry_run; }
+
   /// Every event, in order; alarms with their words.
   void see(const Event& event, const std::string& alarm_words) noexcept;
 

@@ -164,5 +164,36 @@ TEST_F(TelemetryThreadTest, SaysHowTheProgramWentNotThatItsSessionIsThere) {
   EXPECT_EQ(status_.message, "the program ran to its end: 0 blocks in 0.0 s");
 }
 
+TEST_F(TelemetryThreadTest, NotesNothingOfADryRunWhoseBeginWasLostAmongTheEvents) {
+  const std::filesystem::path folder = path_.string() + ".journal";
+  for (const bool is_dry : {false, true}) {
+    int written = 0;
+    telemetry::Journal journal(folder, model_.name,
+                               [&](const auto&, const auto&) { return ++written, 0; });
+    CycleView view;
+    view.cycles_run = 1;
+    view.is_dry_run = is_dry;
+    ports_->telemetry_view.store(view);
+    dds::Reader<dds::Status> statuses(participant_);
+    TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
+                           *intake_, clock_, recorder_, journal, flight_, log_, *ports_);
+    ports_->is_stopping = false;
+    std::thread running([&] { thread.run(); });
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (!statuses.take(status_) && std::chrono::steady_clock::now() < patience) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    tell(EventCode::kBlockStarted, 3);
+    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kApproaching));
+    ports_->is_stopping = true;
+    running.join();
+    journal.stop();
+    journal.run([](const std::string&) {});
+    EXPECT_EQ(status_.is_dry_run, is_dry);
+    EXPECT_EQ(written > 0, !is_dry);
+  }
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace meridian::interpolator
