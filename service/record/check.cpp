@@ -37,6 +37,8 @@ class Survey {
       largest_[i] = std::max(largest_[i], std::abs(row.places[i]));
     }
     if (path_.has_begin()) find_ends(row, has_moved);
+    if ((row.flags & kSetpointDryEnabled) != 0 && dry_rows_++ == 0) first_dry_ = row.cycle;
+    if ((row.flags & kSetpointEnabled) != 0) ++followed_rows_;
     last_ = row;
     ++rows_;
   }
@@ -58,6 +60,13 @@ class Survey {
       std::snprintf(text, sizeof text, "the begin of the path was never reached, %.6f mm off it",
                     begins_.back().distance);
       find(Finding::Kind::kUnfinished, 0, 1);
+    }
+    if (path_.has_begin() && dry_rows_ > 0 && followed_rows_ > 0) {
+      std::snprintf(
+          text, sizeof text,
+          "a dry run and a run that drives followed are both in it: check each by itself, "
+          "--from-cycle, --to-cycle");
+      find(Finding::Kind::kDryAndFollowed, first_dry_, dry_rows_);
     }
     if (rows_ == 0) {
       std::snprintf(text, sizeof text, "the recording has no rows");
@@ -134,6 +143,7 @@ class Survey {
   RecordingRow last_;
   std::uint64_t rows_ = 0, first_cycle_ = 0, missing_ = 0, longest_gap_ = 0, first_gap_ = 0;
   std::uint64_t disorders_ = 0, disorder_ = 0, off_grid_ = 0, first_off_grid_ = 0;
+  std::uint64_t dry_rows_ = 0, first_dry_ = 0, followed_rows_ = 0;
   std::uint64_t last_move_ = 0;
   bool has_run_ = false, has_later_program_ = false;
   struct Begin {
@@ -194,6 +204,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   read = for_each(recording, options, [&](const RecordingRow& row) {
     joints.add(row, recording.has_velocity());
     if (has_cut && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
+      if ((row.flags & kSetpointDryEnabled) != 0) ++report.dry_cut_cycles;
       if (!unwinding.add(row)) tool.add(row);
     }
   });

@@ -42,6 +42,8 @@ struct CheckOptions {
 ///   fastest block within 5 mm asks for, and no block in less than its time;
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
+/// * not a dry run and a run that drives followed in one recording, of which the first alone would
+///   be held against the path;
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.
 ///
 /// Reads the recording twice, in memory that grows with the path alone. Source: docs/recordings.md.

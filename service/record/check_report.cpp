@@ -77,6 +77,8 @@ std::string_view word(Finding::Kind kind) noexcept {
       return "stage";
     case Finding::Kind::kUnwinding:
       return "unwinding";
+    case Finding::Kind::kDryAndFollowed:
+      return "dry_and_followed";
   }
   return "unknown";
 }
@@ -96,6 +98,7 @@ std::string to_text(const CheckReport& report) {
   } else {
     append(text, "cut        cycles %llu to %llu, %.3f s\n", static_cast<Count>(report.begin_cycle),
            static_cast<Count>(report.end_cycle), report.cut_s);
+    if (report.dry_cut_cycles > 0) text += "           the cut judged is of a dry run\n";
     if (report.has_later_program) text += "           a later program follows and is not judged\n";
     append_deviation(text, "tip", report.tip_mm, report.tip_between_mm, 1e3, "um",
                      report.tip_tolerance_mm);
@@ -183,8 +186,10 @@ std::string to_json(const CheckReport& report) {
     append(text, "  \"stage_determinant_mm_per_rad\": %.9g,\n", report.stage.determinant_mm);
     append_peak(text, "stage_apart_mm", report.stage.apart_mm);
   }
-  append(text, "  \"fault_stop_cycles\": %llu,\n  \"dry_cycles\": %llu,\n  \"joints\": [",
+  append(text, "  \"fault_stop_cycles\": %llu,\n  \"dry_cycles\": %llu,\n",
          static_cast<Count>(report.fault_stop_cycles), static_cast<Count>(report.dry_cycles));
+  append(text, "  \"dry_cut_cycles\": %llu,\n  \"joints\": [",
+         static_cast<Count>(report.dry_cut_cycles));
   for (int i = 0; i < report.joint_count; ++i) {
     const JointUse& use = report.joints[i];
     const char* unit = report.is_rotary[i] ? "deg" : "mm";

@@ -53,7 +53,8 @@ struct Finding {
     kTravel,
     kSentVelocity,
     kStage,
-    kUnwinding
+    kUnwinding,
+    kDryAndFollowed
   };
   Kind kind{};
   std::string text;         ///< a sentence with value, place and bound
@@ -86,7 +87,8 @@ struct CheckReport {
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows
   std::uint64_t fault_stop_cycles = 0;
-  std::uint64_t dry_cycles = 0;  ///< of a dry run: no drive followed
+  std::uint64_t dry_cycles = 0;      ///< of a dry run: no drive followed
+  std::uint64_t dry_cut_cycles = 0;  ///< those of the cut
   bool has_stage = false;
   StageUse stage;
   int joint_count = 0;  ///< the drives of the stage are counted

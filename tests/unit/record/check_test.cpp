@@ -175,8 +175,33 @@ TEST_F(Check, JudgesADryRunAsAnyOtherAndSaysThatItWasOne) {
   EXPECT_TRUE(report.passed()) << to_text(report);
   EXPECT_EQ(report.dry_cycles, records.size());
   EXPECT_NE(to_text(report).find("dry run "), std::string::npos);
+  EXPECT_EQ(report.dry_cut_cycles, report.end_cycle - report.begin_cycle + 1);
+  EXPECT_NE(to_text(report).find("the cut judged is of a dry run"), std::string::npos);
   model.joints[1].limits.velocity = 2;
   EXPECT_TRUE(has(run(), Finding::Kind::kVelocity));
+}
+
+TEST_F(Check, RefusesADryRunAndTheCutBehindItInOneRecordingAndJudgesEitherByItself) {
+  const std::vector<CycleRecord> cut = records;
+  for (CycleRecord& record : records) record.setpoint.flags = kSetpointDry | kSetpointDryEnabled;
+  const std::uint64_t count = records.size();
+  for (CycleRecord record : cut) {
+    record.setpoint.cycle += count;
+    record.setpoint.due_ns += static_cast<std::int64_t>(count) * model.cycle_ns;
+    records.push_back(record);
+  }
+  EXPECT_TRUE(has(run(), Finding::Kind::kDryAndFollowed));
+  const std::uint64_t first_cut = cut.front().setpoint.cycle + count;
+  options.from_cycle = first_cut;
+  const CheckReport real = run();
+  EXPECT_TRUE(real.passed()) << to_text(real);
+  EXPECT_EQ(real.dry_cut_cycles, 0U);
+  EXPECT_EQ(to_text(real).find("dry run"), std::string::npos) << to_text(real);
+  options.from_cycle = 0;
+  options.to_cycle = first_cut - 1;
+  const CheckReport dry = run();
+  EXPECT_TRUE(dry.passed()) << to_text(dry);
+  EXPECT_EQ(dry.dry_cycles, count);
 }
 
 TEST_F(Check, RefusesASkippedVertexThoughEveryPoseIsOnThePath) {
