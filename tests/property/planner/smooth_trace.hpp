@@ -105,7 +105,8 @@ inline JointVector joints_of(const MachineModel& model, const ClBlock& block) {
 /// Matched distance, in tolerances, of `pose` from the programmed ways about block `sequence`: the
 /// least over poses of the path of the larger of tip and axis.
 inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t sequence,
-                            const ToolPose& pose, double tip_mm, double axis_rad) {
+                            const ToolPose& pose, double tip_mm, double axis_rad,
+                            double enough = 0) {
   constexpr double kBehind_mm = 0.3, kAhead_mm = 2.5;  // a span is named by where it begins
   const auto least_on = [&](const PathPiece& way) {
     const auto at = [&](double x) {
@@ -123,10 +124,12 @@ inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t se
   double least = least_on(ways[sequence]);
   double length = 0;
   for (std::size_t n = sequence; n-- > 0 && length < kBehind_mm; length += ways[n].length) {
+    if (least <= enough) return least;
     if (ways[n].length > 0) least = std::min(least, least_on(ways[n]));
   }
   length = 0;
   for (std::size_t n = sequence + 1; n < ways.size() && length < kAhead_mm; ++n) {
+    if (least <= enough) return least;
     if (ways[n].length > 0) least = std::min(least, least_on(ways[n]));
     length += ways[n].length;
   }

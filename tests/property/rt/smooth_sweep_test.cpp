@@ -2,8 +2,8 @@
 
 /// Seeded programs that look for trouble, run smoothly through planner, port and cycle while an
 /// operator turns the override, holds and resumes, blocks come late and drives fault: every limit,
-/// the feed and the tolerances, from the setpoints to the path and from its vertices to the way of
-/// the tool, by the setpoints alone. CI runs a few; all of them:
+/// the feed times the override in force and the tolerances, from every setpoint to the path and
+/// from its vertices to the way of the tool, by the setpoints alone. CI runs a few; all of them:
 ///
 ///     MERIDIAN_SWEEP_PROGRAMS=2000 rt_motion_test --gtest_filter='SmoothSweep*'
 ///
@@ -19,6 +19,7 @@
 
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
+#include "property/rt/feed_in_force.hpp"
 #include "property/rt/operated_run.hpp"
 #include "property/rt/passed_vertices.hpp"
 #include "support/draws.hpp"
@@ -35,8 +36,27 @@ constexpr int kPrograms = 24;
 
 double rounded(double x, double to) { return std::round(x / to) * to; }
 
+/// Rapids and dwells between the cuts.
+void mix_kinds(RandomPrograms& random, std::vector<ClBlock>& blocks) {
+  for (std::size_t n = 1; n + 1 < blocks.size(); ++n) {
+    ClBlock& block = blocks[n];
+    if (random.chance(0.05)) {
+      block.kind = BlockKind::kRapid;
+      block.feed_meaning = FeedMeaning::kNone;
+    } else if (random.chance(0.02)) {
+      const ClBlock motion = block;
+      block = {};
+      block.sequence = motion.sequence;
+      block.line = motion.line;
+      block.kind = BlockKind::kDwell;
+      block.value = 0.02;
+    }
+  }
+}
+
 /// Corners, reversals, blocks of 0.0001 mm and less; every third program about the pole, at 0 to 5
-/// deg; every fourth as a CAM system rounds it; one feed of 1 to 60 000 mm/min.
+/// deg; every fourth as a CAM system rounds it; every seventh with rapids and dwells; one feed of 1
+/// to 60 000 mm/min.
 std::vector<ClBlock> draw_blocks(RandomPrograms& random, std::uint32_t seed, int sections) {
   const bool is_at_pole = seed % 3 == 0, is_rounded = seed % 4 == 1;
   HostilePath path = is_at_pole ? HostilePath(seed, 0, units::rad_from_deg(5)) : HostilePath(seed);
@@ -49,6 +69,7 @@ std::vector<ClBlock> draw_blocks(RandomPrograms& random, std::uint32_t seed, int
     for (double& x : block.axis) x = rounded(x, 1e-5);
     if (is_motion(block.kind)) block.axis = to_array(to_vector(block.axis).normalized());
   }
+  if (seed % 7 == 0) mix_kinds(random, blocks);
   return blocks;
 }
 
@@ -57,25 +78,37 @@ struct Sweep {
   double feed = 0, off = 0, missed = 0, seconds = 0;
   int programs = 0, refused = 0, faults = 0, bad = 0;
   std::uint64_t dry = 0;
-  Operator random_operator{.least_override = 0, .turns_rapids = true};
+  Operator random_operator{.least_override = 0, .turns_rapids = true, .raise_share = 0.3};
 };
 
-/// Runs with blocks that come late, as far as `most_s` of motion.
-double operate_late(SmoothRunning& run, RandomPrograms& random, double most_s) {
-  double t = 0;
-  run.most_blocks = 1;
-  for (; t < most_s && !run.is_over(); t += run.world.dt()) {
-    if (random.chance(0.004)) {
-      run.run();
-    } else {
-      run.run_unplanned();
-    }
+/// A run whose blocks come late, one now and then.
+struct LateRun {
+  SmoothRunning& run_;
+  RandomPrograms& random;
+  CycleWorld& world = run_.world;
+
+  [[nodiscard]] bool is_over() const { return run_.is_over(); }
+  const CycleRecord& run() { return random.chance(0.004) ? run_.run() : run_.run_unplanned(); }
+  const CycleRecord& command(Verb verb, double argument = 0) {
+    return run_.command(verb, argument);
   }
+};
+
+/// Runs with blocks that come late, as far as `most_s` of motion; every other program with an
+/// operator beside.
+double operate_late(SmoothRunning& run, RandomPrograms& random, Operator& by, bool is_operated,
+                    double most_s) {
+  run.most_blocks = 1;
+  LateRun late{run, random};
+  if (is_operated) return by.operate(late, random, most_s);
+  double t = 0;
+  for (; t < most_s && !late.is_over(); t += run.world.dt()) late.run();
   return t;
 }
 
-/// What a run makes of its path: largest tip speed of cuts over the feed, distance from the
-/// programmed path and of a vertex from the tool's way, both in tolerances.
+/// What a run makes of its path: largest tip speed of cuts over the feed times the override in
+/// force, distance from the programmed path and of a vertex from the tool's way, both in
+/// tolerances.
 struct PathShares {
   double feed = 0, off = 0, missed = 0;
 };
@@ -85,24 +118,14 @@ PathShares judge_path(const MachineModel& machine, const std::vector<ClBlock>& b
   PathShares shares;
   const auto ways = programmed_ways(blocks);
   const auto& records = run.world.records;
-  const double limit = std::min(blocks.front().feed, machine.max_feed_mm_per_s);
-  std::size_t count = 0;
-  Vector3 last = Vector3::Zero();
-  std::uint64_t last_cycle = 0, before = 0;
+  shares.feed = largest_feed(run, std::min(blocks.front().feed, machine.max_feed_mm_per_s));
+  std::uint64_t before = 0;
   PassedVertices vertices(blocks, machine.tolerances.tip_mm, machine.tolerances.axis_rad);
   for_each_cut(machine, records, 0, 1, [&](const CycleRecord& record, const ToolPose& pose) {
     vertices.add(record.sequence, pose, record.setpoint.cycle == before + 1);
     before = record.setpoint.cycle;
-    if (record.setpoint.cycle == last_cycle + 1 && record.motion == MotionKind::kCut) {
-      constexpr double kRounding_mm = 1e-11;
-      const double way = (pose.tip - last).norm() - kRounding_mm;
-      shares.feed = std::max(shares.feed, way / run.world.dt() / limit);
-    }
-    last = pose.tip;
-    last_cycle = record.motion == MotionKind::kCut ? record.setpoint.cycle : 0;
-    if (++count % 61 != 0) return;
     const double off = distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
-                                     machine.tolerances.axis_rad);
+                                     machine.tolerances.axis_rad, shares.off);
     shares.off = std::max(shares.off, off);
   });
   shares.missed = vertices.worst(run.is_over());
@@ -115,6 +138,7 @@ void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
   MachineModel machine = seed % 2 == 0 ? bench_machine() : lai_machine();
   machine.transition = Transition::kSmooth;
   machine.starve_auto_resume_s = 100;
+  if (seed % 5 == 0) machine.most_feed_override = 1.5;
   const bool comes_late = random.chance(0.3);
   const auto blocks = draw_blocks(random, seed, comes_late ? 16 : 4);
   SmoothRunning run(machine, blocks, joints_of(machine, blocks[0]),
@@ -124,8 +148,9 @@ void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
     ++sweep.refused;
     return;
   }
-  sweep.seconds += comes_late ? operate_late(run, random, 2 * kMostSeconds)
-                              : sweep.random_operator.operate(run, random, kMostSeconds);
+  sweep.seconds +=
+      comes_late ? operate_late(run, random, sweep.random_operator, seed % 2 == 1, 2 * kMostSeconds)
+                 : sweep.random_operator.operate(run, random, kMostSeconds);
   if (run.world.now() == State::kHeld) run.command(Verb::kResume);
   LimitShares shares = shares_of_limits(run.world, 0, false);
   const PathShares path = judge_path(machine, blocks, run);
