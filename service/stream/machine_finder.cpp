@@ -10,6 +10,8 @@
 namespace meridian::stream {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 /// One service per machine: the newest word of the one that serves it. Of two that serve, the one
 /// that has served longer, as between themselves, where both have said so within half a second, as
 /// they do once they have heard of each other. Until then the older words of one may hide that, and
@@ -29,7 +31,6 @@ void take(const dds::MachineInfo& info, std::vector<dds::MachineInfo>& found) {
 
 std::vector<dds::MachineInfo> find_machines(std::uint32_t domain, const std::string& machine,
                                             std::chrono::milliseconds timeout) {
-  using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kMoment{150};
   dds::Participant participant({.domain = domain, .machine = machine.empty() ? "*" : machine});
   dds::Reader<dds::MachineInfo> reader(participant);
