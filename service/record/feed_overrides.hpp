@@ -20,7 +20,7 @@ struct FeedOverride {
 
 /// What the feed override allows in a cycle: the largest that was in force in the `ramp` cycles up
 /// to it, since the machine takes that long to follow; 1 before the first. Proof:
-/// tests/unit/record/check_test.cpp.
+/// tests/unit/record/feed_overrides_test.cpp.
 class FeedInForce {
  public:
   FeedInForce(std::vector<FeedOverride> set, std::uint64_t ramp)

@@ -11,7 +11,7 @@ namespace meridian::record {
 
 /// Judges how long blocks in inverse time take: no less than they ask for, at the highest override.
 /// Where the tool is on its path is known to some tolerances, so each is judged on its inner part.
-/// Units: mm, s. Proof: tests/unit/record/time_judge_test.cpp, check_test.cpp.
+/// Units: mm, s. Proof: tests/unit/record/time_judge_test.cpp, check_inverse_time_test.cpp.
 class TimeJudge {
  public:
   /// `tolerance_mm`: of a matched place on the way, tip and axis together.

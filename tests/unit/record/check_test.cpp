@@ -4,83 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "scratch.hpp"
-#include "support/machines.hpp"
-#include "support/sample_recording.hpp"
+#include "check_fixture.hpp"
 
 namespace meridian::record {
 namespace {
 
+using test::Check;
 using test::cut_to;
+using test::path_of;
 using test::SampleRun;
 using test::Scratch;
-
-/// A path with a corner, a spike of 0.02 mm that runs back on itself, tilts and one feed.
-[[nodiscard]] std::vector<ClBlock> sample_blocks() {
-  return {cut_to(1, {80, -40, 20}, 0.3, 30),    cut_to(2, {82, -40, 20}, 0.3, 30),
-          cut_to(3, {82.02, -40, 20}, 0.3, 30), cut_to(4, {82, -40, 20}, 0.3, 30),
-          cut_to(5, {82, -37, 19}, 0.35, 30),   cut_to(6, {82, -37, 19}, 0.25, 30),
-          cut_to(7, {79, -36, 20}, 0.25, 30)};
-}
-
-[[nodiscard]] CheckedPath path_of(const std::vector<ClBlock>& blocks, const MachineModel& model) {
-  CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
-  for (const ClBlock& block : blocks) path.add(block, model.tool_length_mm);
-  return path;
-}
-
-class Check : public ::testing::Test {
- protected:
-  Check() : blocks(sample_blocks()), records(SampleRun(model, blocks).records) {
-    options.tip_tolerance_mm = 1e-3;
-    options.axis_tolerance_rad = units::rad_from_deg(1e-3);
-  }
-
-  [[nodiscard]] CheckReport run() {
-    const Scratch file(".csv");
-    RecordingReader reader = test::write_and_open(file.path(), model, records);
-    auto report = check(reader, path_of(blocks, model), model, options);
-    EXPECT_TRUE(report.has_value());
-    return *report;
-  }
-
-  [[nodiscard]] static bool has(const CheckReport& report, Finding::Kind kind) {
-    return std::any_of(report.findings.begin(), report.findings.end(),
-                       [kind](const Finding& finding) { return finding.kind == kind; });
-  }
-
-  void expect_only(const CheckReport& report, Finding::Kind kind) {
-    EXPECT_TRUE(has(report, kind)) << to_text(report);
-    EXPECT_EQ(report.findings.size(), 1U) << to_text(report);
-  }
-
-  /// For runs that are as fast as they like.
-  void lift_joint_limits() {
-    for (JointSpec& joint : model.joints) {
-      joint.limits.velocity = joint.limits.acceleration = joint.limits.jerk = 1e9;
-    }
-  }
-
-  /// First row of the cut of `line` in which it has begun to move well.
-  [[nodiscard]] std::size_t middle_of(std::uint32_t line) const {
-    std::size_t first = 0, count = 0;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      if (records[i].setpoint.line != line) continue;
-      if (count++ == 0) first = i;
-    }
-    return first + count / 2;
-  }
-
-  MachineModel model = test::lai_machine();
-  std::vector<ClBlock> blocks;
-  std::vector<CycleRecord> records;
-  CheckOptions options;
-};
 
 TEST_F(Check, PassesATrueRecordingAndSaysHowNearTheLimitsItWas) {
   const CheckReport report = run();
@@ -309,115 +245,6 @@ TEST_F(Check, RefusesAFeedAboveTheProgrammedOne) {
   EXPECT_TRUE(run().passed()) << "the machine takes a while to follow";
   options.overrides = {{late + 1, 1.1}};
   expect_only(run(), Finding::Kind::kFeed);
-}
-
-/// A turn of the axis between moves of the tip, recorded at up to 27 mm/s and 0.365 rad/s.
-class CheckInverseTime : public Check {
- protected:
-  CheckInverseTime() {
-    lift_joint_limits();
-    blocks = {cut_to(1, {60, -40, 20}, 0.3, 30), cut_to(2, {60, -28, 20}, 0.3, 30),
-              cut_to(3, {75, -28, 20}, 0.3, 30), cut_to(4, {75, -28, 20}, 0.6, 30),
-              cut_to(5, {75, -40, 20}, 0.6, 30)};
-    record_in_time();
-    ask({28, 28, 0.37, 28});
-  }
-
-  void record_in_time() {
-    records = SampleRun(model, blocks).records;
-    for (ClBlock& block : blocks) block.feed_meaning = FeedMeaning::kInverseTime;
-  }
-  /// Tip speeds of the blocks, of the third that of the axis.
-  void ask(const std::array<double, 4>& speeds) {
-    const std::array<double, 4> lengths = {12, 15, 0.3, 12};
-    for (std::size_t i = 0; i < 4; ++i) blocks[i + 1].feed = speeds[i] / lengths[i];
-  }
-};
-
-TEST_F(CheckInverseTime, PassesWhatIsAsFastAsBlocksAsk) {
-  const CheckReport report = run();
-  EXPECT_TRUE(report.passed()) << to_text(report);
-  EXPECT_NEAR(report.feed.value, 27.0 / 28.0, 0.01);
-}
-
-TEST_F(CheckInverseTime, RefusesATipFasterThanEveryBlockWithinReach) {
-  ask({28, 20, 0.37, 28});
-  const CheckReport report = run();
-  expect_only(report, Finding::Kind::kFeed);
-  EXPECT_EQ(report.findings[0].line, 3U);
-  EXPECT_NEAR(report.feed.value, 27.0 / 20.0, 0.01) << "farther than 5 mm from the faster ones";
-  EXPECT_GT(report.findings[0].cycle, records[middle_of(3)].setpoint.cycle - 100);
-  EXPECT_LT(report.findings[0].cycle, records[middle_of(3)].setpoint.cycle + 100);
-}
-
-TEST_F(CheckInverseTime, RefusesAnAxisFasterThanEveryBlockWithinReach) {
-  ask({28, 28, 0.33, 28});
-  const CheckReport report = run();
-  expect_only(report, Finding::Kind::kTurnRate);
-  EXPECT_EQ(report.findings[0].line, 4U) << "the tip rests there";
-  options.feed_factor = 1.2;
-  EXPECT_TRUE(run().passed()) << "an override allows it";
-}
-
-TEST_F(CheckInverseTime, RefusesATipAboveTheMachinesHighestFeed) {
-  model.max_feed_mm_per_s = 26;
-  const CheckReport report = run();
-  expect_only(report, Finding::Kind::kFeed);
-  EXPECT_NEAR(report.feed.value, 27.0 / 26.0, 0.01);
-}
-
-TEST_F(CheckInverseTime, RefusesABlockThatTakesLessThanItsTimeBetweenFasterOnes) {
-  blocks = {cut_to(1, {60, -40, 20}, 0.3, 30), cut_to(2, {60, -28, 20}, 0.3, 30),
-            cut_to(3, {64, -28, 20}, 0.3, 30), cut_to(4, {64, -40, 20}, 0.3, 30)};
-  record_in_time();
-  blocks[1].feed = blocks[3].feed = 28.0 / 12;
-  blocks[2].feed = 1 / 0.27;  // it took 0.324 s, some of it within tolerances of its ends
-  EXPECT_TRUE(run().passed()) << to_text(run());
-  blocks[2].feed = 1 / 0.34;
-  const CheckReport report = run();
-  expect_only(report, Finding::Kind::kBlockTime);
-  EXPECT_EQ(report.findings[0].line, 3U);
-  options.feed_factor = 1.25;
-  EXPECT_TRUE(run().passed()) << "an override allows it";
-}
-
-TEST_F(CheckInverseTime, RefusesATipThatMovesWhereOnlyTheAxisShould) {
-  blocks = {cut_to(1, {75, -28, 20}, 0.3, 30), cut_to(2, {75, -28, 20}, 0.6, 30),
-            cut_to(3, {75, -28, 20}, 0.3, 30), cut_to(4, {75, -28, 20}, 0.6, 30)};
-  record_in_time();
-  for (ClBlock& block : blocks) block.feed = 0.37 / 0.3;
-  options.tip_tolerance_mm = 0.01;
-  EXPECT_TRUE(run().passed()) << to_text(run());
-  const std::size_t middle = middle_of(3);
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const double x = (static_cast<double>(i) - static_cast<double>(middle)) / 60.0;
-    if (std::abs(x) < 1) {  // b4 moves the tip alone
-      records[i].joints[2] += 0.008 * std::pow(1 - x * x, 4);
-      records[i].setpoint.velocity[2] += 0.008 * 4 * std::pow(1 - x * x, 3) * -2 * x / 0.060;
-    }
-  }
-  expect_only(run(), Finding::Kind::kFeed);
-}
-
-TEST(FeedInForce, IsTheLargestOfTheRampBeforeACycle) {
-  FeedInForce in_force({{100, 1.5}, {200, 0.5}, {210, 1.2}}, 50);
-  EXPECT_EQ(in_force.at(99), 1);
-  EXPECT_EQ(in_force.at(100), 1.5);
-  EXPECT_EQ(in_force.at(240), 1.5) << "in force until 199, less than 50 before";
-  EXPECT_EQ(in_force.at(250), 1.2);
-  EXPECT_EQ(in_force.at(900), 1.2);
-}
-
-TEST(FeedOverrides, AreReadFromTheEventsOfARecording) {
-  const auto set = read_feed_overrides(
-      "cycle,verb,argument,block,span\n5,plan_begun,1\n7,start,0\n9,feed_override,1.25\n"
-      "9,feed_planned,1.25,3,0\n12,rapid_override,0.5\n20,feed_override,0.5\n");
-  ASSERT_TRUE(set.has_value());
-  ASSERT_EQ(set->size(), 2U);
-  EXPECT_EQ((*set)[0].cycle, 9U);
-  EXPECT_EQ((*set)[0].factor, 1.25);
-  EXPECT_EQ((*set)[1].factor, 0.5);
-  EXPECT_FALSE(read_feed_overrides("9,feed_override,1.25\nincomplete\n"));
 }
 
 TEST_F(Check, RefusesMoreMissingCyclesThanAllowed) {
