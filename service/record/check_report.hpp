@@ -21,6 +21,20 @@ struct Peak {
   }
 };
 
+/// What was larger than it may be: the worst of it, and how often it was seen.
+struct Excess {
+  Peak worst;
+  std::uint64_t count = 0;
+
+  void add(double value, std::uint64_t at_cycle, std::uint32_t at_line) noexcept {
+    worst.raise(value, at_cycle, at_line);
+    ++count;
+  }
+};
+
+/// By this share of a bound rounding alone may be beyond it.
+inline constexpr double kRoundingShare = 1e-6;
+
 /// What a joint made of its limits: 1 is the limit.
 struct JointUse {
   Peak velocity, acceleration, jerk;

@@ -29,9 +29,7 @@ JointJudge::JointJudge(const MachineModel& model, const LimitedVector& largest)
 }
 
 void JointJudge::note(Excess& excess, double use, bool is_over) const {
-  if (!is_over) return;
-  ++excess.count;
-  excess.use.raise(use, rows_.back().cycle, rows_.back().line);
+  if (is_over) excess.add(use, rows_.back().cycle, rows_.back().line);
 }
 
 void JointJudge::judge_rates(int joint) {
@@ -130,9 +128,9 @@ void JointJudge::finish(CheckReport& report) const {
   report.stage = stage_use_;
   if (unfit_.count > 0) {
     std::snprintf(text, sizeof text, "the drives are up to %.6g mm from where the joints put them",
-                  unfit_.use.value);
+                  unfit_.worst.value);
     report.findings.push_back(
-        {Finding::Kind::kStage, text, unfit_.use.cycle, unfit_.use.line, unfit_.count});
+        {Finding::Kind::kStage, text, unfit_.worst.cycle, unfit_.worst.line, unfit_.count});
   }
   report.fault_stop_cycles = fault_rows_;
   report.dry_cycles = dry_rows_;
@@ -146,25 +144,25 @@ void JointJudge::finish(CheckReport& report) const {
       const Excess& excess = over_[i][order];
       if (excess.count == 0) continue;
       std::snprintf(text, sizeof text, "%s of %s is %.6f x its limit in %llu cycles",
-                    kRateNames[order], joint.name.c_str(), excess.use.value,
+                    kRateNames[order], joint.name.c_str(), excess.worst.value,
                     static_cast<unsigned long long>(excess.count));
       const auto kind =
           static_cast<Finding::Kind>(static_cast<int>(Finding::Kind::kVelocity) + order);
-      report.findings.push_back({kind, text, excess.use.cycle, excess.use.line, excess.count});
+      report.findings.push_back({kind, text, excess.worst.cycle, excess.worst.line, excess.count});
     }
     if (outside_[i].count > 0) {
       std::snprintf(text, sizeof text, "%s is outside its travel by up to %.6g %s",
-                    joint.name.c_str(), outside_[i].use.value, joint.is_rotary ? "rad" : "mm");
-      report.findings.push_back({Finding::Kind::kTravel, text, outside_[i].use.cycle,
-                                 outside_[i].use.line, outside_[i].count});
+                    joint.name.c_str(), outside_[i].worst.value, joint.is_rotary ? "rad" : "mm");
+      report.findings.push_back({Finding::Kind::kTravel, text, outside_[i].worst.cycle,
+                                 outside_[i].worst.line, outside_[i].count});
     }
     if (sent_[i].count > 0) {
       std::snprintf(
           text, sizeof text,
           "sent velocity of %s does not fit its positions (%.3g x what its jerk explains)",
-          joint.name.c_str(), sent_[i].use.value);
-      report.findings.push_back({Finding::Kind::kSentVelocity, text, sent_[i].use.cycle,
-                                 sent_[i].use.line, sent_[i].count});
+          joint.name.c_str(), sent_[i].worst.value);
+      report.findings.push_back({Finding::Kind::kSentVelocity, text, sent_[i].worst.cycle,
+                                 sent_[i].worst.line, sent_[i].count});
     }
   }
 }

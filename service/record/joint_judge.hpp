@@ -22,10 +22,6 @@ class JointJudge {
   void finish(CheckReport& report) const;
 
  private:
-  struct Excess {
-    Peak use;  ///< worst value / limit
-    std::uint64_t count = 0;
-  };
   void judge_rates(int joint);
   void judge_velocity(int joint);
   void judge_stage(const RecordingRow& row);

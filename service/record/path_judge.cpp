@@ -6,17 +6,11 @@
 #include <cstdio>
 #include <limits>
 
-#include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::record {
 namespace {
-
-constexpr double kRoundingShare = 1e-6;
-constexpr double kPlace_mm = 1e-11;   // of the tip, by rounding of the joints
-constexpr double kLeastFeed = 1e-12;  // mm/s
-constexpr double kLeastTurn_rad_per_s = 1e-9;
 
 /// A vertex is looked for this far before and behind the place where the tool is, and twice the
 /// tolerances: the tool and the place that it is held against are both within one of it.
@@ -25,17 +19,6 @@ constexpr double kVertexMargin_mm = 0.1;
 constexpr double kLargestSag_mm = 1e-4;
 /// A block shorter than that turns the axis alone.
 constexpr double kNoTip_mm = 1e-9;
-/// In inverse time blocks within this way of a place say how fast tip and axis may be there.
-constexpr double kSpeedReach_mm = 5;
-constexpr double kNoFeed = PathElement::kNoFeed;
-
-/// How long the rate of plan time takes at most to follow an override: its ramp, and what it needs
-/// to turn round, get going and settle.
-[[nodiscard]] std::uint64_t ramp_cycles(const MachineModel& model) {
-  constexpr double kSettle_s = 0.3;
-  return static_cast<std::uint64_t>(1e9 * (model.override_ramp_s + kSettle_s)) /
-         static_cast<std::uint64_t>(model.cycle_ns);
-}
 
 [[nodiscard]] double distance_to_chord(const Vector3& point, const Vector3& a, const Vector3& b) {
   const Vector3 d = b - a;
@@ -53,10 +36,9 @@ PathJudge::PathJudge(const MachineModel& model, const CheckedPath& path,
       options_(options),
       tip_tolerance_(options.tip_tolerance_mm),
       axis_tolerance_(options.axis_tolerance_rad),
-      period_(static_cast<double>(model.cycle_ns) * 1e-9),
-      overrides_(options.overrides, ramp_cycles(model)),
       follower_(path, tip_tolerance_, axis_tolerance_),
-      times_(path, reach_of_match(), period_, options),
+      speeds_(model, path, reach_of_match(), options),
+      times_(path, reach_of_match(), static_cast<double>(model.cycle_ns) * 1e-9, options),
       tool_length_(path.begin_tool_length_mm()),
       nearest_(path.elements().size() + 1, std::numeric_limits<double>::infinity()),
       turned_(nearest_),
@@ -203,66 +185,6 @@ void PathJudge::add_gap(double s_from, double s_to) {
   }
 }
 
-/// The fastest that blocks on a stretch of the path ask for; where one is in inverse time also
-/// those within reach, and where all are the axis is bounded too. No block in inverse time counts
-/// for less than a tolerance over the reach.
-PathJudge::Speeds PathJudge::asked_about(double s_low, double s_high) const noexcept {
-  const auto& elements = path_.elements();
-  std::size_t first = path_.element_at(s_low), last = path_.element_at(s_high);
-  bool is_timed = false, bounds_axis = true;
-  for (std::size_t i = first; i <= last; ++i) {
-    is_timed = is_timed || elements[i].is_timed;
-    bounds_axis = bounds_axis && elements[i].is_timed;
-  }
-  if (is_timed) {
-    const auto has_feed = [&](std::size_t i) { return elements[i].feed_mm_per_s < kNoFeed; };
-    const double from = path_.way_at(s_low) - kSpeedReach_mm;
-    const double to = path_.way_at(s_high) + kSpeedReach_mm;
-    while (first > 0 && elements[first].way >= from && has_feed(first - 1)) --first;
-    while (last + 1 < elements.size() && elements[last + 1].way <= to && has_feed(last + 1)) ++last;
-  }
-  Speeds out{0, bounds_axis ? 0 : kNoFeed};
-  for (std::size_t i = first; i <= last; ++i) {
-    const PathElement& element = elements[i];
-    const double reaches_per_s = element.way_mm_per_s / kSpeedReach_mm;
-    const double least_tip = element.is_timed ? tip_tolerance_ * reaches_per_s : 0;
-    out.tip_mm_per_s = std::max({out.tip_mm_per_s, element.feed_mm_per_s, least_tip});
-    out.turn_rad_per_s =
-        std::max({out.turn_rad_per_s, element.turn_rad_per_s, axis_tolerance_ * reaches_per_s});
-  }
-  return out;
-}
-
-/// Tip and axis between two consecutive setpoints against the fastest that is asked for there.
-void PathJudge::judge_speed(const Place& from, const Place& to, double s_from, double s_to) {
-  const ToolPose a = forward(model_, tool_length_, from.joints);
-  const ToolPose b = forward(model_, tool_length_, to.joints);
-  const double speed = (b.tip - a.tip).norm() / period_;
-  speed_.raise(speed, to.cycle, to.line);
-  if (path_.elements().empty()) return;
-  const double margin = reach_of_match();
-  const Speeds asked =
-      asked_about(std::min(s_from, s_to) - margin, std::max(s_from, s_to) + margin);
-  const double factor = options_.overrides.empty() ? options_.feed_factor : overrides_.at(to.cycle);
-  double allowed = asked.tip_mm_per_s * factor;
-  if (model_.max_feed_mm_per_s > 0 && std::isfinite(allowed)) {
-    allowed = std::min(allowed, model_.max_feed_mm_per_s);
-  }
-  // At an override of 0 the tip stands but for the last bit of its place.
-  const double use = std::max(0.0, speed - kPlace_mm / period_) / std::max(allowed, kLeastFeed);
-  feed_.raise(use, to.cycle, to.line);
-  if (use > 1 + kRoundingShare) {
-    feed_over_.worst.raise(use, to.cycle, to.line);
-    ++feed_over_.count;
-  }
-  const double rate = angle_between(a.axis, b.axis) / period_;
-  const double allowed_turn = asked.turn_rad_per_s * factor;
-  if (rate > allowed_turn * (1 + kRoundingShare) + kLeastTurn_rad_per_s) {
-    turn_over_.worst.raise(rate / std::max(allowed_turn, kLeastTurn_rad_per_s), to.cycle, to.line);
-    ++turn_over_.count;
-  }
-}
-
 /// Goes from the last but one place to the last: between them first, where four places say how.
 void PathJudge::step(bool has_between) {
   const Place& from = places_[1];
@@ -293,7 +215,10 @@ void PathJudge::step(bool has_between) {
   if (is_gap) {
     add_gap(s_from, here_.s);
   } else if (is_under_way_) {
-    judge_speed(from, to, s_from, here_.s);
+    const auto tool_at = [this](const Place& place) {
+      return forward(model_, tool_length_, place.joints);
+    };
+    speeds_.add(tool_at(from), tool_at(to), s_from, here_.s, to.cycle, to.line);
   }
   is_under_way_ = true;
 }
@@ -325,8 +250,6 @@ void PathJudge::finish(CheckReport& report) {
   report.axis_rad = axis_;
   report.tip_between_mm = tip_between_;
   report.axis_between_rad = axis_between_;
-  report.feed = feed_;
-  report.tip_speed_mm_per_s = speed_;
   char text[256];
   const auto find = [&](Finding::Kind kind, const Excess& excess) {
     report.findings.push_back({kind, text, excess.worst.cycle, excess.worst.line, excess.count});
@@ -341,17 +264,7 @@ void PathJudge::finish(CheckReport& report) {
                   units::deg_from_rad(axis_over_.worst.value), units::deg_from_rad(exceeded_axis_));
     find(Finding::Kind::kAxis, axis_over_);
   }
-  if (feed_over_.count > 0) {
-    std::snprintf(text, sizeof text, "tip speed is %.6f x the programmed feed%s in %llu cycles",
-                  feed_over_.worst.value, options_.overrides.empty() ? "" : " times the override",
-                  static_cast<unsigned long long>(feed_over_.count));
-    find(Finding::Kind::kFeed, feed_over_);
-  }
-  if (turn_over_.count > 0) {
-    std::snprintf(text, sizeof text, "tool axis turns %.6f x as fast as its inverse time allows",
-                  turn_over_.worst.value);
-    find(Finding::Kind::kTurnRate, turn_over_);
-  }
+  speeds_.finish(report);
   times_.finish(report);
   finish_vertices(report);
 }
@@ -374,11 +287,9 @@ void PathJudge::finish_vertices(CheckReport& report) const {
     const double distance = std::isfinite(nearest_[i]) ? nearest_[i] : vertex_s(i) - reached_;
     report.vertex_mm.raise(distance, 0, vertex_line(i));
     if (is_missed) {
-      missed.worst.raise(distance, 0, vertex_line(i));
-      ++missed.count;
+      missed.add(distance, 0, vertex_line(i));
     } else if (is_unturned) {
-      unturned.worst.raise(turned_[i], 0, vertex_line(i));
-      ++unturned.count;
+      unturned.add(turned_[i], 0, vertex_line(i));
     }
   }
   char text[256];

@@ -9,12 +9,13 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/record/check.hpp"
 #include "service/record/path_follower.hpp"
+#include "service/record/speed_judge.hpp"
 #include "service/record/time_judge.hpp"
 
 namespace meridian::record {
 
-/// Judges the tool against the path: deviation, vertices, tip speed. Rows of the cut alone, in
-/// order. Units: mm, rad, s.
+/// Judges the tool against the path: deviation, vertices, speeds, times of blocks. Rows
+/// of the cut alone, in order. Units: mm, rad, s.
 class PathJudge {
  public:
   /// Both tolerances of `options` are in force.
@@ -30,22 +31,12 @@ class PathJudge {
     std::uint32_t line = 0;
     JointVector joints{};
   };
-  struct Excess {
-    Peak worst;
-    std::uint64_t count = 0;
-  };
   void step(bool has_between);
   void sample(const JointVector& joints, const Place& place, bool is_setpoint);
   PoseMatch match(const JointVector& joints, ToolPose& pose);
   void pass_vertices(const ToolPose& pose);
   [[nodiscard]] bool pass_vertex(std::size_t index);
   [[nodiscard]] double miss_of_turn(const ToolPose& vertex) const;
-  /// How fast tip and axis may be.
-  struct Speeds {
-    double tip_mm_per_s = 0, turn_rad_per_s = 0;
-  };
-  [[nodiscard]] Speeds asked_about(double s_low, double s_high) const noexcept;
-  void judge_speed(const Place& from, const Place& to, double s_from, double s_to);
   void add_gap(double s_from, double s_to);
   [[nodiscard]] double vertex_s(std::size_t index) const noexcept;
   [[nodiscard]] ToolPose vertex(std::size_t index) const noexcept;
@@ -58,11 +49,11 @@ class PathJudge {
   const MachineModel& model_;
   const CheckedPath& path_;
   CheckOptions options_;
-  double tip_tolerance_, axis_tolerance_, period_;
+  double tip_tolerance_, axis_tolerance_;
   double allowed_axis_ = 0;   ///< at the last sample
   double exceeded_axis_ = 0;  ///< what was allowed where the axis was farthest off
-  FeedInForce overrides_;
   PathFollower follower_;
+  SpeedJudge speeds_;
   TimeJudge times_;
   double tool_length_;
   std::array<Place, 4> places_{};  ///< newest last
@@ -77,8 +68,8 @@ class PathJudge {
   std::vector<double> nearest_;  ///< of each vertex: least distance to the tip's way
   std::vector<double> turned_;   ///< of those at a turn of the axis alone: in tolerances, both
   std::vector<bool> in_gap_;     ///< passed while cycles are missing
-  Peak tip_, axis_, tip_between_, axis_between_, feed_, speed_;
-  Excess tip_over_, axis_over_, feed_over_, turn_over_;
+  Peak tip_, axis_, tip_between_, axis_between_;
+  Excess tip_over_, axis_over_;
 };
 
 }  // namespace meridian::record

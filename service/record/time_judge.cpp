@@ -7,7 +7,6 @@
 namespace meridian::record {
 namespace {
 
-constexpr double kRoundingShare = 1e-6;
 /// Tolerances by which a match may lag where a tool turns round ahead of its path, and the ends.
 constexpr double kLag = 10;
 

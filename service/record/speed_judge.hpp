@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/record/check.hpp"
+
+namespace meridian::record {
+
+/// Judges how fast tip and axis go between setpoints: no faster than what blocks there ask for,
+/// times the feed override in force. Units: mm, rad, s. Proof: tests/unit/record/check_test.cpp,
+/// check_inverse_time_test.cpp.
+class SpeedJudge {
+ public:
+  /// `reach`: how far along the path a place may lie from where its pose is matched, mm.
+  SpeedJudge(const MachineModel& model, const CheckedPath& path, double reach,
+             const CheckOptions& options);
+
+  /// From one setpoint to the next one, which is that of `cycle`; `s_from` and `s_to`: where on the
+  /// path they were matched. Cycles go up.
+  void add(const ToolPose& from, const ToolPose& to, double s_from, double s_to,
+           std::uint64_t cycle, std::uint32_t line);
+  /// Adds what was found to the report.
+  void finish(CheckReport& report) const;
+
+ private:
+  /// How fast tip and axis may be.
+  struct Speeds {
+    double tip_mm_per_s = 0, turn_rad_per_s = 0;
+  };
+  [[nodiscard]] Speeds asked_about(double s_low, double s_high) const noexcept;
+
+  const MachineModel& model_;
+  const CheckedPath& path_;
+  CheckOptions options_;
+  double reach_, period_;
+  FeedInForce overrides_;
+  Peak feed_, speed_;
+  Excess feed_over_, turn_over_;
+};
+
+}  // namespace meridian::record
