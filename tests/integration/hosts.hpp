@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "integration/plant.hpp"
+#include "integration/process.hpp"
 
 namespace meridian::test {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "integration/plant.hpp"
+#include "integration/process.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/participant.hpp"
