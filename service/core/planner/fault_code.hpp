@@ -17,6 +17,8 @@ namespace meridian {
       return RejectCode::kUnreachable;
     case PathFault::Kind::kTooLong:
       return RejectCode::kTooComplex;
+    case PathFault::Kind::kBranch:
+      return RejectCode::kBranch;
     case PathFault::Kind::kJump:
       break;
   }

@@ -22,7 +22,7 @@ struct JointCell {
 
 /// Why joints cannot follow a path.
 struct PathFault {
-  enum class Kind { kNone, kTravel, kUnreachable, kTooLong, kJump } kind = Kind::kNone;
+  enum class Kind { kNone, kTravel, kUnreachable, kTooLong, kBranch, kJump } kind = Kind::kNone;
   int joint = -1;  ///< place in limited.hpp; -1: none
   double value = 0;
 };

@@ -56,6 +56,10 @@ class PoleCorridor {
   /// Whether no way on was found from where the free joint rests. What was handed out stays valid,
   /// nothing comes behind it.
   [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
+  /// The first span that is not handed out, or not all of it; nullptr: there is none.
+  [[nodiscard]] const BandSpan* first_held() const noexcept {
+    return probes_.is_empty() ? nullptr : &probes_.front();
+  }
 
   /// The machine turned its free joint by `by` rad (whole turns) ahead of what next() gave last,
   /// and will be at `joints` at its end. What next() gave is not touched, a zone that it lies in

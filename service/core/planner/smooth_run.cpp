@@ -163,12 +163,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
         is_held_ = is_just_unwound_ = false;
       }
     } else if (band_.has_failed() || corridor_.has_failed()) {
-      const bool has_span = spans_.end_index() > 0;
-      const PathFault fault = band_.has_failed()
-                                  ? PathFault{PathFault::Kind::kTooLong, -1, 0}
-                                  : PathFault{PathFault::Kind::kJump, free_joint(model_), 0};
-      fail(fault, has_span ? spans_.back().band.sequence : 0,
-           has_span ? spans_.back().band.line : 0);
+      fail_ahead();
     } else if (is_band_finished_ && !is_feed_finished_) {
       is_feed_finished_ = true;
       note_ease(nullptr);
@@ -228,6 +223,17 @@ void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
 void SmoothRun::fail_on_span() noexcept {
   const BandSpan& span = spans_[static_cast<std::int64_t>(feed_.faulty_span())].band;
   fail(feed_.fault(), span.sequence, span.line);
+}
+
+/// Names the block ahead of which the machine comes to rest: of the first span that is held back
+/// beside the pole, or else of the last that was handed on.
+void SmoothRun::fail_ahead() noexcept {
+  const BandSpan* at = corridor_.first_held();
+  if (at == nullptr && spans_.end_index() > 0) at = &spans_.back().band;
+  const PathFault fault = band_.has_failed()
+                              ? PathFault{PathFault::Kind::kTooLong, -1, 0}
+                              : PathFault{PathFault::Kind::kBranch, free_joint(model_), 0};
+  fail(fault, at != nullptr ? at->sequence : 0, at != nullptr ? at->line : 0);
 }
 
 bool SmoothRun::follow(const JointSpan& span) noexcept {

@@ -115,6 +115,7 @@ class SmoothRun : public WindingTrial {
   void note_ease(const JointSpan* span) noexcept;
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
   void fail_on_span() noexcept;
+  void fail_ahead() noexcept;
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(MotionWriter& writer) noexcept;
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;

@@ -226,6 +226,27 @@ TEST(PoleLinger, KeepsLimitsAndTolerancesHoweverAProgramLingers) {
   std::printf("%u programs, %.0f s\n", programs, time_s);
 }
 
+/// C has 60 deg either way: towards 90 deg no branch leads off. The machine rests where it is held.
+TEST(PoleLinger, WhereNoWayLeadsOffTheFirstBlockThatCannotGoOnIsRefusedByName) {
+  MachineModel model = lai_machine();
+  model.joints[3].limits.travel_max = units::rad_from_deg(60);
+  model.joints[3].limits.travel_min = -model.joints[3].limits.travel_max;
+  Way from_rest = waver(Way(1), 30, 0.006);
+  for (int n = 1; n <= 12; ++n) from_rest.to(0, std::tan(units::rad_from_deg(n)));
+  for (const bool is_from_rest : {true, false}) {
+    SCOPED_TRACE(is_from_rest ? "begun on the pole" : "come to it");
+    const auto blocks = is_from_rest ? from_rest.program() : stay(0, 150, 90);
+    const SmoothTrace trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+    ASSERT_EQ(trace.last.status, PlanStatus::kRefused);
+    const BlockReject& reject = trace.last.reject;
+    EXPECT_EQ(reject.code, RejectCode::kBranch);
+    const auto last = trace.times.empty() ? 0 : trace.times.back().sequence;
+    EXPECT_GE(reject.sequence, std::max<std::uint64_t>(1, last));
+    EXPECT_LE(reject.sequence, is_from_rest ? 1U : 12U + 150U) << "no motion belongs to it";
+    EXPECT_EQ(reject.line, 10 + reject.sequence);
+  }
+}
+
 TEST(PoleLinger, IsTheSameHoweverTheBlocksArrive) {
   const MachineModel model = lai_machine();
   const auto blocks = stay(20, kIsTimed ? 150 : 80, 250);
