@@ -16,8 +16,6 @@ constexpr double kThere = 1e-12;  // joints that differ less are where they shou
 constexpr double kNearby = 1e-3;  // mm, rad: so near that a joint move alone is made
 constexpr double kNoClearance_mm = 1e-3;
 
-bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
-
 double largest_difference(const JointVector& a, const JointVector& b) noexcept {
   double largest = 0;
   for (int i = 0; i < kMaxJoints; ++i) largest = std::max(largest, std::abs(a[i] - b[i]));

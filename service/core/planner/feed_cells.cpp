@@ -13,15 +13,11 @@ namespace meridian {
 namespace {
 
 constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
-constexpr double kTravelMargin = 1e-9;   // rounding of a travel end that is reached exactly
 constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
 constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
 constexpr double kStep_mm = 1e-5, kStep_rad = 1e-7;  // inside every jerk limit of a cycle
 constexpr int kRounds = 16;                          // of halving: lengths of a ratio of 60 000
-constexpr double kLeastTight = 0.2;
-constexpr double kNone = 1e-12;  // derivative that counts as none
-/// Rounding of a component of the tool axis.
-constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
+constexpr double kNone = 1e-12;                      // derivative that counts as none
 
 double square(double x) noexcept { return x * x; }
 
@@ -42,7 +38,7 @@ double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
   for (int i = 0; i < limits.count; ++i) {
     share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
   }
-  return std::max(share, kLeastTight);
+  return std::max(share, FeedCell::kLeastTight);
 }
 
 /// The range of the samples, and an eighth of it either side for what lies between.

@@ -37,12 +37,14 @@ static_assert(CellBound::Values::SizeAtCompileTime >= kMaxLimited);
 
 struct FeedCell {
   static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included
+  static constexpr double kLeastTight = 0.2;
 
   std::uint64_t span = 0;  ///< counts spans from 0 since begin()
   double x = 0;            ///< where it begins in its span
   double h = 0;            ///< length
   double most_b = 0;       ///< least of the samples', lowered where a plan overshot the feed
-  double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot
+  double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot,
+                           ///< but not below kLeastTight
   CellBound bound;
   std::array<CellSample, kSteps + 1> at;
 };

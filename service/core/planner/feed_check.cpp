@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/core/planner/feed_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "service/core/planner/parabola.hpp"
 
 namespace meridian {
 namespace {
@@ -19,11 +22,11 @@ double peak_of(const Samples& f) noexcept {
   for (int k = 0; k <= kSteps; ++k) most = std::max(most, std::abs(f[k]));
   for (int k = 1; k < kSteps; ++k) {
     const double sign = f[k] < 0 ? -1 : 1;
-    const double left = sign * f[k - 1], middle = sign * f[k], right = sign * f[k + 1];
-    const double bend = 2 * middle - left - right, slope = right - left;
+    const Parabola about(sign * f[k - 1], sign * f[k], sign * f[k + 1]);
     const double before = k == 1 ? 2 : 1, behind = k == kSteps - 1 ? 2 : 1;  // half samples
-    if (!(bend > 0) || -slope > before * bend || slope > behind * bend) continue;
-    most = std::max(most, middle + slope * slope / (8 * bend));
+    const bool has_top = about.bend > 0 && !(-about.slope > before * about.bend) &&
+                         !(about.slope > behind * about.bend);
+    if (has_top) most = std::max(most, about.top());
   }
   return most;
 }

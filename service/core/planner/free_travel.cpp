@@ -6,16 +6,16 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "service/core/planner/joint_cells.hpp"
+#include "service/core/planner/pole_bounds.hpp"
 
 namespace meridian {
 namespace {
 
 constexpr int kSteps = 8;
 constexpr double kMargin_rad = 1e-4;
-constexpr double kNoWay_rad = 1e-9;    // a joint at the end of travel that leaves it is inside
-constexpr double kMostTurn_rad = 0.5;  // between two places, so that no turn is missed
+constexpr double kNoWay_rad = 1e-9;  // a joint at the end of travel that leaves it is inside
 constexpr double kLeastShare = 1e-6;
-constexpr double kTravelMargin = 1e-9;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcep
     way.is_there = there.status != SolveStatus::kUnreachable;
     if (!way.is_there) return way;
     const double turn = there.q[free] - way.end[free];
-    if (std::abs(turn) > kMostTurn_rad && step > kLeastShare * length) {
+    if (std::abs(turn) > kMostFollowed_rad && step > kLeastShare * length) {
       step *= 0.5;
       continue;
     }

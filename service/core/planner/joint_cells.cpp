@@ -12,10 +12,6 @@
 namespace meridian {
 namespace {
 
-constexpr double kTravelMargin = 1e-9;  // rounding of a travel end that is reached exactly
-/// Rounding of a component of the tool axis.
-constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
-
 /// Joints and drives of the stage, and their derivatives, at one place.
 struct Sample {
   double share_rate = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 
 #include "meridian/kinematics/limited.hpp"
@@ -10,6 +11,10 @@
 /// What the joints do along a path, cell by cell: bounds of their derivatives by the path length,
 /// and whether they stay inside travel and reach. Units: mm, rad, s.
 namespace meridian {
+
+inline constexpr double kTravelMargin = 1e-9;  ///< rounding of a travel end that is reached exactly
+/// Rounding of a component of the tool axis.
+inline constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
 
 /// Bounds of |dq/ds|, |d²q/ds²|, |d³q/ds³| of everything that has limits on a short stretch of
 /// path: the joints, then the drives of the stage.
@@ -26,6 +31,10 @@ struct PathFault {
   int joint = -1;  ///< place in limited.hpp; -1: none
   double value = 0;
 };
+
+[[nodiscard]] inline bool is_fault(const PathFault& fault) noexcept {
+  return fault.kind != PathFault::Kind::kNone;
+}
 
 /// Cells of one path, in order, in a fixed store.
 class CellTable {

@@ -12,14 +12,14 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/pole_bounds.hpp"
 
 namespace meridian {
 namespace {
 
-constexpr double kStepShare = 0.3;       // of the distance to the pole, that the axis turns at once
-constexpr double kMostStep_rad = 0.05;   // more would miss where slides turn round
-constexpr double kArcStep_rad = 0.1;     // of an arc
-constexpr double kPoleTolerances = 2.5;  // nearer a smooth run may change the branch
+constexpr double kStepShare = 0.3;      // of the distance to the pole, that the axis turns at once
+constexpr double kMostStep_rad = 0.05;  // more would miss where slides turn round
+constexpr double kArcStep_rad = 0.1;    // of an arc
 constexpr double kLeastPole_rad = 1e-3;
 constexpr int kMostSteps = 256;  // per block
 constexpr double kMargin = 1e-9;
@@ -46,7 +46,7 @@ class Follower {
         branch_(branch),
         free_(free_joint(model)),
         pole_rad_(
-            std::max(kPoleTolerances * std::max(axis_tolerance_beside_pole(model), slack.axis_rad),
+            std::max(kZoneTolerances * std::max(axis_tolerance_beside_pole(model), slack.axis_rad),
                      kLeastPole_rad)),
         pose_(start),
         ways_(ways) {

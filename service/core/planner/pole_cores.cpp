@@ -4,15 +4,13 @@
 #include <algorithm>
 
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/pole_bounds.hpp"
 
 namespace meridian {
 namespace {
 
-constexpr double kNear_rad = 0.05;        // minima farther off turn the free joint gently
-constexpr double kZoneTolerances = 2.5;   // minima farther off leave a zone no room
-constexpr double kDwellTolerances = 0.2;  // nearer, the path counts as on the pole
-constexpr double kStayTolerances = 0.4;   // so far a path that comes back may go meanwhile
-constexpr double kOtherTolerances = 3;    // another minimum nearer than that bounds the reach
+constexpr double kNear_rad = 0.05;       // minima farther off turn the free joint gently
+constexpr double kStayTolerances = 0.4;  // so far a path that comes back may go meanwhile
 /// A core that is longer than this is not waited for: the free joint comes to rest in it.
 constexpr double kLongCore_mm = 2 * kPoleReach_mm;
 constexpr double kReachShare = 0.98, kHalf = 0.49;
@@ -35,7 +33,7 @@ void PoleCores::begin_again() noexcept {
 }
 
 bool PoleCores::dwells(Place place) const noexcept {
-  return probes_.distance_of(place) < kDwellTolerances * tolerance_rad_;
+  return probes_.distance_of(place) < kOnPoleTolerances * tolerance_rad_;
 }
 
 bool PoleCores::lingers(Place place) const noexcept {
@@ -69,7 +67,7 @@ bool PoleCores::is_minimum(bool is_last) const noexcept {
       is_last ? probes_.distance_at(probes_.end_u()) : probes_.distance_of(place_ + 1);
   const bool is_long =
       entered_ >= begin && probes_.u_of(place_) > probes_.u_of(entered_) + 0.5 * kPoleReach_mm;
-  const bool is_end = is_last && settled_.is_whole && behind < kDwellTolerances * tolerance_rad_;
+  const bool is_end = is_last && settled_.is_whole && behind < kOnPoleTolerances * tolerance_rad_;
   return rests_at(place_) || is_end || is_long ||
          (before < place_ && here < kNear_rad && here <= probes_.distance_of(before) &&
           here < behind);
@@ -129,7 +127,7 @@ PolePlace PoleCores::around() const noexcept {
     around.core_end = std::max(run_.nearest, probes_.u_of(run_.last));
   }
   // What rests may end a little farther off than what comes to rest.
-  const double nearly_on = around.is_start ? kStayTolerances : kDwellTolerances;
+  const double nearly_on = around.is_start ? kStayTolerances : kOnPoleTolerances;
   const Place last = around.is_start ? run_.seen : run_.last;
   if (settled_.is_whole && last + 1 == probes_.end_place() &&
       probes_.distance_at(probes_.end_u()) < nearly_on * tolerance_rad_) {

@@ -6,6 +6,8 @@
 
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/joint_cells.hpp"
+#include "service/core/planner/pole_bounds.hpp"
 
 namespace meridian {
 namespace {
@@ -13,9 +15,6 @@ namespace {
 constexpr double kLeastHold_mm = 0.5;
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kLeastPart_mm = 1e-6;
-constexpr double kTravelMargin = 1e-9;
-/// Of the free joint between two places at which its winding is followed.
-constexpr double kMostTurn_rad = 0.5, kLeastStep_mm = 1e-8;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
 /// of axis, so a zone beside them still has half of its reach.
 constexpr double kOutOfReach_rad = 0.5 * kPoleReach_mm / kAxisLength_mm_per_rad;
@@ -92,8 +91,8 @@ JointVector PoleCorridor::follow_to(double u) const noexcept {
       const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
       const bool is_there = solved.status != SolveStatus::kUnreachable;
       const bool is_turn =
-          is_there && free >= 0 && std::abs(solved.q[free] - joints[free]) > kMostTurn_rad;
-      if (is_turn && step > kLeastStep_mm) continue;
+          is_there && free >= 0 && std::abs(solved.q[free] - joints[free]) > kMostFollowed_rad;
+      if (is_turn && step > kLeastFollowed_mm) continue;
       if (is_there) joints = solved.q;
       at = next;
       break;

@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "meridian/path/pose_at.hpp"
+#include "service/core/planner/joint_cells.hpp"
+#include "service/core/planner/pole_bounds.hpp"
 
 namespace meridian {
 namespace {
 
-constexpr double kMostStep_mm = 0.5, kLeastStep_mm = 1e-8;
-constexpr double kMostTurn_rad = 0.5;
-constexpr double kOtherTolerances = 3;
-constexpr double kTravelMargin = 1e-9;
+constexpr double kMostStep_mm = 0.5;
 
 }  // namespace
 
@@ -31,7 +30,7 @@ bool keeps_travel(const PoleTask& task, const PolePlace& place, double begin,
     }
     const auto at = solve(task.model, task.tool_length_mm, pose, branch, last);
     if (at.status == SolveStatus::kUnreachable) return false;
-    if (std::abs(at.q[free] - last[free]) > kMostTurn_rad && step > kLeastStep_mm) {
+    if (std::abs(at.q[free] - last[free]) > kMostFollowed_rad && step > kLeastFollowed_mm) {
       step *= 0.5;
       continue;
     }

@@ -17,8 +17,6 @@ namespace {
 constexpr double kSameFree_rad = 1e-9;  // azimuths that differ less need no turn on the pole
 constexpr double kNearPole_rad = 2e-3;  // nearer the free joint is held on oblique ways
 
-bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
-
 }  // namespace
 
 PathFault Router::turn_free(const ToolPose& pose, double free_end, const Job& job,

@@ -8,6 +8,8 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "service/core/planner/joint_cells.hpp"
+#include "service/core/planner/parabola.hpp"
 #include "service/core/planner/pole_travel.hpp"
 
 namespace meridian {
@@ -22,7 +24,6 @@ constexpr double kToleranceShare = 0.998;  // samples are not everywhere
 constexpr double kMostBend = 1e3;          // rad: φ'' h² at an end, beyond it the end is no guide
 constexpr double kLeastGain_s = 1e-3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kTravelMargin = 1e-9;
 constexpr double kLeastPart_mm = 1e-4;
 
 template <class S>
@@ -57,9 +58,8 @@ Jet<3> free_at(const FreeQuintic& values, double t, double h) noexcept {
 /// Largest value that a smooth function may have about the middle of three samples: there, or at
 /// the top of the parabola through them.
 double top_of(double left, double middle, double right) noexcept {
-  const double bend = 2 * middle - left - right;
-  if (!(bend > 0) || middle < left || middle < right) return middle;
-  return middle + (right - left) * (right - left) / (8 * bend);
+  const Parabola about(left, middle, right);
+  return about.bend > 0 && middle >= left && middle >= right ? about.top() : middle;
 }
 
 /// Time per u at which the joints can follow, seconds per mm.

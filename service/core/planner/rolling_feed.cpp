@@ -217,7 +217,7 @@ bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
       for (int n = std::max(0, k - 1); n <= std::min(cells - 1, k + 1); ++n) {
         FeedCell& near = grid_[new_.first + n];
         const double by = n == k ? std::min(worst, 1.5) + 0.004 : 1.002;
-        near.tight = std::max(0.2, near.tight / by);
+        near.tight = std::max(FeedCell::kLeastTight, near.tight / by);
       }
     } else if (use.b > kFeedSlack) {
       is_good = false;

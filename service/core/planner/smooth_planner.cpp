@@ -14,13 +14,12 @@
 #include "service/core/planner/fault_code.hpp"
 #include "service/core/planner/feed_raise.hpp"
 #include "service/core/planner/leg_planner.hpp"
+#include "service/core/planner/pole_bounds.hpp"
 #include "service/core/planner/smooth_run.hpp"
 
 namespace meridian {
 namespace {
 
-/// Nearer to the pole than this share of the axis tolerance the axis counts as on it.
-constexpr double kOnPoleShare = 0.2;
 constexpr double kBesidePole_rad = 0.05;  // kSamePlace turns the free joint by 2e-8 rad there
 constexpr double kSamePlace = 1e-9;       // mm and of the unit axis: rounding of joints
 constexpr std::size_t kUnwindings = 256;  // that wait to be taken; the oldest go
@@ -130,7 +129,8 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
 }
 
 bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
-  return free_joint(model) >= 0 && pole_distance(model, axis) < kOnPoleShare * tolerance().axis_rad;
+  return free_joint(model) >= 0 &&
+         pole_distance(model, axis) < kOnPoleTolerances * tolerance().axis_rad;
 }
 
 void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
@@ -232,7 +232,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   w.plain.begin(at_rest, tool_length_mm, epoch);
   w.settings = settings;
   const bool may_ease = w.is_smooth() && w.model.pole_policy == PolePolicy::kEase;
-  if (may_ease) w.plain.set_free_cone(kOnPoleShare * w.tolerance().axis_rad);
+  if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
   w.raise.begin();
   w.is_refused = w.is_for_plain = w.has_factor = false;
   w.waiting.clear();

@@ -30,8 +30,6 @@ double least_time(const BandSpan& span) noexcept {
   return std::max(chord / span.feed_mm_per_s, span.length / span.u_speed_mm_per_s);
 }
 
-bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
-
 }  // namespace
 
 SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise)

@@ -8,11 +8,6 @@
 ///     rest ── off along the tool axis, by the whole declared way ──▶ over ── free joint alone ──▶
 ///     over ── back along the tool axis, at approach feed ──▶ rest, the same place
 namespace meridian {
-namespace {
-
-bool is_fault(const PathFault& fault) noexcept { return fault.kind != PathFault::Kind::kNone; }
-
-}  // namespace
 
 PathFault Router::unwind(const ClBlock& block, int turns, PlanCursor& cursor,
                          Staging& out) noexcept {

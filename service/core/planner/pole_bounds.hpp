@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// How near the pole a path is treated otherwise, in tolerances of its axis, and how its free joint
+/// is followed there. Source: docs/motion.md, section 10.
+namespace meridian {
+
+/// Nearer, the path counts as on the pole.
+inline constexpr double kOnPoleTolerances = 0.2;
+/// Nearer, a smooth run may go another way than the exact one, and change the branch; minima of the
+/// distance that are farther off leave that no room.
+inline constexpr double kZoneTolerances = 2.5;
+/// Nearer, another minimum behind a place decides for itself.
+inline constexpr double kOtherTolerances = 3;
+
+/// Of the free joint between two places at which its winding is followed.
+inline constexpr double kMostFollowed_rad = 0.5;
+/// Places are no nearer to each other than that, however far it turns between them.
+inline constexpr double kLeastFollowed_mm = 1e-8;
+
+}  // namespace meridian
