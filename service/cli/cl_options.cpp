@@ -71,6 +71,15 @@ void add_join_options(CLI::App& command, JoinOptions& options) {
       ->check(finite_range(config::kAxisTolerance_deg.low, config::kAxisTolerance_deg.high));
 }
 
+SmoothSettings settings_of(const JoinOptions& join) {
+  SmoothSettings settings;
+  if (join.transition == "smooth") settings.transition = Transition::kSmooth;
+  if (join.transition == "exact_stop") settings.transition = Transition::kExactStop;
+  settings.tip_tolerance_mm = join.tip_tolerance_mm;
+  settings.axis_tolerance_rad = units::rad_from_deg(join.axis_tolerance_deg);
+  return settings;
+}
+
 std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
   std::string text;
   const auto add = [&text](const char* name, const std::string& value) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "meridian/planner/smooth_planner.hpp"
 #include "service/cl/cl_error.hpp"
 #include "service/cl/cl_options.hpp"
 
@@ -44,6 +45,9 @@ struct JoinOptions {
 };
 /// Adds --transition, --tip-tolerance-mm and --axis-tolerance-deg.
 void add_join_options(CLI::App& command, JoinOptions& options);
+
+/// What a program is planned with that is run with these options.
+[[nodiscard]] SmoothSettings settings_of(const JoinOptions& join);
 
 /// The options of both that were given, as they stand on a command line; without --from-line,
 /// which is what changes where a program is gone on with.

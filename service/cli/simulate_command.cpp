@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 
-#include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
@@ -105,16 +104,6 @@ int exit_code_of(simulate::Outcome outcome) {
     default:
       return kVerdictNo;
   }
-}
-
-/// As the session of a live station asks for them.
-SmoothSettings settings_of(const JoinOptions& join) {
-  SmoothSettings settings;
-  if (join.transition == "smooth") settings.transition = Transition::kSmooth;
-  if (join.transition == "exact_stop") settings.transition = Transition::kExactStop;
-  settings.tip_tolerance_mm = join.tip_tolerance_mm;
-  settings.axis_tolerance_rad = units::rad_from_deg(join.axis_tolerance_deg);
-  return settings;
 }
 
 int run(const Options& options) {

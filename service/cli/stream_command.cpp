@@ -92,11 +92,12 @@ bool pass_preflight(StreamCommandOptions& options,
 
 int run_stream_command(StreamCommandOptions& options) {
   options.stream.reader = reader_options(options.file);
-  options.stream.tip_tolerance_mm = options.join.tip_tolerance_mm;
-  options.stream.axis_tolerance_rad = units::rad_from_deg(options.join.axis_tolerance_deg);
+  const SmoothSettings asked = settings_of(options.join);
+  options.stream.tip_tolerance_mm = asked.tip_tolerance_mm;
+  options.stream.axis_tolerance_rad = asked.axis_tolerance_rad;
   options.stream.options = options_text(options.file, options.join);
-  if (options.join.transition == "smooth") options.stream.policies = dds::kPolicySmooth;
-  if (options.join.transition == "exact_stop") options.stream.policies = dds::kPolicyExactStop;
+  if (asked.transition == Transition::kSmooth) options.stream.policies = dds::kPolicySmooth;
+  if (asked.transition == Transition::kExactStop) options.stream.policies = dds::kPolicyExactStop;
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;

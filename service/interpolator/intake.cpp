@@ -16,8 +16,7 @@ constexpr std::int64_t kKeepVerdict_ns = 30 * kSecond_ns;
 /// What a session asks the planner for.
 SmoothSettings settings_of(const dds::SessionRequest& request) {
   SmoothSettings settings;
-  if ((request.policies & dds::kPolicyExactStop) != 0) settings.transition = Transition::kExactStop;
-  if ((request.policies & dds::kPolicySmooth) != 0) settings.transition = Transition::kSmooth;
+  settings.transition = stream::transition_asked(request);
   settings.tip_tolerance_mm = request.tip_tolerance_mm;
   settings.axis_tolerance_rad = request.axis_tolerance_rad;
   return settings;

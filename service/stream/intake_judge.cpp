@@ -26,14 +26,13 @@ bool contradicts_itself(const dds::SessionRequest& request) {
   return (request.policies & kBoth) == kBoth;
 }
 
-/// How the cuts of the program join, as it asks or else as the machine has it.
-Transition transition_of(const dds::SessionRequest& request, const MachineModel& model) {
-  if ((request.policies & dds::kPolicySmooth) != 0) return Transition::kSmooth;
-  const bool is_exact = (request.policies & dds::kPolicyExactStop) != 0;
-  return is_exact ? Transition::kExactStop : model.transition;
-}
-
 }  // namespace
+
+std::optional<Transition> transition_asked(const dds::SessionRequest& request) noexcept {
+  if ((request.policies & dds::kPolicySmooth) != 0) return Transition::kSmooth;
+  if ((request.policies & dds::kPolicyExactStop) != 0) return Transition::kExactStop;
+  return {};
+}
 
 IntakeJudge::IntakeJudge(const MachineModel& model, const ToolLengths& tools,
                          std::uint64_t service_id)
@@ -68,8 +67,9 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
     return refused(Verdict::kRefusedProgram,
                    "the program asks for exact stop and for smooth transitions");
   }
-  std::string refusal = refusal_of_tolerances(model_, transition_of(request, model_),
-                                              request.tip_tolerance_mm, request.axis_tolerance_rad);
+  std::string refusal =
+      refusal_of_tolerances(model_, transition_asked(request).value_or(model_.transition),
+                            request.tip_tolerance_mm, request.axis_tolerance_rad);
   if (!refusal.empty()) return refused(Verdict::kRefusedProgram, std::move(refusal));
   if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
       !around.actions.is_ignored) {

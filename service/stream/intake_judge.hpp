@@ -14,6 +14,10 @@
 
 namespace meridian::stream {
 
+/// How the cuts of a program join that asks for it; nothing: as the machine's file says.
+[[nodiscard]] std::optional<Transition> transition_asked(
+    const dds::SessionRequest& request) noexcept;
+
 /// What the intake thread knows at the moment of a call.
 struct Surroundings {
   std::int64_t now_ns = 0;      ///< monotonic
