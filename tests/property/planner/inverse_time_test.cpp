@@ -226,5 +226,48 @@ TEST(InverseTime, TheMachinesHighestFeedBoundsTheTipAllTheSame) {
   EXPECT_GT(all.tip_mm_per_s, 29);
 }
 
+/// What comes of a stream that pauses behind every `chunk` blocks: all that is ready is published
+/// and read meanwhile, up to where the machine would run dry.
+SmoothTrace plan_in_chunks(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                           std::size_t chunk) {
+  SmoothTrace trace;
+  SmoothPlanner planner(model);
+  planner.begin(joints_of(model, blocks[0]), model.tool_length_mm, 0, {Transition::kSmooth, 0, 0});
+  planner.look_no_further();
+  const auto port = std::make_unique<MotionPort>();
+  MotionWriter writer(*port);
+  PatientReader reader(*port);
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    const auto is_taken = [&] {
+      trace.last = planner.plan(blocks[n], writer);
+      return trace.last.status != PlanStatus::kNoRoom;
+    };
+    for (int tries = 0; tries < 1000 && !is_taken(); ++tries) reader.read(trace, false);
+    if (trace.last.status != PlanStatus::kOk) break;
+    for (int pass = 0; (n + 1) % chunk == 0 && pass < 4; ++pass) {
+      EXPECT_EQ(planner.advance(writer).status, PlanStatus::kOk);
+      reader.read(trace, false);
+    }
+  }
+  reader.read(trace, true);
+  return trace;
+}
+
+TEST(InverseTime, IsTheSameInHoweverManyChunksTheBlocksArrive) {
+  const MachineModel model = quick_machine();
+  for (std::uint32_t seed = 1; seed <= draws(2); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const auto blocks = MixedTimes(seed).make(14);
+    const SmoothTrace once = plan_in_chunks(model, blocks, blocks.size());
+    ASSERT_EQ(once.last.status, PlanStatus::kOk);
+    EXPECT_EQ(once.times.back().kind, TimeKind::kEnd);
+    for (const std::size_t chunk : {1U, 7U, 40U}) {
+      ASSERT_LT(chunk, blocks.size());
+      EXPECT_TRUE(are_same(once, plan_in_chunks(model, blocks, chunk)))
+          << "in chunks of " << chunk << " of " << blocks.size() << " blocks";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::inverse_time

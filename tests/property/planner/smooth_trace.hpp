@@ -89,6 +89,23 @@ inline SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBl
       [](std::size_t) { return false; }, looks);
 }
 
+/// Bits of what the cycle would run.
+[[nodiscard]] inline bool are_same(const SmoothTrace& a, const SmoothTrace& b) {
+  if (a.times.size() != b.times.size()) return false;
+  for (std::size_t n = 0; n < a.times.size(); ++n) {
+    const TimePiece &x = a.times[n], &y = b.times[n];
+    const PathPiece &p = a.paths[n], &q = b.paths[n];
+    const bool is_same_time = x.sequence == y.sequence && x.duration == y.duration &&
+                              x.s0 == y.s0 && x.v == y.v && x.a == y.a && x.j == y.j &&
+                              x.k == y.k && x.path_index == y.path_index;
+    if (!is_same_time || p.motion != q.motion || p.joints_begin != q.joints_begin ||
+        p.joints_end != q.joints_end || p.spline != q.spline || p.free_quintic != q.free_quintic) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Joints of the first block on some branch, the machine's start where no approach is wanted.
 inline JointVector joints_of(const MachineModel& model, const ClBlock& block) {
   const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis).normalized()};

@@ -191,23 +191,6 @@ TEST(Unwinding, KeepsTravelAndLimitsWherePathsPassThePole) {
   run_spirals(Transition::kSmooth, {0, 6, false, true});
 }
 
-/// Bits of what the cycle would run.
-bool are_same(const SmoothTrace& a, const SmoothTrace& b) {
-  if (a.times.size() != b.times.size()) return false;
-  for (std::size_t n = 0; n < a.times.size(); ++n) {
-    const TimePiece &x = a.times[n], &y = b.times[n];
-    const PathPiece &p = a.paths[n], &q = b.paths[n];
-    const bool is_same_time = x.sequence == y.sequence && x.duration == y.duration &&
-                              x.s0 == y.s0 && x.v == y.v && x.a == y.a && x.j == y.j &&
-                              x.k == y.k && x.path_index == y.path_index;
-    if (!is_same_time || p.motion != q.motion || p.joints_begin != q.joints_begin ||
-        p.joints_end != q.joints_end || p.spline != q.spline) {
-      return false;
-    }
-  }
-  return true;
-}
-
 TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
   const MachineModel model = limited(lai_machine(), -200, 340);
   for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {

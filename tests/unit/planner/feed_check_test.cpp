@@ -66,5 +66,35 @@ TEST(FeedCheck, TakesAStandstillForAUseWithoutBound) {
   EXPECT_GT(use_of(unit_limits(), cell, {1, -2, 0}).jerk, 1e6);
 }
 
+/// b = (x - least)² + left over a cell of length 1: every derivative but that of the law is 0.
+FeedUse use_of_dip(double least, double left) {
+  FeedCell cell;
+  cell.h = 1;
+  for (CellSample& at : cell.at) at.most_b = 10;
+  return use_of(unit_limits(), cell, {least * least + left, -2 * least, 2 * (1 - least)});
+}
+
+TEST(FeedCheck, SeesAStandstillBetweenTwoSamples) {
+  for (int k = 0; k < FeedCell::kSteps; ++k) {
+    const double between = (k + 0.5) / FeedCell::kSteps;
+    SCOPED_TRACE(between);
+    // 1/16 from either sample: b is no less than 0.0039 - 0.003 at all of them.
+    EXPECT_GT(use_of_dip(between, -0.003).jerk, 1e6);
+    EXPECT_GT(use_of_dip(between, 0).jerk, 1e6) << "the law touches 0";
+    EXPECT_EQ(use_of_dip(between, 1e-6).jerk, 0) << "it goes on, slowly";
+  }
+}
+
+TEST(FeedCheck, TakesNoStandstillThatLiesOutsideOfTheCell) {
+  for (const double outside : {-1.0 / 16, 17.0 / 16}) {
+    EXPECT_EQ(use_of_dip(outside, -0.003).jerk, 0) << outside;
+  }
+  FeedCell cell;
+  cell.h = 1;
+  for (CellSample& at : cell.at) at.most_b = 10;
+  const CellLaw falling_faster{1, -0.1, -1.8};  // a top, and 0.05 left at the end
+  EXPECT_EQ(use_of(unit_limits(), cell, falling_faster).jerk, 0);
+}
+
 }  // namespace
 }  // namespace meridian::test::feed_check
