@@ -40,17 +40,21 @@ void HealthWatch::take_latencies(double now_s) {
   dds::Latency latency;
   bool has_one = false;
   while (latencies_.take(latency)) has_one = true;
-  if (!has_one || now_s - drift_s_ < kInterval_s) return;
-  drift_s_ = now_s;
-  if (latency.service_id != service_id_) before_.clear();
+  if (!has_one) return;
+  if (latency.service_id != service_id_) seen_.clear();
   service_id_ = latency.service_id;
+  const bool is_interval = now_s - drift_s_ >= kInterval_s;
+  if (is_interval) drift_s_ = now_s;
   for (const dds::NamedHistogram& one : latency.histograms) {
-    Histogram& before = before_[one.name];
-    const Histogram interval = one.histogram.since(before);
-    before = one.histogram;
-    if (interval.count() == 0) continue;
     Drift& drift = report_.latencies[one.name];
-    drift.all.merge(interval);
+    Seen& seen = seen_[one.name];
+    // All of it at every look: a service that is killed says no more.
+    drift.all.merge(one.histogram.since(seen.last));
+    seen.last = one.histogram;
+    if (!is_interval) continue;
+    const Histogram interval = one.histogram.since(seen.interval);
+    seen.interval = one.histogram;
+    if (interval.count() == 0) continue;
     if (drift.first.count() == 0) drift.first = interval;
     drift.last = interval;
   }

@@ -30,7 +30,11 @@ class HealthWatch {
   dds::Reader<dds::Latency> latencies_;
   double begin_s_ = 0, drift_s_ = 0;
   std::uint64_t service_id_ = 0;
-  std::map<std::string, Histogram> before_;  ///< as of the last interval, of this life
+  /// What this life had measured at the last look, and where the last interval began.
+  struct Seen {
+    Histogram last, interval;
+  };
+  std::map<std::string, Seen> seen_;
 };
 
 }  // namespace meridian::soak

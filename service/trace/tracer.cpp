@@ -39,7 +39,7 @@ void Tracer::run(const std::atomic<bool>& is_stopping) noexcept {
       std::this_thread::sleep_for(kBetweenLooks);
     }
     work(steady_ns());
-    if (pending_) write();
+    while (pending_) write();
   } catch (const std::exception& error) {
     say_(std::string("no more traces: ") + error.what());
   }
@@ -69,7 +69,11 @@ void Tracer::see(const SlowCycle& slow) {
     if (slow.severity_ns() > pending_->worst.severity_ns()) pending_->worst = slow;
     return;
   }
-  if (pending_ || !is_wanted(slow)) return;
+  if (pending_) {
+    if (!behind_ || slow.severity_ns() > behind_->severity_ns()) behind_ = slow;
+    return;
+  }
+  if (!is_wanted(slow)) return;
   pending_ = {slow, slow.due_ns - options_.before_ns, slow.end_ns + options_.after_ns};
 }
 
@@ -112,6 +116,7 @@ void Tracer::write() {
   pending_.reset();
   say_(file.empty() ? "a trace cannot be written to " + options_.folder.string()
                     : describe(window.slow) + "; trace: " + file.string());
+  if (const auto slow = std::exchange(behind_, std::nullopt)) see(*slow);
 }
 
 std::unique_ptr<Tracer> make_tracer(TraceOptions options, TraceOrigin origin, Rings& rings,

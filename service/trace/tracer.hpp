@@ -65,6 +65,7 @@ class Tracer {
     std::int64_t begin_ns = 0, end_ns = 0;
   };
   std::optional<Pending> pending_;
+  std::optional<SlowCycle> behind_;  ///< the worst behind what is pending, seen before its turn
   struct Written {
     std::int64_t end_ns = 0, severity_ns = 0;
   };

@@ -78,6 +78,27 @@ void try_all_writers(dds::Participant& participant, bool sends, std::vector<Atte
   try_to_write(participant, "setpoint", setpoint, sends, all);
   try_to_write(participant, "drive_command", off, sends, all);
   try_to_write(participant, "feedback", feedback, sends, all);
+  dds::Jog jog;  // the only word that moves a machine at once
+  jog.operator_id = 666;
+  jog.velocity = 1;
+  jog.distance = 1;
+  jog.dead_man_ns = 1'000'000'000;
+  dds::Status calm;  // of a service that outranks every other
+  calm.service_id = 1;
+  dds::MachineInfo claim;
+  claim.service_id = 1;
+  claim.served_ns = 1LL << 60U;
+  claim.name = "lai";
+  claim.is_serving = true;
+  dds::Credit credit;
+  credit.session = 666;
+  credit.credits = 1000;
+  try_to_write(participant, "jog", jog, sends, all);
+  try_to_write(participant, "reply", dds::Reply{}, sends, all);
+  try_to_write(participant, "cl_credit", credit, sends, all);
+  try_to_write(participant, "status", calm, sends, all);
+  try_to_write(participant, "machine", claim, sends, all);
+  try_to_write(participant, "latency", dds::Latency{}, sends, all);
   try_to_write(participant, "action", dds::Action{}, sends, all);
   try_to_write(participant, "action_done", dds::ActionDone{}, sends, all);
 }
@@ -89,6 +110,14 @@ void try_all_readers(dds::Participant& participant, std::vector<Attempt>& all) {
   try_to_read<dds::SetpointSample>(participant, "setpoint", all);
   try_to_read<dds::DriveCommand>(participant, "drive_command", all);
   try_to_read<dds::DriveFeedback>(participant, "feedback", all);
+  try_to_read<dds::CommandRequest>(participant, "command", all);
+  try_to_read<dds::Reply>(participant, "reply", all);
+  try_to_read<dds::Jog>(participant, "jog", all);
+  try_to_read<dds::SessionRequest>(participant, "cl_session", all);
+  try_to_read<dds::Batch>(participant, "cl_batch", all);
+  try_to_read<dds::Credit>(participant, "cl_credit", all);
+  try_to_read<dds::Action>(participant, "action", all);
+  try_to_read<dds::ActionDone>(participant, "action_done", all);
 }
 
 int attack(std::uint32_t domain, const std::string& machine, const std::string& how) {

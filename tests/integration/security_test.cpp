@@ -45,6 +45,7 @@ class Security : public testing::Test {
     const std::string make = std::string(MERIDIAN_SOURCE_DIR) + "/deploy/security/make_identities ";
     const std::string log = " >>" + (folder_ / "make.log").string();
     ASSERT_EQ(shell(make + (folder_ / "ours").string() + " lai" + log), 0);
+    ASSERT_EQ(shell(make + (folder_ / "ours").string() + " mill mill-operator=operator" + log), 0);
     ASSERT_EQ(shell(make + (folder_ / "theirs").string() + " lai operator" + log), 0);
     for (const char* role : {"viewer", "station", "operator"}) make_lax(role);
     service_ = start("ours/service", "service",
@@ -165,21 +166,29 @@ void Security::expect_roles_enforced() {
   const Set seen_by_viewer = {"reads status", "reads machine", "reads latency", "reads setpoint",
                               "reads feedback"};
   // Those who break the rules must not find each other: who writes and who reads come in turns.
-  expect_through({{"", "ws", {}},
-                  {"theirs/operator", "ws", {}},
-                  {"lax-viewer", "ws", {}},
-                  {"lax-station", "ws", {}},
-                  {"lax-operator", "ws", {}},
-                  {"ours/viewer", "wrs", seen_by_viewer},
-                  {"ours/station",
-                   "wr",
-                   {"writes cl_session", "writes cl_batch", "reads status", "reads machine"}},
-                  {"ours/operator",
-                   "wr",
-                   {"writes command", "reads status", "reads machine", "reads latency"}}});
+  expect_through(
+      {{"", "ws", {}},
+       {"theirs/operator", "ws", {}},
+       {"lax-viewer", "ws", {}},
+       {"lax-station", "ws", {}},
+       {"lax-operator", "ws", {}},
+       {"ours/mill-operator", "ws", {}},
+       {"ours/plc", "wr", {"writes action_done", "reads status", "reads machine"}},
+       {"ours/drives",
+        "wr",
+        {"writes feedback", "writes action_done", "reads setpoint", "reads drive_command",
+         "reads machine"}},
+       {"ours/viewer", "wrs", seen_by_viewer},
+       {"ours/station",
+        "wr",
+        {"writes cl_session", "writes cl_batch", "reads status", "reads machine"}},
+       {"ours/operator",
+        "wr",
+        {"writes command", "writes jog", "reads status", "reads machine", "reads latency"}}});
   expect_through({{"", "r", {}},
                   {"theirs/operator", "r", {}},
                   {"lax-viewer", "r", {}},
+                  {"ours/mill-operator", "r", {}},
                   {"ours/viewer", "r", seen_by_viewer}});
   const std::string after = status();
   EXPECT_NE(after.find("machine   lai: Ready"), std::string::npos) << after << service_->said();

@@ -175,6 +175,21 @@ TEST_F(TracerTest, WritesSeldomAndKeepsTheWorst) {
   EXPECT_TRUE(later.would_keep(2500 * kUs));
 }
 
+/// The window of a cycle that was hardly slow is still open when the worst of all comes.
+TEST_F(TracerTest, ShowsTheWorstCycleThatComesBehindAWindowNotYetWritten) {
+  const auto tracer = this->tracer();
+  run(*tracer, 100);
+  cycle(600 * kUs);
+  for (int i = 0; i < 24; ++i) cycle();
+  const std::uint64_t worst = cycle_ + 1;
+  cycle(40 * kMs);
+  run(*tracer, 100);
+  ASSERT_EQ(files().size(), 2U);
+  EXPECT_EQ(count_of(text_of(files()[0]) + text_of(files()[1]),
+                     "slow: cycle " + std::to_string(worst) + " woke 40000.0 us late"),
+            1U);
+}
+
 TEST_F(TracerTest, IsNoneWhereItsFolderCannotBeMadeAndTheReasonIsTold) {
   TraceOptions options = this->options();
   options.folder = "/proc/nowhere";
