@@ -25,8 +25,8 @@ constexpr auto kAlarms =
     std::to_array({"none"sv, "not_finite"sv, "travel"sv, "step"sv, "unreachable"sv, "drive_fault"sv,
                    "feedback_lost"sv, "following_error"sv, "emergency_stop"sv, "periods_lost"sv,
                    "enable_timeout"sv, "action_failed"sv, "homing_failed"sv, "homing_timeout"sv,
-                   "reference_lost"sv, "drive_enabled"sv});
-static_assert(kAlarms.size() == static_cast<std::size_t>(Alarm::kDriveEnabled) + 1);
+                   "reference_lost"sv, "drive_enabled"sv, "setpoints_unheard"sv});
+static_assert(kAlarms.size() == static_cast<std::size_t>(Alarm::kSetpointsUnheard) + 1);
 
 template <class Enum, std::size_t N>
 [[nodiscard]] std::optional<Enum> find(const std::array<std::string_view, N>& words,
@@ -63,6 +63,7 @@ bool is_of_joint(Alarm alarm) noexcept {
     case Alarm::kHomingTimeout:
     case Alarm::kReferenceLost:
     case Alarm::kDriveEnabled:
+    case Alarm::kSetpointsUnheard:
       return true;
     default:
       return false;

@@ -105,6 +105,15 @@ Weight weight_of(const Event& event) noexcept {
   }
 }
 
+std::string drive_names(std::uint32_t mask, const MachineModel& model) {
+  std::string names;
+  for (int drive = 0; drive < model.joint_count; ++drive) {
+    if ((mask >> static_cast<unsigned>(drive) & 1U) == 0) continue;
+    names += (names.empty() ? "" : ", ") + drive_spec(model, drive).name;
+  }
+  return names;
+}
+
 std::string describe(const Event& event, const MachineModel& model) {
   switch (event.code) {
     case EventCode::kStateChanged:
@@ -183,9 +192,9 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       break;
     case Alarm::kFeedbackLost:
       text = fmt::format(
-          "no feedback from drive {}; check that the drives run and their network, "
+          "no feedback from {}; check that the drives run and their network, "
           "then reset",
-          name);
+          is_joint(joint, model) ? "drive " + name : "what has the stop input");
       break;
     case Alarm::kFollowingError:
       text = fmt::format(
@@ -202,6 +211,12 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       text = fmt::format(
           "drive {} is enabled in a dry run, and not by this service; switch it off, then reset",
           name);
+      break;
+    case Alarm::kSetpointsUnheard:
+      text = fmt::format(
+          "drive {} reports but has taken no setpoint for {:.3g} s; check its gateway, the network "
+          "and that it tells the cycle of what it takes, then reset",
+          name, value);
       break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";
@@ -291,6 +306,11 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       why =
           "a drive is enabled, or was when it was heard last; see that it is off, or start the "
           "service anew where it is gone";
+      break;
+    case Refusal::kDriveContested:
+      why =
+          "two sources report the same drive; end the one that is not the machine's, the log names "
+          "both";
       break;
     case Refusal::kDryRun:
       why = "this is a dry run: every joint has its reference, and no drive searches for one";

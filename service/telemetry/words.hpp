@@ -17,6 +17,8 @@ namespace meridian::telemetry {
 enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 
 [[nodiscard]] Weight weight_of(const Event& event) noexcept;
+/// Names of the drives of `mask`, in drive order: "b3, theta1".
+[[nodiscard]] std::string drive_names(std::uint32_t mask, const MachineModel& model);
 /// One sentence, with units; alarms name joint, line and remedy.
 [[nodiscard]] std::string describe(const Event& event, const MachineModel& model);
 /// An alarm with its joint and measured value, what it means and what to do.

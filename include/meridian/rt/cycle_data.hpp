@@ -52,6 +52,9 @@ struct CycleRecord {
   std::int32_t computation_ns = 0;  ///< time that the cycle before this one took
 };
 
+/// In the place of a joint: none.
+inline constexpr std::uint8_t kNoJoint = 255;
+
 /// The newest feedback of the drives, as the cycle sees it.
 struct Feedback {
   std::int64_t arrival_ns = 0;        ///< receiver's own clock; 0: never
@@ -66,6 +69,10 @@ struct Feedback {
   std::uint32_t still_mask = 0;         ///< those whose homing is over, interrupted or not begun
   std::uint32_t homed_mask = 0;         ///< those that have attained their reference
   std::uint32_t homing_error_mask = 0;  ///< those whose homing failed
+  std::uint32_t contested_mask = 0;     ///< joints that a second source reports too
+  std::uint8_t oldest_joint = 0;   ///< lowest of the group that `arrival_ns` is of; kNoJoint: it
+                                   ///< has none, but the stop input
+  std::uint8_t deafest_joint = 0;  ///< lowest of the group that `cycle_seen` is of
 };
 
 /// The newest word of the operator who jogs; every one has a larger `sample`.
@@ -120,11 +127,12 @@ enum class Alarm : std::uint8_t {
   kEmergencyStop,
   kPeriodsLost,  ///< more periods lost than drives can bridge
   kEnableTimeout,
-  kActionFailed,   ///< an action was refused or timed out (Held, not FaultStop)
-  kHomingFailed,   ///< a drive found no reference (Ready, not FaultStop)
-  kHomingTimeout,  ///< nor in the time that the machine's file allows (Ready, not FaultStop)
-  kReferenceLost,  ///< of a joint, while a program holds the machine
-  kDriveEnabled,   ///< a drive reports operation enabled in a dry run
+  kActionFailed,      ///< an action was refused or timed out (Held, not FaultStop)
+  kHomingFailed,      ///< a drive found no reference (Ready, not FaultStop)
+  kHomingTimeout,     ///< nor in the time that the machine's file allows (Ready, not FaultStop)
+  kReferenceLost,     ///< of a joint, while a program holds the machine
+  kDriveEnabled,      ///< a drive reports operation enabled in a dry run
+  kSetpointsUnheard,  ///< drives report, and take no setpoints
 };
 
 /// Why a verb was refused.
@@ -141,6 +149,7 @@ enum class Refusal : std::uint8_t {
   kSlowRamp,        ///< the machine's override ramp is too long for single block
   kDriveEnabled,    ///< no dry run while a drive reports operation enabled, or did so last
   kDryRun,          ///< in a dry run nothing is homed
+  kDriveContested,  ///< two sources report the same drive
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

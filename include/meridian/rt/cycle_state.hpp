@@ -73,6 +73,7 @@ inline constexpr std::size_t kSentCycles = 256;
 struct SentSetpoint {
   std::uint64_t cycle = 0;
   double bridged = 0;  ///< s that the drives had to go on by its velocity, periods being lost
+  std::uint64_t periods_lost = 0;  ///< CycleState::periods_lost when it was sent
   JointVector position{};
   JointVector velocity{};
   JointVector drive_position{};  ///< drive coordinates, only where the machine has a stage
@@ -196,6 +197,7 @@ struct CycleState {
   std::uint64_t starved_session = 0;
   std::uint64_t starvations = 0;
   std::uint64_t periods_lost = 0;
+  std::uint64_t unheard = 0;  ///< setpoints sent since the one that the drives took last
   std::array<SentSetpoint, kSentCycles> sent{};
 };
 

@@ -61,12 +61,15 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
                                                              : Refusal::kNotReferenced;
 }
 
-/// Why the machine may not be enabled now: of a dry run, because the emergency input is open or a
-/// drive is on.
+/// Why the machine may not be enabled now: of a dry run, because the emergency input is open, a
+/// drive is on, or two sources say that they are the same drive.
 [[nodiscard]] inline Refusal condition_of_enable(const Cycle& c) noexcept {
   const bool is_dry = c.state.is_dry_run;
   if (is_dry && is_drive_enabled(c)) return Refusal::kDriveEnabled;
   if (!is_dry && !is_feedback_there(c)) return Refusal::kNoFeedback;
+  if (!is_dry && (c.drives.contested_mask & all_joints(c.machine)) != 0) {
+    return Refusal::kDriveContested;
+  }
   const bool has_fault = !is_dry && (c.drives.fault_mask & all_joints(c.machine)) != 0;
   return c.drives.emergency_stop || has_fault ? Refusal::kFaultPresent : Refusal::kNone;
 }

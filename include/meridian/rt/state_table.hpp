@@ -92,9 +92,11 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 12> kNames{
-      "none",  "wrong state",   "not referenced",  "no program", "no feedback",   "out of range",
-      "stale", "fault present", "program present", "slow ramp",  "drive enabled", "dry run"};
+  constexpr std::array<const char*, 13> kNames{
+      "none",          "wrong state", "not referenced", "no program",      "no feedback",
+      "out of range",  "stale",       "fault present",  "program present", "slow ramp",
+      "drive enabled", "dry run",     "drive contested"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kDriveContested) + 1);
   return kNames[static_cast<std::size_t>(refusal)];
 }
 

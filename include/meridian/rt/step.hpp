@@ -245,6 +245,7 @@ inline void write_record(Cycle& c) noexcept {
   SentSetpoint& sent = state.sent[c.in.cycle % kSentCycles];
   sent.cycle = c.in.cycle;
   sent.bridged = 0;
+  sent.periods_lost = state.periods_lost;
   sent.position = state.joints;
   sent.velocity = state.velocity;
   if (!has_stage(c.machine)) return;

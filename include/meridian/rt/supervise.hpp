@@ -94,14 +94,36 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
   return has_stage(c.machine) && busy == 0 ? first_stage_drive_behind(c, sent, error) : -1;
 }
 
-/// The first joint whose drive is missing in the feedback, or whose position is no number; 0 where
-/// there is none, because nobody reports.
+/// The first joint whose drive is missing in the feedback, or whose position is no number; where
+/// there is none, the first of the group that has not reported for the longest.
 [[nodiscard, gnu::noinline]] inline int first_silent_joint(const Cycle& c) noexcept {
   for (int i = 0; i < c.machine.joint_count; ++i) {
     const bool is_there = (c.drives.joint_mask >> static_cast<unsigned>(i) & 1U) != 0;
     if (!is_there || !std::isfinite(c.feedback[static_cast<std::size_t>(i)])) return i;
   }
-  return 0;
+  return c.drives.oldest_joint;
+}
+
+/// Counts the setpoints that were sent since the one that the drives took last, which keeps a stall
+/// of the host out of it; where that is none of ours, or too old to be known, it counts on.
+inline void count_unheard(Cycle& c) noexcept {
+  const std::uint64_t seen = c.drives.cycle_seen;
+  const SentSetpoint& sent = c.state.sent[seen % kSentCycles];
+  const bool is_ours = sent.cycle == seen && seen != 0;
+  c.state.unheard = is_ours ? c.in.cycle - seen - (c.state.periods_lost - sent.periods_lost)
+                            : c.state.unheard + 1;
+}
+
+/// For how long drives may report and take no setpoints, in periods beside the two times that are
+/// granted anyway: the bridge to setpoints that are missing, the timeout to reports that are late.
+inline constexpr int kHearingSlack = 4;
+
+/// Whether drives that report have not taken a setpoint for longer than drives that hear them could
+/// have been without one: nobody knows where they were to be, and no following error is judged.
+[[nodiscard]] inline bool is_unheard(const Cycle& c) noexcept {
+  return c.dt * static_cast<double>(static_cast<std::int64_t>(c.state.unheard) -
+                                    (c.machine.bridge_cycles + kHearingSlack)) >
+         c.state.options.feedback_timeout_s;
 }
 
 /// Whether a program relies on the references: it goes on, or waits to. One that comes to rest is
@@ -133,10 +155,18 @@ inline void judge_drives(Cycle& c) noexcept {
     return;  // what it says is old
   }
   if ((f.fault_mask & all) != 0) raise(c, Alarm::kDriveFault, first_bit(f.fault_mask & all));
-  if (c.state.state == State::kEnabling || c.state.state == State::kFaultStop) return;
+  if (c.state.state == State::kEnabling || c.state.state == State::kFaultStop) {
+    c.state.unheard = 0;
+    return;
+  }
   if ((f.enabled_mask & all) != all) raise(c, Alarm::kDriveFault, first_bit(~f.enabled_mask & all));
   if ((f.referenced_mask & all) != all && is_in_program(c.state.state)) {
     raise(c, Alarm::kReferenceLost, first_bit(~f.referenced_mask & all));
+  }
+  count_unheard(c);
+  if (is_unheard(c)) {
+    raise(c, Alarm::kSetpointsUnheard, f.deafest_joint,
+          c.dt * static_cast<double>(c.state.unheard));
   }
   double error = 0;
   const int joint = first_joint_behind(c, error);
@@ -198,15 +228,38 @@ inline void judge_drives(Cycle& c) noexcept {
   return std::max(time, time_for_stage_to_return(machine, joints, deviation));
 }
 
+/// How long drives have ramped down that bridge fewer periods than were lost.
+[[nodiscard]] inline double ramp_time_of_drives(const Cycle& c) noexcept {
+  return c.dt * (c.in.lost_periods - static_cast<double>(c.machine.bridge_cycles));
+}
+
+/// Where the drives are after more lost periods than they bridge: where they report to be, if they
+/// have done so since. A report of before the stall, which a cycle sees that woke ahead of the
+/// thread that receives, is where they were; they have gone on with the last velocity and then
+/// ramped down with the FaultStop acceleration.
+[[nodiscard, gnu::noinline]] inline JointVector joints_after_stall(const Cycle& c) noexcept {
+  const double age = static_cast<double>(c.in.now_ns - c.drives.arrival_ns) * 1e-9;
+  const double fresh = c.dt * std::min(c.in.lost_periods, 2U);
+  if (is_feedback_there(c) && age < fresh) return c.feedback;
+  JointVector joints = c.state.joints;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    const double speed = std::abs(c.state.velocity[i]);
+    const double decel = c.machine.joints[i].limits.fault_acceleration;
+    const double time = std::min(ramp_time_of_drives(c), speed / decel);
+    const double way = speed * (c.dt * c.machine.bridge_cycles + time) - decel * time * time / 2;
+    joints[i] += std::copysign(way, c.state.velocity[i]);
+  }
+  return joints;
+}
+
 /// More periods were lost than the drives bridge: they have gone on with the last velocity and then
-/// ramped down. The FaultStop begins where they report to be, with the speed of that ramp, and
-/// leads them back to the path.
-inline void stop_from_feedback(Cycle& c) noexcept {
+/// ramped down. The FaultStop begins where they are, with the speed of that ramp, and leads them
+/// back to the path.
+inline void stop_from_drives(Cycle& c) noexcept {
+  const JointVector position = joints_after_stall(c);
   raise(c, Alarm::kPeriodsLost, 0, static_cast<double>(c.in.lost_periods));
-  if (!is_feedback_there(c) || !is_on_move(c) || c.state.stop.is_off_path) return;
-  const JointVector position = c.feedback;
-  const double ramp_time =
-      c.dt * (c.in.lost_periods - static_cast<double>(c.machine.bridge_cycles));
+  if (!is_on_move(c) || c.state.stop.is_off_path) return;
+  const double ramp_time = ramp_time_of_drives(c);
   double passed = 0;
   PathState begin = c.state.on_path;
   begin.s = find_nearest(c, position, passed);
@@ -232,15 +285,15 @@ inline void stop_from_feedback(Cycle& c) noexcept {
   c.periods = 1;
 }
 
-/// The same while a joint is jogged, which has no path: it runs out from where it reports to be,
-/// with what the ramp has left of its speed.
-inline void stop_jogging_from_feedback(Cycle& c) noexcept {
+/// The same while a joint is jogged, which has no path: it runs out from where it is, with what the
+/// ramp has left of its speed.
+inline void stop_jogging_from_drives(Cycle& c) noexcept {
   const JointVector velocity = c.state.velocity;
+  const JointVector position = joints_after_stall(c);
   raise(c, Alarm::kPeriodsLost, 0, static_cast<double>(c.in.lost_periods));
   c.state.jogging = {};
-  if (is_feedback_there(c)) c.previous = c.state.joints = c.feedback;
-  const double ramp_time =
-      c.dt * (c.in.lost_periods - static_cast<double>(c.machine.bridge_cycles));
+  c.previous = c.state.joints = position;
+  const double ramp_time = ramp_time_of_drives(c);
   JointVector left{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
     const double lost = c.machine.joints[i].limits.fault_acceleration * ramp_time;
@@ -262,9 +315,9 @@ inline void supervise(Cycle& c) noexcept {
   if (!is_enabled(c.state.state)) return;
   if (!is_bridged) {
     if (!c.state.jogging.axis.is_at_rest()) {
-      stop_jogging_from_feedback(c);
+      stop_jogging_from_drives(c);
     } else if (c.state.on_path.ds > 0 || c.state.stop.is_active) {
-      stop_from_feedback(c);
+      stop_from_drives(c);
     }
     c.periods = 1;
   }

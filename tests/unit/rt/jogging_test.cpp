@@ -190,6 +190,21 @@ TEST(Jogging, MorePeriodsLostThanDrivesBridgeEndInAStopFromFeedback) {
   EXPECT_EQ(static_cast<Alarm>(hand.world.last(EventCode::kAlarm).a), Alarm::kPeriodsLost);
 }
 
+TEST(Jogging, AStopDoesNotBeginWhereDrivesReportedToBeBeforeAStall) {
+  Hand hand;
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.hold(0, 290, 0.6);
+  const double before = hand.world.state.joints[0], speed = hand.world.state.velocity[0];
+  hand.world.are_drives_alive = false;
+  hand.world.run(18);
+  const double bridged_s = hand.world.machine.bridge_cycles * hand.world.dt();
+  const double ramp_s = 18 * hand.world.dt() - bridged_s;
+  const double decel = hand.world.machine.joints[0].limits.fault_acceleration;
+  const double at = before + speed * bridged_s + speed * ramp_s - decel * ramp_s * ramp_s / 2;
+  EXPECT_NEAR(hand.world.state.joints[0], at, speed * hand.world.dt());
+  EXPECT_EQ(hand.world.now(), State::kFaultStop);
+}
+
 TEST(Jogging, DrivesThatRanOutOfTravelBrakeThereAndDoNotStandStillAtOnce) {
   for (const MachineModel& machine : {test::lai_machine(), test::hybrid_machine()}) {
     Hand hand(machine);

@@ -77,6 +77,81 @@ TEST(StepFaults, ADriveFaultStopsOnThePath) {
   expect_fault_on_path(p, Alarm::kDriveFault);
 }
 
+/// Cycles that a program runs whose drives follow, and say that `seen` was the last setpoint that
+/// they took.
+int cycles_unheard(Program& p, std::uint64_t seen) {
+  int cycles = 0;
+  for (; p.world.now() == State::kRunning && cycles < 100; ++cycles) {
+    p.world.in.feedback.cycle_seen = seen;
+    p.world.run();
+  }
+  return cycles;
+}
+
+TEST(StepFaults, DrivesThatReportAndTakeNoSetpointsStopTheMachine) {
+  for (const std::uint64_t seen : {0U, 1U, 555U, 999'999U}) {  // 555: the newest
+    Program p;
+    start_long_cut(p);
+    ASSERT_LT(p.world.in.cycle, 555U);
+    while (p.world.in.cycle < 555) p.world.run();
+    p.world.in.feedback.deafest_joint = 3;
+    const double granted = p.world.state.options.feedback_timeout_s / p.world.dt() +
+                           p.machine.bridge_cycles + kHearingSlack;
+    EXPECT_NEAR(cycles_unheard(p, seen), granted, 2) << seen;
+    EXPECT_EQ(p.world.last(EventCode::kAlarm).b, 3U);
+    EXPECT_NEAR(p.world.last(EventCode::kAlarm).x, granted * p.world.dt(), 0.002);
+    expect_fault_on_path(p, Alarm::kSetpointsUnheard);
+  }
+}
+
+TEST(StepFaults, WhatDrivesDidNotTakeBeforeTheyWereEnabledDoesNotCount) {
+  Program p;
+  const auto run_unheard = [&p](int cycles, std::uint32_t enabled_mask) {
+    for (int n = 0; n < cycles; ++n) {
+      p.world.in.feedback.enabled_mask = enabled_mask;
+      p.world.in.feedback.cycle_seen = 0;
+      p.world.run();
+    }
+  };
+  const std::uint32_t all = all_joints(p.machine);
+  run_unheard(20, all);
+  ASSERT_EQ(p.world.now(), State::kReady);
+  p.world.command(Verb::kDisable);
+  run_unheard(300, 0);
+  ASSERT_EQ(p.world.now(), State::kOff);
+  p.world.command(Verb::kEnable);
+  run_unheard(300, 0);
+  ASSERT_EQ(p.world.now(), State::kEnabling);
+  run_unheard(20, all);
+  EXPECT_EQ(p.world.now(), State::kReady);
+}
+
+TEST(StepFaults, LostFeedbackNamesTheFirstJointOfTheGroupThatIsSilent) {
+  for (const std::uint8_t joint : {std::uint8_t{3}, kNoJoint}) {  // none: it has the stop input
+    Program p;
+    start_long_cut(p);
+    p.world.in.feedback.oldest_joint = joint;
+    p.world.are_drives_alive = false;
+    ASSERT_TRUE(p.world.run_until(State::kFaultStop, 1));
+    EXPECT_EQ(p.world.state.alarm, Alarm::kFeedbackLost);
+    EXPECT_EQ(p.world.last(EventCode::kAlarm).b, joint);
+  }
+}
+
+TEST(StepFaults, AMachineOneOfWhoseDrivesTwoReportIsNotEnabledAndOneThatRunsGoesOn) {
+  Program p(State::kOff);
+  p.world.run();
+  p.world.in.feedback.contested_mask = 0b00100;
+  p.world.command(Verb::kEnable);
+  EXPECT_EQ(p.world.now(), State::kOff);
+  EXPECT_EQ(test::refusal_of(p.world), Refusal::kDriveContested);
+  p.world.in.feedback.contested_mask = 0;
+  p.world.command(Verb::kEnable);
+  p.world.in.feedback.contested_mask = 0b00100;
+  p.world.run_for(0.1);
+  EXPECT_EQ(p.world.now(), State::kReady);
+}
+
 TEST(StepFaults, TheEmergencyInputStopsOnThePathAndBlocksReset) {
   Program p;
   start_long_cut(p);

@@ -87,6 +87,38 @@ TEST(StepLostPeriods, MoreThanTheDrivesBridgeIsAFaultStopFromWhereTheyReport) {
   }
 }
 
+/// The cycle may wake ahead of the thread that receives: what it knows of the drives is of before
+/// the stall, 10 mm behind where they are.
+TEST(StepLostPeriods, AStopDoesNotBeginWhereDrivesReportedToBeBeforeTheStall) {
+  for (const std::int64_t age_ns : {0, 3'000'000, 40'000'000}) {  // the last counts as lost
+    Program p;
+    p.plan.cut({400, 0, 0}, {250, 1500, 30000});
+    p.run(0.6);
+    constexpr std::uint32_t kLost = 25;
+    const JointVector at = bridged(p, kLost, 1.0), before = p.world.records.back().joints;
+    const std::size_t first = p.world.records.size();
+    p.world.are_drives_alive = false;
+    p.world.in.feedback.arrival_ns = p.world.in.now_ns - age_ns;
+    p.world.run(kLost);
+    p.world.are_drives_alive = true;
+    EXPECT_EQ(p.world.now(), State::kFaultStop);
+    EXPECT_EQ(p.world.state.alarm, Alarm::kPeriodsLost);
+    double way = 0;
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double reach = p.machine.joints[i].limits.velocity * p.world.dt();
+      EXPECT_NEAR(p.world.records.back().joints[i], at[i], reach) << i;
+      way = std::max(way, std::abs(at[i] - before[i]));
+    }
+    EXPECT_GT(way, 3) << "it makes a difference";
+    ASSERT_TRUE(p.world.run_until(State::kFault, 2));
+    EXPECT_EQ(p.world.count(EventCode::kAlarm), age_ns > 30'000'000 ? 2 : 1);
+    for (std::size_t n = first; n < p.world.records.size(); ++n) {
+      const ToolPose pose = forward(p.machine, p.machine.tool_length_mm, p.world.records[n].joints);
+      EXPECT_LE(std::hypot(pose.tip[1], pose.tip[2]), 1e-3) << "drives ramp joint by joint";
+    }
+  }
+}
+
 TEST(StepLostPeriods, DrivesBesideThePathAreLedBackToItInsideTheLimits) {
   Program p;
   p.plan.cut({200, 0, 0}, kLimits);
@@ -116,6 +148,19 @@ TEST(StepLostPeriods, AtRestALongStallIsOnlyCounted) {
   p.world.run(5000);
   EXPECT_EQ(p.world.now(), State::kReady);
   EXPECT_EQ(p.world.last(EventCode::kPeriodsLost).a, 5000u);
+}
+
+TEST(StepLostPeriods, AreNotSetpointsThatDrivesDidNotTake) {
+  Program p;
+  p.machine.bridge_cycles = p.world.machine.bridge_cycles = 30;
+  p.plan.cut({200, 0, 0}, kLimits);
+  p.run(0.5);
+  const std::uint64_t seen = p.world.in.cycle;
+  for (int n = 0; n < 50; ++n) {
+    p.world.in.feedback.cycle_seen = seen;
+    p.world.run(n == 0 ? 30 : 0);
+    ASSERT_EQ(p.world.now(), State::kRunning) << n;
+  }
 }
 
 TEST(StepLostPeriods, DrivesThatWentOnDuringAStallAreNotBehind) {

@@ -74,7 +74,7 @@ TEST(Words, LeaveWholePartsOfAnApproachOutWhereThereIsNoRoomForThem) {
 TEST(Words, SayEveryAlarmDifferently) {
   const MachineModel model = test::lai_machine();
   std::set<std::string> texts;
-  constexpr int kLast = static_cast<int>(Alarm::kDriveEnabled);
+  constexpr int kLast = static_cast<int>(Alarm::kSetpointsUnheard);
   for (int alarm = 0; alarm <= kLast; ++alarm) {
     texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 0, model));
   }
@@ -84,7 +84,7 @@ TEST(Words, SayEveryAlarmDifferently) {
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kDryRun);
+  constexpr int kLast = static_cast<int>(Refusal::kDriveContested);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     for (int state = 0; state < kStateCount; ++state) {
       const std::string text =
