@@ -22,8 +22,11 @@ class Reader {
  public:
   /// Throws DdsError. `on_data`, if given, is called on Cyclone's receive thread whenever samples
   /// arrive; it must not block, and may call take() if no other thread does. For cyclic topics: a
-  /// sample that arrives while the reader is being created is only seen with the next one.
-  explicit Reader(Participant& participant, std::function<void(Reader&)> on_data = {});
+  /// sample that arrives while the reader is being created is only seen with the next one. `depth`
+  /// samples of an instance wait to be taken, 0: as many as the topic says. Where the topic says
+  /// one, of two who write the same instance only the later is seen.
+  explicit Reader(Participant& participant, std::function<void(Reader&)> on_data = {},
+                  int depth = 0);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

@@ -122,12 +122,13 @@ struct Reader<Message>::Impl {
 };
 
 template <class Message>
-Reader<Message>::Reader(Participant& participant, std::function<void(Reader&)> on_data)
+Reader<Message>::Reader(Participant& participant, std::function<void(Reader&)> on_data, int depth)
     : impl_(std::make_unique<Impl>()) {
   impl_->on_data = std::move(on_data);
   impl_->owner = this;
   impl_->reader =
       make_endpoint<Message>(participant, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
+        if (depth > 0) dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
         return dds_create_reader(participant.subscriber(), topic, qos, nullptr);
       });
   if (impl_->on_data) {

@@ -1,41 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/feedback_merge.hpp"
 
-#include <algorithm>
+#include <bit>
 
 #include "service/interpolator/drive_words.hpp"
-#include "service/interpolator/monotonic.hpp"
 
 namespace meridian::interpolator {
 
-FeedbackMerge::Group* FeedbackMerge::find_group(std::uint32_t id) noexcept {
-  for (Group& group : groups_) {
-    if (group.source != 0 && group.id == id) return &group;
+DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group) noexcept {
+  for (DriveSource& source : sources_.places) {
+    if (source.writer == writer && source.group == group) return &source;
   }
-  for (Group& group : groups_) {
-    if (group.source == 0) return &group;
+  for (DriveSource& source : sources_.places) {
+    if (source.writer == 0) return &source;
   }
   return nullptr;
 }
 
-bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t source,
-                         std::int64_t now_ns) noexcept {
-  Group* group = find_group(sample.drive_group);
-  if (group == nullptr || source == 0 || sample.joint_mask == 0 ||
-      (sample.joint_mask >> kMaxJoints) != 0) {
-    return false;
+bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
+                         std::int64_t now_ns, bool may_hand_over) noexcept {
+  if (writer == 0 || (sample.joint_mask >> kMaxJoints) != 0) return false;
+  DriveSource* const place = find_place(writer, sample.drive_group);
+  if (place == nullptr) {
+    sources_.is_full = true;
+    if (sample.is_emergency_stop) stopped_ns_ = now_ns;
+    merge(now_ns);
+    return true;
   }
-  if (group->source == source && sample.sample <= group->sample) return false;
-  for (Group& other : groups_) {
-    if (&other != group) other.joint_mask &= ~sample.joint_mask;
+  const bool is_new = place->writer == 0;
+  if (!is_new && sample.sample <= place->sample) return false;
+  place->writer = writer;
+  place->group = sample.drive_group;
+  place->claimed_mask = sample.joint_mask & joints_;
+  place->sample = sample.sample;
+  place->cycle_seen = sample.cycle_seen;
+  if (is_new) place->first_ns = now_ns;
+  place->arrival_ns = now_ns;
+  place->has_only_stop = sample.joint_mask == 0;
+  place->is_emergency_stop = sample.is_emergency_stop;
+  bind(*place, now_ns, may_hand_over);
+  take_joints(sample, place->joints());
+  merge(now_ns);
+  return true;
+}
+
+void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept {
+  std::uint32_t kept = 0;
+  for (DriveSource& other : sources_.places) {
+    if (&other == &source || other.bound_mask == 0) continue;
+    const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
+    const std::uint32_t reported = is_silent ? 0 : other.claimed_mask;
+    if (may_hand_over) other.bound_mask &= reported | ~source.claimed_mask;
+    kept |= other.bound_mask;
   }
-  *group = {sample.drive_group,      source, sample.sample,
-            sample.cycle_seen,       now_ns, sample.joint_mask,
-            sample.is_emergency_stop};
-  for (int joint = 0; joint < kMaxJoints; ++joint) {
-    const std::uint32_t bit = 1U << joint;
-    if ((sample.joint_mask & bit) == 0) continue;
-    const auto i = static_cast<std::size_t>(joint);
+  source.bound_mask |= source.claimed_mask & ~kept;
+}
+
+void FeedbackMerge::forget(std::uint64_t writer, std::int64_t now_ns, bool is_off) noexcept {
+  bool has_more = false;
+  for (DriveSource& source : sources_.places) {
+    const bool is_missed = !is_off && (source.bound_mask != 0 || source.has_only_stop);
+    if (source.writer == writer && !is_missed) source = {};
+    has_more = has_more || source.writer == 0;
+  }
+  if (has_more) sources_.is_full = false;
+  merge(now_ns);
+}
+
+void FeedbackMerge::take_joints(const dds::DriveFeedback& sample, std::uint32_t joints) noexcept {
+  for (std::uint32_t left = joints; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const std::uint32_t bit = 1U << i;
     feedback_.position[i] = sample.position[i];
     words_.statusword[i] = sample.statusword[i];
     words_.error[i] = sample.error[i];
@@ -53,73 +88,40 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t source,
     set(feedback_.homed_mask, homing.is_attained);
     set(feedback_.homing_error_mask, homing.has_failed);
   }
-  merge();
-  return true;
 }
 
-void FeedbackMerge::merge() noexcept {
-  feedback_.arrival_ns = INT64_MAX;
-  feedback_.cycle_seen = UINT64_MAX;
-  feedback_.joint_mask = 0;
-  feedback_.emergency_stop = false;
-  for (const Group& group : groups_) {
-    if (group.joint_mask == 0) continue;
-    feedback_.arrival_ns = std::min(feedback_.arrival_ns, group.arrival_ns);
-    feedback_.cycle_seen = std::min(feedback_.cycle_seen, group.cycle_seen);
-    feedback_.joint_mask |= group.joint_mask;
-    feedback_.emergency_stop = feedback_.emergency_stop || group.is_emergency_stop;
+void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
+  const DriveSource* oldest = nullptr;
+  const DriveSource* deafest = nullptr;
+  feedback_.joint_mask = feedback_.contested_mask = 0;
+  feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
+  for (const DriveSource& source : sources_.places) {
+    if (source.writer == 0) continue;
+    feedback_.emergency_stop = feedback_.emergency_stop || source.is_emergency_stop;
+    for (const DriveSource& other : sources_.places) {
+      if (other.writer == 0) continue;
+      feedback_.contested_mask |= contested(source, other, now_ns, kSilence_ns);
+    }
+    if (source.joints() == 0 && !source.has_only_stop) continue;
+    if (oldest == nullptr || source.arrival_ns < oldest->arrival_ns) oldest = &source;
+    if (source.joints() == 0) continue;
+    if (deafest == nullptr || source.cycle_seen < deafest->cycle_seen) deafest = &source;
+    feedback_.joint_mask |= source.joints();
   }
+  const auto lowest = [](const DriveSource* source) noexcept {
+    const bool has_joint = source != nullptr && source->joints() != 0;
+    return has_joint ? static_cast<std::uint8_t>(std::countr_zero(source->joints())) : kNoJoint;
+  };
+  feedback_.arrival_ns = oldest != nullptr ? oldest->arrival_ns : 0;
+  feedback_.oldest_joint = oldest != nullptr ? lowest(oldest) : 0;
+  feedback_.cycle_seen = deafest != nullptr ? deafest->cycle_seen : 0;
+  feedback_.deafest_joint = deafest != nullptr ? lowest(deafest) : 0;
   words_.joint_mask = feedback_.joint_mask;
   words_.enabled_mask = feedback_.enabled_mask;
   words_.fault_mask = feedback_.fault_mask;
-}
-
-FeedbackListener::FeedbackListener(dds::Participant& participant, Ports& ports)
-    : ports_(ports),
-      spans_(ports.spans != nullptr ? &ports.spans->receive : nullptr),
-      reader_(participant, [this](auto& reader) { on_data(reader); }) {}
-
-void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept {
-  dds::DriveFeedback sample;
-  dds::SampleInfo info;
-  bool has_news = false;
-  const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
-  while (reader.take(sample, info)) {
-    if (!info.is_valid) continue;
-    const std::int64_t now_ns = monotonic_ns();
-    if (!merge_.take(sample, info.source, now_ns)) continue;
-    has_news = true;
-    report(now_ns);
-    time_round_trip(sample.cycle_seen, now_ns);
-  }
-  if (!has_news) return;
-  ports_.feedback.store(merge_.feedback());
-  ports_.drive_words.store(merge_.words());
-  ports_.drive_words_for_status.store(merge_.words());
-  if (!spans_.is_on()) return;
-  spans_.write(trace::Doing::kFeedback, begun_ns, monotonic_ns(), merge_.feedback().cycle_seen);
-}
-
-/// Telemetry that is held up loses reports: rows then carry an older one, and its cycle says so.
-void FeedbackListener::report(std::int64_t now_ns) noexcept {
-  const Feedback& feedback = merge_.feedback();
-  const DriveWords& words = merge_.words();
-  (void)ports_.drive_reports.try_push({.arrival_ns = now_ns,
-                                       .cycle_seen = feedback.cycle_seen,
-                                       .position = feedback.position,
-                                       .statusword = words.statusword,
-                                       .error = words.error,
-                                       .joint_mask = feedback.joint_mask,
-                                       .is_emergency_stop = feedback.emergency_stop});
-}
-
-void FeedbackListener::time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept {
-  // Drives in several groups answer one after the other: the first to answer a cycle counts. What
-  // this service did not send, cycles of one before it too, is no answer.
-  const std::int64_t sent_ns = ports_.sent_times.sent_ns(cycle);
-  if (sent_ns <= 0 || cycle <= answered_) return;
-  answered_ = cycle;
-  (void)ports_.round_trips.try_push(narrow_ns(now_ns - sent_ns));
+  words_.contested_mask = feedback_.contested_mask;
+  words_.oldest_group = oldest != nullptr ? oldest->group : 0;
+  words_.oldest_mask = oldest != nullptr ? oldest->joints() : 0;
 }
 
 }  // namespace meridian::interpolator

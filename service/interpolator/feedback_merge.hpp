@@ -1,62 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "meridian/rt/cycle_data.hpp"
 #include "service/dds/messages.hpp"
-#include "service/dds/reader.hpp"
+#include "service/interpolator/drive_sources.hpp"
 #include "service/interpolator/ports.hpp"
 
 namespace meridian::interpolator {
 
-/// Makes one picture of what drive groups say. A sample counts only if its sequence is newer than
-/// the last of its group and writer: late and repeated samples never look fresh. The picture is as
-/// old as its oldest group. A joint that two groups claim belongs to the group that spoke last.
+/// Makes one picture of what drive groups say. A source is a writer and the group that it writes
+/// of; its sample counts only if its sequence is newer than the last one's: late and repeated
+/// samples never look fresh. The picture is as old as its oldest source.
+///
+/// A joint is bound to the source that reported it first. It is handed over to another one that
+/// reports it where the machine is Off or in Fault and the first has been silent, or does not
+/// report it any more; until then what others say of it is passed over, and while both speak it is
+/// contested. The stop input of every source counts, whatever else is taken from it, until DDS says
+/// that its writer is gone. One that has nothing but a stop input is missed like a drive when it
+/// falls silent; one whose joints this machine has not is not.
 /// Proof: tests/unit/interpolator/feedback_merge_test.cpp.
 class FeedbackMerge {
  public:
+  /// Where both speak within it, sources contest a joint; who says nothing for longer is silent.
+  static constexpr std::int64_t kSilence_ns = 200'000'000;
+
+  explicit FeedbackMerge(std::uint32_t joints = (1U << kMaxJoints) - 1) noexcept
+      : joints_(joints) {}
+
   /// Takes one sample; false if it is not newer or its mask is absurd, and nothing changed.
-  bool take(const dds::DriveFeedback& sample, std::uint64_t source, std::int64_t now_ns) noexcept;
+  /// `may_hand_over`: the machine is Off or in Fault.
+  bool take(const dds::DriveFeedback& sample, std::uint64_t writer, std::int64_t now_ns,
+            bool may_hand_over = false) noexcept;
+  /// DDS says that nobody is behind `writer` any more. Where the machine is on, drives and stop
+  /// inputs that it goes by stay missed.
+  void forget(std::uint64_t writer, std::int64_t now_ns, bool is_off) noexcept;
 
   [[nodiscard]] const Feedback& feedback() const noexcept { return feedback_; }
   [[nodiscard]] const DriveWords& words() const noexcept { return words_; }
+  [[nodiscard]] const DriveSources& sources() const noexcept { return sources_; }
 
  private:
-  struct Group {
-    std::uint32_t id = 0;
-    std::uint64_t source = 0;  ///< 0: place is free
-    std::uint64_t sample = 0;
-    std::uint64_t cycle_seen = 0;
-    std::int64_t arrival_ns = 0;
-    std::uint32_t joint_mask = 0;
-    bool is_emergency_stop = false;
-  };
+  [[nodiscard]] DriveSource* find_place(std::uint64_t writer, std::uint32_t group) noexcept;
+  void bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept;
+  void take_joints(const dds::DriveFeedback& sample, std::uint32_t joints) noexcept;
+  void merge(std::int64_t now_ns) noexcept;
 
-  [[nodiscard]] Group* find_group(std::uint32_t id) noexcept;
-  void merge() noexcept;
-
-  std::array<Group, kMaxJoints> groups_{};
+  std::uint32_t joints_;  ///< of the machine
+  DriveSources sources_;
+  std::int64_t stopped_ns_ = 0;  ///< when one without a place said last that its stop input is open
   Feedback feedback_;
   DriveWords words_;
-};
-
-/// Listens to the drives on Cyclone's receive thread and puts their newest picture into the ports.
-class FeedbackListener {
- public:
-  FeedbackListener(dds::Participant& participant, Ports& ports);
-
- private:
-  void on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept;
-  void report(std::int64_t now_ns) noexcept;
-  void time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept;
-
-  Ports& ports_;
-  FeedbackMerge merge_;
-  std::uint64_t answered_ = 0;  ///< newest cycle that a drive has answered
-  trace::SpanWriter spans_;
-  dds::Reader<dds::DriveFeedback> reader_;
 };
 
 }  // namespace meridian::interpolator

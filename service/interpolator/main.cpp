@@ -121,6 +121,7 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   int signal = 0;
   while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) {
     service->keep_lease();
+    service->tell_sources();
     manager.beat(service->heartbeat(), std::chrono::steady_clock::now());
   }
   manager.is_stopping();

@@ -79,11 +79,15 @@ struct PublishTiming {
   std::int32_t write = 0;  ///< time in DDS
 };
 
-/// CiA 402 statuswords as the drives sent them last, by joint.
+/// CiA 402 statuswords as the drives sent them last, by joint, and what operators are told of who
+/// sends them.
 struct DriveWords {
   std::array<std::uint16_t, kMaxJoints> statusword{};
   std::array<std::uint16_t, kMaxJoints> error{};
   std::uint32_t joint_mask = 0, enabled_mask = 0, fault_mask = 0;
+  std::uint32_t contested_mask = 0;  ///< drives that two sources report
+  std::uint32_t oldest_group = 0;    ///< that has not reported for the longest
+  std::uint32_t oldest_mask = 0;     ///< its drives; 0: it has none, but the stop input
 };
 
 struct Ports {

@@ -13,6 +13,7 @@
 #include "interpolator_version.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/telemetry/log.hpp"
 
 namespace meridian::interpolator {
 namespace {
@@ -121,7 +122,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                                                            : dds::Transport::kLoopback}),
       lease_(participant_, machine_info(parts_, service_id_)),
       publisher_(participant_, ports_),
-      feedback_(participant_, ports_),
+      feedback_(participant_, parts_.model, ports_),
       intake_(participant_, parts_.model, tool_lengths_, parts_.service, service_id_, ports_),
       planner_(parts_.model, parts_.tools, ports_),
       cycle_(parts_.model, cycle_options(parts_.service, parts_.homing), ports_),
@@ -207,6 +208,12 @@ void Service::tell_last_program() {
 void Service::keep_lease() {
   const auto keeper = lease_.find_keeper(ports_.state == State::kOff);
   if (keeper) throw served_already(*keeper);
+}
+
+void Service::tell_sources() {
+  feedback_.tell_sources([this](telemetry::Weight weight, const std::string& text) {
+    log_->log(telemetry::level_of(weight), "{}", text);
+  });
 }
 
 void Service::start() {

@@ -15,7 +15,7 @@
 #include "service/config/service_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/interpolator/cycle_thread.hpp"
-#include "service/interpolator/feedback_merge.hpp"
+#include "service/interpolator/feedback_listener.hpp"
 #include "service/interpolator/intake.hpp"
 #include "service/interpolator/lease.hpp"
 #include "service/interpolator/planner_thread.hpp"
@@ -57,6 +57,9 @@ class Service {
   /// machine was heard of only now and keeps it. A machine that is on goes on; drives obey one
   /// service.
   void keep_lease();
+  /// Logs who reports drives, and whom of two that report the same one the machine goes by; to be
+  /// called several times a second, by the thread that made the service.
+  void tell_sources();
   /// Counts up with every cycle: one that stands still is a cycle that hangs.
   [[nodiscard]] std::uint32_t heartbeat() const noexcept { return ports_.publisher_wake.look(); }
   /// Brings the machine to rest and to Off; false where it is not there within `patience`.

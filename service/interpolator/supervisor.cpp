@@ -215,8 +215,12 @@ void Supervisor::answer(const Event& event) {
     take_jogs();  // what came before is of the hand before
     jog_intake_.begin(pending->request.operator_id, pending->key);
   }
-  reply(pending->request, is_accepted, refusal,
-        is_accepted ? what_happens(verb) : telemetry::describe(verb, refusal, view_.record.state));
+  std::string text =
+      is_accepted ? what_happens(verb) : telemetry::describe(verb, refusal, view_.record.state);
+  if (refusal == Refusal::kDriveContested) {
+    text += ": " + telemetry::drive_names(ports_.drive_words.latest().contested_mask, model_);
+  }
+  reply(pending->request, is_accepted, refusal, text);
   pending->key = 0;
 }
 

@@ -10,6 +10,7 @@
 #include "meridian/rt/supervise.hpp"
 #include "meridian/units.hpp"
 #include "service/interpolator/monotonic.hpp"
+#include "service/telemetry/log.hpp"
 #include "service/telemetry/words.hpp"
 
 namespace meridian::interpolator {
@@ -204,15 +205,25 @@ void TelemetryThread::tell(const Event& event) {
   }
   const telemetry::Weight weight = telemetry::weight_of(event);
   if (weight == telemetry::Weight::kDetail) return;
-  const std::string words = telemetry::describe(event, model_);
+  std::string words = telemetry::describe(event, model_);
   if (event.code == EventCode::kAlarm) alarm_message_ = words;
+  words += silent_group(event);
   const bool is_told_stop =
       event.code == EventCode::kStopped && status_.alarm == Alarm::kNone;  // else the reason stays
   if (event.code == EventCode::kAlarm || is_told_stop) status_.message = words;
-  log_->log(weight == telemetry::Weight::kError     ? spdlog::level::err
-            : weight == telemetry::Weight::kWarning ? spdlog::level::warn
-                                                    : spdlog::level::info,
-            "cycle {}: {}", event.cycle, words);
+  log_->log(telemetry::level_of(weight), "cycle {}: {}", event.cycle, words);
+}
+
+std::string TelemetryThread::silent_group(const Event& event) {
+  if (event.code != EventCode::kAlarm || static_cast<Alarm>(event.a) != Alarm::kFeedbackLost) {
+    return "";
+  }
+  if (ports_.drive_words_for_status.refresh()) words_ = ports_.drive_words_for_status.latest();
+  const std::uint32_t mask = words_.oldest_mask;
+  const bool is_told = mask != 0 && first_bit(mask) == static_cast<int>(event.b);
+  if (!is_told && event.b != kNoJoint) return "";
+  return "; drive group " + std::to_string(words_.oldest_group) + " is silent" +
+         (is_told ? ": " + telemetry::drive_names(mask, model_) : "");
 }
 
 void TelemetryThread::declare_approach() {

@@ -48,6 +48,8 @@ class TelemetryThread {
   /// Tells how the program went that is over; false: none is.
   bool tell_program();
   void tell(const Event& event);
+  /// Which group is silent, where `event` is the alarm of one that is; else empty.
+  [[nodiscard]] std::string silent_group(const Event& event);
   /// Tells how a program will be approached that was planned meanwhile.
   void declare_approach();
   void keep_journal(std::int64_t now_ns);

@@ -6,7 +6,15 @@
 #include <filesystem>
 #include <memory>
 
+#include "service/telemetry/words.hpp"
+
 namespace meridian::telemetry {
+
+/// How loud the log says it.
+[[nodiscard]] inline spdlog::level::level_enum level_of(Weight weight) noexcept {
+  if (weight == Weight::kError) return spdlog::level::err;
+  return weight == Weight::kWarning ? spdlog::level::warn : spdlog::level::info;
+}
 
 /// The service's log: lines are queued and written by a thread of their own, so that a blocked
 /// terminal or a full disk holds nobody up; when the queue is full the oldest lines go. `file`

@@ -205,9 +205,16 @@ class Listeners {
   }
   void take_feedback(Supplies& in) {
     dds::DriveFeedback sample;
-    const std::uint64_t source = in.next<std::uint8_t>() % 8;
+    const unsigned how = in.next<std::uint8_t>();
+    const std::uint64_t source = how % 8;
     in.read<meridian_wire_Feedback>(sample);
-    static_cast<void>(merge_.take(sample, source, now_ns_));
+    if ((how & 0x40U) != 0) merge_.forget(source, now_ns_, (how & 0x20U) != 0);
+    static_cast<void>(merge_.take(sample, source, now_ns_, (how & 0x80U) != 0));
+    std::uint32_t bound = 0;
+    for (const interpolator::DriveSource& place : merge_.sources().places) {
+      require((bound & place.bound_mask) == 0, "a joint that two sources have");
+      bound |= place.bound_mask;
+    }
     const Feedback& feedback = merge_.feedback();
     require((feedback.joint_mask >> kMaxJoints) == 0, "joints that no machine has");
     require(feedback.joint_mask == 0 || feedback.arrival_ns <= now_ns_, "feedback of the future");

@@ -7,6 +7,7 @@ namespace meridian::interpolator {
 namespace {
 
 constexpr std::uint16_t kEnabled = 0x27, kFault = 0x08;
+constexpr std::int64_t kMilli = 1'000'000;
 
 dds::DriveFeedback sample(std::uint32_t group, std::uint32_t mask, std::uint64_t number) {
   dds::DriveFeedback feedback;
@@ -46,8 +47,13 @@ TEST(FeedbackMerge, NeverTakesALateOrRepeatedSampleForFresh) {
 TEST(FeedbackMerge, StartsAnewWithADriveProcessThatWasRestarted) {
   FeedbackMerge merge;
   ASSERT_TRUE(merge.take(sample(1, 0b1, 5000), 7, 1000));
-  EXPECT_TRUE(merge.take(sample(1, 0b1, 1), 9, 2000));
-  EXPECT_EQ(merge.feedback().cycle_seen, 101U);
+  for (std::uint64_t n = 1; n <= 300; ++n) {
+    EXPECT_TRUE(merge.take(sample(1, 0b1, n), 9,
+                           50 * kMilli + static_cast<std::int64_t>(n) * kMilli, true));
+    ASSERT_EQ(merge.feedback().contested_mask, 0U) << "the dead one says nothing any more";
+  }
+  EXPECT_EQ(merge.feedback().cycle_seen, 400U);
+  EXPECT_EQ(merge.feedback().arrival_ns, 350 * kMilli);
 }
 
 TEST(FeedbackMerge, ReadsHomingOfDrivesInHomingModeAlone) {
@@ -64,7 +70,6 @@ TEST(FeedbackMerge, ReadsHomingOfDrivesInHomingModeAlone) {
 
 TEST(FeedbackMerge, RefusesAbsurdMasks) {
   FeedbackMerge merge;
-  EXPECT_FALSE(merge.take(sample(1, 0, 1), 7, 1000));
   EXPECT_FALSE(merge.take(sample(1, 1U << kMaxJoints, 1), 7, 1000));
   EXPECT_EQ(merge.feedback().arrival_ns, 0);
 }
@@ -83,11 +88,160 @@ TEST(FeedbackMerge, ReportsFaultsReferencesAndTheStopInputByJoint) {
   EXPECT_EQ(merge.words().fault_mask, 0b10U);
 }
 
-TEST(FeedbackMerge, HandsAJointOverToTheGroupThatClaimsItLast) {
+/// Two sources of the same drives, both every millisecond, `other` behind `own` in each.
+struct TwoSources {
+  void run(int periods, bool may_hand_over, bool is_own_alive = true, bool is_other_alive = true) {
+    for (int n = 0; n < periods; ++n) {
+      now_ns += kMilli;
+      ++number;
+      if (is_own_alive) (void)merge.take(said_by_own(), 7, now_ns, may_hand_over);
+      if (is_other_alive) (void)merge.take(said_by_other(), 8, now_ns + 1, may_hand_over);
+    }
+  }
+  [[nodiscard]] dds::DriveFeedback said_by_own() const {
+    dds::DriveFeedback said = sample(0, 0b11111, number);
+    said.is_emergency_stop = is_own_stopped;
+    said.position[0] = 1;
+    return said;
+  }
+  [[nodiscard]] dds::DriveFeedback said_by_other() const {
+    dds::DriveFeedback said = sample(others_group, others_mask, number);
+    said.is_emergency_stop = is_other_stopped;
+    said.position[0] = 2;
+    said.statusword[0] = kFault;
+    return said;
+  }
+
+  FeedbackMerge merge{0b11111};
+  std::uint32_t others_group = 0, others_mask = 0b11111;
+  std::uint64_t number = 0;
+  std::int64_t now_ns = kMilli;
+  bool is_own_stopped = false, is_other_stopped = false;
+};
+
+TEST(FeedbackMerge, GoesByTheSourceThatReportedADriveFirstAndSaysThatASecondOneDoes) {
+  for (const std::uint32_t group : {0U, 1U}) {
+    for (const bool is_off : {false, true}) {
+      TwoSources two;
+      two.others_group = group;
+      two.run(10, is_off, true, false);
+      EXPECT_EQ(two.merge.feedback().contested_mask, 0U);
+      two.run(10, is_off);
+      EXPECT_EQ(two.merge.feedback().position[0], 1) << group << is_off;
+      EXPECT_EQ(two.merge.feedback().fault_mask, 0U);
+      EXPECT_EQ(two.merge.feedback().contested_mask, 0b11111U);
+      EXPECT_EQ(two.merge.feedback().joint_mask, 0b11111U);
+      two.run(300, is_off, true, false);
+      EXPECT_EQ(two.merge.feedback().contested_mask, 0U) << "it is gone";
+    }
+  }
+}
+
+TEST(FeedbackMerge, CountsTheStopInputOfEverySourceWhateverElseIsTakenFromIt) {
+  for (const std::uint32_t group : {0U, 1U}) {
+    for (const std::uint32_t mask : {0b11111U, 0b100000U, 0U}) {  // another machine's; none
+      TwoSources two;
+      two.others_group = group;
+      two.others_mask = mask;
+      two.is_own_stopped = true;
+      two.run(3, true);
+      EXPECT_TRUE(two.merge.feedback().emergency_stop) << "behind the other one's word";
+      two.is_own_stopped = false;
+      two.is_other_stopped = true;
+      two.run(3, true);
+      EXPECT_TRUE(two.merge.feedback().emergency_stop) << group << " " << mask;
+      two.run(3000, true, true, false);
+      EXPECT_TRUE(two.merge.feedback().emergency_stop) << "it may hang with its input open";
+      two.merge.forget(8, two.now_ns, true);
+      EXPECT_FALSE(two.merge.feedback().emergency_stop) << "it is gone";
+    }
+  }
+}
+
+TEST(FeedbackMerge, HandsADriveOverFromADeadSourceWhereTheMachineIsOff) {
+  TwoSources two;
+  two.run(10, false);
+  two.run(300, false, false);
+  EXPECT_EQ(two.merge.feedback().position[0], 1) << "it runs";
+  EXPECT_EQ(two.merge.feedback().arrival_ns, two.now_ns - 300 * kMilli) << "and misses them";
+  two.run(1, true, false);
+  EXPECT_EQ(two.merge.feedback().position[0], 2);
+  EXPECT_EQ(two.merge.feedback().arrival_ns, two.now_ns + 1);
+  two.run(10, true);
+  EXPECT_EQ(two.merge.feedback().position[0], 2) << "the first came back, and comes too late";
+  EXPECT_EQ(two.merge.feedback().contested_mask, 0b11111U);
+}
+
+TEST(FeedbackMerge, ForgetsAGroupWhoseWriterIsGone) {
+  FeedbackMerge merge(0b11111);
+  ASSERT_TRUE(merge.take(sample(1, 0b00111, 1), 7, 1000));
+  ASSERT_TRUE(merge.take(sample(2, 0b11000, 1), 8, 1000));
+  merge.forget(8, 2000, false);
+  EXPECT_EQ(merge.feedback().joint_mask, 0b11111U) << "it runs, and misses them";
+  merge.forget(8, 2000, true);
+  EXPECT_EQ(merge.feedback().joint_mask, 0b00111U);
+  merge.forget(7, 2000, true);
+  EXPECT_EQ(merge.feedback().joint_mask, 0U);
+  EXPECT_EQ(merge.feedback().arrival_ns, 0) << "as if nobody had been there";
+}
+
+TEST(FeedbackMerge, DoesNotMissAGroupOfDrivesThatTheMachineHasNot) {
+  FeedbackMerge merge(0b11111);
+  ASSERT_TRUE(merge.take(sample(2, 0b100000, 1), 8, 1000));
+  ASSERT_TRUE(merge.take(sample(1, 0b11111, 1), 7, 9000));
+  EXPECT_EQ(merge.feedback().arrival_ns, 9000);
+  EXPECT_EQ(merge.feedback().joint_mask, 0b11111U);
+  EXPECT_EQ(merge.feedback().cycle_seen, 101U);
+  EXPECT_EQ(merge.feedback().contested_mask, 0U);
+}
+
+TEST(FeedbackMerge, MissesAStopInputThatFallsSilent) {
+  FeedbackMerge merge(0b11111);
+  ASSERT_TRUE(merge.take(sample(9, 0, 1), 8, 1000));
+  ASSERT_TRUE(merge.take(sample(1, 0b11111, 1), 7, 9000));
+  EXPECT_EQ(merge.feedback().arrival_ns, 1000);
+  EXPECT_EQ(merge.feedback().oldest_joint, kNoJoint);
+  EXPECT_EQ(merge.feedback().cycle_seen, 101U) << "it takes no setpoints";
+}
+
+TEST(FeedbackMerge, NamesTheLowestJointOfTheGroupThatIsSilentOrDeaf) {
+  FeedbackMerge merge;
+  ASSERT_TRUE(merge.take(sample(2, 0b11000, 1), 8, 1000));
+  dds::DriveFeedback deaf = sample(1, 0b00110, 1);
+  deaf.cycle_seen = 50;
+  ASSERT_TRUE(merge.take(deaf, 7, 9000));
+  EXPECT_EQ(merge.feedback().oldest_joint, 3);
+  EXPECT_EQ(merge.feedback().deafest_joint, 1);
+  EXPECT_EQ(merge.words().oldest_group, 2U);
+  EXPECT_EQ(merge.words().oldest_mask, 0b11000U);
+}
+
+TEST(FeedbackMerge, HoldsAJointForTheGroupThatLeavesItOut) {
   FeedbackMerge merge;
   ASSERT_TRUE(merge.take(sample(1, 0b11, 1), 7, 1000));
-  ASSERT_TRUE(merge.take(sample(2, 0b11, 1), 8, 2000));
-  EXPECT_EQ(merge.feedback().arrival_ns, 2000) << "group 1 has no joint left to be old for";
+  ASSERT_TRUE(merge.take(sample(1, 0b01, 2), 7, 2000));
+  EXPECT_EQ(merge.feedback().joint_mask, 0b01U);
+  ASSERT_TRUE(merge.take(sample(2, 0b10, 1), 8, 2000));
+  EXPECT_EQ(merge.feedback().joint_mask, 0b01U) << "it runs";
+  ASSERT_TRUE(merge.take(sample(2, 0b10, 2), 8, 3000, true));
+  EXPECT_EQ(merge.feedback().joint_mask, 0b11U);
+  EXPECT_EQ(merge.feedback().position[1], 21);
+}
+
+TEST(FeedbackMerge, CountsTheStopInputOfWhoFindsNoPlace) {
+  FeedbackMerge merge;
+  for (std::uint64_t writer = 1; writer <= merge.sources().places.size(); ++writer) {
+    ASSERT_TRUE(merge.take(sample(1, 0b1, 1), writer, 1000));
+  }
+  dds::DriveFeedback open = sample(1, 0, 1);
+  open.is_emergency_stop = true;
+  (void)merge.take(open, 99, 2000);
+  EXPECT_TRUE(merge.feedback().emergency_stop);
+  EXPECT_TRUE(merge.sources().is_full);
+  ASSERT_TRUE(merge.take(sample(1, 0b1, 2), 1, 300 * kMilli));
+  EXPECT_FALSE(merge.feedback().emergency_stop) << "it said nothing since";
+  merge.forget(2, 300 * kMilli, false);
+  EXPECT_FALSE(merge.sources().is_full);
 }
 
 }  // namespace

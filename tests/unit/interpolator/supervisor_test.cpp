@@ -157,6 +157,26 @@ TEST_F(SupervisorTest, RefusesToEnableWhileADryRunIsOnItsWay) {
   EXPECT_TRUE(take(Verb::kEnable));
 }
 
+TEST_F(SupervisorTest, NamesTheDrivesThatTwoReportWhereItRefusesToEnable) {
+  DriveWords words;
+  words.joint_mask = 0x1F;
+  words.contested_mask = 0b10010;
+  ports_->drive_words.store(words);
+  show(State::kOff, false);
+  ask(Verb::kEnable);
+  const auto enable = take(Verb::kEnable);
+  ASSERT_TRUE(enable);
+  Event refused;
+  refused.code = EventCode::kRefused;
+  refused.a = enable->request;
+  refused.x = static_cast<double>(Refusal::kDriveContested);
+  ASSERT_TRUE(ports_->events.try_push(refused));
+  dds::Reply reply;
+  ASSERT_TRUE(comes([&] { return replies_.take(reply); }));
+  EXPECT_EQ(reply.refusal, Refusal::kDriveContested);
+  EXPECT_TRUE(reply.text.ends_with(": b2, theta2")) << reply.text;
+}
+
 TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe) {
   show(State::kLoaded, true);
   Approach way;

@@ -132,6 +132,29 @@ TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasLostOnTheWay) {
   EXPECT_EQ(events(), "cycle,verb,argument,block,span\n7,hold,0\nincomplete\n");
 }
 
+TEST_F(TelemetryThreadTest, NamesTheGroupThatIsSilentWithTheDriveThatIsMissed) {
+  DriveWords words;
+  words.oldest_group = 4;
+  words.oldest_mask = 0b11000;
+  ports_->drive_words_for_status.store(words);
+  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kFeedbackLost), 3);
+  run();
+  EXPECT_EQ(status_.message.rfind("no feedback from drive theta1; check", 0), 0U);
+  EXPECT_NE(status_.message.find("; drive group 4 is silent: theta1, theta2"), std::string::npos)
+      << status_.message;
+}
+
+TEST_F(TelemetryThreadTest, SaysThatAStopInputIsMissed) {
+  DriveWords words;
+  words.oldest_group = 9;
+  ports_->drive_words_for_status.store(words);
+  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kFeedbackLost), kNoJoint);
+  run();
+  EXPECT_EQ(status_.message.rfind("no feedback from what has the stop input; check", 0), 0U);
+  EXPECT_NE(status_.message.find("; drive group 9 is silent"), std::string::npos)
+      << status_.message;
+}
+
 TEST_F(TelemetryThreadTest, SaysWhatASessionDidBehindTheAlarmThatHoldsTheProgram) {
   open_session();
   tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/dds/sources.hpp"
+
+#include <dds/dds.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "service/dds/entity.hpp"
+
+namespace meridian::dds {
+namespace {
+
+struct EndpointDeleter {
+  void operator()(dds_builtintopic_endpoint_t* endpoint) const noexcept {
+    dds_builtintopic_free_endpoint(endpoint);
+  }
+};
+using Endpoint = std::unique_ptr<dds_builtintopic_endpoint_t, EndpointDeleter>;
+
+/// FNV-1a, never 0.
+[[nodiscard]] std::uint64_t number_of(const dds_guid_t& guid) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const std::uint8_t byte : guid.v) hash = (hash ^ byte) * 0x100000001b3ULL;
+  return hash != 0 ? hash : 1;
+}
+
+[[nodiscard]] std::string in_hex(const dds_guid_t& guid) {
+  std::string text;
+  for (const std::uint8_t byte : guid.v) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    text += digits;
+  }
+  return text;
+}
+
+[[nodiscard]] std::string property(const dds_qos_t* qos, const char* name) {
+  char* value = nullptr;
+  if (!dds_qget_prop(qos, name, &value) || value == nullptr) return "";
+  std::string text = value;
+  dds_free(value);
+  return text;
+}
+
+/// Where the participant with that GUID says that it runs; empty where it does not.
+[[nodiscard]] std::string place_of(const Participant& participant, const dds_guid_t& guid) {
+  const Entity reader(
+      "participants",
+      dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr));
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  std::string place;
+  while (place.empty() && dds_take(reader.handle(), &sample, &info, 1, 1) == 1) {
+    const auto* other = static_cast<const dds_builtintopic_participant_t*>(sample);
+    if (info.valid_data && std::memcmp(other->key.v, guid.v, sizeof guid.v) == 0) {
+      const std::string process = property(other->qos, "__Pid");
+      const std::string host = property(other->qos, "__Hostname");
+      if (!process.empty() && !host.empty()) place = "process " + process + " on host " + host;
+    }
+    (void)dds_return_loan(reader.handle(), &sample, 1);
+    sample = nullptr;
+  }
+  return place;
+}
+
+}  // namespace
+
+std::uint64_t participant_of(std::int32_t reader, std::uint64_t source) noexcept {
+  const Endpoint writer(dds_get_matched_publication_data(reader, source));
+  return writer ? number_of(writer->participant_key) : 0;
+}
+
+std::uint64_t Senders::participant_of(std::int32_t reader, std::uint64_t source) noexcept {
+  const auto found = std::find_if(known_.begin(), known_.end(), [source](const Known& known) {
+    return known.source == source && source != 0;
+  });
+  if (found != known_.end()) return found->participant;
+  const std::uint64_t participant = dds::participant_of(reader, source);
+  if (participant != 0) known_[at_++ % known_.size()] = {source, participant};
+  return participant;
+}
+
+std::string describe_source(const Participant& participant, std::int32_t reader,
+                            std::uint64_t source) {
+  const Endpoint writer(dds_get_matched_publication_data(reader, source));
+  if (!writer) return "a writer that is gone";
+  const std::string place = place_of(participant, writer->participant_key);
+  return !place.empty() ? place : "participant " + in_hex(writer->participant_key);
+}
+
+}  // namespace meridian::dds

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "service/dds/participant.hpp"
+
+/// Who is behind SampleInfo::source. Proof: tests/unit/dds/sources_test.cpp.
+namespace meridian::dds {
+
+/// The participant that owns a writer matched to `reader`, as a number made of its GUID: the same
+/// for all writers of that participant, and the same again after a network that was cut. 0: the
+/// writer is not matched any more. Makes heap calls.
+[[nodiscard]] std::uint64_t participant_of(std::int32_t reader, std::uint64_t source) noexcept;
+
+/// participant_of(), remembered for the sources that were asked for last. One thread.
+class Senders {
+ public:
+  [[nodiscard]] std::uint64_t participant_of(std::int32_t reader, std::uint64_t source) noexcept;
+
+ private:
+  struct Known {
+    std::uint64_t source = 0, participant = 0;
+  };
+  std::array<Known, 16> known_{};
+  std::size_t at_ = 0;
+};
+
+/// In words, where it runs: "process 4711 on host mill3"; its GUID where its vendor does not tell.
+[[nodiscard]] std::string describe_source(const Participant& participant, std::int32_t reader,
+                                          std::uint64_t source);
+
+}  // namespace meridian::dds

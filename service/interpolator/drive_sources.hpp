@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace meridian::interpolator {
+
+/// One writer's word on one drive group.
+struct DriveSource {
+  std::uint64_t writer = 0;  ///< dds::SampleInfo::source; 0: place is free
+  std::uint32_t group = 0;
+  std::uint32_t claimed_mask = 0;  ///< joints of the machine that it reports
+  std::uint32_t bound_mask = 0;    ///< joints of the machine that it alone may report
+  std::uint64_t sample = 0;
+  std::uint64_t cycle_seen = 0;
+  std::int64_t first_ns = 0, arrival_ns = 0;  ///< of its first and its newest sample
+  bool has_only_stop = false;                 ///< it has no joint of any machine: a stop input
+  bool is_emergency_stop = false;
+
+  /// The joints that the machine takes from it.
+  [[nodiscard]] std::uint32_t joints() const noexcept { return claimed_mask & bound_mask; }
+};
+
+/// Everybody who reports drives, for who tells the operator.
+struct DriveSources {
+  std::array<DriveSource, 16> places{};
+  bool is_full = false;  ///< somebody more found no place
+};
+static_assert(std::is_trivially_copyable_v<DriveSources>);
+
+/// Whether `other` reports, as `owner` does all the while, joints that are bound to `owner`; who
+/// has not spoken for `silence_ns` does not. One that took over from a source that died is no
+/// second one: the dead did not speak after it had come.
+[[nodiscard]] constexpr std::uint32_t contested(const DriveSource& owner, const DriveSource& other,
+                                                std::int64_t now_ns,
+                                                std::int64_t silence_ns) noexcept {
+  const bool is_both = now_ns - owner.arrival_ns <= silence_ns &&
+                       now_ns - other.arrival_ns <= silence_ns && owner.arrival_ns > other.first_ns;
+  return is_both && &owner != &other ? owner.bound_mask & other.claimed_mask : 0;
+}
+
+}  // namespace meridian::interpolator

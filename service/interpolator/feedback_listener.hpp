@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/rt/latest_value.hpp"
+#include "meridian/rt/spsc_ring.hpp"
+#include "service/dds/messages.hpp"
+#include "service/dds/participant.hpp"
+#include "service/dds/reader.hpp"
+#include "service/interpolator/feedback_merge.hpp"
+#include "service/interpolator/ports.hpp"
+#include "service/interpolator/source_teller.hpp"
+
+namespace meridian::interpolator {
+
+/// Listens to the drives on Cyclone's receive thread and puts their newest picture into the ports.
+/// Proof: tests/integration/sources_test.cpp.
+class FeedbackListener {
+ public:
+  FeedbackListener(dds::Participant& participant, const MachineModel& model, Ports& ports);
+
+  /// Says who reports drives, who went, and who reports what is another one's; to be called several
+  /// times a second, by one thread that may log.
+  void tell_sources(const SourceTeller::Say& say);
+
+ private:
+  void on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept;
+  void report(std::int64_t now_ns) noexcept;
+  void time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept;
+
+  dds::Participant& participant_;
+  Ports& ports_;
+  FeedbackMerge merge_;
+  std::uint64_t answered_ = 0;  ///< newest cycle that a drive has answered
+  std::int64_t shown_ns_ = 0;   ///< when `sources_` were stored last
+  LatestValue<DriveSources> sources_;
+  SpscRing<std::uint64_t, 64> gone_;  ///< writers that DDS does not know any more
+  SourceTeller teller_;
+  trace::SpanWriter spans_;
+  dds::Reader<dds::DriveFeedback> reader_;
+};
+
+}  // namespace meridian::interpolator

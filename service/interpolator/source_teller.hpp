@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/interpolator/drive_sources.hpp"
+#include "service/telemetry/words.hpp"
+
+namespace meridian::interpolator {
+
+/// Says once what changed among those who report drives: who has which, who is gone, and who
+/// reports what is another one's, both by name. Proof:
+/// tests/unit/interpolator/source_teller_test.cpp.
+class SourceTeller {
+ public:
+  using Say = std::function<void(telemetry::Weight, const std::string&)>;
+  /// Where a writer runs, in words; asked for while it is matched.
+  using NameOf = std::function<std::string(std::uint64_t)>;
+
+  explicit SourceTeller(const MachineModel& model) : model_(model) {}
+
+  void look(const DriveSources& sources, std::int64_t now_ns, const NameOf& name_of,
+            const Say& say);
+
+ private:
+  struct Known {
+    std::uint64_t writer = 0;
+    std::uint32_t group = 0;
+    std::string name;  ///< "drive group 0 of process 4711 on host mill3"
+    std::uint32_t bound_mask = 0;
+    std::uint32_t contested_mask = 0;
+    bool is_here = false;
+  };
+
+  Known& know(const DriveSource& source, const NameOf& name_of, const Say& say);
+  void tell_bound(Known& known, const DriveSource& source, const Say& say) const;
+  void tell_contest(Known& known, const DriveSource& source, const DriveSources& sources,
+                    std::int64_t now_ns, const Say& say) const;
+  [[nodiscard]] std::string known_name(const DriveSource& source) const;
+
+  const MachineModel& model_;
+  std::vector<Known> known_;
+  bool is_full_told_ = false;
+};
+
+}  // namespace meridian::interpolator
