@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -6,12 +7,14 @@
 #include <vector>
 
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/rt/joint_masks.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/injection_console.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/drives/other_source.hpp"
 #include "service/drives/simulated_drives.hpp"
 
 namespace meridian::cli {
@@ -24,6 +27,7 @@ struct DrivesOptions {
   std::string lag = "second";
   double time_constant_ms = 2;
   bool has_no_actions = false, is_refusing_actions = false, is_quiet = false, has_console = false;
+  bool is_beside_others = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
   std::vector<std::string> unreferenced, failing, hanging;  ///< names of drives, or all
@@ -63,7 +67,28 @@ std::vector<drives::HomingPlan> homing_plans(const DrivesOptions& options,
   return plans;
 }
 
-void run_drives(const DrivesOptions& options) {
+/// Whether nobody else reports a drive of the machine; says who does.
+[[nodiscard]] bool is_alone(dds::Participant& participant, const MachineModel& model) {
+  // Others report every few ms; the time is for finding one another.
+  constexpr auto kWindow = std::chrono::milliseconds(400);
+  const auto other = drives::find_other_source(participant, all_joints(model), kWindow);
+  if (!other) return true;
+  std::string names;
+  for (int drive = 0; drive < model.joint_count; ++drive) {
+    if ((other->joint_mask >> static_cast<unsigned>(drive) & 1U) == 0) continue;
+    names += (names.empty() ? "" : ", ") + drive_spec(model, drive).name;
+  }
+  std::fprintf(
+      stderr,
+      "meridian drives: %s of machine %s are reported by %s already (drive group %u); end "
+      "that one first, or start beside it with --beside-others, and the machine is enabled "
+      "with neither\n",
+      names.c_str(), model.name.c_str(), other->name.c_str(), other->group);
+  return false;
+}
+
+/// Returns the exit code.
+int run_drives(const DrivesOptions& options) {
   const MachineModel model = config::load_machine(options.machine_file);
   drives::SimulatedDrivesOptions simulated;
   simulated.lag = {
@@ -85,6 +110,7 @@ void run_drives(const DrivesOptions& options) {
        .machine = options.partition.empty() ? model.name : options.partition,
        .transport =
            simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback});
+  if (!options.is_beside_others && !is_alone(participant, model)) return kMachineRefused;
   std::printf("drives of machine %s in DDS domain %u: %d drives, cycle %.3f ms%s\n",
               model.name.c_str(), options.domain, model.joint_count,
               static_cast<double>(model.cycle_ns) * 1e-6,
@@ -104,6 +130,11 @@ void run_drives(const DrivesOptions& options) {
       static_cast<unsigned long long>(report.setpoints_seen),
       static_cast<unsigned long long>(report.periods_bridged),
       static_cast<unsigned long long>(report.actions));
+  if (report.setpoints_of_others > 0) {
+    std::printf("%llu setpoints of services that the drives did not obey were passed over\n",
+                static_cast<unsigned long long>(report.setpoints_of_others));
+  }
+  return kFine;
 }
 
 }  // namespace
@@ -145,6 +176,8 @@ void add_drives_command(CLI::App& app, int& exit_code) {
                                          const char* text) {
     command->add_option(name, names, text)->delimiter(',')->type_name("DRIVE,...");
   };
+  command->add_flag("--beside-others", options->is_beside_others,
+                    "Start though somebody else reports these drives; else that is refused");
   add_drive_names("--unreferenced", options->unreferenced,
                   "Drives (or all) that do not know where they are until they are homed");
   add_drive_names("--homing-fails", options->failing,
@@ -152,10 +185,7 @@ void add_drives_command(CLI::App& app, int& exit_code) {
   add_drive_names("--homing-hangs", options->hanging,
                   "Drives (or all) that search for their reference for ever");
   command->add_flag("-q,--quiet", options->is_quiet, "Say only begin and end");
-  command->callback([options, &exit_code] {
-    run_drives(*options);
-    exit_code = kFine;
-  });
+  command->callback([options, &exit_code] { exit_code = run_drives(*options); });
 }
 
 }  // namespace meridian::cli

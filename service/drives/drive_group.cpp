@@ -36,7 +36,7 @@ bool DriveGroup::is_off() const noexcept {
   });
 }
 
-void DriveGroup::take(const dds::DriveCommand& command) noexcept {
+void DriveGroup::take(const dds::DriveCommand& command, std::uint64_t sender) noexcept {
   if (command.drive >= drives_.size() || is_dead_) return;
   if (command.service_id != service_id_) {
     if (service_id_ != 0 && !is_off()) return;
@@ -46,6 +46,7 @@ void DriveGroup::take(const dds::DriveCommand& command) noexcept {
       if (told.service_id == service_id_) bridge_cycles_ = told.bridge_cycles;
     }
   }
+  sender_ = sender;
   drives_[command.drive].take_controlword(command.controlword, command.mode);
 }
 
@@ -56,9 +57,14 @@ void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
   if (service_id_ == 0 || service_id_ == told.service_id) bridge_cycles_ = told.bridge_cycles;
 }
 
-void DriveGroup::take(const dds::SetpointSample& setpoint) noexcept {
-  if ((setpoint.setpoint.flags & kSetpointDry) != 0) return;
+bool DriveGroup::take(const dds::SetpointSample& setpoint, std::uint64_t sender) noexcept {
+  if (service_id_ != 0 && sender != sender_) {
+    ++setpoints_of_others_;
+    return false;
+  }
+  if ((setpoint.setpoint.flags & kSetpointDry) != 0) return true;
   if (!is_dead_ && setpoint_faults_.lets_pass(setpoint)) accept(setpoint);
+  return true;
 }
 
 void DriveGroup::accept(const dds::SetpointSample& setpoint) noexcept {
@@ -147,6 +153,8 @@ void DriveGroup::inject_now(const Injection& injection) noexcept {
       return setpoint_faults_.deafen(injection.value);
     case Injection::Kind::kLate:
       return setpoint_faults_.delay(injection.value);
+    case Injection::Kind::kUntold:
+      return report_faults_.leave_out_cycle();
     case Injection::Kind::kMend:
       return mend();
   }

@@ -15,8 +15,10 @@
 namespace meridian::drives {
 
 /// All drives of a machine behind one wire: takes the service's setpoints and controlwords, works
-/// once per period, tells feedback. It obeys one service until every drive is off. Setpoints are
-/// fresh by their cycle number, not by their clock. Proof: tests/unit/drives/drive_group_test.cpp.
+/// once per period, tells feedback. It obeys one service until every drive is off, and takes the
+/// setpoints of that one alone: those that the participant sends whose controlwords it obeys.
+/// Setpoints are fresh by their cycle number, not by their clock.
+/// Proof: tests/unit/drives/drive_group_test.cpp.
 class DriveGroup {
  public:
   /// Drives stand where the joints are at home. `homing`, in drive order, may lack the last ones:
@@ -24,8 +26,10 @@ class DriveGroup {
   DriveGroup(const MachineModel& model, const ServoLag& lag,
              const std::vector<HomingPlan>& homing = {});
 
-  void take(const dds::DriveCommand& command) noexcept;
-  void take(const dds::SetpointSample& setpoint) noexcept;
+  /// `sender`: dds::participant_of() its writer; 0: not known.
+  void take(const dds::DriveCommand& command, std::uint64_t sender = 0) noexcept;
+  /// False: it is of somebody whom the drives do not obey, and nothing changed but their count.
+  bool take(const dds::SetpointSample& setpoint, std::uint64_t sender = 0) noexcept;
   /// How many periods are bridged is told by the service that is obeyed, or by one that serves
   /// where none is obeyed yet.
   void take(const dds::MachineInfo& machine) noexcept;
@@ -45,6 +49,7 @@ class DriveGroup {
   [[nodiscard]] int size() const noexcept { return static_cast<int>(drives_.size()); }
   [[nodiscard]] std::uint64_t service_id() const noexcept { return service_id_; }
   [[nodiscard]] std::uint64_t setpoints_seen() const noexcept { return setpoints_seen_; }
+  [[nodiscard]] std::uint64_t setpoints_of_others() const noexcept { return setpoints_of_others_; }
   [[nodiscard]] std::uint64_t periods_bridged() const noexcept { return periods_bridged_; }
 
  private:
@@ -64,6 +69,7 @@ class DriveGroup {
   std::array<Told, 8> told_{};  ///< newest services, in a ring
   std::size_t told_at_ = 0;
   std::uint64_t service_id_ = 0;  ///< whom the drives obey; 0: nobody yet
+  std::uint64_t sender_ = 0;      ///< the participant that it is
   dds::SetpointSample newest_;
   bool has_setpoint_ = false, is_new_ = false;
   int periods_without_ = 0;  ///< since the newest setpoint
@@ -71,6 +77,7 @@ class DriveGroup {
   int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
   double enabled_s_ = 0;
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
+  std::uint64_t setpoints_of_others_ = 0;
   bool is_silent_ = false, is_dead_ = false, is_emergency_stop_ = false;
   ReportFaults report_faults_;
   SetpointFaults setpoint_faults_;

@@ -28,6 +28,7 @@ struct Injection {
     kLag,           ///< `drive` follows with a time constant of `value` s
     kDeaf,          ///< setpoints do not arrive for `value` periods
     kLate,          ///< setpoints arrive `value` periods late from now on
+    kUntold,        ///< reports do not tell which setpoint was taken
     kMend           ///< everything of the above is as it was
   };
   Kind kind = Kind::kFault;

@@ -21,6 +21,8 @@ class ReportFaults {
   void make_no_number(std::size_t i) noexcept { no_number_mask_ |= 1U << i; }
   void mute(std::size_t i) noexcept { mute_mask_ |= 1U << i; }
   void lose_reference(std::size_t i) noexcept { unreferenced_mask_ |= 1U << i; }
+  /// Reports do not tell the setpoint that was taken last.
+  void leave_out_cycle() noexcept { is_cycle_left_out_ = true; }
   /// In the next report only.
   void add_once(std::size_t i, double by) noexcept { spike_[i] += by; }
 
@@ -36,10 +38,12 @@ class ReportFaults {
     spike_ = {};
     feedback.joint_mask &= ~mute_mask_;
     feedback.referenced_mask &= ~unreferenced_mask_;
+    if (is_cycle_left_out_) feedback.cycle_seen = 0;
   }
 
  private:
   std::uint32_t frozen_mask_ = 0, no_number_mask_ = 0, mute_mask_ = 0, unreferenced_mask_ = 0;
+  bool is_cycle_left_out_ = false;
   JointVector frozen_{}, spike_{};
 };
 

@@ -111,6 +111,73 @@ TEST_F(Group, ObeysOneServiceUntilItIsOff) {
   EXPECT_EQ(group_.service_id(), 8u);
 }
 
+/// Two services send to the same drives, as each may that did not hear of the other.
+class TwoServices : public Group {
+ protected:
+  static constexpr std::uint64_t kObeyed = 41, kOther = 42;  // participants
+  void command(std::uint16_t controlword, std::uint64_t service, std::uint64_t sender) {
+    for (std::uint16_t i = 0; i < 5; ++i) {
+      dds::DriveCommand word;
+      word.drive = i;
+      word.controlword = controlword;
+      word.service_id = service;
+      group_.take(word, sender);
+    }
+  }
+  bool send(std::uint64_t cycle, double x, std::uint16_t flags, std::uint64_t sender) {
+    dds::SetpointSample sample;
+    sample.setpoint.cycle = cycle;
+    sample.setpoint.position[0] = x;
+    sample.setpoint.velocity[0] = 100;
+    sample.setpoint.flags = flags;
+    return group_.take(sample, sender);
+  }
+};
+
+TEST_F(TwoServices, DrivesTakeTheSetpointsOfTheOneThatTheyObeyAlone) {
+  for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F}) {
+    command(word, 7, kObeyed);
+  }
+  for (std::uint64_t n = 0; n < 20; ++n) {  // the other has run for an hour, and is Off
+    EXPECT_TRUE(send(100 + n, 0.1 * static_cast<double>(n), kSetpointEnabled, kObeyed));
+    EXPECT_FALSE(send(3'600'000 + n, -50, 0, kOther));
+    command(0x06, 8, kOther);
+    group_.work(1);
+    ASSERT_NEAR(group_.feedback().position[0], 0.1 * static_cast<double>(n), 1e-12) << n;
+    ASSERT_EQ(group_.feedback().cycle_seen, 100 + n);
+  }
+  EXPECT_EQ(group_.setpoints_of_others(), 20U);
+  EXPECT_EQ(group_.setpoints_seen(), 20U);
+}
+
+TEST_F(TwoServices, AnotherOnesSetpointsDoNotBridgeAGapOfTheOneThatIsObeyed) {
+  for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F}) {
+    command(word, 7, kObeyed);
+  }
+  (void)send(100, 0, kSetpointEnabled, kObeyed);
+  for (std::uint64_t n = 0; n < 10; ++n) {
+    (void)send(101 + n, 0, kSetpointEnabled, kOther);
+    group_.work(1);
+  }
+  EXPECT_NE(group_.drive(0).state(), DriveState::kOperationEnabled) << "their watchdog sees it";
+}
+
+TEST_F(TwoServices, TheOtherOneIsTakenWhenItIsObeyed) {
+  command(0x06, 7, kObeyed);
+  (void)send(3'600'000, 1, 0, kObeyed);
+  command(0x06, 8, kOther);
+  EXPECT_FALSE(send(3'600'001, 1, 0, kObeyed));
+  EXPECT_TRUE(send(5, 1, 0, kOther));
+  EXPECT_EQ(group_.feedback().cycle_seen, 5U);
+}
+
+TEST_F(TwoServices, AServiceThatIsFoundAgainUnderAnotherNumberIsTakenWithItsNextWord) {
+  command(0x06, 7, kObeyed);
+  EXPECT_FALSE(send(10, 1, 0, 43));
+  command(0x06, 7, 43);
+  EXPECT_TRUE(send(11, 1, 0, 43));
+}
+
 TEST_F(Group, ObeysTheNextServiceWhereOneDiedBeforeItsFirstEnabledSetpoint) {
   enable();
   send(0, 0);

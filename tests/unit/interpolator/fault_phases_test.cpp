@@ -164,10 +164,10 @@ const std::array<Phase, 23> kPhases{{
      }},
 }};
 
-constexpr std::array<const char*, 15> kFaults{
-    "fault:theta2", "unpowered:b2",    "blocked:*",   "lag:*=500", "frozen:*",
-    "spike:b3=10",  "nan:theta1",      "mute:theta1", "silence",   "dead",
-    "emergency",    "unreferenced:b4", "deaf=3",      "deaf=100",  "late=20"};
+constexpr std::array<const char*, 16> kFaults{
+    "fault:theta2", "unpowered:b2", "blocked:*", "lag:*=500", "frozen:*",  "spike:b3=10",
+    "nan:theta1",   "mute:theta1",  "silence",   "dead",      "emergency", "unreferenced:b4",
+    "deaf=3",       "deaf=100",     "late=20",   "untold"};
 
 std::string letter_of(Alarm alarm) {
   switch (alarm) {
@@ -183,6 +183,8 @@ std::string letter_of(Alarm alarm) {
       return "R";
     case Alarm::kEnableTimeout:
       return "T";
+    case Alarm::kSetpointsUnheard:
+      return "U";
     default:
       return "alarm " + std::to_string(static_cast<int>(alarm));
   }

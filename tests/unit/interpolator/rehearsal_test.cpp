@@ -69,6 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         Rehearsed{"nan:theta1", Alarm::kFeedbackLost, Alarm::kFeedbackLost, 0.01, true},
         Rehearsed{"spike:theta2=3", Alarm::kFollowingError, Alarm::kFollowingError, 0.01, true},
         Rehearsed{"lag:*=500", Alarm::kFollowingError, Alarm::kDriveFault, 0.3, true},
+        Rehearsed{"untold", Alarm::kSetpointsUnheard, Alarm::kSetpointsUnheard, 0.04, false},
         Rehearsed{"deaf=100", Alarm::kDriveFault, Alarm::kDriveFault, 0.02, false},
         Rehearsed{"late=20", Alarm::kDriveFault, Alarm::kDriveFault, 0.02, false}),
     name_of_rehearsal);
