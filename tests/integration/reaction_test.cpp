@@ -4,15 +4,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "integration/endless_station.hpp"
 #include "integration/plant.hpp"
+#include "meridian/kinematics/kinematics.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/interpolator/drive_words.hpp"
 #include "service/record/recording_reader.hpp"
@@ -29,6 +34,17 @@ using record::RecordingRow;
 [[nodiscard]] std::int64_t monotonic_now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch().count();
 }
+
+/// What the recording holds of one death of a station.
+struct Starvation {
+  double ahead_mm = 0;  ///< path of received blocks in front of the tool at the kill
+  double time_ms = -1;  ///< from there to the first cycle in Starving
+  double left_mm = 0;   ///< of that path there
+  int row = 0;          ///< of that cycle, counted from the kill
+  double cruise = 0;    ///< speed of the joints at the kill
+  int slower_row = -1;  ///< first one that is slower
+  [[nodiscard]] bool is_known() const { return time_ms >= 0 && slower_row >= 0; }
+};
 
 class LiveReaction : public testing::Test {
  protected:
@@ -181,6 +197,75 @@ TEST_F(LiveReaction, OfAServiceThatIsStoppedIsTheDrivesRampBehindTheBridge) {
   const Spread times = tell("service stopped to the drives' ramp", "ms", times_ms);
   EXPECT_GT(times.middle, kBridge_ms - 5);
   EXPECT_LT(times.least, kBridge_ms + 50);
+}
+
+TEST_F(LiveReaction, OfAStationThatIsKilledIsStarvingNoLaterThanTheFirstSlowerSetpoint) {
+  std::vector<double> received_mm;  // x of the last block that came
+  const int deaths = std::getenv("MERIDIAN_REACTIONS") != nullptr ? repetitions : 1;
+  for (int n = 0; n < deaths; ++n) {
+    EndlessStation station(plant);
+    const auto is_in = [this](State state) {
+      return [this, state] { return plant.status().state == state; };
+    };
+    ASSERT_TRUE(station.feed_until(is_in(State::kLoaded))) << station.process().said();
+    ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
+    ASSERT_TRUE(station.feed_until(is_in(State::kRunning))) << plant.service().said();
+    const std::int64_t up_to_speed_ns = monotonic_now_ns() + 250'000'000;
+    ASSERT_TRUE(station.feed_until([&] { return monotonic_now_ns() > up_to_speed_ns; }));
+    wait_somewhere();
+    asked_ns.push_back(monotonic_now_ns());
+    station.process().send_signal(SIGKILL);
+    ASSERT_TRUE(plant.wait_for(State::kStarved)) << plant.service().said();
+    received_mm.push_back(station.x_of(plant.status().blocks_received - 1));
+    ASSERT_NO_FATAL_FAILURE(say(Verb::kAbort, State::kReady));
+  }
+  const MachineModel model = config::load_machine(machine_file());
+  std::vector<Starvation> found(asked_ns.size());
+  std::size_t k = 0;
+  int row_of_kill = -1, row_number = 0;
+  read_recording([&](const RecordingRow& row) {
+    ++row_number;
+    if (k == found.size() || row.due_ns < asked_ns[k]) return;
+    Starvation& one = found[k];
+    const double left_mm =
+        received_mm[k] - forward(model, model.tool_length_mm, row.joints).tip.x();
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) square += row.velocity[i] * row.velocity[i];
+    const double speed = std::sqrt(square);
+    if (row_of_kill < 0) {
+      row_of_kill = row_number;
+      one.ahead_mm = left_mm;
+      one.cruise = speed;
+    }
+    constexpr double kSlower = 1e-5;  // of the speed: the jerk takes 1e-4 of it in one cycle
+    const bool is_slower = speed < (1 - kSlower) * one.cruise;
+    if (is_slower && one.slower_row < 0) one.slower_row = row_number - row_of_kill;
+    if (row.state == State::kStarving && one.time_ms < 0) {
+      one.time_ms = 1e-6 * static_cast<double>(row.due_ns - asked_ns[k]);
+      one.left_mm = left_mm;
+      one.row = row_number - row_of_kill;
+    }
+    if (!one.is_known()) return;
+    ++k;
+    row_of_kill = -1;
+  });
+  ASSERT_EQ(k, found.size()) << "every death is followed by Starving";
+  std::vector<double> times_ms, ahead_mm, left_mm, cycles;
+  for (const Starvation& one : found) {
+    times_ms.push_back(one.time_ms);
+    ahead_mm.push_back(one.ahead_mm);
+    left_mm.push_back(one.left_mm);
+    cycles.push_back(one.slower_row - one.row);
+    EXPECT_GT(one.row, 0) << "starving while its station lived";
+    EXPECT_GE(one.slower_row, one.row) << "slower before the machine says why";
+    EXPECT_NEAR(one.cruise, EndlessStation::kFeed_mm_per_s, 0.02 * EndlessStation::kFeed_mm_per_s);
+    EXPECT_NEAR(1e-3 * one.time_ms * one.cruise, one.ahead_mm - one.left_mm, 1)
+        << "what was received is cut first, at its feed";
+  }
+  (void)tell("station killed to Starving", "ms", times_ms);
+  (void)tell("received path ahead of the tool when it was killed", "mm", ahead_mm);
+  (void)tell("received path left at Starving", "mm", left_mm);
+  (void)tell("Starving to first slower setpoint", "cycles", cycles);
 }
 
 }  // namespace
