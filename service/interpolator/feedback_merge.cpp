@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/feedback_merge.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "service/interpolator/drive_words.hpp"
@@ -95,9 +96,13 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   const DriveSource* deafest = nullptr;
   feedback_.joint_mask = feedback_.contested_mask = 0;
   feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
+  feedback_.emergency_ns = feedback_.emergency_stop ? stopped_ns_ : 0;
   for (const DriveSource& source : sources_.places) {
     if (source.writer == 0) continue;
-    feedback_.emergency_stop = feedback_.emergency_stop || source.is_emergency_stop;
+    if (source.is_emergency_stop) {
+      feedback_.emergency_stop = true;
+      feedback_.emergency_ns = std::max(feedback_.emergency_ns, source.arrival_ns);
+    }
     for (const DriveSource& other : sources_.places) {
       if (other.writer == 0) continue;
       feedback_.contested_mask |= contested(source, other, now_ns, kSilence_ns);

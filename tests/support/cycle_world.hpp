@@ -32,6 +32,7 @@ class CycleWorld {
     in.due_ns = static_cast<std::int64_t>(in.cycle) * machine.cycle_ns;
     in.now_ns = in.due_ns;
     if (are_drives_alive) in.feedback.arrival_ns = in.now_ns;
+    if (are_drives_alive && in.feedback.emergency_stop) in.feedback.emergency_ns = in.now_ns;
     step(machine, state, reader, in, out);
     in.has_command = false;
     in.action = {};

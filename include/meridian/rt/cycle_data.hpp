@@ -57,14 +57,15 @@ inline constexpr std::uint8_t kNoJoint = 255;
 
 /// The newest feedback of the drives, as the cycle sees it.
 struct Feedback {
-  std::int64_t arrival_ns = 0;        ///< receiver's own clock; 0: never
-  std::uint64_t cycle_seen = 0;       ///< newest setpoint cycle that the drives took
-  JointVector position{};             ///< drive coordinates in drive order
-  std::uint32_t joint_mask = 0;       ///< joints that report
-  std::uint32_t enabled_mask = 0;     ///< drives in operation enabled
-  std::uint32_t fault_mask = 0;       ///< drives in fault
-  std::uint32_t referenced_mask = 0;  ///< joints with a valid reference
-  bool emergency_stop = false;
+  std::int64_t arrival_ns = 0;          ///< receiver's own clock; 0: never
+  std::uint64_t cycle_seen = 0;         ///< newest setpoint cycle that the drives took
+  JointVector position{};               ///< drive coordinates in drive order
+  std::uint32_t joint_mask = 0;         ///< joints that report
+  std::uint32_t enabled_mask = 0;       ///< drives in operation enabled
+  std::uint32_t fault_mask = 0;         ///< drives in fault
+  std::uint32_t referenced_mask = 0;    ///< joints with a valid reference
+  bool emergency_stop = false;          ///< reported, and not taken back since
+  std::int64_t emergency_ns = 0;        ///< arrival of the newest report that says so; 0: none
   std::uint32_t homing_mask = 0;        ///< drives that are in homing mode, and of these
   std::uint32_t still_mask = 0;         ///< those whose homing is over, interrupted or not begun
   std::uint32_t homed_mask = 0;         ///< those that have attained their reference

@@ -15,6 +15,18 @@
 /// RT: cycle. Proof: tests/unit/rt/dry_run_test.cpp.
 namespace meridian {
 
+/// Whether the emergency input is open, as far as somebody still says so. Who said it last and is
+/// silent for kEmergencyHeard_s may be gone for good: no dry run waits for that, nor the way to
+/// Off. Drives are enabled by what was reported last, however old.
+[[nodiscard]] inline bool is_emergency_heard(const MachineModel& machine,
+                                             const CycleInputs& in) noexcept {
+  constexpr double kEmergencyHeard_s = 1.0;
+  const Feedback& f = in.feedback;
+  const double stalled = static_cast<double>(machine.cycle_ns) * 1e-9 * in.lost_periods;
+  return f.emergency_stop && f.emergency_ns != 0 &&
+         static_cast<double>(in.now_ns - f.emergency_ns) * 1e-9 <= kEmergencyHeard_s + stalled;
+}
+
 /// What drives would report that are where the last setpoint sent them.
 [[nodiscard, gnu::noinline]] inline Feedback dry_feedback(const MachineModel& machine,
                                                           const CycleState& state,
@@ -26,7 +38,7 @@ namespace meridian {
   dry.position =
       has_stage(machine) ? state.sent[dry.cycle_seen % kSentCycles].drive_position : state.joints;
   dry.joint_mask = dry.enabled_mask = dry.referenced_mask = all;
-  dry.emergency_stop = in.feedback.emergency_stop;
+  dry.emergency_stop = is_emergency_heard(machine, in);
   return dry;
 }
 

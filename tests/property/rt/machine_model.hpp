@@ -36,6 +36,8 @@ struct Machine {
   std::string wrong{};
 
   bool operator==(const Machine&) const = default;
+  /// Who says that the input is open is still there.
+  [[nodiscard]] bool hears_emergency() const { return is_emergency && has_feedback; }
 };
 
 [[nodiscard]] inline std::string key_of(const Machine& m) {
@@ -114,13 +116,13 @@ class OperatedMachine {
     if (!is_enabled(m.state)) return;
     const bool is_judged = m.state != State::kEnabling && m.state != State::kFaultStop;
     if (m.is_dry_run) {
-      if (m.is_emergency || m.is_on) raise(m);
+      if (m.hears_emergency() || m.is_on) raise(m);
       return;
     }
     if (m.is_emergency || !m.has_feedback || m.has_fault || (is_judged && !m.is_on)) raise(m);
   }
   [[nodiscard]] static bool may_enable(const Machine& m) {
-    if (m.is_dry_run) return !m.is_on && !m.is_emergency;
+    if (m.is_dry_run) return !m.is_on && !m.hears_emergency();
     return m.has_feedback && !m.is_emergency && !m.has_fault;
   }
   static void set_dry_run(Machine& m) {
@@ -135,7 +137,7 @@ class OperatedMachine {
     if (verb == Verb::kEnable && !may_enable(m)) return;
     if (verb == Verb::kEnable) m.is_place_known = !m.is_dry_run;
     if (verb == Verb::kHome && m.is_dry_run) return;
-    if (verb == Verb::kReset && m.is_emergency) return;
+    if (verb == Verb::kReset && m.hears_emergency()) return;
     if (verb == Verb::kResume && !m.has_piece && m.waiting == 0) return;
     if ((verb == Verb::kJog || verb == Verb::kHome) && m.has_session) return;
     if (verb == Verb::kStart || verb == Verb::kResume || verb == Verb::kJog) m.is_granted = true;

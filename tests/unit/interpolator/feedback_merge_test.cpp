@@ -216,6 +216,27 @@ TEST(FeedbackMerge, NamesTheLowestJointOfTheGroupThatIsSilentOrDeaf) {
   EXPECT_EQ(merge.words().oldest_mask, 0b11000U);
 }
 
+TEST(FeedbackMerge, TellsWhenAnOpenStopInputWasReportedLastWhateverOthersReport) {
+  FeedbackMerge merge;
+  dds::DriveFeedback open = sample(1, 0b01, 1);
+  open.is_emergency_stop = true;
+  ASSERT_TRUE(merge.take(open, 7, 1000));
+  ASSERT_TRUE(merge.take(sample(2, 0b10, 1), 8, 5000));
+  EXPECT_TRUE(merge.feedback().emergency_stop) << "its bridge is silent since";
+  EXPECT_EQ(merge.feedback().emergency_ns, 1000);
+  open.sample = 2;
+  ASSERT_TRUE(merge.take(open, 7, 6000));
+  EXPECT_EQ(merge.feedback().emergency_ns, 6000);
+  dds::DriveFeedback late = sample(2, 0b10, 2);
+  late.is_emergency_stop = true;
+  ASSERT_TRUE(merge.take(late, 8, 7000));
+  ASSERT_TRUE(merge.take(sample(1, 0b01, 3), 7, 8000));
+  EXPECT_EQ(merge.feedback().emergency_ns, 7000) << "of those that say so, the newest";
+  ASSERT_TRUE(merge.take(sample(2, 0b10, 3), 8, 9000));
+  EXPECT_FALSE(merge.feedback().emergency_stop);
+  EXPECT_EQ(merge.feedback().emergency_ns, 0);
+}
+
 TEST(FeedbackMerge, HoldsAJointForTheGroupThatLeavesItOut) {
   FeedbackMerge merge;
   ASSERT_TRUE(merge.take(sample(1, 0b11, 1), 7, 1000));

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "unit/rt/dry_program.hpp"
 #include "unit/rt/hand.hpp"
-#include "unit/rt/program.hpp"
 
 /// A dry run: the machine runs as ever, and there is no way from it to a drive.
 namespace meridian {
@@ -15,44 +15,11 @@ namespace {
 
 using test::alarm_of;
 using test::CycleWorld;
+using test::DryRun;
 using test::kLimits;
+using test::machine_at_begin;
 using test::Program;
 using test::refusal_of;
-
-/// With its home at the begin of the programs of these tests.
-[[nodiscard]] MachineModel machine_at_begin(MachineModel model) {
-  const JointVector at =
-      drives_of(model, solve(model, model.tool_length_mm, test::kBegin, 0, JointVector{}).q);
-  for (int i = 0; i < model.joint_count; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    model.joints[n].home = at[n];
-  }
-  if (!has_stage(model)) return model;
-  model.stage_drives[0].home = at[static_cast<std::size_t>(model.stage.linear_joint)];
-  model.stage_drives[1].home = at[static_cast<std::size_t>(model.stage.rotary_joint)];
-  return model;
-}
-
-/// In Off, with no drives or with some that stand elsewhere and follow what they may.
-struct DryRun : Program {
-  explicit DryRun(bool has_drives = false, const MachineModel& of = test::lai_machine())
-      : Program(State::kOff, machine_at_begin(of)) {
-    world.are_drives_alive = has_drives;
-    world.run();
-  }
-  [[nodiscard]] bool begin() {
-    world.command(Verb::kDryRun, 1);
-    world.command(Verb::kEnable);
-    return world.run_until(State::kReady, 0.1);
-  }
-  void cut() {
-    plan.set_epoch(world.state.epoch);
-    plan.cut({30, 0, 0}, kLimits);
-    plan.cut({0, 20, 0}, kLimits);
-    plan.barrier(TimeKind::kEnd);
-  }
-  [[nodiscard]] std::uint16_t flags() const { return world.records.back().setpoint.flags; }
-};
 
 /// Holds, an override, lost periods and a resume on the way; the rows from the start on.
 [[nodiscard]] std::vector<CycleRecord> operate(CycleWorld& world) {
@@ -104,7 +71,7 @@ TEST(DryRun, NeverSendsASetpointThatDrivesFollow) {
   const std::size_t first = dry.world.records.size() - 3;  // the word itself
   dry.cut();
   dry.run(0.1);
-  dry.world.in.feedback.emergency_stop = true;
+  dry.report_emergency();
   ASSERT_TRUE(dry.world.run_until(State::kFault, 1));
   EXPECT_EQ(alarm_of(dry.world), Alarm::kEmergencyStop) << "as ever";
   dry.world.command(Verb::kReset);
