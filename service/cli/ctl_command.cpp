@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "meridian/rt/state_table.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/hand_options.hpp"
@@ -28,6 +29,7 @@ struct CtlOptions {
   JogOptions jog;
   std::vector<const CLI::Option*> of_jog;  ///< what is said of a jog alone
   double wait_s = 60;
+  bool is_for_dry_run = false;
 };
 
 const std::map<std::string, Verb>& verbs() {
@@ -68,6 +70,7 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
 
 /// What is wrong with the options beside the verb; nullptr: nothing.
 [[nodiscard]] const char* misplaced(Verb verb, const CtlOptions& options) {
+  if (options.is_for_dry_run && !may_be_dry(verb)) return "--dry-run is for enable and start alone";
   if (verb == Verb::kJog) {
     return options.wait.empty() ? nullptr
                                 : "--wait is not for jog, which ends when the joint rests";
@@ -110,6 +113,7 @@ int run_ctl(CtlOptions& options) {
     std::fprintf(stderr, "meridian: %s\n", wrong);
     return kUsage;
   }
+  if (options.is_for_dry_run) *argument = 1;
   if (!options.wait.empty() && !parse_state(options.wait)) {
     std::fprintf(stderr, "meridian: --wait %s: no such state; there are %s\n", options.wait.c_str(),
                  all_states().c_str());
@@ -183,6 +187,8 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->check(finite_range(0.0, 1e7))
       ->needs(wait);
+  command->add_flag("--dry-run", options->is_for_dry_run,
+                    "enable, start: for a dry run alone; refused where the machine is in none");
   const char* user = std::getenv("USER");
   options->operator_name = user != nullptr ? user : "operator";
   command->add_option("--operator", options->operator_name, "Who asks, for the log")

@@ -108,7 +108,9 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   } else if (row.word == record::kActionAnsweredWord) {
     events.answers.push_back({cycle, row.event.argument != 0});
   } else if (row.event.verb != Verb::kStart || cycle > 0) {
-    events.verbs.push_back({cycle, row.event.verb, row.event.argument});
+    // Said for a dry run alone: a simulation moves no drive either.
+    const double argument = may_be_dry(row.event.verb) ? 0 : row.event.argument;
+    events.verbs.push_back({cycle, row.event.verb, argument});
   }
 }
 

@@ -5,6 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "meridian/rt/state_table.hpp"
+
 namespace meridian::stream {
 
 namespace {
@@ -12,6 +14,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kRepeat{300};
+/// A dry run that was told on just now is in the status by then.
+constexpr std::chrono::milliseconds kTold{300};
 
 }  // namespace
 
@@ -52,6 +56,19 @@ bool OperatorLink::wait_for_status(Milliseconds timeout) {
   return true;
 }
 
+dds::Reply OperatorLink::refuse_as_not_dry(const dds::CommandRequest& request) const {
+  return {.request = request.request,
+          .operator_id = operator_id_,
+          .service_id = status_->service_id,
+          .verb = request.verb,
+          .refusal = Refusal::kNotDryRun,
+          .state = status_->state,
+          .epoch = status_->epoch,
+          .text = std::string(name_of(request.verb)) +
+                  " refused: it is for a dry run alone, and the machine tells of none; nothing was "
+                  "asked of it"};
+}
+
 std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Milliseconds timeout) {
   dds::CommandRequest request;
   request.request = ++request_;
@@ -59,11 +76,16 @@ std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Millisec
   request.operator_name = name_;
   request.verb = verb;
   request.argument = argument;
-  const auto end = Clock::now() + timeout;
-  auto due = Clock::now();
+  const bool is_for_dry_run = may_be_dry(verb) && argument != 0;
+  const auto begin = Clock::now(), end = begin + timeout;
+  const auto told = begin + std::min<Clock::duration>(kTold, timeout / 2);
+  auto due = begin;
   for (auto now = due; now < end; now = Clock::now()) {
     static_cast<void>(take_statuses());
-    if (now >= due && status_ && commands_.matched_readers() > 0) {
+    const bool may_send = status_ && (!is_for_dry_run || status_->is_dry_run);
+    const bool was_sent = due > begin;
+    if (status_ && !may_send && !was_sent && now >= told) return refuse_as_not_dry(request);
+    if (now >= due && may_send && commands_.matched_readers() > 0) {
       request.epoch_seen = status_->epoch;
       request.status_seen = status_->status_sequence;
       request.service_id_seen = status_->service_id;

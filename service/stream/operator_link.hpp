@@ -34,7 +34,9 @@ class OperatorLink {
 
   [[nodiscard]] std::uint64_t operator_id() const noexcept { return operator_id_; }
 
-  /// Asks for `verb` and returns the answer; nothing where the service stays silent.
+  /// Asks for `verb` and returns the answer; nothing where the service stays silent. What is said
+  /// for a dry run alone (may_be_dry(), argument 1) is said to a machine that tells of one: of any
+  /// other the answer is our own refusal, for services of before took the word for any other.
   [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout);
 
   /// Waits until the machine is in a state that `is_there` likes, after `reply` (the answer to the
@@ -46,6 +48,8 @@ class OperatorLink {
 
  private:
   bool take_statuses();
+  /// Our own answer to `request`, which was not sent.
+  [[nodiscard]] dds::Reply refuse_as_not_dry(const dds::CommandRequest& request) const;
 
   std::string name_;
   std::uint64_t operator_id_;

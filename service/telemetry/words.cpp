@@ -283,6 +283,7 @@ std::string describe(Verb verb, Refusal refusal, State state) {
     case Refusal::kOutOfRange:
       why = verb == Verb::kJog || verb == Verb::kHome ? "the machine has no such joint"
             : is_switch(verb)                         ? "the value is out of range: on or off"
+            : may_be_dry(verb) ? "the value is out of range: 1 for a dry run alone, else 0"
             : verb == Verb::kFeedOverride
                 ? "the value is out of range: from 0 to what the machine's file allows "
                   "(feed_override_max_percent)"
@@ -314,6 +315,11 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       break;
     case Refusal::kDryRun:
       why = "this is a dry run: every joint has its reference, and no drive searches for one";
+      break;
+    case Refusal::kNotDryRun:
+      why =
+          "it was said for a dry run alone, and this is none: drives would move; disable, then "
+          "dry-run on";
       break;
   }
   return fmt::format("{} refused: {}", name_of(verb), why);

@@ -66,6 +66,30 @@ TEST_F(Tool, StreamsAPartFromOpenToEnd) {
   EXPECT_EQ(said.find('\r'), std::string::npos) << "in a pipe plain lines";
 }
 
+TEST_F(Tool, SaysWhatIsForADryRunAloneToADryRunAlone) {
+  plant.start_service();
+  plant.start_drives();
+  (void)plant.status();
+  std::optional<dds::Reply> reply;
+  ASSERT_TRUE(eventually([&] {
+    reply = plant.say(Verb::kEnable, 1);
+    return reply && reply->refusal != Refusal::kStale;
+  }));
+  EXPECT_EQ(reply->refusal, Refusal::kNotDryRun) << reply->text;
+  Process wet = run({"ctl", "enable", "--dry-run"});
+  EXPECT_EQ(wet.wait(kShort), 4) << wet.said();
+  EXPECT_NE(wet.said().find("refused: enable refused: it is for a dry run alone"),
+            std::string::npos)
+      << wet.said();
+  EXPECT_EQ(plant.status().state, State::kOff);
+  Process misplaced = run({"ctl", "resume", "--dry-run"});
+  EXPECT_EQ(misplaced.wait(kShort), 2) << misplaced.said();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kDryRun, 1));
+  Process dry = run({"ctl", "enable", "--dry-run", "--wait", "Ready"});
+  EXPECT_EQ(dry.wait(kShort), 0) << dry.said();
+  EXPECT_NE(dry.said().find("accepted: dry run: "), std::string::npos) << dry.said();
+}
+
 /// One drawing of the progress bar.
 struct Bar {
   int full = 0, percent = 0;

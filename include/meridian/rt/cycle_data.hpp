@@ -89,7 +89,8 @@ struct JogOrder {
   std::uint64_t hand = 0;  ///< Command::request of the `jog` that it belongs to
 };
 
-/// An operator's word on its way to the cycle. `request` comes back in the reply event.
+/// An operator's word on its way to the cycle. `request` comes back in the reply event. What
+/// `argument` says hangs on the verb; of `enable` and `start` 1: for a dry run alone.
 struct Command {
   std::uint64_t request = 0;
   Verb verb = Verb::kHold;
@@ -151,6 +152,7 @@ enum class Refusal : std::uint8_t {
   kDriveEnabled,    ///< no dry run while a drive reports operation enabled, or did so last
   kDryRun,          ///< in a dry run nothing is homed
   kDriveContested,  ///< two sources report the same drive
+  kNotDryRun,       ///< said for a dry run alone, and the machine is in none
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

@@ -81,6 +81,14 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
   return argument == 1 && is_drive_enabled(c) ? Refusal::kDriveEnabled : Refusal::kNone;
 }
 
+/// Why a word that may be said for a dry run alone is refused, whatever the table says: nobody who
+/// means a dry run is told to go on towards a cut.
+[[nodiscard]] inline Refusal condition_of_kind(const Cycle& c, const Command& command) noexcept {
+  if (!may_be_dry(command.verb) || command.argument == 0) return Refusal::kNone;
+  if (command.argument != 1) return Refusal::kOutOfRange;
+  return c.state.is_dry_run ? Refusal::kNone : Refusal::kNotDryRun;
+}
+
 /// Why a verb that the table allows is refused now; kNone: it is not, and what a start or a resume
 /// goes on with is taken up.
 [[nodiscard]] inline Refusal take_up(Cycle& c, const Command& command) noexcept {
@@ -185,7 +193,8 @@ inline void obey(Cycle& c) noexcept {
   const Command& command = c.in.command;
   const VerbEffect effect = effect_of(c.state.state, command.verb);
   const bool is_asked = effect.effect == Effect::kGo || effect.effect == Effect::kSet;
-  const Refusal refusal = is_asked ? take_up(c, command) : effect.refusal;
+  Refusal refusal = condition_of_kind(c, command);
+  if (refusal == Refusal::kNone) refusal = is_asked ? take_up(c, command) : effect.refusal;
   if (refusal != Refusal::kNone) {
     tell(c, EventCode::kRefused, command.request, static_cast<std::uint64_t>(command.verb),
          static_cast<double>(refusal));

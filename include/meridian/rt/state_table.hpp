@@ -92,12 +92,17 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 13> kNames{
-      "none",          "wrong state", "not referenced", "no program",      "no feedback",
-      "out of range",  "stale",       "fault present",  "program present", "slow ramp",
-      "drive enabled", "dry run",     "drive contested"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kDriveContested) + 1);
+  constexpr std::array<const char*, 14> kNames{
+      "none",          "wrong state", "not referenced",  "no program",      "no feedback",
+      "out of range",  "stale",       "fault present",   "program present", "slow ramp",
+      "drive enabled", "dry run",     "drive contested", "not a dry run"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kNotDryRun) + 1);
   return kNames[static_cast<std::size_t>(refusal)];
+}
+
+/// Whether `verb` may be said for a dry run alone, by an argument of 1: it leads to motion.
+[[nodiscard]] constexpr bool may_be_dry(Verb verb) noexcept {
+  return verb == Verb::kEnable || verb == Verb::kStart;
 }
 
 /// True where drives follow setpoints that are not just their own feedback.

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "unit/rt/dry_program.hpp"
 
-/// What stands between an operator and a dry run.
+/// What stands between an operator and a dry run: the emergency input, and that it is meant.
 namespace meridian {
 namespace {
 
 using test::alarm_of;
 using test::DryRun;
+using test::kLimits;
 using test::Program;
 using test::refusal_of;
 
@@ -65,6 +68,50 @@ TEST(DryRun, LeavesDrivesOffThatAnEmergencyInputStoppedWhoeverIsSilentSince) {
     wet.world.run_for(0.1);
   }
   EXPECT_EQ(wet.world.now(), State::kOff);
+}
+
+/// Every state that an operator may say it in.
+TEST(DryRun, IsWhatAWordThatIsSaidForItAloneIsRefusedWithout) {
+  Program wet(State::kOff);
+  const auto expect_refused = [&](const char* where) {
+    const State before = wet.world.now();
+    for (const Verb verb : {Verb::kEnable, Verb::kStart}) {
+      const int refused = wet.world.count(EventCode::kRefused);
+      wet.world.command(verb, 1);
+      EXPECT_EQ(wet.world.count(EventCode::kRefused), refused + 1) << where;
+      EXPECT_EQ(refusal_of(wet.world), Refusal::kNotDryRun) << where;
+    }
+    return before == wet.world.now();
+  };
+  wet.world.run();
+  EXPECT_TRUE(expect_refused("Off: where enable would switch on"));
+  wet.world.command(Verb::kEnable);
+  (void)expect_refused("Enabling: already so, as the table says, is no answer to it");
+  ASSERT_TRUE(wet.world.run_until(State::kReady, 1));
+  wet.plan.set_epoch(wet.world.state.epoch);
+  wet.plan.cut({30, 0, 0}, kLimits);
+  wet.plan.barrier(TimeKind::kEnd);
+  ASSERT_TRUE(wet.world.run_until(State::kLoaded, 1));
+  EXPECT_TRUE(expect_refused("Loaded: where start would cut"));
+  wet.world.command(Verb::kStart);
+  wet.world.run_for(0.1);
+  EXPECT_TRUE(expect_refused("Running"));
+  ASSERT_TRUE(wet.world.run_until(State::kReady, 2)) << "and nothing of it was hindered";
+}
+
+TEST(DryRun, IsEnabledAndStartedByWordsThatAreSaidForItAlone) {
+  DryRun dry;
+  dry.world.command(Verb::kDryRun, 1);
+  for (const double bad : {0.5, 2.0, -1.0, std::nan("")}) {
+    dry.world.command(Verb::kEnable, bad);
+    EXPECT_EQ(refusal_of(dry.world), Refusal::kOutOfRange) << bad;
+  }
+  dry.world.command(Verb::kEnable, 1);
+  ASSERT_TRUE(dry.world.run_until(State::kReady, 0.1));
+  dry.cut();
+  ASSERT_TRUE(dry.world.run_until(State::kLoaded, 1));
+  dry.world.command(Verb::kStart, 1);
+  EXPECT_TRUE(is_on_path(dry.world.now())) << name_of(dry.world.now());
 }
 
 }  // namespace

@@ -46,6 +46,14 @@ TEST(OperatorEvents, HoldTheSwitchesOfTheStartAndEveryStartBehindABlock) {
   }
 }
 
+TEST(OperatorEvents, ThatWereSaidForADryRunAloneAreSaidToTheSimulationAsAnyOther) {
+  const auto events = read_operator_events("900,enable,1\n1000,start,1\n1500,start,1\n", "e.csv");
+  ASSERT_TRUE(events.has_value()) << events.error();
+  ASSERT_EQ(events->verbs.size(), 1U);
+  EXPECT_EQ(events->verbs[0].verb, Verb::kStart);
+  EXPECT_EQ(events->verbs[0].argument, 0);
+}
+
 TEST(OperatorEvents, SayWhatTheHostDid) {
   const auto events = read_operator_events(
       "900,periods_lost,3\n1000,periods_lost,2\n1000,start,0\n1100,action_answered,1\n"

@@ -84,7 +84,7 @@ TEST(Words, SayEveryAlarmDifferently) {
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kDriveContested);
+  constexpr int kLast = static_cast<int>(Refusal::kNotDryRun);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     for (int state = 0; state < kStateCount; ++state) {
       const std::string text =
@@ -106,6 +106,14 @@ TEST(Words, TellWhetherTheDryRunIsOnAndWhereItMayBeSwitched) {
   EXPECT_EQ(
       describe(Verb::kDryRun, Refusal::kWrongState, State::kRunning),
       "dry_run refused: not in state Running; it begins and ends in Off alone; disable first");
+}
+
+TEST(Words, TellWhoMeansADryRunThatThisIsNone) {
+  EXPECT_EQ(describe(Verb::kStart, Refusal::kNotDryRun, State::kLoaded),
+            "start refused: it was said for a dry run alone, and this is none: drives would move; "
+            "disable, then dry-run on");
+  EXPECT_EQ(describe(Verb::kEnable, Refusal::kOutOfRange, State::kOff),
+            "enable refused: the value is out of range: 1 for a dry run alone, else 0");
 }
 
 TEST(Words, NameBothStatesOfAChange) {
