@@ -31,8 +31,8 @@ class Lease {
   /// The machine is ours: others hear it.
   void hold();
   /// Another service that serves the machine and keeps it, where we heard of it only after hold():
-  /// we are to end. To be called several times a second. `may_leave` is false while the machine is
-  /// on: then there is none.
+  /// we are to end. To be called several times a second. `may_leave` is false while drives are on:
+  /// then there is none. In a dry run none is, so that it gives way as a machine in Off does.
   [[nodiscard]] std::optional<dds::MachineInfo> find_keeper(bool may_leave);
 
  private:

@@ -128,6 +128,7 @@ struct Ports {
 
   std::atomic<bool> is_stopping{false};
   std::atomic<State> state{State::kOff};   ///< of the machine, for who needs no more than that
+  std::atomic<bool> may_leave{true};       ///< no drive would be left alone: Off, or a dry run
   std::atomic<std::uint64_t> session{0};   ///< that holds the machine
   std::atomic<double> spindle_tool_mm{0};  ///< gauge line to tip of the tool in the spindle
   QueueMarkWord queue_mark;                ///< intake to planner: what of `blocks` is good

@@ -206,7 +206,7 @@ void Service::tell_last_program() {
 }
 
 void Service::keep_lease() {
-  const auto keeper = lease_.find_keeper(ports_.state == State::kOff);
+  const auto keeper = lease_.find_keeper(ports_.may_leave);
   if (keeper) throw served_already(*keeper);
 }
 

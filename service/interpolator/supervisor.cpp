@@ -46,6 +46,8 @@ void Supervisor::run() noexcept {
     refresh_view();
     ports_.drive_words.refresh();
     ports_.state.store(view_.record.state, std::memory_order_relaxed);
+    ports_.may_leave.store(view_.record.state == State::kOff || view_.is_dry_run,
+                           std::memory_order_relaxed);
     take_commands();
     take_jogs();
     take_actions_done();

@@ -177,6 +177,17 @@ TEST_F(SupervisorTest, NamesTheDrivesThatTwoReportWhereItRefusesToEnable) {
   EXPECT_TRUE(reply.text.ends_with(": b2, theta2")) << reply.text;
 }
 
+TEST_F(SupervisorTest, MayLeaveTheMachineInOffAndInADryRun) {
+  const auto may_leave = [this](State state, bool is_dry_run, bool wanted) {
+    show(state, is_dry_run);
+    return comes([&] { return ports_->state == state && ports_->may_leave == wanted; });
+  };
+  EXPECT_TRUE(may_leave(State::kRunning, false, false)) << "drives would be left alone";
+  EXPECT_TRUE(may_leave(State::kOff, false, true));
+  EXPECT_TRUE(may_leave(State::kFault, false, false));
+  EXPECT_TRUE(may_leave(State::kRunning, true, true)) << "none is on";
+}
+
 TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe) {
   show(State::kLoaded, true);
   Approach way;
