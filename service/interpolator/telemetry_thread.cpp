@@ -61,6 +61,9 @@ void TelemetryThread::run() noexcept {
   if (service_.optional_stop) recorder_.take(optional_stop_on());
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
+    // At once: behind actions that are done at once, in a dry run, the way is begun as soon as it
+    // is planned.
+    if (take_approach()) has_news_ = true;
     const std::int64_t now_ns = monotonic_ns();
     keep_journal(now_ns);
     const bool is_due = has_news_ || now_ns - status_ns_ >= status_period_ns;
@@ -185,7 +188,7 @@ void TelemetryThread::tell(const Event& event) {
       }
       if (!approach_.empty() && static_cast<State>(event.a) == State::kApproaching &&
           static_cast<State>(event.b) == State::kLoaded) {
-        status_.message = approach_;
+        status_.message = approach_message_ = approach_;
       }
       break;
     case EventCode::kStopped:
@@ -196,6 +199,7 @@ void TelemetryThread::tell(const Event& event) {
     case EventCode::kEpochAdvanced:
       status_.blocks_done = 0;
       has_news_ = true;
+      if (way_.epoch != event.a) forget_approach();  // of a program that is void
       break;
     case EventCode::kPeriodsLost:
       periods_lost_ += event.a;  // told once a second: a busy host loses many
@@ -226,14 +230,51 @@ std::string TelemetryThread::silent_group(const Event& event) {
          (is_told ? ": " + telemetry::drive_names(mask, model_) : "");
 }
 
-void TelemetryThread::declare_approach() {
-  if (!ports_.approach_for_status.refresh()) return;
-  const Approach& approach = ports_.approach_for_status.latest();
+bool TelemetryThread::take_approach() {
+  if (!ports_.approach_for_status.refresh()) return false;
+  way_ = ports_.approach_for_status.latest();
   approach_.clear();
-  if (!approach.is_planned) return;
-  approach_ = telemetry::describe(approach, model_, dds::kMostText);
-  log_->info("{}", telemetry::describe(approach, model_, SIZE_MAX));
-  if (status_.alarm == Alarm::kNone) status_.message = approach_;
+  is_approach_new_ = way_.is_planned;
+  if (!way_.is_planned) return false;
+  approach_ = telemetry::describe(way_, model_, dds::kMostText);
+  log_->info("{}", telemetry::describe(way_, model_, SIZE_MAX));
+  return true;
+}
+
+void TelemetryThread::forget_approach() {
+  if (status_.message == approach_message_) status_.message.clear();
+  approach_.clear();
+  is_approach_new_ = false;
+}
+
+std::string TelemetryThread::with_approach(const std::string& words) const {
+  const State state = view_.record.state;
+  const bool is_ahead = state == State::kLoaded || state == State::kApproaching;
+  const std::string front = words + "; ";
+  if (!is_ahead || approach_.empty() || front.size() >= dds::kMostText) return words;
+  const std::string both = front + telemetry::describe(way_, model_, dds::kMostText - front.size());
+  return both.size() <= dds::kMostText ? both : words;
+}
+
+void TelemetryThread::say_what_is_new(const SessionView& session, bool has_told_program) {
+  (void)take_approach();
+  bool is_declared = !std::exchange(is_approach_new_, false);
+  const bool has_message = !session.message.empty() && session.message != session_message_;
+  if (has_message) {
+    session_message_ = session.message;
+    log_->info("{}", session.message);
+  }
+  if (status_.alarm != Alarm::kNone) {
+    // Of an alarm the operator needs reason and remedy first.
+    const bool is_said = has_message && !has_told_program;
+    if (is_said) status_.message = alarm_message_ + "; " + session.message;
+    return;
+  }
+  if (has_message && !has_told_program) {
+    status_.message = with_approach(session.message);
+    if (status_.message != session.message) approach_message_ = status_.message, is_declared = true;
+  }
+  if (!is_declared) status_.message = approach_message_ = approach_;
 }
 
 void TelemetryThread::publish_status(std::int64_t now_ns) {
@@ -291,16 +332,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.setpoints_overrun = ports_.setpoints_overrun + ports_.writes_failed;
   status.records_overrun = ports_.records_overrun + recorder_.rows_lost();
   status.events_overrun = ports_.events_overrun + recorder_.events_lost();
-  if (!session.message.empty() && session.message != session_message_) {
-    session_message_ = session.message;
-    log_->info("{}", session.message);
-    if (!has_told_program) {
-      // Of an alarm the operator needs reason and remedy first.
-      status.message = session.message;
-      if (status.alarm != Alarm::kNone) status.message = alarm_message_ + "; " + status.message;
-    }
-  }
-  declare_approach();  // behind the word that the program is in, which it comes from
+  say_what_is_new(session, has_told_program);
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);
   (void)statuses_.write(status);

@@ -50,8 +50,14 @@ class TelemetryThread {
   void tell(const Event& event);
   /// Which group is silent, where `event` is the alarm of one that is; else empty.
   [[nodiscard]] std::string silent_group(const Event& event);
-  /// Tells how a program will be approached that was planned meanwhile.
-  void declare_approach();
+  /// Takes how a program will be approached that was planned meanwhile; false: nothing new.
+  bool take_approach();
+  /// Its program will not be run.
+  void forget_approach();
+  /// Into the message of the status: what stations did, and the approach.
+  void say_what_is_new(const SessionView& session, bool has_told_program);
+  /// `words` with the approach behind them, where that is still ahead.
+  [[nodiscard]] std::string with_approach(const std::string& words) const;
   void keep_journal(std::int64_t now_ns);
   void publish_status(std::int64_t now_ns);
   void publish_latency(std::int64_t now_ns);
@@ -97,6 +103,9 @@ class TelemetryThread {
   std::string session_message_;  ///< newest of intake that was told
   std::string alarm_message_;    ///< of the newest alarm
   std::string approach_;         ///< how the program that was planned last is approached
+  Approach way_;                 ///< the same
+  bool is_approach_new_ = false;
+  std::string approach_message_;  ///< the message that told it last
 };
 
 }  // namespace meridian::interpolator

@@ -68,6 +68,32 @@ class TelemetryThreadTest : public testing::Test {
     while (statuses.take(status_)) {
     }
   }
+  /// The planner has laid out how a program of `epoch` is approached, and the machine is Loaded.
+  void plan_approach(std::uint16_t epoch) {
+    CycleView view;
+    view.cycles_run = 1;
+    view.epoch = epoch;
+    view.is_dry_run = true;
+    view.record.state = State::kLoaded;
+    ports_->telemetry_view.store(view);
+    Approach way;
+    way.is_planned = true;
+    way.epoch = epoch;
+    way.line = 12;
+    ports_->approach_for_status.store(way);
+  }
+  /// Whether a message comes that ends with `words`, while the thread works on.
+  [[nodiscard]] bool comes(dds::Reader<dds::Status>& statuses, const std::string& words,
+                           std::chrono::milliseconds patience = std::chrono::seconds(10)) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < end) {
+      while (statuses.take(status_)) {
+        if (status_.message.ends_with(words)) return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
   /// What the file of events holds afterwards.
   [[nodiscard]] std::string events() {
     recorder_.stop();
@@ -185,6 +211,49 @@ TEST_F(TelemetryThreadTest, SaysHowTheProgramWentNotThatItsSessionIsThere) {
   for (const State state : {State::kApproaching, State::kRunning, State::kReady}) record(state);
   run();
   EXPECT_EQ(status_.message, "the program ran to its end: 0 blocks in 0.0 s");
+}
+
+const std::string kApproachWords = "approach to line 12: none, the tool is there";
+
+TEST_F(TelemetryThreadTest, KeepsTheApproachInTheStatusWhateverTheStationDoesAndTellsItAtOnce) {
+  service_.status_rate_hz = 0.05;  // by itself not again before this test is over
+  dds::Reader<dds::Status> statuses(participant_);
+  CycleView view;
+  view.cycles_run = 1;
+  view.record.state = State::kLoaded;
+  ports_->telemetry_view.store(view);
+  TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
+                         *intake_, clock_, recorder_, journal_, flight_, log_, *ports_);
+  std::thread running([&] { thread.run(); });
+  EXPECT_TRUE(comes(statuses, "")) << "the first";
+  plan_approach(1);
+  EXPECT_TRUE(comes(statuses, kApproachWords));
+  open_session();  // the thread ends behind it
+  running.join();
+  EXPECT_TRUE(comes(statuses, "station cam opened part.apt; " + kApproachWords)) << status_.message;
+}
+
+TEST_F(TelemetryThreadTest, TellsNoApproachOfAProgramThatIsVoid) {
+  for (const std::uint64_t epoch : {1U, 2U}) {
+    plan_approach(1);
+    status_.message.clear();
+    dds::Reader<dds::Status> statuses(participant_);
+    TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
+                           *intake_, clock_, recorder_, journal_, flight_, log_, *ports_);
+    ports_->is_stopping = false;
+    std::thread running([&] { thread.run(); });
+    EXPECT_TRUE(comes(statuses, kApproachWords));
+    tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));
+    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kReady),
+         static_cast<std::uint64_t>(State::kHeld));
+    tell(EventCode::kEpochAdvanced, epoch);
+    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kApproaching),
+         static_cast<std::uint64_t>(State::kLoaded));
+    ports_->is_stopping = true;
+    running.join();
+    while (statuses.take(status_)) continue;
+    EXPECT_EQ(status_.message == kApproachWords, epoch == 1) << status_.message;
+  }
 }
 
 TEST_F(TelemetryThreadTest, NotesNothingOfADryRunWhoseBeginWasLostAmongTheEvents) {
