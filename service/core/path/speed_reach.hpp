@@ -44,7 +44,8 @@ class LargestAhead {
 
 /// How fast blocks within kSpeedReach_mm of a stretch ask tip and axis to be at most: what bounds
 /// both where blocks in inverse time are rounded. What comes out follows from the blocks alone.
-/// Source: docs/motion.md, section 1.5. Allocates at construction.
+/// Source: docs/motion.md, section 1.5. Proof: tests/unit/path/speed_reach_test.cpp. Allocates at
+/// construction.
 class SpeedReach {
  public:
   SpeedReach() : tip_(kCapacity), turn_(kCapacity) {}
