@@ -177,7 +177,7 @@ void Security::expect_roles_enforced() {
        {"ours/drives",
         "wr",
         {"writes feedback", "writes action_done", "reads setpoint", "reads drive_command",
-         "reads machine"}},
+         "reads feedback", "reads machine"}},
        {"ours/viewer", "wrs", seen_by_viewer},
        {"ours/station",
         "wr",
