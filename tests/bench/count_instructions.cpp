@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// count_instructions WORKLOAD N: runs a workload N times. The instruction gates count two such
-/// runs under callgrind and take the difference, so that start-up does not count.
+/// runs under callgrind and take the difference, so that start-up does not count; of a gate of the
+/// most of one call, callgrind counts every call for itself.
 
 #include <cstdint>
 #include <cstdio>
@@ -35,6 +36,8 @@ int main(int argc, char** argv) {
     checksum = meridian::bench::run_cycle(count);
   } else if (workload == "cycle_single_block") {
     checksum = meridian::bench::run_stepped_cycle(count);
+  } else if (workload == "cycle_over_windows") {
+    checksum = meridian::bench::run_windowed_cycle(count);
   } else if (workload == "setpoint_spline") {
     checksum = meridian::bench::run_setpoints(meridian::bench::SetpointsOf::kSpline, count);
   } else if (workload == "setpoint_pole") {

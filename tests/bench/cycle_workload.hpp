@@ -10,6 +10,7 @@
 #include "meridian/planner/rest_to_rest.hpp"
 #include "meridian/planner/smooth_planner.hpp"
 #include "meridian/rt/step.hpp"
+#include "support/dense_block.hpp"
 #include "support/machines.hpp"
 
 /// One workload for the benchmark that measures time and for the gate that counts instructions.
@@ -99,6 +100,13 @@ class RunningCycle : public DrivenCycle<RestToRestPlanner> {
   std::uint64_t next_block_ = 0;
 };
 
+/// The Lai machine where it runs on through blocks.
+[[nodiscard]] inline MachineModel smooth_machine() {
+  MachineModel machine = test::lai_machine();
+  machine.transition = Transition::kSmooth;
+  return machine;
+}
+
 /// One that cuts a block of 70 mm smoothly at its full rate, its axis turning, single block being
 /// on: the end of the block is sought in every cycle and not in sight.
 class SteppedCycle : public DrivenCycle<SmoothPlanner> {
@@ -124,11 +132,6 @@ class SteppedCycle : public DrivenCycle<SmoothPlanner> {
   }
 
  private:
-  [[nodiscard]] static MachineModel smooth_machine() {
-    MachineModel machine = test::lai_machine();
-    machine.transition = Transition::kSmooth;
-    return machine;
-  }
   [[nodiscard]] static ClBlock long_block(std::uint64_t n) {
     ClBlock block;
     block.kind = n < 2 ? BlockKind::kCut : BlockKind::kEnd;
@@ -141,6 +144,32 @@ class SteppedCycle : public DrivenCycle<SmoothPlanner> {
     block.feed_meaning = FeedMeaning::kTip;
     return block;
   }
+};
+
+/// One that runs smoothly from window to window: each of them ends in a tail of some 80 pieces,
+/// which the cycle that comes to it skips.
+class WindowedCycle : public DrivenCycle<SmoothPlanner> {
+ public:
+  WindowedCycle() : DrivenCycle(smooth_machine()) {
+    for (std::uint64_t n = 0; n <= kBlocks; ++n) {
+      ClBlock block = test::dense_block(n, 0.3, 50);
+      block.kind = n < kBlocks ? BlockKind::kCut : BlockKind::kEnd;
+      (void)planner_.plan(block, writer_);
+    }
+    run();
+    command(Verb::kStart);
+    for (int i = 0; i < 20'000 && state_.state != State::kRunning; ++i) run();
+  }
+
+  /// Whether it is still cutting, has skipped at least `least` tails and run none.
+  [[nodiscard]] bool has_skipped(std::uint32_t least) const noexcept {
+    const auto begun = writer_.window_begun();
+    return state_.state == State::kRunning && begun && begun->window > least &&
+           !writer_.tail_entered();
+  }
+
+ private:
+  static constexpr std::uint64_t kBlocks = 130;
 };
 
 /// Runs `n` cycles of a machine that cuts; returns a checksum of the setpoints, 0 if it does not
@@ -162,6 +191,22 @@ class SteppedCycle : public DrivenCycle<SmoothPlanner> {
     sum += cycle.run();
   }
   return cycle.is_at_feed() ? sum | 1U : 0;
+}
+
+/// Nothing; callgrind begins to count anew where it comes here (--dump-before).
+[[gnu::noinline]] inline void begin_counted_call() { asm volatile("" ::: "memory"); }
+
+/// Runs `n` cycles of a machine that cuts from window to window, each counted for itself; returns
+/// a checksum, 0 if there were not four windows to go on in.
+[[nodiscard]] inline std::uint64_t run_windowed_cycle(int n) {
+  WindowedCycle cycle;
+  std::uint64_t sum = 0;
+  for (int i = 0; i < n; ++i) {
+    begin_counted_call();
+    sum += cycle.run();
+  }
+  begin_counted_call();
+  return cycle.has_skipped(4) ? sum | 1U : 0;
 }
 
 }  // namespace meridian::bench
