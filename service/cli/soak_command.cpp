@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/process/claimed_domain.hpp"
 #include "service/process/programs.hpp"
+#include "service/soak/report_files.hpp"
 #include "service/soak/soak.hpp"
 
 namespace meridian::cli {
@@ -41,6 +43,11 @@ int run(Options& options) {
   options.soak.report = options.report;
   if (options.soak.machine.empty()) {
     options.soak.machine = process::shipped_file("machines/lai.toml").string();
+  }
+  std::vector<std::string> read = options.soak.programs;
+  read.insert(read.end(), {options.soak.machine, options.soak.tools});
+  if (const auto refusal = soak::refusal_to_report(options.report, read); !refusal.empty()) {
+    throw CLI::ValidationError("--report", refusal);
   }
   std::optional<process::ClaimedDomain> claimed;
   if (!options.domain) claimed.emplace(process::kFirstProbeDomain, process::kLastProbeDomain);
@@ -82,8 +89,9 @@ void add_soak_command(CLI::App& app, int& exit_code) {
                    "soak or probe of this host has")
       ->check(CLI::Range(0, 230));
   command->add_option("--report", options->report,
-                      "JSON file, written again and again while it runs; text beside it as .txt, "
-                      "recordings with something wrong in a folder as .kept");
+                      "JSON file, written again and again while it runs, so not called .txt: the "
+                      "text lies beside it as .txt, recordings with something wrong in a folder "
+                      "as .kept");
   command->add_flag("--json", options->is_json, "Print JSON");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -8,7 +8,7 @@
 namespace meridian::soak {
 
 /// What is put aside for whoever looks into a violation: copies in a folder, NAME1.ENDING,
-/// NAME2.ENDING and so on. Proof: tests/unit/soak/soak_test.cpp.
+/// NAME2.ENDING and so on. Proof: tests/unit/soak/evidence_test.cpp.
 class Evidence {
  public:
   /// Removes what a soak before left of that name in `folder`. Of the first `most` finds something

@@ -23,10 +23,10 @@ constexpr double kTooLongAway_s = 0.05;
 constexpr double kBridgeAway_s = 0.045;
 
 /// How long a processor must have been away to make `alarm`; nothing: no stall makes it.
-[[nodiscard]] std::optional<double> away_for(Alarm alarm, const Witness& witness) noexcept {
+[[nodiscard]] std::optional<double> away_for(Alarm alarm, bool misses_setpoints) noexcept {
   if (alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError) return kTooLongAway_s;
   const bool is_of_bridge =
-      alarm == Alarm::kPeriodsLost || (alarm == Alarm::kDriveFault && witness.misses_setpoints);
+      alarm == Alarm::kPeriodsLost || (alarm == Alarm::kDriveFault && misses_setpoints);
   return is_of_bridge ? std::optional(kBridgeAway_s) : std::nullopt;
 }
 
@@ -71,12 +71,13 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (!is_stopping) {
     is_faulty_ = is_judged_ = false;
     alarm_ = Alarm::kNone;
-    witness_ = {};
+    stop_ns_.reset();
+    away_s_ = 0;
+    misses_setpoints_ = false;
     return std::nullopt;
   }
-  witness_.away_s = std::max(witness_.away_s, witness.away_s);
-  witness_.is_watched = witness.is_watched;
-  witness_.misses_setpoints |= witness.misses_setpoints;
+  if (!stop_ns_) stop_ns_ = status.time_ns;
+  listen(witness);
   if (alarm_ == Alarm::kNone) {
     alarm_ = status.alarm;
     joint_ = status.alarm_joint;
@@ -88,19 +89,25 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
   const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
   if (is_injected) return Cause::kInjected;
-  const auto least_s = away_for(alarm_, witness_);
+  const auto least_s = away_for(alarm_, misses_setpoints_);
   if (!least_s) return Cause::kUnprovoked;
-  if (!witness_.is_watched) return Cause::kUnwatched;
-  return witness_.away_s >= *least_s ? Cause::kHost : Cause::kUnprovoked;
+  if (!is_watched_) return Cause::kUnwatched;
+  return away_s_ >= *least_s ? Cause::kHost : Cause::kUnprovoked;
+}
+
+/// A stall is told when it is over, which may be behind the alarm that it made.
+void FaultJudge::listen(const Witness& witness) noexcept {
+  const std::int64_t away_ns = longest_away_ns(witness.stalls, *stop_ns_ - kStallsOf_ns, *stop_ns_);
+  away_s_ = std::max(away_s_, static_cast<double>(away_ns) * 1e-9);
+  is_watched_ = witness.is_watched;
+  misses_setpoints_ |= witness.misses_setpoints;
 }
 
 std::string FaultJudge::describe() const {
   std::string out = "alarm: " + std::string(record::word(alarm_));
   if (record::is_of_joint(alarm_)) text::append(out, " of joint %d", joint_);
   text::append(out, ", %.1f s after enabling", enabled_s_);
-  if (witness_.away_s > 0) {
-    text::append(out, ", a processor away for %.0f ms", 1e3 * witness_.away_s);
-  }
+  if (away_s_ > 0) text::append(out, ", a processor away for %.0f ms", 1e3 * away_s_);
   if (injected_) {
     text::append(out, "; planned: %s", word(injected_->mishap));
     if (is_of_drive(injected_->mishap)) text::append(out, " of joint %d", injected_->drive);

@@ -5,8 +5,9 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
+#include <iterator>
+#include <map>
 
 #include "service/process/processors.hpp"
 #include "service/stream/steady_ns.hpp"
@@ -28,6 +29,25 @@ constexpr std::int64_t kOneStall_ns = 2 * kNap_ns;
 }
 
 }  // namespace
+
+std::int64_t longest_away_ns(std::span<const Stall> stalls, std::int64_t since_ns,
+                             std::int64_t until_ns) {
+  struct Away {
+    std::int64_t end_ns = 0, length_ns = 0;
+  };
+  std::map<int, Away> away;  // the newest of each processor
+  std::int64_t longest_ns = 0;
+  for (const Stall& stall : stalls) {
+    const std::int64_t begin_ns = stall.end_ns - stall.length_ns;
+    if (stall.end_ns < since_ns || begin_ns >= until_ns) continue;
+    Away& here = away[stall.cpu];
+    const bool goes_on = here.length_ns > 0 && begin_ns - here.end_ns <= kOneStall_ns;
+    const std::int64_t end_ns = std::min(stall.end_ns, until_ns);
+    here = {end_ns, end_ns - begin_ns + (goes_on ? here.length_ns : 0)};
+    longest_ns = std::max(longest_ns, here.length_ns);
+  }
+  return longest_ns;
+}
 
 HostWatch::HostWatch() {
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
@@ -57,22 +77,12 @@ void HostWatch::note(const Stall& stall) {
   longest_ns_ = std::max(longest_ns_, stall.length_ns);
 }
 
-double HostWatch::away_s(double last_s) const {
-  const std::int64_t since_ns = stream::steady_ns() - static_cast<std::int64_t>(last_s * 1e9);
-  struct Away {
-    std::int64_t end_ns = 0, length_ns = 0;
-  };
-  std::array<Away, CPU_SETSIZE> away{};
-  std::int64_t longest_ns = 0;
+std::vector<Stall> HostWatch::stalls_since(std::int64_t since_ns) const {
+  std::vector<Stall> out;
   const std::lock_guard lock(mutex_);
-  for (const Stall& stall : stalls_) {
-    if (stall.end_ns < since_ns) continue;
-    Away& here = away[static_cast<std::size_t>(stall.cpu)];
-    const bool goes_on = stall.end_ns - stall.length_ns - here.end_ns <= kOneStall_ns;
-    here = {stall.end_ns, stall.length_ns + (goes_on ? here.length_ns : 0)};
-    longest_ns = std::max(longest_ns, here.length_ns);
-  }
-  return static_cast<double>(longest_ns) * 1e-9;
+  std::ranges::copy_if(stalls_, std::back_inserter(out),
+                       [since_ns](const Stall& stall) { return stall.end_ns >= since_ns; });
+  return out;
 }
 
 std::uint64_t HostWatch::stalls() const {

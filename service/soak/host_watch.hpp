@@ -5,10 +5,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <vector>
 
 namespace meridian::soak {
+
+/// The host took a processor away; monotonic clock.
+struct Stall {
+  std::int64_t end_ns = 0, length_ns = 0;
+  int cpu = 0;
+};
+
+/// How long the processor that was away for longest was away, ns: of `stalls`, in the order of
+/// their ends, those that ended since `since_ns`, and of them what was before `until_ns`. Stalls of
+/// one processor that follow one another at once are one, however many.
+/// Proof: tests/unit/soak/host_watch_test.cpp.
+[[nodiscard]] std::int64_t longest_away_ns(std::span<const Stall> stalls, std::int64_t since_ns,
+                                           std::int64_t until_ns);
 
 /// Sees when the host takes processors away: a thread on each of them, above every other of real
 /// time, naps and notes by how much it woke too late. Nothing but the kernel or what is below it
@@ -21,9 +35,8 @@ class HostWatch {
   HostWatch(const HostWatch&) = delete;
   HostWatch& operator=(const HostWatch&) = delete;
 
-  /// How long the processor that was away for longest was away in the last `last_s`, s. Stalls that
-  /// follow one another at once are one.
-  [[nodiscard]] double away_s(double last_s) const;
+  /// Those that ended since `since_ns` of the monotonic clock, in that order.
+  [[nodiscard]] std::vector<Stall> stalls_since(std::int64_t since_ns) const;
   /// Over all of its life: stalls of at least kStall_ns, and the longest, s.
   [[nodiscard]] std::uint64_t stalls() const;
   [[nodiscard]] double longest_s() const;
@@ -34,11 +47,6 @@ class HostWatch {
   static constexpr std::int64_t kStall_ns = 10'000'000;
 
  private:
-  struct Stall {
-    std::int64_t end_ns, length_ns;
-    int cpu;
-  };
-
   void watch(int cpu, const std::stop_token& stop);
   void note(const Stall& stall);
 

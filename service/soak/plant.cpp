@@ -2,6 +2,7 @@
 #include "service/soak/plant.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <system_error>
@@ -84,19 +85,25 @@ void Plant::start_station(const std::string& program) {
 }
 
 std::string Plant::keep_logs() {
+  if (awaits_flight()) keep_flight();
   const std::string kept = kept_.keep({{log("service.log"), ".service.log"},
                                        {log("drives.out"), ".drives.out"},
                                        {log("drives.log"), ".drives.log"}});
   flight_of_ = kept;
+  logs_kept_ = std::filesystem::file_time_type::clock::now();
   return kept.empty() ? "soak" : kept;
 }
 
 void Plant::keep_flight() {
+  // The record of a stop may be on disk before the Fault that it ends in is told.
+  constexpr auto kStop = std::chrono::seconds(2);
   std::error_code error;
   std::filesystem::path newest;  // names begin with the time of the fault
   for (std::filesystem::directory_iterator at(flights(), error), end; !error && at != end;
        at.increment(error)) {
-    if (at->path().extension() == ".csv") newest = std::max(newest, at->path());
+    std::error_code gone;
+    const bool is_of_before = at->last_write_time(gone) < logs_kept_ - kStop;
+    if (at->path().extension() == ".csv" && !is_of_before) newest = std::max(newest, at->path());
   }
   const std::string stem = std::exchange(flight_of_, "");
   if (!newest.empty()) std::filesystem::copy_file(newest, stem + ".flight.csv", error);

@@ -38,7 +38,8 @@ class Plant {
   /// "soak" where they were not kept.
   [[nodiscard]] std::string keep_logs();
   /// Copies what the flight recorder wrote of the fault whose logs were kept last, as
-  /// NAMEn.flight.csv; the service has it ready about a second behind the fault.
+  /// NAMEn.flight.csv; the service has it ready about a second behind the fault. Nothing where it
+  /// wrote nothing. Proof: tests/unit/soak/evidence_test.cpp.
   void keep_flight();
   [[nodiscard]] bool awaits_flight() const { return !flight_of_.empty(); }
 
@@ -56,6 +57,7 @@ class Plant {
   std::filesystem::path folder_;
   Evidence kept_;
   std::string flight_of_;  ///< stem of the logs whose flight is not kept yet
+  std::filesystem::file_time_type logs_kept_;
   std::unique_ptr<process::ChildProcess> service_, drives_, station_;
 };
 

@@ -20,6 +20,7 @@
 #include "service/soak/host_watch.hpp"
 #include "service/soak/judge.hpp"
 #include "service/soak/plant.hpp"
+#include "service/soak/report_files.hpp"
 #include "service/soak/sample_program.hpp"
 #include "service/soak/status_counts.hpp"
 #include "service/stream/operator_link.hpp"
@@ -42,12 +43,6 @@ constexpr double kAfterDeath_s = 2.5;
 constexpr double kFlightWritten_s = 3;  // half a second of record behind the fault, then the disk
 /// Nothing moves for this long although nobody holds the machine: something is stuck.
 constexpr double kStuck_s = 60;
-/// What the host does acts on the machine within this time.
-constexpr double kHostBefore_s = 1;
-
-[[nodiscard]] std::filesystem::path kept_beside(std::filesystem::path report) {
-  return report.empty() ? report : report.replace_extension(".kept");
-}
 
 [[nodiscard]] bool is_moving(State state) {
   return state == State::kApproaching || state == State::kRunning;
@@ -169,7 +164,9 @@ class Soak {
 
   void see(const dds::Status& status) {
     counts_.add(status, report_);
-    const Witness witness{host_.away_s(kHostBefore_s), host_.is_watching(), misses_setpoints()};
+    constexpr std::int64_t kMemory_ns = FaultJudge::kStallsOf_ns + FaultJudge::kLongestStop_ns;
+    const Witness witness{host_.stalls_since(status.time_ns - kMemory_ns), host_.is_watching(),
+                          misses_setpoints()};
     if (const auto cause = faults_.see(status, now_s(), witness)) judge_fault(*cause, status);
     if (status.state != state_) asked_in_vain_ = 0;
     if (status.state != state_ || is_moving(status.state)) moved_s_ = now_s();
@@ -333,10 +330,8 @@ class Soak {
     report_.host_longest_s = host_.longest_s();
     judge_.collect(report_);
     if (options_.report.empty()) return;
-    auto text_file = options_.report;
-    text_file.replace_extension(".txt");
     if (!text::write_whole(options_.report, to_json(report_)) ||
-        !text::write_whole(text_file, to_text(report_))) {
+        !text::write_whole(text_beside(options_.report), to_text(report_))) {
       say_("the report " + options_.report.string() + " cannot be written");
     }
   }
@@ -346,6 +341,7 @@ class Soak {
     plant_.kill_station();
     if (plant_.service() != nullptr) health_.look(plant_.service()->id(), now_s());
     if (!plant_.end_service()) report_.violate("the service did not end well", "soak");
+    if (plant_.awaits_flight()) plant_.keep_flight();
     plant_.stop_drives();
     judge_.finish();
     report_.is_over = true;

@@ -19,8 +19,7 @@ struct SoakOptions {
   std::uint64_t seed = 1;
   double chaos_every_s = 0;  ///< mean distance of mishaps; 0: none
   std::uint32_t domain = 0;
-  /// Text beside it as .txt, recordings with something wrong in a folder beside it as .kept; empty:
-  /// none on the way.
+  /// JSON; text and recordings lie beside it (report_files.hpp). Empty: none on the way.
   std::filesystem::path report;
 };
 

@@ -33,5 +33,17 @@ TEST(SoakCommand, StartsDrivesThatEndAtOnceNotAgainBeforeAPause) {
   EXPECT_EQ(soak.output.find(ended, first + 1), std::string::npos) << soak.output;
 }
 
+TEST(SoakCommand, RefusesAReportThatItsOwnTextWouldLieOver) {
+  const process::ScratchFolder folder;
+  const std::string report = (folder.path() / "soak.txt").string();
+  const CommandOutput refused =
+      run_command("MERIDIAN_SHARE=" MERIDIAN_SOURCE_DIR "/deploy " MERIDIAN_BINARY_DIR
+                  "/bin/meridian soak --for 1s --report " +
+                  report + " 2>&1");
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("--report: " + report), std::string::npos) << refused.output;
+  EXPECT_TRUE(fs::is_empty(folder.path())) << "nothing is written";
+}
+
 }  // namespace
 }  // namespace meridian::test

@@ -8,10 +8,49 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
+#include <limits>
 #include <thread>
+#include <vector>
+
+#include "service/stream/steady_ns.hpp"
 
 namespace meridian::soak {
 namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+/// `length_ms` long, until `end_ms`, on processor `cpu`.
+[[nodiscard]] Stall stall(std::int64_t end_ms, std::int64_t length_ms, int cpu = 0) {
+  return {end_ms * kMs, length_ms * kMs, cpu};
+}
+
+TEST(LongestAway, AddsStallsThatFollowOneAnotherAtOnce) {
+  const std::vector<Stall> chained{stall(120, 20), stall(145, 20), stall(170, 15)};
+  EXPECT_EQ(longest_away_ns(chained, 0, kNever), 55 * kMs);
+}
+
+TEST(LongestAway, MakesNoLongStallOfStallsApart) {
+  std::vector<Stall> apart;
+  for (int i = 1; i <= 10; ++i) apart.push_back(stall(100 * i, 15 + i));
+  EXPECT_EQ(longest_away_ns(apart, 0, kNever), 25 * kMs);
+  EXPECT_EQ(longest_away_ns(std::vector{stall(120, 20), stall(151, 20)}, 0, kNever), 20 * kMs)
+      << "between them the processor was there for 11 ms, more than two naps";
+}
+
+TEST(LongestAway, AddsNothingOfOneProcessorToAnother) {
+  const std::vector<Stall> both{stall(120, 20, 0), stall(121, 20, 1), stall(142, 20, 0),
+                                stall(146, 25, 1)};
+  EXPECT_EQ(longest_away_ns(both, 0, kNever), 45 * kMs);
+}
+
+TEST(LongestAway, IsOfTheTimeThatWasAskedForAlone) {
+  const std::vector<Stall> stalls{stall(100, 90), stall(500, 30), stall(900, 60)};
+  EXPECT_EQ(longest_away_ns(stalls, 101 * kMs, 840 * kMs), 30 * kMs);
+  EXPECT_EQ(longest_away_ns(stalls, 101 * kMs, 880 * kMs), 40 * kMs) << "what is behind is cut off";
+  EXPECT_EQ(longest_away_ns({}, 0, kNever), 0);
+}
 
 /// Stops this process for `time` and lets it go on.
 void stop_for(std::chrono::milliseconds time) {
@@ -25,7 +64,7 @@ void stop_for(std::chrono::milliseconds time) {
   waitpid(child, nullptr, 0);
 }
 
-TEST(HostWatch, SeesThatProcessorsWereAwayAndForgetsWhatIsLongAgo) {
+TEST(HostWatch, SeesThatProcessorsWereAwayAndTellsWhen) {
   const sched_param top{.sched_priority = 1};
   if (sched_setscheduler(0, SCHED_FIFO, &top) != 0) GTEST_SKIP() << "no right to real time";
   const sched_param none{};
@@ -37,10 +76,10 @@ TEST(HostWatch, SeesThatProcessorsWereAwayAndForgetsWhatIsLongAgo) {
   stop_for(std::chrono::milliseconds(120));
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_GT(host.stalls(), before);
-  EXPECT_GE(host.away_s(1), 0.1);
+  const std::int64_t now_ns = stream::steady_ns(), second_ago_ns = now_ns - 1000 * kMs;
+  EXPECT_GE(longest_away_ns(host.stalls_since(second_ago_ns), second_ago_ns, now_ns), 100 * kMs);
   EXPECT_GE(host.longest_s(), 0.1);
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_LT(host.away_s(0.03), 0.1);
+  for (const Stall& one : host.stalls_since(now_ns)) EXPECT_GE(one.end_ns, now_ns);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,8 +11,6 @@
 #include "service/drives/injection.hpp"
 #include "service/process/programs.hpp"
 #include "service/soak/chaos.hpp"
-#include "service/soak/evidence.hpp"
-#include "service/soak/fault_judge.hpp"
 #include "service/soak/plant.hpp"
 #include "service/soak/segments.hpp"
 #include "service/soak/soak_report.hpp"
@@ -101,183 +98,6 @@ TEST(SentPrograms, AreRemovedOnlyWhereTheyWereMadeAndNobodyAsksForThemAnyMore) {
   EXPECT_FALSE(std::filesystem::exists(mine));
   EXPECT_TRUE(std::filesystem::exists(yours));
   EXPECT_TRUE(std::filesystem::exists(last));
-}
-
-class EvidenceTest : public testing::Test {
- protected:
-  [[nodiscard]] std::filesystem::path file(const char* name, const char* text = "new") const {
-    std::filesystem::create_directories(kept_);
-    const auto path = kept_ / name;
-    std::ofstream(path) << text;
-    return path;
-  }
-  [[nodiscard]] std::string read(const char* name) const {
-    std::ifstream in(kept_ / name);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
-  process::ScratchFolder folder_;
-  std::filesystem::path kept_ = folder_.path() / "soak.kept";
-};
-
-TEST_F(EvidenceTest, IsNamedByItsNumberAndOfTheFirstFindsAlone) {
-  const auto from = file("source");
-  Evidence evidence(kept_, "recording", 2);
-  EXPECT_EQ(evidence.keep({{from, ".csv"}, {folder_.path() / "none", ".cl"}}),
-            kept_ / "recording1");
-  EXPECT_EQ(evidence.keep({{from, ".csv"}, {from, ".cl"}}), kept_ / "recording2");
-  EXPECT_EQ(evidence.keep({{from, ".csv"}}), "");
-  EXPECT_EQ(read("recording1.csv"), "new");
-  EXPECT_EQ(read("recording2.cl"), "new");
-  EXPECT_EQ(Evidence("", "recording", 2).keep({{from, ".csv"}}), "");
-  EXPECT_EQ(evidence.keep({{folder_.path() / "none", ".csv"}}), "");
-}
-
-TEST_F(EvidenceTest, OfASoakBeforeIsGoneAndNothingElse) {
-  const auto old = {file("recording1.csv", "old"), file("recording12.cl", "old")};
-  const auto others = {file("recording.csv"), file("recording-of-mine.csv"), file("fault1.drives"),
-                       file("recording1")};
-  const Evidence evidence(kept_, "recording", 2);
-  for (const auto& path : old) EXPECT_FALSE(std::filesystem::exists(path)) << path;
-  for (const auto& path : others) EXPECT_TRUE(std::filesystem::exists(path)) << path;
-}
-
-TEST(Faults, AreExplainedByTheirKindTheirDriveAndTheirTime) {
-  const Planned fault{Mishap::kDriveFault, 20, 0, 3};
-  EXPECT_TRUE(explains(fault, 20, Alarm::kDriveFault, 3));
-  EXPECT_FALSE(explains(fault, 20, Alarm::kDriveFault, 2));
-  EXPECT_FALSE(explains(fault, 19, Alarm::kDriveFault, 3));
-  EXPECT_FALSE(explains(fault, 20, Alarm::kFollowingError, 3));
-  const Planned blocked{Mishap::kDriveBlocked, 20, 0, 3};
-  EXPECT_TRUE(explains(blocked, 25, Alarm::kFollowingError, 3));
-  EXPECT_TRUE(explains(blocked, 25, Alarm::kDriveFault, 3));
-  EXPECT_FALSE(explains(blocked, 25, Alarm::kTravel, 3));
-  EXPECT_TRUE(explains({Mishap::kDrivesSilent, 20, 0, 0}, 20, Alarm::kFeedbackLost, 0));
-  EXPECT_TRUE(explains({Mishap::kEmergencyStop, 20, 0, 0}, 20, Alarm::kEmergencyStop, 0));
-  for (const Mishap mishap : {Mishap::kHold, Mishap::kAbort, Mishap::kServiceDies}) {
-    EXPECT_FALSE(explains({mishap, 0, 0, 0}, 20, Alarm::kDriveFault, 0)) << word(mishap);
-  }
-}
-
-class FaultJudgeTest : public testing::Test {
- protected:
-  std::optional<FaultJudge::Cause> see(double now_s, State state, Alarm alarm = Alarm::kNone,
-                                       const Witness& witness = {}) {
-    dds::Status status;
-    status.state = state;
-    status.alarm = alarm;
-    return judge_.see(status, now_s, witness);
-  }
-  using Cause = FaultJudge::Cause;
-  FaultJudge judge_;
-};
-
-TEST_F(FaultJudgeTest, CountsTheTimeThatDrivesWereEnabled) {
-  judge_.begin_drives(Planned{Mishap::kDrivesSilent, 10, 0, 0});
-  for (int life = 0; life < 2; ++life) {  // off for 100 s between two times of 6 s
-    EXPECT_FALSE(see(100 * life, State::kEnabling));
-    EXPECT_FALSE(see(100 * life + 6, State::kRunning));
-    judge_.lose_service();
-  }
-  EXPECT_FALSE(see(200, State::kFaultStop, Alarm::kFeedbackLost));
-  EXPECT_EQ(see(201, State::kFault, Alarm::kDriveFault), Cause::kInjected) << "the first counts";
-  EXPECT_FALSE(see(202, State::kFault, Alarm::kDriveFault)) << "once for each";
-  EXPECT_FALSE(see(203, State::kOff));
-  EXPECT_FALSE(judge_.is_judged());
-  judge_.begin_drives(Planned{Mishap::kDrivesSilent, 10, 0, 0});
-  EXPECT_FALSE(see(204, State::kEnabling));
-  EXPECT_EQ(see(206, State::kFault, Alarm::kFeedbackLost), Cause::kUnprovoked);
-}
-
-TEST_F(FaultJudgeTest, FindsNoExcuseWhereNothingIsPlanned) {
-  EXPECT_FALSE(see(0, State::kRunning));
-  EXPECT_EQ(see(100, State::kFault, Alarm::kFollowingError), Cause::kUnprovoked);
-}
-
-TEST_F(FaultJudgeTest, BlamesTheHostOnlyWhereAProcessorWasSeenToBeAway) {
-  judge_.begin_drives(Planned{Mishap::kDriveFault, 90, 0, 2});
-  const auto fault_after = [&](Alarm alarm, const Witness& witness) {
-    EXPECT_FALSE(see(0, State::kRunning));
-    return see(1, State::kFault, alarm, witness);
-  };
-  EXPECT_EQ(fault_after(Alarm::kPeriodsLost, {.away_s = 0.06}), Cause::kHost);
-  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, {.away_s = 0.11}), Cause::kHost);
-  EXPECT_EQ(fault_after(Alarm::kFollowingError, {.away_s = 0.06}), Cause::kHost);
-  EXPECT_EQ(fault_after(Alarm::kPeriodsLost, {.away_s = 0.03}), Cause::kUnprovoked);
-  EXPECT_EQ(fault_after(Alarm::kFeedbackLost, {.away_s = 0.03}), Cause::kUnprovoked);
-  EXPECT_EQ(fault_after(Alarm::kPeriodsLost, {.is_watched = false}), Cause::kUnwatched);
-  EXPECT_EQ(fault_after(Alarm::kTravel, {.is_watched = false}), Cause::kUnprovoked);
-}
-
-TEST_F(FaultJudgeTest, BlamesTheHostForADriveFaultOnlyWhereTheDriveMissedSetpoints) {
-  const auto fault_after = [&](const Witness& witness) {
-    EXPECT_FALSE(see(0, State::kReady));
-    return see(1, State::kFault, Alarm::kDriveFault, witness);
-  };
-  EXPECT_EQ(fault_after({.away_s = 0.06, .misses_setpoints = true}), Cause::kHost);
-  EXPECT_EQ(fault_after({.away_s = 0.03, .misses_setpoints = true}), Cause::kUnprovoked);
-  EXPECT_EQ(fault_after({.away_s = 0.11}), Cause::kUnprovoked);
-}
-
-TEST_F(FaultJudgeTest, CountsWhatWasSeenSinceTheStopBeganAndForgetsItBehindIt) {
-  EXPECT_FALSE(see(0, State::kRunning));
-  EXPECT_FALSE(see(1, State::kFaultStop, Alarm::kFeedbackLost, {.away_s = 0.11}));
-  EXPECT_EQ(see(2.5, State::kFault, Alarm::kFeedbackLost), Cause::kHost);
-  EXPECT_NE(judge_.describe().find("a processor away for 110 ms"), std::string::npos)
-      << judge_.describe();
-  EXPECT_FALSE(see(3, State::kRunning));
-  EXPECT_EQ(see(4, State::kFault, Alarm::kFeedbackLost), Cause::kUnprovoked);
-}
-
-TEST_F(FaultJudgeTest, SeesNoSecondFaultInWhatFollowsFromDrivesThatEnded) {
-  judge_.begin_drives(Planned{Mishap::kDriveFault, 90, 0, 2});
-  EXPECT_FALSE(see(0, State::kRunning));
-  judge_.lose_drives();
-  EXPECT_EQ(see(0.2, State::kFault, Alarm::kFeedbackLost), Cause::kOwnDoing);
-}
-
-TEST_F(FaultJudgeTest, NamesTheJointOfWhatIsPlannedForOneDriveAlone) {
-  const auto described = [&](Mishap mishap) {
-    judge_.begin_drives(Planned{mishap, 10, 0, 3});
-    return judge_.describe();
-  };
-  EXPECT_NE(described(Mishap::kDriveFault).find("planned: drive fault of joint 3 at 10.0 s"),
-            std::string::npos);
-  EXPECT_NE(described(Mishap::kDrivesSilent).find("planned: drives silent at 10.0 s"),
-            std::string::npos);
-}
-
-TEST_F(FaultJudgeTest, WaitsForTheAlarmThatIsToldBehindTheState) {
-  judge_.begin_drives(Planned{Mishap::kEmergencyStop, 1, 0, 0});
-  EXPECT_FALSE(see(0, State::kRunning));
-  EXPECT_FALSE(see(2, State::kFault));
-  EXPECT_FALSE(judge_.is_judged());
-  EXPECT_EQ(see(2.05, State::kFault, Alarm::kEmergencyStop), Cause::kInjected);
-  EXPECT_TRUE(judge_.is_judged());
-  EXPECT_FALSE(see(3, State::kRunning));
-  EXPECT_FALSE(see(4, State::kFault));
-  EXPECT_EQ(see(5.1, State::kFault), Cause::kUnprovoked) << "one that is never told";
-}
-
-TEST_F(FaultJudgeTest, NamesEveryAlarmAndTheJointOfThoseThatHaveOne) {
-  EXPECT_FALSE(see(0, State::kRunning));
-  EXPECT_TRUE(see(1, State::kFault, Alarm::kReferenceLost));
-  EXPECT_NE(judge_.describe().find("alarm: reference_lost of joint 0,"), std::string::npos)
-      << judge_.describe();
-  EXPECT_FALSE(see(2, State::kRunning));
-  EXPECT_TRUE(see(3, State::kFault, Alarm::kPeriodsLost));
-  EXPECT_NE(judge_.describe().find("alarm: periods_lost, "), std::string::npos)
-      << judge_.describe();
-}
-
-TEST_F(FaultJudgeTest, KnowsWhatTheSoakDidItself) {
-  EXPECT_FALSE(see(0, State::kStarved));
-  judge_.begin_drives(std::nullopt);
-  EXPECT_EQ(see(1, State::kFault, Alarm::kFeedbackLost), Cause::kOwnDoing);
-  EXPECT_FALSE(see(2, State::kOff));
-  judge_.begin_drives(std::nullopt);  // those of a machine that is off miss nobody
-  EXPECT_FALSE(see(3, State::kReady));
-  EXPECT_EQ(see(4, State::kFault, Alarm::kFeedbackLost), Cause::kUnprovoked);
 }
 
 /// Rows of `count` cycles in one state, from `first` on.
