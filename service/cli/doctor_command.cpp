@@ -17,7 +17,7 @@ namespace {
 
 struct Options {
   std::uint32_t domain = 0;
-  std::string machine;
+  std::string machine, trace;
   bool is_json = false, is_silent = false;
 };
 
@@ -48,6 +48,7 @@ int run(const Options& options) {
   add(all, probe::examine_processors(host, rights));
   add(all, probe::examine_kernel(host));
   add(all, probe::examine_network(host, uri == nullptr ? "" : uri));
+  add(all, probe::examine_traces(options.trace));
   if (!options.is_silent) add(all, examine_domain(options));
   std::cout << (options.is_json ? to_json(all) : to_text(all));
   return is_fit(all) ? kFine : kVerdictNo;
@@ -60,12 +61,16 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "doctor",
       "What is wrong with this host for real time, and how to mend it: rights, processors, "
-      "kernel, network, who answers. Nothing is changed. Exit code 1 where something is bad");
+      "kernel, network, traces, who answers. Nothing is changed. Exit code 1 where something is "
+      "bad");
   command->add_option("--domain", options->domain, "DDS domain")
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
   command->add_option("--machine-name", options->machine,
                       "Look for this machine only; needed in a secured domain");
+  command->add_option("--trace", options->trace,
+                      "Folder of meridiand --trace: can traces of slow cycles be written there by "
+                      "this user, and which lie there");
   command->add_flag("--no-dds", options->is_silent, "Do not look for machines in the DDS domain");
   command->add_flag("--json", options->is_json, "As JSON");
   command->callback([options, &exit_code] { exit_code = run(*options); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct Rights {
 [[nodiscard]] Findings examine_kernel(const HostFiles& host);
 /// Socket buffers and the DDS configuration; `cyclone_uri` is CYCLONEDDS_URI, empty where unset.
 [[nodiscard]] Findings examine_network(const HostFiles& host, const std::string& cyclone_uri);
+/// Whether traces of slow cycles can be written into `folder` by this user (meridiand --trace), and
+/// which lie there; empty: none are asked for.
+[[nodiscard]] Findings examine_traces(const std::filesystem::path& folder);
 /// Whether this process has an identity that the machine's authority signed.
 [[nodiscard]] Findings examine_security(bool is_secured);
 /// Who answers in the DDS domain, seen from `host_name` with this `version`.

@@ -23,18 +23,24 @@ namespace {
 
 }  // namespace
 
-KeptFiles::KeptFiles(std::filesystem::path folder, int most)
-    : folder_(std::move(folder)), most_(static_cast<std::size_t>(std::max(most, 1))) {
-  std::filesystem::create_directories(folder_);
-  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+std::vector<KeptFile> find_kept(const std::filesystem::path& folder) {
+  std::vector<KeptFile> kept;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
     long long severity_us = 0;
     if (entry.path().extension() != ".json") continue;
     if (std::sscanf(name.c_str(), "slow-%lldus-", &severity_us) != 1) continue;
-    kept_.push_back({severity_us, entry.path()});
+    kept.push_back({severity_us, entry.path()});
   }
-  std::sort(kept_.begin(), kept_.end(),
-            [](const Kept& a, const Kept& b) { return a.severity_us > b.severity_us; });
+  std::sort(kept.begin(), kept.end(),
+            [](const KeptFile& a, const KeptFile& b) { return a.severity_us > b.severity_us; });
+  return kept;
+}
+
+KeptFiles::KeptFiles(std::filesystem::path folder, int most)
+    : folder_(std::move(folder)), most_(static_cast<std::size_t>(std::max(most, 1))) {
+  std::filesystem::create_directories(folder_);
+  kept_ = find_kept(folder_);
 }
 
 bool KeptFiles::would_keep(std::int64_t severity_ns) const {
@@ -49,7 +55,7 @@ std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string
   if (text::write_anew(part, content) != 0) return {};
   std::filesystem::rename(part, file, failed);
   if (failed) return {};
-  const auto place = std::find_if(kept_.begin(), kept_.end(), [severity_us](const Kept& kept) {
+  const auto place = std::find_if(kept_.begin(), kept_.end(), [severity_us](const KeptFile& kept) {
     return kept.severity_us < severity_us;
   });
   kept_.insert(place, {severity_us, file});

@@ -8,6 +8,16 @@
 
 namespace meridian::trace {
 
+/// A trace of a slow cycle on disk.
+struct KeptFile {
+  std::int64_t severity_us = 0;
+  std::filesystem::path file;
+};
+
+/// Those in `folder`, the worst first. Throws std::filesystem::filesystem_error where it cannot be
+/// read.
+[[nodiscard]] std::vector<KeptFile> find_kept(const std::filesystem::path& folder);
+
 /// The worst traces in a folder: at most so many, those of earlier services included. A file's
 /// name, slow-SEVERITYus-TIME.json, says how bad its cycle was and when it was written (UTC).
 /// Proof: tests/unit/interpolator/trace_test.cpp.
@@ -23,13 +33,9 @@ class KeptFiles {
   [[nodiscard]] std::filesystem::path add(std::int64_t severity_ns, const std::string& text);
 
  private:
-  struct Kept {
-    std::int64_t severity_us = 0;
-    std::filesystem::path file;
-  };
   std::filesystem::path folder_;
   std::size_t most_;
-  std::vector<Kept> kept_;  ///< the worst first
+  std::vector<KeptFile> kept_;  ///< the worst first
 };
 
 }  // namespace meridian::trace

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <string>
 
+#include "service/process/programs.hpp"
+
 namespace meridian::probe {
 namespace {
 
@@ -181,6 +183,47 @@ TEST(DoctorOfPeers, TellsItInJsonThatSaysWhetherTheHostIsFit) {
             "\"found\": \"c\", \"remedy\": \"d\"}\n]}\n");
   EXPECT_NE(to_text(findings).find("NOT FIT for real time: 1 bad, 0 worth a note"),
             std::string::npos);
+}
+
+class DoctorOfTraces : public testing::Test {
+ protected:
+  [[nodiscard]] Finding examine(const fs::path& folder) const {
+    const Findings all = examine_traces(folder);
+    EXPECT_EQ(all.size(), 1U);
+    return all.front();
+  }
+  void expect(const fs::path& folder, Health health, const std::string& found) const {
+    const Finding one = examine(folder);
+    EXPECT_EQ(one.health, health) << one.found;
+    EXPECT_NE(one.found.find(found), std::string::npos) << one.found;
+    EXPECT_EQ(one.remedy.empty(), health == Health::kFine) << one.remedy;
+  }
+
+  process::ScratchFolder folder_;
+  fs::path traces_ = folder_.path() / "traces";
+};
+
+TEST_F(DoctorOfTraces, SaysHowToGetThemAndWhichOneToOpen) {
+  expect("", Health::kFine, "meridiand --trace FOLDER");
+  expect(traces_, Health::kFine, "the service makes " + traces_.string());
+  EXPECT_FALSE(fs::exists(traces_)) << "nothing is changed";
+  fs::create_directory(traces_);
+  expect(traces_, Health::kFine, "none in " + traces_.string());
+  for (const char* name : {"slow-700us-20260101T000000Z.json", "slow-5012us-20260102T000000Z.json",
+                           "slow-9000us-20260102T000000Z.part", "notes.json"}) {
+    std::ofstream(traces_ / name) << "{}";
+  }
+  expect(traces_, Health::kFine,
+         "2 in " + traces_.string() +
+             ", of the worst cycle slow-5012us-20260102T000000Z.json: "
+             "open it in https://ui.perfetto.dev");
+}
+
+TEST_F(DoctorOfTraces, NotesAFolderThatCannotBeWritten) {
+  std::ofstream(folder_.path() / "file") << "text";
+  expect(folder_.path() / "file", Health::kNote, "file is no folder");
+  expect(folder_.path() / "file" / "traces", Health::kNote, "file is no folder");
+  expect("/proc/traces", Health::kNote, "/proc");
 }
 
 }  // namespace
