@@ -14,6 +14,7 @@
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/drives/line_teller.hpp"
 #include "service/drives/other_source.hpp"
 #include "service/drives/simulated_drives.hpp"
 
@@ -121,7 +122,12 @@ int run_drives(const DrivesOptions& options) {
     std::printf("%s\n", text.c_str());
     std::fflush(stdout);
   };
-  const auto report = drives::run_simulated_drives(participant, model, simulated, stop_flag(), say);
+  drives::SimulatedDrivesReport report;
+  {
+    drives::LineTeller lines(say);
+    report = drives::run_simulated_drives(participant, model, simulated, stop_flag(),
+                                          [&](const std::string& text) { lines.tell(text); });
+  }
   std::printf(
       "drives stopped: %llu periods, %llu lost, %llu setpoints, %llu periods bridged, %llu "
       "actions\n",
