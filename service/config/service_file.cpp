@@ -17,6 +17,7 @@ void read_realtime(Section section, RealtimeConfig& realtime) {
       section.integer_or("publisher_priority", realtime.publisher_priority, 1, 98);
   realtime.commands_priority =
       section.integer_or("commands_priority", realtime.commands_priority, 1, 98);
+  realtime.io_priority = section.integer_or("io_priority", realtime.io_priority, 1, 98);
   realtime.planner_priority =
       section.integer_or("planner_priority", realtime.planner_priority, 1, 98);
   realtime.lock_memory = section.truth_or("lock_memory", realtime.lock_memory);

@@ -31,6 +31,8 @@ struct RealtimeConfig {
   int cycle_priority = 80;
   int publisher_priority = 70;
   int commands_priority = 60;
+  /// Of intake, telemetry and the main thread: they share locks of DDS with the receive thread.
+  int io_priority = 50;
   int planner_priority = 40;
   bool lock_memory = true;
   bool hold_dma_latency = true;

@@ -113,6 +113,7 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   for (const std::string& remark : realtime.remarks()) log->warn("{}", remark);
   const auto service = std::make_unique<Service>(parts, realtime, log);
   service->start();
+  realtime.rise_to(parts.service.realtime.io_priority);  // it takes and writes samples too
   log->info("answering in Off");
   ServiceManager manager;
   manager.is_ready("serving machine " + parts.model.name);

@@ -99,6 +99,11 @@ Realtime::Realtime(const config::RealtimeConfig& wish) : wish_(wish) {
   }
 }
 
+void Realtime::rise_to(int priority) const noexcept {
+  const sched_param param{.sched_priority = priority};
+  if (has_priorities_) (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+}
+
 Realtime::~Realtime() {
   if (dma_latency_ >= 0) ::close(dma_latency_);
 }

@@ -58,6 +58,9 @@ class Realtime {
   /// One sentence for every right that is missing in best effort.
   [[nodiscard]] const std::vector<std::string>& remarks() const noexcept { return remarks_; }
   [[nodiscard]] int cpu() const noexcept { return cpu_; }
+  /// The calling thread runs at FIFO `priority` from now on, where priorities are there; threads
+  /// that it starts without a plan inherit that.
+  void rise_to(int priority) const noexcept;
   [[nodiscard]] const config::RealtimeConfig& wish() const noexcept { return wish_; }
 
  private:

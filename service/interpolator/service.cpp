@@ -228,8 +228,8 @@ void Service::start() {
   });
   flight_thread_ = Thread(realtime_, {"flight", 0, false}, [this] { flight_.run(); });
   if (tracer_) add("tracer", 0, false, [this] { tracer_->run(ports_.is_stopping); });
-  add("telemetry", 0, false, [this] { telemetry_.run(); });
-  add("intake", 0, false, [this] { intake_.run(); });
+  add("telemetry", plan.io_priority, false, [this] { telemetry_.run(); });
+  add("intake", plan.io_priority, false, [this] { intake_.run(); });
   add("planner", plan.planner_priority, false, [this] { planner_.run(); });
   add("commands", plan.commands_priority, false, [this] { supervisor_.run(); });
   add("publisher", plan.publisher_priority, true, [this] { publisher_.run(); });

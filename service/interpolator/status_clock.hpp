@@ -8,7 +8,7 @@
 namespace meridian::interpolator {
 
 /// When telemetry published its last statuses; the commands thread asks. Any thread. A verb that is
-/// never stale waits for nobody: hold and abort go past what telemetry, of normal priority, locks.
+/// never stale waits for nobody: hold and abort go past what telemetry, of a lower priority, locks.
 class StatusClock {
  public:
   void published(const dds::Status& status, std::int64_t now_ns) {

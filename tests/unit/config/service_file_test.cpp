@@ -25,6 +25,7 @@ TEST(ServiceFile, OfOneLineHasTheDefaults) {
   EXPECT_EQ(config.flight.seconds, 10);
   EXPECT_EQ(config.realtime.mode, RealtimeMode::kEnforce);
   EXPECT_EQ(config.realtime.cycle_priority, 80);
+  EXPECT_EQ(config.realtime.io_priority, 50);
   EXPECT_EQ(config.realtime.planner_priority, 40);
   EXPECT_EQ(config.auxiliary, AuxiliaryPolicy::kWait);
   EXPECT_EQ(config.dds_domain, 0);
