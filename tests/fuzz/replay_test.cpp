@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fuzz/fuzz_targets.hpp"
+#include "fuzz/wire_samples.hpp"
 
 /// Fuzzing as CI can afford it: the seeds, among them everything that fuzzing found before, and
 /// what a few thousand changes drawn with a fixed seed make of them. A finding ends the process.
@@ -58,6 +59,14 @@ TEST(Fuzzing, OfTheMachineFileFindsNothing) {
 }
 
 TEST(Fuzzing, OfEveryWireTypesJudgeFindsNothing) { replay(kTargets[2], wire_seeds()); }
+
+TEST(Fuzzing, OfTheWireBeginsWithAndWithoutWhateverASampleMayHave) {
+  for (const Input& seed : wire_seeds()) judge_wire(seed);
+  for (std::size_t choice = 0; choice < kWireChoices; ++choice) {
+    EXPECT_TRUE(wire_choices()[choice][0]) << "never without: WireChoice " << choice;
+    EXPECT_TRUE(wire_choices()[choice][1]) << "never with: WireChoice " << choice;
+  }
+}
 
 TEST(FuzzingDeathTest, EndsWithWhatItFound) {
   EXPECT_DEATH(require(false, "something"), "found: something");

@@ -5,6 +5,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "fuzz/dry_machine.hpp"
 #include "fuzz/fuzz_targets.hpp"
 #include "fuzz/wire_samples.hpp"
 #include "meridian/rt/state_table.hpp"
@@ -21,6 +22,17 @@
 
 namespace meridian::fuzz {
 namespace {
+
+WireChoices& choices() {
+  static WireChoices seen;
+  return seen;
+}
+
+/// Notes that a sample had, or had not, what it may have.
+bool choose(WireChoice choice, bool is_there) {
+  choices()[choice][is_there ? 1 : 0] = true;
+  return is_there;
+}
 
 /// Reads bytes from the front; what is missing is zero.
 class Supplies {
@@ -56,7 +68,11 @@ class Supplies {
 /// Everybody who acts on a sample, with the state that samples before have left.
 class Listeners {
  public:
-  Listeners() : model_(test::lai_machine()), intake_(model_, {{1, 100.0}}, 7), drives_(model_, {}) {
+  Listeners()
+      : model_(test::lai_machine()),
+        intake_(model_, {{1, 100.0}}, 7),
+        machine_that_obeys_(model_),
+        drives_(model_, {}) {
     dds::SessionRequest open;
     open.session = 1;
     static_cast<void>(intake_.on_request(open, around(), model_.tool_length_mm));
@@ -148,6 +164,10 @@ class Listeners {
       require(std::abs(to_vector(block.axis).norm() - 1) < 1e-9, "an axis that is no unit vector");
       require(std::isfinite(block.feed), "a feed that is no number");
       require(block.feed > 0 || block.kind != BlockKind::kCut, "a cut without feed");
+      if (block.kind != BlockKind::kCut) continue;
+      require(block.feed_meaning <= FeedMeaning::kInverseTime, "a feed that means nothing");
+      choose(kInverseTime, block.feed_meaning == FeedMeaning::kInverseTime);
+      choose(kArc, block.is_arc);
     }
   }
   void take_session(Supplies& in) {
@@ -170,23 +190,36 @@ class Listeners {
   }
   void take_command(Supplies& in) {
     dds::CommandRequest request;
+    const std::uint64_t rest = in.next<std::uint8_t>() % 3, told = in.next<std::uint8_t>() % 3;
     in.read<meridian_wire_Command>(request);
-    times_.published(5, now_ns_);
-    const Refusal refusal = stream::judge_freshness(request, 7, 1, times_, now_ns_);
+    times_.published(5, now_ns_, told);
+    const Refusal refusal = stream::judge_freshness(request, 7, 1, times_, now_ns_, rest);
     if (static_cast<int>(request.verb) >= kVerbCount) return;  // as the supervisor does
     require(refusal == Refusal::kNone || stream::needs_freshness(request.verb, request.argument),
             "a stop is stale");
-    static_cast<void>(effect_of(State::kRunning, request.verb));
+    const bool sends_on = request.verb == Verb::kStart || request.verb == Verb::kResume;
+    if (refusal == Refusal::kNone && sends_on) {
+      require(rest == 0 || (request.status_seen == 5 && told == rest), "sent on from another rest");
+      choose(kRest, rest != 0);
+    }
+    if (refusal != Refusal::kNone) return;
+    if (may_be_dry(request.verb)) choose(kForDryRunAlone, request.argument == 1);
+    machine_that_obeys_.say(request.verb, request.argument);
   }
   void take_reply(Supplies& in) {
     dds::Reply reply;
     in.read<meridian_wire_Reply>(reply);
     require(cli::text_of(reply.state) != nullptr, "a state without words");
+    choose(kReplyOfDryRun, reply.text.starts_with("dry run: "));
+    choose(kReplyWithApproach, reply.text.find("approach to line ") < reply.text.size());
   }
   void take_setpoint(Supplies& in) {
     dds::SetpointSample setpoint;
     in.read<meridian_wire_Setpoint>(setpoint);
+    const std::uint64_t before = drives_.setpoints_seen();
     drives_.take(setpoint);
+    const bool is_dry = choose(kSetpointOfDryRun, (setpoint.setpoint.flags & kSetpointDry) != 0);
+    require(!is_dry || drives_.setpoints_seen() == before, "drives follow a dry run");
     work_drives();
   }
   void take_drive_command(Supplies& in) {
@@ -229,6 +262,11 @@ class Listeners {
   }
   void take_status(Supplies& in) {
     in.read<meridian_wire_Status>(status_);
+    choose(kStatusOfDryRun, status_.is_dry_run);
+    choose(kSingleBlock, status_.is_single_block);
+    choose(kOptionalStops, status_.stops_at_optional);
+    choose(kStatusWithApproach, status_.message.find("approach to line ") != std::string::npos);
+    choose(kStatusWithSummary, status_.message.find(" ran to its end") != std::string::npos);
     show();
   }
   void take_machine(Supplies& in) {
@@ -240,7 +278,10 @@ class Listeners {
     show();
   }
   void show() {
-    require(!cli::describe(status_, machine_).empty(), "a status without words");
+    const std::string words = cli::describe(status_, machine_);
+    require(!words.empty(), "a status without words");
+    require(!status_.is_dry_run || words.find("dry run: no drive moves") < words.size(),
+            "a dry run that nobody sees");
     require(cli::to_json(status_, machine_).back() == '}', "JSON without an end");
   }
   void take_latency(Supplies& in) {
@@ -254,6 +295,7 @@ class Listeners {
   stream::IntakeJudge intake_;
   std::optional<stream::Station> station_;
   stream::StatusTimes times_;
+  DryMachine machine_that_obeys_;
   drives::DriveGroup drives_;
   drives::ActionPeer peer_{0, false};
   interpolator::FeedbackMerge merge_;
@@ -265,6 +307,8 @@ class Listeners {
 };
 
 }  // namespace
+
+const WireChoices& wire_choices() { return choices(); }
 
 void judge_wire(Bytes bytes) {
   Listeners listeners;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace meridian::fuzz {
@@ -11,7 +13,7 @@ enum SampleType : std::uint8_t {
   kRawBatch,  ///< as it comes off the wire, like all others
   kSession,
   kCredit,
-  kCommand,
+  kCommand,  ///< in front of it the rest that the machine is at, and the one that was told
   kReply,
   kJog,
   kSetpoint,
@@ -24,5 +26,28 @@ enum SampleType : std::uint8_t {
   kLatency,
   kTypes
 };
+
+/// What a sample may have or not, and so must have been judged with and without.
+enum WireChoice : std::uint8_t {
+  kInverseTime,
+  kArc,
+  kRest,  ///< a start or resume that was let through, behind a block
+  kForDryRunAlone,
+  kReplyOfDryRun,
+  kReplyWithApproach,
+  kSetpointOfDryRun,
+  kStatusOfDryRun,
+  kSingleBlock,
+  kOptionalStops,
+  kStatusWithApproach,
+  kStatusWithSummary,
+  kWireChoices
+};
+
+/// Of each: judged without, judged with.
+using WireChoices = std::array<std::array<bool, 2>, kWireChoices>;
+
+/// What judge_wire() has come to since the process began.
+[[nodiscard]] const WireChoices& wire_choices();
 
 }  // namespace meridian::fuzz

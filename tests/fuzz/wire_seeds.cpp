@@ -3,6 +3,7 @@
 
 #include "fuzz/fuzz_targets.hpp"
 #include "fuzz/wire_samples.hpp"
+#include "meridian/rt/state_table.hpp"
 #include "service/dds/convert.hpp"
 #include "support/programs.hpp"
 
@@ -16,8 +17,98 @@ void append(std::vector<std::uint8_t>& seed, SampleType type, const Message& mes
   dds::to_wire(message, wire);
   seed.push_back(type);
   if (type == kFeedback) seed.push_back(1);
+  if (type == kCommand) seed.insert(seed.end(), {0, 0});
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(&wire);
   seed.insert(seed.end(), bytes, bytes + sizeof wire);
+}
+
+/// A command that is let through: it quotes the status that was published, and where `rest` is not
+/// 0 the rest of the machine.
+void append_command(std::vector<std::uint8_t>& seed, Verb verb, double argument,
+                    std::uint8_t rest = 0) {
+  const std::size_t at = seed.size();
+  append<meridian_wire_Command>(seed, kCommand,
+                                dds::CommandRequest{.request = 1,
+                                                    .operator_id = 2,
+                                                    .verb = verb,
+                                                    .epoch_seen = 1,
+                                                    .status_seen = 5,
+                                                    .service_id_seen = 7,
+                                                    .argument = argument});
+  seed[at + 1] = seed[at + 2] = rest;
+}
+
+/// Blocks in inverse time, one of them an arc, as their session's first.
+[[nodiscard]] dds::Batch batch_in_inverse_time() {
+  dds::Batch batch = test::good_batch(1, 0, 3, true);
+  for (std::uint32_t i = 1; i < 3; ++i) {
+    batch.blocks[i].feed_meaning = FeedMeaning::kInverseTime;
+    batch.blocks[i].feed = 2;
+  }
+  ClBlock& arc = batch.blocks[2];  // half a turn from x = 1 to 2
+  arc.is_arc = true;
+  arc.centre_mm = {1.5, 0, 0};
+  arc.sweep_rad = 3.14159265358979323846;
+  batch.crc = dds::batch_crc(batch);
+  return batch;
+}
+
+/// A status that has everything that one may have, with `message`.
+[[nodiscard]] dds::Status full_status(const std::string& message) {
+  dds::Status status;
+  status.state = State::kStepping;
+  status.is_single_block = status.stops_at_optional = status.is_dry_run = true;
+  status.message = message;
+  return status;
+}
+
+const std::string kApproachWords =
+    "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360 deg, down 50 "
+    "mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg";
+
+/// Everything that came to be said for a dry run, in single block and in inverse time.
+void add_choices(Seeds& seeds) {
+  const auto add = [&seeds](const auto& fill) { fill(seeds.emplace_back()); };
+  add([](auto& seed) { append<meridian_wire_ClBatch>(seed, kRawBatch, batch_in_inverse_time()); });
+  add([](auto& seed) {
+    append_command(seed, Verb::kEnable, 1);
+    append_command(seed, Verb::kDryRun, 1);
+    append_command(seed, Verb::kEnable, 1);
+    append_command(seed, Verb::kJog, 0);
+    append_command(seed, Verb::kStart, 1);
+    append_command(seed, Verb::kAbort, 0);
+    append_command(seed, Verb::kDisable, 0);
+    append_command(seed, Verb::kDryRun, 0);
+    append_command(seed, Verb::kStart, 0);
+  });
+  add([](auto& seed) {
+    for (const Verb verb : {Verb::kStart, Verb::kResume}) append_command(seed, verb, 0, 2);
+    for (int verb = 0; verb < kVerbCount; ++verb) {
+      for (const double argument : {0.0, 1.0, 0.5}) {
+        append_command(seed, static_cast<Verb>(verb), argument);
+      }
+    }
+  });
+  add([](auto& seed) {
+    dds::SetpointSample setpoint;
+    for (const int flags : {kSetpointDry + 0, kSetpointDry | kSetpointDryEnabled | kSetpointMoving,
+                            kSetpointDry | kSetpointEnabled, kSetpointEnabled + 0}) {
+      ++setpoint.setpoint.cycle;
+      setpoint.setpoint.flags = static_cast<std::uint16_t>(flags);
+      append<meridian_wire_Setpoint>(seed, kSetpoint, setpoint);
+    }
+  });
+  add([](auto& seed) {
+    append<meridian_wire_Reply>(
+        seed, kReply,
+        dds::Reply{.is_accepted = true, .text = "dry run: start accepted; " + kApproachWords});
+    append<meridian_wire_Reply>(seed, kReply, dds::Reply{.refusal = Refusal::kNotDryRun});
+    append<meridian_wire_Status>(seed, kStatus, full_status(kApproachWords));
+    append<meridian_wire_Status>(
+        seed, kStatus,
+        full_status("program blade.apt ran to its end (dry run): 4120 blocks in 309.2 s (approach "
+                    "3.1, cut 280.0, single block 26.1)"));
+  });
 }
 
 }  // namespace
@@ -111,6 +202,7 @@ Seeds wire_seeds() {
     append<meridian_wire_Setpoint>(seed, kSetpoint, dds::SetpointSample{});
   });
   add([](auto& seed) { append<meridian_wire_Latency>(seed, kLatency, dds::Latency{}); });
+  add_choices(seeds);
   return seeds;
 }
 
