@@ -264,6 +264,72 @@ TEST(LeaseJudge, BelievesTheLeastDelayedWordOfAnotherOne) {
   EXPECT_FALSE(judge.word(2 * kS).is_serving);
 }
 
+TEST(LeaseJudge, TakesNobodyForOlderWhoCannotSayForHowLongItServed) {
+  for (const std::int64_t served : {INT64_MIN, std::int64_t{-1}}) {
+    LeaseJudge judge(1);
+    judge.hold(0);
+    judge.hear({.service_id = 2, .is_serving = true, .served_ns = served}, 10 * kS);
+    judge.judge(10 * kS, true);
+    EXPECT_TRUE(judge.word(10 * kS).is_serving) << served;
+  }
+}
+
+TEST(LeaseJudge, TakesWhoServedAlmostAsLongForOneOfTheSameAge) {
+  for (const std::int64_t lead : {-LeaseJudge::kSame_ns, LeaseJudge::kSame_ns - 1}) {
+    for (const std::uint64_t own : {1U, 3U}) {
+      LeaseJudge judge(own);
+      judge.hold(0);
+      judge.hear({.service_id = 2, .is_serving = true, .served_ns = kS - lead}, kS);
+      judge.judge(kS, true);
+      EXPECT_EQ(judge.word(kS).is_serving, own < 2) << lead;
+    }
+  }
+}
+
+TEST(LeaseJudge, GivesNoWayToWhoServesNoMore) {
+  LeaseJudge judge(3);
+  judge.hold(0);
+  judge.hear({.service_id = 2, .is_serving = true, .served_ns = 9 * kS}, kS);
+  judge.hear({.service_id = 2}, kS);
+  judge.judge(kS, true);
+  EXPECT_TRUE(judge.word(kS).is_serving);
+}
+
+/// An hour of doubt about another one, whose words are late, is none about the next.
+TEST(LeaseJudge, WaitsForWordsThatTellAnewWhereverAnotherOneBeginsToServeBesideIt) {
+  LeaseJudge judge(2);
+  judge.hold(0);
+  const auto late = [](std::int64_t now) {
+    return LeaseJudge::Word{.service_id = 1, .is_serving = true, .served_ns = now - kS};
+  };
+  judge.hear({.service_id = 1}, kS);
+  judge.judge(3600 * kS, true);
+  judge.hear(late(3600 * kS), 3600 * kS);
+  judge.judge(3600 * kS, true);
+  EXPECT_TRUE(judge.word(3600 * kS).is_serving) << "it may be the later one";
+  const std::int64_t over = 3600 * kS + LeaseJudge::kPatience_ns + 1;
+  judge.judge(over, true);
+  EXPECT_FALSE(judge.word(over).is_serving);
+}
+
+TEST(LeaseJudge, LeavesOnlyAsLongBehindItsLastStepBackAsItsWordNeeds) {
+  LeaseJudge judge(2);
+  judge.hold(0);
+  const auto step_back = [&](std::int64_t now) {
+    judge.hear({.service_id = 1, .is_serving = true, .served_ns = now + kS}, now);
+    judge.judge(now, true);
+    judge.on_said(judge.word(now), now);
+  };
+  step_back(kS);
+  judge.judge(2 * kS, false);  // it moves meanwhile: it serves on
+  EXPECT_TRUE(judge.word(2 * kS).is_serving);
+  step_back(10 * kS);
+  const std::int64_t last = 10 * kS + LeaseJudge::kStepBack_ns;
+  EXPECT_FALSE(judge.keeper(last - 1));
+  judge.on_said(judge.word(last - 1), last - 1);  // said again, twice a second
+  EXPECT_EQ(judge.keeper(last), 1U);
+}
+
 TEST(LeaseJudge, SaysNothingAnewWhereItServesAlone) {
   LeaseJudge judge(1);
   judge.hold(0);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/interpolator/lease.hpp"
-
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <thread>
 
+#include "service/interpolator/lease.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::interpolator {
@@ -69,6 +69,50 @@ TEST(Lease, OfTwoThatStartTogetherTheLargerNumberWaits) {
   ASSERT_TRUE(holder);
   EXPECT_EQ(holder->service_id, 1U);
   EXPECT_FALSE(one.lease.find_holder(milliseconds(100), milliseconds(1000)));
+}
+
+/// Nothing holds it back but its drives.
+TEST(Lease, LeavesNoMachineWhoseDrivesAreOn) {
+  const support::PrivateDomain domain;
+  Claimant older(domain.id(), 1), moving(domain.id(), 2);
+  older.lease.hold();
+  std::this_thread::sleep_for(milliseconds(150));
+  moving.lease.hold();
+  const auto end =
+      LeaseClock::now() + std::chrono::nanoseconds(LeaseJudge::kStepBack_ns) + milliseconds(300);
+  while (LeaseClock::now() < end) {
+    ASSERT_FALSE(older.lease.find_keeper(true));
+    ASSERT_FALSE(moving.lease.find_keeper(false));
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+}
+
+TEST(Lease, WaitsForAHolderThatIsAboutToLeave) {
+  const support::PrivateDomain domain;
+  auto holder = std::make_unique<Claimant>(domain.id(), 2);
+  holder->lease.hold();
+  Claimant next(domain.id(), 1);
+  ASSERT_TRUE(next.lease.find_holder(milliseconds(400), milliseconds(0)))
+      << "who holds it says so without being asked, and its number does not count any more";
+  std::thread leaving([&holder] {
+    std::this_thread::sleep_for(milliseconds(200));
+    holder.reset();
+  });
+  EXPECT_FALSE(next.lease.find_holder(milliseconds(0), milliseconds(5000)));
+  leaving.join();
+}
+
+TEST(Lease, ListensForAsLongAsTheStartWindowBeforeItTakesTheMachineForFree) {
+  const support::PrivateDomain domain;
+  Claimant next(domain.id(), 9);
+  std::unique_ptr<Claimant> late;
+  std::thread coming([&] {
+    std::this_thread::sleep_for(milliseconds(150));
+    late = std::make_unique<Claimant>(domain.id(), 1);
+    late->lease.hold();
+  });
+  EXPECT_TRUE(next.lease.find_holder(milliseconds(1500), milliseconds(0)));
+  coming.join();
 }
 
 }  // namespace
