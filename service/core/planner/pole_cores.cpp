@@ -9,8 +9,9 @@
 namespace meridian {
 namespace {
 
-constexpr double kNear_rad = 0.05;       // minima farther off turn the free joint gently
-constexpr double kStayTolerances = 0.4;  // so far a path that comes back may go meanwhile
+constexpr double kNear_rad = 0.05;        // minima farther off turn the free joint gently
+constexpr double kStayTolerances = 0.4;   // so far a path that comes back may go meanwhile
+constexpr double kFreeTolerances = 0.99;  // the same where it is known how far off the axis comes
 /// A core that is longer than this is not waited for: the free joint comes to rest in it.
 constexpr double kLongCore_mm = 2 * kPoleReach_mm;
 constexpr double kReachShare = 0.98, kHalf = 0.49;
@@ -18,8 +19,10 @@ constexpr double kLeastReach_mm = 1e-3;
 
 }  // namespace
 
-void PoleCores::begin(double tolerance_rad) noexcept {
+void PoleCores::begin(double tolerance_rad, bool is_exact) noexcept {
   tolerance_rad_ = tolerance_rad;
+  is_exact_ = is_exact;
+  shortened_ = -1;
   settled_ = {};
   place_ = 0;
   entered_ = -1;
@@ -27,6 +30,7 @@ void PoleCores::begin(double tolerance_rad) noexcept {
 }
 
 void PoleCores::begin_again() noexcept {
+  shortened_ = -1;
   place_ = probes_.begin_place();
   entered_ = -1;
   run_ = {};
@@ -38,6 +42,11 @@ bool PoleCores::dwells(Place place) const noexcept {
 
 bool PoleCores::lingers(Place place) const noexcept {
   return probes_.distance_of(place) < kStayTolerances * tolerance_rad_;
+}
+
+bool PoleCores::is_free(Place place) const noexcept {
+  return !is_exact_ && probes_.distance_of(place) < tolerance_rad_ &&
+         freedom_.is_below(kFreeTolerances * tolerance_rad_, place);
 }
 
 bool PoleCores::rests_at(Place place) const noexcept {
@@ -81,10 +90,44 @@ void PoleCores::follow() noexcept {
     while (dwells(place_) && run_.first > first && dwells(run_.first - 1)) --run_.first;
   }
   run_.first = std::max(run_.first, begin);  // what is behind may be gone
-  if (!is_in_core(place_)) return;
-  while (run_.seen + 1 < probes_.end_place() && lingers(run_.seen + 1)) {
-    if (dwells(++run_.seen)) run_.last = run_.seen;
+  if (!is_in_core(place_) && !(may_extend() && is_free(place_))) return;
+  while (run_.seen + 1 < probes_.end_place()) {
+    const Place next = run_.seen + 1;
+    if (!lingers(next) && !(may_extend() && is_free(next))) return;
+    extend_to(next);
   }
+}
+
+void PoleCores::extend_to(Place next) noexcept {
+  const Place here = run_.seen;
+  const bool begins_beside = !dwells(run_.place) && !rests_at(run_.place);
+  const bool is_nearest = here > run_.place && !dwells(here) &&
+                          probes_.distance_of(here) <= probes_.distance_of(here - 1) &&
+                          probes_.distance_of(here) < probes_.distance_of(next);
+  if (is_nearest && may_extend()) {
+    run_.last = here;
+    run_.is_extended = true;
+  }
+  run_.seen = next;
+  run_.has_left = run_.has_left || !lingers(next);
+  if (!dwells(next)) return;
+  run_.last = next;
+  run_.is_extended = run_.is_extended || run_.has_left || begins_beside;
+}
+
+void PoleCores::go_back(const State& to) noexcept {
+  settled_ = to.settled;
+  place_ = to.place;
+  entered_ = to.entered;
+  shortened_ = to.shortened;
+  run_ = to.run;
+}
+
+bool PoleCores::shorten() noexcept {
+  if (!run_.is_extended) return false;
+  place_ = shortened_ = run_.place;
+  run_.place = -1;
+  return true;
 }
 
 bool PoleCores::is_known_behind(double u) const noexcept {
@@ -97,7 +140,9 @@ PoleCores::Place PoleCores::find_hold(double begin) const noexcept {
   if (!is_open || (length < kLongCore_mm && !probes_.is_full())) return -1;
   const double end = begin + (probes_.is_full() ? 0.5 * length : length - kPoleReach_mm);
   Place place = run_.last;
-  while (place > run_.first && (probes_.u_of(place) > end || !dwells(place))) --place;
+  const auto may_rest = [this](Place at) { return run_.is_extended ? lingers(at) : dwells(at); };
+  while (place > run_.first && (probes_.u_of(place) > end || !may_rest(place))) --place;
+  if (run_.is_extended && !may_rest(place)) return -1;
   return probes_.u_of(place) > begin + kLeastReach_mm ? place : -1;
 }
 
@@ -111,7 +156,15 @@ double PoleCores::find_room_behind(double core_end) const noexcept {
       return std::min(room, kHalf * (probes_.u_of(n) - core_end));
     }
   }
-  return room;
+  const bool ends_on_pole = settled_.is_whole && probes_.distance_at(probes_.end_u()) <
+                                                     kOnPoleTolerances * tolerance_rad_;
+  return ends_on_pole ? std::min(room, kHalf * (find_last_way_onto() - core_end)) : room;
+}
+
+double PoleCores::find_last_way_onto() const noexcept {
+  double begin = probes_.end_u();
+  for (Place n = probes_.end_place() - 1; n > run_.last && dwells(n); --n) begin = probes_.u_of(n);
+  return begin;
 }
 
 PolePlace PoleCores::around() const noexcept {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "service/core/planner/pole_freedom.hpp"
 #include "service/core/planner/pole_probes.hpp"
 #include "service/core/planner/pole_zone.hpp"
 
@@ -29,12 +30,13 @@ struct PoleCore {
 };
 
 /// Looks along the probes of a path for its cores: a minimum of the distance to the pole, or a
-/// stretch on the pole and what comes back to it without going far. Says where a zone about one may
-/// begin and end.
+/// stretch on the pole and what comes back to it from no farther than the free joint may be held,
+/// whatever it is. Says where a zone about one may begin and end.
 ///
 ///     find_next() ─▶ decide() ─▶ find_next() ... until false
 ///
-/// What it says depends on the spans alone. Units: mm, rad. Source: docs/motion.md, section 10.
+/// What it says depends on spans and programmed axis alone. Units: mm, rad. Source: docs/motion.md,
+/// section 10.
 class PoleCores {
  public:
   using Place = PoleProbes::Place;
@@ -45,12 +47,13 @@ class PoleCores {
     kFound
   };
 
-  explicit PoleCores(const PoleProbes& probes) : probes_(probes) {}
+  PoleCores(const MachineModel& model, const PoleProbes& probes, const ProgrammedAxis& programmed)
+      : probes_(probes), freedom_(model, probes, programmed) {}
   PoleCores(const PoleCores&) = delete;
   PoleCores& operator=(const PoleCores&) = delete;
 
-  /// `tolerance_rad`: of the axis from the programmed one.
-  void begin(double tolerance_rad) noexcept;
+  /// `tolerance_rad`: of the axis from the programmed one; `is_exact`: from that of the spans.
+  void begin(double tolerance_rad, bool is_exact) noexcept;
   /// All that is held back is looked at again.
   void begin_again() noexcept;
 
@@ -58,6 +61,11 @@ class PoleCores {
   [[nodiscard]] bool find_next(const SettledPath& settled) noexcept;
   /// Decides the place that was found.
   [[nodiscard]] Answer decide(PoleCore& out) noexcept;
+  /// Whether the core that was decided last goes on behind an excursion.
+  [[nodiscard]] bool is_extended() const noexcept { return run_.is_extended; }
+  /// True where the core that was decided last is to be found and decided once more, as one that
+  /// ends ahead of its first excursion; false: it is that already.
+  [[nodiscard]] bool shorten() noexcept;
   /// The zone about `core` was taken: what is behind it comes next.
   void take(const PoleCore& core) noexcept {
     if (core.hold >= 0) place_ = core.hold;
@@ -66,7 +74,6 @@ class PoleCores {
   /// All in front of this place is decided.
   [[nodiscard]] Place place() const noexcept { return place_; }
 
- private:
   /// What is known of a core stays while spans behind it come, so that a way along the pole is
   /// walked once, however long.
   struct Run {
@@ -74,34 +81,57 @@ class PoleCores {
     Place first = 0, last = 0;  ///< the run of places on the pole about it
     Place seen = 0;             ///< farther on the path only lingers beside it
     double nearest = 0;         ///< u
+    bool has_left = false;      ///< `seen` is on or behind an excursion
+    bool is_extended = false;   ///< and so is `last`, or the core begins or ends beside the pole
   };
+  /// All that a trial of another core changes.
+  struct State {
+    SettledPath settled;
+    Place place = 0;       ///< first that is not decided
+    Place entered = -1;    ///< of the run of places on the pole that `place` is in
+    Place shortened = -1;  ///< a core about this place ends ahead of its first excursion
+    Run run;               ///< that is being decided
+  };
+  [[nodiscard]] State state() const noexcept {
+    return {settled_, place_, entered_, shortened_, run_};
+  }
+  void go_back(const State& to) noexcept;
 
+ private:
   [[nodiscard]] bool is_minimum(bool is_last) const noexcept;
   /// Finds what is known of the core about the place.
   void follow() noexcept;
+  /// The core that is being decided goes on to `next`.
+  void extend_to(Place next) noexcept;
+  [[nodiscard]] bool may_extend() const noexcept { return place_ != shortened_; }
   [[nodiscard]] PolePlace around() const noexcept;
   /// Where in a core from `begin`, whose end is not known yet, the free joint may come to rest
   /// meanwhile; -1: its end is waited for.
   [[nodiscard]] Place find_hold(double begin) const noexcept;
   [[nodiscard]] double find_room_behind(double core_end) const noexcept;
+  /// Where the path comes onto the pole that it ends on.
+  [[nodiscard]] double find_last_way_onto() const noexcept;
   /// Whether enough of the path behind `u` is known.
   [[nodiscard]] bool is_known_behind(double u) const noexcept;
   /// Whether the path counts as on the pole at `place`.
   [[nodiscard]] bool dwells(Place place) const noexcept;
   /// Whether it is so close to it that the free joint may be held there.
   [[nodiscard]] bool lingers(Place place) const noexcept;
+  /// Whether it may be held there, though that is farther off, whatever it is.
+  [[nodiscard]] bool is_free(Place place) const noexcept;
   /// Whether the free joint rests on the way to `place`, and may go on resting there.
   [[nodiscard]] bool rests_at(Place place) const noexcept;
   [[nodiscard]] bool is_in_core(Place place) const noexcept {
-    return dwells(place) || rests_at(place);
+    return dwells(place) || rests_at(place) || (run_.place == place && run_.is_extended);
   }
 
   const PoleProbes& probes_;
+  PoleFreedom freedom_;
   double tolerance_rad_ = 0;
+  bool is_exact_ = false;
   SettledPath settled_;
-  Place place_ = 0;     ///< first that is not decided
-  Place entered_ = -1;  ///< of the run of places on the pole that place_ is in
-  Run run_;             ///< that is being decided
+  Place place_ = 0, entered_ = -1, shortened_ = -1;  ///< State tells what they are
+  Run run_;
 };
 
 }  // namespace meridian

@@ -12,7 +12,6 @@
 namespace meridian {
 namespace {
 
-constexpr double kLeastHold_mm = 0.5;
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kLeastPart_mm = 1e-6;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
@@ -35,7 +34,7 @@ BandSpan part_of_span(const BandSpan& span, double from, double length) noexcept
 }  // namespace
 
 PoleCorridor::PoleCorridor(const MachineModel& model)
-    : model_(model), probes_(model), cores_(probes_), pending_(kPending) {}
+    : model_(model), probes_(model), cores_(model, probes_, programmed_), pending_(kPending) {}
 
 void PoleCorridor::begin(const Start& start) noexcept {
   has_pole_ = free_joint(model_) >= 0 && !start.is_on_pole;
@@ -44,7 +43,7 @@ void PoleCorridor::begin(const Start& start) noexcept {
   tolerance_rad_ = is_exact_ ? kPoleEase_rad : std::max(start.tolerance_rad, kPoleEase_rad);
   programmed_.begin(start.axis);
   probes_.begin(has_pole_);
-  cores_.begin(tolerance_rad_);
+  cores_.begin(tolerance_rad_, is_exact_);
   emitted_x_ = known_u_ = 0;
   known_ = start.joints;
   branch_ = out_branch_ = start.branch;
@@ -122,45 +121,6 @@ void PoleCorridor::scan() noexcept {
     if (answer == PoleCores::Answer::kNeedsSpans) return;
     if (answer == PoleCores::Answer::kFound) settle(core);
   }
-}
-
-void PoleCorridor::settle(PoleCore& core) noexcept {
-  PolePlace& around = core.around;
-  const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
-  if (core.has_room && waiting + kMostZones <= kPending) {
-    around.joints = around.is_start ? known_ : follow_to(around.core_begin - around.reach);
-    if (find_zone(around, core.hold >= 0)) return cores_.take(core);
-  }
-  if (around.is_start) {
-    has_failed_ = true;
-  } else {
-    add_cuts(core.nearest);
-  }
-}
-
-bool PoleCorridor::find_zone(PolePlace around, bool is_held) noexcept {
-  const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
-  PoleZone zone = find_pole_zone(task, around);
-  const double begin = around.core_begin;
-  while (!(zone.end > zone.begin)) {  // hold the free joint farther into the core
-    if (!around.is_start || around.is_end) return false;
-    around.core_begin = 0.5 * (around.core_begin + around.core_end);
-    if (around.core_end - around.core_begin < kLeastHold_mm) return false;
-    zone = find_pole_zone(task, around);
-  }
-  zone.is_held = is_held;
-  if (around.core_begin > begin) {
-    PolePlace before = around;
-    before.core_begin = begin;
-    before.core_end = around.core_begin;
-    before.is_end = true;
-    PoleZone rest = find_pole_zone(task, before);
-    if (!(rest.end > rest.begin)) return false;
-    rest.is_held = true;
-    take(rest);
-  }
-  take(zone);
-  return true;
 }
 
 void PoleCorridor::take(const PoleZone& zone) noexcept {

@@ -74,16 +74,52 @@ class PoleCorridor {
   static constexpr std::size_t kCuts = 128;
   static constexpr std::size_t kPending = 64;
   static constexpr std::size_t kMostZones = 2;  ///< about one core
+  static constexpr int kMostTried = 6;          ///< cores in place of one with its excursions
+
+  /// About one core: where the free joint is held first, that and the turn off it.
+  struct Zones {
+    std::array<PoleZone, kMostZones> of;
+    std::size_t count = 0;
+  };
+  /// All that taking zones changes.
+  struct Settled {
+    PoleCores::State cores;
+    std::array<PoleZone, kMostZones * kMostTried> zones;  ///< that were taken behind some place
+    std::size_t zone_count = 0;
+    std::int64_t pending_end = 0;
+    double known_u = 0;
+    JointVector known{};
+    int branch = 0;
+    bool is_held = false;
+  };
 
   [[nodiscard]] double emitted_u() const noexcept { return probes_.front().u0 + emitted_x_; }
   [[nodiscard]] SettledPath settled() const noexcept;
+  [[nodiscard]] PoleTask pole_task() const noexcept;
 
   /// Looks for cores as far as enough of what follows is there.
   void scan() noexcept;
-  /// Takes a zone about `core`, or cuts the spans there.
+  /// Takes a zone about `core`, or cuts the spans there, or leaves it to be decided once more
+  /// without its excursions.
   void settle(PoleCore& core) noexcept;
+  [[nodiscard]] bool take_zone(PoleCore& core) noexcept;
+  /// What is settled now, with the zones from index `from` on.
+  [[nodiscard]] Settled settled_state(std::int64_t from) const noexcept;
+  [[nodiscard]] Settled settled_state() const noexcept {
+    return settled_state(pending_.end_index());
+  }
+  /// All is as it was in `to`, which has the zones from index `from` on.
+  void go_back(const Settled& to, std::int64_t from) noexcept;
+  /// Takes zones about the cores that there are in place of the one decided last where that ends
+  /// ahead of its excursions, as far as `end`. False: there is no such way, or not yet.
+  [[nodiscard]] bool try_shorter(double end) noexcept;
+  /// Whether they take less time than the zone about `core` that was taken. Nothing is changed.
+  [[nodiscard]] bool is_shorter_faster(const PoleCore& core, const Settled& before) noexcept;
   /// Takes the best zone about `around`; false: there is none.
-  [[nodiscard]] bool find_zone(PolePlace around, bool is_held) noexcept;
+  [[nodiscard]] bool find_zone(const PolePlace& around, bool is_held) noexcept;
+  /// From where the free joint rests: holds it farther into the core, where that takes less time
+  /// than `zones` or there are none.
+  void hold_on(const PolePlace& around, Zones& zones) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;
   /// Joints of the exact way at `u`, the windings followed from where they are known.

@@ -325,6 +325,30 @@ PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept {
   return Search(task, place).run();
 }
 
+double find_time(const PoleTask& task, std::span<const PoleZone> zones, int branch, double begin,
+                 double end) noexcept {
+  constexpr double kPartsOfSpan = 6, kMostParts = 2048;
+  const double least_step = std::max((end - begin) / kMostParts, kLeastPart_mm);
+  std::size_t n = 0;
+  double sum = 0;
+  for (double u = begin, next = begin; u < end; u = next) {
+    next = std::min(u + std::max(task.spans.span_at(u).length / kPartsOfSpan, least_step), end);
+    const double middle = 0.5 * (u + next);
+    for (; n < zones.size() && zones[n].end <= middle; ++n) branch = zones[n].branch_after;
+    const BandSpan& span = task.spans.span_at(middle);
+    const auto pose = pose_of<Jet<3>>(span, middle);
+    auto at = solve(task.model, task.tool_length_mm, pose, branch, {});
+    if (n < zones.size() && zones[n].begin < middle) {
+      const double h = zones[n].end - zones[n].begin;
+      const Jet<3> free = free_at(zones[n].free, (middle - zones[n].begin) / h, h);
+      at = solve_held(task.model, task.tool_length_mm, pose, free);
+    }
+    const double time = (next - u) * slowness(task.model, span, pose, at.q);
+    sum += std::isfinite(time) ? time : 0;
+  }
+  return sum;
+}
+
 FreeQuintic part_of(const FreeQuintic& whole, double from, double to) noexcept {
   const auto split = [](const FreeQuintic& values, double t, bool is_left) {
     FreeQuintic level = values, left{}, right{};

@@ -46,17 +46,25 @@ std::int64_t ProgrammedAxis::mark_before(double u) const noexcept {
   return low;
 }
 
-double ProgrammedAxis::angle_to(double u, const Vector3& axis) const noexcept {
-  if (last_ - first_ < 2 || u < mark(first_).u - 1e-9 || u > mark(last_ - 1).u + 1e-9) {
-    return std::numeric_limits<double>::infinity();
-  }
+std::optional<ProgrammedAxis::Known> ProgrammedAxis::at(double u) const noexcept {
+  if (last_ - first_ < 2 || u < mark(first_).u - 1e-9 || u > mark(last_ - 1).u + 1e-9) return {};
   const std::int64_t before = mark_before(u);
   const Mark &a = mark(before), &b = mark(before + 1);
   const Vector3 from = to_vector(a.axis), to = to_vector(b.axis);
   const double share = b.u > a.u ? std::clamp((u - a.u) / (b.u - a.u), 0.0, 1.0) : 0.0;
   const GreatCircle way = find_great_circle(from, to);
-  return angle_between(axis_on_circle(way.begin, way.normal, share * way.turn), axis) +
-         b.hidden_rad;
+  return Known{axis_on_circle(way.begin, way.normal, share * way.turn), b.hidden_rad};
+}
+
+double ProgrammedAxis::angle_to(double u, const Vector3& axis) const noexcept {
+  const auto there = at(u);
+  if (!there) return std::numeric_limits<double>::infinity();
+  return angle_between(there->axis, axis) + there->hidden_rad;
+}
+
+double ProgrammedAxis::next_end(double u) const noexcept {
+  const std::int64_t next = mark_before(u) + (mark(first_).u > u ? 0 : 1);
+  return next < last_ && mark(next).u > u ? mark(next).u : std::numeric_limits<double>::infinity();
 }
 
 double ProgrammedAxis::kink_at(std::int64_t n) const noexcept {

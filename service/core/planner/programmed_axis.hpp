@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,19 @@ class ProgrammedAxis {
   /// The axis at the end of a block; `u` grows.
   void add(double u, const Vector3& axis) noexcept;
 
+  struct Known {
+    Vector3 axis;
+    double hidden_rad = 0;  ///< the largest angle that merging may hide there
+  };
+  /// The axis at `u`; nullopt where it is not known.
+  [[nodiscard]] std::optional<Known> at(double u) const noexcept;
+
   /// Angle between `axis` and the programmed one at `u`, with what merging may hide; infinite where
   /// it is not known.
   [[nodiscard]] double angle_to(double u, const Vector3& axis) const noexcept;
+
+  /// Where the next block behind `u` ends; infinite where none is known.
+  [[nodiscard]] double next_end(double u) const noexcept;
 
   /// Where between `begin` and `end` its direction changes at once, ascending: of every part of
   /// the way, as many as `kinks` has room for, the sharpest. Returns how many.
