@@ -23,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 [[noreturn]] void become(const std::vector<std::string>& arguments,
                          const ChildProcess::Options& options, int in, int out) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (options.has_own_group) setpgid(0, 0);
   sched_setaffinity(0, sizeof(cpu_set_t), &initial_cpus());
   dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);

@@ -18,6 +18,7 @@ class ChildProcess {
     std::vector<std::string> environment{};  ///< NAME=VALUE, added to our own
     std::string error_file{};                ///< where standard error goes; empty: where ours does
     std::string output_file{};               ///< where standard output goes; empty: read_line()
+    bool has_own_group = false;              ///< Ctrl-C of the terminal is ours alone, not its
   };
 
   /// Starts `arguments`, the program's path first. Throws std::runtime_error where it cannot be.

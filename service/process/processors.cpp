@@ -12,18 +12,32 @@ namespace {
 }
 
 /// Taken before main() begins and anybody pins anything.
-const cpu_set_t kInitial = current_cpus();
+cpu_set_t initial = current_cpus();
 
 }  // namespace
 
-const cpu_set_t& initial_cpus() noexcept { return kInitial; }
+const cpu_set_t& initial_cpus() noexcept { return initial; }
 
 int last_cpu() noexcept {
   int last = 0;
   for (int i = 0; i < CPU_SETSIZE; ++i) {
-    if (CPU_ISSET(i, &kInitial)) last = i;
+    if (CPU_ISSET(i, &initial)) last = i;
   }
   return last;
+}
+
+bool take_cpu(int cpu) noexcept {
+  if (cpu < 0 || cpu >= CPU_SETSIZE) return false;
+  if (CPU_ISSET(cpu, &initial)) return true;
+  const cpu_set_t before = current_cpus();
+  cpu_set_t wider = initial;
+  CPU_SET(cpu, &wider);
+  if (sched_setaffinity(0, sizeof wider, &wider) != 0) return false;
+  const cpu_set_t granted = current_cpus();  // the kernel leaves out what we may not have
+  sched_setaffinity(0, sizeof before, &before);
+  if (!CPU_ISSET(cpu, &granted)) return false;
+  initial = wider;
+  return true;
 }
 
 void stay_off_cpu(int cpu) noexcept {
