@@ -25,6 +25,7 @@
 #include "service/dds/writer.hpp"
 #include "service/probe/drive_side.hpp"
 #include "service/probe/figures.hpp"
+#include "service/process/processors.hpp"
 
 namespace meridian::probe {
 namespace {
@@ -34,34 +35,29 @@ using dds::Writer;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-void pin(bool to, int cpu) {
-  cpu_set_t allowed;
-  sched_getaffinity(0, sizeof allowed, &allowed);
+/// Pins the calling thread, whose set may be that of a thread that keeps off this CPU.
+void pin_to(int cpu) {
   cpu_set_t wanted;
   CPU_ZERO(&wanted);
-  for (int i = 0; i < CPU_SETSIZE; ++i) {
-    if (CPU_ISSET(i, &allowed) && (i == cpu) == to) {
-      CPU_SET(i, &wanted);
-    }
-  }
-  if (CPU_COUNT(&wanted) > 0) {
-    sched_setaffinity(0, sizeof wanted, &wanted);
-  }
+  CPU_SET(cpu, &wanted);
+  sched_setaffinity(0, sizeof wanted, &wanted);
 }
 
 struct Wake {
   std::int64_t late_ns = 0;
   std::int64_t written_ns = 0;
+  bool is_elsewhere = false;  ///< not on the real-time CPU: no reference for what is there
 };
 
 /// `count` periods on the real-time CPU, in a thread of its own; writes where there is a writer.
-std::vector<Wake> run(int cpu, std::int64_t period_ns, std::size_t count,
+std::vector<Wake> run(const BarePeerOptions& options, std::size_t count,
                       Writer<SetpointSample>* writer) {
+  const std::int64_t period_ns = options.period_ns;
   std::vector<Wake> wakes(count);
   std::thread thread([&] {
-    pin(true, cpu);
+    pin_to(options.cpu);
     prctl(PR_SET_TIMERSLACK, 1UL);
-    const sched_param parameters{.sched_priority = 80};
+    const sched_param parameters{.sched_priority = options.priority};
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
     SetpointSample sample;
     const std::int64_t start = monotonic_ns();
@@ -73,6 +69,7 @@ std::vector<Wake> run(int cpu, std::int64_t period_ns, std::size_t count,
       while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
       }
       wakes[i].late_ns = monotonic_ns() - due_ns;
+      wakes[i].is_elsewhere = sched_getcpu() != options.cpu;
       if (writer != nullptr) {
         sample.setpoint.cycle = i;
         sample.setpoint.due_ns = due_ns;
@@ -118,20 +115,26 @@ class Answers {
   dds::Reader<dds::DriveFeedback> reader_;
 };
 
+/// How many of them were elsewhere, with which an answer begins.
+std::string elsewhere(const std::vector<Wake>& wakes) {
+  return std::to_string(std::count_if(wakes.begin(), wakes.end(),
+                                      [](const Wake& one) { return one.is_elsewhere; })) +
+         " ";
+}
+
 std::string wake(const BarePeerOptions& options, std::size_t count) {
-  std::string answer;
-  for (const Wake& one : run(options.cpu, options.period_ns, count, nullptr)) {
-    answer += std::to_string(one.late_ns) + " ";
-  }
+  const auto wakes = run(options, count, nullptr);
+  std::string answer = elsewhere(wakes);
+  for (const Wake& one : wakes) answer += std::to_string(one.late_ns) + " ";
   return answer;
 }
 
 std::string ping(const BarePeerOptions& options, std::size_t count, Writer<SetpointSample>& writer,
                  Answers& answers) {
   answers.forget();
-  const auto wakes = run(options.cpu, options.period_ns, count, &writer);
+  const auto wakes = run(options, count, &writer);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the last answer is on its way
-  std::string answer;
+  std::string answer = elsewhere(wakes);
   for (std::size_t i = 0; i < wakes.size(); ++i) {
     const std::int64_t seen_ns = answers.seen_ns(i);
     answer += std::to_string(i) + ":" + std::to_string(wakes[i].written_ns) + ":" +
@@ -145,7 +148,7 @@ std::string ping(const BarePeerOptions& options, std::size_t count, Writer<Setpo
 void run_bare_peer(const BarePeerOptions& options) {
   mlockall(MCL_CURRENT | MCL_FUTURE);
   hold_dma_latency();
-  pin(false, options.cpu);  // Cyclone's threads inherit this
+  process::stay_off_cpu(options.cpu);  // Cyclone's threads inherit this
   dds::Participant participant({.domain = options.domain,
                                 .machine = options.partition,
                                 .transport = has_realtime_rights()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/probe/bare_reference.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <sstream>
@@ -17,13 +18,15 @@ constexpr std::chrono::seconds kWithin{30};
 
 }  // namespace
 
-BareReference::BareReference(int cpu, std::uint32_t domain, std::int64_t period_ns)
-    : warm_up_(static_cast<std::size_t>(kWarmUp_ns / period_ns)),
+BareReference::BareReference(int cpu, std::uint32_t domain, std::int64_t period_ns, int priority)
+    : cpu_(cpu),
+      warm_up_(static_cast<std::size_t>(kWarmUp_ns / period_ns)),
       periods_(static_cast<std::size_t>(kTurn_ns / period_ns)),
       drive_side_(domain, kPartition),
       process_({process::program_beside("meridian").string(), "probe", "--bare-peer",
-                std::to_string(cpu), std::to_string(domain), std::to_string(period_ns),
-                kPartition}) {
+                std::to_string(cpu), std::to_string(domain), std::to_string(period_ns), kPartition,
+                std::to_string(priority)},
+               {.has_own_group = true}) {
   drive_side_.answer(true);
   if (process_.read_line(kWithin) != "ready") {
     throw std::runtime_error("the bare reference does not start");
@@ -43,7 +46,16 @@ std::string BareReference::ask(const std::string& verb) {
   if (!answer) {
     throw std::runtime_error("the bare reference does not answer");
   }
-  return *answer;
+  std::istringstream words(*answer);
+  std::size_t elsewhere = 0;
+  std::string samples;
+  words >> elsewhere;
+  if (elsewhere > 0) {
+    throw std::runtime_error("the bare reference was not on processor " + std::to_string(cpu_) +
+                             " in " + std::to_string(elsewhere) + " of its wakes");
+  }
+  std::getline(words, samples);
+  return samples;
 }
 
 std::vector<std::int64_t> BareReference::wake_turn() {
@@ -68,13 +80,17 @@ BareReference::Pings BareReference::ping_turn() {
   std::int64_t round_trip_ns = 0;
   for (std::int64_t at = 0; numbers >> cycle >> colon >> at >> colon >> round_trip_ns;) {
     written_ns[cycle] = at;
-    if (cycle >= warm_up_ && round_trip_ns > 0) pings.round_trip_ns.push_back(round_trip_ns);
+    if (cycle < warm_up_) continue;
+    ++pings.unseen.of;
+    if (round_trip_ns > 0) pings.round_trip_ns.push_back(round_trip_ns);
   }
   for (const DriveSide::Arrival& arrival : drive_side_.arrivals()) {
     if (arrival.cycle >= warm_up_) {
       pings.one_way_ns.push_back(arrival.seen_ns - written_ns.at(arrival.cycle));
     }
   }
+  pings.unseen.missing =
+      pings.unseen.of - std::min<std::uint64_t>(pings.unseen.of, pings.one_way_ns.size());
   return pings;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "service/probe/drive_side.hpp"
+#include "service/probe/turn_figures.hpp"
 #include "service/process/child_process.hpp"
 
 namespace meridian::probe {
@@ -19,20 +20,22 @@ inline constexpr std::int64_t kWarmUp_ns = 100'000'000, kTurn_ns = 1'000'000'000
 class BareReference {
  public:
   /// Throws std::runtime_error where the process does not come up.
-  BareReference(int cpu, std::uint32_t domain, std::int64_t period_ns);
+  BareReference(int cpu, std::uint32_t domain, std::int64_t period_ns, int priority = 80);
 
-  /// One turn of the bare thread: its latenesses, ns.
+  /// One turn of the bare thread: its latenesses, ns. Throws where it, or the ping, was not on that
+  /// CPU: it would be compared with another.
   [[nodiscard]] std::vector<std::int64_t> wake_turn();
   /// One turn of pings, ns: written until seen by the drive process, and until its answer was back.
-  /// Lost ones are missing.
   struct Pings {
     std::vector<std::int64_t> one_way_ns, round_trip_ns;
+    Missing unseen;  ///< never came to the drive process
   };
   [[nodiscard]] Pings ping_turn();
 
  private:
   [[nodiscard]] std::string ask(const std::string& verb);
 
+  int cpu_;
   std::size_t warm_up_, periods_;  ///< of a turn
   DriveSide drive_side_;
   process::ChildProcess process_;

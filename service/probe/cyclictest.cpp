@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "service/probe/waiting.hpp"
 #include "service/process/child_process.hpp"
 #include "service/process/programs.hpp"
 
@@ -38,7 +39,8 @@ std::optional<Histogram> parse_cyclictest(const std::string& text) {
   return histogram;
 }
 
-std::optional<Histogram> run_cyclictest(int cpu, std::int64_t period_ns, double seconds) {
+std::optional<Histogram> run_cyclictest(int cpu, std::int64_t period_ns, double seconds,
+                                        const std::atomic<bool>& is_stopping) {
   const char* const kPath = "/usr/bin/cyclictest";
   if (!std::filesystem::exists(kPath)) return std::nullopt;
   const process::ScratchFolder folder;
@@ -48,9 +50,9 @@ std::optional<Histogram> run_cyclictest(int cpu, std::int64_t period_ns, double 
       {kPath, "-q", "-m", "-p80", "--policy=fifo", "-t1", "-a" + std::to_string(cpu),
        "-i" + std::to_string(period_ns / 1000), "-l" + std::to_string(loops),
        "-h" + std::to_string(kMost_us)},
-      {.error_file = "/dev/null", .output_file = output});
+      {.error_file = "/dev/null", .output_file = output, .has_own_group = true});
   const auto patience = std::chrono::milliseconds(std::llround(seconds * 1000) + 20'000);
-  if (cyclictest.wait_for_exit(patience) != 0) return std::nullopt;
+  if (wait_for_exit(cyclictest, patience, is_stopping) != 0) return std::nullopt;
   std::ifstream file(output);
   std::ostringstream text;
   text << file.rdbuf();

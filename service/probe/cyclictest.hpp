@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,8 +15,9 @@ namespace meridian::probe {
 [[nodiscard]] std::optional<Histogram> parse_cyclictest(const std::string& text);
 
 /// Latencies by cyclictest of Debian's rt-tests, one thread at FIFO 80 on `cpu`; nothing where it
-/// is not installed or has no right to run so.
+/// is not installed or has no right to run so. Throws Interrupted.
 [[nodiscard]] std::optional<Histogram> run_cyclictest(int cpu, std::int64_t period_ns,
-                                                      double seconds);
+                                                      double seconds,
+                                                      const std::atomic<bool>& is_stopping);
 
 }  // namespace meridian::probe

@@ -12,6 +12,9 @@
 /// What is wrong with a host and how to mend it. Nothing is changed.
 namespace meridian::probe {
 
+/// What a service may need to lock, as its budget says (resident_memory; a test compares).
+inline constexpr std::size_t kLockedMemory_mib = 64;
+
 /// What this process was allowed when it tried.
 struct Rights {
   bool has_priority = false;  ///< a thread at FIFO 80

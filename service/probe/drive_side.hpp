@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,16 @@ namespace meridian::probe {
 /// receive thread, and where wanted answers at once with a feedback about it.
 class DriveSide {
  public:
+  enum class Role : std::uint8_t {
+    kDrives,   ///< there are no others
+    kListener  ///< others are the drives: it never answers
+  };
   /// Joins the partition of a machine with room for `most` arrivals; throws dds::DdsError.
-  DriveSide(std::uint32_t domain, const std::string& partition, std::size_t most = 200'000);
+  DriveSide(std::uint32_t domain, const std::string& partition, std::size_t most = 200'000,
+            Role role = Role::kDrives);
 
   [[nodiscard]] bool is_connected() const { return reader_.matched_writers() > 0; }
-  /// From here on every setpoint is answered, or none is.
+  /// From here on every setpoint is answered, or none is. A listener answers none.
   void answer(bool is_wanted) { is_answering_ = is_wanted; }
 
   struct Arrival {
@@ -29,7 +35,8 @@ class DriveSide {
     std::int64_t due_ns = 0;
     std::int64_t seen_ns = 0;
   };
-  /// Arrivals so far; call while nothing is being sent, or take the tail with a grain of salt.
+  /// Arrivals so far, in order of their cycles; call while nothing is being sent, or take the tail
+  /// with a grain of salt.
   [[nodiscard]] std::vector<Arrival> arrivals() const;
   [[nodiscard]] std::size_t count() const { return count_.load(std::memory_order_acquire); }
   void forget() { count_.store(0, std::memory_order_release); }
@@ -43,7 +50,7 @@ class DriveSide {
   std::atomic<bool> is_answering_{false};
   dds::DriveFeedback answer_;
   dds::Participant participant_;
-  dds::Writer<dds::DriveFeedback> answers_;
+  std::unique_ptr<dds::Writer<dds::DriveFeedback>> answers_;  ///< a listener has none
   dds::Reader<dds::SetpointSample> reader_;
 };
 

@@ -56,36 +56,46 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-void Turns::add(const std::vector<std::int64_t>& samples_ns) {
-  turns_.push_back(figures_of(samples_ns));
-  all_ns_.insert(all_ns_.end(), samples_ns.begin(), samples_ns.end());
+std::vector<std::int64_t> with_omitted(const std::vector<std::int64_t>& late_ns,
+                                       std::int64_t interval_ns) {
+  std::vector<std::int64_t> all;
+  all.reserve(late_ns.size());
+  for (const std::int64_t late : late_ns) {
+    all.push_back(late);
+    if (interval_ns <= 0) continue;
+    std::int64_t omitted = late - interval_ns;
+    for (int i = 0; i < Histogram::kMostOmitted && omitted > 0; ++i, omitted -= interval_ns) {
+      all.push_back(omitted);
+    }
+  }
+  return all;
 }
 
-double Turns::median_p50_us() const {
+void Turns::add(const std::vector<std::int64_t>& samples_ns, std::int64_t interval_ns) {
+  const std::vector<std::int64_t> all = with_omitted(samples_ns, interval_ns);
+  turns_.push_back(figures_of(all));
+  all_ns_.insert(all_ns_.end(), all.begin(), all.end());
+  stalls_ += static_cast<std::size_t>(
+      std::count_if(samples_ns.begin(), samples_ns.end(),
+                    [](std::int64_t sample) { return sample >= kStall_ns; }));
+}
+
+double Turns::median_of(double Figures::*figure) const {
   std::vector<double> values;
   for (const Figures& turn : turns_) {
-    values.push_back(turn.p50_us);
+    if (turn.samples > 0) values.push_back(turn.*figure);
   }
   return median(values);
 }
 
-double Turns::median_p99_us() const {
-  std::vector<double> values;
-  for (const Figures& turn : turns_) {
-    values.push_back(turn.p99_us);
-  }
-  return median(values);
-}
+double Turns::median_p50_us() const { return median_of(&Figures::p50_us); }
+
+double Turns::median_p99_us() const { return median_of(&Figures::p99_us); }
 
 Histogram Turns::histogram() const {
   Histogram histogram;
   for (const std::int64_t sample_ns : all_ns_) histogram.record(sample_ns);
   return histogram;
-}
-
-std::size_t Turns::stalls() const {
-  return static_cast<std::size_t>(std::count_if(
-      all_ns_.begin(), all_ns_.end(), [](std::int64_t sample) { return sample >= kStall_ns; }));
 }
 
 std::string Turns::to_text() const {

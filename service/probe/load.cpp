@@ -1,44 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/probe/load.hpp"
 
-#include <pthread.h>
 #include <sched.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+#include "service/process/processors.hpp"
+#include "service/process/programs.hpp"
 
 namespace meridian::probe {
-namespace {
 
-void work_on(int cpu, const std::atomic<bool>& is_stopping) {
+Load::Load() {
+  constexpr std::chrono::seconds kWithin{10};
+  const std::string tool = process::program_beside("meridian").string();
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (!CPU_ISSET(cpu, &process::initial_cpus())) continue;
+    burners_.push_back(std::make_unique<process::ChildProcess>(
+        std::vector<std::string>{tool, "probe", "--burn", std::to_string(cpu)},
+        process::ChildProcess::Options{.has_own_group = true}));
+  }
+  for (const auto& burner : burners_) {
+    if (burner->read_line(kWithin) != "burning") {
+      throw std::runtime_error("a process of the load does not start");
+    }
+  }
+}
+
+void burn(int cpu) {
   cpu_set_t set;
   CPU_ZERO(&set);
   CPU_SET(cpu, &set);
-  pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+  sched_setaffinity(0, sizeof set, &set);
   constexpr std::size_t kBytes = std::size_t{16} * 1024 * 1024;
   std::vector<char> from(kBytes, 1), to(kBytes);
-  while (!is_stopping.load(std::memory_order_relaxed)) {
+  std::cout << "burning" << std::endl;
+  for (;;) {
     std::copy(from.begin(), from.end(), to.begin());
     if (std::FILE* const file = std::tmpfile(); file != nullptr) {
       std::fwrite(to.data(), 1, kBytes / 64, file);
       std::fclose(file);
     }
   }
-}
-
-}  // namespace
-
-Load::Load() {
-  // The thread that makes a probe is kept off the real-time CPU; its load is not.
-  const auto cpus = static_cast<int>(std::thread::hardware_concurrency());
-  for (int cpu = 0; cpu < cpus; ++cpu) {
-    threads_.emplace_back([cpu, this] { work_on(cpu, is_stopping_); });
-  }
-}
-
-Load::~Load() {
-  is_stopping_ = true;
-  for (std::thread& thread : threads_) thread.join();
 }
 
 }  // namespace meridian::probe

@@ -19,14 +19,14 @@
 #include "service/probe/host_files.hpp"
 #include "service/probe/load.hpp"
 #include "service/probe/service_run.hpp"
+#include "service/probe/service_setup.hpp"
+#include "service/probe/waiting.hpp"
 #include "service/probe/work_run.hpp"
 #include "service/process/processors.hpp"
 #include "service/process/programs.hpp"
 
 namespace meridian::probe {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Time that the host of a virtual machine gave to others, all processors, ms (proc(5), stat).
 [[nodiscard]] double stolen_ms() {
@@ -48,67 +48,90 @@ namespace fs = std::filesystem;
 }
 
 /// Of each cycle of a turn: while it is measured (arrivals, twice, those between the turns too; a
-/// row of the recording, parsed), and until the end (samples of six kinds).
-constexpr double kWorking_bytes = 320, kKept_bytes = 64;
+/// row of the recording, parsed), and until the end (samples of eight kinds).
+constexpr double kWorking_bytes = 320, kKept_bytes = 80;
 
-struct Host {
-  int cpu = 0;
-  std::uint32_t domain = 0;
-  std::string machine, name;  ///< file with the cycle to measure, name in it
-};
-
-void take_turns(const Host& host, std::int64_t period_ns, int turns, const fs::path& folder,
-                RateMeasurement& m) {
-  ServiceRun service(host.domain, folder, host.machine, host.name, period_ns, turns);
-  if (!service.is_up()) throw std::runtime_error("the service does not send setpoints");
-  service.pause();
-  BareReference bare(host.cpu, host.domain, period_ns);
-  for (int turn = 0; turn < turns; ++turn) {
-    service.take_turn();
-    const std::vector<std::int64_t> late_ns = bare.wake_turn();
-    m.bare_wake.add(late_ns);
-    m.bare_lost_periods += lost_periods(late_ns, period_ns);
-    const BareReference::Pings pings = bare.ping_turn();
-    m.bare_one_way.add(pings.one_way_ns);
-    m.bare_round_trip.add(pings.round_trip_ns);
-  }
-  const ServiceRun::Result result = service.end();
-  for (const auto& turn : result.lateness_ns) m.lateness.add(turn);
-  for (const auto& turn : result.one_way_ns) m.one_way.add(turn);
-  if (result.round_trip) m.round_trip = *result.round_trip;
-  m.sent = result.sent;
-  m.unseen = result.unseen;
-  m.lost_periods = result.lost_periods;
+void add_turns(Turns& to, const std::vector<std::vector<std::int64_t>>& turns,
+               std::int64_t interval_ns = 0) {
+  for (const auto& turn : turns) to.add(turn, interval_ns);
 }
 
-[[nodiscard]] RateMeasurement measure_rate(const MeasureOptions& options, Host host, int rate_hz,
-                                           bool is_loaded) {
+/// The service while it cuts.
+void cut(const ServiceSetup& setup, int seconds, const std::atomic<bool>& is_stopping,
+         RateMeasurement& m) {
+  const WorkResult work = run_work(setup, seconds, is_stopping);
+  add_turns(m.cutting_lateness, work.turns.lateness_ns, setup.period_ns);
+  add_turns(m.cutting_one_way, work.turns.one_way_ns);
+  m.computation.add(work.turns.computation_ns);
+  m.moving = work.turns.moving;
+  m.cutting_lost = work.turns.periods;
+  m.cutting_unseen = work.turns.setpoints;
+  m.untimed += work.turns.untimed;
+  m.wake = work.wake;
+  m.broken_off = work.broken_off;
+}
+
+[[nodiscard]] RateMeasurement measure_rate(const MeasureOptions& options, int rate_hz,
+                                           bool is_loaded, const std::atomic<bool>& is_stopping) {
   RateMeasurement m;
   m.rate_hz = rate_hz;
   m.is_loaded = is_loaded;
-  const std::int64_t period_ns = 1'000'000 / rate_hz * 1000;  // whole microseconds, as in the file
   const process::ScratchFolder folder;
-  host.machine = (folder.path() / "machine.toml").string();
+  ServiceSetup setup{.domain = options.domain,
+                     .folder = folder.path(),
+                     .machine = (folder.path() / "machine.toml").string(),
+                     .period_ns = 1'000'000 / rate_hz * 1000,  // whole microseconds, as in the file
+                     .realtime = options.realtime};
   std::ifstream file(options.machine);
   std::ostringstream text;
   text << file.rdbuf();
-  std::ofstream(host.machine) << with_cycle_us(text.str(), period_ns / 1000);
-  host.name = config::load_machine(host.machine).name;
+  std::ofstream(setup.machine) << with_cycle_us(text.str(), setup.period_ns / 1000);
+  setup.name = config::load_machine(setup.machine).name;
   const double stolen_before_ms = stolen_ms();
-  std::unique_ptr<Load> load = is_loaded ? std::make_unique<Load>() : nullptr;
-  take_turns(host, period_ns, options.turns, folder.path(), m);
-  m.cyclictest = run_cyclictest(host.cpu, period_ns, options.turns);
-  const WorkResult work =
-      run_work(host.domain, folder.path(), host.machine, host.name, period_ns, options.turns);
-  m.computation.add(work.computation_ns);
-  m.wake = work.wake;
-  m.broken_off = work.broken_off;
-  load.reset();
+  try {
+    const std::unique_ptr<Load> load = is_loaded ? std::make_unique<Load>() : nullptr;
+    take_turns(setup, options.turns, is_stopping, m);
+    m.cyclictest = run_cyclictest(setup.realtime.cpu, setup.period_ns, options.turns, is_stopping);
+    cut(setup, options.turns, is_stopping, m);
+  } catch (const Interrupted&) {
+    m.is_interrupted = true;
+  } catch (const std::exception& error) {
+    if (m.periods == 0) throw;
+    m.broken_off = error.what();  // what the turns came to is told
+  }
   m.stolen_ms = stolen_ms() - stolen_before_ms;
   return m;
 }
 
 }  // namespace
+
+void take_turns(const ServiceSetup& setup, int turns, const std::atomic<bool>& is_stopping,
+                RateMeasurement& m) {
+  ServiceRun service(setup, turns);
+  if (!service.is_up()) throw std::runtime_error("the service does not send setpoints");
+  service.pause();
+  BareReference bare(setup.realtime.cpu, setup.domain, setup.period_ns,
+                     setup.realtime.cycle_priority);
+  for (int turn = 0; turn < turns && !is_stopping.load(); ++turn) {
+    service.take_turn();
+    const std::vector<std::int64_t> late_ns = bare.wake_turn();
+    m.bare_wake.add(late_ns, setup.period_ns);
+    const std::uint64_t lost = lost_periods(late_ns, setup.period_ns);
+    m.bare_lost += {lost, late_ns.size() + lost};
+    const BareReference::Pings pings = bare.ping_turn();
+    m.bare_one_way.add(pings.one_way_ns);
+    m.bare_round_trip.add(pings.round_trip_ns);
+    m.bare_unseen += pings.unseen;
+  }
+  const ServiceRun::Result result = service.end();
+  add_turns(m.lateness, result.turns.lateness_ns, setup.period_ns);
+  add_turns(m.one_way, result.turns.one_way_ns);
+  if (result.round_trip) m.round_trip = *result.round_trip;
+  m.lost = result.turns.periods;
+  m.unseen = result.turns.setpoints;
+  m.untimed += result.turns.untimed;
+  m.periods = result.turns.periods.of;
+}
 
 double available_mib() {
   const auto text = HostFiles().text("proc/meminfo").value_or("");
@@ -142,20 +165,29 @@ std::string with_cycle_us(const std::string& machine_text, std::int64_t cycle_us
                             std::regex_constants::format_first_only);
 }
 
-std::vector<RateMeasurement> measure(const MeasureOptions& options,
-                                     const std::function<void(const std::string&)>& say) {
+int cycle_cpu(const config::RealtimeConfig& realtime) {
+  if (realtime.cpu < 0) return process::last_cpu();
+  if (process::take_cpu(realtime.cpu)) return realtime.cpu;
+  throw std::runtime_error("processor " + std::to_string(realtime.cpu) +
+                           " is not one that this process may use: it is not there, or a control "
+                           "group (cpuset) keeps it; see AllowedCPUs= of the unit, or choose "
+                           "another by --cpu");
+}
+
+void measure(const MeasureOptions& options, const std::atomic<bool>& is_stopping,
+             const Audience& audience) {
   (void)config::load_machine(options.machine);  // refused before anything is started
-  const Host host{process::last_cpu(), options.domain, "", ""};
-  process::stay_off_cpu(host.cpu);
-  std::vector<RateMeasurement> all;
+  MeasureOptions here = options;
+  here.realtime.cpu = cycle_cpu(options.realtime);
+  process::stay_off_cpu(here.realtime.cpu);
   for (const bool is_loaded : {false, true}) {
     if (is_loaded && !options.has_load) continue;
     for (const int rate_hz : options.rates_hz) {
-      say(std::to_string(rate_hz) + " Hz" + (is_loaded ? " under load" : "") + " ...");
-      all.push_back(measure_rate(options, host, rate_hz, is_loaded));
+      if (is_stopping.load()) return;
+      audience.say(std::to_string(rate_hz) + " Hz" + (is_loaded ? " under load" : "") + " ...");
+      audience.take(measure_rate(here, rate_hz, is_loaded, is_stopping));
     }
   }
-  return all;
 }
 
 }  // namespace meridian::probe

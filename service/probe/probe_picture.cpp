@@ -7,8 +7,9 @@
 namespace meridian::probe {
 namespace {
 
-constexpr const char* kColours[] = {"#1f5fa8", "#9dc0e6", "#444444", "#2a9d5c", "#a8d8ba",
-                                    "#e08214", "#f4c58d", "#c22f4f", "#7b4fa3"};
+constexpr const char* kColours[] = {"#1f5fa8", "#9dc0e6", "#444444", "#2a9d5c",
+                                    "#a8d8ba", "#e08214", "#f4c58d", "#0b2f5b",
+                                    "#145c36", "#c22f4f", "#7b4fa3"};
 
 /// Points (latency in µs, share of the samples above it) of one histogram.
 void print_shares(std::FILE* out, const Histogram& histogram) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "service/config/service_file.hpp"
 #include "service/plot/gnuplot.hpp"
 #include "service/probe/budgets.hpp"
+#include "service/probe/doctor.hpp"
 #include "service/probe/measure.hpp"
 
 namespace meridian::probe {
@@ -25,18 +28,36 @@ struct Verdict {
   int rate_hz = 0;
   bool is_loaded = false;
   double figure = 0, reference = 0;  ///< in the unit of the budget
-  [[nodiscard]] bool is_inside() const { return figure <= budget.allowed(reference); }
+  /// Of figure and reference, of whichever there are fewer: what was measured, and how many samples
+  /// there must be before they say anything (row samples_taken of the table).
+  std::uint64_t samples = 0, wanted = 0;
+  [[nodiscard]] bool is_measured() const { return samples >= wanted; }
+  [[nodiscard]] bool is_inside() const {
+    return is_measured() && budget.is_kept(figure, reference);
+  }
 };
 
 /// Every budget of the table that this measurement can be held against.
 [[nodiscard]] std::vector<Verdict> judge(const RateMeasurement& measured,
                                          const std::string& budgets_file = "");
 
+/// Rights to real time that this process has not, of those that a service with these wishes needs:
+/// it would refuse to start where it enforces them.
+[[nodiscard]] std::vector<std::string> missing_rights(const Rights& rights,
+                                                      const config::RealtimeConfig& wishes);
+
 struct ProbeReport {
   std::string host;
-  bool is_target = false;  ///< budgets of a target host decide too
+  bool is_target = false;  ///< budgets of a target host decide too, and so do rights
   std::vector<RateMeasurement> measurements;
   std::vector<Verdict> verdicts;
+  int cpu = 0;                              ///< of the cycle and the bare programs
+  std::vector<std::string> missing_rights;  ///< bare programs and service ran without them
+  std::string broken_off;  ///< why there are not all measurements; empty: there are
+
+  /// Takes a measurement and its verdicts.
+  void add(const RateMeasurement& measured);
+  /// Something was measured, all of it, and nothing that decides is wrong or unknown.
   [[nodiscard]] bool is_fit() const;
 };
 

@@ -94,7 +94,7 @@ Rights try_rights() {
     const sched_param wish{.sched_priority = kCyclePriority};
     out.has_priority = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wish) == 0;
   }).join();
-  constexpr std::size_t kTrial_bytes = std::size_t{64} << 20;  // what the service may need
+  constexpr std::size_t kTrial_bytes = kLockedMemory_mib << 20U;
   void* const trial =
       mmap(nullptr, kTrial_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (trial != MAP_FAILED) {
@@ -110,7 +110,8 @@ Rights try_rights() {
 Findings examine_rights(const HostFiles& host, const Rights& rights) {
   Findings out{priority(host, rights)};
   out.push_back(rights.has_locked_memory
-                    ? Finding{"locked memory", Health::kFine, "64 MiB can be locked", ""}
+                    ? Finding{"locked memory", Health::kFine,
+                              std::to_string(kLockedMemory_mib) + " MiB can be locked", ""}
                     : Finding{"locked memory", Health::kBad, "refused: pages may leave memory",
                               "run as root, grant CAP_IPC_LOCK, or LimitMEMLOCK=infinity"});
   out.push_back(throttling(host));

@@ -23,10 +23,11 @@ constexpr int kStepsPerHalving = 5;
   return histogram.count() == 0 ? 0 : std::sqrt(sum / static_cast<double>(histogram.count()));
 }
 
-/// The next percentile to tell: a fifth of the half of what is left above `share`.
-[[nodiscard]] double next_share(double share) {
-  const double halvings = std::floor(std::log2(1 / (1 - share))) + 1;
-  return share + 1 / (std::exp2(halvings) * kStepsPerHalving);
+/// The next level to tell: a fifth of the half of what is left above `percent`. In per cent, as
+/// HdrHistogram reckons: steps of a tenth would not meet its levels bit for bit.
+[[nodiscard]] double next_percent(double percent) {
+  const double halvings = std::floor(std::log2(100 / (100 - percent))) + 1;
+  return percent + 100 / (std::exp2(halvings) * kStepsPerHalving);
 }
 
 }  // namespace
@@ -40,15 +41,16 @@ std::string percentile_table(const Histogram& histogram) {
     out += '\n';
   };
   std::uint64_t seen = 0;
-  double wanted = 0;
+  double wanted_percent = 0;
   for (std::size_t i = 0; i < Histogram::kBuckets && seen < histogram.count(); ++i) {
     if (histogram.bucket(i) == 0) continue;
     seen += histogram.bucket(i);
     const std::int64_t value_ns = std::min(Histogram::bucket_end_ns(i), histogram.max_ns());
-    const double share = static_cast<double>(seen) / total;
-    while (wanted <= share && seen < histogram.count()) {
-      line(static_cast<double>(value_ns), wanted, seen);
-      wanted = next_share(wanted);
+    const double percent = 100 * static_cast<double>(seen) / total;
+    const bool is_last = seen == histogram.count();  // one level is told of it, then 100 %
+    for (bool is_told = false; wanted_percent <= percent && !(is_last && is_told); is_told = true) {
+      line(static_cast<double>(value_ns), wanted_percent / 100, seen);
+      wanted_percent = next_percent(wanted_percent);
     }
   }
   if (histogram.count() > 0) {

@@ -10,7 +10,8 @@ namespace meridian::text {
 /// A histogram as the percentile table of HdrHistogram, which its plotters read: value (µs),
 /// percentile, count up to there, 1 / (1 - percentile), five steps for every halving of what is
 /// left, then mean, deviation, maximum and total. Source: HdrHistogram,
-/// AbstractHistogram.outputPercentileDistribution. Proof: tests/unit/probe/probe_report_test.cpp.
+/// AbstractHistogram.outputPercentileDistribution. Proof:
+/// tests/unit/probe/percentile_table_test.cpp.
 [[nodiscard]] std::string percentile_table(const Histogram& histogram);
 
 /// "wake-up lateness" as the name of a file: "wake-up-lateness.hgrm".

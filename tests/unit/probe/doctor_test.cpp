@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "service/probe/budgets.hpp"
 #include "service/process/programs.hpp"
 
 namespace meridian::probe {
@@ -135,6 +136,10 @@ TEST_F(Doctor, MindsSleepStatesOnlyWhereNobodyMayHoldThemOff) {
   expect("sleep states", Health::kNote, "C6, left in 133 us");
   write("sys/devices/system/cpu/cpu0/cpuidle/state3/disable", "1\n");
   EXPECT_EQ(finding("sleep states").health, Health::kFine);
+}
+
+TEST(Rights, AreTriedWithTheMemoryThatTheServiceMayUse) {
+  EXPECT_EQ(static_cast<double>(kLockedMemory_mib), load_budget("resident_memory").allowed());
 }
 
 TEST_F(Doctor, FindsWhatIsWrongWithTheKernel) {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/probe/service_setup.hpp"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "service/process/processors.hpp"
+#include "service/process/programs.hpp"
+
+namespace meridian::probe {
+namespace {
+
+TEST(ServiceSetup, MeasuresTheRealTimeOfTheServiceThatWillServe) {
+  const process::ScratchFolder folder;
+  ServiceSetup setup{.domain = 7,
+                     .folder = folder.path(),
+                     .machine = process::shipped_file("machines/lai.toml").string(),
+                     .name = "lai",
+                     .period_ns = 1'000'000};
+  setup.realtime.cpu = 3;
+  setup.realtime.cycle_priority = 85;
+  setup.realtime.lock_memory = false;
+  const auto words = setup.command(folder.path() / "recording.csv");
+  const auto named = std::find(words.begin(), words.end(), "--service");
+  ASSERT_NE(named, words.end());
+  const config::ServiceConfig service = config::load_service(*(named + 1));
+  EXPECT_EQ(service.realtime.cpu, 3);
+  EXPECT_EQ(service.realtime.cycle_priority, 85);
+  EXPECT_EQ(service.realtime.publisher_priority, setup.realtime.publisher_priority);
+  EXPECT_FALSE(service.realtime.lock_memory);
+  EXPECT_TRUE(service.realtime.hold_dma_latency);
+  EXPECT_EQ(service.machine, setup.machine);
+  EXPECT_TRUE(service.state_directory.empty() && service.log.empty() && service.recording.empty())
+      << "a service that serves meanwhile keeps its own";
+}
+
+TEST(ServiceSetup, ProcessorsThatWeHaveAreTakenAndOthersRefused) {
+  EXPECT_TRUE(process::take_cpu(process::last_cpu()));
+  EXPECT_FALSE(process::take_cpu(CPU_SETSIZE - 1)) << "a host of 1024 processors";
+  EXPECT_FALSE(process::take_cpu(-1));
+  EXPECT_FALSE(CPU_ISSET(CPU_SETSIZE - 1, &process::initial_cpus()));
+}
+
+/// As a shell on a host with isolated processors: its set has not all that there are.
+TEST(ServiceSetup, AProcessorThatWasKeptFromUsIsTakenForWhatWeStart) {
+  const cpu_set_t before = process::initial_cpus();
+  if (CPU_COUNT(&before) < 2) GTEST_SKIP() << "one processor only";
+  const int last = process::last_cpu();
+  EXPECT_EXIT(
+      {
+        cpu_set_t narrow = before;
+        CPU_CLR(last, &narrow);
+        sched_setaffinity(0, sizeof narrow, &narrow);
+        setenv("MERIDIAN_TEST_CPU", std::to_string(last).c_str(), 1);
+        execl("/proc/self/exe", "probe_test", "--gtest_filter=ServiceSetup.DISABLED_Takes*",
+              "--gtest_also_run_disabled_tests", nullptr);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+TEST(ServiceSetup, DISABLED_TakesTheOneThatItWasNotGiven) {
+  const char* const named = std::getenv("MERIDIAN_TEST_CPU");
+  ASSERT_NE(named, nullptr);
+  const int wanted = std::atoi(named);
+  ASSERT_FALSE(CPU_ISSET(wanted, &process::initial_cpus()));
+  ASSERT_TRUE(process::take_cpu(wanted));
+  EXPECT_EQ(process::last_cpu(), wanted);
+}
+
+}  // namespace
+}  // namespace meridian::probe
