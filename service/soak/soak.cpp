@@ -11,7 +11,6 @@
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
 #include "service/drives/cia402.hpp"
-#include "service/probe/budgets.hpp"
 #include "service/probe/figures.hpp"
 #include "service/process/processors.hpp"
 #include "service/process/programs.hpp"
@@ -67,7 +66,6 @@ class Soak {
     report_.host = probe::host_text();
     report_.seed = options.seed;
     report_.asked_s = options.for_s;
-    report_.resident_budget_mib = probe::load_budget("resident_memory").limit;
   }
 
   SoakReport run(const std::atomic<bool>& is_stopping) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "meridian/units.hpp"
+#include "service/probe/budgets.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::soak {
@@ -14,9 +15,6 @@ using text::append;
 using text::Count;
 using text::json_quoted;
 
-/// What a life may grow by after its warm-up.
-constexpr double kGrowth_mib = 1;
-constexpr int kGrowth_files = 4;  // peers that come and go take some for a while
 constexpr double kUs = 1e-3;
 
 [[nodiscard]] double us(const Histogram& histogram, double share) {
@@ -59,6 +57,13 @@ void append_lives(std::string& out, const SoakReport& report) {
 
 }  // namespace
 
+GrowthBudgets load_growth_budgets() {
+  return {.resident_mib = probe::load_budget("resident_memory").allowed(),
+          .more_mib = probe::load_budget("soak_memory_growth").allowed(),
+          .more_files = probe::load_budget("soak_file_growth").allowed(),
+          .more_threads = probe::load_budget("soak_thread_growth").allowed()};
+}
+
 void SoakReport::violate(std::string text, std::string where) {
   ++violation_count;
   if (violations.size() < kMostViolations)
@@ -90,19 +95,22 @@ std::vector<std::string> growth(const SoakReport& report) {
   std::vector<std::string> found;
   for (const Life& life : report.lives) {
     std::string text;
-    if (life.most_resident_mib > report.resident_budget_mib) {
+    const auto grew_by = [&life](auto figure, double most) {
+      return life.has_first && static_cast<double>(life.last.process.*figure) -
+                                       static_cast<double>(life.first.process.*figure) >
+                                   most;
+    };
+    if (life.most_resident_mib > report.allowed.resident_mib) {
       append(text, "%.1f MiB resident, budget %.0f", life.most_resident_mib,
-             report.resident_budget_mib);
-    } else if (life.has_first &&
-               life.last.process.resident_mib > life.first.process.resident_mib + kGrowth_mib) {
+             report.allowed.resident_mib);
+    } else if (grew_by(&process::Account::resident_mib, report.allowed.more_mib)) {
       append(text, "resident memory grew from %.1f to %.1f MiB", life.first.process.resident_mib,
              life.last.process.resident_mib);
-    } else if (life.has_first && life.last.process.threads > life.first.process.threads) {
+    } else if (grew_by(&process::Account::threads, report.allowed.more_threads)) {
       append(text, "threads grew from %d to %d", life.first.process.threads,
              life.last.process.threads);
     }
-    if (text.empty() && life.has_first &&
-        life.last.process.files > life.first.process.files + kGrowth_files) {
+    if (text.empty() && grew_by(&process::Account::files, report.allowed.more_files)) {
       append(text, "open files grew from %d to %d", life.first.process.files,
              life.last.process.files);
     }

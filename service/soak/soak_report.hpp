@@ -38,6 +38,14 @@ struct Drift {
   Histogram all, first, last;
 };
 
+/// What a life of the service may use, and may have more of at its end than when it had warmed up.
+struct GrowthBudgets {
+  double resident_mib = 0;
+  double more_mib = 0, more_files = 0, more_threads = 0;
+};
+/// From the table of budgets; throws as probe::load_budget().
+[[nodiscard]] GrowthBudgets load_growth_budgets();
+
 /// All that a soak found out, and its verdict. Times s.
 struct SoakReport {
   std::string machine, host;
@@ -60,7 +68,7 @@ struct SoakReport {
   std::map<std::string, Drift> latencies;
   std::vector<Violation> violations;  ///< the first kMostViolations
   std::uint64_t violation_count = 0;
-  double resident_budget_mib = 64;
+  GrowthBudgets allowed = load_growth_budgets();
   static constexpr std::size_t kMostViolations = 100;
 
   void violate(std::string text, std::string where);

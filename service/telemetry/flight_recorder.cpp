@@ -31,7 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kTail_s = 0.5;
-/// The rows are at most so large: the service locks its memory, and 64 MiB are to do for all of it.
+/// The rows are at most so large: the service locks its memory, and all of it has to do with
+/// resident_memory of the budgets (this room reads no file of the project; a test compares).
 constexpr std::size_t kRows_bytes = std::size_t{16} << 20U;
 constexpr const char* kPrefix = "fault-";
 

@@ -9,6 +9,7 @@
 
 #include "bench/cycle_workload.hpp"
 #include "bench/setpoint_workload.hpp"
+#include "service/probe/budgets.hpp"
 
 namespace meridian {
 namespace {
@@ -57,6 +58,8 @@ void CyclePercentiles(benchmark::State& state) {
   state.counters["p99_ns"] = at(0.99);
   state.counters["p99.9_ns"] = at(0.999);
   state.counters["samples"] = static_cast<double>(times_ns.size());
+  state.SetLabel("p50 " + bound_text(probe::load_budget("cycle_computation_p50")) + ", p99.9 " +
+                 bound_text(probe::load_budget("cycle_computation_p999")));
 }
 BENCHMARK(CyclePercentiles)->Unit(benchmark::kMillisecond);
 
@@ -88,6 +91,7 @@ void SetpointOnTopOfInverse(benchmark::State& state, bench::SetpointsOf what) {
   state.counters["setpoint_ns"] = median(whole_ns);
   state.counters["inverse_ns"] = median(inverse_ns);
   state.counters["on_top_ns"] = median(on_top_ns);
+  state.SetLabel("on top " + bound_text(probe::load_budget("setpoint_evaluation")));
 }
 BENCHMARK_CAPTURE(SetpointOnTopOfInverse, Spline, bench::SetpointsOf::kSpline);
 BENCHMARK_CAPTURE(SetpointOnTopOfInverse, BesideThePole, bench::SetpointsOf::kPole);

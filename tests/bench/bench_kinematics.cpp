@@ -3,21 +3,28 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/ik_workload.hpp"
+#include "service/probe/budgets.hpp"
 
 namespace meridian {
 namespace {
 
 constexpr double kTool_mm = 110.0;
 
-/// The budget's figure: one pose, branch and winding chosen, each solve following the one before.
-void InverseOfThePath(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(bench::run_inverse_kinematics(bench::kPoses));
+/// A budget's figure: one pose, branch and winding chosen, each solve following the one before.
+void inverse_of_the_path(benchmark::State& state, std::uint64_t (*run)(int) noexcept,
+                         const char* budget) {
+  for (auto _ : state) benchmark::DoNotOptimize(run(bench::kPoses));
   state.SetItemsProcessed(state.iterations() * bench::kPoses);
   state.counters["ns_per_pose"] = benchmark::Counter(
       static_cast<double>(bench::kPoses),
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.SetLabel("ns_per_pose " + bound_text(probe::load_budget(budget)));
 }
-BENCHMARK(InverseOfThePath);
+BENCHMARK_CAPTURE(inverse_of_the_path, Lai, bench::run_inverse_kinematics,
+                  "inverse_kinematics_lai");
+BENCHMARK_CAPTURE(inverse_of_the_path, AnyChain, bench::run_chain, "inverse_kinematics_family");
+BENCHMARK_CAPTURE(inverse_of_the_path, Robot5R, bench::run_robot_5r, "inverse_kinematics_robot");
+BENCHMARK_CAPTURE(inverse_of_the_path, Robot6R, bench::run_robot_6r, "inverse_kinematics_robot");
 
 void Forward(benchmark::State& state) {
   const MachineModel model = test::lai_machine();

@@ -4,6 +4,7 @@
 
 #include "bench/planner_workload.hpp"
 #include "bench/smooth_workload.hpp"
+#include "service/probe/budgets.hpp"
 
 namespace meridian {
 namespace {
@@ -22,6 +23,7 @@ void RestToRestBlocks(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * kBlocks);
   state.counters["motion_s_per_s"] = benchmark::Counter(planned_s, benchmark::Counter::kIsRate);
+  state.SetLabel("motion " + bound_text(probe::load_budget("planner_motion")));
 }
 BENCHMARK(RestToRestBlocks)->Unit(benchmark::kMillisecond);
 
@@ -39,6 +41,9 @@ void SmoothBlocks(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks.size()));
   state.counters["motion_s_per_s"] = benchmark::Counter(motion_s, benchmark::Counter::kIsRate);
+  constexpr double kDense_mm = 0.05;  // up to there the budget counts blocks, else motion
+  state.SetLabel(step <= kDense_mm ? "items " + bound_text(probe::load_budget("planner_blocks"))
+                                   : "motion " + bound_text(probe::load_budget("planner_motion")));
 }
 BENCHMARK(SmoothBlocks)->Arg(2)->Arg(50)->Arg(300)->Unit(benchmark::kMillisecond);
 

@@ -21,6 +21,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/inspect/skeleton.hpp"
+#include "service/probe/budgets.hpp"
 #include "support/cpu_time.hpp"
 
 namespace meridian {
@@ -246,6 +247,13 @@ int main(int argc, char** argv) {
   std::sort(files.begin(), files.end());
   std::printf("solved: tip within 1e-3 mm, axis within 1e-6 rad; %d poses each, processor time\n",
               count);
+  std::printf("budgets of ours, followed along a path:");
+  for (const char* const name :
+       {"inverse_kinematics_lai", "inverse_kinematics_family", "inverse_kinematics_robot"}) {
+    const meridian::probe::Budget budget = meridian::probe::load_budget(name);
+    std::printf(" %s %s;", budget.what.c_str(), bound_text(budget).c_str());
+  }
+  std::printf("\n");
   bool is_whole = true;
   for (const std::string& file : files) is_whole = meridian::compare(file, count) && is_whole;
   return is_whole ? 0 : 1;

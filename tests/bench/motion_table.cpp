@@ -20,12 +20,14 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "bench/smooth_workload.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/probe/budgets.hpp"
 #include "service/record/check.hpp"
 #include "service/record/recording_reader.hpp"
 #include "service/record/recording_writer.hpp"
@@ -82,6 +84,16 @@ std::vector<ClBlock> along_the_pole() {
     blocks.push_back(block);
   }
   return blocks;
+}
+
+/// What the columns of the throughput are held against.
+void print_budgets() {
+  std::printf("budgets:");
+  for (const char* const name : {"planner_motion", "planner_blocks", "planner_window"}) {
+    const probe::Budget budget = probe::load_budget(name);
+    std::printf(" %s %s%s", budget.what.c_str(), bound_text(budget).c_str(),
+                std::string_view(name) == "planner_window" ? "\n" : ";");
+  }
 }
 
 void print_made_up() {
@@ -193,6 +205,7 @@ void print_file(const std::string& file, const MachineModel& model) {
 }  // namespace meridian
 
 int main(int argc, char** argv) {
+  meridian::print_budgets();
   if (argc < 3) {
     meridian::print_made_up();
     return 0;

@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "property/planner/smooth_trace.hpp"
+#include "service/probe/budgets.hpp"
 #include "support/cpu_time.hpp"
 #include "support/dense_block.hpp"
 #include "support/draws.hpp"
@@ -126,9 +127,13 @@ TEST(SmoothThroughput, ABlockCostsTheSameAtTheEndOfALongProgram) {
         last.per_block() / first.per_block(), 0.9 * blocks / cpu, motion / cpu,
         resident_mib() - memory);
     if (kIsTimed) {
-      EXPECT_LT(last.per_block(), 2.5 * first.per_block());
+      const probe::Budget drift = probe::load_budget("planner_drift");
+      EXPECT_TRUE(drift.is_kept(1e6 * last.per_block(), 1e6 * first.per_block()))
+          << 1e6 * last.per_block() << "; " << to_text(drift, 1e6 * first.per_block());
     }
-    EXPECT_LT(resident_mib() - memory, 2);
+    const probe::Budget growth = probe::load_budget("planner_growth");
+    const double grown_mib = resident_mib() - memory;
+    EXPECT_TRUE(growth.is_kept(grown_mib)) << grown_mib << "; " << to_text(growth);
   }
 }
 

@@ -10,12 +10,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/rt/program_run.hpp"
 #include "property/rt/stop_oracle.hpp"
+#include "service/probe/budgets.hpp"
 #include "support/draws.hpp"
 
 namespace meridian::test::smooth_hold {
@@ -25,11 +27,6 @@ using SmoothRunning = PlannedRun<SmoothPlanner>;
 
 constexpr int kPrograms = draws(12);
 constexpr double kMostSeconds = 15;  // of motion per program
-
-/// Where a plan brakes for a corner with all it has, it has no authority left for a stop of its
-/// own: the hold follows the plan there, its rate falling. What that costs at most.
-constexpr double kMostBeyond = 0.16;  // share of the holds above 1.25 of the least time
-constexpr double kMostLate_s = 0.7, kMostFar_mm = 11;
 
 std::vector<ClBlock> hostile(std::uint32_t seed) {
   auto blocks = HostilePath(seed).make_program(6);
@@ -82,16 +79,18 @@ std::size_t find_piece(const Trace& trace, const TimePiece& wanted) {
                                   trace.times.begin());
 }
 
-/// What holds came to; two cycles are taken off, and the way at the first speed in them.
+/// What holds came to; the cycles that the budget of a stop grants are taken off, and the way at
+/// the first speed in them.
 struct Holds {
-  std::vector<double> time, distance;  ///< over the least
-  std::vector<double> late_s, far_mm;  ///< beyond 1.25 of the least
+  const probe::Budget stop = probe::load_budget("stop_time");  ///< in cycles
+  std::vector<double> time, distance;                          ///< over the least
+  std::vector<double> late_s, far_mm;                          ///< beyond its factor of the least
 
   void take(double time_s, double distance_mm, const LeastStop& least) {
     time.push_back(time_s / least.time_s);
     distance.push_back(distance_mm / least.distance_mm);
-    late_s.push_back(time_s - 1.25 * least.time_s);
-    far_mm.push_back(distance_mm - 1.25 * least.distance_mm);
+    late_s.push_back(time_s - stop.factor * least.time_s);
+    far_mm.push_back(distance_mm - stop.factor * least.distance_mm);
   }
   void sort() {
     for (auto* all : {&time, &distance, &late_s, &far_mm}) std::sort(all->begin(), all->end());
@@ -106,6 +105,11 @@ void print(const char* what, const std::vector<double>& all) {
   std::printf("  %-34s median %.3f, 75 %% %.3f, 90 %% %.3f, 99 %% %.3f, worst %.3f\n", what,
               Holds::at(all, 0.5), Holds::at(all, 0.75), Holds::at(all, 0.9), Holds::at(all, 0.99),
               all.back());
+}
+
+void expect_kept(const std::string& name, double figure, double reference = 0) {
+  const probe::Budget budget = probe::load_budget(name);
+  EXPECT_TRUE(budget.is_kept(figure, reference)) << figure << "; " << to_text(budget, reference);
 }
 
 void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
@@ -138,8 +142,9 @@ void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
     ASSERT_LT(piece, trace.times.size());
     PathAhead ahead(machine, trace, piece, joints);
     const LeastStop least = least_stop(machine, begin, [&](double s) { return ahead(s); });
-    const double taken_s = static_cast<double>(stopped.a) * 1e-9 - 2 * dt;
-    holds.take(taken_s, stopped.x - 2 * dt * begin.ds, least);
+    const double granted_s = holds.stop.plus * dt;
+    const double taken_s = static_cast<double>(stopped.a) * 1e-9 - granted_s;
+    holds.take(taken_s, stopped.x - granted_s * begin.ds, least);
   }
 }
 
@@ -156,18 +161,20 @@ TEST(SmoothHold, StopsInLittleMoreThanTheLeastTimeAndLength) {
   holds.sort();
   const auto beyond = std::count_if(holds.late_s.begin(), holds.late_s.end(),
                                     [](double late_s) { return late_s > 0; });
-  std::printf("%zu holds, %.1f %% later than 1.25 of the least time\n", holds.time.size(),
-              100.0 * static_cast<double>(beyond) / static_cast<double>(holds.time.size()));
+  const double late_percent =
+      100.0 * static_cast<double>(beyond) / static_cast<double>(holds.time.size());
+  std::printf("%zu holds, %.1f %% later than %.2f of the least time\n", holds.time.size(),
+              late_percent, holds.stop.factor);
   print("time over the least", holds.time);
   print("length over the least", holds.distance);
-  print("later than 1.25 of the least, s", holds.late_s);
-  print("farther than 1.25 of the least, mm", holds.far_mm);
-  EXPECT_LE(holds.late_s.back(), kMostLate_s);
-  EXPECT_LE(holds.far_mm.back(), kMostFar_mm);
+  print("later than the budget of a stop, s", holds.late_s);
+  print("farther than its factor, mm", holds.far_mm);
+  expect_kept("smooth_stop_late_by", holds.late_s.back());
+  expect_kept("smooth_stop_far_by", holds.far_mm.back());
   if (holds.time.size() < 100) return;  // a sanitizer's few draws have no shares
-  EXPECT_LE(static_cast<double>(beyond), kMostBeyond * static_cast<double>(holds.time.size()));
-  EXPECT_LE(Holds::at(holds.time, 0.75), 1.1);
-  EXPECT_LE(Holds::at(holds.distance, 0.75), 1.1);
+  expect_kept("smooth_stop_late", late_percent);
+  expect_kept("smooth_stop_time_p75", Holds::at(holds.time, 0.75), 1);
+  expect_kept("smooth_stop_length_p75", Holds::at(holds.distance, 0.75), 1);
 }
 
 }  // namespace
