@@ -24,7 +24,7 @@ namespace {
 [[nodiscard]] std::string wanted_text(const std::string& row) {
   constexpr std::string_view kCounted = "instructions_";
   if (!row.starts_with(kCounted)) return "\"" + row + "\"";
-  return "expect_within_budget(\"" + row.substr(kCounted.size()) + "\"";
+  return "within_budget(\"" + row.substr(kCounted.size()) + "\"";
 }
 
 }  // namespace
