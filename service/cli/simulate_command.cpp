@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "service/certify/certifier.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
@@ -26,7 +27,7 @@ struct Options {
   std::string file, record, events, start_from, auxiliary = "ignore", pole_policy;
   std::string explain_table, picture;
   double override_ramp_s = 0;
-  bool stops_at_optional = false, is_explained = false;
+  bool stops_at_optional = false, is_explained = false, is_certified = false;
   MachineOptions machine;
   JoinOptions join;
   ClFileOptions cl;
@@ -151,6 +152,8 @@ int run(const Options& options) {
   }
   Explaining explaining(options, model);
   simulation.explainer = explaining.explainer();
+  std::optional<certify::Certifier> certifier;
+  if (options.is_certified) simulation.certifier = &certifier.emplace(model);
   const simulate::SimulateReport report = simulate::simulate(
       reader, options.file, model, tools, simulation, [&writer](const CycleRecord& row) {
         if (writer) (void)writer->write(row);
@@ -161,7 +164,10 @@ int run(const Options& options) {
   if (writer && !writer->close()) {
     return refuse(options.record + ": " + std::strerror(writer->error_number()));
   }
-  return exit_code_of(report.outcome);
+  const int exit_code = exit_code_of(report.outcome);
+  if (!certifier) return exit_code;
+  std::cout << to_text(certifier->certificate(), model);
+  return exit_code == kFine && !certifier->certificate().is_given() ? kVerdictNo : exit_code;
 }
 
 }  // namespace
@@ -183,6 +189,9 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->add_option("--picture", options->picture,
                       "Draw the feed, programmed and achieved, and what held it to this .png or "
                       ".svg");
+  command->add_flag("--certify", options->is_certified,
+                    "Prove that the plan keeps every limit between its setpoints too; exit code 1 "
+                    "where it does not, or where that could not be decided");
   command->add_option(
       "--events", options->events,
       "Replay operator events: rows cycle,verb,argument, as the service writes them "

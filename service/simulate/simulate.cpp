@@ -9,6 +9,7 @@
 #include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/step.hpp"
+#include "service/certify/plan_tap.hpp"
 #include "service/simulate/block_feed.hpp"
 #include "service/simulate/limit_meter.hpp"
 
@@ -27,6 +28,7 @@ class Run {
         options_(options),
         port_(std::make_unique<MotionPort>()),
         motion_(*port_),
+        tap_(*port_),
         feed_(reader, model, tools, *port_, options.has_action_peer, options.explainer),
         meter_(model),
         state_({.stops_at_optional = options.stops_at_optional}, rate_bounds(model)) {
@@ -39,8 +41,10 @@ class Run {
   void go(SimulateReport& report, const std::function<void(const CycleRecord&)>& take) {
     while (!is_over(report)) {
       if (feed_.has_begun()) feed_.fill();
+      certify();
       prepare();
       step(model_, state_, motion_, in_, out_);
+      tap_.note_dropped();
       drives_ = out_.record.setpoint.position;
       take(out_.record);
       keep_books(report);
@@ -49,6 +53,7 @@ class Run {
       }
     }
     if (options_.explainer != nullptr) options_.explainer->finish();
+    if (options_.certifier != nullptr) options_.certifier->finish();
     report.cycles = in_.cycle;
     report.motion_blocks = feed_.motion_blocks();
     report.feeds_limited = feed_.feeds_limited();
@@ -64,6 +69,13 @@ class Run {
   }
 
  private:
+  void certify() {
+    if (options_.certifier == nullptr) return;
+    tap_.look([this](const TimePiece& piece, const PathPiece* path) {
+      options_.certifier->add(piece, path);
+    });
+  }
+
   /// What the cycle is to see next.
   void prepare() {
     const bool is_start =
@@ -260,6 +272,7 @@ class Run {
   const SimulateOptions& options_;
   std::unique_ptr<MotionPort> port_;
   MotionReader motion_;
+  certify::PlanTap tap_;
   BlockFeed feed_;
   LimitMeter meter_;
   CycleState state_;

@@ -10,6 +10,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/planner/smooth_planner.hpp"
 #include "meridian/rt/cycle_data.hpp"
+#include "service/certify/certifier.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/simulate/explainer.hpp"
 #include "service/simulate/operator_events.hpp"
@@ -18,12 +19,13 @@
 namespace meridian::simulate {
 
 struct SimulateOptions {
-  std::optional<JointVector> start;  ///< where the drives are when enabled; nothing: home
-  SmoothSettings settings;           ///< what the session of a live station would ask for
-  OperatorEvents events;             ///< replayed
-  bool has_action_peer = true;       ///< false: programs with action words are refused
-  bool stops_at_optional = false;    ///< optional stops stop
-  Explainer* explainer = nullptr;    ///< follows the program from the end of its approach
+  std::optional<JointVector> start;         ///< where the drives are when enabled; nothing: home
+  SmoothSettings settings;                  ///< what the session of a live station would ask for
+  OperatorEvents events;                    ///< replayed
+  bool has_action_peer = true;              ///< false: programs with action words are refused
+  bool stops_at_optional = false;           ///< optional stops stop
+  Explainer* explainer = nullptr;           ///< follows the program from the end of its approach
+  certify::Certifier* certifier = nullptr;  ///< gets every piece of plan that is published
 };
 
 /// Runs a CL file through judge, planner and cycle as the service does, without DDS and without a

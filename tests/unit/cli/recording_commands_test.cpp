@@ -41,6 +41,14 @@ TEST_F(RecordingCommands, SimulateExplainsWhereTheTimeGoes) {
             3);
 }
 
+TEST_F(RecordingCommands, SimulateCertifiesItsPlan) {
+  const CommandOutput outcome =
+      run_tool("simulate " + part() + kMachine + "--transition smooth --certify");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("certificate given"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find(", 0 refuted, 0 undecided; "), std::string::npos);
+}
+
 TEST_F(RecordingCommands, BeginInTheMiddleWhereTheyAreToldTo) {
   const std::string from = "--from-line 5 ";
   const CommandOutput simulated =
