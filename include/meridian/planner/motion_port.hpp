@@ -225,10 +225,11 @@ class MotionReader {
     return behind > 0 ? behind + front : 0;
   }
 
-  /// The tail that starts with `tail`, ahead, is run whatever is published meanwhile. The planner
-  /// hears of it now, and goes on from its end.
-  void keep_tail(const TimePiece& tail) noexcept {
-    kept_tail_ = pack(tail);
+  /// The tail of the window that `piece` is of, ahead or in force, is run whatever is published
+  /// meanwhile; nothing happens where it has none. The planner hears of it now, and goes on from
+  /// its end.
+  void keep_tail(const TimePiece& piece) noexcept {
+    kept_tail_ = pack(piece);
     port_.tail_entered.store(kept_tail_, std::memory_order_release);
   }
 

@@ -26,7 +26,8 @@ struct RateBounds {
 /// section 3. RT: cycle. Proof: tests/property/rt/rate_filter_test.cpp.
 class RateFilter {
  public:
-  explicit RateFilter(const RateBounds& bounds = {}) noexcept : bounds_(bounds) {}
+  explicit RateFilter(const RateBounds& bounds = {}) noexcept
+      : bounds_(bounds), in_force_(bounds) {}
 
   [[nodiscard]] double rate() const noexcept { return now_.w; }
   [[nodiscard]] double slope() const noexcept { return now_.slope; }
@@ -39,6 +40,7 @@ class RateFilter {
     now_ = {w, 0};
     target_ = w;
     ramp_ = {};
+    in_force_ = bounds_;
   }
 
   /// Sets a new target, limited to [0, 1]; NaN is ignored.
@@ -48,6 +50,13 @@ class RateFilter {
     if (target == target_) return;
     target_ = target;
     ramp_ = lay_out_ramp(now_.w, now_.slope, target_, bounds_.slope, bounds_.curvature);
+  }
+
+  /// Brings the rate to 0 inside `bounds`, which are as wide as its own or wider, until reset().
+  void stop(const RateBounds& bounds) noexcept {
+    in_force_ = bounds;
+    target_ = 0;
+    ramp_ = lay_out_ramp(now_.w, now_.slope, target_, bounds.slope, bounds.curvature);
   }
 
   /// Plan time that passes until the rate is 0 where it is aimed there now: the least that there
@@ -94,11 +103,12 @@ class RateFilter {
     const double c = ramp_.bend[ramp_.phase];
     const double passed = t * (now_.w + t * (now_.slope / 2 + t * c / 6));
     now_.w = std::clamp(now_.w + t * (now_.slope + t * c / 2), 0.0, 1.0);
-    now_.slope = std::clamp(now_.slope + t * c, -bounds_.slope, bounds_.slope);
+    now_.slope = std::clamp(now_.slope + t * c, -in_force_.slope, in_force_.slope);
     return std::max(0.0, passed);
   }
 
   RateBounds bounds_;
+  RateBounds in_force_;  ///< those of stop() until reset()
   Point now_{};
   double target_ = 0;
   RampPhases ramp_;

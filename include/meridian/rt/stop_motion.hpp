@@ -19,6 +19,42 @@ namespace meridian {
 /// way back to it.
 inline constexpr double kReturnShare = 0.2;
 
+/// A hold that has gone along the plan for so long without authority for a law of its own takes the
+/// stop that its window ends in, s.
+inline constexpr double kAlongPlan_s = 0.3;
+
+/// How fast a FaultStop may lower the rate of plan time with `share` of the FaultStop limits. Plans
+/// leave room for the rate's own bounds Ω₁, Ω₂ in the limits v, a, j of every joint; what the
+/// FaultStop limits are beyond them is left for more of both, D and κ D:
+///
+///     a + D v <= a_fault,   j + 3 D a + κ D v <= j_fault,   κ = Ω₂/Ω₁
+///
+/// Source: docs/motion.md, sections 3 and 9.
+[[nodiscard, gnu::noinline]] inline RateBounds fault_rate_bounds(const MachineModel& machine,
+                                                                 double share) noexcept {
+  constexpr double kRatio = kRateCurvature_per_s2 / kRateSlope_per_s, kShare = 0.99;
+  double more = 1e3;
+  for (int i = 0; i < limited_count(machine); ++i) {
+    const JointLimits& limits = limited_spec(machine, i).limits;
+    const double accel = kShare * share * limits.fault_acceleration - limits.acceleration;
+    const double jerk = kShare * share * limits.fault_jerk - limits.jerk;
+    const double per_jerk = 3 * limits.acceleration + kRatio * limits.velocity;
+    more = std::min({more, accel / limits.velocity, jerk / per_jerk});
+  }
+  const RateBounds own = rate_bounds(machine);
+  if (!(more > 0)) return own;
+  return {own.slope + more, own.curvature + kRatio * more};
+}
+
+/// Lets the rate of plan time fall, as fast as `kind` may.
+inline void lower_rate(Cycle& c, StopKind kind, double share) noexcept {
+  if (kind == StopKind::kHold) return c.state.rate.aim(0);
+  // The program is void: the first rest of the plan is the best, wherever blocks end.
+  c.state.single_block.is_braking = false;
+  c.state.rate.stop(fault_rate_bounds(c.machine, share));
+  c.reader.keep_tail(*c.reader.piece());
+}
+
 /// Lays out the stop in progress with `authority`, from `begin` on the path in force.
 inline void lay_out_stop(Cycle& c, const PathState& begin,
                          const StopAuthority& authority) noexcept {
@@ -60,7 +96,8 @@ inline void lay_out_stop(Cycle& c, const PathState& begin,
 
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
 /// at once. A stop that was going on is laid out anew with the authority of `kind`. Without
-/// authority it goes on as it was, or along the plan, for whose rate every plan leaves room.
+/// authority it goes on as it was, or along the plan, for whose rate every plan leaves room, to the
+/// end of its window's tail at the latest: of a hold, where kAlongPlan_s are over.
 inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   StopInProgress& stop = c.state.stop;
   const double rate = stop.is_active && stop.speed_begin > 0
@@ -89,9 +126,8 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   if (was_by_rate) {
     stop.time = before.time;
     stop.stopping_distance = before.stopping_distance;
-  } else {
-    c.state.rate.aim(0);
   }
+  lower_rate(c, kind, share);
 }
 
 /// Lessens `authority` so that the drives of a stage stop inside their FaultStop limits too, the
@@ -202,13 +238,28 @@ inline void end_stop_here(Cycle& c) noexcept {
   return true;
 }
 
+/// Whether a FaultStop's law with `authority` may begin here. Its rate falls faster than authority
+/// reckons with: the deceleration must be one that the law has anyway, on the way down from a speed
+/// that has the same authority.
+[[nodiscard]] inline bool is_reckoned_with(Cycle& c, const StopAuthority& authority) noexcept {
+  const PathState& here = c.state.on_path;
+  if (here.dds >= 0) return true;
+  const TimePiece& piece = *c.reader.piece();
+  const double top = here.ds + 0.5 * here.dds * here.dds / authority.jerk;
+  if (-here.dds > authority.accel || top > state_at(piece, c.state.piece_time).ds) return false;
+  const StopAuthority same = authority_of(piece, StopKind::kFault, {here.s, top, here.dds, 0});
+  return same.accel == authority.accel && same.jerk == authority.jerk;
+}
+
 /// Leaves the plan for a law of its own where there is authority for one by now.
 inline void leave_plan(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
-  if (!is_on_move(c) || !(c.state.on_path.ds > 0)) return;
+  const bool is_beside = stop.time < stop.deviation_time;
+  if (!is_on_move(c) || is_beside || !(c.state.on_path.ds > 0)) return;
   const StopKind kind = stop.is_fault ? StopKind::kFault : StopKind::kHold;
   const StopAuthority authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
   if (!(authority.jerk > 0)) return;
+  if (stop.is_fault && !is_reckoned_with(c, authority)) return;
   if (!stop.is_fault && passes_block_end(c, c.state.on_path, authority)) return;
   stop.rate_begin = c.state.rate.rate();
   lay_out_stop(c, c.state.on_path, authority);
@@ -217,6 +268,8 @@ inline void leave_plan(Cycle& c) noexcept {
 /// Goes on with a stop along the plan by the periods of this cycle.
 [[nodiscard]] inline bool follow_stop_by_rate(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
+  const bool is_late = stop.time > kAlongPlan_s && !c.state.single_block.is_braking;
+  if (is_late && is_on_move(c)) c.reader.keep_tail(*c.reader.piece());
   bool goes_on = true;
   for (int n = 0; n < c.periods && goes_on; ++n) {
     stop.time += c.dt;
@@ -224,13 +277,17 @@ inline void leave_plan(Cycle& c) noexcept {
   }
   if (is_on_move(c) && !put_at_plan_time(c)) return false;
   stop.stopping_distance += c.state.on_path.ds * c.elapsed;
-  if (goes_on) return true;
-  const double time = stop.time;
+  if (goes_on) {
+    add_deviation(c);
+    return true;
+  }
   rest(c);
+  // The law has no duration: the stop is over, where nothing is left of a deviation.
   stop.is_by_rate = false;
+  stop.is_off_path = true;
   stop.begin = c.state.joints;
-  stop.stopping_time = time;
-  stop.time = 0;  // the law has no duration: it is over
+  stop.stopping_time = stop.time;
+  add_deviation(c);
   return true;
 }
 
@@ -242,6 +299,7 @@ inline void leave_plan(Cycle& c) noexcept {
   for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
   if (stop.is_off_path) {
     put_off_path(c);
+    add_deviation(c);
     return true;
   }
   if (!is_on_move(c)) {
