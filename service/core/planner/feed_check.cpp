@@ -37,28 +37,12 @@ bool comes_to_rest(const CellLaw& law, double second, double h) noexcept {
   return has_least && !(2 * law.b * second > law.slope * law.slope);
 }
 
-}  // namespace
-
-FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& law) noexcept {
+/// `b` is u̇² at the samples.
+FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const CellMotion& motion,
+                      const Samples& b) noexcept {
+  const auto& [v, a, j] = motion;
   FeedUse use;
-  const double second = (law.slope_end - law.slope) / cell.h;
-  if (comes_to_rest(law, second, cell.h)) {
-    use.jerk = kNoBound;
-    return use;
-  }
-  Samples b, v, a, j;
-  for (int k = 0; k <= kSteps; ++k) {
-    const double x = cell.h * k / kSteps;
-    b[k] = law.b + x * (law.slope + 0.5 * second * x);
-    if (!(b[k] > 0)) {
-      use.jerk = kNoBound;
-      return use;
-    }
-    v[k] = std::sqrt(b[k]);
-    a[k] = 0.5 * (law.slope + second * x);
-    j[k] = 0.5 * second * v[k];
-    use.b = std::max(use.b, b[k] / cell.at[k].most_b);
-  }
+  for (int k = 0; k <= kSteps; ++k) use.b = std::max(use.b, b[k] / cell.at[k].most_b);
   for (int i = 0; i < limits.count; ++i) {
     Samples velocity, acceleration, jerk;
     for (int k = 0; k <= kSteps; ++k) {
@@ -73,6 +57,33 @@ FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& la
     use.jerk = std::max(use.jerk, peak_of(jerk) / limits.jerk[i]);
   }
   return use;
+}
+
+}  // namespace
+
+FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& law) noexcept {
+  FeedUse none;
+  none.jerk = kNoBound;
+  const double second = (law.slope_end - law.slope) / cell.h;
+  if (comes_to_rest(law, second, cell.h)) return none;
+  CellMotion motion;
+  Samples b;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double x = cell.h * k / kSteps;
+    b[k] = law.b + x * (law.slope + 0.5 * second * x);
+    if (!(b[k] > 0)) return none;
+    motion.v[k] = std::sqrt(b[k]);
+    motion.a[k] = 0.5 * (law.slope + second * x);
+    motion.j[k] = 0.5 * second * motion.v[k];
+  }
+  return use_of_motion(limits, cell, motion, b);
+}
+
+FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
+                      const CellMotion& motion) noexcept {
+  Samples b;
+  for (int k = 0; k <= kSteps; ++k) b[k] = motion.v[k] * motion.v[k];
+  return use_of_motion(limits, cell, motion, b);
 }
 
 void add_use(const FeedLimits& limits, const CellSample& at, double v, double a, double j,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "service/core/planner/feed_cells.hpp"
 
@@ -19,6 +20,16 @@ struct FeedUse {
 struct CellLaw {
   double b = 0, slope = 0, slope_end = 0;
 };
+
+/// u̇, ü, u⃛ at the samples of a cell.
+struct CellMotion {
+  std::array<double, FeedCell::kSteps + 1> v{}, a{}, j{};
+};
+
+/// The use of `motion` in `cell`: nine samples, and the tops of the parabolas through three of
+/// them. Velocity over the rate filter's slope counts as acceleration.
+[[nodiscard]] FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
+                                    const CellMotion& motion) noexcept;
 
 /// The use of `law` in `cell`: nine samples, and the tops of the parabolas through three of them.
 /// A b that is not positive somewhere counts as a use without bound. Velocity over the rate

@@ -115,4 +115,42 @@ Crawl crawl_over(const CellGrid& grid, const FeedLimits& limits, std::int64_t fi
   return crawl;
 }
 
+FeedUse use_of(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
+               const Crawl& crawl) noexcept {
+  const double d = crawl.length, t = crawl.duration;
+  FeedUse use;
+  double begin = 0;
+  for (int n = 0; n < crawl.cells; ++n) {
+    const FeedCell& cell = grid[first + n];
+    // The jerk changes its sign inside cells: either one is taken for the whole of each.
+    for (const double sign : {-1.0, 1.0}) {
+      CellMotion motion;
+      for (std::size_t k = 0; k < motion.v.size(); ++k) {
+        const double x = (begin + cell.h * static_cast<double>(k) / FeedCell::kSteps) / d;
+        const Crawl::Shape shape = Crawl::shape_at(std::min(x, 1.0));
+        motion.v[k] = d * shape.v / t;
+        motion.a[k] = d * shape.a / (t * t);
+        motion.j[k] = sign * d * std::abs(shape.j) / (t * t * t);
+      }
+      const FeedUse here = use_of_motion(limits, cell, motion);
+      use.velocity = std::max(use.velocity, here.velocity);
+      use.acceleration = std::max(use.acceleration, here.acceleration);
+      use.jerk = std::max(use.jerk, here.jerk);
+      use.b = std::max(use.b, here.b);
+    }
+    begin += cell.h;
+  }
+  return use;
+}
+
+Crawl checked(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
+              Crawl crawl) noexcept {
+  const FeedUse use = use_of(limits, grid, first, crawl);
+  // Acceleration is made up of 1/T², and of 1/T for the rate filter.
+  const double slower =
+      std::max({use.velocity, use.acceleration, std::cbrt(use.jerk), std::sqrt(use.b)});
+  if (slower > 1) crawl.duration *= slower;
+  return crawl;
+}
+
 }  // namespace meridian

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "service/core/planner/feed_cells.hpp"
+#include "service/core/planner/feed_check.hpp"
 #include "service/core/planner/jerk_step.hpp"
 
 /// Motions that begin or end at rest, where b = u̇² is no quadratic. Source: docs/motion.md,
@@ -45,5 +46,14 @@ struct Crawl {
 /// The crawl over `cells` cells from `first`.
 [[nodiscard]] Crawl crawl_over(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
                                int cells) noexcept;
+
+/// The use of `crawl` from cell `first` on, between the samples too; of most_b and every limit.
+[[nodiscard]] FeedUse use_of(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
+                             const Crawl& crawl) noexcept;
+
+/// `crawl`, so much slower that it keeps `limits` between the samples too. Source: docs/motion.md,
+/// section 8. Proof: tests/unit/planner/feed_check_test.cpp.
+[[nodiscard]] Crawl checked(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
+                            Crawl crawl) noexcept;
 
 }  // namespace meridian

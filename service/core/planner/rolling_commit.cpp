@@ -80,7 +80,7 @@ void RollingFeed::commit_crawl() noexcept {
   Crawl best;
   for (const int wanted : {3, 6, 12, 24, 48}) {
     const int cells = static_cast<int>(std::min<std::int64_t>(wanted, window_end() - next_));
-    const Crawl crawl = crawl_over(grid_, planned_, next_, cells);
+    const Crawl crawl = checked(limits_, grid_, next_, crawl_over(grid_, planned_, next_, cells));
     const bool is_faster =
         best.cells == 0 || crawl.length * best.duration > best.length * crawl.duration;
     if (is_faster) best = crawl;

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "service/core/planner/feed_rest.hpp"
+#include "support/machines.hpp"
+
 namespace meridian::test::feed_check {
 namespace {
 
@@ -94,6 +97,32 @@ TEST(FeedCheck, TakesNoStandstillThatLiesOutsideOfTheCell) {
   for (CellSample& at : cell.at) at.most_b = 10;
   const CellLaw falling_faster{1, -0.1, -1.8};  // a top, and 0.05 left at the end
   EXPECT_EQ(use_of(unit_limits(), cell, falling_faster).jerk, 0);
+}
+
+/// The last resort is made from samples; a top that lies between them slows it too.
+TEST(FeedCheck, SlowsTheLastResortForATopBetweenSamples) {
+  const MachineModel model = bench_machine();
+  const FeedLimits limits = unit_limits();
+  CellGrid grid(model, limits, {});
+  constexpr int kCells = 3;
+  for (const bool has_top : {false, true}) {
+    for (int n = 0; n < kCells; ++n) {
+      FeedCell& cell = grid[n];
+      cell = {};
+      cell.h = 0.1;
+      for (int k = 0; k <= FeedCell::kSteps; ++k) {
+        CellSample& at = cell.at[static_cast<std::size_t>(k)];
+        at.most_b = 1e6;
+        at.d1[0] = 1;
+        at.d3[0] = has_top && n == 1 && (k == 4 || k == 5) ? 1e5 : 0;  // and 12 % more between
+      }
+    }
+    const Crawl sampled = crawl_over(grid, limits, 0, kCells);
+    const Crawl safe = checked(limits, grid, 0, sampled);
+    EXPECT_EQ(use_of(limits, grid, 0, sampled).worst() > 1, has_top);
+    EXPECT_LE(use_of(limits, grid, 0, safe).worst(), 1 + 1e-12);
+    EXPECT_EQ(safe.duration > sampled.duration, has_top);
+  }
 }
 
 }  // namespace
