@@ -45,6 +45,7 @@ void Intake::run() noexcept {
     take_rejects();
     take_requests();
     take_batches();
+    show_cut_off();
     look_for_station();
     free_idle_machine();
     publish(judge_.due_credit(around()));
@@ -157,6 +158,18 @@ bool Intake::push(const stream::Accepted& accepted) {
   ports_.blocks.publish();
   ports_.planner_wake.notify();
   return count == accepted.count;
+}
+
+void Intake::show_cut_off() noexcept {
+  if (!judge_.is_cut_off() || cut_off_session_ == judge_.session()) return;
+  QueuedBlock none;
+  none.session = judge_.session();
+  none.is_cut_off = true;
+  if (!ports_.blocks.stage(none)) return;  // again as soon as there is room
+  cut_off_session_ = judge_.session();
+  ++pushed_;
+  ports_.blocks.publish();
+  ports_.planner_wake.notify();
 }
 
 void Intake::look_for_station() {

@@ -51,6 +51,8 @@ class Intake {
   void look_for_station();
   /// False where the queue had no room for all.
   [[nodiscard]] bool push(const stream::Accepted& accepted);
+  /// Lets the planner know where the blocks of a session end that was refused.
+  void show_cut_off() noexcept;
   void empty_queue(std::uint16_t epoch) noexcept;
   void show_mark() noexcept;
   void publish(const std::optional<dds::Credit>& credit);
@@ -72,6 +74,7 @@ class Intake {
   std::uint64_t pushed_ = 0;           ///< blocks put into the queue, ever
   QueueMark mark_;                     ///< newest that was shown
   std::uint64_t refused_session_ = 0;  ///< newest session that was refused while it held
+  std::uint64_t cut_off_session_ = 0;  ///< newest one that show_cut_off() told of
   std::int64_t idle_since_ns_ = 0;
   std::uint64_t station_source_ = 0;
   bool is_station_there_ = false;

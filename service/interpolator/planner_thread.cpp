@@ -30,11 +30,13 @@ bool PlannerThread::work() noexcept {
   if (look.is_emptied) is_refused_ = is_action_told_ = false;
   if (!look.is_in_step) return look.is_emptied;
   if (look.front == nullptr) {
-    if (has_begun_ && !is_refused_) advance();
+    if (has_begun_) advance();
     tell_of_plan();
     return false;
   }
-  if (is_refused_) {
+  const bool is_cut_off = look.front->is_cut_off;
+  if (is_cut_off && has_begun_) planner_.finish();
+  if (is_refused_ || is_cut_off) {
     pop();
     return true;
   }
@@ -58,7 +60,7 @@ void PlannerThread::advance() noexcept {
   const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
   const PlanResult result = planner_.advance(writer_);
   if (spans_.is_on()) spans_.write(trace::Doing::kAdvance, begun_ns, monotonic_ns(), 0);
-  if (result.status == PlanStatus::kRefused) refuse(result.reject);
+  if (result.status == PlanStatus::kRefused && !is_refused_) refuse(result.reject);
 }
 
 void PlannerThread::look_at_stall() noexcept {

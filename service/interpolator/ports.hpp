@@ -36,6 +36,7 @@ struct QueuedBlock {
   std::uint64_t session = 0;
   ClBlock block;
   SmoothSettings settings{};
+  bool is_cut_off = false;  ///< no block: none comes any more, nor an end
 };
 
 /// An action block that was planned: what to publish when the cycle comes to it.

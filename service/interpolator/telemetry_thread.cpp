@@ -97,6 +97,13 @@ void TelemetryThread::drain() {
     planned.a = mark.sequence;
     planned.b = mark.span;
     planned.x = mark.factor;
+    if (mark.looked_at > 0) {
+      planned.code = EventCode::kPlanLooked;
+      planned.a = mark.looked_at;
+      planned.b = mark.is_late ? 1 : 0;
+      log_->log(mark.is_late ? spdlog::level::warn : spdlog::level::info, "{}",
+                telemetry::describe(planned, model_));
+    }
     recorder_.take(planned);
   }
   Event event;

@@ -26,7 +26,8 @@ bool is_replayed(const Event& event) noexcept {
   const bool is_outside = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kDryRun;
   return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_outside) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
-         event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned;
+         event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned ||
+         event.code == EventCode::kPlanLooked;
 }
 
 bool OperatorEventsWriter::write(const Event& event) noexcept {
@@ -41,6 +42,8 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
     row.put(kActionAnsweredWord).put(',').put_real(event.x);
   } else if (event.code == EventCode::kPlanBegun) {
     row.put(kPlanBegunWord).put(',').put_real(event.x);
+  } else if (event.code == EventCode::kPlanLooked) {
+    row.put(kPlanLookedWord).put(',').put_integer(event.a);
   } else if (event.code == EventCode::kFeedPlanned) {
     row.put(kFeedPlannedWord).put(',').put_real(event.x);
     row.put(',').put_integer(event.a).put(',').put_integer(event.b);

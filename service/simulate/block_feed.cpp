@@ -106,7 +106,7 @@ void BlockFeed::fill() {
   while (!is_over_) {
     if (!block_ && !take_block()) {
       is_over_ = true;
-      planner_.look_no_further();
+      planner_.finish();
       advance();
       return;
     }

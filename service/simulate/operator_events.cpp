@@ -120,6 +120,9 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   const std::string_view word = cut(row, ','), factor = cut(row, ',');
   mark.is_begin = word == record::kPlanBegunWord;
   if (mark.is_begin) return row.empty();
+  if (word == record::kPlanLookedWord) {
+    return row.empty() && parse(factor, mark.looked_at) && mark.looked_at > 0;
+  }
   const std::string_view block = cut(row, ','), span = cut(row, ',');
   return word == record::kFeedPlannedWord && row.empty() && parse(factor, mark.factor) &&
          mark.factor >= 1 && std::isfinite(mark.factor) && parse(block, mark.sequence) &&

@@ -37,8 +37,8 @@ struct OperatorEvents {
   std::vector<OperatorEvent> verbs;
   std::vector<LostPeriods> losses;
   std::vector<ActionAnswer> answers;
-  /// What the live planner told of feed overrides above 100 %; empty: it is planned as a service
-  /// would.
+  /// What the live planner told of feed overrides above 100 % and of its look at the begin; empty:
+  /// it is planned as a service would that waits for no block.
   std::vector<FeedMark> feed_marks;
 };
 
@@ -49,9 +49,9 @@ struct OperatorEvents {
 /// one they count from the start as they are. Of what was before the start the overrides in force
 /// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
-/// `action_answered`, 1 done, 0 refused; two with the planner's: `plan_begun` and
-/// `feed_planned,factor,block,span`. A row `incomplete`, by which a recorder says that it lost
-/// events, is refused. The error is a message with name and line. Proof:
+/// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun`,
+/// `plan_looked,blocks` and `feed_planned,factor,block,span`. A row `incomplete`, by which a
+/// recorder says that it lost events, is refused. The error is a message with name and line. Proof:
 /// tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                                          const std::string& name,

@@ -85,6 +85,9 @@ class IntakeJudge {
 
   [[nodiscard]] bool is_held() const noexcept { return session_ != 0; }
   [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }
+  /// Blocks are in, and none comes any more, nor an end: a refusal or its station ended the
+  /// session. What is in is to be run to its end.
+  [[nodiscard]] bool is_cut_off() const noexcept { return session_ != 0 && is_refused_; }
   [[nodiscard]] std::uint64_t session() const noexcept { return session_; }
   [[nodiscard]] const dds::SessionRequest& request() const noexcept { return request_; }
   [[nodiscard]] const IntakeCounters& counters() const noexcept { return counters_; }

@@ -150,6 +150,12 @@ std::string describe(const Event& event, const MachineModel& model) {
       return fmt::format("queues emptied, epoch {}", event.a);
     case EventCode::kPlanBegun:
       return "a program is being planned";
+    case EventCode::kPlanLooked:
+      return fmt::format(
+          "branch and winding follow from the first {} blocks{}", event.a,
+          event.b != 0 ? ": the stream stalled before more came. A simulation without the events "
+                         "of this recording looks farther and may begin otherwise"
+                       : "");
     case EventCode::kFeedPlanned:
       return fmt::format("from block {} on planned for {:.4g} % of the feed", event.a,
                          100 * event.x);

@@ -14,7 +14,7 @@ RawStation::RawStation(dds::Participant& participant, std::string name)
       batches_(participant),
       credits_(participant) {}
 
-std::optional<dds::Credit> RawStation::open() {
+std::optional<dds::Credit> RawStation::open(std::uint32_t policies) {
   session_ = stream::draw_id();
   const bool is_met = eventually([this] {
     return requests_.matched_readers() > 0 && batches_.matched_readers() > 0 &&
@@ -25,6 +25,7 @@ std::optional<dds::Credit> RawStation::open() {
   request.session = session_;
   request.station = name_;
   request.program = name_ + ".apt";
+  request.policies = policies;
   for (int i = 0; i < 10; ++i) {
     static_cast<void>(requests_.write(request));
     const auto answer = wait_for([](const dds::Credit&) { return true; }, milliseconds(500));

@@ -21,8 +21,8 @@ class RawStation {
  public:
   explicit RawStation(dds::Participant& participant, std::string name = "raw");
 
-  /// Opens a new session; nothing where no answer came.
-  std::optional<dds::Credit> open();
+  /// Opens a new session with `policies`; nothing where no answer came.
+  std::optional<dds::Credit> open(std::uint32_t policies = 0);
   /// Sends `blocks` as one batch of this session from `first` on, CRC right.
   void send(std::uint64_t first, const std::vector<ClBlock>& blocks, bool is_end = false);
   /// Sends a batch as it is.

@@ -79,6 +79,10 @@ class SmoothPlanner {
   /// No block comes for a while: the program begins with those that are there.
   void look_no_further() noexcept;
 
+  /// No block comes any more until begin(), and no end: advance() publishes what was taken, to its
+  /// end, at rest.
+  void finish() noexcept;
+
   /// Takes the approach of the program, once, when it is published; false: not by now.
   [[nodiscard]] bool take_approach(Approach& out) noexcept;
 
@@ -90,13 +94,14 @@ class SmoothPlanner {
   /// far; false if there is none. At most 256 wait, then the oldest go.
   [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
 
-  /// Takes the oldest mark of where a feed override above 100 % holds from, of what was planned so
-  /// far; false if there is none. A program's begin comes first. None where the machine's file
-  /// allows no more than 100 %. At most 256 wait, then the oldest go.
+  /// Takes the oldest mark of where a feed override above 100 % holds from, or of how much was
+  /// looked at, of what was planned so far; false if there is none. A program's begin comes first.
+  /// At most 256 wait, then the oldest go.
   [[nodiscard]] bool take_feed_mark(FeedMark& out) noexcept;
 
   /// Before begin(): plans with the factors of an earlier run of the program, not with what the
-  /// operator asks for. `marks` are those of that program, in order, and must stay.
+  /// operator asks for, and looks at as many blocks as it did. `marks` are those of that program,
+  /// in order, and must stay.
   void replay_feed(std::span<const FeedMark> marks) noexcept;
 
   /// Joints and tool length at the end of the last motion that was published to its end.

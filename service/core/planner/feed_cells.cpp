@@ -15,9 +15,11 @@ namespace {
 constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
 constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
 constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
-constexpr double kStep_mm = 1e-5, kStep_rad = 1e-7;  // inside every jerk limit of a cycle
-constexpr int kRounds = 16;                          // of halving: lengths of a ratio of 60 000
-constexpr double kNone = 1e-12;                      // derivative that counts as none
+/// Of a joint at the begin: rounding, 1e-10 rad of the free joint 8 µrad from the pole.
+constexpr double kLargestStep = 1e-9;
+constexpr double kNoCell_mm = 1e-6;  // of u: an end that is not worth a cell
+constexpr int kRounds = 16;          // of halving: lengths of a ratio of 60 000
+constexpr double kNone = 1e-12;      // derivative that counts as none
 
 double square(double x) noexcept { return x * x; }
 
@@ -193,6 +195,41 @@ PathFault CellGrid::finish() noexcept {
   return make_cells();
 }
 
+void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
+                      std::int64_t least) noexcept {
+  const auto begins_before = [&](const FeedCell& cell) {
+    return cell.span < number || (cell.span == number && cell.x < x - kNoCell_mm);
+  };
+  fault_ = {};
+  is_finished_ = true;
+  drafts_.clear();
+  waiting_count_ = 0;
+  const std::int64_t kept = std::max(first_, least);
+  while (last_ > kept && !begins_before((*this)[last_ - 1])) --last_;
+  double begin = 0;  // of the cell that ends at x
+  if (last_ > first_) {
+    const FeedCell& cell = (*this)[last_ - 1];
+    const double end = cell.x + cell.h;
+    if (cell.span == number && end > x + kNoCell_mm) {
+      if (last_ == kept) return;
+      begin = cell.x;
+      --last_;
+    } else if (cell.span == number) {
+      begin = end;
+    } else if (cell.span + 1 != number) {
+      return;
+    }
+  }
+  if (x - begin <= kNoCell_mm) return;
+  waiting_[0] = span;
+  waiting_count_ = 1;
+  next_span_ = number;
+  drafts_.push_back({0, begin, x - begin});
+  if (make_cells().kind == PathFault::Kind::kNone) return;
+  fault_ = {};  // it ends a cell earlier
+  drafts_.clear();
+}
+
 PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
   while (used < drafts_.size() && last_ - first_ < kCells) {
@@ -228,6 +265,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
     CellSample& at = cell.at[static_cast<std::size_t>(k)];
     const double x = draft.x + draft.h * k / FeedCell::kSteps;
+    faulty_x_ = x;
     const JointVector before = reference;
     if (const auto fault = take_sample(span, x, reference, at);
         fault.kind != PathFault::Kind::kNone) {
@@ -248,8 +286,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here
     for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];
-      const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
-      if (is_begin && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
+      if (is_begin && std::abs(jump) > kLargestStep) return {PathFault::Kind::kJump, i, jump};
       if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
         return {PathFault::Kind::kJump, i, jump};
       }
@@ -261,6 +298,8 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   for (const double x : {draft.x, draft.x + draft.h}) {
     cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.band.c, x)));
   }
+  cell.made_b = cell.most_b;
+  cell.made_tight = cell.tight;
   last_h_ = cell.h;
   ++last_;
   return {};

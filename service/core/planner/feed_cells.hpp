@@ -45,6 +45,7 @@ struct FeedCell {
   double most_b = 0;       ///< least of the samples', lowered where a plan overshot the feed
   double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot,
                            ///< but not below kLeastTight
+  double made_b = 0, made_tight = 1;  ///< both before any was lowered
   CellBound bound;
   std::array<CellSample, kSteps + 1> at;
 };
@@ -79,6 +80,10 @@ class CellGrid {
   /// No more spans: makes the last cells, as far as there is room for them.
   [[nodiscard]] PathFault finish() noexcept;
 
+  /// Behind a fault, or where it is not waited for more: the path ends at `x` of `span`, the
+  /// `number`th, whose cell there is shortened. Cells before `least` stand.
+  void end_at(const JointSpan& span, std::uint64_t number, double x, std::int64_t least) noexcept;
+
   /// Makes the cells for which there was no room before drop_before().
   [[nodiscard]] PathFault make_cells() noexcept;
 
@@ -88,14 +93,23 @@ class CellGrid {
   /// Cells exist from first() to last() - 1.
   [[nodiscard]] std::int64_t first() const noexcept { return first_; }
   [[nodiscard]] std::int64_t last() const noexcept { return last_; }
+  /// What plans have lowered from `cell` on is forgotten with them.
+  void restore_from(std::int64_t cell) noexcept {
+    for (; cell < last_; ++cell) {
+      FeedCell& here = (*this)[cell];
+      here.most_b = here.made_b;
+      here.tight = here.made_tight;
+    }
+  }
   /// Forgets the cells before `cell`.
   void drop_before(std::int64_t cell) noexcept {
     first_ = std::max(first_, cell < last_ ? cell : last_);
   }
 
-  /// Why the path ends before its time, and the number of the span on which it does.
+  /// Why the path ends before its time, the number of the span on which it does, and where on it.
   [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
   [[nodiscard]] std::uint64_t faulty_span() const noexcept { return faulty_span_; }
+  [[nodiscard]] double faulty_x() const noexcept { return faulty_x_; }
 
   [[nodiscard]] const FeedCell& operator[](std::int64_t cell) const noexcept {
     return cells_[static_cast<std::size_t>(cell % kCells)];
@@ -144,6 +158,7 @@ class CellGrid {
   bool is_finished_ = false;
   PathFault fault_;
   std::uint64_t faulty_span_ = 0;
+  double faulty_x_ = 0;
 };
 
 }  // namespace meridian

@@ -20,13 +20,14 @@ void FeedRaise::begin() noexcept {
   span_ = 0;
   next_mark_ = 0;
   replayed_ = 1;
-  if (most_ > 1 && !is_replay_) told_.push_over_oldest({true, 0, 0, 1});
+  if (!is_replay_) told_.push_over_oldest({true, 0, 0, 1});
 }
 
 double FeedRaise::find_wanted(double asked) noexcept {
   if (!is_replay_) return std::clamp(asked, 1.0, most_);
   for (; next_mark_ < marks_.size(); ++next_mark_) {
     const FeedMark& mark = marks_[next_mark_];
+    if (mark.looked_at > 0) continue;
     if (std::tie(mark.sequence, mark.span) > std::tie(sequence_, span_)) break;
     replayed_ = std::clamp(mark.factor, 1.0, most_);
   }

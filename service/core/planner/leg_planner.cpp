@@ -25,7 +25,7 @@ constexpr double kMostCells = 256;
 constexpr double kCoarse = 1.12;
 constexpr int kMostRefinements = 3;
 constexpr int kLeastAzimuthCells = 4;  // between two nodes
-constexpr double kLargestJump = 1e-7;  // rounding 8 µrad from the pole is 1e-10
+constexpr double kLargestJump = 1e-9;  // rounding 8 µrad from the pole is 1e-10
 
 int cells_for(double amount) noexcept {
   return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMostCells));

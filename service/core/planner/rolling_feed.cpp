@@ -78,6 +78,7 @@ void RollingFeed::resume_from(std::int64_t cell) noexcept {
   next_ = cell;
   is_at_rest_ = true;
   old_.first = old_.end = cell;
+  grid_.restore_from(cell);  // how many windows were planned behind it only the clock knows
 }
 
 bool RollingFeed::try_plan() noexcept {

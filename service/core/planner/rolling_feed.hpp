@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -74,10 +75,17 @@ class RollingFeed {
   /// The path ends with the last span, at rest.
   [[nodiscard]] PathFault finish() noexcept;
 
+  /// Behind a fault: the path ends at `x` of `span`, the `number`th, at rest; or behind what was
+  /// planned, and behind `least` cells, where that is farther.
+  void end_at(const JointSpan& span, std::uint64_t number, double x, std::int64_t least) noexcept {
+    grid_.end_at(span, number, x, std::max(least, is_at_rest_ ? next_ : old_.end));
+  }
+
   /// What push(), finish() or, where cells had to wait for room, try_plan() found.
   [[nodiscard]] const PathFault& fault() const noexcept { return grid_.fault(); }
   /// Counts spans from 0 since begin().
   [[nodiscard]] std::uint64_t faulty_span() const noexcept { return grid_.faulty_span(); }
+  [[nodiscard]] double faulty_x() const noexcept { return grid_.faulty_x(); }
 
   /// Plans the next window if its cells are there; window() is then valid until the next call.
   [[nodiscard]] bool try_plan() noexcept;

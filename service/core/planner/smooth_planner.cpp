@@ -20,8 +20,9 @@
 namespace meridian {
 namespace {
 
-constexpr double kBesidePole_rad = 0.05;  // kSamePlace turns the free joint by 2e-8 rad there
-constexpr double kSamePlace = 1e-9;       // mm and of the unit axis: rounding of joints
+constexpr double kBesidePole_rad = 0.05;  // kSameAxis turns the free joint by 2e-12 rad there
+/// Rounding of joints, in their pose. What is farther off would be a step of the setpoints.
+constexpr double kSameTip_mm = 1e-10, kSameAxis = 1e-13;
 constexpr std::size_t kUnwindings = 256;  // that wait to be taken; the oldest go
 constexpr std::size_t kEases = 256;       // the same
 
@@ -75,6 +76,11 @@ struct SmoothPlanner::Workspace {
   /// refused.
   [[nodiscard]] bool unwind(MotionWriter& writer) noexcept;
   void note(const Unwinding& unwinding) noexcept;
+  /// The program begins with what waits; `is_late`: because no more came for too long.
+  void end_look(bool is_late) noexcept {
+    if (is_looking && !waiting.empty()) raise.note_look(waiting.size(), is_late);
+    is_looking = false;
+  }
   void refuse(const PlanResult& why) noexcept {
     is_refused = true;
     refusal = why;
@@ -92,12 +98,14 @@ struct SmoothPlanner::Workspace {
   bool has_factor = false;    ///< and has been given the factor of its feed
   bool is_run_on_pole = false;
   bool is_refused = false;
+  bool is_ending = false;  ///< no block comes any more
   PlanResult refusal;
   IndexRing<PoleEase> plain_eases;  ///< of blocks from rest to rest
   IndexRing<Unwinding> unwindings;
-  std::vector<ClBlock> waiting;   ///< the begin of the program, until it was looked at
-  std::size_t first_waiting = 0;  ///< that is not planned
-  bool is_looking = false;        ///< more of it may come
+  std::vector<ClBlock> waiting;     ///< the begin of the program, until it was looked at
+  std::size_t first_waiting = 0;    ///< that is not planned
+  bool is_looking = false;          ///< more of it may come
+  std::uint64_t replayed_look = 0;  ///< blocks that a run before was begun with; 0: none was
 };
 
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
@@ -170,7 +178,7 @@ void SmoothPlanner::Workspace::end_run() noexcept {
   const double from_pole = free_joint(model) >= 0 ? pole_distance(model, pose.axis) : 1;
   const bool is_beside_pole = from_pole >= kPoleEase_rad && from_pole < kBesidePole_rad;
   const bool is_same =
-      (there.tip - pose.tip).norm() <= kSamePlace && (there.axis - pose.axis).norm() <= kSamePlace;
+      (there.tip - pose.tip).norm() <= kSameTip_mm && (there.axis - pose.axis).norm() <= kSameAxis;
   if (is_beside_pole || !is_same) pose = there;
   at.pose = pose;
   at.path_index = run.next_path_index();
@@ -183,10 +191,10 @@ SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexce
   for (;;) {
     const SmoothRun::Status status = run.publish(writer);
     if (status == SmoothRun::Status::kUnwind) {
-      if (unwind(writer)) continue;
+      if (!is_refused && unwind(writer)) continue;
       return is_refused ? SmoothRun::Status::kFailed : SmoothRun::Status::kNoRoom;
     }
-    if (status == SmoothRun::Status::kFailed && !is_refused) {
+    if (run.has_fault() && !is_refused) {
       BlockReject reject = run.faulty_block();
       reject.code = code_of(run.fault().kind);
       refuse({PlanStatus::kRefused, reject, 0, {}});
@@ -234,7 +242,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   const bool may_ease = w.is_smooth() && w.model.pole_policy == PolePolicy::kEase;
   if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
   w.raise.begin();
-  w.is_refused = w.is_for_plain = w.has_factor = false;
+  w.is_refused = w.is_for_plain = w.has_factor = w.is_ending = false;
   w.waiting.clear();
   w.first_waiting = 0;
   w.is_looking = has_branches(w.model);
@@ -250,8 +258,9 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
     // Without memory for the block: it is the last one, or the look is full.
     const bool is_taken = block.kind != BlockKind::kEnd && w.waiting.size() < kLookAhead;
     if (is_taken) w.waiting.push_back(block);
-    w.is_looking = is_taken && w.waiting.size() < kLookAhead;
-    if (w.is_looking) return {};
+    const bool is_full = w.waiting.size() == (w.replayed_look > 0 ? w.replayed_look : kLookAhead);
+    if (is_taken && !is_full) return {};
+    w.end_look(false);
     const bool is_planned = plan_what_waits(writer);
     if (w.is_refused) return w.refusal;
     if (is_taken) return {};
@@ -280,7 +289,12 @@ bool SmoothPlanner::plan_what_waits(MotionWriter& writer) noexcept {
   return true;
 }
 
-void SmoothPlanner::look_no_further() noexcept { workspace_->is_looking = false; }
+void SmoothPlanner::look_no_further() noexcept { workspace_->end_look(true); }
+
+void SmoothPlanner::finish() noexcept {
+  workspace_->end_look(false);
+  workspace_->is_ending = true;
+}
 
 PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) noexcept {
   using Status = SmoothRun::Status;
@@ -330,8 +344,12 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
 
 PlanResult SmoothPlanner::advance(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  const bool may_publish = !w.is_refused && !w.is_looking;
-  if (may_publish && plan_what_waits(writer) && w.is_running) (void)w.publish(writer);
+  if (w.is_looking) return {};
+  const bool is_planned = w.is_refused || plan_what_waits(writer);
+  if (is_planned && w.is_running) {
+    if (w.is_ending && !w.is_refused) w.run.finish();
+    (void)w.publish(writer);
+  }
   return w.is_refused ? w.refusal : PlanResult{};
 }
 
@@ -351,7 +369,12 @@ bool SmoothPlanner::take_ease(PoleEase& out) noexcept {
 bool SmoothPlanner::take_feed_mark(FeedMark& out) noexcept { return workspace_->raise.take(out); }
 
 void SmoothPlanner::replay_feed(std::span<const FeedMark> marks) noexcept {
-  workspace_->raise.replay(marks);
+  Workspace& w = *workspace_;
+  w.raise.replay(marks);
+  w.replayed_look = 0;
+  for (const FeedMark& mark : marks) {
+    if (mark.looked_at > 0) w.replayed_look = std::min<std::uint64_t>(mark.looked_at, kLookAhead);
+  }
 }
 
 const JointVector& SmoothPlanner::joints() const noexcept { return workspace_->joints; }

@@ -89,7 +89,9 @@ bool SmoothRun::fits(int turns) const noexcept {
 }
 
 void SmoothRun::take(const ClBlock& block) noexcept {
-  if (!band_.push(block)) fail({PathFault::Kind::kTooLong, -1, 0}, block.sequence, block.line);
+  if (band_.push(block)) return;
+  fail({PathFault::Kind::kTooLong, -1, 0}, block.sequence, block.line);
+  band_.finish();
 }
 
 void SmoothRun::fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept {
@@ -115,7 +117,6 @@ SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
       has_window_ = false;
       return Status::kPublished;
     }
-    if (is_fault(fault_)) return Status::kFailed;
     const Status status = prepare(writer.feed_override());
     if (has_window_) continue;
     const bool is_end = status == Status::kDone || status == Status::kUnwind;
@@ -136,10 +137,13 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
   for (;;) {
     has_window_ = feed_.try_plan();
     if (has_window_) return Status::kNoRoom;
-    if (is_fault(feed_.fault())) fail_on_span();
-    if (is_fault(fault_)) return Status::kFailed;
+    if (is_fault(feed_.fault())) {
+      fail_on_span();
+      continue;
+    }
     const bool is_at_unwinding = is_held_ && !is_just_unwound_;
     if (is_feed_finished_ && feed_.is_done()) {
+      if (has_fault()) return Status::kFailed;
       return is_at_unwinding ? Status::kUnwind : Status::kDone;
     }
     if (is_at_unwinding) return Status::kNoRoom;  // every cell is there: windows go on coming
@@ -162,6 +166,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
       }
     } else if (band_.has_failed() || corridor_.has_failed()) {
       fail_ahead();
+      end_ahead_of_fault();
     } else if (is_band_finished_ && !is_feed_finished_) {
       is_feed_finished_ = true;
       note_ease(nullptr);
@@ -169,8 +174,6 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
     } else {
       return Status::kNeedsBlocks;
     }
-    if (is_fault(feed_.fault())) fail_on_span();
-    if (is_fault(fault_)) return Status::kFailed;
   }
 }
 
@@ -217,10 +220,44 @@ void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
   }
 }
 
-/// Names the block of the span on which the feed found a fault.
+/// Names the block that lies where the feed found a fault.
 void SmoothRun::fail_on_span() noexcept {
-  const BandSpan& span = spans_[static_cast<std::int64_t>(feed_.faulty_span())].band;
+  const auto number = static_cast<std::int64_t>(feed_.faulty_span());
+  const BandSpan& span = spans_[number].band;
   fail(feed_.fault(), span.sequence, span.line);
+  name_block_at(number, feed_.faulty_x());
+  end_ahead_of_fault();
+}
+
+void SmoothRun::name_block_at(std::int64_t number, double x) noexcept {
+  for (std::int64_t i = number; i < spans_.end_index(); ++i) {
+    const JointSpan& span = spans_[i];
+    for (std::uint32_t n = 0; n < span.marks.count; ++n) {
+      const BlockMark& mark = span.marks.at[n];
+      if (i == number && mark.s < x) continue;
+      faulty_block_.sequence = span.band.sequence + mark.ahead;
+      faulty_block_.line = mark.line;
+      return;
+    }
+  }
+}
+
+void SmoothRun::end_ahead_of_fault() noexcept {
+  is_held_ = false;
+  is_feed_finished_ = true;
+  note_ease(nullptr);
+  // What is published may be run to its rests.
+  std::int64_t least = 0;
+  for (const OpenWindow& open : open_) least = std::max(least, open.rest_cell);
+  for (std::int64_t i = spans_.end_index() - 1; i >= spans_.begin_index(); --i) {
+    const JointSpan& span = spans_[i];
+    for (std::uint32_t n = span.marks.count; n > 0; --n) {
+      const BlockMark& mark = span.marks.at[n - 1];
+      if (span.band.sequence + mark.ahead >= faulty_block_.sequence) continue;
+      return feed_.end_at(span, static_cast<std::uint64_t>(i), mark.s, least);
+    }
+  }
+  feed_.end_at({}, 0, 0, least);  // nothing lies ahead of it
 }
 
 /// Names the block ahead of which the machine comes to rest: of the first span that is held back

@@ -44,7 +44,7 @@ class SmoothRun : public WindingTrial {
     kDone,         ///< finish() was called and everything is published
     kUnwind,       ///< published to a rest at which the free joint has to be turned back: see
                    ///< unwind_at(), then go_on()
-    kFailed        ///< fault() says why; what is published ends at rest
+    kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
 
   /// `raise` says what the feed is planned with.
@@ -64,7 +64,9 @@ class SmoothRun : public WindingTrial {
   /// The same one window at a time.
   [[nodiscard]] Status publish_window(MotionWriter& writer) noexcept;
 
+  /// Known before kFailed says so: what lies ahead of it has to be published first.
   [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
+  [[nodiscard]] bool has_fault() const noexcept { return fault_.kind != PathFault::Kind::kNone; }
   /// The block that the fault is on; its code is left to the caller.
   [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
 
@@ -116,6 +118,10 @@ class SmoothRun : public WindingTrial {
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
   void fail_on_span() noexcept;
   void fail_ahead() noexcept;
+  /// The faulty block is the first that ends behind `x` of the `number`th span, where one is known.
+  void name_block_at(std::int64_t number, double x) noexcept;
+  /// The path ends where the last block ahead of the faulty one does.
+  void end_ahead_of_fault() noexcept;
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(MotionWriter& writer) noexcept;
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;

@@ -81,6 +81,70 @@ TEST(LookAhead, TakesTheBranchOnWhichNoJointLeavesItsTravelLater) {
   }
 }
 
+/// A plan, and what the planner told of it.
+struct ToldPlan {
+  Trace trace;
+  std::vector<FeedMark> marks;
+};
+
+/// The stream stalls behind `blocks_before_stall` blocks; `replayed`: marks of another run.
+ToldPlan plan_with_stall(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                         const JointVector& start, std::size_t blocks_before_stall,
+                         const std::vector<FeedMark>* replayed = nullptr) {
+  ToldPlan plan;
+  const auto port = std::make_unique<MotionPort>();
+  MotionWriter writer(*port);
+  PatientReader reader(*port);
+  SmoothPlanner planner(model);
+  if (replayed != nullptr) planner.replay_feed(*replayed);
+  planner.begin(start, model.tool_length_mm, 0, {Transition::kSmooth, 0, 0});
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    if (n == blocks_before_stall) planner.look_no_further();
+    while (planner.plan(blocks[n], writer).status == PlanStatus::kNoRoom) {
+      reader.read(plan.trace, false);
+    }
+    for (FeedMark mark; planner.take_feed_mark(mark);) plan.marks.push_back(mark);
+  }
+  reader.read(plan.trace, true);
+  return plan;
+}
+
+bool are_same(const Trace& a, const Trace& b) {
+  if (a.times.size() != b.times.size()) return false;
+  for (std::size_t n = 0; n < a.times.size(); ++n) {
+    if (a.times[n].duration != b.times[n].duration || a.times[n].v != b.times[n].v) return false;
+    if (a.paths[n].joints_begin != b.paths[n].joints_begin) return false;
+  }
+  return true;
+}
+
+TEST(LookAhead, IsReplayedBitForBitWhereAStreamStalledInIt) {
+  const MachineModel model = limited(fork_machine(), -360, 360);
+  std::vector<ClBlock> blocks;  // a turn and a half, from where C stands at 0
+  for (int n = 0; n <= 108; ++n) {
+    const double azimuth = units::rad_from_deg(5.0 * n);
+    blocks.push_back(leaning(0.3, azimuth, {30 * std::cos(azimuth), 30 * std::sin(azimuth), 0}));
+    blocks.back().sequence = blocks.size() - 1;
+  }
+  end_program(blocks);
+  const JointVector start = joints_of(model, blocks[0]);
+  const ToldPlan stalled = plan_with_stall(model, blocks, start, 20);
+  ASSERT_EQ(stalled.marks.size(), 2U);
+  EXPECT_TRUE(stalled.marks[0].is_begin);
+  EXPECT_EQ(stalled.marks[1].looked_at, 20U);
+  EXPECT_TRUE(stalled.marks[1].is_late);
+  const ToldPlan whole = plan_with_stall(model, blocks, start, ~std::size_t{0});
+  ASSERT_EQ(whole.marks.size(), 2U);
+  EXPECT_EQ(whole.marks[1].looked_at, blocks.size() - 1);
+  EXPECT_FALSE(whole.marks[1].is_late);
+  EXPECT_FALSE(are_same(whole.trace, stalled.trace)) << "both begin on one winding";
+  const auto replay = [&](const std::vector<FeedMark>& marks) {
+    return plan_with_stall(model, blocks, start, ~std::size_t{0}, &marks).trace;
+  };
+  EXPECT_TRUE(are_same(replay(stalled.marks), stalled.trace));
+  EXPECT_TRUE(are_same(replay(whole.marks), whole.trace));
+}
+
 /// Leans by 0.3 and turns from azimuth 0 to `turn` and back, in steps of 2 deg.
 std::vector<ClBlock> there_and_back(double turn) {
   std::vector<ClBlock> blocks;

@@ -102,6 +102,7 @@ class PlannedRun {
   }
 
   [[nodiscard]] Planner& planner() { return planner_; }
+  [[nodiscard]] MotionWriter& writer() { return writer_; }
 
   std::size_t most_blocks;  ///< that come between two cycles
   CycleWorld world;

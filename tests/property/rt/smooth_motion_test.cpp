@@ -168,6 +168,35 @@ TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
   EXPECT_GT(dry, static_cast<unsigned>(test::draws(2)) * 2U);
 }
 
+/// The last cut of a run is too short for a span, and turns the axis: what follows starts from
+/// where the machine is. At 8 kHz a step of 1e-8 rad is above every limit of jerk.
+TEST(SmoothMotion, GoesOnBehindACutThatIsTooShortToBeOne) {
+  MachineModel machine = test::bench_machine();
+  machine.transition = Transition::kSmooth;
+  machine.cycle_ns = 125'000;
+  constexpr double kTilt = 0.051, kTurn = 0.95e-9;  // of the axis
+  std::vector<ClBlock> blocks;
+  for (int n = 0; n < 13; ++n) {
+    ClBlock block;
+    block.sequence = static_cast<std::uint64_t>(n);
+    const double azimuth = n < 11 ? 0.3 : 0.3 + kTurn / kTilt;
+    block.kind = n < 12 ? BlockKind::kCut : BlockKind::kRapid;
+    block.tip_mm = {n < 11 ? 1.0 * n : n == 11 ? 10.0 : 12.0, 0, 0};
+    block.axis = {std::sin(kTilt) * std::cos(azimuth), std::sin(kTilt) * std::sin(azimuth),
+                  std::cos(kTilt)};
+    block.feed = 50;
+    block.feed_meaning = n < 12 ? FeedMeaning::kTip : FeedMeaning::kNone;
+    blocks.push_back(block);
+  }
+  test::end_program(blocks);
+  SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
+  ASSERT_TRUE(run.is_started());
+  for (double t = 0; t < 5 && !run.is_over(); t += run.world.dt()) run.run();
+  EXPECT_EQ(run.world.count(EventCode::kProgramEnd), 1) << "refused: the joints would jump";
+  LimitShares worst;
+  test::expect_within_limits(run.world, 0, false, worst);
+}
+
 TEST(SmoothMotion, StopsOnThePathByTheFaultStopLimits) {
   LimitShares worst;
   double worst_off = 0, longest = 0;

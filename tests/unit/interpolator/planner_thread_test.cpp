@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <thread>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/time_law.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::interpolator {
@@ -96,6 +99,40 @@ TEST_F(PlannerThreadTest, PlansAProgramBehindOneThatWasAbortedWithSecondsOfPlanA
   ASSERT_NO_FATAL_FAILURE(push_program());
   EXPECT_TRUE(has_piece()) << "what is void was waited for";
   EXPECT_TRUE(is_approach_declared(2));
+}
+
+TEST_F(PlannerThreadTest, PlansWhatItHasToItsEndWhereASessionIsCutOff) {
+  const ToolPose home = forward(machine_, machine_.tool_length_mm, JointVector{});
+  constexpr int kCuts = 30;
+  QueuedBlock queued{1, {}, {}};
+  queued.settings.transition = Transition::kSmooth;
+  queued.block.axis = to_array(home.axis);
+  queued.block.feed_meaning = FeedMeaning::kTip;
+  queued.block.feed = 100;
+  for (int i = 1; i <= kCuts; ++i) {
+    queued.block.tip_mm = to_array(home.tip + Vector3(i, 0, 0));
+    queued.block.sequence = static_cast<std::uint64_t>(i - 1);
+    ASSERT_TRUE(ports_->blocks.stage(queued));
+  }
+  queued.is_cut_off = true;
+  ASSERT_TRUE(ports_->blocks.stage(queued));
+  ports_->blocks.publish();
+  ports_->planner_wake.notify();
+  double left_mm = 1e9;
+  for (int i = 0; i < 1000 && left_mm > 1e-6; ++i) {
+    while (reader_.advance() != nullptr) {
+      if (reader_.path() == nullptr) continue;
+      const PathState end = state_at(*reader_.piece(), reader_.piece()->duration);
+      const Vector3 tip = pose_at(*reader_.path(), end.s).tip;
+      if (end.ds < 1e-6) left_mm = (tip - home.tip - Vector3(kCuts, 0, 0)).norm();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_LE(left_mm, 1e-6) << "the last block was sent and is not cut";
+  FeedMark mark;
+  std::uint64_t looked_at = 0;
+  while (ports_->feed_marks.try_pop(mark)) looked_at = std::max(looked_at, mark.looked_at);
+  EXPECT_EQ(looked_at, kCuts);
 }
 
 }  // namespace

@@ -41,13 +41,16 @@ TEST(OperatorEventsWriter, KeepsWhatTheMotionFollowsFromWithCycleAndArgument) {
   event.b = 3;
   event.x = 1.25;
   EXPECT_TRUE(writer->write(event));
+  event.code = EventCode::kPlanLooked;
+  event.a = 300;
+  EXPECT_TRUE(writer->write(event));
   event.code = EventCode::kAccepted;
   event.b = static_cast<std::uint64_t>(Verb::kDryRun);  // nor of jog and home: no program is there
   EXPECT_TRUE(writer->write(event));
   EXPECT_EQ(test::read_text(file.path()),
             "cycle,verb,argument,block,span\n1203,start,0\n2000,feed_override,0.10000000000000001\n"
             "2100,periods_bridged,17\n2100,periods_lost,70\n2100,action_answered,1\n"
-            "2100,plan_begun,1\n2100,feed_planned,1.25,12,3\n");
+            "2100,plan_begun,1\n2100,feed_planned,1.25,12,3\n2100,plan_looked,300\n");
 }
 
 TEST(OperatorEventsWriter, SitsBesideItsRecording) {

@@ -73,6 +73,18 @@ TEST(OperatorEvents, SayWhatTheHostDid) {
   ASSERT_EQ(events->verbs.size(), 1U);
 }
 
+TEST(OperatorEvents, HoldHowManyBlocksTheFirstStartedProgramBeganWith) {
+  const auto events = read_operator_events(
+      "10,plan_begun,1\n11,plan_looked,300\n30,plan_begun,1\n31,plan_looked,2048\n40,start,0\n"
+      "60,plan_begun,1\n61,plan_looked,7\n",
+      "e.csv");
+  ASSERT_TRUE(events.has_value()) << events.error();
+  ASSERT_EQ(events->feed_marks.size(), 2U);
+  EXPECT_EQ(events->feed_marks[1].looked_at, 2048U);
+  EXPECT_FALSE(read_operator_events("11,plan_looked,0\n", "e.csv").has_value());
+  EXPECT_FALSE(read_operator_events("11,plan_looked,3,4\n", "e.csv").has_value());
+}
+
 TEST(OperatorEvents, HoldWhatThePlannerOfTheFirstStartedProgramTold) {
   const auto events = read_operator_events(
       "cycle,verb,argument,block,span\n10,plan_begun,1\n20,feed_planned,1.1,4,0\n"

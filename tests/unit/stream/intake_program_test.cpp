@@ -29,6 +29,7 @@ TEST_F(Intake, BlocksBeforeARefusedOneStayAndNoneAfterItComes) {
   EXPECT_FALSE(send(good_batch(kSession, 5, 8)));
   EXPECT_EQ(accepted_.count, 0u);
   EXPECT_TRUE(judge_.is_held()) << "its accepted blocks are the machine's to run";
+  EXPECT_TRUE(judge_.is_cut_off()) << "to their end";
 }
 
 TEST_F(Intake, AProgramRefusedAtItsFirstBlockFreesTheMachine) {
@@ -207,6 +208,7 @@ TEST_F(Intake, AStationThatDiesLeavesItsBlocksAndHoldsTheMachine) {
   EXPECT_NE(answer.text.find("cam-1 with program part.cls, which is gone; enable"),
             std::string::npos)
       << answer.text;
+  EXPECT_FALSE(judge_.is_cut_off()) << "it may come back with more";
 }
 
 TEST_F(Intake, AStationThatDiesWithoutABlockFreesTheMachine) {
@@ -221,6 +223,7 @@ TEST_F(Intake, ACloseBeforeTheEndAcceptsNothingMore) {
   const Credit answer = close();
   EXPECT_EQ(answer.verdict, Verdict::kClosed);
   EXPECT_NE(answer.text.find("runs the 10 blocks"), std::string::npos) << answer.text;
+  EXPECT_TRUE(judge_.is_cut_off());
   EXPECT_FALSE(send(good_batch(kSession, 10, 10)));
   EXPECT_EQ(accepted_.count, 0u);
 }
@@ -229,6 +232,7 @@ TEST_F(Intake, ACloseWithoutABlockFreesTheMachine) {
   static_cast<void>(open());
   EXPECT_EQ(close().verdict, Verdict::kClosed);
   EXPECT_FALSE(judge_.is_held());
+  EXPECT_FALSE(judge_.is_cut_off());
 }
 
 }  // namespace
