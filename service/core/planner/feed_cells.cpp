@@ -15,8 +15,9 @@ namespace {
 constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
 constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
 constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
-/// Of a joint at the begin: rounding, 1e-10 rad of the free joint 8 µrad from the pole.
-constexpr double kLargestStep = 1e-9;
+/// Of a joint at the begin: rounding, 1e-10 rad of the free joint 8 µrad from the pole, and of
+/// slides that make up for it so much of their way to its axis.
+constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
 constexpr double kNoCell_mm = 1e-6;  // of u: an end that is not worth a cell
 constexpr int kRounds = 16;          // of halving: lengths of a ratio of 60 000
 constexpr double kNone = 1e-12;      // derivative that counts as none
@@ -286,7 +287,8 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here
     for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];
-      if (is_begin && std::abs(jump) > kLargestStep) return {PathFault::Kind::kJump, i, jump};
+      const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
+      if (is_begin && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
       if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
         return {PathFault::Kind::kJump, i, jump};
       }

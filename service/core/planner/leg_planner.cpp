@@ -25,7 +25,9 @@ constexpr double kMostCells = 256;
 constexpr double kCoarse = 1.12;
 constexpr int kMostRefinements = 3;
 constexpr int kLeastAzimuthCells = 4;  // between two nodes
-constexpr double kLargestJump = 1e-9;  // rounding 8 µrad from the pole is 1e-10
+/// Rounding of the free joint 8 µrad from the pole is 1e-10, of slides that make up for it so much
+/// of their way to its axis.
+constexpr double kLargestJump_rad = 1e-9, kLargestJump_mm = 1e-7;
 
 int cells_for(double amount) noexcept {
   return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMostCells));
@@ -263,7 +265,8 @@ PathFault LegPlanner::stage_run(const Leg& leg, const Node& from, const Node& to
   const auto end = joints_at(model_, piece, 0.5 * piece.length, begin.q);
   for (int i = 0; i < model_.joint_count; ++i) {
     const double jump = begin.q[i] - joints[i];
-    if (!(std::abs(jump) < kLargestJump)) return {PathFault::Kind::kJump, i, jump};
+    const double largest = model_.joints[i].is_rotary ? kLargestJump_rad : kLargestJump_mm;
+    if (!(std::abs(jump) < largest)) return {PathFault::Kind::kJump, i, jump};
   }
   piece.joints_begin = begin.q;
   piece.joints_end = joints_at(model_, piece, piece.length, end.q).q;
