@@ -13,7 +13,7 @@ constexpr std::uint64_t kMostStretches = 3000;
 constexpr double kLeastShare = 0x1p-40;  // of the piece, that a stretch is halved down to
 /// A bound is brought nearer to what is attained until it is that close, but not for ever.
 constexpr double kCloseEnough = 5e-4;
-constexpr int kSharpenings = 6;
+constexpr int kSharpenings = 12;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// Bound of |f⁽ᵈ⁾| within `reach` of an instant, from the coefficients there and, of order `top`,
