@@ -215,7 +215,7 @@ std::string to_text(const ProbeReport& report) {
     append_measurement(out, m);
     for (const Verdict& verdict : report.verdicts) {
       if (verdict.rate_hz != m.rate_hz || verdict.is_loaded != m.is_loaded) continue;
-      append(out, "  %-7s %-28s %8.1f, allowed %8.1f %-3s (%s)", word(verdict),
+      append(out, "  %-7s %-28s %8.2f, allowed %8.2f %-3s (%s)", word(verdict),
              verdict.budget.name.c_str(), verdict.figure, verdict.budget.allowed(verdict.reference),
              verdict.budget.unit.c_str(), word(verdict.weight));
       if (!verdict.is_measured()) {

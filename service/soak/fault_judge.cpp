@@ -24,7 +24,9 @@ constexpr double kBridgeAway_s = 0.045;
 
 /// How long a processor must have been away to make `alarm`; nothing: no stall makes it.
 [[nodiscard]] std::optional<double> away_for(Alarm alarm, bool misses_setpoints) noexcept {
-  if (alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError) return kTooLongAway_s;
+  const bool is_of_silence = alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError ||
+                             alarm == Alarm::kSetpointsUnheard;
+  if (is_of_silence) return kTooLongAway_s;
   const bool is_of_bridge =
       alarm == Alarm::kPeriodsLost || (alarm == Alarm::kDriveFault && misses_setpoints);
   return is_of_bridge ? std::optional(kBridgeAway_s) : std::nullopt;
