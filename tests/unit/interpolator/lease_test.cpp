@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "service/interpolator/lease.hpp"
+
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <thread>
 
-#include "service/interpolator/lease.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::interpolator {
