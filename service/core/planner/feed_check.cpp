@@ -42,7 +42,9 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const Cell
                       const Samples& b) noexcept {
   const auto& [v, a, j] = motion;
   FeedUse use;
-  for (int k = 0; k <= kSteps; ++k) use.b = std::max(use.b, b[k] / cell.at[k].most_b);
+  Samples share;
+  for (int k = 0; k <= kSteps; ++k) share[k] = b[k] / cell.at[k].most_b;
+  use.b = peak_of(share);
   for (int i = 0; i < limits.count; ++i) {
     Samples velocity, acceleration, jerk;
     for (int k = 0; k <= kSteps; ++k) {

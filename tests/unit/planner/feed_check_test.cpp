@@ -88,6 +88,16 @@ TEST(FeedCheck, SeesAStandstillBetweenTwoSamples) {
   }
 }
 
+/// b has its top, 1, between two samples, at which it is 0.984.
+TEST(FeedCheck, SeesAFeedThatIsPassedBetweenTwoSamples) {
+  FeedCell cell;
+  cell.h = 1;
+  for (CellSample& at : cell.at) at.most_b = 0.99;
+  const double top = 4.5 / FeedCell::kSteps;
+  const CellLaw law{1 - 4 * top * top, 8 * top, 8 * top - 8};
+  EXPECT_NEAR(use_of(unit_limits(), cell, law).b, 1 / 0.99, 1e-12);
+}
+
 TEST(FeedCheck, TakesNoStandstillThatLiesOutsideOfTheCell) {
   for (const double outside : {-1.0 / 16, 17.0 / 16}) {
     EXPECT_EQ(use_of_dip(outside, -0.003).jerk, 0) << outside;
