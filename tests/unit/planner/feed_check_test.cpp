@@ -88,14 +88,14 @@ TEST(FeedCheck, SeesAStandstillBetweenTwoSamples) {
   }
 }
 
-/// b has its top, 1, between two samples, at which it is 0.984.
+/// b has its top, 1, between two samples, at which it is 0.996.
 TEST(FeedCheck, SeesAFeedThatIsPassedBetweenTwoSamples) {
   FeedCell cell;
   cell.h = 1;
-  for (CellSample& at : cell.at) at.most_b = 0.99;
+  for (CellSample& at : cell.at) at.most_b = 0.998;
   const double top = 4.5 / FeedCell::kSteps;
-  const CellLaw law{1 - 4 * top * top, 8 * top, 8 * top - 8};
-  EXPECT_NEAR(use_of(unit_limits(), cell, law).b, 1 / 0.99, 1e-12);
+  const CellLaw law{1 - top * top, 2 * top, 2 * top - 2};
+  EXPECT_NEAR(use_of(unit_limits(), cell, law).b, 1 / 0.998, 1e-12);
 }
 
 TEST(FeedCheck, TakesNoStandstillThatLiesOutsideOfTheCell) {
