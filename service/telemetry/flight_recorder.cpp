@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 constexpr double kTail_s = 0.5;
 /// The rows are at most so large: the service locks its memory, and all of it has to do with
 /// resident_memory of the budgets (this room reads no file of the project; a test compares).
-constexpr std::size_t kRows_bytes = std::size_t{16} << 20U;
+constexpr std::size_t kRows_bytes = std::size_t{3} << 20U;
 constexpr const char* kPrefix = "fault-";
 
 [[nodiscard]] std::size_t rows_of(double time_s, const MachineModel& model) {

@@ -28,7 +28,7 @@ class FlightRecorder {
  public:
   /// An empty folder: nothing is kept. Else makes the folder; where it cannot be made or written
   /// to, the log says so and nothing is kept: that is no reason for a machine to stand. Of more
-  /// seconds than 16 MiB hold the last that fit are kept, which is a warning.
+  /// seconds than 3 MiB hold the last that fit are kept, which is a warning.
   FlightRecorder(const config::FlightConfig& config, const MachineModel& model,
                  std::shared_ptr<spdlog::logger> log);
 
