@@ -39,6 +39,20 @@ TEST(Service, AnswersInOffWithinThreeSecondsAndStaysSmall) {
 #endif
 }
 
+/// Its drives run already, and the operator enables as soon as it answers.
+TEST(Service, IsReadyWithinTwoSecondsOfItsStart) {
+  Plant plant;
+  plant.start_drives();
+  const auto start = std::chrono::steady_clock::now();
+  Process& service = plant.start_service();
+  ASSERT_TRUE(plant.enable()) << service.said();
+  const double took_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::printf("Ready after %.3f s\n", took_s);
+  EXPECT_EQ(plant.status().state, State::kReady) << service.said();
+  EXPECT_LE(took_s, probe::load_budget("start_to_ready").allowed());
+}
+
 TEST(Service, EndsAtOnceAndCleanlyWhenAskedToInOff) {
   for (const int signal : {SIGTERM, SIGINT}) {
     Plant plant;
