@@ -9,11 +9,14 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "integration/plant.hpp"
 #include "service/probe/budgets.hpp"
@@ -119,7 +122,45 @@ TEST_F(Counters, AWholeRunCostsCycleAndPublisherNoHeapCallNoPageFaultAndTheCycle
   EXPECT_GT(cycle->voluntary_switches, 1000U) << "the cycle hardly ran";
 }
 
-TEST_F(Counters, TheCycleAsksTheKernelForItsSleepAndThePublishersWakeAlone) {
+/// The system calls of one thread, by strace.
+struct Traced {
+  std::size_t count = 0;
+  std::map<std::string, std::size_t> calls;
+  std::size_t futex_waits = 0;  ///< calls of futex that may wait
+  [[nodiscard]] std::string text() const {
+    std::ostringstream out;
+    for (const auto& [call, times] : calls) out << call << " " << times << ", ";
+    return out.str();
+  }
+  /// Takes out what is wanted; what is left is not.
+  void take_out(const std::vector<std::string>& wanted) {
+    calls.erase("restart_syscall");  // the wait that strace came into
+    for (const std::string& call : wanted) calls.erase(call);
+  }
+};
+
+/// Only that one thread is traced, for a second.
+Traced trace(int thread, const std::filesystem::path& file) {
+  const std::string command = "timeout -s INT 1 strace -p " + std::to_string(thread) + " -o " +
+                              file.string() + " 2> /dev/null";
+  (void)!std::system(command.c_str());
+  Traced traced;
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    const auto bracket = line.find('(');
+    if (bracket == std::string::npos || line.rfind("---", 0) == 0 || line.rfind("strace", 0) == 0) {
+      continue;
+    }
+    const std::string call = line.substr(0, bracket);
+    ++traced.calls[call];
+    ++traced.count;
+    if (call == "futex" && line.find("FUTEX_WAKE") == std::string::npos) ++traced.futex_waits;
+  }
+  return traced;
+}
+
+/// While a program is cut, held and aborted.
+TEST_F(Counters, CycleAndPublisherAskTheKernelForNothingButSleepWakeAndSending) {
   if (std::system("strace -V > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "no strace on this host, as on one without the rights to trace";
   }
@@ -127,36 +168,32 @@ TEST_F(Counters, TheCycleAsksTheKernelForItsSleepAndThePublishersWakeAlone) {
   say(Verb::kStart);
   ASSERT_TRUE(plant_.wait_for(State::kRunning));
   const watch::Report report = watched_.report("running");
-  const watch::ThreadCounts* const cycle = watch::find_thread(report, "cycle");
-  ASSERT_NE(cycle, nullptr);
-  // Only that one thread is traced, for a second of the run.
-  const auto trace = plant_.folder() / "trace.txt";
-  const std::string command = "timeout -s INT 1 strace -p " + std::to_string(cycle->thread_id) +
-                              " -o " + trace.string() + " 2> /dev/null";
-  (void)!std::system(command.c_str());
-
-  std::set<std::string> calls;
-  std::size_t count = 0;
-  std::ifstream lines(trace);
-  for (std::string line; std::getline(lines, line);) {
-    const auto bracket = line.find('(');
-    if (bracket != std::string::npos && line.rfind("---", 0) != 0 && line.rfind("strace", 0) != 0) {
-      calls.insert(line.substr(0, bracket));
-      ++count;
-    }
-  }
-  if (count == 0) {
+  const auto traced = [&](const char* name) {
+    const watch::ThreadCounts* const thread = watch::find_thread(report, name);
+    const auto found =
+        thread == nullptr ? Traced{} : trace(thread->thread_id, plant_.folder() / name);
+    std::printf("%zu system calls of the %s thread in 1 s: %s\n", found.count, name,
+                found.text().c_str());
+    return found;
+  };
+  Traced publisher = traced("publisher");
+  std::thread operator_thread([&] {
+    std::this_thread::sleep_for(milliseconds(500));
+    (void)plant_.say(Verb::kHold);
+    std::this_thread::sleep_for(milliseconds(200));
+    (void)plant_.say(Verb::kAbort);
+  });
+  Traced cycle = traced("cycle");
+  operator_thread.join();
+  if (cycle.count == 0 || publisher.count == 0) {
     GTEST_SKIP() << "this host does not let strace attach (no rights)";
   }
-  std::ostringstream names;
-  for (const std::string& call : calls) {
-    names << call << " ";
-  }
-  std::printf("%zu system calls of the cycle thread in 1 s: %s\n", count, names.str().c_str());
-  calls.erase("clock_nanosleep");
-  calls.erase("futex");
-  calls.erase("restart_syscall");  // the sleep that strace came into
-  EXPECT_TRUE(calls.empty()) << names.str();
+  EXPECT_EQ(cycle.futex_waits, 0U) << "it waits for a lock";
+  EXPECT_LE(cycle.calls["futex"], cycle.calls["clock_nanosleep"] + 1) << "one wake a cycle";
+  cycle.take_out({"clock_nanosleep", "futex"});
+  EXPECT_TRUE(cycle.calls.empty()) << cycle.text();
+  publisher.take_out({"futex", "sendmsg"});
+  EXPECT_TRUE(publisher.calls.empty()) << publisher.text();
 }
 
 }  // namespace
