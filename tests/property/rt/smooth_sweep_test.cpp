@@ -128,7 +128,8 @@ PathShares judge_path(const MachineModel& machine, const std::vector<ClBlock>& b
                                      machine.tolerances.axis_rad, shares.off);
     shares.off = std::max(shares.off, off);
   });
-  shares.missed = vertices.worst(run.is_over());
+  // Of a program that was refused on the way what lies behind is not missed.
+  shares.missed = vertices.worst(run.world.now() == State::kReady);
   return shares;
 }
 
