@@ -89,14 +89,14 @@ struct Taylor {
     std::array<double, N + 1> reach{};  // of b
     for (std::size_t k = 0; k <= N; ++k) reach[k] = std::abs(b.mid[k]) + b.rad[k];
     for (std::size_t k = 0; k <= N; ++k) {
-      double mid = 0, size = 0, rad = 0;
+      double product = 0, size = 0, off = 0;
       for (std::size_t i = 0; i <= k; ++i) {
-        mid += a.mid[i] * b.mid[k - i];
+        product += a.mid[i] * b.mid[k - i];
         size += std::abs(a.mid[i]) * std::abs(b.mid[k - i]);
-        rad += std::abs(a.mid[i]) * b.rad[k - i] + a.rad[i] * reach[k - i];
+        off += std::abs(a.mid[i]) * b.rad[k - i] + a.rad[i] * reach[k - i];
       }
-      out.mid[k] = mid;
-      out.rad[k] = (rad + size * static_cast<double>(N + 1) * kRounding) * kRaised + kUnderflow;
+      out.mid[k] = product;
+      out.rad[k] = (off + size * static_cast<double>(N + 1) * kRounding) * kRaised + kUnderflow;
     }
     return out;
   }
