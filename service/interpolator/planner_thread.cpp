@@ -50,7 +50,7 @@ bool PlannerThread::work() noexcept {
     tell(Approach{});
     tell_of_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
-    motion_ns_ = 0;
+    looking_since_ns_ = 0;
   }
   return plan(*look.front);
 }
@@ -66,10 +66,17 @@ void PlannerThread::advance() noexcept {
 void PlannerThread::look_at_stall() noexcept {
   constexpr std::int64_t kStall_ns = kSecond_ns;
   constexpr std::int64_t kLongest_ns = 5 * kSecond_ns;  // where it trickles and never stalls
-  if (motion_ns_ == 0) return;
+  if (!planner_.is_looking()) {
+    looking_since_ns_ = 0;
+    return;
+  }
   const std::int64_t now_ns = monotonic_ns();
-  const bool is_late = now_ns - last_block_ns_ > kStall_ns || now_ns - motion_ns_ > kLongest_ns;
-  if (is_late) planner_.look_no_further();
+  if (looking_since_ns_ == 0) looking_since_ns_ = last_block_ns_;
+  const bool is_late =
+      now_ns - last_block_ns_ > kStall_ns || now_ns - looking_since_ns_ > kLongest_ns;
+  if (!is_late) return;
+  planner_.look_no_further();
+  looking_since_ns_ = 0;
 }
 
 void PlannerThread::refuse(const BlockReject& reject) noexcept {
@@ -87,9 +94,6 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   const bool has_room = result.status != PlanStatus::kNoRoom;
   spans_.write(has_room ? trace::Doing::kPlan : trace::Doing::kWaitForRoom, begun_ns,
                last_block_ns_, queued.block.sequence);
-  const bool is_motion =
-      queued.block.kind == BlockKind::kCut || queued.block.kind == BlockKind::kRapid;
-  if (is_motion && motion_ns_ == 0) motion_ns_ = last_block_ns_;
   if (has_room) {
     (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
     planning_ns_ = 0;

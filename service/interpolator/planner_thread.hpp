@@ -43,14 +43,14 @@ class PlannerThread {
   QueueFollower queue_;
   MotionWriter writer_;
   SmoothPlanner planner_;
-  std::uint64_t session_ = 0;       ///< of the block that was planned last
-  std::int64_t last_block_ns_ = 0;  ///< when one was planned last
-  std::int64_t motion_ns_ = 0;      ///< when the program's first motion was taken; 0: not yet
-  std::int64_t planning_ns_ = 0;    ///< spent on the block in hand, attempts without room included
-  double published_before_s_ = 0;   ///< when the plan was begun
-  bool has_begun_ = false;          ///< a plan is being made
-  bool is_refused_ = false;         ///< a block was refused: nothing behind it moves
-  bool is_action_told_ = false;     ///< of the block at the head of the queue
+  std::uint64_t session_ = 0;          ///< of the block that was planned last
+  std::int64_t last_block_ns_ = 0;     ///< when one was planned last
+  std::int64_t looking_since_ns_ = 0;  ///< planner_ is_looking() and no block came; 0: it is not
+  std::int64_t planning_ns_ = 0;   ///< spent on the block in hand, attempts without room included
+  double published_before_s_ = 0;  ///< when the plan was begun
+  bool has_begun_ = false;         ///< a plan is being made
+  bool is_refused_ = false;        ///< a block was refused: nothing behind it moves
+  bool is_action_told_ = false;    ///< of the block at the head of the queue
   trace::SpanWriter spans_;
 };
 

@@ -100,7 +100,8 @@ void TelemetryThread::drain() {
     if (mark.looked_at > 0) {
       planned.code = EventCode::kPlanLooked;
       planned.a = mark.looked_at;
-      planned.b = mark.is_late ? 1 : 0;
+      planned.b = mark.sequence;
+      planned.x = mark.is_late ? 1 : 0;
       log_->log(mark.is_late ? spdlog::level::warn : spdlog::level::info, "{}",
                 telemetry::describe(planned, model_));
     }

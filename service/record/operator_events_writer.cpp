@@ -44,6 +44,7 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
     row.put(kPlanBegunWord).put(',').put_real(event.x);
   } else if (event.code == EventCode::kPlanLooked) {
     row.put(kPlanLookedWord).put(',').put_integer(event.a);
+    if (event.b > 0) row.put(',').put_integer(event.b);
   } else if (event.code == EventCode::kFeedPlanned) {
     row.put(kFeedPlannedWord).put(',').put_real(event.x);
     row.put(',').put_integer(event.a).put(',').put_integer(event.b);

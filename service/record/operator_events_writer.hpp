@@ -25,7 +25,8 @@ inline constexpr std::string_view kActionAnsweredWord = "action_answered";
 /// from the block and span of it on that two more columns tell (FeedMark).
 inline constexpr std::string_view kPlanBegunWord = "plan_begun";
 inline constexpr std::string_view kFeedPlannedWord = "feed_planned";
-/// And over how many blocks it chose branch and winding, the argument.
+/// And over how many blocks it chose branch and winding, the argument: the first, or those from a
+/// block on that one more column tells.
 inline constexpr std::string_view kPlanLookedWord = "plan_looked";
 
 /// Whether the motion follows from it, beside the program: an accepted verb, lost periods, an

@@ -121,7 +121,10 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   mark.is_begin = word == record::kPlanBegunWord;
   if (mark.is_begin) return row.empty();
   if (word == record::kPlanLookedWord) {
-    return row.empty() && parse(factor, mark.looked_at) && mark.looked_at > 0;
+    const bool is_begin = row.empty();
+    const std::string_view from = cut(row, ',');
+    return row.empty() && parse(factor, mark.looked_at) && mark.looked_at > 0 &&
+           (is_begin || (parse(from, mark.sequence) && mark.sequence > 0));
   }
   const std::string_view block = cut(row, ','), span = cut(row, ',');
   return word == record::kFeedPlannedWord && row.empty() && parse(factor, mark.factor) &&

@@ -50,9 +50,9 @@ struct OperatorEvents {
 /// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
 /// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun`,
-/// `plan_looked,blocks` and `feed_planned,factor,block,span`. A row `incomplete`, by which a
-/// recorder says that it lost events, is refused. The error is a message with name and line. Proof:
-/// tests/unit/simulate/operator_events_test.cpp.
+/// `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. A row `incomplete`, by which
+/// a recorder says that it lost events, is refused. The error is a message with name and line.
+/// Proof: tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                                          const std::string& name,
                                                                          double most_feed = 1.0);

@@ -152,9 +152,11 @@ std::string describe(const Event& event, const MachineModel& model) {
       return "a program is being planned";
     case EventCode::kPlanLooked:
       return fmt::format(
-          "branch and winding follow from the first {} blocks{}", event.a,
-          event.b != 0 ? ": the stream stalled before more came. A simulation without the events "
-                         "of this recording looks farther and may begin otherwise"
+          "branch and winding{} follow from the {} {} blocks{}",
+          event.b != 0 ? fmt::format(" past the pole near block {}", event.b) : "",
+          event.b != 0 ? "next" : "first", event.a,
+          event.x != 0 ? ": the stream stalled before more came. A simulation without the events "
+                         "of this recording looks farther and may go otherwise"
                        : "");
     case EventCode::kFeedPlanned:
       return fmt::format("from block {} on planned for {:.4g} % of the feed", event.a,

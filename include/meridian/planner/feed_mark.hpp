@@ -5,15 +5,16 @@
 
 namespace meridian {
 
-/// Where a feed override above 100 % holds from in what is planned, and how much of the program's
-/// begin was looked at before: with the blocks, these marks say all of what a plan depends on.
+/// Where a feed override above 100 % holds from in what is planned, and how many blocks were looked
+/// at before a choice: with the blocks, these marks say all of what a plan depends on.
 /// Proof: tests/property/rt/feed_raise_test.cpp, tests/property/planner/look_ahead_test.cpp.
 struct FeedMark {
   bool is_begin = false;       ///< a program begins, at 100 %
   std::uint64_t sequence = 0;  ///< CL block
   std::uint32_t span = 0;      ///< of the smooth path, counted from the block's first
   double factor = 1;           ///< of the programmed feed, at least 1
-  /// Else 0: branch and winding at the program's begin follow from so many blocks.
+  /// Else 0: branch and winding follow from so many blocks: those at the program's begin, or, where
+  /// `sequence` is not 0, those behind the pole, from that block on.
   std::uint64_t looked_at = 0;
   bool is_late = false;  ///< of looked_at: no more were waited for
 };

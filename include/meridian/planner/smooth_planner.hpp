@@ -47,7 +47,9 @@ struct SmoothSettings {
 ///
 /// A machine with a free joint: branch and winding at the begin of a program are those that carry
 /// farthest through the first kLookAhead blocks, which are therefore taken before anything is
-/// published (fewer where the program ends, or look_no_further() is called). Where the free joint
+/// published (fewer where the program ends, or look_no_further() is called). So are those behind
+/// every place beside the pole where cuts run on: where more than one way carries through what is
+/// there, as many blocks are taken before the place is planned. Where the free joint
 /// runs out of travel all the same, the machine rests, in mid-block where cuts run on, and the
 /// joint is turned back off the part if the machine's file says how (docs/motion.md, section 11).
 ///
@@ -76,7 +78,10 @@ class SmoothPlanner {
   /// kOk.
   [[nodiscard]] PlanResult advance(MotionWriter& writer) noexcept;
 
-  /// No block comes for a while: the program begins with those that are there.
+  /// Whether something is not planned because blocks are missing that are only looked at.
+  [[nodiscard]] bool is_looking() const noexcept;
+  /// No block comes for a while: the program begins, or goes on past the pole, with those that are
+  /// there.
   void look_no_further() noexcept;
 
   /// No block comes any more until begin(), and no end: advance() publishes what was taken, to its

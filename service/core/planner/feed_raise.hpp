@@ -41,10 +41,9 @@ class FeedRaise {
   /// A program begins.
   void begin() noexcept;
 
-  /// The begin of the program was looked at over `blocks`; `is_late`: the stream stalled then.
-  void note_look(std::uint64_t blocks, bool is_late) noexcept {
-    if (is_replay_) return;
-    told_.push_over_oldest({.looked_at = blocks, .is_late = is_late});
+  /// What a look ahead went over (FeedMark::looked_at).
+  void note_look(const FeedMark& look) noexcept {
+    if (!is_replay_) told_.push_over_oldest(look);
   }
 
   /// The machine rests before the next stretch.

@@ -33,8 +33,12 @@ BandSpan part_of_span(const BandSpan& span, double from, double length) noexcept
 
 }  // namespace
 
-PoleCorridor::PoleCorridor(const MachineModel& model)
-    : model_(model), probes_(model), cores_(model, probes_, programmed_), pending_(kPending) {}
+PoleCorridor::PoleCorridor(const MachineModel& model, PoleForesight* foresight)
+    : model_(model),
+      foresight_(foresight),
+      probes_(model),
+      cores_(model, probes_, programmed_),
+      pending_(kPending) {}
 
 void PoleCorridor::begin(const Start& start) noexcept {
   has_pole_ = free_joint(model_) >= 0 && !start.is_on_pole;
@@ -49,7 +53,8 @@ void PoleCorridor::begin(const Start& start) noexcept {
   branch_ = out_branch_ = start.branch;
   pending_.clear();
   cut_count_ = 0;
-  is_finished_ = is_held_ = is_out_held_ = has_failed_ = false;
+  is_finished_ = is_held_ = is_out_held_ = has_failed_ = needs_ahead_ = false;
+  asked_u_ = -1;
 }
 
 void PoleCorridor::add_cut(double u) noexcept {
@@ -112,14 +117,22 @@ SettledPath PoleCorridor::settled() const noexcept {
 }
 
 void PoleCorridor::scan() noexcept {
+  needs_ahead_ = false;
   if (probes_.is_empty()) return;
   while (!has_failed_ && cores_.find_next(settled())) {
     // Not before a span waits for it: searches are dear, and so no two come at once.
     if (may_emit() && !probes_.is_full()) return;
     PoleCore core;
+    const PoleCores::State before = cores_.state();
     const PoleCores::Answer answer = cores_.decide(core);
     if (answer == PoleCores::Answer::kNeedsSpans) return;
-    if (answer == PoleCores::Answer::kFound) settle(core);
+    if (answer != PoleCores::Answer::kFound) continue;
+    if (core.has_room && !foresee(core.around)) {
+      cores_.go_back(before);
+      needs_ahead_ = true;
+      return;
+    }
+    settle(core);
   }
 }
 
@@ -162,6 +175,7 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   PoleZone zone = keeps_zone ? pending_[pending_.begin_index()] : PoleZone{};
   pending_.drop_before(pending_.end_index());
   cut_count_ = 0;
+  asked_u_ = -1;
   cores_.begin_again();
   if (keeps_zone) {
     for (double& value : zone.free) value += by;

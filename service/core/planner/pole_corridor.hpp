@@ -7,6 +7,7 @@
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/joint_span.hpp"
 #include "service/core/planner/pole_cores.hpp"
+#include "service/core/planner/pole_foresight.hpp"
 #include "service/core/planner/pole_probes.hpp"
 #include "service/core/planner/pole_zone.hpp"
 
@@ -29,7 +30,8 @@ namespace meridian {
 /// pole_linger_test.cpp.
 class PoleCorridor {
  public:
-  explicit PoleCorridor(const MachineModel& model);
+  /// `foresight`: blocks behind the spans, nullptr: nothing is known of them.
+  explicit PoleCorridor(const MachineModel& model, PoleForesight* foresight = nullptr);
 
   /// Where a path starts, at rest.
   struct Start {
@@ -52,6 +54,8 @@ class PoleCorridor {
 
   /// Returns the next span, nullptr where more are needed; valid until the next call.
   [[nodiscard]] const JointSpan* next() noexcept;
+  /// Whether next() returned nullptr because the foresight waits for blocks: no span is needed.
+  [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
 
   /// Whether no way on was found from where the free joint rests. What was handed out stays valid,
   /// nothing comes behind it.
@@ -99,6 +103,10 @@ class PoleCorridor {
 
   /// Looks for cores as far as enough of what follows is there.
   void scan() noexcept;
+  /// Finds out how far ways behind the core carry; false: blocks are missing.
+  [[nodiscard]] bool foresee(PolePlace& around) noexcept;
+  [[nodiscard]] bool returns_to_pole(const PolePlace& around) const noexcept;
+  void ask(const PolePlace& around) noexcept;
   /// Takes a zone about `core`, or cuts the spans there, or leaves it to be decided once more
   /// without its excursions.
   void settle(PoleCore& core) noexcept;
@@ -132,6 +140,7 @@ class PoleCorridor {
   void emit() noexcept;
 
   const MachineModel& model_;
+  PoleForesight* foresight_;
   bool has_pole_ = false;  ///< one that matters
   bool is_exact_ = false;  ///< of the policies the one that never eases
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
@@ -150,6 +159,8 @@ class PoleCorridor {
   bool is_held_ = false;      ///< behind all zones the free joint rests, close to the pole
   bool is_out_held_ = false;  ///< the same where spans are handed out
   bool has_failed_ = false;
+  double asked_u_ = -1;  ///< from where the foresight was asked
+  bool needs_ahead_ = false;
   JointSpan out_;
 };
 

@@ -85,6 +85,7 @@ void PoleCorridor::hold_on(const PolePlace& around, Zones& zones) const noexcept
     held.of[0].is_held = true;
     if (!is_zone(held.of[0])) return;
     if (!is_zone(held.of[1])) continue;
+    if (zones.count > 0 && held.of[1].carries < zones.of[zones.count - 1].carries) continue;
     const double time_s = time_of(held);
     if (!(time_s < least_s - kLeastGain_s)) continue;
     least_s = time_s;

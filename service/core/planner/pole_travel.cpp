@@ -15,8 +15,8 @@ constexpr double kMostStep_mm = 0.5;
 
 }  // namespace
 
-bool keeps_travel(const PoleTask& task, const PolePlace& place, double begin,
-                  const JointVector& joints, int branch) noexcept {
+WayBehind follow_behind(const PoleTask& task, const PolePlace& place, double begin,
+                        const JointVector& joints, int branch) noexcept {
   const int free = free_joint(task.model);
   JointVector last = joints;
   double step = kMostStep_mm;
@@ -26,20 +26,20 @@ bool keeps_travel(const PoleTask& task, const PolePlace& place, double begin,
     const ToolPose pose = pose_on(span.c, std::clamp(next - span.u0, 0.0, span.length));
     const bool is_behind = next > place.core_end + place.reach;
     if (is_behind && pole_distance(task.model, pose.axis) < kOtherTolerances * task.tolerance_rad) {
-      return true;
+      return {true, false, last[free]};
     }
     const auto at = solve(task.model, task.tool_length_mm, pose, branch, last);
-    if (at.status == SolveStatus::kUnreachable) return false;
+    if (at.status == SolveStatus::kUnreachable) return {};
     if (std::abs(at.q[free] - last[free]) > kMostFollowed_rad && step > kLeastFollowed_mm) {
       step *= 0.5;
       continue;
     }
-    if (first_joint_outside_travel(task.model, at.q, kTravelMargin) >= 0) return false;
+    if (first_joint_outside_travel(task.model, at.q, kTravelMargin) >= 0) return {};
     last = at.q;
     u = next;
     step = std::min(2 * step, kMostStep_mm);
   }
-  return true;
+  return {true, true, last[free]};
 }
 
 }  // namespace meridian

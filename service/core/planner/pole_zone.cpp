@@ -25,6 +25,7 @@ constexpr double kMostBend = 1e3;          // rad: φ'' h² at an end, beyond it
 constexpr double kLeastGain_s = 1e-3;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLeastPart_mm = 1e-4;
+constexpr double kSameWinding_rad = 0.5;
 
 template <class S>
 Pose<S> pose_of(const BandSpan& span, double u) noexcept {
@@ -140,17 +141,51 @@ class Search {
   }
 
   PoleZone run() noexcept {
-    const bool is_exact_kept = !place_.is_dwelling && keeps_travel_exactly();
-    search(is_exact_kept);
-    const bool is_found = is_exact_kept || best_.end > best_.begin;
-    if (!is_found) {
-      looks_behind_ = false;
-      search(!place_.is_dwelling);
+    const WayBehind exact = place_.is_dwelling ? WayBehind{} : follow_exactly();
+    const Levels levels = find_levels();
+    for (std::size_t n = 0; n < levels.count; ++n) {
+      least_carried_ = levels.of[n];
+      const bool is_exact_kept = exact.keeps_travel && carried(place_.branch, exact);
+      search(is_exact_kept);
+      if (is_exact_kept || best_.end > best_.begin) return best_;
     }
+    looks_behind_ = false;  // an unwinding may help
+    search(!place_.is_dwelling);
     return best_;
   }
 
  private:
+  /// Blocks that ways have to carry, the most first.
+  struct Levels {
+    static constexpr std::size_t kMost = 4;
+    std::array<int, kMost> of{};
+    std::size_t count = 0;
+  };
+  [[nodiscard]] Levels find_levels() const noexcept {
+    Levels levels;
+    for (int below = std::numeric_limits<int>::max(); levels.count + 1 < Levels::kMost;) {
+      int next = 0;
+      for (const AheadWay& way : place_.ahead) {
+        if (way.carries < below) next = std::max(next, way.carries);
+      }
+      if (next == 0) break;
+      levels.of[levels.count++] = below = next;
+    }
+    levels.of[levels.count++] = 0;  // whatever there is
+    return levels;
+  }
+
+  /// Whether `way` on `branch` carries what is asked for now.
+  [[nodiscard]] bool carried(int branch, const WayBehind& way) const noexcept {
+    if (least_carried_ == 0 || !way.is_to_end) return true;
+    for (const AheadWay& ahead : place_.ahead) {
+      if (ahead.branch == branch && std::abs(ahead.free - way.free) < kSameWinding_rad) {
+        return ahead.carries >= least_carried_;
+      }
+    }
+    return false;
+  }
+
   /// All candidates, against the exact way where there is one.
   void search(bool has_exact) noexcept {
     const int branches = branch_count(task_.model);
@@ -170,21 +205,29 @@ class Search {
             (place_.is_start ? 0 : before_.to(before)) + (place_.is_end ? 0 : behind_.to(behind));
         for (int branch = 0; branch < branches; ++branch) {
           zone.branch_after = branch;
-          try_zone(zone, outside);
+          for (const int turns : turns_to_try()) try_zone(zone, turns, outside);
         }
       }
     }
   }
 
-  [[nodiscard]] bool keeps_travel_exactly() const noexcept {
-    const double begin = place_.is_start ? place_.core_begin : place_.core_begin - place_.reach;
-    return keeps_travel(task_, place_, begin, place_.joints, place_.branch);
+  /// Of the free joint behind the zone, beside the nearest winding: where that matters.
+  [[nodiscard]] std::span<const int> turns_to_try() const noexcept {
+    static constexpr std::array kTurns{0, 1, -1};
+    const bool matters = least_carried_ > 0 && !task_.model.joints[free_].is_endless;
+    return {kTurns.data(), matters ? kTurns.size() : 1};
   }
-  [[nodiscard]] bool keeps_travel_behind(const PoleZone& zone) const noexcept {
+
+  [[nodiscard]] WayBehind follow_exactly() const noexcept {
+    const double begin = place_.is_start ? place_.core_begin : place_.core_begin - place_.reach;
+    return follow_behind(task_, place_, begin, place_.joints, place_.branch);
+  }
+  [[nodiscard]] bool leads_on(const PoleZone& zone) const noexcept {
     if (!looks_behind_ || place_.is_end) return true;
     JointVector joints = place_.joints;
     joints[free_] = zone.free.back();
-    return keeps_travel(task_, place_, zone.end, joints, zone.branch_after);
+    const WayBehind way = follow_behind(task_, place_, zone.end, joints, zone.branch_after);
+    return way.keeps_travel && carried(zone.branch_after, way);
   }
 
   /// `u`, or the end of a span that is so close that the part between would be none.
@@ -195,19 +238,20 @@ class Search {
     return std::abs(end - u) < kLeastPart_mm ? end : u;
   }
 
-  void try_zone(PoleZone zone, double outside) noexcept {
-    if (!(outside < best_time_) || !fit(zone) || !is_inside(zone, kSamples / 8)) return;
+  void try_zone(PoleZone zone, int turns, double outside) noexcept {
+    if (!(outside < best_time_) || !fit(zone, turns) || !is_inside(zone, kSamples / 8)) return;
     const double time = outside + time_on(zone, best_time_ - outside);
     if (!(time < best_time_) || !is_inside(zone, kSamples) || !is_inside_at_kinks(zone) ||
-        !keeps_travel_behind(zone)) {
+        !leads_on(zone)) {
       return;
     }
     best_time_ = time;
     best_ = zone;
+    best_.carries = least_carried_;
   }
 
-  /// The quintic through both ends.
-  bool fit(PoleZone& zone) const noexcept {
+  /// The quintic through both ends, the free joint turned by whole `turns` beside the nearest way.
+  bool fit(PoleZone& zone, int turns) const noexcept {
     const double h = zone.end - zone.begin;
     JointVector reference = place_.joints;
     double from = reference[free_], a1 = 0, a2 = 0;  // a start: at rest where it is
@@ -228,7 +272,7 @@ class Search {
       const auto out = solve(task_.model, task_.tool_length_mm, pose_of<Jet<2>>(task_, zone.end),
                              zone.branch_after, reference);
       if (out.status != SolveStatus::kOk) return false;
-      to = value_of(out.q[free_]);
+      to = value_of(out.q[free_]) + turns * kTurn_rad;
       b1 = out.q[free_].derivative(1) * h;
       b2 = out.q[free_].derivative(2) * h * h;
     }
@@ -317,6 +361,7 @@ class Search {
   double best_time_ = 0;
   PoleZone best_;
   bool looks_behind_ = true;
+  int least_carried_ = 0;  ///< blocks that a way behind has to carry
 };
 
 }  // namespace

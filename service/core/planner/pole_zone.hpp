@@ -6,6 +6,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/band_span.hpp"
 #include "service/core/planner/joint_span.hpp"
+#include "service/core/planner/look_ahead.hpp"
 #include "service/core/planner/programmed_axis.hpp"
 
 namespace meridian {
@@ -18,6 +19,7 @@ struct PoleZone {
   int branch_before = 0, branch_after = 0;
   double deviation_rad = 0;  ///< largest angle to the programmed axis
   bool is_held = false;      ///< the free joint comes to rest at its end, still close to the pole
+  int carries = 0;           ///< blocks behind it at least, of what PolePlace::ahead tells
 };
 
 /// Finds spans by u.
@@ -37,6 +39,8 @@ struct PolePlace {
   int branch = 0;            ///< on the way in
   JointVector joints{};      ///< at the start, or near the begin of the reach for the winding
   double known_end = 0;      ///< how far behind the core joints are to keep travel as well
+  /// How far branches and windings at known_end carry; empty: all alike, or it is not known.
+  std::span<const AheadWay> ahead{};
 };
 
 /// What stays the same along a path.
@@ -49,7 +53,8 @@ struct PoleTask {
   bool is_exact = false;     ///< from the axis of the spans instead
 };
 
-/// Picks the zone with the least time over the whole reach; begin == end: the exact way has it.
+/// Picks the zone with the least time over the whole reach, of those that lead to a branch and
+/// winding that carries farthest; begin == end: the exact way has it.
 ///
 /// Candidates are quintics that meet the exact free joint with two derivatives at both ends, on
 /// either branch behind: 24 widths, 7 skews. A candidate whose tool axis leaves the tolerance about

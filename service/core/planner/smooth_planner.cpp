@@ -11,6 +11,7 @@
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
+#include "service/core/planner/block_window.hpp"
 #include "service/core/planner/fault_code.hpp"
 #include "service/core/planner/feed_raise.hpp"
 #include "service/core/planner/leg_planner.hpp"
@@ -36,11 +37,10 @@ struct SmoothPlanner::Workspace {
       : model(m),
         plain(m, std::move(t)),
         raise(m),
-        run(m, raise),
+        window(m, has_branches(m)),
+        run(m, raise, has_branches(m) ? &window : nullptr),
         plain_eases(kEases),
-        unwindings(kUnwindings) {
-    if (has_branches(m)) waiting.reserve(kLookAhead);
-  }
+        unwindings(kUnwindings) {}
 
   [[nodiscard]] BandTolerance tolerance() const noexcept {
     BandTolerance out;
@@ -78,8 +78,24 @@ struct SmoothPlanner::Workspace {
   void note(const Unwinding& unwinding) noexcept;
   /// The program begins with what waits; `is_late`: because no more came for too long.
   void end_look(bool is_late) noexcept {
-    if (is_looking && !waiting.empty()) raise.note_look(waiting.size(), is_late);
+    if (!is_looking) return;
+    looked_at = window.waiting();
+    if (looked_at > 0) raise.note_look({.looked_at = looked_at, .is_late = is_late});
     is_looking = false;
+  }
+  /// The run waits for blocks that it does not take: they tell which way past the pole carries.
+  [[nodiscard]] bool awaits_ahead() noexcept {
+    return is_running && run.needs_ahead() && window.is_missing();
+  }
+  /// Whether `block` is wanted for a look, and not planned at once.
+  [[nodiscard]] bool is_looking_at(const ClBlock& block) noexcept {
+    if (is_looking) return window.waiting() > 0 || is_motion(block.kind);
+    return awaits_ahead();
+  }
+  /// Whether the look goes on with what comes.
+  [[nodiscard]] bool wants_more() noexcept {
+    if (!is_looking) return awaits_ahead();
+    return window.waiting() != (replayed_look > 0 ? replayed_look : kLookAhead);
   }
   void refuse(const PlanResult& why) noexcept {
     is_refused = true;
@@ -89,6 +105,7 @@ struct SmoothPlanner::Workspace {
   const MachineModel& model;
   RestToRestPlanner plain;
   FeedRaise raise;
+  BlockWindow window;
   SmoothRun run;
   SmoothSettings settings;
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
@@ -102,9 +119,8 @@ struct SmoothPlanner::Workspace {
   PlanResult refusal;
   IndexRing<PoleEase> plain_eases;  ///< of blocks from rest to rest
   IndexRing<Unwinding> unwindings;
-  std::vector<ClBlock> waiting;     ///< the begin of the program, until it was looked at
-  std::size_t first_waiting = 0;    ///< that is not planned
-  bool is_looking = false;          ///< more of it may come
+  bool is_looking = false;          ///< more of the program's begin may come
+  std::size_t looked_at = 0;        ///< blocks of the begin
   std::uint64_t replayed_look = 0;  ///< blocks that a run before was begun with; 0: none was
 };
 
@@ -243,8 +259,8 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
   w.raise.begin();
   w.is_refused = w.is_for_plain = w.has_factor = w.is_ending = false;
-  w.waiting.clear();
-  w.first_waiting = 0;
+  w.window.begin({w.tolerance().tip_mm, w.pole_tolerance_rad()});
+  w.looked_at = 0;
   w.is_looking = has_branches(w.model);
   w.pose = w.plain.junction().pose;
   w.joints = at_rest;
@@ -253,45 +269,55 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
 PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.is_refused) return w.refusal;
-  const bool is_begun = !w.waiting.empty() || is_motion(block.kind);
-  if (w.is_looking && is_begun) {
+  if (block.kind == BlockKind::kEnd) w.window.end();
+  bool is_taken = false;
+  if (w.is_looking_at(block)) {
     // Without memory for the block: it is the last one, or the look is full.
-    const bool is_taken = block.kind != BlockKind::kEnd && w.waiting.size() < kLookAhead;
-    if (is_taken) w.waiting.push_back(block);
-    const bool is_full = w.waiting.size() == (w.replayed_look > 0 ? w.replayed_look : kLookAhead);
-    if (is_taken && !is_full) return {};
+    is_taken = block.kind != BlockKind::kEnd && w.window.waiting() < kLookAhead;
+    if (is_taken) w.window.push(block);
+    if (is_taken && w.wants_more()) return {};
     w.end_look(false);
-    const bool is_planned = plan_what_waits(writer);
-    if (w.is_refused) return w.refusal;
-    if (is_taken) return {};
-    if (!is_planned) return {PlanStatus::kNoRoom, {}, 0, {}};
-  } else if (!plan_what_waits(writer)) {
-    return w.is_refused ? w.refusal : PlanResult{PlanStatus::kNoRoom, {}, 0, {}};
   }
-  return plan_one(block, writer);
+  const bool is_planned = plan_what_waits(writer);
+  if (w.is_refused) return w.refusal;
+  if (is_taken) return {};
+  if (!is_planned) return {PlanStatus::kNoRoom, {}, 0, {}};
+  const PlanResult result = plan_one(block, writer);
+  if (result.status == PlanStatus::kOk) w.window.keep(block);
+  return result;
 }
 
 bool SmoothPlanner::plan_what_waits(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.waiting.empty()) return true;
+  if (w.window.waiting() == 0) return true;
+  const auto begin = w.window.first(w.looked_at);
   if (w.is_smooth()) {
-    w.plain.look_at(w.waiting, w.tolerance().tip_mm, w.pole_tolerance_rad());
+    w.plain.look_at(begin, w.tolerance().tip_mm, w.pole_tolerance_rad());
   } else {
-    w.plain.look_at(w.waiting);
+    w.plain.look_at(begin);
   }
-  while (w.first_waiting < w.waiting.size()) {
-    if (plan_one(w.waiting[w.first_waiting], writer).status != PlanStatus::kOk) return false;
-    ++w.first_waiting;
+  while (w.window.waiting() > 0) {
+    if (plan_one(w.window.front(), writer).status != PlanStatus::kOk) return false;
+    w.window.pop();
   }
   w.plain.look_at({});
-  w.waiting.clear();
-  w.first_waiting = 0;
   return true;
 }
 
-void SmoothPlanner::look_no_further() noexcept { workspace_->end_look(true); }
+void SmoothPlanner::look_no_further() noexcept {
+  Workspace& w = *workspace_;
+  w.end_look(true);
+  if (!w.awaits_ahead()) return;
+  if (const auto mark = w.window.look_no_further()) w.raise.note_look(*mark);
+}
+
+bool SmoothPlanner::is_looking() const noexcept {
+  Workspace& w = *workspace_;
+  return w.is_looking ? w.window.waiting() > 0 : w.awaits_ahead();
+}
 
 void SmoothPlanner::finish() noexcept {
+  workspace_->window.end();
   workspace_->end_look(false);
   workspace_->is_ending = true;
 }
@@ -307,7 +333,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     if (!cut) w.run.finish();
     const Status status = w.publish(writer);
     if (w.is_refused) return w.refusal;
-    if (status == Status::kNoRoom || (!cut && status != Status::kDone))
+    if (status == Status::kNoRoom || (!cut && status != Status::kDone) || w.awaits_ahead())
       return {PlanStatus::kNoRoom, {}, 0, {}};
     if (!cut) {
       w.end_run();
@@ -371,9 +397,10 @@ bool SmoothPlanner::take_feed_mark(FeedMark& out) noexcept { return workspace_->
 void SmoothPlanner::replay_feed(std::span<const FeedMark> marks) noexcept {
   Workspace& w = *workspace_;
   w.raise.replay(marks);
+  w.window.replay(marks);
   w.replayed_look = 0;
   for (const FeedMark& mark : marks) {
-    if (mark.looked_at > 0) w.replayed_look = std::min<std::uint64_t>(mark.looked_at, kLookAhead);
+    if (mark.looked_at > 0 && mark.sequence == 0) w.replayed_look = std::min<std::uint64_t>(mark.looked_at, kLookAhead);
   }
 }
 

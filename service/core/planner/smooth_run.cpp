@@ -32,10 +32,10 @@ double least_time(const BandSpan& span) noexcept {
 
 }  // namespace
 
-SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise)
+SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight* foresight)
     : model_(model),
       raise_(raise),
-      corridor_(model),
+      corridor_(model, foresight),
       feed_(model, feed_settings(model)),
       authority_(model),
       travel_(model),
@@ -167,7 +167,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
     } else if (band_.has_failed() || corridor_.has_failed()) {
       fail_ahead();
       end_ahead_of_fault();
-    } else if (is_band_finished_ && !is_feed_finished_) {
+    } else if (is_band_finished_ && !is_feed_finished_ && !corridor_.needs_ahead()) {
       is_feed_finished_ = true;
       note_ease(nullptr);
       (void)feed_.finish();
@@ -250,7 +250,7 @@ void SmoothRun::note_ease(const JointSpan* span) noexcept {
 const JointSpan* SmoothRun::next_span() noexcept {
   for (;;) {
     if (const JointSpan* span = corridor_.next()) return span;
-    if (is_band_finished_) return nullptr;
+    if (is_band_finished_ || corridor_.needs_ahead()) return nullptr;
     const BandSpan* band = band_.next();
     if (band != nullptr) note_block_ends();
     while (const auto mark = band_.next_axis()) {

@@ -47,8 +47,8 @@ class SmoothRun : public WindingTrial {
     kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
 
-  /// `raise` says what the feed is planned with.
-  SmoothRun(const MachineModel& model, FeedRaise& raise);
+  /// `raise` says what the feed is planned with, `foresight` how far ways behind the pole carry.
+  SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight* foresight = nullptr);
 
   /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
   void begin(const RunStart& start, const BandTolerance& tolerance,
@@ -63,6 +63,9 @@ class SmoothRun : public WindingTrial {
   [[nodiscard]] Status publish(MotionWriter& writer) noexcept;
   /// The same one window at a time.
   [[nodiscard]] Status publish_window(MotionWriter& writer) noexcept;
+
+  /// Behind kNeedsBlocks: the blocks are needed by the foresight, take() is not to be called.
+  [[nodiscard]] bool needs_ahead() const noexcept { return corridor_.needs_ahead(); }
 
   /// Known before kFailed says so: what lies ahead of it has to be published first.
   [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }

@@ -43,6 +43,9 @@ TEST(OperatorEventsWriter, KeepsWhatTheMotionFollowsFromWithCycleAndArgument) {
   EXPECT_TRUE(writer->write(event));
   event.code = EventCode::kPlanLooked;
   event.a = 300;
+  event.b = 0;
+  EXPECT_TRUE(writer->write(event));
+  event.b = 57;
   EXPECT_TRUE(writer->write(event));
   event.code = EventCode::kAccepted;
   event.b = static_cast<std::uint64_t>(Verb::kDryRun);  // nor of jog and home: no program is there
@@ -50,7 +53,8 @@ TEST(OperatorEventsWriter, KeepsWhatTheMotionFollowsFromWithCycleAndArgument) {
   EXPECT_EQ(test::read_text(file.path()),
             "cycle,verb,argument,block,span\n1203,start,0\n2000,feed_override,0.10000000000000001\n"
             "2100,periods_bridged,17\n2100,periods_lost,70\n2100,action_answered,1\n"
-            "2100,plan_begun,1\n2100,feed_planned,1.25,12,3\n2100,plan_looked,300\n");
+            "2100,plan_begun,1\n2100,feed_planned,1.25,12,3\n2100,plan_looked,300\n"
+            "2100,plan_looked,300,57\n");
 }
 
 TEST(OperatorEventsWriter, SitsBesideItsRecording) {

@@ -82,7 +82,9 @@ TEST(OperatorEvents, HoldHowManyBlocksTheFirstStartedProgramBeganWith) {
   ASSERT_EQ(events->feed_marks.size(), 2U);
   EXPECT_EQ(events->feed_marks[1].looked_at, 2048U);
   EXPECT_FALSE(read_operator_events("11,plan_looked,0\n", "e.csv").has_value());
-  EXPECT_FALSE(read_operator_events("11,plan_looked,3,4\n", "e.csv").has_value());
+  EXPECT_FALSE(read_operator_events("11,plan_looked,3,0\n", "e.csv").has_value());
+  EXPECT_FALSE(read_operator_events("11,plan_looked,3,x\n", "e.csv").has_value());
+  EXPECT_FALSE(read_operator_events("11,plan_looked,3,4,5\n", "e.csv").has_value());
 }
 
 TEST(OperatorEvents, HoldWhatThePlannerOfTheFirstStartedProgramTold) {
