@@ -17,6 +17,8 @@
 
 namespace meridian {
 
+class PoleForesight;
+
 enum class PlanStatus : std::uint8_t {
   kOk,      ///< published (nothing, where the block does not move)
   kNoRoom,  ///< nothing was published: call again with the same block when the port has room
@@ -65,6 +67,11 @@ class RestToRestPlanner {
   /// may be cut: what that can make of a joint's place is no reason to refuse.
   void look_at(std::span<const ClBlock> ahead, double tip_slack_mm = 0,
                double axis_slack_rad = 0) noexcept;
+
+  /// Who tells how far ways behind a block that ends off the pole carry; nullptr: look_at() does.
+  /// Where it waits for blocks, plan() gives kNoRoom and needs_ahead() is true.
+  void ask(PoleForesight* foresight) noexcept;
+  [[nodiscard]] bool needs_ahead() const noexcept;
 
   /// Where a block begins nearer to the pole than `rad` and the free joint would leave its travel
   /// on it, the joint is turned at rest to another branch or winding that carries it, with the axis

@@ -110,24 +110,44 @@ void Router::describe_way_in(const Way& way, const Job& job, const PlanCursor& f
   for (int n = begin.times; n < staged.time_count; ++n) way_in_.time += staged.times[n].duration;
 }
 
+void Router::take_looked(std::span<const AheadWay> found, Ways& ways) noexcept {
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    ways.way[n].carries = found[n].carries;
+    ways.way[n].cost += found[n].time_s;
+    if (found[n].end == AheadEnd::kLost) ways.way[n].lost = found[n].lost;
+  }
+  ways.sort();
+}
+
 void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                         Ways& ways) const noexcept {
   const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
     return one.sequence == block.sequence;
   });
   if (first == ahead_.end()) return;
-  std::array<AheadWay, kMaxWays> found;
-  const auto count = static_cast<std::size_t>(ways.count);
-  for (std::size_t n = 0; n < count; ++n) {
-    found[n] = {ways.way[n].branch, ways.way[n].joints[free_joint(model_)]};
+  AheadWays found = ahead_of(ways);
+  const std::span looked(found.data(), static_cast<std::size_t>(ways.count));
+  look_ahead(model_, tool_length_mm, start, slack_, {first, ahead_.end()}, looked);
+  take_looked(looked, ways);
+}
+
+void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                         Ways& ways) noexcept {
+  if (foresight_ == nullptr) return look_along(block, start, tool_length_mm, ways);
+  const AheadWays found = ahead_of(ways);
+  foresight_->ask({block.sequence + 1, false, start, tool_length_mm},
+                  {found.data(), static_cast<std::size_t>(ways.count)});
+  needs_ahead_ = !foresight_->look();
+  take_looked(foresight_->ways(), ways);
+}
+
+Router::AheadWays Router::ahead_of(const Ways& ways) const noexcept {
+  AheadWays found;
+  for (int n = 0; n < ways.count; ++n) {
+    found[static_cast<std::size_t>(n)] = {ways.way[n].branch,
+                                          ways.way[n].joints[free_joint(model_)]};
   }
-  look_ahead(model_, tool_length_mm, start, slack_, {first, ahead_.end()}, {found.data(), count});
-  for (std::size_t n = 0; n < count; ++n) {
-    ways.way[n].carries = found[n].carries;
-    ways.way[n].cost += found[n].time_s;
-    if (found[n].end == AheadEnd::kLost) ways.way[n].lost = found[n].lost;
-  }
-  ways.sort();
+  return found;
 }
 
 PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {

@@ -44,15 +44,15 @@ std::uint64_t BlockWindow::told_for(std::uint64_t sequence) const noexcept {
   return 0;
 }
 
-void BlockWindow::ask(std::uint64_t sequence, const ToolPose& start, double tool_length_mm,
-                      std::span<const AheadWay> ways) noexcept {
+void BlockWindow::ask(const Start& start, std::span<const AheadWay> ways) noexcept {
   is_asked_ = true;
   is_forced_ = false;
-  asked_ = sequence;
-  follows_ = find_first(sequence);
-  const std::uint64_t told = told_for(sequence);
+  is_on_its_way_ = start.is_on_its_way;
+  asked_ = start.sequence;
+  follows_ = find_first(asked_);
+  const std::uint64_t told = told_for(asked_);
   most_ = static_cast<int>(told > 0 ? std::min<std::uint64_t>(told, kWaiting) : kWaiting);
-  look_.begin(tool_length_mm, start, slack_, ways);
+  look_.begin(start.tool_length_mm, start.pose, slack_, ways);
 }
 
 bool BlockWindow::look() noexcept {
@@ -61,8 +61,7 @@ bool BlockWindow::look() noexcept {
   };
   for (; !is_answered() && follows_ < blocks_.end_index(); ++follows_) {
     ClBlock block = blocks_[follows_];
-    // The look starts somewhere on the way to the end of the first.
-    if (look_.followed() == 0) block.is_arc = false;
+    if (is_on_its_way_ && look_.followed() == 0) block.is_arc = false;  // what is left is short
     look_.follow(block);
   }
   return is_answered() || is_whole_;

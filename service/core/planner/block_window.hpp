@@ -52,8 +52,7 @@ class BlockWindow : public PoleForesight {
   /// `block` was planned without having to wait; none waits.
   void keep(const ClBlock& block) noexcept;
 
-  void ask(std::uint64_t sequence, const ToolPose& start, double tool_length_mm,
-           std::span<const AheadWay> ways) noexcept override;
+  void ask(const Start& start, std::span<const AheadWay> ways) noexcept override;
   [[nodiscard]] bool look() noexcept override;
   [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return look_.ways(); }
   /// Whether a question waits for blocks.
@@ -77,7 +76,8 @@ class BlockWindow : public PoleForesight {
   AheadLook look_;
   std::span<const FeedMark> marks_;
   bool is_asked_ = false;
-  std::uint64_t asked_ = 0;  ///< sequence
+  bool is_on_its_way_ = false;  ///< the ways start on the first block's way
+  std::uint64_t asked_ = 0;     ///< sequence
   std::int64_t follows_ = 0;
   int most_ = 0;
   bool is_forced_ = false;  ///< answered with what is there

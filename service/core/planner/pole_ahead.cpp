@@ -75,7 +75,7 @@ void PoleCorridor::ask(const PolePlace& around) noexcept {
     while (value - kTurn_rad >= limits.travel_min) value -= kTurn_rad;
     for (; value <= limits.travel_max; value += kTurn_rad) add(branch, at.q, value);
   }
-  foresight_->ask(span.sequence, pose, tool_length_mm_, {ways.data(), count});
+  foresight_->ask({span.sequence, true, pose, tool_length_mm_}, {ways.data(), count});
 }
 
 }  // namespace meridian

@@ -16,9 +16,14 @@ class PoleForesight {
  public:
   virtual ~PoleForesight() = default;
 
-  /// `ways` start at `start`, on the way to the end of block `sequence`.
-  virtual void ask(std::uint64_t sequence, const ToolPose& start, double tool_length_mm,
-                   std::span<const AheadWay> ways) noexcept = 0;
+  /// Where ways start: at the begin of block `sequence`, or on its way.
+  struct Start {
+    std::uint64_t sequence = 0;
+    bool is_on_its_way = false;
+    ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+    double tool_length_mm = 0;
+  };
+  virtual void ask(const Start& start, std::span<const AheadWay> ways) noexcept = 0;
   /// Whether the answer to what was asked last is known.
   [[nodiscard]] virtual bool look() noexcept = 0;
   [[nodiscard]] virtual std::span<const AheadWay> ways() const noexcept = 0;

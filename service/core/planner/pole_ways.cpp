@@ -82,7 +82,7 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
 PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
                              PlanCursor& cursor, Staging& out) noexcept {
   Ways ways = find_ways(end, cursor);
-  look_along(job.block, end, cursor.tool_length_mm, ways);
+  look_behind(job.block, end, cursor.tool_length_mm, ways);
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
   if (ways.count == 0) {
     const auto at = solve(model_, cursor.tool_length_mm, end, 0, cursor.joints);
@@ -107,7 +107,7 @@ PathFault Router::leave_otherwise(const PathPiece& path, const ToolPose& end, co
                                   const PathFault& fault, PlanCursor& cursor,
                                   Staging& out) noexcept {
   Ways ways = find_ways(end, cursor);
-  look_along(job.block, end, cursor.tool_length_mm, ways);
+  look_behind(job.block, end, cursor.tool_length_mm, ways);
   const ToolPose rest = pose_at(path, 0.0);
   for (int n = 0; n < ways.count; ++n) {
     const JointVector& joints = ways.way[n].joints;
@@ -148,7 +148,7 @@ bool Router::is_straight_passage(const PathPiece& path, double free_end,
 PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double share,
                             const Job& job, PlanCursor& cursor, Staging& out) noexcept {
   Ways ways = find_ways(end, cursor);
-  look_along(job.block, end, cursor.tool_length_mm, ways);
+  look_behind(job.block, end, cursor.tool_length_mm, ways);
   const int free = free_joint(model_);
   for (int n = 0; n < ways.count && ways.way[n].carries == ways.way[0].carries; ++n) {
     const double free_end = ways.way[n].joints[free];

@@ -60,6 +60,7 @@ struct RestToRestPlanner::Workspace {
   std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
   bool is_staged = false;
   bool is_refused = false;
+  bool needs_ahead = false;  ///< nothing is staged: the foresight waits for blocks
 
   void refuse(const BlockReject& reject) noexcept {
     is_refused = true;
@@ -125,13 +126,14 @@ void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
   staging.clear(cursor.path_index);
   next = cursor;
   result = {};
+  needs_ahead = false;
   if (!is_finite(block)) return refuse(block, RejectCode::kNotFinite, -1, 0);
   if (is_motion(block.kind)) {
     stage_motion(block);
   } else {
     stage_barrier(block);
   }
-  if (!is_refused) finish_staging();
+  if (!is_refused && !needs_ahead) finish_staging();
 }
 
 void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
@@ -169,6 +171,8 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
       count_window(before.times);
     }
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
+    needs_ahead = router.needs_ahead();
+    if (needs_ahead) return;
   }
   if (fault.kind == PathFault::Kind::kNone) return mark_end(block);
   RejectCode code = code_of(fault.kind);
@@ -224,10 +228,16 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.cursor.pose = forward(w.model, tool_length_mm, at_rest);
   w.staged_approach = w.approach = std::nullopt;
   w.is_staged = false;
-  w.is_refused = false;
+  w.is_refused = w.needs_ahead = false;
   w.router.set_feed_factor(1);
   w.router.set_free_cone(0);
 }
+
+void RestToRestPlanner::ask(PoleForesight* foresight) noexcept {
+  workspace_->router.ask(foresight);
+}
+
+bool RestToRestPlanner::needs_ahead() const noexcept { return workspace_->needs_ahead; }
 
 void RestToRestPlanner::set_free_cone(double rad) noexcept {
   workspace_->router.set_free_cone(rad);
@@ -241,6 +251,7 @@ PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) n
   Workspace& w = *workspace_;
   if (w.is_refused) return w.result;
   if (!w.is_staged) w.stage(block);
+  if (w.needs_ahead) return {PlanStatus::kNoRoom, {}, 0, {}};
   return w.is_refused ? w.result : publish(writer);
 }
 

@@ -160,6 +160,7 @@ PathFault Router::run_solved(PathPiece path, const Job& job, double share, PlanC
 
 PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
+  needs_ahead_ = false;
   const ToolPose end{to_vector(block.tip_mm), eased(to_vector(block.axis))};
   PathPiece path = block.is_arc ? make_arc(cursor.pose, end, block) : make_line(cursor.pose, end);
   if (path.axis_turn < kNoTurn_rad) {

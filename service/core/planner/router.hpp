@@ -12,6 +12,7 @@
 #include "meridian/planner/approach.hpp"
 #include "service/core/planner/leg_planner.hpp"
 #include "service/core/planner/look_ahead.hpp"
+#include "service/core/planner/pole_foresight.hpp"
 #include "service/core/planner/staging.hpp"
 
 namespace meridian {
@@ -46,6 +47,11 @@ class Router {
     ahead_ = ahead;
     slack_ = slack;
   }
+
+  /// Who tells of blocks behind those that are routed; nullptr: only look_at() does. What it does
+  /// not know yet leaves needs_ahead() true: route() is to be called again then.
+  void ask(PoleForesight* foresight) noexcept { foresight_ = foresight; }
+  [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
 
   /// Nearer to the pole than `rad` the free joint may be turned at rest, the axis inside that of
   /// where it was programmed.
@@ -104,9 +110,16 @@ class Router {
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
   [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
-  /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it.
+  /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it: of the
+  /// program's begin.
   void look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                   Ways& ways) const noexcept;
+  using AheadWays = std::array<AheadWay, kMaxWays>;
+  [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
+  static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;
+  /// The same by what the foresight tells, where there is one.
+  void look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                   Ways& ways) noexcept;
   [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;
   [[nodiscard]] PathFault run(const PathPiece& path, const Job& job, double share,
                               PlanCursor& cursor, Staging& out) noexcept;
@@ -157,6 +170,8 @@ class Router {
   const MachineModel& model_;
   LegPlanner legs_;
   std::span<const ClBlock> ahead_;
+  PoleForesight* foresight_ = nullptr;
+  bool needs_ahead_ = false;  ///< of the last route()
   AheadSlack slack_;
   std::optional<BlockReject> lost_;  ///< of the last approach
   Approach way_in_;                  ///< of the last approach

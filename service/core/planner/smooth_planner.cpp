@@ -40,7 +40,9 @@ struct SmoothPlanner::Workspace {
         window(m, has_branches(m)),
         run(m, raise, has_branches(m) ? &window : nullptr),
         plain_eases(kEases),
-        unwindings(kUnwindings) {}
+        unwindings(kUnwindings) {
+    if (has_branches(m)) plain.ask(&window);
+  }
 
   [[nodiscard]] BandTolerance tolerance() const noexcept {
     BandTolerance out;
@@ -83,9 +85,9 @@ struct SmoothPlanner::Workspace {
     if (looked_at > 0) raise.note_look({.looked_at = looked_at, .is_late = is_late});
     is_looking = false;
   }
-  /// The run waits for blocks that it does not take: they tell which way past the pole carries.
+  /// What is planned waits for blocks behind it: they tell which way past the pole carries.
   [[nodiscard]] bool awaits_ahead() noexcept {
-    return is_running && run.needs_ahead() && window.is_missing();
+    return (is_running ? run.needs_ahead() : plain.needs_ahead()) && window.is_missing();
   }
   /// Whether `block` is wanted for a look, and not planned at once.
   [[nodiscard]] bool is_looking_at(const ClBlock& block) noexcept {
@@ -259,7 +261,8 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
   w.raise.begin();
   w.is_refused = w.is_for_plain = w.has_factor = w.is_ending = false;
-  w.window.begin({w.tolerance().tip_mm, w.pole_tolerance_rad()});
+  w.window.begin(w.is_smooth() ? AheadSlack{w.tolerance().tip_mm, w.pole_tolerance_rad()}
+                               : AheadSlack{});
   w.looked_at = 0;
   w.is_looking = has_branches(w.model);
   w.pose = w.plain.junction().pose;
@@ -400,7 +403,8 @@ void SmoothPlanner::replay_feed(std::span<const FeedMark> marks) noexcept {
   w.window.replay(marks);
   w.replayed_look = 0;
   for (const FeedMark& mark : marks) {
-    if (mark.looked_at > 0 && mark.sequence == 0) w.replayed_look = std::min<std::uint64_t>(mark.looked_at, kLookAhead);
+    if (mark.looked_at > 0 && mark.sequence == 0)
+      w.replayed_look = std::min<std::uint64_t>(mark.looked_at, kLookAhead);
   }
 }
 

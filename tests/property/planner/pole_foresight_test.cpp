@@ -71,14 +71,19 @@ TEST(PoleForesight, TakesTheBranchOnWhichTheTiltHasTravelFarBehindThePole) {
   const struct {
     double offset_deg, side;
     int before;  // blocks: none, and more than the look at the program's begin goes over
-  } ways[] = {{0, -1, 0}, {0, 1, 0}, {0.05, -1, 0}, {0.05, 1, 2500}};
+    Transition transition;
+  } ways[] = {{0, -1, 0, Transition::kSmooth},
+              {0, 1, 0, Transition::kSmooth},
+              {0.05, -1, 0, Transition::kSmooth},
+              {0.05, 1, 2500, Transition::kSmooth},
+              {0, 1, 2500, Transition::kExactStop}};
   for (const auto& way : ways) {
     SCOPED_TRACE(testing::Message() << way.before << " blocks before, " << way.offset_deg
                                     << " deg beside it, tilt on side " << way.side);
     const auto blocks = gently_over_the_pole(way.offset_deg, way.before);
     const OneSided machine(blocks, way.side);
     const SmoothTrace trace =
-        plan_smooth(machine.model, blocks, machine.start, {Transition::kSmooth, 0, 0}, true);
+        plan_smooth(machine.model, blocks, machine.start, {way.transition, 0, 0}, true);
     expect_whole(machine.model, trace, machine.start);
     EXPECT_EQ(trace.tails, 0);
   }
