@@ -28,6 +28,7 @@ void append_place(std::string& out, const PlacedShare& at) {
 }  // namespace
 
 std::string to_text(const Certificate& c, const MachineModel& model) {
+  if (c.pieces == 0) return "no certificate: no motion was planned\n";
   std::string out;
   append(out,
          "certificate %s: %llu of %llu pieces certified, %llu refuted, %llu undecided; %llu joins, "

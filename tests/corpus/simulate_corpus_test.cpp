@@ -72,7 +72,8 @@ std::string name_of(const testing::TestParamInfo<CorpusRun>& file) {
 // Motion blocks: the GOTO counts of SOURCES.md; in nx_coremill one arc ends in a line of its own.
 INSTANTIATE_TEST_SUITE_P(
     Files, SimulatedCorpus,
-    testing::Values(CorpusRun{"ramsai_1-2_plan_5x_depincage_lateral.apt", "20,-30,50", 208, kMs},
+    testing::Values(CorpusRun{"ramsai_1-1_plan_3x.apt", "20,-30,50", 206, 4 * kMs},
+                    CorpusRun{"ramsai_1-2_plan_5x_depincage_lateral.apt", "20,-30,50", 208, kMs},
                     CorpusRun{"ramsai_1-3_plan_5x_depincage_double.apt", "20,-30,50", 708, kMs},
                     CorpusRun{"ramsai_2-1_calotte_3x.apt", "20,-30,50", 605, kMs},
                     CorpusRun{"nx_coremill.cls", "-150,-100,0", 3131, 4 * kMs},
@@ -85,6 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Files, SmoothCorpus,
     testing::Values(
+        CorpusRun{"ramsai_1-1_plan_3x.apt", "20,-30,50", 206, 4 * kMs},
         CorpusRun{"ramsai_1-2_plan_5x_depincage_lateral.apt", "20,-30,50", 208, 4 * kMs},
         CorpusRun{"ramsai_1-3_plan_5x_depincage_double.apt", "20,-30,50", 147, kMs, 300},
         CorpusRun{"ramsai_2-1_calotte_3x.apt", "20,-30,50", 25, 4 * kMs, 52},

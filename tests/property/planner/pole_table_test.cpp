@@ -121,6 +121,35 @@ TEST(PoleTable, DenseBlocksOverThePoleAreCutWhateverTheirStep) {
   }
 }
 
+/// What eases the axis leaves the tip where the smoothed path has it: to rounding.
+TEST(PoleTable, TheTipIsOnTheSmoothedPathEasedOrNot) {
+  constexpr double kRounding_mm = 1e-9;
+  for (const MachineModel& model :
+       {bench_machine(), lai_machine(), limited(trunnion_machine(), -720, 720),
+        limited(fork_machine(), -720, 720)}) {
+    int eased = 0, exact = 0;
+    double farthest_mm = 0;
+    for (const double distance_deg : {0.0, 0.05, 0.5}) {
+      const auto blocks = pass_at(distance_deg);
+      const JointVector start = joints_of(model, blocks[0]);
+      const SmoothTrace trace = plan_smooth(model, blocks, start);
+      ASSERT_EQ(trace.last.status, PlanStatus::kOk);
+      for (const PlanSample& one : sample(model, trace, 1e-3, 0.37, start)) {
+        const auto k = static_cast<std::size_t>(one.piece);
+        const PathPiece& path = trace.paths[k];
+        if (trace.times[k].kind != TimeKind::kMove || path.kind != PathKind::kSpline) continue;
+        const Vector3 tip = forward(model, path.tool_length_mm, one.q).tip;
+        farthest_mm = std::max(farthest_mm, (tip - pose_at(path, one.s).tip).norm());
+        ++(path.is_free_driven ? eased : exact);
+      }
+    }
+    EXPECT_LT(farthest_mm, kRounding_mm) << model.name;
+    EXPECT_GT(std::min(eased, exact), 50) << model.name;
+    std::printf("%s: tip at most %.1e mm off the smoothed path at %d setpoints, %d of them eased\n",
+                model.name.c_str(), farthest_mm, eased + exact, eased);
+  }
+}
+
 TEST(PoleTable, TheToleranceThatAProgramAsksForHoldsBesideThePole) {
   MachineModel model = bench_machine();
   model.tolerances.pole_axis_rad = units::rad_from_deg(0.12);

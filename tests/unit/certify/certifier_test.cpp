@@ -93,6 +93,7 @@ TEST(Certifier, FindsAPieceThatDoesNotJoinTheOneBefore) {
 TEST(Certifier, FindsAPlanThatDoesNotRestWhereItEnds) {
   const MachineModel model = test::lai_machine();
   Certifier certifier(model);
+  EXPECT_NE(to_text(certifier.certificate(), model).find("no certificate"), std::string::npos);
   const TwoLines lines(model);
   certifier.add(lines.times[0], lines.paths.data());
   EXPECT_TRUE(certifier.certificate().is_given());
