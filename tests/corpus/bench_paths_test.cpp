@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "service/bench/bench_paths.hpp"
+
 #include <cstdio>
 #include <cstdlib>
 
@@ -7,7 +9,7 @@
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"
 
-/// The benchmark paths of the shared folder on deploy/machines/bench.toml: time from the first to
+/// The benchmark paths on deploy/machines/bench.toml: time from the first to
 /// the last block, approach left out, every limit and tolerance judged.
 namespace meridian {
 namespace {
@@ -29,40 +31,19 @@ std::string name_of(const BenchRun& run) {
 
 void PrintTo(const BenchRun& run, std::ostream* out) { *out << name_of(run); }
 
-class BenchPaths : public testing::TestWithParam<BenchRun> {
- protected:
-  static void SetUpTestSuite() {
-    const auto maker = test::shared_folder() / "bench" / "paths.py";
-    if (!std::filesystem::exists(maker)) return;
-    folder_ =
-        std::filesystem::temp_directory_path() / ("meridian-bench-" + std::to_string(::getpid()));
-    const std::string command =
-        "/usr/bin/python3 '" + maker.string() + "' '" + folder_.string() + "' >/dev/null 2>&1";
-    if (std::system(command.c_str()) != 0) TearDownTestSuite();
-  }
-  static void TearDownTestSuite() {
-    std::error_code ignored;
-    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
-    folder_.clear();
-  }
-  static std::filesystem::path folder_;
-};
-
-std::filesystem::path BenchPaths::folder_;
+class BenchPaths : public testing::TestWithParam<BenchRun> {};
 
 TEST_P(BenchPaths, IsCutInTimeInsideEveryLimitAndTolerance) {
-  if (folder_.empty())
-    GTEST_SKIP() << "bench/paths.py of the shared folder or python3-numpy is not here";
-  const BenchRun& bench = GetParam();
+  const BenchRun& one = GetParam();
   MachineModel model =
       config::load_machine(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/bench.toml");
-  model.pole_policy = bench.policy;
-  model.override_ramp_s = bench.override_ramp_s;
-  const std::string text = test::read_text(folder_ / (bench.path + std::string(".apt")));
+  model.pole_policy = one.policy;
+  model.override_ramp_s = one.override_ramp_s;
+  const std::string text = bench::path_file(one.path, bench::kFeed_mm_per_s);
   certify::Certifier certifier(model);
   simulate::SimulateOptions options;
   constexpr double kCertified_s = 30;  // longer ones cost more than they add
-  if (bench.most_s < kCertified_s) options.certifier = &certifier;
+  if (one.most_s < kCertified_s) options.certifier = &certifier;
   const test::SimulatedRun run = test::run_simulation(text, model, options);
   EXPECT_TRUE(certifier.certificate().is_given()) << to_text(certifier.certificate(), model);
   ASSERT_EQ(run.report.outcome, simulate::Outcome::kDone) << run.report.reason;
@@ -71,14 +52,14 @@ TEST_P(BenchPaths, IsCutInTimeInsideEveryLimitAndTolerance) {
                                                           model, {}, recording.path().string());
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
   std::printf("%-26s %8.3f s; eased %llu times, at most %.4f deg; computed in %.2f s\n",
-              name_of(bench).c_str(), run.report.program_s,
+              name_of(one).c_str(), run.report.program_s,
               static_cast<unsigned long long>(run.report.ease_count),
               units::deg_from_rad(run.report.largest_ease_rad), run.report.computing_s);
-  EXPECT_LE(run.report.program_s, bench.most_s) << "slower than it was";
-  if (bench.optimum_s == 0) return;
+  EXPECT_LE(run.report.program_s, one.most_s) << "slower than it was";
+  if (one.optimum_s == 0) return;
   const probe::Budget budget = probe::load_budget("traversal_time");
-  std::printf("  %s\n", to_text(budget, bench.optimum_s).c_str());
-  EXPECT_TRUE(budget.is_kept(run.report.program_s, bench.optimum_s));
+  std::printf("  %s\n", to_text(budget, one.optimum_s).c_str());
+  EXPECT_TRUE(budget.is_kept(run.report.program_s, one.optimum_s));
 }
 
 constexpr auto kEase = PolePolicy::kEase, kExact = PolePolicy::kExact;
@@ -96,6 +77,36 @@ INSTANTIATE_TEST_SUITE_P(Files, BenchPaths,
                                          BenchRun{"near_pole_coarse", kExact, 1, 0, 4.15},
                                          BenchRun{"near_pole_rim", kExact, 1, 0, 4.45}),
                          [](const auto& run) { return name_of(run.param); });
+
+/// The generator in bench/ of the shared folder shares no code with ours.
+TEST(BenchPathsOfTheFolder, AreOursButForRounding) {
+  const auto maker = test::shared_folder() / "bench" / "paths.py";
+  if (!std::filesystem::exists(maker)) GTEST_SKIP() << maker << " is not here";
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("meridian-bench-" + std::to_string(::getpid()));
+  const std::string command =
+      "/usr/bin/python3 '" + maker.string() + "' '" + folder.string() + "' >/dev/null 2>&1";
+  if (std::system(command.c_str()) != 0) GTEST_SKIP() << "python3-numpy is not installed";
+  for (const std::string& name : bench::path_names()) {
+    const std::string ours = bench::path_file(name, bench::kFeed_mm_per_s);
+    const std::string theirs = test::read_text(folder / (name + ".apt"));
+    cl::ClReader mine(std::string_view(ours), name), other(std::string_view(theirs), name);
+    std::size_t count = 0;
+    for (auto a = mine.next(), b = other.next(); a && *a; a = mine.next(), b = other.next()) {
+      ASSERT_TRUE(b && *b) << name << " ends at " << count;
+      EXPECT_EQ((*a)->kind, (*b)->kind);
+      const Vector3 tip = to_vector((*a)->tip_mm) - to_vector((*b)->tip_mm);
+      const Vector3 axis = to_vector((*a)->axis) - to_vector((*b)->axis);
+      EXPECT_LE(tip.cwiseAbs().maxCoeff(), 1.01e-6) << name << " " << count;
+      EXPECT_LE(axis.cwiseAbs().maxCoeff(), 2e-9) << name << " " << count;
+      EXPECT_EQ((*a)->feed, (*b)->feed);
+      ++count;
+    }
+    EXPECT_GT(count, 6U);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+}
 
 }  // namespace
 }  // namespace meridian
