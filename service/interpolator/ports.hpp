@@ -17,6 +17,7 @@
 #include "meridian/rt/homing.hpp"
 #include "meridian/rt/latest_value.hpp"
 #include "meridian/rt/spsc_ring.hpp"
+#include "service/interpolator/command_port.hpp"
 #include "service/interpolator/queue_mark.hpp"
 #include "service/interpolator/sent_times.hpp"
 #include "service/interpolator/wake.hpp"
@@ -106,7 +107,7 @@ struct Ports {
   SpscRing<Unwinding, 256> unwindings;                  ///< planner to telemetry
   SpscRing<FeedMark, 256> feed_marks;                   ///< planner to telemetry
 
-  SpscRing<Command, 64> commands;
+  CommandPort commands;
   LatestValue<Feedback> feedback;
   SpscRing<record::DriveReport, 8192> drive_reports;  ///< receive thread to telemetry: all of them
   LatestValue<ActionAnswer> action_answer;

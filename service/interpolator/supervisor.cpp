@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/supervisor.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
-#include "service/interpolator/drive_words.hpp"
 #include "service/interpolator/monotonic.hpp"
-#include "service/telemetry/words.hpp"
 
 namespace meridian::interpolator {
 namespace {
 
 /// Rings of the cycle cannot wake a DDS waitset: look at them so often.
 constexpr auto kLookAtRings = std::chrono::milliseconds(2);
-constexpr std::int64_t kResetDrives_ns = 300'000'000;
-const std::string kDry = "dry run: ", kStarted = "start accepted; ";
 
 }  // namespace
 
@@ -78,11 +73,6 @@ void Supervisor::switch_off() noexcept {
   waitset_.wake();
 }
 
-void Supervisor::take_commands() {
-  dds::CommandRequest request;
-  while (commands_.take(request)) take_command(request);
-}
-
 void Supervisor::take_jogs() {
   if (view_.record.state != State::kJogging) jog_intake_.end();
   dds::Jog jog;
@@ -91,79 +81,6 @@ void Supervisor::take_jogs() {
                                         ports_.spindle_tool_mm.load(std::memory_order_relaxed));
     if (order) ports_.jog.store(*order);
   }
-}
-
-void Supervisor::take_command(const dds::CommandRequest& request) {
-  for (const Answered& answered : answered_) {
-    if (answered.operator_id == request.operator_id && answered.request == request.request &&
-        request.operator_id != 0) {
-      (void)replies_.write(answered.reply);
-      return;
-    }
-  }
-  for (const Pending& pending : pending_) {
-    if (pending.key != 0 && pending.request.operator_id == request.operator_id &&
-        pending.request.request == request.request) {
-      return;
-    }
-  }
-  if (static_cast<int>(request.verb) >= kVerbCount) {
-    reply(request, false, Refusal::kOutOfRange, "this service does not know that verb");
-    return;
-  }
-  // Whoever saw a status that is younger than the last look at the cycle is not late.
-  refresh_view();
-  const std::uint64_t rest = stream::rest_of(view_.record.state, view_.record.sequence);
-  Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns(), rest);
-  // Whoever enables has not seen the dry run begin or end that is on its way to the cycle.
-  if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) refusal = Refusal::kStale;
-  if (is_switching_off_ || refusal != Refusal::kNone) {
-    const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
-    reply(request, false, why,
-          is_switching_off_ ? "the service is shutting down"
-                            : telemetry::describe(request.verb, why, view_.record.state));
-    return;
-  }
-  const State state = view_.record.state;
-  const bool may_reset_drives =
-      !view_.is_dry_run && (state == State::kFault || state == State::kOff);
-  if (request.verb == Verb::kReset && may_reset_drives && delayed_until_ns_ == 0) {
-    drives_.reset_faults(monotonic_ns());
-    delayed_reset_ = request;
-    delayed_until_ns_ = monotonic_ns() + kResetDrives_ns;
-    return;
-  }
-  send(request, request.verb, request.argument);
-}
-
-bool Supervisor::is_pending(Verb verb) const noexcept {
-  return std::any_of(pending_.begin(), pending_.end(), [verb](const Pending& pending) {
-    return pending.key != 0 && pending.request.verb == verb;
-  });
-}
-
-void Supervisor::send_delayed_reset() {
-  if (delayed_until_ns_ == 0) return;
-  const DriveWords& words = ports_.drive_words.latest();
-  bool has_fault = false;
-  for (int joint = 0; joint < model_.joint_count; ++joint) {
-    const DriveState state = drive_state(words.statusword[static_cast<std::size_t>(joint)]);
-    has_fault = has_fault || state == DriveState::kFault || state == DriveState::kFaultReaction;
-  }
-  if (has_fault && monotonic_ns() < delayed_until_ns_) return;
-  delayed_until_ns_ = 0;
-  send(delayed_reset_, Verb::kReset, 0);
-}
-
-void Supervisor::send(const dds::CommandRequest& request, Verb verb, double argument) {
-  const auto place = std::find_if(pending_.begin(), pending_.end(),
-                                  [](const Pending& pending) { return pending.key == 0; });
-  if (place == pending_.end() ||
-      !ports_.commands.try_push({.request = next_key_, .verb = verb, .argument = argument})) {
-    reply(request, false, Refusal::kWrongState, "too many commands at once; say it again");
-    return;
-  }
-  *place = {next_key_++, request};
 }
 
 void Supervisor::take_events() {
@@ -202,54 +119,6 @@ void Supervisor::take_events() {
     }
   }
   if (has_session_event && tell_intake_) tell_intake_(has_action_peer_);
-}
-
-void Supervisor::answer(const Event& event) {
-  const auto pending = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& place) {
-    return place.key != 0 && place.key == event.a;
-  });
-  if (pending == pending_.end()) return;
-  refresh_view();
-  const bool is_accepted = event.code == EventCode::kAccepted;
-  const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
-  const Verb verb = pending->request.verb;
-  if (is_accepted && verb == Verb::kJog) {
-    take_jogs();  // what came before is of the hand before
-    jog_intake_.begin(pending->request.operator_id, pending->key);
-  }
-  std::string text =
-      is_accepted ? what_happens(verb) : telemetry::describe(verb, refusal, view_.record.state);
-  if (refusal == Refusal::kDriveContested) {
-    text += ": " + telemetry::drive_names(ports_.drive_words.latest().contested_mask, model_);
-  }
-  reply(pending->request, is_accepted, refusal, text);
-  pending->key = 0;
-}
-
-std::string Supervisor::what_happens(Verb verb) {
-  const bool is_declared = verb == Verb::kStart && ports_.approach.refresh();
-  const Approach& approach = ports_.approach.latest();
-  if (!is_declared || !approach.is_planned || approach.epoch != view_.epoch) {
-    return telemetry::describe(verb, view_.record.state);
-  }
-  const std::size_t taken = kStarted.size() + (view_.is_dry_run ? kDry.size() : 0);
-  return kStarted + telemetry::describe(approach, model_, dds::kMostText - taken);
-}
-
-void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
-                       const std::string& text) {
-  if (request.operator_id == 0) return;  // our own, while shutting down
-  const dds::Reply reply{.request = request.request,
-                         .operator_id = request.operator_id,
-                         .service_id = service_id_,
-                         .verb = request.verb,
-                         .is_accepted = is_accepted,
-                         .refusal = refusal,
-                         .state = view_.record.state,
-                         .epoch = view_.epoch,
-                         .text = is_accepted && view_.is_dry_run ? kDry + text : text};
-  (void)replies_.write(reply);
-  answered_[answered_at_++ % answered_.size()] = {request.operator_id, request.request, reply};
 }
 
 void Supervisor::publish_action(const Event& event) {
@@ -324,9 +193,9 @@ void Supervisor::work_on_switching_off() {
   asked_off_ns_ = now_ns;
   for (const Verb verb : {Verb::kDisable, Verb::kAbort}) {
     if (effect_of(state, verb).effect != Effect::kGo) continue;
-    dds::CommandRequest own;
-    own.verb = verb;
-    send(own, verb, 0);
+    Pending own{next_key_++, {}};
+    own.request.verb = verb;
+    send(own);
     return;
   }
 }

@@ -44,7 +44,7 @@ class Supervisor {
 
  private:
   struct Pending {
-    std::uint64_t key = 0;  ///< Command::request, 0: place is free
+    std::uint64_t key = 0;  ///< Command::request, in the order in which they came; 0: place is free
     dds::CommandRequest request;
   };
   struct Answered {
@@ -54,11 +54,14 @@ class Supervisor {
 
   void take_commands();
   void take_jogs();
-  void take_command(const dds::CommandRequest& request);
-  void send(const dds::CommandRequest& request, Verb verb, double argument);
+  /// Takes what operators said meanwhile, stops first; true if there may be more.
+  bool take_burst();
+  void take_command(const Pending& command);
+  void send(const Pending& command);
   [[nodiscard]] bool is_pending(Verb verb) const noexcept;
   void take_events();
   void answer(const Event& event);
+  void answer(const Event& event, const Pending& pending);
   /// What an accepted verb leads to; a program's start to its approach.
   [[nodiscard]] std::string what_happens(Verb verb);
   void reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
@@ -93,7 +96,8 @@ class Supervisor {
   CycleView view_;
   State told_state_ = State::kOff;  ///< by the events so far
   std::uint64_t next_key_ = 1;
-  std::array<Pending, 64> pending_{};
+  std::array<Pending, 128> burst_{};  ///< came together, none of them stops
+  std::array<Pending, 96> pending_{};
   std::array<Answered, 32> answered_{};  ///< for requests that come twice
   std::size_t answered_at_ = 0;
   PlannedAction action_{};  ///< newest that was due
@@ -104,7 +108,7 @@ class Supervisor {
   double tool_before_mm_ = 0;  ///< in the spindle when the dry run began
   std::atomic<bool> is_switching_off_{false}, is_off_{false};
   std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
-  dds::CommandRequest delayed_reset_;  ///< waits until drives left their fault
+  Pending delayed_reset_;              ///< waits until drives left their fault
   std::int64_t delayed_until_ns_ = 0;  ///< 0: none waits
 };
 

@@ -329,6 +329,9 @@ std::string describe(Verb verb, Refusal refusal, State state) {
           "it was said for a dry run alone, and this is none: drives would move; disable, then "
           "dry-run on";
       break;
+    case Refusal::kOvertaken:
+      why = "a hold, an abort or disable was said behind it and came first; say it again";
+      break;
   }
   return fmt::format("{} refused: {}", name_of(verb), why);
 }

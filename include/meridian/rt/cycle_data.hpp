@@ -89,8 +89,9 @@ struct JogOrder {
   std::uint64_t hand = 0;  ///< Command::request of the `jog` that it belongs to
 };
 
-/// An operator's word on its way to the cycle. `request` comes back in the reply event. What
-/// `argument` says hangs on the verb; of `enable` and `start` 1: for a dry run alone.
+/// An operator's word on its way to the cycle. `request` grows in the order in which words came,
+/// and comes back in the reply event. What `argument` says hangs on the verb; of `enable` and
+/// `start` 1: for a dry run alone.
 struct Command {
   std::uint64_t request = 0;
   Verb verb = Verb::kHold;
@@ -155,6 +156,7 @@ enum class Refusal : std::uint8_t {
   kDryRun,          ///< in a dry run nothing is homed
   kDriveContested,  ///< two sources report the same drive
   kNotDryRun,       ///< said for a dry run alone, and the machine is in none
+  kOvertaken,       ///< a stop was said behind it and came first
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

@@ -179,6 +179,7 @@ struct CycleState {
   PathState on_path{};  ///< s in the path piece in force; ṡ, s̈ as they are, override included
   bool stops_at_optional = false;  ///< optional stops stop
   bool is_dry_run = false;         ///< drives stay off; see rt/dry_run.hpp
+  std::uint64_t stop_said = 0;     ///< Command::request of the newest stop that came
   SingleBlock single_block;
   StopInProgress stop;
   Jogging jogging;

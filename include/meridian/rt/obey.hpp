@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -187,13 +188,22 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
   enter(c, next);
 }
 
+/// A stop comes ahead of words that were said before it, and what would have led to motion of these
+/// is void, whether or not there was anything to stop.
+[[nodiscard]] inline Refusal condition_of_turn(Cycle& c, const Command& command) noexcept {
+  if (is_stop(command.verb)) c.state.stop_said = std::max(c.state.stop_said, command.request);
+  const bool is_overtaken = leads_to_motion(command.verb) && command.request < c.state.stop_said;
+  return is_overtaken ? Refusal::kOvertaken : Refusal::kNone;
+}
+
 /// Does what the command asks for, or refuses it; either is told with the request's number.
 inline void obey(Cycle& c) noexcept {
   if (!c.in.has_command) return;
   const Command& command = c.in.command;
   const VerbEffect effect = effect_of(c.state.state, command.verb);
   const bool is_asked = effect.effect == Effect::kGo || effect.effect == Effect::kSet;
-  Refusal refusal = condition_of_kind(c, command);
+  Refusal refusal = condition_of_turn(c, command);
+  if (refusal == Refusal::kNone) refusal = condition_of_kind(c, command);
   if (refusal == Refusal::kNone) refusal = is_asked ? take_up(c, command) : effect.refusal;
   if (refusal != Refusal::kNone) {
     tell(c, EventCode::kRefused, command.request, static_cast<std::uint64_t>(command.verb),

@@ -92,17 +92,28 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 14> kNames{
+  constexpr std::array<const char*, 15> kNames{
       "none",          "wrong state", "not referenced",  "no program",      "no feedback",
       "out of range",  "stale",       "fault present",   "program present", "slow ramp",
-      "drive enabled", "dry run",     "drive contested", "not a dry run"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kNotDryRun) + 1);
+      "drive enabled", "dry run",     "drive contested", "not a dry run",   "overtaken"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kOvertaken) + 1);
   return kNames[static_cast<std::size_t>(refusal)];
 }
 
 /// Whether `verb` may be said for a dry run alone, by an argument of 1: it leads to motion.
 [[nodiscard]] constexpr bool may_be_dry(Verb verb) noexcept {
   return verb == Verb::kEnable || verb == Verb::kStart;
+}
+
+/// Whether `verb` only ever stops: it goes past what was said before it.
+[[nodiscard]] constexpr bool is_stop(Verb verb) noexcept {
+  return verb == Verb::kHold || verb == Verb::kAbort || verb == Verb::kDisable;
+}
+
+/// Whether `verb` leads to motion: said before a stop and not obeyed yet, it is void.
+[[nodiscard]] constexpr bool leads_to_motion(Verb verb) noexcept {
+  return verb == Verb::kEnable || verb == Verb::kStart || verb == Verb::kResume ||
+         verb == Verb::kJog || verb == Verb::kHome;
 }
 
 /// True where drives follow setpoints that are not just their own feedback.

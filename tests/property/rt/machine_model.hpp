@@ -20,6 +20,8 @@ namespace meridian::test {
 /// The table, or one that is wrong on purpose.
 using Table = std::function<VerbEffect(State, Verb)>;
 
+inline constexpr int kNoWord = -1;
+
 struct Machine {
   State state = State::kOff;
   bool has_fault = false, is_emergency = false, has_feedback = true;  ///< what the drives report
@@ -33,6 +35,8 @@ struct Machine {
   bool is_clear = true;         ///< ghost: no fault since the last reset
   bool is_dry_run = false;      ///< drives stay off
   bool is_place_known = false;  ///< ghost: where the joints are was taken from the drives
+  int word = kNoWord;      ///< verb that waits for its turn behind others; of these one at a time
+  bool is_passed = false;  ///< a stop was said behind it, and came first
   std::string wrong{};
 
   bool operator==(const Machine&) const = default;
@@ -47,7 +51,8 @@ struct Machine {
         m.has_session, m.is_granted, m.is_clear, m.is_dry_run, m.is_place_known}) {
     key += b ? '1' : '0';
   }
-  return key + std::to_string(m.waiting) + m.wrong;
+  return key + std::to_string(m.waiting) + (m.is_passed ? 'p' : 'w') + std::to_string(m.word) +
+         m.wrong;
 }
 
 /// What must hold in every state.
@@ -65,13 +70,21 @@ struct Machine {
 class OperatedMachine {
  public:
   using Steps = std::vector<Step<Machine>>;
-  explicit OperatedMachine(Table table) : table_(std::move(table)) {}
+  /// `voids_words`: what a stop goes past does nothing any more.
+  explicit OperatedMachine(Table table, bool voids_words = true)
+      : table_(std::move(table)), voids_words_(voids_words) {}
 
   [[nodiscard]] Steps steps(const Machine& m) const {
     Steps all;
     world(m, all);
     periods(m, "a period", all);
-    for (int v = 0; v < kVerbCount; ++v) say(m, static_cast<Verb>(v), all);
+    for (int v = 0; v < kVerbCount; ++v) {
+      const auto verb = static_cast<Verb>(v);
+      // What waits already is ahead of all but stops.
+      if (m.word == kNoWord || is_stop(verb)) say(m, verb, all);
+      if (m.word == kNoWord && leads_to_motion(verb)) wait(m, verb, all);
+    }
+    if (m.word != kNoWord) take_word(m, all);
     return all;
   }
 
@@ -177,10 +190,27 @@ class OperatedMachine {
     if (m.may_go_on)
       add("time is up, or the session is another", [](Machine& n) { n.may_go_on = false; });
   }
+  static void wait(const Machine& m, Verb verb, Steps& all) {
+    Machine next = m;
+    next.word = static_cast<int>(verb);
+    next.is_passed = false;
+    all.push_back({std::string(name_of(verb)) + " waits", next});
+  }
+  void take_word(const Machine& m, Steps& all) const {
+    Machine next = m;
+    const auto verb = static_cast<Verb>(m.word);
+    supervise(next);
+    next.word = kNoWord;
+    next.is_passed = false;
+    if (!m.is_passed || !voids_words_) obey(next, verb);
+    if (m.is_passed && next.is_granted && !m.is_granted) next.wrong = "motion from before a stop";
+    periods(next, std::string(name_of(verb)) + " has its turn", all);
+  }
   void say(const Machine& m, Verb verb, Steps& all) const {
     Machine next = m;
     supervise(next);
     obey(next, verb);
+    next.is_passed = next.word != kNoWord && (next.is_passed || is_stop(verb));
     periods(next, name_of(verb), all);
   }
   /// Everything that the cycle may do in one period, in that state.
@@ -289,6 +319,7 @@ class OperatedMachine {
   }
 
   Table table_;
+  bool voids_words_;
 };
 
 }  // namespace meridian::test

@@ -21,8 +21,8 @@ namespace {
   };
 }
 
-[[nodiscard]] Exploration check(const Table& table) {
-  const OperatedMachine machine(table);
+[[nodiscard]] Exploration check(const Table& table, bool voids_words = true) {
+  const OperatedMachine machine(table, voids_words);
   const Exploration found = explore<Machine>(
       Machine{}, [&](const Machine& m) { return machine.steps(m); }, key_of,
       [&](const Machine& m) {
@@ -64,6 +64,10 @@ TEST(MachineStates, CatchATableThatEndsADryRunWhileTheMachineIsOn) {
   EXPECT_EQ(check(loose).complaint, "drives are led from a place that they did not report");
 }
 
+TEST(MachineStates, CatchAStartThatOutlivesTheStopBehindIt) {
+  EXPECT_EQ(check(effect_of, false).complaint, "motion from before a stop");
+}
+
 TEST(MachineStates, CatchATableThatResetDoesNotLeave) {
   const Table stuck = [](State s, Verb v) {
     return s == State::kFault ? state_table::kNo : effect_of(s, v);
@@ -95,6 +99,7 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
   std::mt19937_64 random(kSeed);
   constexpr int kHands = 7, kVerbs = kHands + 2;  // enable to reset, then jog and home
   std::uint64_t orders = 0;
+  int passed = 0;
   const auto draw = [&random](int n) { return std::uniform_int_distribution(0, n - 1)(random); };
   for (int walk = 0; walk < 60; ++walk) {
     Program program(State::kOff);
@@ -104,10 +109,15 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
     std::uint16_t epoch = 0;
     State before = State::kOff;
     bool is_granted = false, is_clear = true, is_cut_off = false, was_dry_run = false;
+    std::optional<Command> waiting;  // a word that is said and waits for its turn
+    bool is_passed = false;
     const auto look = [&](const char* step) {
       for (std::size_t i = 0; i < world.out.event_count; ++i) {
         const Event& event = world.out.events[i];
         const auto verb = static_cast<Verb>(event.b);
+        const bool is_answer =
+            event.code == EventCode::kAccepted || event.code == EventCode::kRefused;
+        is_passed = is_passed || (is_answer && waiting && is_stop(verb));
         if (event.code == EventCode::kAccepted) {
           is_granted =
               is_granted || verb == Verb::kStart || verb == Verb::kResume || verb == Verb::kJog;
@@ -166,6 +176,21 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
       } else if (what == 18) {
         world.command(Verb::kDryRun, world.state.is_dry_run || draw(2) == 0 ? 0 : 1);
         ASSERT_NO_FATAL_FAILURE(look("dry_run"));
+      } else if (what == 19 && !waiting) {
+        const auto verb = static_cast<Verb>(draw(kVerbCount));
+        if (leads_to_motion(verb)) waiting = Command{++world.request, verb, 0};
+      } else if (what == 19) {
+        const bool was_passed = is_passed;
+        world.in.has_command = true;
+        world.in.command = *std::exchange(waiting, std::nullopt);
+        is_passed = false;
+        world.run();
+        ASSERT_NO_FATAL_FAILURE(look(name_of(world.in.command.verb)));
+        const Event refused = world.last(EventCode::kRefused);
+        const bool is_void = refused.a == world.in.command.request &&
+                             static_cast<Refusal>(refused.x) == Refusal::kOvertaken;
+        ASSERT_EQ(was_passed, is_void) << name_of(world.in.command.verb);
+        passed += was_passed;
       } else if (what == 17 && draw(6) == 0) {
         world.run(20);
         ASSERT_NO_FATAL_FAILURE(look("lost periods"));
@@ -185,6 +210,7 @@ TEST(MachineStates, AreThoseOfTheRealCycle) {
   std::printf("seed %lu: %zu of the model's %zu edges between states seen in the real cycle\n",
               static_cast<unsigned long>(kSeed), seen.size(), edges.size());
   EXPECT_GT(seen.size(), 40U) << "the walks must get about";
+  EXPECT_GT(passed, 10) << "words that a stop went past";
 }
 
 }  // namespace

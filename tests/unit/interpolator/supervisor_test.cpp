@@ -5,11 +5,15 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "meridian/rt/state_table.hpp"
 #include "service/interpolator/drive_words.hpp"
 #include "service/interpolator/monotonic.hpp"
 #include "service/telemetry/words.hpp"
@@ -41,9 +45,13 @@ class SupervisorTest : public testing::Test {
     status.status_sequence = 5;
     clock_.published(status, monotonic_ns());
   }
-  ~SupervisorTest() override {
+  void SetUp() override { run(); }
+  void TearDown() override {
     ports_->is_stopping = true;
     thread_.join();
+  }
+  void run() {
+    thread_ = std::thread([this] { supervisor_.run(); });
   }
   void show(State state, bool is_dry_run) {
     CycleView view;
@@ -98,7 +106,7 @@ class SupervisorTest : public testing::Test {
   Supervisor supervisor_{participant_, model_, tools_, service_, 1, clock_, *ports_};
   std::uint64_t shown_ = 0, request_ = 0;
   std::uint16_t controlword_ = 0;
-  std::thread thread_{[this] { supervisor_.run(); }};
+  std::thread thread_;
 };
 
 TEST_F(SupervisorTest, SwitchesNoDriveOnInADryRun) {
@@ -214,6 +222,66 @@ TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe)
   }
   EXPECT_TRUE(sizes.contains(191)) << *sizes.rbegin();
   EXPECT_LT(*sizes.begin(), 175U) << "there was room for all of every one";
+}
+
+/// What operators say before the thread runs waits for it together.
+class SupervisorBurst : public SupervisorTest {
+ protected:
+  void SetUp() override {}
+
+  /// The cycle takes what it is told, and says that it did it; verbs that lead to motion are
+  /// overtaken. Returns the verbs in that order, once `replies` of them are answered.
+  [[nodiscard]] std::vector<Verb> obey_until(std::size_t replies) {
+    std::vector<Verb> taken;
+    const bool is_answered = comes([&] {
+      Command command;
+      while (ports_->commands.try_pop(command)) {
+        taken.push_back(command.verb);
+        Event event;
+        event.code = leads_to_motion(command.verb) ? EventCode::kRefused : EventCode::kAccepted;
+        event.a = command.request;
+        event.b = static_cast<std::uint64_t>(command.verb);
+        event.x = static_cast<double>(Refusal::kOvertaken);
+        if (!ports_->events.try_push(event)) ADD_FAILURE() << "no room for the answer";
+      }
+      dds::Reply reply;
+      while (replies_.take(reply)) answered_[reply.request] = reply;
+      return answered_.size() == replies;
+    });
+    EXPECT_TRUE(is_answered) << answered_.size() << " of " << replies;
+    return taken;
+  }
+
+  std::map<std::uint64_t, dds::Reply> answered_;
+};
+
+TEST_F(SupervisorBurst, TellsTheCycleAHoldAheadOfSixtyOverridesAndAnswersThemAll) {
+  show(State::kRunning, false);
+  for (int n = 0; n < 60; ++n) ask(Verb::kFeedOverride, 0.5);
+  ask(Verb::kHold);
+  run();
+  const std::vector<Verb> taken = obey_until(61);
+  ASSERT_EQ(taken.size(), 61U);
+  EXPECT_EQ(taken.front(), Verb::kHold);
+}
+
+TEST_F(SupervisorBurst, TellsEveryStopHoweverMuchWaitsAndAnswersWhatItGoesPast) {
+  show(State::kLoaded, false);
+  ask(Verb::kStart);
+  for (int n = 0; n < 150; ++n) ask(Verb::kFeedOverride, 0.5);
+  for (int n = 0; n < 150; ++n) ask(Verb::kHold);
+  ask(Verb::kAbort);
+  run();
+  const std::vector<Verb> taken = obey_until(302);
+  ASSERT_GT(taken.size(), 2U);
+  EXPECT_EQ(taken[0], Verb::kHold);
+  EXPECT_EQ(taken[1], Verb::kAbort);
+  EXPECT_EQ(answered_[1].refusal, Refusal::kOvertaken);
+  EXPECT_EQ(answered_[1].text.find("start refused: a hold, an abort or disable"), 0U);
+  EXPECT_EQ(answered_[151].text, "too many commands at once; say it again");
+  EXPECT_TRUE(answered_[301].is_accepted ||
+              answered_[301].text.find("the machine was told") != std::string::npos);
+  EXPECT_EQ(answered_[302].request, 302U);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(Words, SayEveryAlarmDifferently) {
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kNotDryRun);
+  constexpr int kLast = static_cast<int>(Refusal::kOvertaken);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     for (int state = 0; state < kStateCount; ++state) {
       const std::string text =

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/rt/cycle_data.hpp"
+#include "meridian/rt/spsc_ring.hpp"
+#include "meridian/rt/state_table.hpp"
+
+namespace meridian::interpolator {
+
+/// Operators' words on their way from the commands thread to the cycle, numbered by
+/// Command::request in the order in which they came. Words stand in a row and are taken one in a
+/// cycle; a stop stands in none: it is taken in the next cycle, behind older stops of another verb
+/// at most, and there is always room for it. Of stops of one verb the newest stands for those that
+/// were not taken yet. What a stop goes past is the cycle's to judge (obey()).
+///
+/// Memory order. A stop is stored with release before the words that came with it are published;
+/// the cycle looks at the row (acquire) before it looks for stops. So where it sees a word, it sees
+/// every stop that was said before publish() showed that word: a start never slips out in front of
+/// an abort that came with it.
+/// RT: try_pop() in the cycle, wait-free. Proof: tests/unit/interpolator/command_port_test.cpp.
+class CommandPort {
+ public:
+  /// Commands thread: takes a stop, or puts a word behind the others, not seen before publish().
+  /// False and nothing changed: the row is full.
+  [[nodiscard]] bool stage(const Command& command) noexcept {
+    for (std::size_t i = 0; i < kStops.size(); ++i) {
+      if (command.verb != kStops[i]) continue;
+      stops_[i].store(command.request, std::memory_order_release);
+      return true;
+    }
+    return words_.stage(command);
+  }
+  /// Commands thread: shows the cycle what was staged.
+  void publish() noexcept { words_.publish(); }
+
+  /// Cycle: takes the next command, a stop first; false if there is none.
+  [[nodiscard]] bool try_pop(Command& command) noexcept {
+    const Command* oldest = words_.peek(0);
+    if (take_stop(command)) return true;
+    if (oldest == nullptr) return false;
+    command = *oldest;
+    words_.drop(1);
+    return true;
+  }
+
+ private:
+  static constexpr std::array kStops{Verb::kHold, Verb::kAbort, Verb::kDisable};
+  static_assert([] {
+    int stops = 0;
+    for (int v = 0; v < kVerbCount; ++v) stops += is_stop(static_cast<Verb>(v)) ? 1 : 0;
+    for (const Verb verb : kStops) stops -= is_stop(verb) ? 1 : 0;
+    return stops == 0;
+  }());
+
+  /// The oldest stop that was not taken yet.
+  [[nodiscard]] bool take_stop(Command& command) noexcept {
+    std::uint64_t oldest = 0;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < kStops.size(); ++i) {
+      const std::uint64_t asked = stops_[i].load(std::memory_order_acquire);
+      if (asked == taken_[i] || (oldest != 0 && oldest < asked)) continue;
+      oldest = asked;
+      at = i;
+    }
+    if (oldest == 0) return false;
+    taken_[at] = oldest;
+    command = {.request = oldest, .verb = kStops[at], .argument = 0};
+    return true;
+  }
+
+  SpscRing<Command, 64> words_;
+  std::array<std::atomic<std::uint64_t>, kStops.size()> stops_{};  ///< newest of each; 0: none yet
+  std::array<std::uint64_t, kStops.size()> taken_{};               ///< the cycle's
+
+  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+};
+
+}  // namespace meridian::interpolator
