@@ -115,6 +115,7 @@ int run(const Options& options) {
   const ToolTable tools = load_tools(options.machine);
   simulate::SimulateOptions simulation;
   simulation.settings = settings_of(options.join);
+  simulation.settings.retracts_first = options.cl.first_line > 0;
   const SmoothSettings& settings = simulation.settings;
   const std::string refusal =
       stream::refusal_of_tolerances(model, settings.transition.value_or(model.transition),

@@ -96,8 +96,9 @@ int run_stream_command(StreamCommandOptions& options) {
   options.stream.tip_tolerance_mm = asked.tip_tolerance_mm;
   options.stream.axis_tolerance_rad = asked.axis_tolerance_rad;
   options.stream.options = options_text(options.file, options.join);
-  if (asked.transition == Transition::kSmooth) options.stream.policies = dds::kPolicySmooth;
-  if (asked.transition == Transition::kExactStop) options.stream.policies = dds::kPolicyExactStop;
+  if (asked.transition == Transition::kSmooth) options.stream.policies |= dds::kPolicySmooth;
+  if (asked.transition == Transition::kExactStop) options.stream.policies |= dds::kPolicyExactStop;
+  if (options.file.first_line > 0) options.stream.policies |= dds::kPolicyRetractFirst;
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;

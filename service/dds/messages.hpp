@@ -43,6 +43,7 @@ enum SessionPolicy : std::uint32_t {
   kPolicyContainsActions = 1,  ///< the program has auxiliary, tool or stop blocks
   kPolicyExactStop = 2,        ///< rest at the end of every block, whatever the machine's file says
   kPolicySmooth = 4,           ///< on through blocks, whatever it says; not with kPolicyExactStop
+  kPolicyRetractFirst = 8,     ///< it begins in the middle: off the part ahead of its first actions
 };
 
 /// `cl_session`: a station asks for the machine, or gives it back.

@@ -19,6 +19,7 @@ SmoothSettings settings_of(const dds::SessionRequest& request) {
   settings.transition = stream::transition_asked(request);
   settings.tip_tolerance_mm = request.tip_tolerance_mm;
   settings.axis_tolerance_rad = request.axis_tolerance_rad;
+  settings.retracts_first = (request.policies & dds::kPolicyRetractFirst) != 0;
   return settings;
 }
 

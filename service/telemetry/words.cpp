@@ -353,11 +353,12 @@ std::string describe(const Unwinding& unwinding) {
 std::string describe(const Approach& approach, const MachineModel& model, std::size_t room) {
   const std::string head = fmt::format("approach to line {}: ", approach.line);
   const std::string joints = joints_moved(approach, model);
-  if (joints.empty()) return head + "none, the tool is there";
+  if (joints.empty() && !approach.has_rest) return head + "none, the tool is there";
   const auto lift = [](const char* way, double by_mm) {
     return by_mm > 0 ? fmt::format("{} {:.4g} mm, ", way, by_mm) : "";
   };
-  const std::string ways = lift("up", approach.retract) + "joints straight " + joints + ", " +
+  const std::string ways = lift("up", approach.retract) + (approach.has_rest ? "actions, " : "") +
+                           (joints.empty() ? "" : "joints straight " + joints + ", ") +
                            lift("down", approach.descent);
   const std::string trip = fmt::format("{:.4g} mm in {:.1f} s, branch {}", approach.length,
                                        approach.time, approach.branch);

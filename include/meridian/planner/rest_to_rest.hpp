@@ -56,8 +56,11 @@ class RestToRestPlanner {
 
   /// Starts a program from joints at rest. Its first motion block is approached: retract along the
   /// tool axis by the clearance as far as travel allows, joint move, down at approach feed. In an
-  /// epoch that saw a program before, pieces and windows go on being counted.
-  void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch) noexcept;
+  /// epoch that saw a program before, pieces and windows go on being counted. `retracts_first`: the
+  /// tool may stand in the part, so that where actions (auxiliary, tool) come before any motion,
+  /// the tool is retracted before the first of them, and the approach goes on from there.
+  void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
+             bool retracts_first = false) noexcept;
 
   /// Blocks that are going to be planned, the first motion block of the program first: the approach
   /// and the ways off the pole among them take the branch and winding that carry farthest. They

@@ -34,6 +34,12 @@ ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
   return {pose.tip + by_mm * pose.axis, pose.axis};
 }
 
+/// Adds length and time of what is staged from `begin` on.
+void add_way(const Staging::Mark& begin, const Staging& staged, Approach& way) noexcept {
+  for (int n = begin.paths; n < staged.path_count; ++n) way.length += staged.paths[n].length;
+  for (int n = begin.times; n < staged.time_count; ++n) way.time += staged.times[n].duration;
+}
+
 }  // namespace
 
 double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
@@ -66,6 +72,23 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
   return clearance > kNoClearance_mm ? clearance : 0;
 }
 
+PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
+  const Staging::Mark begin = out.mark();
+  const ToolPose rest = cursor.pose;
+  retracted_ = {};
+  retracted_.from = cursor.joints;
+  cursor.has_retracted = true;
+  const double up = find_clearance(rest, cursor.joints, cursor.tool_length_mm, model_.clearance_mm);
+  if (!(up > 0)) return {};
+  const Job rapid{block, MotionKind::kApproach, 0, 0};
+  const PathFault fault = run_lift(make_line(rest, lifted(rest, up)), rapid, cursor, out);
+  if (is_fault(fault)) return fault;
+  cursor.pose = lifted(rest, up);
+  retracted_.retract = up;
+  add_way(begin, out, retracted_);
+  return {};
+}
+
 PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job& job,
                               PlanCursor& cursor, Staging& out) noexcept {
   const std::uint32_t rotary = rotary_mask(model_);
@@ -76,7 +99,9 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   const double clearance = model_.clearance_mm;
   double up = 0, down = 0;
   if (apart > kNearby) {
-    up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
+    if (!cursor.has_retracted) {
+      up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
+    }
     if (up > 0) {
       fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
       if (is_fault(fault)) return fault;
@@ -103,11 +128,18 @@ void Router::describe_way_in(const Way& way, const Job& job, const PlanCursor& f
   way_in_.epoch = from.epoch;
   way_in_.sequence = job.block.sequence;
   way_in_.line = job.block.line;
-  way_in_.from = from.joints;
+  if (from.has_retracted) {
+    way_in_.from = retracted_.from;
+    way_in_.retract = retracted_.retract;
+    way_in_.has_rest = true;
+    way_in_.length = retracted_.length;
+    way_in_.time = retracted_.time;
+  } else {
+    way_in_.from = from.joints;
+  }
   way_in_.to = way.joints;
   way_in_.branch = static_cast<std::uint8_t>(way.branch);
-  for (int n = begin.paths; n < staged.path_count; ++n) way_in_.length += staged.paths[n].length;
-  for (int n = begin.times; n < staged.time_count; ++n) way_in_.time += staged.times[n].duration;
+  add_way(begin, staged, way_in_);
 }
 
 void Router::take_looked(std::span<const AheadWay> found, Ways& ways) noexcept {

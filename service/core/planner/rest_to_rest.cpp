@@ -58,6 +58,7 @@ struct RestToRestPlanner::Workspace {
   PlanCursor next;                                    ///< end of what is staged
   PlanResult result;                                  ///< of what is staged
   std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
+  bool retracts_first = false;
   bool is_staged = false;
   bool is_refused = false;
   bool needs_ahead = false;  ///< nothing is staged: the foresight waits for blocks
@@ -74,6 +75,7 @@ struct RestToRestPlanner::Workspace {
   void stage(const ClBlock& block) noexcept;
   void stage_motion(ClBlock block) noexcept;
   void stage_barrier(const ClBlock& block) noexcept;
+  void stage_retraction(const ClBlock& block) noexcept;
   /// Whether `fault` is one that turning the free joint back may help.
   [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
   /// Stages an unwinding from `next`, to a winding that `trial` lets pass, or without one with
@@ -186,7 +188,21 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   refuse(block, code, fault.joint, fault.value);
 }
 
+/// Leaves where the machine rests ahead of the first action of a program that may begin in the
+/// part.
+void RestToRestPlanner::Workspace::stage_retraction(const ClBlock& block) noexcept {
+  const bool is_action = block.kind == BlockKind::kAuxiliary || block.kind == BlockKind::kTool;
+  if (!is_action || !retracts_first || !next.is_first || next.has_retracted) return;
+  const PathFault fault = router.retract(block, next, staging);
+  if (fault.kind != PathFault::Kind::kNone) {
+    return refuse(block, code_of(fault.kind), fault.joint, fault.value);
+  }
+  if (staging.time_count > 0) ++next.window;
+}
+
 void RestToRestPlanner::Workspace::stage_barrier(const ClBlock& block) noexcept {
+  stage_retraction(block);
+  if (is_refused) return;
   TimePiece piece;
   piece.kind = barrier_of(block.kind);
   piece.is_from_rest = true;
@@ -212,8 +228,9 @@ RestToRestPlanner::RestToRestPlanner(const MachineModel& model, ToolTable tools)
 RestToRestPlanner::~RestToRestPlanner() = default;
 
 void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
-                              std::uint16_t epoch) noexcept {
+                              std::uint16_t epoch, bool retracts_first) noexcept {
   Workspace& w = *workspace_;
+  w.retracts_first = retracts_first;
   PlanCursor cursor;
   if (epoch == w.cursor.epoch) {
     // What the epoch published before may still lie in the port: no index comes twice.

@@ -26,6 +26,7 @@ struct PlanCursor {
   std::uint64_t path_index = 0;
   std::uint32_t window = 0;
   std::uint16_t epoch = 0;
+  bool has_retracted = false;  ///< the approach goes on from where retract() led
 };
 
 /// Finds the legs of a motion block: which branch and winding, where it stops on the pole, and the
@@ -56,6 +57,10 @@ class Router {
   /// Nearer to the pole than `rad` the free joint may be turned at rest, the axis inside that of
   /// where it was programmed.
   void set_free_cone(double rad) noexcept { free_cone_rad_ = rad; }
+
+  /// Lifts the tool off where the machine rests, along its axis by the clearance as far as travel
+  /// allows, in the name of `block`, which is done there: the first part of the approach.
+  [[nodiscard]] PathFault retract(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
   /// Brings the first block's begin under the tool. Ways that are lost (AheadWay) are none: where
   /// no other is left, lost_block() says why, else it is nothing.
@@ -175,6 +180,7 @@ class Router {
   AheadSlack slack_;
   std::optional<BlockReject> lost_;  ///< of the last approach
   Approach way_in_;                  ///< of the last approach
+  Approach retracted_;               ///< what the last retract() was of it
   double feed_factor_ = 1;
   double free_cone_rad_ = 0;
   double deviation_rad_ = 0;

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "support/command_output.hpp"
 #include "support/text_file.hpp"
@@ -57,6 +59,36 @@ TEST_F(RecordingCommands, BeginInTheMiddleWhereTheyAreToldTo) {
   const std::string check = "check " + recording() + " " + part() + kMachine;
   EXPECT_EQ(run_tool(check + from).exit_code, 0);
   EXPECT_EQ(run_tool(check).exit_code, 1) << "the begin of the file was not cut";
+}
+
+/// The line of the first row in which a joint moves.
+std::string line_of_first_motion(const std::string& recording) {
+  std::istringstream rows(meridian::test::read_text(recording));
+  std::string row, first;
+  std::getline(rows, row);  // the names of the columns
+  while (std::getline(rows, row)) {
+    std::vector<std::string> fields;
+    std::istringstream in(row);
+    for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+    if (fields.size() < 9) continue;
+    const std::string joints = fields[4] + fields[5] + fields[6] + fields[7] + fields[8];
+    if (first.empty()) first = joints;
+    if (joints != first) return fields[2];
+  }
+  return "none";
+}
+
+TEST_F(RecordingCommands, SimulateLeavesThePartBeforeTheSpindleWhereItBeginsInTheMiddle) {
+  const TextFile part(
+      "UNITS / MM\nSPINDL / RPM, 8000, CLW\nFEDRAT / 1200, MMPM\n"
+      "GOTO / 80, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -40, 20\nFINI\n",
+      ".apt");
+  const std::string simulate = "simulate " + part.path().string() + kMachine +
+                               "--auxiliary ignore --record " + recording() + " ";
+  ASSERT_EQ(run_tool(simulate + "--from-line 5").exit_code, 0);
+  EXPECT_EQ(line_of_first_motion(recording()), "2") << "in the name of the spindle's block";
+  ASSERT_EQ(run_tool(simulate).exit_code, 0);
+  EXPECT_EQ(line_of_first_motion(recording()), "4");
 }
 
 TEST_F(RecordingCommands, SimulateThenCheckIsFine) {

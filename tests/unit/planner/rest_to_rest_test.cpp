@@ -207,6 +207,51 @@ TEST(RestToRest, StartsBehindAToolChangeFromTheSameJoints) {
   EXPECT_NEAR(bench.paths.front().length, 110 - 95, 1e-9);
 }
 
+/// Tool and spindle of a program that begins in its middle, ahead of its first motion.
+TEST(RestToRest, LeavesThePartBeforeTheFirstActionOfAProgramThatMayBeginInIt) {
+  Bench bench(test::lai_machine(), ToolTable({{7, 95, 5}}));
+  bench.planner.begin(bench.start, bench.model.tool_length_mm, 1, true);
+  bench.reader.set_epoch(1);
+  const ToolPose from = forward(bench.model, bench.model.tool_length_mm, bench.start);
+  ClBlock tool = block_of(BlockKind::kTool, 0);
+  tool.value = 7;
+  ASSERT_EQ(bench.plan_and_take(tool).status, PlanStatus::kOk);
+  ASSERT_FALSE(bench.times.empty());
+  EXPECT_EQ(bench.times.front().kind, TimeKind::kMove);
+  EXPECT_EQ(bench.times.back().kind, TimeKind::kAction);
+  EXPECT_LT(bench.times.front().window, bench.times.back().window);
+  const PathPiece up = bench.paths.front();
+  EXPECT_EQ(up.motion, MotionKind::kApproach);
+  EXPECT_NEAR(to_vector(up.tip_delta).dot(from.axis), bench.model.clearance_mm, 1e-9);
+  const JointVector over = bench.planner.joints();
+  const double lift_time = bench.duration();
+
+  bench.forget();
+  ASSERT_EQ(bench.plan_and_take(block_of(BlockKind::kAuxiliary, 1)).status, PlanStatus::kOk);
+  EXPECT_EQ(bench.times.size(), 1U) << "once is enough";
+  ASSERT_EQ(bench.plan_and_take(cut(2, {50, 0, 20}, tilted(0.3, 1))).status, PlanStatus::kOk);
+  const auto first = std::find_if(bench.paths.begin(), bench.paths.end(),
+                                  [](const PathPiece& path) { return path.length > 0; });
+  ASSERT_NE(first, bench.paths.end());
+  EXPECT_EQ(first->kind, PathKind::kJoint) << "it is off the part already";
+  EXPECT_EQ(first->joints_begin, over);
+
+  Approach way;
+  ASSERT_TRUE(bench.planner.take_approach(way));
+  EXPECT_EQ(way.from, bench.start);
+  EXPECT_TRUE(way.has_rest);
+  EXPECT_EQ(way.retract, bench.model.clearance_mm);
+  EXPECT_EQ(way.descent, bench.model.clearance_mm);
+  EXPECT_NEAR(way.time, lift_time + bench.duration(), 1e-9);
+}
+
+TEST(RestToRest, DoesTheFirstActionsOfAnyOtherProgramWhereTheMachineStands) {
+  Bench bench;
+  ASSERT_EQ(bench.plan_and_take(block_of(BlockKind::kAuxiliary, 0)).status, PlanStatus::kOk);
+  EXPECT_EQ(bench.times.size(), 1U);
+  EXPECT_EQ(bench.times.front().kind, TimeKind::kAction);
+}
+
 TEST(RestToRest, RefusesAnUnknownTool) {
   Bench bench;
   ClBlock tool = block_of(BlockKind::kTool, 1);

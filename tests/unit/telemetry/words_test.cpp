@@ -48,8 +48,17 @@ TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
   EXPECT_EQ(describe(way, model, 1000),
             "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360, "
             "theta2 -5.73 deg, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg");
-  way.retract = way.descent = 0;
+  way.has_rest = true;
+  EXPECT_EQ(describe(way, model, 1000).rfind("approach to line 12: up 20 mm, actions, joints ", 0),
+            0U)
+      << "of a program that begins in its middle";
   way.to = way.from;
+  EXPECT_EQ(
+      describe(way, model, 1000),
+      "approach to line 12: up 20 mm, actions, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 "
+      "at 28.65 deg");
+  way.has_rest = false;
+  way.retract = way.descent = 0;
   EXPECT_EQ(describe(way, model, 1000), "approach to line 12: none, the tool is there");
 }
 
