@@ -193,7 +193,7 @@ void Supervisor::work_on_switching_off() {
   asked_off_ns_ = now_ns;
   for (const Verb verb : {Verb::kDisable, Verb::kAbort}) {
     if (effect_of(state, verb).effect != Effect::kGo) continue;
-    Pending own{next_key_++, {}};
+    Pending own{.key = next_key_++, .request = {}, .is_own = true};
     own.request.verb = verb;
     send(own);
     return;

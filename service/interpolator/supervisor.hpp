@@ -46,6 +46,7 @@ class Supervisor {
   struct Pending {
     std::uint64_t key = 0;  ///< Command::request, in the order in which they came; 0: place is free
     dds::CommandRequest request;
+    bool is_own = false;  ///< the service's, while shutting down: nobody waits for an answer
   };
   struct Answered {
     std::uint64_t operator_id = 0, request = 0;
@@ -57,6 +58,7 @@ class Supervisor {
   /// Takes what operators said meanwhile, stops first; true if there may be more.
   bool take_burst();
   void take_command(const Pending& command);
+  [[nodiscard]] bool has_come_before(const dds::CommandRequest& request);
   void send(const Pending& command);
   [[nodiscard]] bool is_pending(Verb verb) const noexcept;
   void take_events();

@@ -21,10 +21,10 @@ const std::string kDry = "dry run: ", kStarted = "start accepted; ";
 void Supervisor::take_commands() {
   while (take_burst()) {
   }
+  ports_.commands.publish();  // no word before the stops that came with it
 }
 
-/// Judging and refusing take time: stops are on their way before any of it. The cycle sees no word
-/// before the stops that came with it.
+/// Judging and refusing take time: stops are on their way before any of it.
 bool Supervisor::take_burst() {
   std::size_t count = 0;
   while (count < burst_.size() && commands_.take(burst_[count].request)) {
@@ -36,27 +36,19 @@ bool Supervisor::take_burst() {
     }
   }
   for (std::size_t i = 0; i < count; ++i) take_command(burst_[i]);
-  ports_.commands.publish();
   return count == burst_.size();
 }
 
 void Supervisor::take_command(const Pending& command) {
   const dds::CommandRequest& request = command.request;
-  for (const Answered& answered : answered_) {
-    if (answered.operator_id == request.operator_id && answered.request == request.request &&
-        request.operator_id != 0) {
-      (void)replies_.write(answered.reply);
-      return;
-    }
-  }
-  for (const Pending& pending : pending_) {
-    if (pending.key != 0 && pending.request.operator_id == request.operator_id &&
-        pending.request.request == request.request) {
-      return;
-    }
-  }
+  if (has_come_before(request)) return;
   if (static_cast<int>(request.verb) >= kVerbCount) {
     reply(request, false, Refusal::kOutOfRange, "this service does not know that verb");
+    return;
+  }
+  if (request.operator_id == 0 && !is_stop(request.verb)) {
+    reply(request, false, Refusal::kOutOfRange,
+          "operator_id 0 names no operator: it must be drawn at random, and not 0");
     return;
   }
   // Whoever saw a status that is younger than the last look at the cycle is not late.
@@ -82,6 +74,22 @@ void Supervisor::take_command(const Pending& command) {
     return;
   }
   send(command);
+}
+
+/// Answers what was answered already again. Nobody, who may stop the machine, repeats nothing.
+bool Supervisor::has_come_before(const dds::CommandRequest& request) {
+  if (request.operator_id == 0) return false;
+  const auto is_same = [&request](const auto& other) {
+    return other.operator_id == request.operator_id && other.request == request.request;
+  };
+  const auto answered = std::find_if(answered_.begin(), answered_.end(), is_same);
+  if (answered != answered_.end()) {
+    (void)replies_.write(answered->reply);
+    return true;
+  }
+  return std::any_of(pending_.begin(), pending_.end(), [&is_same](const Pending& pending) {
+    return pending.key != 0 && is_same(pending.request);
+  });
 }
 
 bool Supervisor::is_pending(Verb verb) const noexcept {
@@ -117,6 +125,7 @@ void Supervisor::send(const Pending& command) {
     *std::find_if(pending_.begin(), pending_.end(), is_free) = command;
     return;
   }
+  if (command.is_own) return;
   reply(request, false, Refusal::kWrongState,
         is_told ? "too many stops at once to answer each; the machine was told of it all the same"
                 : "too many commands at once; say it again");
@@ -129,7 +138,7 @@ void Supervisor::answer(const Event& event) {
     const bool is_meant = pending.key == event.a ||
                           (is_stop(verb) && pending.request.verb == verb && pending.key < event.a);
     if (pending.key == 0 || !is_meant) continue;
-    answer(event, pending);
+    if (!pending.is_own) answer(event, pending);
     pending.key = 0;
   }
 }
@@ -163,7 +172,6 @@ std::string Supervisor::what_happens(Verb verb) {
 
 void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
                        const std::string& text) {
-  if (request.operator_id == 0) return;  // our own, while shutting down
   const dds::Reply reply{.request = request.request,
                          .operator_id = request.operator_id,
                          .service_id = service_id_,

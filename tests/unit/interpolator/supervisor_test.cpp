@@ -61,9 +61,9 @@ class SupervisorTest : public testing::Test {
     view.is_dry_run = is_dry_run;
     ports_->commands_view.store(view);
   }
-  void ask(Verb verb, double argument = 0) {
+  void ask(Verb verb, double argument = 0, std::uint64_t operator_id = 9) {
     dds::CommandRequest request;
-    request.operator_id = 9;
+    request.operator_id = operator_id;
     request.request = ++request_;
     request.verb = verb;
     request.argument = argument;
@@ -183,6 +183,27 @@ TEST_F(SupervisorTest, NamesTheDrivesThatTwoReportWhereItRefusesToEnable) {
   ASSERT_TRUE(comes([&] { return replies_.take(reply); }));
   EXPECT_EQ(reply.refusal, Refusal::kDriveContested);
   EXPECT_TRUE(reply.text.ends_with(": b2, theta2")) << reply.text;
+}
+
+/// Nobody's requests cannot be told apart: each repetition would be done again.
+TEST_F(SupervisorTest, ObeysNobodyButWhereHeStops) {
+  show(State::kLoaded, false);
+  for (const Verb verb : {Verb::kStart, Verb::kFeedOverride, Verb::kJog, Verb::kReset}) {
+    ask(verb, 0, 0);
+    EXPECT_TRUE(has_reply(verb, Refusal::kOutOfRange)) << name_of(verb);
+  }
+  for (const Verb verb : {Verb::kAbort, Verb::kHold, Verb::kAbort}) {
+    ask(verb, 0, 0);
+    request_ -= 1;  // the same request: whose it is is not known
+    const auto command = take(verb);
+    ASSERT_TRUE(command) << "no start in front of it";
+    Event accepted;
+    accepted.code = EventCode::kAccepted;
+    accepted.a = command->request;
+    accepted.b = static_cast<std::uint64_t>(verb);
+    ASSERT_TRUE(ports_->events.try_push(accepted));
+    EXPECT_TRUE(has_reply(verb, Refusal::kNone));
+  }
 }
 
 TEST_F(SupervisorTest, MayLeaveTheMachineInOffAndInADryRun) {
