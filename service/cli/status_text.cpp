@@ -8,6 +8,7 @@
 
 #include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
+#include "service/record/words.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::cli {
@@ -21,6 +22,26 @@ namespace {
 
 std::size_t joint_count(const dds::MachineInfo& machine) {
   return std::min<std::size_t>(machine.joint_count, kMaxJoints);
+}
+
+/// The joint, or drive of the stage, of the alarm in force; empty: it is of none.
+std::string alarm_joint(const dds::Status& status, const dds::MachineInfo& machine) {
+  if (!record::is_of_joint(status.alarm)) return "";
+  const std::size_t joints = joint_count(machine), place = status.alarm_joint;
+  if (place < joints) return machine.joints[place].name;
+  const std::size_t drives =
+      std::min<std::size_t>(machine.stage_drive_count, machine.stage_drives.size());
+  return place - joints < drives ? machine.stage_drives[place - joints].name : "";
+}
+
+/// "alarm     following_error of b2, line 840".
+void append_alarm(std::string& text, const dds::Status& status, const dds::MachineInfo& machine) {
+  if (status.alarm == Alarm::kNone) return;
+  const std::string joint = alarm_joint(status, machine);
+  text += "alarm     " + std::string(record::word(status.alarm));
+  if (!joint.empty()) text += " of " + joint;
+  if (status.alarm_line > 0) append(text, ", line %u", status.alarm_line);
+  text += "\n";
 }
 
 }  // namespace
@@ -51,11 +72,16 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
   append(text, "machine   %s: %s%s%s\n", machine.name.c_str(), text_of(status.state),
          status.alarm != Alarm::kNone ? " (alarm)" : "",
          status.is_dry_run ? ", dry run: no drive moves" : "");
+  append_alarm(text, status, machine);
   if (!status.message.empty()) append(text, "message   %s\n", status.message.c_str());
   if (status.session != 0) {
     append(text, "program   %s from station %s\n", status.program.c_str(), status.station.c_str());
+  }
+  // An alarm voids the program: where it came to rest is asked for all the same.
+  if (status.session != 0 || (status.alarm != Alarm::kNone && status.line > 0)) {
     append(text, "block     %llu", Count{status.block});
-    if (status.block_count > 0) append(text, " of %llu", Count{status.block_count});
+    if (status.session != 0 && status.block_count > 0)
+      append(text, " of %llu", Count{status.block_count});
     append(text, ", line %u\n", status.line);
   }
   append(text, "feed      %.1f of %.1f mm/min, override %.0f %%, rapid override %.0f %%%s%s\n",
@@ -88,6 +114,9 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   append(text, "\"state\":\"%s\",\"alarm\":%d,\"epoch\":%u,\"status_sequence\":%llu,",
          text_of(status.state), static_cast<int>(status.alarm), status.epoch,
          Count{status.status_sequence});
+  append(text, "\"alarm_name\":\"%s\",\"alarm_joint\":%s,\"alarm_line\":%u,",
+         std::string(record::word(status.alarm)).c_str(),
+         json_quoted(alarm_joint(status, machine)).c_str(), status.alarm_line);
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,
