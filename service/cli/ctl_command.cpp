@@ -175,7 +175,7 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
               "--dead-man", options->jog.dead_man_ms,
               "jog: the joint comes to rest where the machine hears nothing for so long, ms")
           ->capture_default_str()
-          ->check(finite_range(40.0, 500.0));
+          ->check(finite_range(60.0, 500.0));
   options->of_jog = {time, distance, dead_man};
   CLI::Option* const wait =
       command

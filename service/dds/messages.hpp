@@ -117,6 +117,7 @@ struct Reply {
 struct Jog {
   std::uint64_t operator_id = 0;
   std::uint64_t sample = 0;
+  std::uint64_t status_seen = 0;
   std::uint16_t epoch_seen = 0;
   std::uint8_t frame = 0;  ///< 0: of the joints; 1: of the tool, `joint` is a ToolAxis
   std::uint8_t joint = 0;

@@ -13,8 +13,10 @@
 namespace meridian::interpolator {
 
 /// Judges what comes in on `jog`: one operator holds the joints, the one whose verb `jog` was
-/// accepted with the cycle's number for it, and each of his samples is newer than the last and
-/// quotes the epoch in force. What anybody else says changes nothing. One thread. Proof:
+/// accepted with the cycle's number for it, and each of his samples is newer than the last, quotes
+/// the epoch in force and a status that was published. What anybody else says changes nothing. How
+/// long a sample was under way nobody knows; that it was said before its operator saw the next
+/// status the service does know, by its own clock, and counts as silence. One thread. Proof:
 /// tests/unit/interpolator/jog_intake_test.cpp.
 class JogIntake {
  public:
@@ -27,15 +29,18 @@ class JogIntake {
   void end() noexcept { is_held_ = false; }
 
   /// Returns the order that `jog` is for the cycle, with a tool of that length in the spindle;
-  /// orders of all operators are counted as one row.
+  /// orders of all operators are counted as one row. `superseded_ns`: StatusTimes::superseded_for()
+  /// of the status that it quotes; letting go (velocity 0) is taken without.
   [[nodiscard]] std::optional<JogOrder> take(const dds::Jog& jog, std::uint16_t epoch,
-                                             int joint_count, double tool_length_mm) noexcept {
+                                             int joint_count, double tool_length_mm,
+                                             std::optional<std::int64_t> superseded_ns) noexcept {
     const bool is_of_holder = is_held_ && jog.operator_id == holder_ && jog.sample > newest_;
     const bool is_sound = std::isfinite(jog.velocity) && std::isfinite(jog.distance) &&
                           jog.frame <= 1 &&
                           jog.joint < (jog.frame == 1 ? kToolAxisCount : joint_count) &&
                           jog.distance >= 0 && jog.dead_man_ns > 0;
-    if (!is_of_holder || !is_sound || jog.epoch_seen != epoch) return std::nullopt;
+    const bool is_told = superseded_ns || jog.velocity == 0;
+    if (!is_of_holder || !is_sound || !is_told || jog.epoch_seen != epoch) return std::nullopt;
     newest_ = jog.sample;
     return JogOrder{
         .sample = ++orders_,
@@ -46,7 +51,8 @@ class JogIntake {
         .distance = jog.distance,
         .tool_length_mm = tool_length_mm,
         .dead_man_s = std::min(kLongestDeadMan_s, 1e-9 * static_cast<double>(jog.dead_man_ns)),
-        .hand = hand_};
+        .hand = hand_,
+        .age_s = 1e-9 * static_cast<double>(superseded_ns.value_or(0))};
   }
 
  private:

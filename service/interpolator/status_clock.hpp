@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "service/stream/freshness.hpp"
 
@@ -20,6 +22,13 @@ class StatusClock {
     if (!stream::needs_freshness(request.verb, request.argument)) return Refusal::kNone;
     const std::lock_guard lock(mutex_);
     return stream::judge_freshness(request, service_id, epoch, times_, now_ns, rest);
+  }
+
+  /// As StatusTimes says it, for hands, which ask often: nothing also while telemetry has the lock.
+  [[nodiscard]] std::optional<std::int64_t> superseded_for(std::uint64_t sequence,
+                                                           std::int64_t now_ns) const {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? times_.superseded_for(sequence, now_ns) : std::nullopt;
   }
 
  private:

@@ -77,8 +77,10 @@ void Supervisor::take_jogs() {
   if (view_.record.state != State::kJogging) jog_intake_.end();
   dds::Jog jog;
   while (jogs_.take(jog)) {
-    const auto order = jog_intake_.take(jog, view_.epoch, model_.joint_count,
-                                        ports_.spindle_tool_mm.load(std::memory_order_relaxed));
+    const auto order =
+        jog_intake_.take(jog, view_.epoch, model_.joint_count,
+                         ports_.spindle_tool_mm.load(std::memory_order_relaxed),
+                         status_clock_.superseded_for(jog.status_seen, monotonic_ns()));
     if (order) ports_.jog.store(*order);
   }
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/state.hpp"
@@ -63,6 +65,17 @@ class StatusTimes {
     const Entry& entry = entries_[sequence % kEntries];
     return entry.time_ns != kNever && entry.sequence == sequence &&
            now_ns - entry.time_ns <= kFreshness_ns;
+  }
+
+  /// For how long, ns, there has been a newer status than `sequence`; 0: there is none. Nothing:
+  /// that was never published, or is forgotten.
+  [[nodiscard]] std::optional<std::int64_t> superseded_for(std::uint64_t sequence,
+                                                           std::int64_t now_ns) const noexcept {
+    const Entry& entry = entries_[sequence % kEntries];
+    const Entry& next = entries_[(sequence + 1) % kEntries];
+    if (entry.time_ns == kNever || entry.sequence != sequence) return std::nullopt;
+    if (next.time_ns == kNever || next.sequence != sequence + 1) return 0;
+    return std::max<std::int64_t>(0, now_ns - next.time_ns);
   }
 
  private:

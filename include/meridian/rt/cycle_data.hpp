@@ -87,6 +87,7 @@ struct JogOrder {
   double tool_length_mm = 0;
   double dead_man_s = 0;   ///< without a newer order for so long the joint comes to rest
   std::uint64_t hand = 0;  ///< Command::request of the `jog` that it belongs to
+  double age_s = 0;        ///< it was said so long before it came in, or longer
 };
 
 /// An operator's word on its way to the cycle. `request` grows in the order in which words came,

@@ -37,19 +37,21 @@ inline void judge_silence(Jogging& jogging) noexcept {
 }
 
 /// Counts the silence, also that of periods which nobody saw, and takes a newer order of this epoch
-/// where the hand is still there: one that let go is not taken again, and an order that was under
-/// way for long moves nothing.
+/// where the hand is still there: one that let go is not taken again. The silence is counted from
+/// when the order was said: what a wire delays moves nothing for longer than the dead man's time,
+/// and an order that is older when it comes in is passed over, where it does not let go.
 inline void take_order(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   const JogOrder& order = c.in.jog;
   jogging.silence += c.dt * (1.0 + c.in.lost_periods);  // c.periods is 1 where nothing moved
   judge_silence(jogging);
-  const bool is_mine = order.hand == jogging.hand && order.epoch == c.state.epoch;
+  const bool is_late = order.age_s > order.dead_man_s && order.velocity != 0;
+  const bool is_mine = order.hand == jogging.hand && order.epoch == c.state.epoch && !is_late;
   if (is_mine && order.sample > jogging.order.sample && !jogging.is_let_go) {
     jogging.has_order = true;
     jogging.order = order;
     jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
-    jogging.silence = 0;
+    jogging.silence = order.age_s;
     judge_silence(jogging);
   }
 }

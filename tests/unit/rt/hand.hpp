@@ -44,7 +44,8 @@ struct Hand {
                     .distance = distance,
                     .tool_length_mm = world.machine.tool_length_mm,
                     .dead_man_s = 0.1,
-                    .hand = number};
+                    .hand = number,
+                    .age_s = age_s};
   }
   [[nodiscard]] Refusal refusal() const {
     return static_cast<Refusal>(world.last(EventCode::kRefused).x);
@@ -54,6 +55,7 @@ struct Hand {
   std::uint64_t sample = 0, number = 0;
   std::uint16_t epoch = 1;
   double distance = 0;
+  double age_s = 0;  ///< of every order when it comes in
 };
 
 }  // namespace meridian::test

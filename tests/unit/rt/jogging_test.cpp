@@ -53,6 +53,43 @@ TEST(Jogging, IsNotTakenUpAgainByAnOrderThatComesLate) {
   EXPECT_EQ(hand.world.state.joints, rest) << "nor in Ready";
 }
 
+/// The hand is gone, and a wire that holds back what it said delivers it bit by bit.
+TEST(Jogging, OrdersThatAWireHeldBackKeepNothingMoving) {
+  Hand hand;
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.hold(0, 40, 0.5);
+  const double let_go = hand.world.state.joints[0];
+  for (int n = 0; n < 40; ++n) {
+    hand.age_s += 0.02;
+    hand.hold(0, 40, 0.02);
+  }
+  const double way = hand.world.state.joints[0] - let_go;
+  EXPECT_LT(way, 40 * (kDeadMan_s + 0.1)) << "as where nothing came any more";
+  EXPECT_EQ(hand.world.now(), State::kReady);
+}
+
+TEST(Jogging, TakesOrdersThatAWireDelaysByLessThanTheDeadMansTime) {
+  Hand hand;
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.age_s = kDeadMan_s - 0.03;
+  hand.hold(0, 40, 1.0);
+  EXPECT_DOUBLE_EQ(hand.world.state.velocity[0], 40);
+  const double let_go = hand.world.state.joints[0];
+  ASSERT_TRUE(hand.world.run_until(State::kReady, 1));
+  EXPECT_LT(hand.world.state.joints[0] - let_go, 40 * (0.03 + 0.1))
+      << "it let go that much earlier";
+}
+
+TEST(Jogging, LetsGoAtOnceHoweverLateThatComesIn) {
+  Hand hand;
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.hold(0, 40, 0.5);
+  hand.age_s = 3;
+  hand.order(0, 0);
+  hand.world.run();
+  EXPECT_TRUE(hand.world.state.jogging.is_let_go);
+}
+
 TEST(Jogging, AStallOfTheHostCountsAgainstTheDeadManAlsoWhereNothingMoved) {
   Hand hand;
   ASSERT_TRUE(hand.lay_on(0));

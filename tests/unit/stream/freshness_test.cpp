@@ -45,6 +45,18 @@ TEST_F(Freshness, RefusesAStatusThatWasNeverPublished) {
   EXPECT_EQ(at_10_s(Verb::kStart, ~std::uint64_t{0}), Refusal::kStale);
 }
 
+TEST_F(Freshness, KnowsForHowLongThereHasBeenANewerStatus) {
+  constexpr std::int64_t kNow = 10'004 * kMillisecond;  // status 1000 was published at 10'000
+  EXPECT_EQ(times_.superseded_for(1000, kNow), 0)
+      << "the newest is never old, however late the next";
+  EXPECT_EQ(times_.superseded_for(1000, kNow + 5000 * kMillisecond), 0);
+  EXPECT_EQ(times_.superseded_for(999, kNow), 4 * kMillisecond);
+  EXPECT_EQ(times_.superseded_for(990, kNow), 94 * kMillisecond);
+  EXPECT_EQ(times_.superseded_for(1001, kNow), std::nullopt) << "of the future";
+  EXPECT_EQ(times_.superseded_for(400, kNow), std::nullopt) << "forgotten";
+  EXPECT_EQ(StatusTimes().superseded_for(0, kNow), std::nullopt);
+}
+
 TEST_F(Freshness, RefusesAnOldEpochAndAnotherService) {
   EXPECT_EQ(at_10_s(Verb::kStart, 1000, 2), Refusal::kStale);
   EXPECT_EQ(at_10_s(Verb::kStart, 1000, 3, kService + 1), Refusal::kStale);
