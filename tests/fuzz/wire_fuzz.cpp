@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -13,7 +14,10 @@
 #include "service/dds/convert.hpp"
 #include "service/drives/action_peer.hpp"
 #include "service/drives/drive_group.hpp"
+#include "service/interpolator/command_port.hpp"
 #include "service/interpolator/feedback_merge.hpp"
+#include "service/interpolator/jog_intake.hpp"
+#include "service/interpolator/lease_judge.hpp"
 #include "service/stream/freshness.hpp"
 #include "service/stream/intake_judge.hpp"
 #include "service/stream/station.hpp"
@@ -27,6 +31,8 @@ WireChoices& choices() {
   static WireChoices seen;
   return seen;
 }
+
+constexpr std::uint64_t kServiceId = 7;
 
 /// Notes that a sample had, or had not, what it may have.
 bool choose(WireChoice choice, bool is_there) {
@@ -70,9 +76,10 @@ class Listeners {
  public:
   Listeners()
       : model_(test::lai_machine()),
-        intake_(model_, {{1, 100.0}}, 7),
+        intake_(model_, {{1, 100.0}}, kServiceId),
         machine_that_obeys_(model_),
         drives_(model_, {}) {
+    lease_.hold(now_ns_);
     dds::SessionRequest open;
     open.session = 1;
     static_cast<void>(intake_.on_request(open, around(), model_.tool_length_mm));
@@ -98,7 +105,7 @@ class Listeners {
       case kReply:
         return take_reply(in);
       case kJog:
-        return in.read<meridian_wire_Jog>(jog_);
+        return take_jog(in);
       case kSetpoint:
         return take_setpoint(in);
       case kDriveCommand:
@@ -190,10 +197,11 @@ class Listeners {
   }
   void take_command(Supplies& in) {
     dds::CommandRequest request;
-    const std::uint64_t rest = in.next<std::uint8_t>() % 3, told = in.next<std::uint8_t>() % 3;
+    const unsigned how = in.next<std::uint8_t>();
+    const std::uint64_t rest = (how & 0x7FU) % 3, told = in.next<std::uint8_t>() % 3;
     in.read<meridian_wire_Command>(request);
     times_.published(5, now_ns_, told);
-    const Refusal refusal = stream::judge_freshness(request, 7, 1, times_, now_ns_, rest);
+    const Refusal refusal = stream::judge_freshness(request, kServiceId, 1, times_, now_ns_, rest);
     if (static_cast<int>(request.verb) >= kVerbCount) return;  // as the supervisor does
     require(refusal == Refusal::kNone || stream::needs_freshness(request.verb, request.argument),
             "a stop is stale");
@@ -204,7 +212,38 @@ class Listeners {
     }
     if (refusal != Refusal::kNone) return;
     if (may_be_dry(request.verb)) choose(kForDryRunAlone, request.argument == 1);
-    machine_that_obeys_.say(request.verb, request.argument);
+    if (port_.stage({++request_, request.verb, request.argument})) {
+      asked_[request_ % asked_.size()] = request.operator_id;
+    }
+    if ((how & 0x80U) == 0) obey();
+  }
+  /// The cycle takes what waits for it.
+  void obey() {
+    port_.publish();
+    std::uint64_t stopped = 0;
+    for (Command command; port_.try_pop(command);) {
+      require(!is_stop(command.verb) || stopped < command.request, "stops out of turn");
+      if (is_stop(command.verb)) stopped = command.request;
+      choose(kOvertakenByStop, !machine_that_obeys_.say(command));
+      const bool has_hand = command.verb == Verb::kJog && machine_that_obeys_.is_jogging();
+      if (has_hand) hands_.begin(asked_[command.request % asked_.size()], command.request);
+    }
+    if (!machine_that_obeys_.is_jogging()) hands_.end();
+  }
+  void take_jog(Supplies& in) {
+    dds::Jog jog;
+    in.read<meridian_wire_Jog>(jog);
+    const auto order =
+        hands_.take(jog, machine_that_obeys_.epoch(), model_.joint_count, model_.tool_length_mm,
+                    times_.superseded_for(jog.status_seen, now_ns_));
+    if (!choose(kHandOnAJoint, order.has_value())) return;
+    require(order->sample == ++orders_, "orders out of turn");
+    require(std::isfinite(order->velocity) && order->distance >= 0, "an order without a number");
+    require(order->joint < model_.joint_count, "no such joint");
+    require(order->dead_man_s > 0 && order->dead_man_s <= kLongestDeadMan_s, "no dead man's time");
+    require(order->age_s >= 0, "an order of the future");
+    machine_that_obeys_.hold(*order);
+    if (!machine_that_obeys_.is_jogging()) hands_.end();
   }
   void take_reply(Supplies& in) {
     dds::Reply reply;
@@ -275,7 +314,19 @@ class Listeners {
     machine_.service_id %= 3;
     drives_.take(machine_);
     work_drives();
+    judge_lease();
     show();
+  }
+  void judge_lease() {
+    const std::uint64_t other = machine_.service_id;
+    lease_.hear({other, machine_.is_serving, machine_.served_ns}, now_ns_);
+    lease_.judge(now_ns_, machine_.pid % 2 == 0);
+    if (lease_.has_to_speak(now_ns_)) lease_.on_said(lease_.word(now_ns_), now_ns_);
+    now_ns_ += interpolator::LeaseJudge::kStepBack_ns;
+    const auto keeper = lease_.keeper(now_ns_);
+    choose(kLeaseLeft, keeper.has_value());
+    require(!keeper || *keeper < 3, "left to a service that nobody heard");
+    require(!keeper || !lease_.word(now_ns_).is_serving, "left while it is served");
   }
   void show() {
     const std::string words = cli::describe(status_, machine_);
@@ -301,7 +352,11 @@ class Listeners {
   interpolator::FeedbackMerge merge_;
   dds::Status status_;
   dds::MachineInfo machine_;
-  dds::Jog jog_;
+  interpolator::CommandPort port_;
+  interpolator::JogIntake hands_;
+  interpolator::LeaseJudge lease_{kServiceId};
+  std::array<std::uint64_t, 128> asked_{};  ///< who said which request
+  std::uint64_t request_ = 0, orders_ = 0;
   dds::ActionDone done_;
   meridian_wire_ClBatch wire_batch_{};
 };

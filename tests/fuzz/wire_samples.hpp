@@ -13,7 +13,8 @@ enum SampleType : std::uint8_t {
   kRawBatch,  ///< as it comes off the wire, like all others
   kSession,
   kCredit,
-  kCommand,  ///< in front of it the rest that the machine is at, and the one that was told
+  kCommand,  ///< in front of it the rest that the machine is at (from 128 on: and it waits for the
+             ///< next one), and the one that was told
   kReply,
   kJog,
   kSetpoint,
@@ -41,6 +42,9 @@ enum WireChoice : std::uint8_t {
   kOptionalStops,
   kStatusWithApproach,
   kStatusWithSummary,
+  kHandOnAJoint,     ///< a sample that a hand's machine takes
+  kOvertakenByStop,  ///< a word that waited, with a stop behind it
+  kLeaseLeft,        ///< to another service that serves the machine
   kWireChoices
 };
 

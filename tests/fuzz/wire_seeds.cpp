@@ -66,6 +66,35 @@ const std::string kApproachWords =
     "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360 deg, down 50 "
     "mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg";
 
+/// What lets a hand on the joints of the machine in its dry run, and a word that a stop goes past.
+void add_hand_and_stop(Seeds& seeds) {
+  std::vector<std::uint8_t>& seed = seeds.emplace_back();
+  append_command(seed, Verb::kDryRun, 1);
+  append_command(seed, Verb::kEnable, 1);
+  append_command(seed, Verb::kJog, 0);
+  dds::Jog jog{.operator_id = 2, .status_seen = 5, .epoch_seen = 2, .dead_man_ns = 100'000'000};
+  for (jog.sample = 1; jog.sample < 4; ++jog.sample) {
+    jog.velocity = 40;
+    jog.frame = jog.sample == 2 ? 1 : 0;
+    append<meridian_wire_Jog>(seed, kJog, jog);
+  }
+  append_command(seed, Verb::kAbort, 0);
+  append_command(seed, Verb::kDisable, 0);
+  const std::size_t at = seed.size();
+  append_command(seed, Verb::kEnable, 1);
+  seed[at + 1] = 128;  // waits
+  append_command(seed, Verb::kDisable, 0);
+}
+
+/// Another service, with the smaller service_id, which has served as long.
+void add_other_service(Seeds& seeds) {
+  dds::MachineInfo machine;
+  machine.service_id = 2;
+  machine.is_serving = true;
+  machine.served_ns = 1'000'000'000'000;
+  append<meridian_wire_Machine>(seeds.emplace_back(), kMachine, machine);
+}
+
 /// Everything that came to be said for a dry run, in single block and in inverse time.
 void add_choices(Seeds& seeds) {
   const auto add = [&seeds](const auto& fill) { fill(seeds.emplace_back()); };
@@ -203,6 +232,8 @@ Seeds wire_seeds() {
   });
   add([](auto& seed) { append<meridian_wire_Latency>(seed, kLatency, dds::Latency{}); });
   add_choices(seeds);
+  add_hand_and_stop(seeds);
+  add_other_service(seeds);
   return seeds;
 }
 
