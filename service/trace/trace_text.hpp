@@ -28,8 +28,9 @@ struct Window {
 [[nodiscard]] std::string describe(const SlowCycle& slow);
 
 /// The window in the Trace Event Format, which ui.perfetto.dev and chrome://tracing open: one
-/// complete event for each span, µs since the window's begin. Source: "Trace Event Format",
-/// Chromium project. Proof: tests/unit/interpolator/trace_test.cpp.
+/// complete event for each span, µs since the window's begin, or since the begin of what was under
+/// way then; slices of a thread follow one another. Source: "Trace Event Format",
+/// Chromium project. Proof: tests/unit/interpolator/trace_format_test.cpp.
 [[nodiscard]] std::string to_json(const Window& window);
 
 }  // namespace meridian::trace
