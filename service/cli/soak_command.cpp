@@ -11,6 +11,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
+#include "service/config/service_file.hpp"
 #include "service/process/claimed_domain.hpp"
 #include "service/process/programs.hpp"
 #include "service/soak/report_files.hpp"
@@ -41,11 +42,16 @@ struct Options {
 int run(Options& options) {
   options.soak.for_s = seconds_of(options.duration);
   options.soak.report = options.report;
+  if (!options.soak.service.empty()) {
+    const config::ServiceConfig service = config::load_service(options.soak.service);
+    if (options.soak.machine.empty()) options.soak.machine = service.machine.string();
+    if (options.soak.tools.empty()) options.soak.tools = service.tools.string();
+  }
   if (options.soak.machine.empty()) {
     options.soak.machine = process::shipped_file("machines/lai.toml").string();
   }
   std::vector<std::string> read = options.soak.programs;
-  read.insert(read.end(), {options.soak.machine, options.soak.tools});
+  read.insert(read.end(), {options.soak.machine, options.soak.tools, options.soak.service});
   if (const auto refusal = soak::refusal_to_report(options.report, read); !refusal.empty()) {
     throw CLI::ValidationError("--report", refusal);
   }
@@ -74,8 +80,17 @@ void add_soak_command(CLI::App& app, int& exit_code) {
                       "CL files to cut, one after the other; default: drawn ones near home");
   command->add_option("--for", options->duration, "How long: 90s, 15m, 8h")->capture_default_str();
   command->add_option("--machine", options->soak.machine,
-                      "Machine file (TOML); default: the Lai machine that is shipped");
-  command->add_option("--tools", options->soak.tools, "Tool table (TOML)");
+                      "Machine file (TOML); default: that of --service, else the Lai machine that "
+                      "is shipped");
+  command->add_option("--tools", options->soak.tools,
+                      "Tool table (TOML); default: that of --service");
+  command->add_option("--service", options->soak.service,
+                      "Service file (TOML) of the service that will serve here: its machine, "
+                      "tools, processor, priorities, rights and bridge are run, enforced where it "
+                      "says so; default: best effort, on the last processor");
+  command->add_option("--trace", options->soak.trace,
+                      "Folder in which the service leaves traces of the worst cycles "
+                      "(docs/realtime.md)");
   command
       ->add_option("--chaos", options->soak.chaos_every_s,
                    "Mishaps every so many seconds on the average: hold, override, abort, a station "

@@ -10,6 +10,9 @@
 
 namespace meridian::probe {
 
+/// The section [realtime] of a service file that says all of `realtime`.
+[[nodiscard]] std::string realtime_section(const config::RealtimeConfig& realtime);
+
 /// How the service under measurement is started, and where.
 struct ServiceSetup {
   std::uint32_t domain = 0;

@@ -18,18 +18,23 @@ constexpr double kAlarmLate_s = 1;
 /// A processor that was away for so long a moment ago makes peers fall silent and drives lag: half
 /// of what a service waits for feedback by default.
 constexpr double kTooLongAway_s = 0.05;
-/// Drives of a service in best effort bridge at least 50 ms; a stall that begins within a nap of
-/// HostWatch, 5 ms, is seen by so much too short.
-constexpr double kBridgeAway_s = 0.045;
 
-/// How long a processor must have been away to make `alarm`; nothing: no stall makes it.
-[[nodiscard]] std::optional<double> away_for(Alarm alarm, bool misses_setpoints) noexcept {
+/// What is seen at least of a stall that drives do not bridge: it may begin within a nap.
+[[nodiscard]] double seen_of(double bridge_s) noexcept {
+  const auto nap_ns = HostWatch::nap_ns(static_cast<std::int64_t>(bridge_s * 1e9));
+  return std::max(bridge_s - static_cast<double>(nap_ns) * 1e-9, 1e-3);
+}
+
+/// How long a processor must have been away to make `alarm` where drives bridge `bridge_s`;
+/// nothing: no stall makes it.
+[[nodiscard]] std::optional<double> away_for(Alarm alarm, bool misses_setpoints,
+                                             double bridge_s) noexcept {
   const bool is_of_silence = alarm == Alarm::kFeedbackLost || alarm == Alarm::kFollowingError ||
                              alarm == Alarm::kSetpointsUnheard;
   if (is_of_silence) return kTooLongAway_s;
   const bool is_of_bridge =
       alarm == Alarm::kPeriodsLost || (alarm == Alarm::kDriveFault && misses_setpoints);
-  return is_of_bridge ? std::optional(kBridgeAway_s) : std::nullopt;
+  return is_of_bridge ? std::optional(seen_of(bridge_s)) : std::nullopt;
 }
 
 }  // namespace
@@ -91,7 +96,7 @@ std::optional<FaultJudge::Cause> FaultJudge::see(const dds::Status& status, doub
   if (std::exchange(is_own_doing_, false)) return Cause::kOwnDoing;
   const bool is_injected = injected_ && explains(*injected_, enabled_s_, alarm_, joint_);
   if (is_injected) return Cause::kInjected;
-  const auto least_s = away_for(alarm_, misses_setpoints_);
+  const auto least_s = away_for(alarm_, misses_setpoints_, bridge_s_);
   if (!least_s) return Cause::kUnprovoked;
   if (!is_watched_) return Cause::kUnwatched;
   return away_s_ >= *least_s ? Cause::kHost : Cause::kUnprovoked;

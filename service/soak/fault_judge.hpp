@@ -32,6 +32,9 @@ struct Witness {
 /// Proof: tests/unit/soak/fault_judge_test.cpp.
 class FaultJudge {
  public:
+  /// `bridge_s`: for so long drives bridge missing setpoints.
+  explicit FaultJudge(double bridge_s = 0.05) noexcept : bridge_s_(bridge_s) {}
+
   enum class Cause { kInjected, kOwnDoing, kHost, kUnwatched, kUnprovoked };
 
   /// New drives, which nobody has enabled yet, with what they are to suffer. Where the machine was
@@ -59,6 +62,7 @@ class FaultJudge {
  private:
   void listen(const Witness& witness) noexcept;
 
+  double bridge_s_;
   std::optional<Planned> injected_;
   double enabled_s_ = 0, seen_s_ = 0, fault_s_ = 0;
   bool is_on_ = false, is_faulty_ = false, is_judged_ = false, is_own_doing_ = false;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "meridian/rt/state_table.hpp"
+
 namespace meridian::soak {
 namespace {
 
@@ -19,16 +21,19 @@ void HealthWatch::begin_life(double now_s) {
   begin_s_ = drift_s_ = now_s;
 }
 
-void HealthWatch::look(pid_t service, double now_s) {
+void HealthWatch::look(pid_t service, double now_s, const dds::Status* status) {
   take_latencies(now_s);
   const auto account = process::account_of(service);
   if (!account || report_.lives.empty()) return;
   Life& life = report_.lives.back();
   life.last.process = *account;
+  life.last.threads = process::threads_of(service);
   life.most_resident_mib = std::max(life.most_resident_mib, account->resident_mib);
-  if (const auto cycle = process::account_of(service, "cycle")) life.last.cycle = *cycle;
-  if (const auto publisher = process::account_of(service, "publisher")) {
-    life.last.publisher = *publisher;
+  if (status != nullptr) {
+    life.last.cycles_run = status->cycles_run;
+    report_.is_enforced = status->realtime_mode == dds::RealtimeMode::kEnforced;
+    const bool is_on = is_enabled(status->state) && status->state != State::kEnabling;
+    if (life.ready.empty() && is_on) life.ready = life.last.threads;
   }
   if (!life.has_first && now_s - begin_s_ >= kWarmUp_s) {
     life.first = life.last;
@@ -49,7 +54,9 @@ void HealthWatch::take_latencies(double now_s) {
     Drift& drift = report_.latencies[one.name];
     Seen& seen = seen_[one.name];
     // All of it at every look: a service that is killed says no more.
-    drift.all.merge(one.histogram.since(seen.last));
+    const Histogram lately = one.histogram.since(seen.last);
+    drift.all.merge(lately);
+    report_.slices.add(now_s, one.name, lately);
     seen.last = one.histogram;
     if (!is_interval) continue;
     const Histogram interval = one.histogram.since(seen.interval);

@@ -20,8 +20,12 @@ class HealthWatch {
 
   /// A service was started.
   void begin_life(double now_s);
-  /// Once a second while it runs.
-  void look(pid_t service, double now_s);
+  /// Once a second while it runs; `status` is the newest of this life, nullptr before the first.
+  void look(pid_t service, double now_s, const dds::Status* status);
+  /// How late a bare thread of highest priority woke since the last call, on the cycle's processor.
+  void take_bare(double now_s, const Histogram& lateness) {
+    report_.slices.add(now_s, kBareThread, lateness);
+  }
 
  private:
   void take_latencies(double now_s);

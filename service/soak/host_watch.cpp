@@ -15,9 +15,8 @@
 namespace meridian::soak {
 namespace {
 
-constexpr std::int64_t kNap_ns = 5'000'000;
-/// A processor that comes back for no longer than two naps does no more than begin to catch up.
-constexpr std::int64_t kOneStall_ns = 2 * kNap_ns;
+/// A processor that comes back for no longer than this does no more than begin to catch up.
+constexpr std::int64_t kOneStall_ns = 10'000'000;
 
 [[nodiscard]] bool rise_on(int cpu) noexcept {
   cpu_set_t one;
@@ -49,7 +48,9 @@ std::int64_t longest_away_ns(std::span<const Stall> stalls, std::int64_t since_n
   return longest_ns;
 }
 
-HostWatch::HostWatch() {
+HostWatch::HostWatch(std::int64_t bridge_ns)
+    : nap_ns_(nap_ns(bridge_ns)),
+      least_ns_(std::clamp(bridge_ns - nap_ns_, nap_ns_, std::int64_t{kStall_ns})) {
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &process::initial_cpus())) continue;
     threads_.emplace_back([this, cpu](const std::stop_token& stop) { watch(cpu, stop); });
@@ -62,19 +63,29 @@ void HostWatch::watch(int cpu, const std::stop_token& stop) {
   if (!rise_on(cpu)) return;
   ++watched_;
   while (!stop.stop_requested()) {
-    const std::int64_t due_ns = stream::steady_ns() + kNap_ns;
-    std::this_thread::sleep_for(std::chrono::nanoseconds(kNap_ns));
+    const std::int64_t due_ns = stream::steady_ns() + nap_ns_;
+    std::this_thread::sleep_for(std::chrono::nanoseconds(nap_ns_));
     const std::int64_t now_ns = stream::steady_ns();
-    if (now_ns - due_ns >= kStall_ns) note({now_ns, now_ns - due_ns, cpu});
+    note({now_ns, now_ns - due_ns, cpu});
   }
 }
 
-void HostWatch::note(const Stall& stall) {
+void HostWatch::note(const Stall& late) {
   const std::lock_guard lock(mutex_);
+  lateness_[late.cpu].record(late.length_ns);
+  if (late.length_ns >= kStall_ns) {
+    ++count_;
+    longest_ns_ = std::max(longest_ns_, late.length_ns);
+  }
+  if (late.length_ns < least_ns_) return;
   if (stalls_.size() == kMostStalls) stalls_.erase(stalls_.begin());
-  stalls_.push_back(stall);
-  ++count_;
-  longest_ns_ = std::max(longest_ns_, stall.length_ns);
+  stalls_.push_back(late);
+}
+
+Histogram HostWatch::lateness(int cpu) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = lateness_.find(cpu);
+  return at == lateness_.end() ? Histogram{} : at->second;
 }
 
 std::vector<Stall> HostWatch::stalls_since(std::int64_t since_ns) const {

@@ -8,7 +8,9 @@
 #include <system_error>
 #include <utility>
 
+#include "service/probe/service_setup.hpp"
 #include "service/process/programs.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::soak {
 namespace {
@@ -31,49 +33,56 @@ std::string injection_text(const Planned& mishap, const std::string& drive_name)
   return text;
 }
 
-Plant::Plant(std::string machine, std::string tools, std::uint32_t domain,
-             std::filesystem::path folder, const std::filesystem::path& kept)
-    : machine_(std::move(machine)),
-      tools_(std::move(tools)),
-      domain_(std::to_string(domain)),
+std::string service_text(const PlantOptions& options) {
+  const auto quoted = [](const std::string& file) {
+    return text::json_quoted(std::filesystem::absolute(file).string());
+  };
+  std::string out = "[service]\nmachine = " + quoted(options.machine) + "\n";
+  if (!options.tools.empty()) out += "tools = " + quoted(options.tools) + "\n";
+  if (options.bridge_cycles) {
+    out += "bridge_cycles = " + std::to_string(*options.bridge_cycles) + "\n";
+  }
+  return out + "\n" + probe::realtime_section(options.realtime);
+}
+
+Plant::Plant(PlantOptions options, std::filesystem::path folder, const std::filesystem::path& kept)
+    : options_(std::move(options)),
+      domain_(std::to_string(options_.domain)),
       folder_(std::move(folder)),
       kept_(kept, "fault", kMostKept) {}
 
 void Plant::start_service(const std::filesystem::path& recording) {
+  const auto file = folder_ / "service.toml";
+  std::ofstream(file) << service_text(options_);
   std::vector<std::string> words{process::program_beside("meridiand").string(),
-                                 "--machine",
-                                 machine_,
+                                 "--service",
+                                 file.string(),
                                  "--domain",
                                  domain_,
                                  "--record",
                                  recording.string(),
                                  "--faults",
-                                 flights().string(),
-                                 "--best-effort"};
-  if (!tools_.empty()) {
-    const auto file = folder_ / "service.toml";
-    std::ofstream(file) << "[service]\ntools = \"" << std::filesystem::absolute(tools_).string()
-                        << "\"\n";
-    words.insert(words.end(), {"--service", file.string()});
-  }
+                                 flights().string()};
+  if (!options_.trace.empty()) words.insert(words.end(), {"--trace", options_.trace.string()});
   service_ = std::make_unique<ChildProcess>(
-      words, ChildProcess::Options{.error_file = log("service.log")});
+      words, ChildProcess::Options{.error_file = log("service.log"), .has_own_group = true});
 }
 
 void Plant::start_drives(const std::optional<Planned>& mishap, const std::string& drive_name) {
   std::vector<std::string> words{process::program_beside("meridian").string(),
                                  "drives",
                                  "--machine",
-                                 machine_,
+                                 options_.machine,
                                  "--domain",
                                  domain_};
   if (mishap) {
     words.insert(words.end(), {"--inject", injection_text(*mishap, drive_name)});
   }
   drives_.reset();
-  drives_ = std::make_unique<ChildProcess>(
-      words,
-      ChildProcess::Options{.error_file = log("drives.log"), .output_file = log("drives.out")});
+  drives_ =
+      std::make_unique<ChildProcess>(words, ChildProcess::Options{.error_file = log("drives.log"),
+                                                                  .output_file = log("drives.out"),
+                                                                  .has_own_group = true});
 }
 
 void Plant::start_station(const std::string& program) {
@@ -81,7 +90,9 @@ void Plant::start_station(const std::string& program) {
   station_ = std::make_unique<ChildProcess>(
       std::vector<std::string>{process::program_beside("meridian").string(), "stream", program,
                                "--domain", domain_, "--wait-end"},
-      ChildProcess::Options{.error_file = log("station.log"), .output_file = log("station.out")});
+      ChildProcess::Options{.error_file = log("station.log"),
+                            .output_file = log("station.out"),
+                            .has_own_group = true});
 }
 
 std::string Plant::keep_logs() {

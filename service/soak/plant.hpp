@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "service/config/service_file.hpp"
 #include "service/process/child_process.hpp"
 #include "service/soak/chaos.hpp"
 #include "service/soak/evidence.hpp"
@@ -17,12 +18,24 @@ namespace meridian::soak {
 /// where it is of one drive. Proof: tests/unit/soak/soak_test.cpp.
 [[nodiscard]] std::string injection_text(const Planned& mishap, const std::string& drive_name);
 
+/// How the service of a plant is started.
+struct PlantOptions {
+  std::string machine{}, tools{};  ///< files; tools empty: none
+  std::uint32_t domain = 0;
+  config::RealtimeConfig realtime{.mode = config::RealtimeMode::kBestEffort};
+  std::optional<int> bridge_cycles{};  ///< as the service file says
+  std::filesystem::path trace{};       ///< folder of traces of slow cycles; empty: none
+};
+
+/// The service file of it: machine, tools, real time, and nothing else of a service that has its
+/// own work to do. Proof: tests/unit/soak/soak_test.cpp.
+[[nodiscard]] std::string service_text(const PlantOptions& options);
+
 /// Service, drives and station as processes; each may die and be started again.
 class Plant {
  public:
   /// Logs are kept in folder `kept`, anew; empty: none are.
-  Plant(std::string machine, std::string tools, std::uint32_t domain, std::filesystem::path folder,
-        const std::filesystem::path& kept);
+  Plant(PlantOptions options, std::filesystem::path folder, const std::filesystem::path& kept);
 
   void start_service(const std::filesystem::path& recording);
   /// With something that is to go wrong, or nothing. `name` is that of the drive.
@@ -53,7 +66,8 @@ class Plant {
   [[nodiscard]] std::filesystem::path flights() const { return folder_ / "flights"; }
 
   static constexpr int kMostKept = 20;
-  std::string machine_, tools_, domain_;
+  PlantOptions options_;
+  std::string domain_;
   std::filesystem::path folder_;
   Evidence kept_;
   std::string flight_of_;  ///< stem of the logs whose flight is not kept yet

@@ -8,14 +8,19 @@
 #include <utility>
 
 #include "service/config/machine_file.hpp"
+#include "service/config/service_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
 #include "service/drives/cia402.hpp"
+#include "service/probe/doctor.hpp"
 #include "service/probe/figures.hpp"
+#include "service/probe/measure.hpp"
+#include "service/probe/probe_report.hpp"
 #include "service/process/processors.hpp"
 #include "service/process/programs.hpp"
 #include "service/soak/fault_judge.hpp"
 #include "service/soak/health_watch.hpp"
+#include "service/soak/host_credit.hpp"
 #include "service/soak/host_watch.hpp"
 #include "service/soak/judge.hpp"
 #include "service/soak/plant.hpp"
@@ -31,7 +36,7 @@ namespace {
 
 using std::chrono::milliseconds;
 constexpr milliseconds kTick{20}, kAnswer{1500};
-constexpr double kReportEvery_s = 5, kHealthEvery_s = 1;
+constexpr double kReportEvery_s = 2, kHealthEvery_s = 1;
 /// So often is asked for what leads on and the state stays, until the drives are started anew.
 constexpr int kMostInVain = 15;
 /// Between the end of a program and the next: its recording is cut there.
@@ -49,29 +54,38 @@ constexpr double kStuck_s = 60;
 
 class Soak {
  public:
-  Soak(const SoakOptions& options, const std::function<void(const std::string&)>& say)
+  Soak(const SoakOptions& options, const PlantOptions& plant, MachineModel model,
+       const std::function<void(const std::string&)>& say)
       : options_(options),
         say_(say),
-        model_(config::load_machine(options.machine)),
+        model_(std::move(model)),
         tools_(options.tools.empty() ? ToolTable{} : config::load_tools(options.tools)),
         judge_(model_, tools_, folder_.path(), kept_beside(options.report)),
-        plant_(options.machine, options.tools, options.domain, folder_.path(),
-               kept_beside(options.report)),
+        plant_(plant, folder_.path(), kept_beside(options.report)),
         chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.most_feed_override),
         participant_({.domain = options.domain, .machine = model_.name}),
         operator_(participant_, "soak"),
         feedback_reader_(participant_),
-        health_(participant_, report_) {
+        health_(participant_, report_),
+        bridge_ns_(model_.bridge_cycles * model_.cycle_ns),
+        host_(bridge_ns_),
+        faults_(static_cast<double>(bridge_ns_) * 1e-9),
+        credit_(model_.cycle_ns, HostWatch::nap_ns(bridge_ns_)) {
     report_.machine = model_.name;
     report_.host = probe::host_text();
     report_.seed = options.seed;
     report_.asked_s = options.for_s;
+    report_.allowed = load_growth_budgets(!options.trace.empty());
+    report_.service_file = options.service;
+    report_.cpu = plant.realtime.cpu;
+    report_.host_nap_ns = HostWatch::nap_ns(bridge_ns_);
   }
 
   SoakReport run(const std::atomic<bool>& is_stopping) {
     start_service();
     start_drives();
     if (options_.chaos_every_s > 0) next_ = chaos_.next();
+    tell();
     while (now_s() < options_.for_s && !is_stopping.load()) {
       const bool is_news = operator_.wait_for_status(kTick);
       keep_alive();
@@ -95,6 +109,7 @@ class Soak {
     plant_.start_service(judge_.pipe());
     ++report_.service_starts;
     health_.begin_life(now_s());
+    newest_.reset();
     faults_.lose_service();
     state_ = State::kOff;
     moved_s_ = now_s();
@@ -161,7 +176,8 @@ class Soak {
   }
 
   void see(const dds::Status& status) {
-    counts_.add(status, report_);
+    newest_ = status;
+    count(status);
     constexpr std::int64_t kMemory_ns = FaultJudge::kStallsOf_ns + FaultJudge::kLongestStop_ns;
     const Witness witness{host_.stalls_since(status.time_ns - kMemory_ns), host_.is_watching(),
                           misses_setpoints()};
@@ -175,6 +191,16 @@ class Soak {
                     "soak");
     moved_s_ = now_s();
     break_off();
+  }
+
+  void count(const dds::Status& status) {
+    const std::uint64_t lost = report_.periods_lost;
+    counts_.add(status, report_);
+    const Histogram late = host_.lateness(report_.cpu), lately = late.since(bare_);
+    bare_ = late;
+    credit_.add(now_s(), lately);
+    report_.periods_lost_to_host += credit_.explain(now_s(), report_.periods_lost - lost);
+    health_.take_bare(now_s(), lately);
   }
 
   /// Whether a drive has stopped because setpoints stayed away.
@@ -314,15 +340,23 @@ class Soak {
     const double now = now_s();
     if (now - healthy_s_ >= kHealthEvery_s) {
       healthy_s_ = now;
-      if (plant_.service() != nullptr) health_.look(plant_.service()->id(), now);
+      look(now);
     }
     if (now - told_s_ < kReportEvery_s) return;
     told_s_ = now;
     tell();
   }
 
+  void look(double now_s) {
+    if (plant_.service() == nullptr) return;
+    health_.look(plant_.service()->id(), now_s, newest_ ? &*newest_ : nullptr);
+  }
+
   void tell() {
-    report_.elapsed_s = now_s();
+    if (!report_.is_over) report_.elapsed_s = now_s();
+    if (!options_.trace.empty()) {
+      report_.traces = probe::examine_traces(options_.trace).front().found;
+    }
     report_.is_host_watched = host_.is_watching();
     report_.host_stalls = host_.stalls();
     report_.host_longest_s = host_.longest_s();
@@ -335,17 +369,16 @@ class Soak {
   }
 
   void end() {
-    report_.elapsed_s = now_s();
+    report_.is_interrupted = now_s() < options_.for_s;
     plant_.kill_station();
-    if (plant_.service() != nullptr) health_.look(plant_.service()->id(), now_s());
+    look(now_s());
+    tell();  // what follows may take as long as a stop, and somebody may lose patience
     if (!plant_.end_service()) report_.violate("the service did not end well", "soak");
     if (plant_.awaits_flight()) plant_.keep_flight();
     plant_.stop_drives();
     judge_.finish();
     report_.is_over = true;
-    const double elapsed_s = report_.elapsed_s;
     tell();
-    report_.elapsed_s = elapsed_s;
   }
 
   const SoakOptions& options_;
@@ -362,8 +395,12 @@ class Soak {
   dds::Reader<dds::DriveFeedback> feedback_reader_;
   dds::DriveFeedback feedback_;  ///< the newest
   HealthWatch health_;
+  std::int64_t bridge_ns_;  ///< what drives bridge
   HostWatch host_;
   FaultJudge faults_;
+  HostCredit credit_;
+  Histogram bare_;                     ///< lateness of the witness, as far as it is taken
+  std::optional<dds::Status> newest_;  ///< of this life
   std::optional<Planned> next_, injected_;
   StatusCounts counts_;
   State state_ = State::kOff;
@@ -374,12 +411,35 @@ class Soak {
   double service_at_s_ = 0, drives_at_s_ = 0, flight_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;
 };
 
+/// A service that enforces real time would end at once, again and again.
+void refuse_without_rights(const config::RealtimeConfig& realtime) {
+  if (realtime.mode != config::RealtimeMode::kEnforce) return;
+  const auto missing = probe::missing_rights(probe::try_rights(), realtime);
+  if (missing.empty()) return;
+  std::string text = "the service file enforces real time, and here is no right to ";
+  for (const std::string& one : missing) text += (&one == &missing.front() ? "" : ", ") + one;
+  throw std::runtime_error(text + "; see meridian doctor, or set mode = \"best_effort\"");
+}
+
 }  // namespace
 
 SoakReport run_soak(const SoakOptions& options, const std::atomic<bool>& is_stopping,
                     const std::function<void(const std::string&)>& say) {
-  process::stay_off_cpu(process::last_cpu());  // our DDS threads inherit that
-  return Soak(options, say).run(is_stopping);
+  config::ServiceConfig service;
+  service.realtime.mode = config::RealtimeMode::kBestEffort;
+  if (!options.service.empty()) service = config::load_service(options.service);
+  MachineModel model = config::load_machine(options.machine);
+  model.bridge_cycles = config::find_bridge_cycles(service, model);
+  service.realtime.cpu = probe::cycle_cpu(service.realtime);
+  refuse_without_rights(service.realtime);
+  process::stay_off_cpu(service.realtime.cpu);  // our DDS threads inherit that
+  const PlantOptions plant{.machine = options.machine,
+                           .tools = options.tools,
+                           .domain = options.domain,
+                           .realtime = service.realtime,
+                           .bridge_cycles = service.bridge_cycles,
+                           .trace = options.trace};
+  return Soak(options, plant, std::move(model), say).run(is_stopping);
 }
 
 }  // namespace meridian::soak

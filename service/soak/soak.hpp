@@ -19,6 +19,8 @@ struct SoakOptions {
   std::uint64_t seed = 1;
   double chaos_every_s = 0;  ///< mean distance of mishaps; 0: none
   std::uint32_t domain = 0;
+  std::string service;          ///< service file whose real time is run; empty: best effort
+  std::filesystem::path trace;  ///< folder of traces of slow cycles; empty: none
   /// JSON; text and recordings lie beside it (report_files.hpp). Empty: none on the way.
   std::filesystem::path report;
 };
@@ -26,7 +28,7 @@ struct SoakOptions {
 /// Runs service, simulated drives and station as processes, one program after the other, and is
 /// their operator, until the time is over or `is_stopping`. Everything the service sends is judged
 /// while it runs; the report is written every few seconds. Programs lie beside the running one.
-/// Throws std::runtime_error or dds::DdsError where it cannot begin.
+/// Throws config::ConfigError, std::runtime_error or dds::DdsError where it cannot begin.
 [[nodiscard]] SoakReport run_soak(const SoakOptions& options, const std::atomic<bool>& is_stopping,
                                   const std::function<void(const std::string&)>& say);
 

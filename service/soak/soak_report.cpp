@@ -13,7 +13,6 @@ namespace {
 
 using text::append;
 using text::Count;
-using text::json_quoted;
 
 constexpr double kUs = 1e-3;
 
@@ -32,36 +31,88 @@ void append_mishaps(std::string& out, const SoakReport& report) {
   if (*separator == '\0') out += "none";
 }
 
+/// Page faults since Ready of every real-time thread but cycle and publisher, which have a budget.
+[[nodiscard]] std::uint64_t faults_of_others(const Life& life) {
+  std::uint64_t sum = 0;
+  for (const process::ThreadAccount& one : life.last.threads) {
+    const bool is_judged = one.name == "cycle" || one.name == "publisher";
+    const auto same = std::ranges::find(life.ready, one.id, &process::ThreadAccount::id);
+    if (is_judged || one.priority == 0 || same == life.ready.end()) continue;
+    sum += one.minor_faults + one.major_faults - same->minor_faults - same->major_faults;
+  }
+  return sum;
+}
+
+[[nodiscard]] process::ThreadAccount grown(const Life& life, const std::string& name) {
+  const auto *const first = thread_of(life.first.threads, name), *const last = thread_of(
+                                                                     life.last.threads, name);
+  process::ThreadAccount out = last != nullptr ? *last : process::ThreadAccount{};
+  if (first == nullptr || last == nullptr) return out;
+  out.voluntary_switches -= first->voluntary_switches;
+  out.involuntary_switches -= first->involuntary_switches;
+  return out;
+}
+
 void append_lives(std::string& out, const SoakReport& report) {
   for (std::size_t i = 0; i < report.lives.size(); ++i) {
     const Life& life = report.lives[i];
     if (!life.has_first) continue;
-    const auto faults = [](const process::ThreadAccount& a, const process::ThreadAccount& b) {
-      return Count{b.minor_faults + b.major_faults - a.minor_faults - a.major_faults};
-    };
-    append(
-        out,
-        "  service %zu: resident %.1f -> %.1f MiB (most %.1f), files %d -> %d, threads %d -> %d\n",
-        i + 1, life.first.process.resident_mib, life.last.process.resident_mib,
-        life.most_resident_mib, life.first.process.files, life.last.process.files,
-        life.first.process.threads, life.last.process.threads);
     append(out,
-           "    page faults after warm-up: cycle %llu, publisher %llu; switches of the cycle: %llu "
-           "voluntary, %llu not\n",
-           faults(life.first.cycle, life.last.cycle),
-           faults(life.first.publisher, life.last.publisher),
-           Count{life.last.cycle.voluntary_switches - life.first.cycle.voluntary_switches},
-           Count{life.last.cycle.involuntary_switches - life.first.cycle.involuntary_switches});
+           "  service %zu: resident %.1f -> %.1f MiB (most %.1f, locked %.1f), files %d -> %d, "
+           "threads %d -> %d\n",
+           i + 1, life.first.process.resident_mib, life.last.process.resident_mib,
+           life.most_resident_mib, life.last.process.locked_mib, life.first.process.files,
+           life.last.process.files, life.first.process.threads, life.last.process.threads);
+    const process::ThreadAccount cycle = grown(life, "cycle"), publisher = grown(life, "publisher");
+    append(out,
+           "    page faults since Ready: cycle %llu, publisher %llu, other real-time threads %llu; "
+           "switches: cycle %llu voluntary, %llu not, publisher %llu, %llu\n",
+           Count{faults_of(life.ready, life.last.threads, "cycle")},
+           Count{faults_of(life.ready, life.last.threads, "publisher")},
+           Count{faults_of_others(life)}, Count{cycle.voluntary_switches},
+           Count{cycle.involuntary_switches}, Count{publisher.voluntary_switches},
+           Count{publisher.involuntary_switches});
   }
+}
+
+/// What was asked for, and what the kernel says that ran.
+void append_scheduling(std::string& out, const SoakReport& report) {
+  append(out, "  service: %s, real time %s, cycle for processor %d",
+         report.service_file.empty() ? "default" : report.service_file.c_str(),
+         report.is_enforced ? "enforced" : "best effort", report.cpu);
+  if (!report.lives.empty()) {
+    for (const char* const name : {"cycle", "publisher"}) {
+      const auto* const thread = thread_of(report.lives.back().last.threads, name);
+      if (thread == nullptr) continue;
+      append(out, "; %s ran %s on %s", name, scheduling_text(*thread).c_str(),
+             thread->processors.c_str());
+    }
+  }
+  out += '\n';
+  if (!report.traces.empty()) append(out, "  traces of slow cycles: %s\n", report.traces.c_str());
 }
 
 }  // namespace
 
-GrowthBudgets load_growth_budgets() {
-  return {.resident_mib = probe::load_budget("resident_memory").allowed(),
+GrowthBudgets load_growth_budgets(bool is_traced) {
+  const double traces_mib = is_traced ? probe::load_budget("trace_memory").allowed() : 0;
+  return {.resident_mib = probe::load_budget("resident_memory").allowed() + traces_mib,
           .more_mib = probe::load_budget("soak_memory_growth").allowed(),
           .more_files = probe::load_budget("soak_file_growth").allowed(),
           .more_threads = probe::load_budget("soak_thread_growth").allowed()};
+}
+
+const process::ThreadAccount* thread_of(const std::vector<process::ThreadAccount>& threads,
+                                        const std::string& name) {
+  const auto at = std::ranges::find(threads, name, &process::ThreadAccount::name);
+  return at == threads.end() ? nullptr : &*at;
+}
+
+std::uint64_t faults_of(const std::vector<process::ThreadAccount>& first,
+                        const std::vector<process::ThreadAccount>& last, const std::string& name) {
+  const auto *const before = thread_of(first, name), *const after = thread_of(last, name);
+  if (before == nullptr || after == nullptr) return 0;
+  return after->minor_faults + after->major_faults - before->minor_faults - before->major_faults;
 }
 
 void SoakReport::violate(std::string text, std::string where) {
@@ -88,7 +139,9 @@ void SoakReport::add(const record::CheckReport& check, const std::string& where)
 
 bool SoakReport::passed() const {
   return violation_count == 0 && host_faults == 0 && finished > 0 && segments_unread == 0 &&
-         growth(*this).empty();
+         growth(*this).empty() && std::ranges::none_of(judge_run(*this), [](const Judgement& one) {
+           return one.verdict == Judgement::Verdict::kBroken;
+         });
 }
 
 std::vector<std::string> growth(const SoakReport& report) {
@@ -122,7 +175,12 @@ std::vector<std::string> growth(const SoakReport& report) {
 std::string to_text(const SoakReport& report) {
   std::string out = report.host + "\n";
   append(out, "soak of machine %s: %.0f s of %.0f s%s, seed %llu\n", report.machine.c_str(),
-         report.elapsed_s, report.asked_s, report.is_over ? "" : " so far", Count{report.seed});
+         report.elapsed_s, report.asked_s,
+         report.is_interrupted ? ", interrupted"
+         : report.is_over      ? ""
+                               : " so far",
+         Count{report.seed});
+  append_scheduling(out, report);
   append(out, "  programs %llu: finished %llu, broken off %llu, refused %llu; alarms %llu\n",
          Count{report.programs}, Count{report.finished}, Count{report.aborted},
          Count{report.refused}, Count{report.alarms});
@@ -139,9 +197,11 @@ std::string to_text(const SoakReport& report) {
       "acceleration %.4f, jerk %.4f\n",
       report.tip_mm, units::deg_from_rad(report.axis_rad), report.velocity, report.acceleration,
       report.jerk);
-  append(out, "  cycles %llu, periods lost %llu, starved %llu times, overruns %llu\n",
-         Count{report.cycles_run}, Count{report.periods_lost}, Count{report.starvations},
-         Count{report.overruns});
+  append(out,
+         "  cycles %llu, periods lost %llu (to stalls of the host %llu), starved %llu times, "
+         "overruns %llu\n",
+         Count{report.cycles_run}, Count{report.periods_lost}, Count{report.periods_lost_to_host},
+         Count{report.starvations}, Count{report.overruns});
   if (report.is_host_watched) {
     append(out, "  host took a processor away for 10 ms and more: %llu times, at most %.1f ms\n",
            Count{report.host_stalls}, 1e3 * report.host_longest_s);
@@ -155,6 +215,7 @@ std::string to_text(const SoakReport& report) {
            us(drift.all, 0.5), us(drift.all, 0.99), us(drift.all, 0.999), us(drift.all, 1),
            us(drift.first, 0.99), us(drift.last, 0.99));
   }
+  out += "  budgets of the run:\n" + to_text(judge_run(report));
   for (const std::string& text : growth(report)) append(out, "  GROWTH: %s\n", text.c_str());
   for (const Violation& one : report.violations) {
     append(out, "  VIOLATION: %s (%s)\n", one.text.c_str(), one.where.c_str());
@@ -169,64 +230,6 @@ std::string to_text(const SoakReport& report) {
         Count{report.host_faults});
   }
   return out;
-}
-
-std::string to_json(const SoakReport& report) {
-  std::string out = "{\"passed\": ";
-  append(out, "%s, \"over\": %s, \"machine\": %s, \"host\": %s, \"seed\": %llu,\n",
-         report.passed() ? "true" : "false", report.is_over ? "true" : "false",
-         json_quoted(report.machine).c_str(), json_quoted(report.host).c_str(), Count{report.seed});
-  append(out, " \"elapsed_s\": %.1f, \"asked_s\": %.1f, \"programs\": %llu, \"finished\": %llu,\n",
-         report.elapsed_s, report.asked_s, Count{report.programs}, Count{report.finished});
-  append(out, " \"broken_off\": %llu, \"refused\": %llu, \"alarms\": %llu, \"mishaps\": {",
-         Count{report.aborted}, Count{report.refused}, Count{report.alarms});
-  for (int i = 0; i < kMishapCount; ++i) {
-    append(out, "%s\"%s\": %llu", i > 0 ? ", " : "", word(static_cast<Mishap>(i)),
-           Count{report.mishaps[static_cast<std::size_t>(i)]});
-  }
-  append(out, "}, \"host_faults\": %llu, \"host_watched\": %s", Count{report.host_faults},
-         report.is_host_watched ? "true" : "false");
-  append(out, ", \"host_stalls\": %llu, \"host_longest_ms\": %.3f", Count{report.host_stalls},
-         1e3 * report.host_longest_s);
-  append(out, ", \"asks_refused\": %llu, \"asks_unanswered\": %llu", Count{report.asks_refused},
-         Count{report.asks_unanswered});
-  append(out, ",\n \"recordings\": %llu, \"setpoints\": %llu, \"missing\": %llu,\n",
-         Count{report.segments}, Count{report.rows}, Count{report.missing});
-  append(out, " \"tip_mm\": %.9f, \"axis_deg\": %.9f, \"velocity_share\": %.6f,\n", report.tip_mm,
-         units::deg_from_rad(report.axis_rad), report.velocity);
-  append(out, " \"acceleration_share\": %.6f, \"jerk_share\": %.6f, \"cycles\": %llu,\n",
-         report.acceleration, report.jerk, Count{report.cycles_run});
-  append(out,
-         " \"periods_lost\": %llu, \"overruns\": %llu, \"starvations\": %llu,\n \"services\": [",
-         Count{report.periods_lost}, Count{report.overruns}, Count{report.starvations});
-  const char* separator = "";
-  for (const Life& life : report.lives) {
-    append(
-        out,
-        "%s{\"resident_mib\": %.2f, \"most_resident_mib\": %.2f, \"files\": %d, \"threads\": %d}",
-        separator, life.last.process.resident_mib, life.most_resident_mib, life.last.process.files,
-        life.last.process.threads);
-    separator = ", ";
-  }
-  out += "],\n \"latencies\": [";
-  separator = "";
-  for (const auto& [name, drift] : report.latencies) {
-    append(out,
-           "%s\n  {\"name\": %s, \"samples\": %llu, \"p50_us\": %.3f, \"p99_us\": %.3f, "
-           "\"p999_us\": %.3f, \"max_us\": %.3f, \"first_p99_us\": %.3f, \"last_p99_us\": %.3f}",
-           separator, json_quoted(name).c_str(), Count{drift.all.count()}, us(drift.all, 0.5),
-           us(drift.all, 0.99), us(drift.all, 0.999), us(drift.all, 1), us(drift.first, 0.99),
-           us(drift.last, 0.99));
-    separator = ",";
-  }
-  append(out, "],\n \"violation_count\": %llu, \"violations\": [", Count{report.violation_count});
-  separator = "";
-  for (const Violation& one : report.violations) {
-    out += std::string(separator) + "\n  {\"text\": " + json_quoted(one.text) +
-           ", \"where\": " + json_quoted(one.where) + "}";
-    separator = ",";
-  }
-  return out + "]}\n";
 }
 
 }  // namespace meridian::soak

@@ -11,6 +11,8 @@
 #include "service/process/account.hpp"
 #include "service/record/check_report.hpp"
 #include "service/soak/chaos.hpp"
+#include "service/soak/run_budgets.hpp"
+#include "service/soak/time_slices.hpp"
 
 namespace meridian::soak {
 
@@ -23,12 +25,21 @@ struct Violation {
 /// How a service stood at one time.
 struct Health {
   process::Account process;
-  process::ThreadAccount cycle, publisher;
+  std::vector<process::ThreadAccount> threads;
+  std::uint64_t cycles_run = 0;  ///< by its own account
 };
+/// The one of that name; nullptr where there is none.
+[[nodiscard]] const process::ThreadAccount* thread_of(
+    const std::vector<process::ThreadAccount>& threads, const std::string& name);
+/// Page faults that a thread had between two accounts.
+[[nodiscard]] std::uint64_t faults_of(const std::vector<process::ThreadAccount>& first,
+                                      const std::vector<process::ThreadAccount>& last,
+                                      const std::string& name);
 
 /// One life of the service: from its start to its end or death.
 struct Life {
-  Health first, last;  ///< first: when it had warmed up
+  Health first, last;                         ///< first: when it had warmed up
+  std::vector<process::ThreadAccount> ready;  ///< its threads when the machine was Ready first
   double most_resident_mib = 0;
   bool has_first = false;
 };
@@ -43,15 +54,20 @@ struct GrowthBudgets {
   double resident_mib = 0;
   double more_mib = 0, more_files = 0, more_threads = 0;
 };
-/// From the table of budgets; throws as probe::load_budget().
-[[nodiscard]] GrowthBudgets load_growth_budgets();
+/// From the table of budgets, of a service that `is_traced` or not; throws as probe::load_budget().
+[[nodiscard]] GrowthBudgets load_growth_budgets(bool is_traced = false);
 
 /// All that a soak found out, and its verdict. Times s.
 struct SoakReport {
   std::string machine, host;
+  std::string service_file;  ///< whose real time ran; empty: the default, best effort
+  bool is_enforced = false;  ///< as the service says
+  int cpu = 0;               ///< of the cycle
+  std::string traces;        ///< of slow cycles: where, and which lie there; empty: none asked for
   std::uint64_t seed = 0;
   double asked_s = 0, elapsed_s = 0;
-  bool is_over = false;  ///< false: written on the way
+  bool is_over = false;         ///< false: written on the way
+  bool is_interrupted = false;  ///< it was asked to end before its time
   std::uint64_t programs = 0, finished = 0, aborted = 0, refused = 0;
   std::uint64_t segments = 0, segments_unread = 0, rows = 0, missing = 0, longest_gap = 0;
   std::array<std::uint64_t, kMishapCount> mishaps{};    ///< that came to pass
@@ -61,14 +77,18 @@ struct SoakReport {
   bool is_host_watched = false;   ///< else what follows says nothing
   std::uint64_t host_stalls = 0;  ///< so often it took one away for 10 ms or more
   double host_longest_s = 0;
+  std::int64_t host_nap_ns = 5'000'000;             ///< of who watched it
   double tip_mm = 0, axis_rad = 0;                  ///< largest deviations
   double velocity = 0, acceleration = 0, jerk = 0;  ///< largest share of a limit
   std::uint64_t cycles_run = 0, periods_lost = 0, overruns = 0, starvations = 0;
+  std::uint64_t periods_lost_to_host = 0;  ///< of periods_lost: HostCredit
   std::vector<Life> lives;
+  TimeSlices slices;  ///< latencies, and lateness of a bare thread on the cycle's processor
   std::map<std::string, Drift> latencies;
   std::vector<Violation> violations;  ///< the first kMostViolations
   std::uint64_t violation_count = 0;
   GrowthBudgets allowed = load_growth_budgets();
+  RunBudgets budgets = load_run_budgets();
   static constexpr std::size_t kMostViolations = 100;
 
   void violate(std::string text, std::string where);

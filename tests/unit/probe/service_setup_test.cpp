@@ -24,6 +24,7 @@ TEST(ServiceSetup, MeasuresTheRealTimeOfTheServiceThatWillServe) {
                      .period_ns = 1'000'000};
   setup.realtime.cpu = 3;
   setup.realtime.cycle_priority = 85;
+  setup.realtime.io_priority = 51;
   setup.realtime.lock_memory = false;
   const auto words = setup.command(folder.path() / "recording.csv");
   const auto named = std::find(words.begin(), words.end(), "--service");
@@ -32,6 +33,8 @@ TEST(ServiceSetup, MeasuresTheRealTimeOfTheServiceThatWillServe) {
   EXPECT_EQ(service.realtime.cpu, 3);
   EXPECT_EQ(service.realtime.cycle_priority, 85);
   EXPECT_EQ(service.realtime.publisher_priority, setup.realtime.publisher_priority);
+  EXPECT_EQ(service.realtime.io_priority, 51);
+  EXPECT_EQ(service.realtime.mode, config::RealtimeMode::kBestEffort);
   EXPECT_FALSE(service.realtime.lock_memory);
   EXPECT_TRUE(service.realtime.hold_dma_latency);
   EXPECT_EQ(service.machine, setup.machine);

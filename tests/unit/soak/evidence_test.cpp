@@ -69,7 +69,7 @@ class PlantTest : public EvidenceTest {
   }
 
   fs::path work_ = folder_.path() / "work", flights_ = work_ / "flights";
-  Plant plant_{"machine.toml", "", 221, work_, kept_};
+  Plant plant_{{.machine = "machine.toml", .domain = 221}, work_, kept_};
 };
 
 TEST_F(PlantTest, KeepsTheFlightOfTheFaultWhoseLogsItKept) {

@@ -84,6 +84,17 @@ TEST_F(FaultJudgeTest, BlamesTheHostOnlyWhereAProcessorWasSeenToBeAway) {
   EXPECT_EQ(fault_after(Alarm::kTravel, {.is_watched = false}), Cause::kUnprovoked);
 }
 
+TEST_F(FaultJudgeTest, BlamesTheHostForAShortStallWhereDrivesBridgeLess) {
+  const auto fault_after = [&](double bridge_s, const Witness& witness) {
+    judge_ = FaultJudge(bridge_s);
+    EXPECT_FALSE(see(0, State::kRunning));
+    return see(1, State::kFault, Alarm::kPeriodsLost, witness);
+  };
+  EXPECT_EQ(fault_after(0.003, away(0.003, 1)), Cause::kHost);
+  EXPECT_EQ(fault_after(0.003, away(0.0015, 1)), Cause::kUnprovoked);
+  EXPECT_EQ(fault_after(0.05, away(0.003, 1)), Cause::kUnprovoked);
+}
+
 TEST_F(FaultJudgeTest, BlamesTheHostForADriveFaultOnlyWhereTheDriveMissedSetpoints) {
   const auto fault_after = [&](const Witness& witness) {
     EXPECT_FALSE(see(0, State::kReady));

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "service/process/processors.hpp"
 #include "service/stream/steady_ns.hpp"
 
 namespace meridian::soak {
@@ -52,6 +53,11 @@ TEST(LongestAway, IsOfTheTimeThatWasAskedForAlone) {
   EXPECT_EQ(longest_away_ns({}, 0, kNever), 0);
 }
 
+TEST(HostWatch, NapsShorterWhereDrivesBridgeLess) {
+  EXPECT_EQ(HostWatch::nap_ns(50 * kMs), 5 * kMs);
+  EXPECT_EQ(HostWatch::nap_ns(3 * kMs), kMs);
+}
+
 /// Stops this process for `time` and lets it go on.
 void stop_for(std::chrono::milliseconds time) {
   const pid_t me = getpid(), child = fork();
@@ -79,6 +85,9 @@ TEST(HostWatch, SeesThatProcessorsWereAwayAndTellsWhen) {
   const std::int64_t now_ns = stream::steady_ns(), second_ago_ns = now_ns - 1000 * kMs;
   EXPECT_GE(longest_away_ns(host.stalls_since(second_ago_ns), second_ago_ns, now_ns), 100 * kMs);
   EXPECT_GE(host.longest_s(), 0.1);
+  EXPECT_GE(host.lateness(process::last_cpu()).max_ns(), 100 * kMs);
+  EXPECT_GT(host.lateness(process::last_cpu()).count(), 5U) << "every nap counts, late or not";
+  EXPECT_EQ(host.lateness(CPU_SETSIZE).count(), 0U);
   for (const Stall& one : host.stalls_since(now_ns)) EXPECT_GE(one.end_ns, now_ns);
 }
 
