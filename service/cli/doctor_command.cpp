@@ -5,11 +5,15 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/config/service_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/probe/dds_network.hpp"
 #include "service/probe/doctor.hpp"
+#include "service/process/processors.hpp"
 #include "service/stream/machine_finder.hpp"
 
 namespace meridian::cli {
@@ -17,7 +21,8 @@ namespace {
 
 struct Options {
   std::uint32_t domain = 0;
-  std::string machine, trace;
+  std::string machine, trace, service;
+  std::optional<int> cpu;
   bool is_json = false, is_silent = false;
 };
 
@@ -40,14 +45,27 @@ void add(probe::Findings& all, const probe::Findings& more) {
   }
 }
 
+/// The one that the service would take, however it is reached from here.
+[[nodiscard]] int cycle_cpu(const Options& options) {
+  if (options.cpu) return *options.cpu;
+  const int named =
+      options.service.empty() ? -1 : config::load_service(options.service).realtime.cpu;
+  return named >= 0 ? named : process::last_cpu();
+}
+
 int run(const Options& options) {
   const probe::HostFiles host;
   const probe::Rights rights = probe::try_rights();
   const char* const uri = std::getenv("CYCLONEDDS_URI");
   probe::Findings all = probe::examine_rights(host, rights);
+  add(all, probe::examine_service_group(host));
+  add(all, probe::examine_isolation(host, cycle_cpu(options)));
   add(all, probe::examine_processors(host, rights));
   add(all, probe::examine_kernel(host));
-  add(all, probe::examine_network(host, uri == nullptr ? "" : uri));
+  add(all, probe::examine_clocks(host, probe::read_time_of_day()));
+  const std::string cyclone_uri = uri == nullptr ? "" : uri;
+  add(all, probe::examine_network(host, cyclone_uri));
+  add(all, probe::examine_dds_network(host, cyclone_uri, probe::real_network()));
   add(all, probe::examine_traces(options.trace));
   if (!options.is_silent) add(all, examine_domain(options));
   std::cout << (options.is_json ? to_json(all) : to_text(all));
@@ -68,6 +86,13 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--machine-name", options->machine,
                       "Look for this machine only; needed in a secured domain");
+  command->add_option("--service", options->service,
+                      "Service file (TOML): its [realtime] cpu is the cycle's processor");
+  command
+      ->add_option("--cpu", options->cpu,
+                   "The cycle's processor; default: as --service says, else the last of this "
+                   "process")
+      ->check(CLI::Range(0, 1023));
   command->add_option("--trace", options->trace,
                       "Folder of meridiand --trace: can traces of slow cycles be written there by "
                       "this user, and which lie there");

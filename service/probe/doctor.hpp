@@ -26,7 +26,21 @@ struct Rights {
 
 /// Rights, and the limits that stand behind them: control groups, throttling.
 [[nodiscard]] Findings examine_rights(const HostFiles& host, const Rights& rights);
-/// Processors: isolation, clock frequency, sleep states, threads of one core, stolen time.
+/// What a service would meet that is started in a control group of its own, as units are: a kernel
+/// that shares real time out among groups gives new ones none, and FIFO is refused there, to root
+/// too, whatever this process may.
+[[nodiscard]] Findings examine_service_group(const HostFiles& host);
+/// Whether the cycle's processor is there, isolated, tickless and without the kernel's callbacks.
+[[nodiscard]] Findings examine_isolation(const HostFiles& host, int cpu);
+/// Time of day as the kernel keeps it.
+struct TimeOfDay {
+  bool is_synchronised = false;
+  double most_error_s = 0;
+};
+[[nodiscard]] TimeOfDay read_time_of_day();
+/// Time of day, what fires timers, and whether they are moved to other processors.
+[[nodiscard]] Findings examine_clocks(const HostFiles& host, const TimeOfDay& now);
+/// Processors: clock frequency, sleep states, threads of one core, stolen time.
 [[nodiscard]] Findings examine_processors(const HostFiles& host, const Rights& rights);
 /// Kernel flavour, timers, memory, what else wakes up.
 [[nodiscard]] Findings examine_kernel(const HostFiles& host);

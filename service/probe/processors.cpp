@@ -16,18 +16,6 @@ const std::string kCpu = "sys/devices/system/cpu/";
           "the cycle needs one of its own: give the service two or more"};
 }
 
-[[nodiscard]] Finding isolation(const HostFiles& host) {
-  const std::string isolated = host.text(kCpu + "isolated").value_or("");
-  const std::string tickless = host.text(kCpu + "nohz_full").value_or("");
-  if (isolated.empty()) {
-    return {"processor isolation", Health::kNote, "none: anything may run beside the cycle",
-            "boot with isolcpus=N nohz_full=N rcu_nocbs=N and set [realtime] cpu = N"};
-  }
-  const bool is_tickless = !tickless.empty() && tickless != "(null)";
-  return {"processor isolation", Health::kFine,
-          "cpu " + isolated + (is_tickless ? ", tickless " + tickless : ""), ""};
-}
-
 [[nodiscard]] Finding frequency(const HostFiles& host) {
   Finding out{"clock frequency", Health::kFine, "not scaled here", ""};
   for (const std::string& cpu : host.names(kCpu, "cpu")) {
@@ -103,8 +91,8 @@ const std::string kCpu = "sys/devices/system/cpu/";
 }  // namespace
 
 Findings examine_processors(const HostFiles& host, const Rights& rights) {
-  return {count(rights),  isolation(host),     frequency(host), sleep_states(host, rights),
-          siblings(host), virtualisation(host)};
+  return {count(rights), frequency(host), sleep_states(host, rights), siblings(host),
+          virtualisation(host)};
 }
 
 }  // namespace meridian::probe

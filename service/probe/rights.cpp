@@ -69,6 +69,28 @@ constexpr int kCyclePriority = 80;
   return out;
 }
 
+/// The groups that a unit is in, from above: whether one of them has no real-time share.
+[[nodiscard]] std::string group_without_share(const HostFiles& host) {
+  for (const char* const group : {"/system.slice", "/system.slice/meridiand.service"}) {
+    const auto share = host.number("sys/fs/cgroup/cpu" + std::string(group) + "/cpu.rt_runtime_us");
+    if (share == std::optional(0LL)) return group;
+  }
+  return {};
+}
+
+/// Version 2 has no file for the share: a kernel with the option refuses all but the root group
+/// wherever the cpu controller is on.
+[[nodiscard]] bool refuses_in_two(const HostFiles& host) {
+  const std::string release = host.text("proc/sys/kernel/osrelease").value_or("");
+  const std::string options = host.text("boot/config-" + release).value_or("");
+  if (options.find("\nCONFIG_RT_GROUP_SCHED=y") == std::string::npos) return false;
+  std::istringstream on(host.text("sys/fs/cgroup/cgroup.subtree_control").value_or(""));
+  for (std::string controller; on >> controller;) {
+    if (controller == "cpu") return true;
+  }
+  return false;
+}
+
 /// A share of processor time that is used up stops every thread until the next period.
 [[nodiscard]] Finding quota(const HostFiles& host) {
   Finding out{"processor quota", Health::kFine, "none", ""};
@@ -87,6 +109,33 @@ constexpr int kCyclePriority = 80;
 }
 
 }  // namespace
+
+Findings examine_service_group(const HostFiles& host) {
+  const std::string what = "real time in a unit";
+  const std::string top = "sys/fs/cgroup/cpu/cpu.rt_runtime_us";
+  if (const std::string group = group_without_share(host); !group.empty()) {
+    return {{what, Health::kBad,
+             "the cpu control group " + group +
+                 " has no real-time share: a service that systemd puts there is refused FIFO",
+             "write 950000 to /sys/fs/cgroup/cpu" + group +
+                 "/cpu.rt_runtime_us and to the groups below it, from a unit before meridiand"}};
+  }
+  if (refuses_in_two(host)) {
+    return {{what, Health::kBad,
+             "this kernel (CONFIG_RT_GROUP_SCHED) refuses FIFO outside of the root control group "
+             "while the cpu controller is on",
+             "a kernel without CONFIG_RT_GROUP_SCHED (Debian's has none), or boot with "
+             "rt_group_sched=0; and no CPUWeight=, CPUQuota= in any unit"}};
+  }
+  if (host.number(top)) {
+    return {{what, Health::kNote,
+             "this kernel shares real time out among control groups, and a new one gets none: "
+             "CPUWeight=, CPUQuota= or CPUAccounting= of any unit makes one for the service",
+             "leave these out of units, or write 950000 to cpu.rt_runtime_us of the groups that "
+             "they make"}};
+  }
+  return {{what, Health::kFine, "not shared out among control groups", ""}};
+}
 
 Rights try_rights() {
   Rights out;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "service/probe/budgets.hpp"
+#include "service/probe/dds_network.hpp"
 #include "service/process/programs.hpp"
 
 namespace meridian::probe {
@@ -30,6 +31,11 @@ class Doctor : public testing::Test {
     write("proc/swaps", "Filename Type Size Used Priority\n");
     write("proc/sys/net/core/rmem_max", "4194304\n");
     write("sys/class/net/lo/operstate", "unknown\n");
+    write("sys/class/net/lo/flags", "0x9\n");
+    write("sys/devices/system/cpu/online", "0-3\n");
+    write("proc/cmdline", "quiet isolcpus=managed_irq,domain,3 nohz_full=3 rcu_nocbs=2-3\n");
+    write("proc/sys/kernel/timer_migration", "0\n");
+    write("sys/devices/system/clockevents/clockevent0/current_device", "lapic-deadline\n");
     write("sys/devices/system/cpu/isolated", "3\n");
     write("sys/devices/system/cpu/nohz_full", "3\n");
     write("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
@@ -50,7 +56,9 @@ class Doctor : public testing::Test {
     const HostFiles host(root_);
     Findings all = examine_rights(host, rights_);
     for (const Findings& more :
-         {examine_processors(host, rights_), examine_kernel(host), examine_network(host, "")}) {
+         {examine_service_group(host), examine_isolation(host, cpu_),
+          examine_processors(host, rights_), examine_kernel(host), examine_clocks(host, time_),
+          examine_network(host, ""), examine_dds_network(host, "", {})}) {
       all.insert(all.end(), more.begin(), more.end());
     }
     return all;
@@ -74,6 +82,8 @@ class Doctor : public testing::Test {
 
   Rights rights_{
       .has_priority = true, .has_locked_memory = true, .has_dma_latency = true, .cpus = 4};
+  int cpu_ = 3;
+  TimeOfDay time_{.is_synchronised = true, .most_error_s = 0.004};
 
  private:
   fs::path root_ = fs::temp_directory_path() / ("meridian-host-" + std::to_string(::getpid()));
@@ -115,8 +125,6 @@ TEST_F(Doctor, FindsWhatRightsAreMissing) {
 }
 
 TEST_F(Doctor, FindsWhatMakesProcessorsLate) {
-  write("sys/devices/system/cpu/isolated", "\n");
-  expect("processor isolation", Health::kNote, "none");
   write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "powersave\n");
   expect("clock frequency", Health::kNote, "powersave on cpu1");
   write("sys/devices/system/cpu/smt/active", "1\n");
@@ -124,6 +132,53 @@ TEST_F(Doctor, FindsWhatMakesProcessorsLate) {
   write("proc/cpuinfo", "flags : fpu tsc hypervisor lahf\n");
   write("proc/stat", "cpu 100 0 100 700 0 0 0 100 0 0\ncpu0 1 1 1\n");
   expect("virtual machine", Health::kNote, "10.00 %");
+}
+
+TEST_F(Doctor, ExplainsTheTrapOfControlGroupsBeforeAServiceIsRefused) {
+  ASSERT_TRUE(rights_.has_priority) << "the doctor itself may, in the root group";
+  write("sys/fs/cgroup/cpu/cpu.rt_runtime_us", "950000\n");
+  expect("real time in a unit", Health::kNote, "a new one gets none");
+  write("sys/fs/cgroup/cpu/system.slice/cpu.rt_runtime_us", "950000\n");
+  write("sys/fs/cgroup/cpu/system.slice/meridiand.service/cpu.rt_runtime_us", "0\n");
+  expect("real time in a unit", Health::kBad, "/system.slice/meridiand.service has no real-time");
+  write("sys/fs/cgroup/cpu/system.slice/cpu.rt_runtime_us", "0\n");
+  expect("real time in a unit", Health::kBad, "group /system.slice has no real-time");
+  EXPECT_FALSE(is_fit(examine()));
+}
+
+TEST_F(Doctor, ExplainsTheTrapOfTheSecondVersionOfControlGroups) {
+  write("sys/fs/cgroup/cgroup.subtree_control", "cpuset cpu memory\n");
+  EXPECT_EQ(finding("real time in a unit").health, Health::kFine);
+  write("boot/config-6.1.0-rt", "CONFIG_CGROUPS=y\nCONFIG_RT_GROUP_SCHED=y\n");
+  expect("real time in a unit", Health::kBad, "outside of the root control group");
+  write("sys/fs/cgroup/cgroup.subtree_control", "cpuset memory\n");
+  EXPECT_EQ(finding("real time in a unit").health, Health::kFine);
+}
+
+TEST_F(Doctor, LooksAtTheProcessorThatTheCycleIsGiven) {
+  const std::string what = "the cycle's processor";
+  EXPECT_EQ(finding(what).found, "processor 3, isolated, tickless, without callbacks");
+  cpu_ = 1;
+  expect(what, Health::kNote, "processor 1, not isolated; that is 3");
+  cpu_ = 4;
+  expect(what, Health::kBad, "of those that are there: 0-3");
+  cpu_ = 3;
+  write("proc/cmdline", "quiet rcu_nocbs=0-2\n");
+  expect(what, Health::kNote, "isolated, without rcu_nocbs");
+  write("sys/devices/system/cpu/nohz_full", "(null)\n");
+  expect(what, Health::kNote, "without nohz_full, rcu_nocbs");
+  write("sys/devices/system/cpu/isolated", "\n");
+  expect(what, Health::kNote, "not isolated: anything may run");
+}
+
+TEST_F(Doctor, FindsWhatIsWrongWithClocksAndTimers) {
+  EXPECT_EQ(finding("time of day").found, "synchronised, off by 4.0 ms at most");
+  time_.is_synchronised = false;
+  expect("time of day", Health::kNote, "not synchronised");
+  write("sys/devices/system/clockevents/clockevent2/current_device", "hpet\n");
+  expect("timer source", Health::kBad, "hpet for clockevent2");
+  write("proc/sys/kernel/timer_migration", "1\n");
+  expect("timer migration", Health::kNote, "on");
 }
 
 TEST_F(Doctor, MindsSleepStatesOnlyWhereNobodyMayHoldThemOff) {
