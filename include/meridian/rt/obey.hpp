@@ -24,6 +24,9 @@ inline void drop_program(Cycle& c) noexcept {
   c.state.single_block.is_braking = c.state.single_block.is_behind = false;
   c.state.piece_time = 0;
   c.state.program_time = 0;
+  // What it waited for, or was answered, is not of the program that comes.
+  c.state.barrier_time = 0;
+  c.state.action = ActionState::kNotTold;
   c.state.epoch = static_cast<std::uint16_t>(c.state.epoch + 1);
   c.reader.set_epoch(c.state.epoch);
   tell(c, EventCode::kEpochAdvanced, c.state.epoch);

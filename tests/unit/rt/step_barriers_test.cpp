@@ -100,6 +100,38 @@ TEST(StepBarriers, AnActionThatIsDoneDuringAHoldIsNotAskedForAgain) {
   EXPECT_EQ(p.world.count(EventCode::kActionDue), 1);
 }
 
+/// Ends the program in force where it is and starts one that begins with an action.
+void abort_and_start_with_action(Program& p) {
+  p.world.command(Verb::kAbort);
+  ASSERT_TRUE(p.world.run_until(State::kReady, 1));
+  p.plan.set_epoch(p.world.state.epoch);
+  p.plan.barrier(TimeKind::kAction);
+  p.plan.barrier(TimeKind::kEnd);
+  p.run(0.1);
+}
+
+TEST(StepBarriers, AnActionAheadOfEverythingIsAskedForThoughAnAbortedProgramWaitedForOne) {
+  Program p;
+  p.plan.barrier(TimeKind::kAction);
+  p.run(0.1);
+  ASSERT_NO_FATAL_FAILURE(abort_and_start_with_action(p));
+  EXPECT_EQ(p.world.count(EventCode::kActionDue), 2);
+  EXPECT_LT(p.world.state.barrier_time, 0.15) << "s that the one before waited do not count";
+}
+
+TEST(StepBarriers, AnActionAheadOfEverythingIsNotDoneByTheAnswerToThatOfAnAbortedProgram) {
+  Program p;
+  p.plan.barrier(TimeKind::kAction);
+  p.run(0.1);
+  p.world.command(Verb::kHold);
+  p.world.in.action = {p.world.state.sequence, true, true};
+  p.world.run_for(0.1);
+  p.world.in.action = {};
+  ASSERT_NO_FATAL_FAILURE(abort_and_start_with_action(p));
+  EXPECT_EQ(p.world.count(EventCode::kActionDue), 2);
+  EXPECT_EQ(p.world.now(), State::kApproaching) << "it waits ahead of all motion";
+}
+
 TEST(StepBarriers, AProgramStopIsHeldUntilTheOperatorResumes) {
   Program p;
   p.plan.cut({5, 0, 0}, kLimits);
