@@ -183,7 +183,12 @@ void TelemetryThread::tell(const Event& event) {
       has_news_ = true;
       break;
     case EventCode::kStateChanged:
-      // That of a failed action holds the program, no longer; those of faults end in Off.
+      // Those of faults end with Fault, however soon the next enable follows the reset.
+      if (static_cast<State>(event.b) == State::kFault) {
+        status_.alarm = Alarm::kNone;
+        has_news_ = true;
+      }
+      // That of a failed action holds the program, no longer.
       if (status_.alarm == Alarm::kActionFailed && static_cast<State>(event.a) != State::kHeld) {
         status_.alarm = Alarm::kNone;
         has_news_ = true;

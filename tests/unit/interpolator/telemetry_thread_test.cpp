@@ -206,6 +206,21 @@ TEST_F(TelemetryThreadTest, SaysHowTheProgramWentBehindTheAlarmThatEndedIt) {
             "block 0, line 0: 0 blocks in 0.0 s");
 }
 
+TEST_F(TelemetryThreadTest, ForgetsTheAlarmWithTheFaultThoughNoStatusSaysOff) {
+  const auto change = [this](State from, State to) {
+    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(to),
+         static_cast<std::uint64_t>(from));
+    record(to);
+  };
+  change(State::kReady, State::kFaultStop);
+  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kEmergencyStop));
+  change(State::kFaultStop, State::kFault);
+  change(State::kFault, State::kOff);
+  change(State::kOff, State::kEnabling);
+  run();
+  EXPECT_EQ(status_.alarm, Alarm::kNone);
+}
+
 TEST_F(TelemetryThreadTest, SaysHowTheProgramWentNotThatItsSessionIsThere) {
   open_session();
   for (const State state : {State::kApproaching, State::kRunning, State::kReady}) record(state);
