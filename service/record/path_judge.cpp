@@ -87,10 +87,14 @@ PoseMatch PathJudge::match(const JointVector& joints, ToolPose& pose) {
   follower_.set_axis_tolerance(allowed_axis_);
   const PoseMatch with_old = follower_.follow(pose);
   const auto& elements = path_.elements();
-  const std::size_t next = with_old.element + 1;
+  if (elements.empty()) return with_old;
+  // Of a path that begins with a tool change no element is cut with the tool before.
+  const bool is_at_begin = elements.front().tool_length_mm != tool_length_ && reached_ == 0;
+  const std::size_t next = is_at_begin ? 0 : with_old.element + 1;
   if (next >= elements.size() || elements[next].tool_length_mm == tool_length_) return with_old;
   const double left = elements[next].s - with_old.s;
   if (left > kVertexMargin_mm) return with_old;
+  if (is_at_begin) nearest_[0] = std::min(nearest_[0], (pose.tip - vertex(0).tip).norm());
   const ToolPose other = forward(model_, elements[next].tool_length_mm, joints);
   const PoseMatch with_new = follower_.match_begin(other, next);
   if (follower_.badness(with_new) > follower_.badness(with_old)) return with_old;

@@ -334,34 +334,50 @@ TEST_F(Check, RefusesAnEmptyRecording) {
   EXPECT_TRUE(has(run(), Finding::Kind::kEmpty));
 }
 
-TEST_F(Check, FollowsAToolChange) {
-  MachineModel other = model;
-  std::vector<ClBlock> first(blocks.begin(), blocks.begin() + 2);
-  std::vector<ClBlock> second(blocks.begin() + 4, blocks.end());
-  records = SampleRun(model, first).records;
-  // The same joints with a longer tool: the tip sits deeper along the axis.
-  other.tool_length_mm = model.tool_length_mm + 15;
-  const ToolPose at = forward(other, other.tool_length_mm, records.back().joints);
-  second.insert(second.begin(), second.front());
-  second[0].tip_mm = to_array(at.tip);
-  second[0].axis = to_array(at.axis);
-  for (CycleRecord record : SampleRun(other, second).records) {
-    record.setpoint.cycle = records.back().setpoint.cycle + 1;
-    record.setpoint.due_ns = records.back().setpoint.due_ns + model.cycle_ns;
-    records.push_back(record);
+/// The verdict on the sample path whose first `with_first` blocks are cut with one tool, the last
+/// ones with a longer one.
+class CheckToolChange : public Check {
+ protected:
+  CheckReport run_with_change_behind(int with_first) {
+    MachineModel other = model;
+    std::vector<ClBlock> first(blocks.begin(), blocks.begin() + with_first);
+    std::vector<ClBlock> second(blocks.begin() + 4, blocks.end());
+    records = SampleRun(model, first).records;
+    // The same joints with a longer tool: the tip sits deeper along the axis.
+    other.tool_length_mm = model.tool_length_mm + 15;
+    const ToolPose at = forward(other, other.tool_length_mm, records.back().joints);
+    second.insert(second.begin(), second.front());
+    second[0].tip_mm = to_array(at.tip);
+    second[0].axis = to_array(at.axis);
+    for (CycleRecord record : SampleRun(other, second).records) {
+      record.setpoint.cycle = records.back().setpoint.cycle + 1;
+      record.setpoint.due_ns = records.back().setpoint.due_ns + model.cycle_ns;
+      records.push_back(record);
+    }
+    CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
+    for (const ClBlock& block : first) path.add(block, 0);
+    ClBlock tool;
+    tool.kind = BlockKind::kTool;
+    path.add(tool, other.tool_length_mm);
+    for (std::size_t i = 1; i < second.size(); ++i) path.add(second[i], 0);
+    const Scratch file(".csv");
+    RecordingReader reader = test::write_and_open(file.path(), model, records);
+    const auto report = check(reader, path, model, options);
+    EXPECT_TRUE(report.has_value());
+    return *report;
   }
-  CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
-  for (const ClBlock& block : first) path.add(block, 0);
-  ClBlock tool;
-  tool.kind = BlockKind::kTool;
-  path.add(tool, other.tool_length_mm);
-  for (std::size_t i = 1; i < second.size(); ++i) path.add(second[i], 0);
-  const Scratch file(".csv");
-  RecordingReader reader = test::write_and_open(file.path(), model, records);
-  const auto report = check(reader, path, model, options);
-  ASSERT_TRUE(report.has_value());
-  EXPECT_TRUE(report->passed()) << to_text(*report);
-  EXPECT_EQ(report->vertices, 5U);
+};
+
+TEST_F(CheckToolChange, IsFollowedInMidPath) {
+  const CheckReport report = run_with_change_behind(2);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.vertices, 5U);
+}
+
+TEST_F(CheckToolChange, IsFollowedWhereThePathBeginsWithItAsFromItsLineOn) {
+  const CheckReport report = run_with_change_behind(1);
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.vertices, 4U);
 }
 
 TEST_F(Check, WritesJsonThatNamesEveryFinding) {
