@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "meridian/kinematics/limited.hpp"
 
@@ -80,6 +81,8 @@ void DriveGroup::accept(const dds::SetpointSample& setpoint) noexcept {
 }
 
 void DriveGroup::work(int periods) noexcept {
+  report_wire_.work(periods);
+  has_reported_ = false;
   if (is_dead_) return;
   const double dt_s = cycle_s_ * periods;
   setpoint_faults_.work(periods);
@@ -155,6 +158,12 @@ void DriveGroup::inject_now(const Injection& injection) noexcept {
       return setpoint_faults_.delay(injection.value);
     case Injection::Kind::kUntold:
       return report_faults_.leave_out_cycle();
+    case Injection::Kind::kStale:
+      return report_wire_.delay(injection.value);
+    case Injection::Kind::kDoubled:
+      return report_wire_.send_twice();
+    case Injection::Kind::kSwapped:
+      return report_wire_.swap_neighbours();
     case Injection::Kind::kMend:
       return mend();
   }
@@ -168,7 +177,14 @@ void DriveGroup::mend() noexcept {
   }
   is_silent_ = is_dead_ = is_emergency_stop_ = false;
   report_faults_ = {};
+  report_wire_ = {};
   setpoint_faults_ = {};
+}
+
+bool DriveGroup::reports(dds::DriveFeedback& report) {
+  if (is_silent()) return false;
+  if (!std::exchange(has_reported_, true)) report_wire_.put(feedback());
+  return report_wire_.arrives(report);
 }
 
 dds::DriveFeedback DriveGroup::feedback() noexcept {

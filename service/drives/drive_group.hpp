@@ -10,6 +10,7 @@
 #include "service/drives/drive.hpp"
 #include "service/drives/injection.hpp"
 #include "service/drives/report_faults.hpp"
+#include "service/drives/report_wire.hpp"
 #include "service/drives/setpoint_faults.hpp"
 
 namespace meridian::drives {
@@ -43,6 +44,9 @@ class DriveGroup {
 
   /// Returns the feedback of this period.
   [[nodiscard]] dds::DriveFeedback feedback() noexcept;
+  /// A report that the wire brings in this period, once it has been worked; call until there is
+  /// none.
+  [[nodiscard]] bool reports(dds::DriveFeedback& feedback);
   [[nodiscard]] bool is_silent() const noexcept { return is_silent_ || is_dead_; }
 
   [[nodiscard]] const Drive& drive(int index) const noexcept { return drives_[index]; }
@@ -80,6 +84,8 @@ class DriveGroup {
   std::uint64_t setpoints_of_others_ = 0;
   bool is_silent_ = false, is_dead_ = false, is_emergency_stop_ = false;
   ReportFaults report_faults_;
+  ReportWire report_wire_;
+  bool has_reported_ = false;  ///< in this period
   SetpointFaults setpoint_faults_;
 };
 

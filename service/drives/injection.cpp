@@ -15,7 +15,7 @@ namespace {
 
 using Kind = Injection::Kind;
 
-constexpr std::array<InjectionWord, 16> kWords{{
+constexpr std::array<InjectionWord, 19> kWords{{
     {Kind::kFault, "fault", true, 0, nullptr, "the drive reports a fault of its own"},
     {Kind::kBlocked, "blocked", true, 0, nullptr, "its shaft is stuck"},
     {Kind::kSilence, "silence", false, 0, nullptr, "no drive reports any more"},
@@ -31,6 +31,9 @@ constexpr std::array<InjectionWord, 16> kWords{{
     {Kind::kDeaf, "deaf", false, 100, "periods", "setpoints do not arrive for so long"},
     {Kind::kLate, "late", false, 100, "periods", "setpoints arrive so late from then on"},
     {Kind::kUntold, "untold", false, 0, nullptr, "reports tell no setpoint that was taken"},
+    {Kind::kStale, "stale", false, 10, "periods", "reports arrive so late from then on"},
+    {Kind::kDoubled, "doubled", false, 0, nullptr, "every report arrives twice"},
+    {Kind::kSwapped, "swapped", false, 0, nullptr, "every other report is overtaken by the next"},
     {Kind::kMend, "mend", false, 0, nullptr, "all of that is as it was"},
 }};
 

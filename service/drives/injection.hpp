@@ -29,6 +29,9 @@ struct Injection {
     kDeaf,          ///< setpoints do not arrive for `value` periods
     kLate,          ///< setpoints arrive `value` periods late from now on
     kUntold,        ///< reports do not tell which setpoint was taken
+    kStale,         ///< reports arrive `value` periods late from now on
+    kDoubled,       ///< every report arrives twice
+    kSwapped,       ///< every other report is overtaken by the one behind it
     kMend           ///< everything of the above is as it was
   };
   Kind kind = Kind::kFault;

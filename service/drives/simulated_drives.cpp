@@ -183,6 +183,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
 
   SimulatedDrivesReport report;
   dds::MachineInfo machine;
+  dds::DriveFeedback feedback;
   if (options.has_priority) static_cast<void>(set_priority(SCHED_FIFO, kDrivePriority));
   std::int64_t due_ns = monotonic_ns();
   while (!is_stopping.load(std::memory_order_relaxed)) {
@@ -198,7 +199,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
       group.inject_now(injection);
     }
     group.work(static_cast<int>(lost) + 1);
-    if (!group.is_silent()) static_cast<void>(feedbacks.write(group.feedback()));
+    while (group.reports(feedback)) static_cast<void>(feedbacks.write(feedback));
     teller.look(group);
     if (actions) actions->work(now_ns, say);
     ++report.periods;

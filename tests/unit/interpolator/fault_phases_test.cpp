@@ -164,10 +164,11 @@ const std::array<Phase, 23> kPhases{{
      }},
 }};
 
-constexpr std::array<const char*, 16> kFaults{
-    "fault:theta2", "unpowered:b2", "blocked:*", "lag:*=500", "frozen:*",  "spike:b3=10",
-    "nan:theta1",   "mute:theta1",  "silence",   "dead",      "emergency", "unreferenced:b4",
-    "deaf=3",       "deaf=100",     "late=20",   "untold"};
+constexpr std::array<const char*, 20> kFaults{
+    "fault:theta2", "unpowered:b2",    "blocked:*",   "lag:*=500", "frozen:*",
+    "spike:b3=10",  "nan:theta1",      "mute:theta1", "silence",   "dead",
+    "emergency",    "unreferenced:b4", "deaf=3",      "deaf=100",  "late=20",
+    "untold",       "stale=10",        "stale=100",   "doubled",   "swapped"};
 
 std::string letter_of(Alarm alarm) {
   switch (alarm) {
@@ -236,7 +237,8 @@ std::string faults_and_phases() {
   text << kFaults.size() << " faults in " << kPhases.size() << " phases, "
        << kFaults.size() * kPhases.size() << " pairs:\n\n| |";
   for (const std::string_view fault : kFaults) {
-    const bool has_number = fault.starts_with("deaf") || fault.starts_with("late");
+    const bool has_number =
+        fault.starts_with("deaf") || fault.starts_with("late") || fault.starts_with("stale");
     text << " `" << fault.substr(0, fault.find_first_of(has_number ? "" : ":=")) << "` |";
   }
   text << "\n|---|";

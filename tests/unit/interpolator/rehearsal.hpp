@@ -153,7 +153,9 @@ struct Rehearsal {
 
  private:
   void report() {
-    if (!group.is_silent()) merge.take(group.feedback(), 7, world.in.now_ns);
+    for (dds::DriveFeedback sample; group.reports(sample);) {
+      merge.take(sample, 7, world.in.now_ns);
+    }
     world.in.feedback = merge.feedback();
   }
   [[nodiscard]] dds::DriveCommand command_of(std::uint16_t drive, State state) const {

@@ -70,6 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         Rehearsed{"spike:theta2=3", Alarm::kFollowingError, Alarm::kFollowingError, 0.01, true},
         Rehearsed{"lag:*=500", Alarm::kFollowingError, Alarm::kDriveFault, 0.3, true},
         Rehearsed{"untold", Alarm::kSetpointsUnheard, Alarm::kSetpointsUnheard, 0.04, false},
+        Rehearsed{"stale=100", Alarm::kFeedbackLost, Alarm::kFeedbackLost, 0.03, false},
         Rehearsed{"deaf=100", Alarm::kDriveFault, Alarm::kDriveFault, 0.02, false},
         Rehearsed{"late=20", Alarm::kDriveFault, Alarm::kDriveFault, 0.02, false}),
     name_of_rehearsal);
@@ -81,6 +82,21 @@ TEST(RehearsedTrouble, OfSetpointsThatTheDrivesBridgeStopsNothing) {
   plant->wait(0.2);
   EXPECT_EQ(plant->world.now(), State::kRunning);
   EXPECT_EQ(plant->group.periods_bridged(), 3U);
+}
+
+/// Each for itself, while the machine cuts: reports that are old, doubled or out of order.
+TEST(RehearsedTrouble, OfReportsThatComeALittleLateTwiceOrOutOfOrderStopsNothing) {
+  for (const char* trouble : {"stale=10", "doubled", "swapped"}) {
+    SCOPED_TRACE(trouble);
+    auto plant = std::make_unique<Rehearsal>();
+    plant->start();
+    const std::size_t first = plant->world.records.size();
+    plant->inject(trouble);
+    plant->wait(0.3);
+    EXPECT_EQ(plant->world.now(), State::kRunning);
+    EXPECT_LE(plant->deviation(first), 1e-9) << "mm off the path";
+    EXPECT_LE(plant->acceleration(first), 1 + 1e-6);
+  }
 }
 
 TEST(RehearsedTrouble, OfAReferenceLostAtRestIsToldAtTheStart) {

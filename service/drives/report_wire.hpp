@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <utility>
+
+#include "service/dds/messages.hpp"
+
+namespace meridian::drives {
+
+/// What is wrong with the wire on which reports go: it brings them late, twice, or in another
+/// order. Heap calls only while it does. Proof: tests/unit/drives/report_wire_test.cpp.
+class ReportWire {
+ public:
+  /// Reports arrive so many periods late from now on.
+  void delay(double periods) noexcept { delay_periods_ = static_cast<std::int64_t>(periods); }
+  void send_twice() noexcept { is_doubled_ = true; }
+  /// Every other report is overtaken by the one behind it.
+  void swap_neighbours() noexcept { is_swapped_ = true; }
+
+  /// Periods go by.
+  void work(int periods) noexcept { now_ += periods; }
+  /// A report of this period sets out.
+  void put(const dds::DriveFeedback& report) {
+    if (is_swapped_ && !std::exchange(has_waiting_, !has_waiting_)) {
+      waiting_ = report;
+      return;
+    }
+    set_out(report);
+    if (is_swapped_) set_out(waiting_);
+  }
+  /// A report that arrives now; call until there is none.
+  [[nodiscard]] bool arrives(dds::DriveFeedback& report) {
+    if (under_way_.empty() || under_way_.front().due > now_) return false;
+    report = under_way_.front().report;
+    under_way_.pop_front();
+    return true;
+  }
+
+ private:
+  struct UnderWay {
+    std::int64_t due;
+    dds::DriveFeedback report;
+  };
+  void set_out(const dds::DriveFeedback& report) {
+    for (int n = 0; n < (is_doubled_ ? 2 : 1); ++n) {
+      under_way_.push_back({now_ + delay_periods_, report});
+    }
+  }
+
+  std::int64_t now_ = 0, delay_periods_ = 0;
+  bool is_doubled_ = false, is_swapped_ = false, has_waiting_ = false;
+  dds::DriveFeedback waiting_;
+  std::deque<UnderWay> under_way_;
+};
+
+}  // namespace meridian::drives

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/report_wire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace meridian::drives {
+namespace {
+
+/// What arrives in each of `periods` periods, in each of which one report sets out.
+[[nodiscard]] std::vector<std::vector<std::uint64_t>> arrivals(ReportWire& wire, int periods) {
+  std::vector<std::vector<std::uint64_t>> all;
+  for (int n = 1; n <= periods; ++n) {
+    wire.work(1);
+    dds::DriveFeedback report;
+    report.sample = static_cast<std::uint64_t>(n);
+    wire.put(report);
+    all.emplace_back();
+    while (wire.arrives(report)) all.back().push_back(report.sample);
+  }
+  return all;
+}
+
+using Arrivals = std::vector<std::vector<std::uint64_t>>;
+
+TEST(ReportWire, ThatIsWellBringsEachReportAtOnce) {
+  ReportWire wire;
+  EXPECT_EQ(arrivals(wire, 3), (Arrivals{{1}, {2}, {3}}));
+}
+
+TEST(ReportWire, ThatIsLateBringsAllOfThemInTheirOrder) {
+  ReportWire wire;
+  wire.delay(2);
+  EXPECT_EQ(arrivals(wire, 4), (Arrivals{{}, {}, {1}, {2}}));
+}
+
+TEST(ReportWire, ThatDoublesBringsEachTwice) {
+  ReportWire wire;
+  wire.send_twice();
+  EXPECT_EQ(arrivals(wire, 2), (Arrivals{{1, 1}, {2, 2}}));
+}
+
+TEST(ReportWire, ThatSwapsBringsTheLaterOfTwoFirst) {
+  ReportWire wire;
+  wire.swap_neighbours();
+  EXPECT_EQ(arrivals(wire, 4), (Arrivals{{}, {2, 1}, {}, {4, 3}}));
+}
+
+}  // namespace
+}  // namespace meridian::drives
