@@ -50,7 +50,7 @@ bool PlannerThread::work() noexcept {
     tell(Approach{});
     tell_of_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
-    looking_since_ns_ = 0;
+    look_ = 0;
   }
   return plan(*look.front);
 }
@@ -66,17 +66,16 @@ void PlannerThread::advance() noexcept {
 void PlannerThread::look_at_stall() noexcept {
   constexpr std::int64_t kStall_ns = kSecond_ns;
   constexpr std::int64_t kLongest_ns = 5 * kSecond_ns;  // where it trickles and never stalls
-  if (!planner_.is_looking()) {
-    looking_since_ns_ = 0;
-    return;
-  }
+  const std::uint64_t look = planner_.look();
+  const bool is_other = look != look_;
+  look_ = look;
+  if (look == 0) return;
   const std::int64_t now_ns = monotonic_ns();
-  if (looking_since_ns_ == 0) looking_since_ns_ = last_block_ns_;
+  if (is_other) looking_since_ns_ = last_block_ns_;
   const bool is_late =
       now_ns - last_block_ns_ > kStall_ns || now_ns - looking_since_ns_ > kLongest_ns;
   if (!is_late) return;
   planner_.look_no_further();
-  looking_since_ns_ = 0;
 }
 
 void PlannerThread::refuse(const BlockReject& reject) noexcept {

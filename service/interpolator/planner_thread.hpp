@@ -45,7 +45,8 @@ class PlannerThread {
   SmoothPlanner planner_;
   std::uint64_t session_ = 0;          ///< of the block that was planned last
   std::int64_t last_block_ns_ = 0;     ///< when one was planned last
-  std::int64_t looking_since_ns_ = 0;  ///< planner_ is_looking() and no block came; 0: it is not
+  std::uint64_t look_ = 0;             ///< SmoothPlanner::look() when last asked
+  std::int64_t looking_since_ns_ = 0;  ///< it waits for blocks
   std::int64_t planning_ns_ = 0;   ///< spent on the block in hand, attempts without room included
   double published_before_s_ = 0;  ///< when the plan was begun
   bool has_begun_ = false;         ///< a plan is being made

@@ -14,7 +14,7 @@ struct FeedMark {
   std::uint32_t span = 0;      ///< of the smooth path, counted from the block's first
   double factor = 1;           ///< of the programmed feed, at least 1
   /// Else 0: branch and winding follow from so many blocks: those at the program's begin, or, where
-  /// `sequence` is not 0, those behind the pole, from that block on.
+  /// `sequence` is not 0, that block and those behind it, past the pole.
   std::uint64_t looked_at = 0;
   bool is_late = false;  ///< of looked_at: no more were waited for
 };

@@ -79,8 +79,9 @@ class SmoothPlanner {
   /// kOk.
   [[nodiscard]] PlanResult advance(MotionWriter& writer) noexcept;
 
-  /// Whether something is not planned because blocks are missing that are only looked at.
-  [[nodiscard]] bool is_looking() const noexcept;
+  /// Not 0: something is not planned because blocks are missing that are only looked at; a number
+  /// for every such look.
+  [[nodiscard]] std::uint64_t look() const noexcept;
   /// No block comes for a while: the program begins, or goes on past the pole, with those that are
   /// there.
   void look_no_further() noexcept;

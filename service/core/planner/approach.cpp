@@ -167,7 +167,7 @@ void Router::look_behind(const ClBlock& block, const ToolPose& start, double too
                          Ways& ways) noexcept {
   if (foresight_ == nullptr) return look_along(block, start, tool_length_mm, ways);
   const AheadWays found = ahead_of(ways);
-  foresight_->ask({block.sequence + 1, false, start, tool_length_mm},
+  foresight_->ask({block.sequence, false, start, tool_length_mm},
                   {found.data(), static_cast<std::size_t>(ways.count)});
   needs_ahead_ = !foresight_->look();
   take_looked(foresight_->ways(), ways);

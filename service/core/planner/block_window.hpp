@@ -41,7 +41,8 @@ class BlockWindow : public PoleForesight {
     return static_cast<std::size_t>(blocks_.end_index() - next_);
   }
   [[nodiscard]] const ClBlock& front() const noexcept { return blocks_[next_]; }
-  /// The first `count` blocks of the program, at most kWaiting; empty where they are all planned.
+  /// The first `count` blocks that were pushed, at most kWaiting; empty where they are all planned.
+  /// Nothing is to be kept in front of them.
   [[nodiscard]] std::span<const ClBlock> first(std::size_t count) const noexcept {
     const bool is_there = next_ < static_cast<std::int64_t>(count);
     return is_there ? std::span(&blocks_[0], count) : std::span<const ClBlock>{};
@@ -56,17 +57,24 @@ class BlockWindow : public PoleForesight {
   [[nodiscard]] bool look() noexcept override;
   [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return look_.ways(); }
   /// Whether a question waits for blocks.
-  [[nodiscard]] bool is_missing() noexcept { return is_asked_ && !look(); }
+  [[nodiscard]] bool is_missing() noexcept { return questions_ > 0 && !look(); }
+  /// How many there were.
+  [[nodiscard]] std::uint64_t questions() const noexcept { return questions_; }
   /// The question is answered with the blocks that are there: what has to be told of it.
   [[nodiscard]] std::optional<FeedMark> look_no_further() noexcept;
 
  private:
   static constexpr std::int64_t kKept = 2047;
+  static constexpr std::size_t kTold = 64;
+  /// One of those that wait may be the block at whose end the ways start.
+  static constexpr int kMostFollowed = kWaiting - 1;
 
-  /// Of the block that follows the start of the question: it, or the oldest one kept behind it.
+  /// Where block `sequence` is, or else the oldest one kept behind it.
   [[nodiscard]] std::int64_t find_first(std::uint64_t sequence) const noexcept;
-  /// Blocks that a look at `sequence` goes over at most, told or 0.
+  /// FeedMark::looked_at of a look at `sequence`, if one was told; else 0.
   [[nodiscard]] std::uint64_t told_for(std::uint64_t sequence) const noexcept;
+  /// `block` from where the ways start.
+  [[nodiscard]] ClBlock rest_of(ClBlock block) const noexcept;
 
   bool is_used_;
   IndexRing<ClBlock> blocks_;
@@ -75,13 +83,11 @@ class BlockWindow : public PoleForesight {
   AheadSlack slack_;
   AheadLook look_;
   std::span<const FeedMark> marks_;
-  bool is_asked_ = false;
-  bool is_on_its_way_ = false;  ///< the ways start on the first block's way
-  std::uint64_t asked_ = 0;     ///< sequence
+  std::uint64_t questions_ = 0;
+  Start asked_;
   std::int64_t follows_ = 0;
-  int most_ = 0;
-  bool is_forced_ = false;  ///< answered with what is there
-  FeedMark late_;           ///< the last one: what is asked again is answered the same
+  int most_ = 0;              ///< that are followed
+  IndexRing<FeedMark> told_;  ///< what is asked again is answered the same
 };
 
 }  // namespace meridian

@@ -255,7 +255,7 @@ void PoleCorridor::emit() noexcept {
 
 const JointSpan* PoleCorridor::next() noexcept {
   if (has_pole_) scan();
-  if (has_failed_ || probes_.is_empty() || !may_emit()) return nullptr;
+  if (has_failed_ || needs_ahead_ || probes_.is_empty() || !may_emit()) return nullptr;
   emit();
   return &out_;
 }

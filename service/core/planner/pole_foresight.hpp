@@ -16,7 +16,7 @@ class PoleForesight {
  public:
   virtual ~PoleForesight() = default;
 
-  /// Where ways start: at the begin of block `sequence`, or on its way.
+  /// Where ways start: at the end of block `sequence`, or on its way.
   struct Start {
     std::uint64_t sequence = 0;
     bool is_on_its_way = false;

@@ -35,7 +35,9 @@ void PoleCorridor::settle(PoleCore& core) noexcept {
   const Settled before = settled_state();
   if (take_zone(core)) {
     cores_.take(core);
-    if (!cores_.is_extended() || !is_shorter_faster(core, before)) return;
+    // Which way carries farther is not asked for the shorter ones, and goes before time.
+    const bool is_final = !cores_.is_extended() || !core.around.ahead.empty();
+    if (is_final || !is_shorter_faster(core, before)) return;
     go_back(before, before.pending_end);
     (void)cores_.shorten();
     return;

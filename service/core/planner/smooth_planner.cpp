@@ -286,7 +286,7 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
   if (is_taken) return {};
   if (!is_planned) return {PlanStatus::kNoRoom, {}, 0, {}};
   const PlanResult result = plan_one(block, writer);
-  if (result.status == PlanStatus::kOk) w.window.keep(block);
+  if (result.status == PlanStatus::kOk && !w.is_looking) w.window.keep(block);
   return result;
 }
 
@@ -314,15 +314,18 @@ void SmoothPlanner::look_no_further() noexcept {
   if (const auto mark = w.window.look_no_further()) w.raise.note_look(*mark);
 }
 
-bool SmoothPlanner::is_looking() const noexcept {
+std::uint64_t SmoothPlanner::look() const noexcept {
   Workspace& w = *workspace_;
-  return w.is_looking ? w.window.waiting() > 0 : w.awaits_ahead();
+  if (w.is_looking) return w.window.waiting() > 0 ? 1 : 0;
+  return w.awaits_ahead() ? 1 + w.window.questions() : 0;
 }
 
 void SmoothPlanner::finish() noexcept {
-  workspace_->window.end();
-  workspace_->end_look(false);
-  workspace_->is_ending = true;
+  Workspace& w = *workspace_;
+  if (!w.is_looking) look_no_further();
+  w.window.end();
+  w.end_look(false);
+  w.is_ending = true;
 }
 
 PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) noexcept {
@@ -345,6 +348,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     }
   }
   if (!cut) {
+    if (w.awaits_ahead()) return {PlanStatus::kNoRoom, {}, 0, {}};
     if (!w.has_factor && block.kind == BlockKind::kCut) {
       w.raise.rest();
       w.plain.set_feed_factor(w.raise.next(block.sequence, writer.feed_override(), 0).label);
