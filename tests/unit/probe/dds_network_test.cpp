@@ -101,8 +101,8 @@ TEST_F(DoctorOfDds, TriesMulticastWhereItIsUsed) {
   write("sys/class/net/eth1/flags", "0x3\n");
   expect(used, "DDS multicast", Health::kBad, "eth1 carries none");
   const std::string off =
-      R"(<NetworkInterface name="eth1"/><!-- <AllowMulticast>true</AllowMulticast> -->)"
-      "<AllowMulticast>false</AllowMulticast>";
+      R"(<NetworkInterface name="eth1"/><AllowMulticast>false</AllowMulticast>)"
+      "<!-- <AllowMulticast>true</AllowMulticast> -->";
   expect(xml(off), "DDS multicast", Health::kBad, "nobody is found");
   expect(xml(off, R"(<Peer address="a"/>)"), "DDS multicast", Health::kFine, "not used");
 }
