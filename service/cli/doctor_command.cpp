@@ -65,7 +65,9 @@ int run(const Options& options) {
   add(all, probe::examine_clocks(host, probe::read_time_of_day()));
   const std::string cyclone_uri = uri == nullptr ? "" : uri;
   add(all, probe::examine_network(host, cyclone_uri));
-  add(all, probe::examine_dds_network(host, cyclone_uri, probe::real_network()));
+  if (!options.is_silent) {
+    add(all, probe::examine_dds_network(host, cyclone_uri, probe::real_network()));
+  }
   add(all, probe::examine_traces(options.trace));
   if (!options.is_silent) add(all, examine_domain(options));
   std::cout << (options.is_json ? to_json(all) : to_text(all));
@@ -96,7 +98,8 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->add_option("--trace", options->trace,
                       "Folder of meridiand --trace: can traces of slow cycles be written there by "
                       "this user, and which lie there");
-  command->add_flag("--no-dds", options->is_silent, "Do not look for machines in the DDS domain");
+  command->add_flag("--no-dds", options->is_silent,
+                    "Send nothing: no look at the network of DDS and who answers there");
   command->add_flag("--json", options->is_json, "As JSON");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -135,7 +135,10 @@ DdsNetwork read_dds_network(const std::string& xml) {
 
 Findings examine_dds_network(const HostFiles& host, const std::string& cyclone_uri,
                              const NetworkView& network) {
-  if (cyclone_uri.empty()) return {judge_interface(host, "lo", "lo")};
+  if (cyclone_uri.empty()) {
+    return {judge_interface(host, "lo", "lo"),
+            judge_multicast(host, {{"lo"}, {"127.0.0.1"}, false}, "lo", network)};
+  }
   std::string missing;
   const auto xml = read_uri(host, cyclone_uri, missing);
   if (!xml) {
