@@ -106,11 +106,12 @@ Process& Plant::start_service(const std::vector<std::string>& more) {
   return *service_;
 }
 
-Process& Plant::start_drives(const std::vector<std::string>& more) {
+Process& Plant::start_drives(const std::vector<std::string>& more, const InputPipe* console) {
   std::vector<std::string> arguments = {"meridian",    "drives",   "--machine",
                                         machine_file_, "--domain", domain()};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  drives_ = std::make_unique<Process>(arguments, folder_ / "drives.log");
+  if (console != nullptr) arguments.emplace_back("--console");
+  drives_ = std::make_unique<Process>(arguments, folder_ / "drives.log", console);
   return *drives_;
 }
 

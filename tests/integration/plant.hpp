@@ -34,9 +34,10 @@ class Plant {
   void change_machine(const std::vector<std::pair<std::string, std::string>>& changes);
 
   /// Start meridiand (best effort, recording and flight recorder on) or the drives, `more` on the
-  /// command line.
+  /// command line. The drives read `console` where one is given.
   Process& start_service(const std::vector<std::string>& more = {});
-  Process& start_drives(const std::vector<std::string>& more = {});
+  Process& start_drives(const std::vector<std::string>& more = {},
+                        const InputPipe* console = nullptr);
   [[nodiscard]] std::unique_ptr<Process> another_service();
 
   /// The newest status; waits for a first one.

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integration/fault_kinds.hpp"
+#include "integration/judged_part.hpp"
+#include "integration/plant.hpp"
+#include "integration/witness.hpp"
+#include "service/soak/host_watch.hpp"
+
+namespace meridian::test {
+
+/// One fault in one phase, done to station, service and drives as processes: what comes of it, the
+/// way back, the rest of the program, and the verdict on what was recorded.
+class FaultCase {
+ public:
+  FaultCase(const LiveFault& fault, const Phase& phase);
+
+  /// Runs all of it. Failures are those of GoogleTest.
+  void run();
+  /// What came of it, as in the table; valid behind run().
+  [[nodiscard]] const std::string& letter() const noexcept { return letter_; }
+  /// How long the host kept a processor from its thread of highest priority at most, s.
+  [[nodiscard]] double host_away_s() const { return host_.longest_s(); }
+
+ private:
+  void set_up();
+  void start_station(std::uint32_t from_line);
+  void start_program(std::uint32_t from_line);
+  void reach_phase();
+  void provoke();
+  void send_rubbish();
+  void kill_service();
+  void stop_station();
+
+  [[nodiscard]] std::string wait_for_outcome();
+  [[nodiscard]] bool waits_for_fault(milliseconds patience);
+  void mend();
+  void go_on();              ///< the machine did not stop for it
+  void recover_and_go_on();  ///< from Fault or a new service
+  void replace_station();
+  [[nodiscard]] std::uint32_t told_by_journal();
+  [[nodiscard]] std::string transition() const;
+  void run_to_end();
+  void judge_all();
+
+  [[nodiscard]] bool has_ended() { return station_ && station_->wait(milliseconds(0)).has_value(); }
+  [[nodiscard]] std::uint32_t fed_line() const;
+  [[nodiscard]] bool is_piped() const noexcept;
+  [[nodiscard]] std::string story();
+  void expect_provoked();
+
+  static constexpr milliseconds kLong{20'000};
+
+  const LiveFault& fault_;
+  const Phase& phase_;
+  const FaultPart part_;
+  soak::HostWatch host_;
+  std::unique_ptr<Hosts> hosts_;  ///< outlives what runs on them
+  std::unique_ptr<Plant> plant_;
+  std::unique_ptr<Witness> witness_;
+  std::unique_ptr<dds::Reader<dds::Action>> actions_;
+  InputPipe console_;
+  std::unique_ptr<InputPipe> source_;
+  std::unique_ptr<Process> station_;
+  std::string part_file_, letter_;
+  std::vector<std::string> service_words_;
+  int stations_ = 0;
+
+  PartCut first_{};                  ///< up to where the program was broken off, or all of it
+  std::optional<PartCut> second_;    ///< the rest
+  std::uint32_t line_long_ago_ = 0;  ///< that was cut when a journal may have been written last
+  bool has_program_ = false;         ///< one was started when it was broken off
+};
+
+}  // namespace meridian::test

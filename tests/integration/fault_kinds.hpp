@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "integration/fault_part.hpp"
+#include "integration/hosts.hpp"
+#include "meridian/rt/cycle_data.hpp"
+
+namespace meridian::test {
+
+/// Something that goes wrong between real processes, and what comes of it: letters as in the table
+/// of docs/faults.md, several where any of them may, "–" where there is no such pair.
+struct LiveFault {
+  enum class How {
+    kConsole,       ///< a line that `meridian drives --console` reads
+    kStationDies,   ///< SIGKILL
+    kStationStops,  ///< SIGSTOP for a while
+    kServiceDies,   ///< SIGKILL
+    kDrivesDie,     ///< SIGKILL
+    kStall,         ///< SIGSTOP of the service for `milliseconds`
+    kRubbish,       ///< somebody sends what nobody asked for on every topic that moves machines
+    kWire           ///< between hosts
+  };
+  const char* name;
+  How how;
+  const char* line;     ///< for the console
+  const char* moving;   ///< what comes of it while the machine moves or goes on by itself
+  const char* resting;  ///< while it waits for somebody
+  int milliseconds = 0;
+  Hosts::Spoilt wire{};
+
+  [[nodiscard]] bool is_of_station() const noexcept {
+    return how == How::kStationDies || how == How::kStationStops;
+  }
+};
+
+/// Whether MERIDIAN_FAULT_MATRIX=all is in the environment.
+[[nodiscard]] bool is_whole_matrix();
+
+[[nodiscard]] std::span<const Phase> phases();
+[[nodiscard]] std::span<const LiveFault> live_faults();
+
+[[nodiscard]] std::string expected(const LiveFault& fault, const Phase& phase);
+/// "D" for a drive fault and so on.
+[[nodiscard]] std::string letter_of(Alarm alarm);
+/// What is expected of every pair, as in docs/faults.md.
+[[nodiscard]] std::string table_of_faults();
+
+}  // namespace meridian::test

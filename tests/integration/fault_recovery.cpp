@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <limits>
+#include <thread>
+
+#include "integration/fault_case.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/dds/writer.hpp"
+
+namespace meridian::test {
+namespace {
+
+using How = LiveFault::How;
+using Where = Phase::Where;
+
+/// The journal is a second old at most, and takes a while to get to the disk of a busy host.
+constexpr std::int64_t kJournalAge_ns = 1'500'000'000;
+
+/// The line behind `words` in `text`; 0: it is not there.
+[[nodiscard]] std::uint32_t line_behind(const std::string& text, const std::string& words) {
+  const auto at = text.find(words);
+  return at == std::string::npos
+             ? 0
+             : static_cast<std::uint32_t>(std::stoul(text.substr(at + words.size())));
+}
+
+}  // namespace
+
+void FaultCase::provoke() {
+  switch (fault_.how) {
+    case How::kConsole:
+      console_.write(std::string(fault_.line) + "\n");
+      return;
+    case How::kStationDies:
+      station_->send_signal(SIGKILL);
+      ASSERT_TRUE(station_->wait(milliseconds(2000)));
+      return;
+    case How::kStationStops:
+      return station_->send_signal(SIGSTOP);
+    case How::kServiceDies:
+      return kill_service();
+    case How::kDrivesDie:
+      plant_->drives().send_signal(SIGKILL);
+      ASSERT_TRUE(plant_->drives().wait(milliseconds(2000)));
+      return;
+    case How::kStall:
+      plant_->service().send_signal(SIGSTOP);
+      std::this_thread::sleep_for(milliseconds(fault_.milliseconds));
+      return plant_->service().send_signal(SIGCONT);
+    case How::kRubbish:
+      return send_rubbish();
+    case How::kWire:
+      return hosts_->spoil(fault_.wire);
+  }
+}
+
+/// From somebody who has neither drives nor a station, on every topic that means motion.
+void FaultCase::send_rubbish() {
+  dds::Participant& somebody = plant_->participant();
+  dds::Writer<dds::Batch> batches(somebody);
+  dds::Writer<dds::CommandRequest> commands(somebody);
+  dds::Writer<dds::SetpointSample> setpoints(somebody);
+  dds::Writer<dds::DriveCommand> controlwords(somebody);
+  dds::Writer<dds::DriveFeedback> reports(somebody);
+  dds::Writer<dds::ActionDone> answers(somebody);
+  dds::Writer<dds::Jog> hands(somebody);
+  ASSERT_TRUE(eventually([&] {
+    return batches.matched_readers() > 0 && commands.matched_readers() > 0 &&
+           setpoints.matched_readers() > 1 && controlwords.matched_readers() > 0 &&
+           reports.matched_readers() > 0 && answers.matched_readers() > 0 &&
+           hands.matched_readers() > 0;
+  })) << "nobody hears it";
+  for (std::uint64_t n = 1; n <= 20; ++n) {
+    dds::Batch batch;
+    batch.session = 666;
+    batch.first_sequence = n;
+    batch.count = 3;  // and no CRC
+    EXPECT_TRUE(batches.write(batch));
+    dds::CommandRequest word;
+    word.request = n;
+    word.operator_id = 666;
+    word.verb = n % 2 == 0 ? Verb::kStart : static_cast<Verb>(200);
+    word.epoch_seen = 999;
+    EXPECT_TRUE(commands.write(word));
+    dds::SetpointSample setpoint;
+    setpoint.setpoint.cycle = (1ULL << 40U) + n;
+    setpoint.setpoint.position.fill(100);
+    setpoint.setpoint.flags = kSetpointEnabled;
+    EXPECT_TRUE(setpoints.write(setpoint));
+    dds::DriveCommand off;
+    off.service_id = 666;
+    EXPECT_TRUE(controlwords.write(off));
+    dds::DriveFeedback report;
+    report.drive_group = 66;
+    report.joint_mask = 0x1f;
+    report.sample = n;
+    report.position.fill(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_TRUE(reports.write(report));
+    EXPECT_TRUE(answers.write({.id = 1ULL << 40U, .service_id = 666, .is_done = false}));
+    dds::Jog hand;
+    hand.operator_id = 666;
+    hand.velocity = hand.distance = 1;
+    hand.dead_man_ns = 1'000'000'000;
+    EXPECT_TRUE(hands.write(hand));
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+}
+
+/// What it was sending is in the recording of who saw it on the wire; its own is lost with it.
+void FaultCase::kill_service() {
+  const std::uint64_t id = plant_->status().service_id;
+  if (station_) station_->send_signal(SIGKILL);  // else it opens its program anew
+  plant_->service().send_signal(SIGKILL);
+  ASSERT_TRUE(plant_->service().wait(milliseconds(2000)));
+  first_ = {.recording = plant_->folder() / "wire.csv", .is_finished = false};
+  const auto sent = witness_->take();
+  for (const Setpoint& setpoint : sent) {
+    const bool is_old = sent.back().due_ns - setpoint.due_ns > kJournalAge_ns;
+    // An approach is that of the first line.
+    if (is_old && has_program_ && setpoint.line > part_.motions.front()) {
+      line_long_ago_ = setpoint.line;
+    }
+  }
+  write_recording(sent, config::load_machine(plant_->machine()), first_.recording);
+  plant_->start_service(service_words_);
+  ASSERT_TRUE(eventually([&] { return plant_->status().service_id != id; }, kLong)) << story();
+  EXPECT_EQ(plant_->status().state, State::kOff) << story();
+}
+
+/// The line to go on with, as the new service told it when it began.
+std::uint32_t FaultCase::told_by_journal() {
+  std::string told;
+  // It is told ahead of the first status, which has come.
+  const std::string said = plant_->service().said();
+  const auto at = said.rfind("last program: ");
+  if (at != std::string::npos) told = said.substr(at, said.find('\n', at) - at);
+  // A program that began just now may not have got to the disk: none of it is cut.
+  if (told.empty() && (!has_program_ || phase_.where == Where::kBegin)) return 0;
+  const std::uint32_t line = line_behind(told, "; go on with --from-line ");
+  EXPECT_GT(line, 0U) << told;
+  EXPECT_GE(line, line_long_ago_) << "older than a second: " << told;
+  const bool is_done = told.find(" done up to block ") != std::string::npos;
+  return is_done ? line + 1 : line;  // one block a line
+}
+
+/// Behind a Fault or in a new service: reset, enable, and the rest of the program.
+void FaultCase::recover_and_go_on() {
+  const dds::Status stopped = plant_->status();
+  const bool is_new_service = letter_ == "X";
+  // A program that was at its end before has nothing to go on with.
+  const bool is_over =
+      has_program_ && !is_new_service && has_ended() && station_->wait(milliseconds(0)) == 0;
+  const std::uint32_t line = is_new_service ? told_by_journal() : stopped.alarm_line;
+  mend();
+  ASSERT_TRUE(eventually(
+      [this] {
+        const auto reset = plant_->say(Verb::kReset);
+        const auto enable = plant_->say(Verb::kEnable);
+        return reset && enable && plant_->wait_for(State::kReady, milliseconds(500));
+      },
+      kLong))
+      << story();
+  EXPECT_TRUE(eventually([this] { return plant_->status().alarm == Alarm::kNone; }))
+      << plant_->standing();
+  if (!is_new_service) {
+    constexpr int kBridge_ms = 100;
+    first_ = {.recording = plant_->recording(),
+              .to_cycle = stopped.cycle,
+              .is_finished = is_over,
+              .has_left_path = fault_.milliseconds > kBridge_ms};
+  }
+  if (is_over) return;
+  if (station_) {
+    ASSERT_TRUE(station_->wait(milliseconds(8000))) << "its program is over: " << story();
+  }
+  const auto is_at = [this](std::uint32_t n) { return n <= part_.lines.size() - 1; };
+  if (!is_at(line)) return;  // all of it is cut
+  second_ = PartCut{.recording = plant_->recording(),
+                    .from_line = line,
+                    // From Ready on: where drives are enabled again is no motion of a program.
+                    .from_cycle = is_new_service ? 0 : witness_->newest().cycle};
+  ASSERT_NO_FATAL_FAILURE(start_program(line));
+  run_to_end();
+}
+
+void FaultCase::judge_all() {
+  const MachineModel model = config::load_machine(plant_->machine());
+  const ToolTable tools =
+      config::load_tools(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/tools.toml");
+  const PartAsked part{model, tools, part_file_, part_.motions};
+  LinesCut before;
+  if (!first_.recording.empty() && (has_program_ || second_)) before = judge(part, first_);
+  if (!second_) {
+    EXPECT_EQ(before.last, part_.motions.back());
+    EXPECT_TRUE(before.is_last_done);
+    return;
+  }
+  const LinesCut behind = judge(part, *second_);
+  EXPECT_EQ(behind.last, part_.motions.back());
+  EXPECT_TRUE(behind.is_last_done);
+  if (second_->from_line > 0) expect_seam(part, before, behind, second_->from_line, letter_ == "X");
+}
+
+}  // namespace meridian::test

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "meridian/kinematics/tool_table.hpp"
+#include "service/cl/cl_options.hpp"
+#include "service/record/check.hpp"
+
+namespace meridian::test {
+
+/// A stretch of a recording in which a part was cut from some line on.
+struct PartCut {
+  std::filesystem::path recording;
+  std::uint32_t from_line = 0;  ///< as of `meridian stream --from-line`; 0: from the begin
+  std::uint64_t from_cycle = 0;
+  std::uint64_t to_cycle = std::numeric_limits<std::uint64_t>::max();
+  bool is_finished = true;  ///< up to the part's end
+  /// Its FaultStop began where drives were that had lost the path: there joints alone are judged.
+  bool has_left_path = false;
+};
+
+/// The part that was to be cut, and on which machine.
+struct PartAsked {
+  const MachineModel& model;
+  const ToolTable& tools;
+  std::filesystem::path file;
+  std::vector<std::uint32_t> motions;  ///< lines that move the tool
+};
+
+/// Lines of a CL file that move the tool.
+[[nodiscard]] std::vector<std::uint32_t> motion_lines(const MachineModel& model,
+                                                      const ToolTable& tools,
+                                                      const std::filesystem::path& file);
+
+/// What one stretch has moved along.
+struct LinesCut {
+  std::uint32_t first = 0, last = 0;  ///< 0: none
+  bool is_last_done = false;          ///< the tool came to the end of it
+  std::uint64_t moving = 0;           ///< rows
+};
+
+/// Judges a stretch as `meridian check` does, and that it never goes back. Failures are those of
+/// GoogleTest; they tell what the recording holds.
+[[nodiscard]] LinesCut judge(const PartAsked& part, const PartCut& cut);
+
+/// Two stretches, of which the second began at `from_line`, together cut every line: none is lost
+/// between them, and none but that line is in both. `is_late`: of a journal that is a while old
+/// more may be.
+void expect_seam(const PartAsked& part, const LinesCut& before, const LinesCut& behind,
+                 std::uint32_t from_line, bool is_late = false);
+
+}  // namespace meridian::test
