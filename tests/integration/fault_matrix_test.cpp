@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <ostream>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -20,7 +21,14 @@
 namespace meridian::test {
 namespace {
 
-using Pair = std::pair<const LiveFault*, const Phase*>;
+struct Pair {
+  const LiveFault* fault;
+  const Phase* phase;
+};
+
+void PrintTo(const Pair& pair, std::ostream* out) {
+  *out << pair.fault->name << ", " << pair.phase->name;
+}
 
 /// The slice: each kind of fault and each phase once or twice.
 constexpr std::array<std::pair<const char*, const char*>, 11> kSlice{{
@@ -46,7 +54,7 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kSlice{{
                std::string_view(one.second) == phase.name;
       });
       if (expected(fault, phase) != "–" && (is_whole_matrix() || is_in_slice))
-        all.emplace_back(&fault, &phase);
+        all.push_back({&fault, &phase});
     }
   }
   return all;
@@ -55,7 +63,7 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kSlice{{
 [[nodiscard]] std::string name_of_pair(const testing::TestParamInfo<Pair>& info) {
   std::string name;
   bool begins = true;
-  for (const char c : std::string(info.param.first->name) + " " + info.param.second->name) {
+  for (const char c : std::string(info.param.fault->name) + " " + info.param.phase->name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) {
       begins = true;
       continue;
