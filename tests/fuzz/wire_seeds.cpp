@@ -207,6 +207,8 @@ Seeds wire_seeds() {
     machine.joint_count = 5;
     machine.is_serving = true;
     append<meridian_wire_Machine>(seed, kMachine, machine);
+    machine.is_serving = false;
+    append<meridian_wire_Machine>(seed, kMachine, machine);
     append<meridian_wire_Status>(seed, kStatus, dds::Status{});
   });
   // Found: JSON that was cut off, a position that overflowed.

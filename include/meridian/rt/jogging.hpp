@@ -73,7 +73,7 @@ inline void take_room(Jogging& jogging, const JogRoom& room) noexcept {
 }
 
 /// Goes on with the survey of the tool's way, after which it may move.
-inline void survey_way(Cycle& c) noexcept {
+[[gnu::noinline]] inline void survey_way(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   if (jogging.is_ready || jogging.joint < kMaxJoints) return;
   jogging.survey.go_on(c.machine, jogging.way);
@@ -122,7 +122,7 @@ inline void end_jogging(Cycle& c) noexcept {
 }
 
 /// The joints are where the axis is. False where there are none.
-[[nodiscard]] inline bool put_jogged(Cycle& c) noexcept {
+[[nodiscard, gnu::noinline]] inline bool put_jogged(Cycle& c) noexcept {
   const Jogging& jogging = c.state.jogging;
   c.state.velocity = {};
   if (!jogging.is_ready) return true;
@@ -148,7 +148,7 @@ enum class JogStep : std::uint8_t {
 };
 
 /// One cycle of Jogging.
-[[nodiscard]] inline JogStep follow_jogging(Cycle& c) noexcept {
+[[nodiscard, gnu::noinline]] inline JogStep follow_jogging(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   take_order(c);
   choose_axis(c);
@@ -164,14 +164,14 @@ enum class JogStep : std::uint8_t {
 
 /// Takes the hand off by the operator's word or a fault: the joint brakes, with the limits of a
 /// FaultStop or its own.
-inline void brake_jogging(Cycle& c, bool is_fault) noexcept {
+[[gnu::noinline]] inline void brake_jogging(Cycle& c, bool is_fault) noexcept {
   Jogging& jogging = c.state.jogging;
   jogging.is_let_go = true;
   if (jogging.is_ready) brake(jogging.axis, is_fault ? jogging.fault : jogging.axis.rates);
 }
 
 /// One cycle of braking.
-[[nodiscard]] inline JogStep follow_braking(Cycle& c) noexcept {
+[[nodiscard, gnu::noinline]] inline JogStep follow_braking(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
     jogging.axis.ramp.advance(jogging.axis.at, c.dt);

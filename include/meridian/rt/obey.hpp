@@ -199,9 +199,9 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
   return is_overtaken ? Refusal::kOvertaken : Refusal::kNone;
 }
 
-/// Does what the command asks for, or refuses it; either is told with the request's number.
-inline void obey(Cycle& c) noexcept {
-  if (!c.in.has_command) return;
+/// Does what the command asks for, or refuses it; either is told with the request's number. Rare:
+/// out of the way of the cycles between.
+[[gnu::noinline]] inline void obey_word(Cycle& c) noexcept {
   const Command& command = c.in.command;
   const VerbEffect effect = effect_of(c.state.state, command.verb);
   const bool is_asked = effect.effect == Effect::kGo || effect.effect == Effect::kSet;
@@ -225,6 +225,10 @@ inline void obey(Cycle& c) noexcept {
   // A brake that is on stays on, whatever is said: no end is left out by that.
   if (command.verb == Verb::kSingleBlock) c.state.single_block.is_on = command.argument != 0;
   if (command.verb == Verb::kDryRun) set_dry_run(c, command.argument != 0);
+}
+
+inline void obey(Cycle& c) noexcept {
+  if (c.in.has_command) obey_word(c);
 }
 
 }  // namespace meridian
