@@ -80,15 +80,20 @@ std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Millisec
   const auto begin = Clock::now(), end = begin + timeout;
   const auto told = begin + std::min<Clock::duration>(kTold, timeout / 2);
   auto due = begin;
+  bool is_quoted = false;
   for (auto now = due; now < end; now = Clock::now()) {
     static_cast<void>(take_statuses());
     const bool may_send = status_ && (!is_for_dry_run || status_->is_dry_run);
-    const bool was_sent = due > begin;
-    if (status_ && !may_send && !was_sent && now >= told) return refuse_as_not_dry(request);
-    if (now >= due && may_send && commands_.matched_readers() > 0) {
+    was_matched_ = was_matched_ || commands_.matched_readers() > 0;
+    // What was seen when it was said: who is cut off then says nothing about what he sees later.
+    if (may_send && was_matched_ && !std::exchange(is_quoted, true)) {
       request.epoch_seen = status_->epoch;
       request.status_seen = status_->status_sequence;
       request.service_id_seen = status_->service_id;
+    }
+    const bool was_sent = due > begin;
+    if (status_ && !may_send && !was_sent && now >= told) return refuse_as_not_dry(request);
+    if (now >= due && may_send && commands_.matched_readers() > 0) {
       static_cast<void>(commands_.write(request));
       due = now + kRepeat;
     }

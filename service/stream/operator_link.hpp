@@ -18,8 +18,9 @@
 namespace meridian::stream {
 
 /// An operator's place at a machine: sees its status, asks for verbs and hears the answers. Every
-/// request quotes the newest status that was seen; it is repeated until it is answered, and the
-/// service answers a repetition without acting twice. One thread.
+/// request quotes the newest status that was seen when it was said, also where it is repeated, as
+/// it is until it is answered: one that comes late is stale. The service answers a repetition
+/// without acting twice. One thread.
 class OperatorLink {
  public:
   using Milliseconds = std::chrono::milliseconds;
@@ -54,6 +55,7 @@ class OperatorLink {
   std::string name_;
   std::uint64_t operator_id_;
   std::uint64_t request_ = 0;
+  bool was_matched_ = false;  ///< the service heard us once: whoever it does not hear is cut off
   dds::Writer<dds::CommandRequest> commands_;
   dds::Reader<dds::Reply> replies_;
   dds::Reader<dds::Status> statuses_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "support/private_domain.hpp"
@@ -82,6 +83,51 @@ TEST_F(OperatorWhoMeansADryRun, IsNobodyWhoSaysItAsEver) {
   ASSERT_NO_FATAL_FAILURE(tell(false));
   EXPECT_FALSE(link_.ask(Verb::kStart, 0, milliseconds(100)));
   EXPECT_TRUE(sent());
+}
+
+TEST_F(OperatorWhoMeansADryRun, QuotesInARepetitionWhatHeSawWhenHeSaidIt) {
+  ASSERT_NO_FATAL_FAILURE(tell(false));
+  std::thread later([this] {
+    std::this_thread::sleep_for(milliseconds(50));
+    tell(false);
+  });
+  EXPECT_FALSE(link_.ask(Verb::kResume, 0, milliseconds(400))) << "nobody answers";
+  later.join();
+  const auto first = sent(), second = sent();
+  ASSERT_TRUE(first && second) << "it is repeated after 300 ms";
+  EXPECT_EQ(first->status_seen, 1U);
+  EXPECT_EQ(second->status_seen, 1U) << "a stop may have been said behind it";
+}
+
+/// Who was heard once and says something while he is cut off.
+TEST(OperatorWhoIsCutOff, QuotesWhatHeSawWhenHeSaidItOnceHeIsHeard) {
+  const support::PrivateDomain domain;
+  dds::Participant participant({.domain = domain.id(), .machine = "m"});
+  dds::Writer<dds::Status> statuses(participant);
+  OperatorLink link(participant, "test");
+  const auto tell = [&statuses](std::uint64_t sequence) {
+    dds::Status status;
+    status.status_sequence = sequence;
+    return statuses.write(status);
+  };
+  ASSERT_TRUE(tell(1));
+  {
+    const dds::Reader<dds::CommandRequest> before(participant);
+    EXPECT_FALSE(link.ask(Verb::kHold, 0, milliseconds(50)));
+  }
+  std::optional<dds::Reader<dds::CommandRequest>> commands;
+  std::thread later([&] {
+    std::this_thread::sleep_for(milliseconds(50));
+    EXPECT_TRUE(tell(2));
+    std::this_thread::sleep_for(milliseconds(50));
+    commands.emplace(participant);
+  });
+  EXPECT_FALSE(link.ask(Verb::kResume, 0, milliseconds(250)));
+  later.join();
+  dds::CommandRequest request;
+  ASSERT_TRUE(commands->take(request));
+  EXPECT_EQ(request.verb, Verb::kResume);
+  EXPECT_EQ(request.status_seen, 1U);
 }
 
 }  // namespace
