@@ -63,7 +63,8 @@ stream::Surroundings Intake::around() noexcept {
   return {.now_ns = monotonic_ns(),
           .free_places = places > used ? places - used : 0,
           .actions = {.is_there = has_action_peer_,
-                      .is_ignored = service_.auxiliary == config::AuxiliaryPolicy::kIgnore}};
+                      .is_ignored = service_.auxiliary == config::AuxiliaryPolicy::kIgnore},
+          .is_tool_known = !ports_.is_tool_changing.load(std::memory_order_relaxed)};
 }
 
 void Intake::take_events() {

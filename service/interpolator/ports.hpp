@@ -129,12 +129,13 @@ struct Ports {
   LatestValue<DriveWords> drive_words, drive_words_for_status;
 
   std::atomic<bool> is_stopping{false};
-  std::atomic<State> state{State::kOff};   ///< of the machine, for who needs no more than that
-  std::atomic<bool> may_leave{true};       ///< no drive would be left alone: Off, or a dry run
-  std::atomic<std::uint64_t> session{0};   ///< that holds the machine
-  std::atomic<double> spindle_tool_mm{0};  ///< gauge line to tip of the tool in the spindle
-  QueueMarkWord queue_mark;                ///< intake to planner: what of `blocks` is good
-  std::atomic<double> planned_s{0};        ///< plan time of the program that was published
+  std::atomic<State> state{State::kOff};      ///< of the machine, for who needs no more than that
+  std::atomic<bool> may_leave{true};          ///< no drive would be left alone: Off, or a dry run
+  std::atomic<std::uint64_t> session{0};      ///< that holds the machine
+  std::atomic<double> spindle_tool_mm{0};     ///< gauge line to tip of the tool in the spindle
+  std::atomic<bool> is_tool_changing{false};  ///< that may be another one by now
+  QueueMarkWord queue_mark;                   ///< intake to planner: what of `blocks` is good
+  std::atomic<double> planned_s{0};           ///< plan time of the program that was published
   std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};
   std::atomic<std::uint64_t> writes_failed{0};
 

@@ -116,6 +116,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       tool_lengths_(lengths_of(parts_.tools)),
       rings_(parts_.service.trace.folder.empty() ? nullptr : std::make_unique<trace::Rings>()),
       ports_(rings_.get()),
+      status_clock_(static_cast<std::int64_t>(1e9 / parts_.service.status_rate_hz)),
       participant_({.domain = parts_.domain,
                     .machine = partition_of(parts_),
                     .transport = realtime.has_priorities() ? dds::Transport::kLoopbackRealtime

@@ -47,7 +47,7 @@ void Supervisor::run() noexcept {
     take_jogs();
     take_actions_done();
     take_events();
-    send_delayed_reset();
+    send_delayed_resets();
     work_on_switching_off();
     drives_.work(view_, ports_.drive_words.latest(), monotonic_ns());
     look_for_action_peer();
@@ -134,10 +134,19 @@ void Supervisor::publish_action(const Event& event) {
   is_action_open_ = true;
   // Of a dry run neither: no tool is changed where the machine only would be.
   if (service_.auxiliary == config::AuxiliaryPolicy::kIgnore || view_.is_dry_run) {
+    if (action_.block.kind == BlockKind::kTool) {
+      const Tool* tool = tools_.find(static_cast<int>(action_.block.value));
+      if (tool != nullptr) ports_.spindle_tool_mm.store(tool->length_mm, std::memory_order_relaxed);
+    }
     settle_action(true);
     return;
   }
   const ClBlock& block = action_.block;
+  if (block.kind == BlockKind::kTool) {
+    const auto wait_ns = static_cast<std::int64_t>(1e9 * service_.action_timeout_s);
+    tool_change_ = {action_id_ + 1, block.value, monotonic_ns() + wait_ns};
+    ports_.is_tool_changing.store(true, std::memory_order_relaxed);
+  }
   (void)actions_.write({.id = ++action_id_,
                         .service_id = service_id_,
                         .sequence = block.sequence,
@@ -150,9 +159,25 @@ void Supervisor::publish_action(const Event& event) {
 void Supervisor::take_actions_done() {
   dds::ActionDone done;
   while (actions_done_.take(done)) {
-    if (!is_action_open_ || done.service_id != service_id_ || done.id != action_id_) continue;
-    settle_action(done.is_done);
+    if (done.service_id != service_id_) continue;
+    if (tool_change_.id != 0 && done.id == tool_change_.id) end_tool_change(done.is_done);
+    if (is_action_open_ && done.id == action_id_) settle_action(done.is_done);
   }
+  if (tool_change_.id != 0 && monotonic_ns() > tool_change_.until_ns) {
+    ports_.is_tool_changing.store(false, std::memory_order_relaxed);
+  }
+}
+
+/// A changer that was asked goes on when the program is aborted: what it ends with is in the
+/// spindle. Of a dry run that began meanwhile it is what the spindle holds behind it.
+void Supervisor::end_tool_change(bool is_done) {
+  const Tool* tool = tools_.find(static_cast<int>(tool_change_.tool));
+  if (is_done && tool != nullptr && is_dry_run_) tool_before_mm_ = tool->length_mm;
+  if (is_done && tool != nullptr && !is_dry_run_) {
+    ports_.spindle_tool_mm.store(tool->length_mm, std::memory_order_relaxed);
+  }
+  tool_change_ = {};
+  ports_.is_tool_changing.store(false, std::memory_order_relaxed);
 }
 
 void Supervisor::close_action() {
@@ -162,11 +187,6 @@ void Supervisor::close_action() {
 
 void Supervisor::settle_action(bool is_done) {
   is_action_open_ = false;
-  if (is_done && action_.block.kind == BlockKind::kTool) {
-    if (const Tool* tool = tools_.find(static_cast<int>(action_.block.value)); tool != nullptr) {
-      ports_.spindle_tool_mm.store(tool->length_mm, std::memory_order_relaxed);
-    }
-  }
   ports_.action_answer.store(
       {.sequence = action_.block.sequence, .is_answered = true, .is_done = is_done});
 }

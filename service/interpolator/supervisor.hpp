@@ -48,6 +48,12 @@ class Supervisor {
     dds::CommandRequest request;
     bool is_own = false;  ///< the service's, while shutting down: nobody waits for an answer
   };
+  /// A tool change that the action peer was asked for, and has not answered.
+  struct ToolChange {
+    std::uint64_t id = 0;  ///< of the action; 0: none
+    double tool = 0;
+    std::int64_t until_ns = 0;  ///< nobody waits for the answer any longer
+  };
   struct Answered {
     std::uint64_t operator_id = 0, request = 0;
     dds::Reply reply;
@@ -55,15 +61,21 @@ class Supervisor {
 
   void take_commands();
   void take_jogs();
-  /// Takes what operators said meanwhile, stops first; true if there may be more.
-  bool take_burst();
+  /// Takes what operators said meanwhile, stops first, no more than `left`, which it counts down;
+  /// true if there may be more.
+  bool take_burst(int& left);
   void take_command(const Pending& command);
   [[nodiscard]] bool has_come_before(const dds::CommandRequest& request);
+  /// Why a word that nothing else is said against is late all the same.
+  [[nodiscard]] Refusal judge_turn(const dds::CommandRequest& request) const noexcept;
+  void delay_reset(const Pending& command);
   void send(const Pending& command);
   [[nodiscard]] bool is_pending(Verb verb) const noexcept;
   void take_events();
   void answer(const Event& event);
   void answer(const Event& event, const Pending& pending);
+  /// The cycle's answers to what was told it before `event` are lost.
+  void give_up_older(const Event& event);
   /// What an accepted verb leads to; a program's start to its approach.
   [[nodiscard]] std::string what_happens(Verb verb);
   void reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
@@ -71,9 +83,11 @@ class Supervisor {
   void publish_action(const Event& event);
   void take_actions_done();
   void settle_action(bool is_done);
+  /// The action peer says what became of the tool change, whether or not a program waits for it.
+  void end_tool_change(bool is_done);
   /// Nobody is waited for; what was answered is forgotten.
   void close_action();
-  void send_delayed_reset();
+  void send_delayed_resets();
   void work_on_switching_off();
   void look_for_action_peer();
   /// The newest view of the cycle, and what follows from a dry run that began or ended by it.
@@ -100,18 +114,21 @@ class Supervisor {
   std::uint64_t next_key_ = 1;
   std::array<Pending, 128> burst_{};  ///< came together, none of them stops
   std::array<Pending, 96> pending_{};
-  std::array<Answered, 32> answered_{};  ///< for requests that come twice
+  std::array<Answered, 512> answered_{};  ///< for requests that come twice
   std::size_t answered_at_ = 0;
   PlannedAction action_{};  ///< newest that was due
   std::uint64_t action_id_ = 0;
   bool is_action_open_ = false;
+  ToolChange tool_change_;
   bool has_action_peer_ = false;  ///< or a dry run, which needs none
   bool is_dry_run_ = false;
   double tool_before_mm_ = 0;  ///< in the spindle when the dry run began
   std::atomic<bool> is_switching_off_{false}, is_off_{false};
   std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
-  Pending delayed_reset_;              ///< waits until drives left their fault
-  std::int64_t delayed_until_ns_ = 0;  ///< 0: none waits
+  std::uint64_t stop_status_ = 0;            ///< newest status when a stop was said last
+  std::array<Pending, 8> delayed_resets_{};  ///< wait until drives left their fault
+  std::size_t delayed_count_ = 0;
+  std::int64_t delayed_until_ns_ = 0;
 };
 
 }  // namespace meridian::interpolator

@@ -14,20 +14,25 @@ namespace {
 constexpr std::int64_t kResetDrives_ns = 300'000'000;
 /// Places for what waits to be answered that are kept for stops.
 constexpr std::ptrdiff_t kStopPlaces = 32;
-const std::string kDry = "dry run: ", kStarted = "start accepted; ";
+/// Requests at one look: however many operators say, drives are looked after between them.
+constexpr int kMostTaken = 1024;
+const std::string kDry = "dry run: ", kStarted = "start accepted; ",
+                  kTooMany = "too many commands at once; say it again";
 
 }  // namespace
 
 void Supervisor::take_commands() {
-  while (take_burst()) {
+  int left = kMostTaken;
+  while (take_burst(left)) {
   }
   ports_.commands.publish();  // no word before the stops that came with it
 }
 
 /// Judging and refusing take time: stops are on their way before any of it.
-bool Supervisor::take_burst() {
+bool Supervisor::take_burst(int& left) {
   std::size_t count = 0;
-  while (count < burst_.size() && commands_.take(burst_[count].request)) {
+  while (count < burst_.size() && left > 0 && commands_.take(burst_[count].request)) {
+    --left;
     burst_[count].key = next_key_++;
     if (is_stop(burst_[count].request.verb)) {
       take_command(burst_[count]);
@@ -51,12 +56,12 @@ void Supervisor::take_command(const Pending& command) {
           "operator_id 0 names no operator: it must be drawn at random, and not 0");
     return;
   }
+  if (is_stop(request.verb)) stop_status_ = status_clock_.newest();
   // Whoever saw a status that is younger than the last look at the cycle is not late.
   refresh_view();
   const std::uint64_t rest = stream::rest_of(view_.record.state, view_.record.sequence);
   Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns(), rest);
-  // Whoever enables has not seen the dry run begin or end that is on its way to the cycle.
-  if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) refusal = Refusal::kStale;
+  if (refusal == Refusal::kNone) refusal = judge_turn(request);
   if (is_switching_off_ || refusal != Refusal::kNone) {
     const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
     reply(request, false, why,
@@ -64,16 +69,39 @@ void Supervisor::take_command(const Pending& command) {
                             : telemetry::describe(request.verb, why, view_.record.state));
     return;
   }
+  const bool is_tool_jog = request.verb == Verb::kJog && request.argument >= kMaxJoints;
+  if (is_tool_jog && ports_.is_tool_changing.load(std::memory_order_relaxed)) {
+    reply(request, false, Refusal::kWrongState,
+          "jog refused: which tool is in the spindle is not known, its change is not answered yet; "
+          "jog a joint, or wait");
+    return;
+  }
   const State state = view_.record.state;
   const bool may_reset_drives =
       !view_.is_dry_run && (state == State::kFault || state == State::kOff);
-  if (request.verb == Verb::kReset && may_reset_drives && delayed_until_ns_ == 0) {
-    drives_.reset_faults(monotonic_ns());
-    delayed_reset_ = command;
-    delayed_until_ns_ = monotonic_ns() + kResetDrives_ns;
+  if (request.verb == Verb::kReset && may_reset_drives) return delay_reset(command);
+  send(command);
+}
+
+/// Whoever enables has not seen the dry run begin or end that is on its way to the cycle; and
+/// whoever saw no status of after a stop said his word before it, however late it came.
+Refusal Supervisor::judge_turn(const dds::CommandRequest& request) const noexcept {
+  if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) return Refusal::kStale;
+  const bool is_before_stop = request.status_seen <= stop_status_;
+  return leads_to_motion(request.verb) && is_before_stop ? Refusal::kOvertaken : Refusal::kNone;
+}
+
+/// Whoever says it while one waits already waits with it.
+void Supervisor::delay_reset(const Pending& command) {
+  if (delayed_count_ == delayed_resets_.size()) {
+    reply(command.request, false, Refusal::kWrongState, kTooMany);
     return;
   }
-  send(command);
+  if (delayed_count_ == 0) {
+    drives_.reset_faults(monotonic_ns());
+    delayed_until_ns_ = monotonic_ns() + kResetDrives_ns;
+  }
+  delayed_resets_[delayed_count_++] = command;
 }
 
 /// Answers what was answered already again. Nobody, who may stop the machine, repeats nothing.
@@ -87,9 +115,12 @@ bool Supervisor::has_come_before(const dds::CommandRequest& request) {
     (void)replies_.write(answered->reply);
     return true;
   }
-  return std::any_of(pending_.begin(), pending_.end(), [&is_same](const Pending& pending) {
+  const auto waits = [&is_same](const Pending& pending) {
     return pending.key != 0 && is_same(pending.request);
-  });
+  };
+  const auto delayed_end = delayed_resets_.begin() + static_cast<std::ptrdiff_t>(delayed_count_);
+  return std::any_of(pending_.begin(), pending_.end(), waits) ||
+         std::any_of(delayed_resets_.begin(), delayed_end, waits);
 }
 
 bool Supervisor::is_pending(Verb verb) const noexcept {
@@ -98,8 +129,8 @@ bool Supervisor::is_pending(Verb verb) const noexcept {
   });
 }
 
-void Supervisor::send_delayed_reset() {
-  if (delayed_until_ns_ == 0) return;
+void Supervisor::send_delayed_resets() {
+  if (delayed_count_ == 0) return;
   const DriveWords& words = ports_.drive_words.latest();
   bool has_fault = false;
   for (int joint = 0; joint < model_.joint_count; ++joint) {
@@ -107,8 +138,11 @@ void Supervisor::send_delayed_reset() {
     has_fault = has_fault || state == DriveState::kFault || state == DriveState::kFaultReaction;
   }
   if (has_fault && monotonic_ns() < delayed_until_ns_) return;
-  delayed_until_ns_ = 0;
-  send(delayed_reset_);
+  for (std::size_t i = 0; i < delayed_count_; ++i) {
+    delayed_resets_[i].key = next_key_++;  // others were told the cycle meanwhile
+    send(delayed_resets_[i]);
+  }
+  delayed_count_ = 0;
   ports_.commands.publish();
 }
 
@@ -128,17 +162,30 @@ void Supervisor::send(const Pending& command) {
   if (command.is_own) return;
   reply(request, false, Refusal::kWrongState,
         is_told ? "too many stops at once to answer each; the machine was told of it all the same"
-                : "too many commands at once; say it again");
+                : kTooMany);
 }
 
 /// Of stops of one verb that waited together the newest stands for all.
 void Supervisor::answer(const Event& event) {
   const auto verb = static_cast<Verb>(event.b);
+  if (!is_stop(verb)) give_up_older(event);
   for (Pending& pending : pending_) {
     const bool is_meant = pending.key == event.a ||
                           (is_stop(verb) && pending.request.verb == verb && pending.key < event.a);
     if (pending.key == 0 || !is_meant) continue;
     if (!pending.is_own) answer(event, pending);
+    pending.key = 0;
+  }
+}
+
+/// The cycle answers words, as opposed to stops, in the order in which they were told it. What was
+/// lost of its answers may have been obeyed: it is not obeyed again where it is repeated.
+void Supervisor::give_up_older(const Event& event) {
+  for (Pending& pending : pending_) {
+    const bool is_older = pending.key != 0 && pending.key < event.a;
+    if (!is_older || is_stop(pending.request.verb)) continue;
+    reply(pending.request, false, Refusal::kWrongState,
+          "the machine's answer was lost: it may have been obeyed; look at the status");
     pending.key = 0;
   }
 }
@@ -182,6 +229,7 @@ void Supervisor::reply(const dds::CommandRequest& request, bool is_accepted, Ref
                          .epoch = view_.epoch,
                          .text = is_accepted && view_.is_dry_run ? kDry + text : text};
   (void)replies_.write(reply);
+  if (request.operator_id == 0) return;  // never looked up
   answered_[answered_at_++ % answered_.size()] = {request.operator_id, request.request, reply};
 }
 

@@ -214,6 +214,11 @@ void TelemetryThread::tell(const Event& event) {
       has_news_ = true;
       if (way_.epoch != event.a) forget_approach();  // of a program that is void
       break;
+    case EventCode::kAccepted:
+    case EventCode::kRefused:
+      // Whoever is to move the machine again must have seen a status of after the stop.
+      if (is_stop(static_cast<Verb>(event.b))) has_news_ = true;
+      break;
     case EventCode::kPeriodsLost:
       periods_lost_ += event.a;  // told once a second: a busy host loses many
       return;

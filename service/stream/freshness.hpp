@@ -67,15 +67,19 @@ class StatusTimes {
            now_ns - entry.time_ns <= kFreshness_ns;
   }
 
-  /// For how long, ns, there has been a newer status than `sequence`; 0: there is none. Nothing:
+  /// For how long, ns, there has been a newer status than `sequence`, or should have been: where
+  /// none is published any more the newest is superseded two periods after it. 0: not yet. Nothing:
   /// that was never published, or is forgotten.
   [[nodiscard]] std::optional<std::int64_t> superseded_for(std::uint64_t sequence,
-                                                           std::int64_t now_ns) const noexcept {
+                                                           std::int64_t now_ns,
+                                                           std::int64_t period_ns) const noexcept {
     const Entry& entry = entries_[sequence % kEntries];
     const Entry& next = entries_[(sequence + 1) % kEntries];
     if (entry.time_ns == kNever || entry.sequence != sequence) return std::nullopt;
-    if (next.time_ns == kNever || next.sequence != sequence + 1) return 0;
-    return std::max<std::int64_t>(0, now_ns - next.time_ns);
+    const bool is_newest = next.time_ns == kNever || next.sequence != sequence + 1;
+    const std::int64_t due_ns = entry.time_ns + 2 * period_ns;
+    const std::int64_t since_ns = is_newest ? due_ns : std::min(due_ns, next.time_ns);
+    return std::max<std::int64_t>(0, now_ns - since_ns);
   }
 
  private:

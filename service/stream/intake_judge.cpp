@@ -62,6 +62,11 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
                        (is_lost_ ? ", which is gone; enable the machine and abort to free it"
                                  : "; wait for its end, or enable the machine and abort it"));
   }
+  if (!around.is_tool_known) {
+    return refused(Verdict::kRefusedProgram,
+                   "which tool is in the spindle is not known: its change was given up, and the "
+                   "action peer has not said yet whether it is done");
+  }
   if (request.session == 0) return refused(Verdict::kRefusedProgram, "0 names no session");
   if (contradicts_itself(request)) {
     return refused(Verdict::kRefusedProgram,

@@ -23,6 +23,7 @@ struct Surroundings {
   std::int64_t now_ns = 0;      ///< monotonic
   std::size_t free_places = 0;  ///< of the block queue
   ActionPeer actions;
+  bool is_tool_known = true;  ///< false: its change was given up and is not answered yet
 };
 
 /// Blocks that a batch added to the program, in order: push them all, there is room.

@@ -193,7 +193,10 @@ void Plant::must(Verb verb, double argument, Refusal passing) {
   std::optional<dds::Reply> reply;
   (void)eventually([&] {
     reply = say(verb, argument);
-    return !reply || (reply->refusal != Refusal::kStale && reply->refusal != passing);
+    // Said again: behind a stop as soon as a status of after it was seen.
+    const bool is_late =
+        reply && (reply->refusal == Refusal::kStale || reply->refusal == Refusal::kOvertaken);
+    return !reply || (!is_late && reply->refusal != passing);
   });
   ASSERT_TRUE(reply && reply->is_accepted)
       << "verb " << static_cast<int>(verb) << ": " << (reply ? reply->text : "no reply") << "; "

@@ -47,14 +47,18 @@ TEST_F(Freshness, RefusesAStatusThatWasNeverPublished) {
 
 TEST_F(Freshness, KnowsForHowLongThereHasBeenANewerStatus) {
   constexpr std::int64_t kNow = 10'004 * kMillisecond;  // status 1000 was published at 10'000
-  EXPECT_EQ(times_.superseded_for(1000, kNow), 0)
-      << "the newest is never old, however late the next";
-  EXPECT_EQ(times_.superseded_for(1000, kNow + 5000 * kMillisecond), 0);
-  EXPECT_EQ(times_.superseded_for(999, kNow), 4 * kMillisecond);
-  EXPECT_EQ(times_.superseded_for(990, kNow), 94 * kMillisecond);
-  EXPECT_EQ(times_.superseded_for(1001, kNow), std::nullopt) << "of the future";
-  EXPECT_EQ(times_.superseded_for(400, kNow), std::nullopt) << "forgotten";
-  EXPECT_EQ(StatusTimes().superseded_for(0, kNow), std::nullopt);
+  const auto age = [this](std::uint64_t sequence, std::int64_t now_ns) {
+    return times_.superseded_for(sequence, now_ns, 10 * kMillisecond);
+  };
+  EXPECT_EQ(age(1000, kNow), 0);
+  EXPECT_EQ(age(1000, kNow + 16 * kMillisecond), 0) << "the next is late, as they are on a host";
+  EXPECT_EQ(age(1000, kNow + 86 * kMillisecond), 70 * kMillisecond) << "nobody publishes any more";
+  EXPECT_EQ(age(999, kNow), 4 * kMillisecond);
+  EXPECT_EQ(age(990, kNow), 94 * kMillisecond);
+  EXPECT_EQ(times_.superseded_for(999, kNow, kMillisecond), 12 * kMillisecond) << "came too late";
+  EXPECT_EQ(age(1001, kNow), std::nullopt) << "of the future";
+  EXPECT_EQ(age(400, kNow), std::nullopt) << "forgotten";
+  EXPECT_EQ(StatusTimes().superseded_for(0, kNow, 10 * kMillisecond), std::nullopt);
 }
 
 TEST_F(Freshness, RefusesAnOldEpochAndAnotherService) {

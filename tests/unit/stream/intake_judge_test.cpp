@@ -28,6 +28,19 @@ TEST_F(Intake, TakesBlocksInOrder) {
   EXPECT_EQ(judge_.next_sequence(), 37u);
 }
 
+/// Whose length its plan would go by nobody knows.
+TEST_F(Intake, TakesNoProgramWhileAnAbortedToolChangeIsNotAnswered) {
+  around_.is_tool_known = false;
+  const Credit refused = open();
+  EXPECT_EQ(refused.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(refused.text.find("which tool is in the spindle is not known"), std::string::npos);
+  EXPECT_EQ(judge_.session(), 0U);
+  around_.is_tool_known = true;
+  EXPECT_EQ(open(kSession + 1).verdict, Verdict::kGood);
+  around_.is_tool_known = false;  // by this program's own change
+  EXPECT_EQ(open(kSession + 1).verdict, Verdict::kGood) << "it goes on";
+}
+
 TEST_F(Intake, RefusesASecondStationByName) {
   static_cast<void>(open());
   const Credit answer = open(0xdef, "cam-2");
