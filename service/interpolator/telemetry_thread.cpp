@@ -255,7 +255,9 @@ bool TelemetryThread::take_approach() {
   is_approach_new_ = way_.is_planned;
   if (!way_.is_planned) return false;
   approach_ = telemetry::describe(way_, model_, dds::kMostText);
-  log_->info("{}", telemetry::describe(way_, model_, SIZE_MAX));
+  const bool is_short = telemetry::is_short_of_clearance(way_, model_);
+  log_->log(is_short ? spdlog::level::warn : spdlog::level::info, "{}",
+            telemetry::describe(way_, model_, SIZE_MAX));
   return true;
 }
 

@@ -357,14 +357,26 @@ std::string describe(const Approach& approach, const MachineModel& model, std::s
   const auto lift = [](const char* way, double by_mm) {
     return by_mm > 0 ? fmt::format("{} {:.4g} mm, ", way, by_mm) : "";
   };
-  const std::string ways = lift("up", approach.retract) + (approach.has_rest ? "actions, " : "") +
-                           (joints.empty() ? "" : "joints straight " + joints + ", ") +
-                           lift("down", approach.descent);
+  // Where tool and spindle act next nobody may think that the tool is farther off than it is.
+  const std::string begin =
+      approach.has_rest
+          ? fmt::format("up {:.4g} of {:.4g} mm{}, actions, ", approach.retract, model.clearance_mm,
+                        is_short_of_clearance(approach, model) ? " (NEAR THE PART)" : "")
+          : "";
+  const std::string ways =
+      (approach.has_rest ? lift("up", approach.lift) : lift("up", approach.retract)) +
+      (joints.empty() ? "" : "joints straight " + joints + ", ") + lift("down", approach.descent);
   const std::string trip = fmt::format("{:.4g} mm in {:.1f} s, branch {}", approach.length,
                                        approach.time, approach.branch);
   const std::string turned = winding(approach, model);
-  if ((head + ways + trip + turned).size() <= room) return head + ways + trip + turned;
-  return (head + ways + trip).size() <= room ? head + ways + trip : head + trip;
+  const std::string front = head + begin;
+  if ((front + ways + trip + turned).size() <= room) return front + ways + trip + turned;
+  return (front + ways + trip).size() <= room ? front + ways + trip : front + trip;
+}
+
+bool is_short_of_clearance(const Approach& approach, const MachineModel& model) noexcept {
+  constexpr double kSame_mm = 1e-3;
+  return approach.has_rest && approach.retract < model.clearance_mm - kSame_mm;
 }
 
 }  // namespace meridian::telemetry

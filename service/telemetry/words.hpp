@@ -28,10 +28,13 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 [[nodiscard]] std::string describe(const PoleEase& ease);
 [[nodiscard]] std::string describe(const Unwinding& unwinding);
 /// How the machine will come to a program's first motion, in at most `room` characters where they
-/// hold what cannot be left out: line, length, time and branch; then joints with what they move by;
-/// then the winding.
+/// hold what cannot be left out: line, how far off the part its first actions are done, length,
+/// time and branch; then joints with what they move by; then the winding.
 [[nodiscard]] std::string describe(const Approach& approach, const MachineModel& model,
                                    std::size_t room);
+/// Whether tool and spindle act nearer to the part than the clearance, for want of travel.
+[[nodiscard]] bool is_short_of_clearance(const Approach& approach,
+                                         const MachineModel& model) noexcept;
 /// Answer to an operator whose verb was accepted; `state` is the one it led to.
 [[nodiscard]] std::string describe(Verb verb, State state);
 /// Answer to an operator whose verb was refused in `state`, with the remedy.

@@ -20,6 +20,7 @@ struct Approach {
   JointVector from{}, to{};    ///< joints before it and behind it, windings included
   double retract = 0;          ///< mm along the tool axis, 0: none
   bool has_rest = false;       ///< behind the retraction the program's first actions are done
+  double lift = 0;             ///< mm behind these, where they brought a tool that is longer
   double descent = 0;          ///< the same on the other side
   double length = 0;           ///< path length of the whole way, 1 rad counted as 50 mm
   double time = 0;             ///< s, at overrides of 100 %

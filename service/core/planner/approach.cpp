@@ -77,6 +77,7 @@ PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out
   const ToolPose rest = cursor.pose;
   retracted_ = {};
   retracted_.from = cursor.joints;
+  left_ = rest;
   cursor.has_retracted = true;
   const double up = find_clearance(rest, cursor.joints, cursor.tool_length_mm, model_.clearance_mm);
   if (!(up > 0)) return {};
@@ -89,6 +90,21 @@ PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out
   return {};
 }
 
+PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging& out) noexcept {
+  const double above = (cursor.pose.tip - left_.tip).dot(left_.axis);
+  const double least = retracted_.retract - kNoClearance_mm;
+  if (above >= least) return {};
+  const double missing = model_.clearance_mm - above;
+  const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, missing);
+  if (above + up < least) {
+    const auto at = solve_near(lifted(cursor.pose, missing), cursor.joints, cursor.tool_length_mm);
+    const int joint = first_joint_outside_travel(model_, at.q, 0);
+    return {PathFault::Kind::kTravel, joint, joint >= 0 ? limited_value(model_, at.q, joint) : 0.0};
+  }
+  way_in_.lift = up;
+  return run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
+}
+
 PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job& job,
                               PlanCursor& cursor, Staging& out) noexcept {
   const std::uint32_t rotary = rotary_mask(model_);
@@ -99,7 +115,10 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   const double clearance = model_.clearance_mm;
   double up = 0, down = 0;
   if (apart > kNearby) {
-    if (!cursor.has_retracted) {
+    if (cursor.has_retracted) {
+      fault = lift_longer_tool(rapid, cursor, out);
+      if (is_fault(fault)) return fault;
+    } else {
       up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
     }
     if (up > 0) {

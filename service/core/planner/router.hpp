@@ -164,6 +164,9 @@ class Router {
                                          const PlanCursor& cursor) noexcept;
   [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
                                       PlanCursor& cursor, Staging& out) noexcept;
+  /// Lifts a tool that is longer than the one that retract() led off the part as far as that was.
+  [[nodiscard]] PathFault lift_longer_tool(const Job& rapid, PlanCursor& cursor,
+                                           Staging& out) noexcept;
   /// Fills in what is known of the way once it is staged from `begin` on.
   void describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
                        const Staging::Mark& begin, const Staging& staged) noexcept;
@@ -178,9 +181,10 @@ class Router {
   PoleForesight* foresight_ = nullptr;
   bool needs_ahead_ = false;  ///< of the last route()
   AheadSlack slack_;
-  std::optional<BlockReject> lost_;  ///< of the last approach
-  Approach way_in_;                  ///< of the last approach
-  Approach retracted_;               ///< what the last retract() was of it
+  std::optional<BlockReject> lost_;                   ///< of the last approach
+  Approach way_in_;                                   ///< of the last approach
+  Approach retracted_;                                ///< what the last retract() was of it
+  ToolPose left_{Vector3::Zero(), Vector3::UnitZ()};  ///< where the last retract() began
   double feed_factor_ = 1;
   double free_cone_rad_ = 0;
   double deviation_rad_ = 0;

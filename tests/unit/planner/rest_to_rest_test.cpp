@@ -245,6 +245,68 @@ TEST(RestToRest, LeavesThePartBeforeTheFirstActionOfAProgramThatMayBeginInIt) {
   EXPECT_NEAR(way.time, lift_time + bench.duration(), 1e-9);
 }
 
+/// A tool that is longer than the one that broke in the cut, changed where the retraction ended.
+struct LongerTool {
+  explicit LongerTool(const MachineModel& machine)
+      : bench(machine, ToolTable({{8, kLonger_mm, 5}})) {
+    bench.planner.begin(bench.start, bench.model.tool_length_mm, 1, true);
+    bench.reader.set_epoch(1);
+    ClBlock tool = block_of(BlockKind::kTool, 0);
+    tool.value = 8;
+    EXPECT_EQ(bench.plan_and_take(tool).status, PlanStatus::kOk);
+    over = bench.planner.joints();
+    bench.forget();
+  }
+  /// How far the tip is above where the old one stood.
+  [[nodiscard]] double above(const JointVector& joints) const {
+    const ToolPose from = forward(bench.model, bench.model.tool_length_mm, bench.start);
+    return (forward(bench.model, kLonger_mm, joints).tip - from.tip).dot(from.axis);
+  }
+
+  static constexpr double kLonger_mm = 110 + 70;
+  Bench bench;
+  JointVector over;
+};
+
+TEST(RestToRest, LiftsALongerToolOffThePartBeforeJointsMove) {
+  ASSERT_EQ(test::lai_machine().tool_length_mm, 110);
+  LongerTool longer(test::lai_machine());
+  Bench& bench = longer.bench;
+  EXPECT_NEAR(longer.above(longer.over), bench.model.clearance_mm - 70, 1e-9) << "in the part";
+  ASSERT_EQ(bench.plan_and_take(cut(1, {50, 0, 20}, tilted(0.3, 1))).status, PlanStatus::kOk);
+  const auto move = std::find_if(bench.paths.begin(), bench.paths.end(), [](const PathPiece& path) {
+    return path.kind == PathKind::kJoint;
+  });
+  ASSERT_NE(move, bench.paths.end());
+  EXPECT_NEAR(longer.above(move->joints_begin), bench.model.clearance_mm, 1e-6);
+  Approach way;
+  ASSERT_TRUE(bench.planner.take_approach(way));
+  EXPECT_NEAR(way.lift, 70, 1e-9);
+}
+
+TEST(RestToRest, RefusesAProgramWhoseLongerToolCannotLeaveThePart) {
+  const LongerTool free(test::lai_machine());
+  const auto at =
+      solve(free.bench.model, LongerTool::kLonger_mm,
+            ToolPose{forward(free.bench.model, LongerTool::kLonger_mm, free.over).tip +
+                         60 * forward(free.bench.model, LongerTool::kLonger_mm, free.over).axis,
+                     forward(free.bench.model, LongerTool::kLonger_mm, free.over).axis},
+            0, free.over);
+  MachineModel narrow = test::lai_machine();
+  int joint = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(at.q[i] - free.over[i]) > std::abs(at.q[joint] - free.over[joint])) joint = i;
+  }
+  JointLimits& limits = narrow.joints[joint].limits;
+  (at.q[joint] > free.over[joint] ? limits.travel_max : limits.travel_min) = at.q[joint];
+  LongerTool longer(narrow);
+  const PlanResult result = longer.bench.plan_and_take(cut(1, {50, 0, 20}, tilted(0.3, 1)));
+  EXPECT_EQ(result.status, PlanStatus::kRefused);
+  EXPECT_EQ(result.reject.code, RejectCode::kApproach);
+  EXPECT_EQ(result.reject.joint, joint);
+  EXPECT_TRUE(longer.bench.times.empty());
+}
+
 TEST(RestToRest, DoesTheFirstActionsOfAnyOtherProgramWhereTheMachineStands) {
   Bench bench;
   ASSERT_EQ(bench.plan_and_take(block_of(BlockKind::kAuxiliary, 0)).status, PlanStatus::kOk);

@@ -49,14 +49,27 @@ TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
             "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360, "
             "theta2 -5.73 deg, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg");
   way.has_rest = true;
-  EXPECT_EQ(describe(way, model, 1000).rfind("approach to line 12: up 20 mm, actions, joints ", 0),
-            0U)
-      << "of a program that begins in its middle";
+  const auto begins = [&](const std::string& words) {
+    return describe(way, model, 1000).rfind("approach to line 12: " + words, 0) == 0;
+  };
+  ASSERT_EQ(model.clearance_mm, 50);
+  EXPECT_FALSE(is_short_of_clearance({}, model)) << "it begins where it begins";
+  EXPECT_TRUE(begins("up 20 of 50 mm (NEAR THE PART), actions, joints ")) << "begins in its middle";
+  EXPECT_TRUE(is_short_of_clearance(way, model));
+  way.retract = 0;
+  EXPECT_TRUE(begins("up 0 of 50 mm (NEAR THE PART), actions, joints "))
+      << "least of all in silence";
+  EXPECT_NE(describe(way, model, 120).find("up 0 of 50 mm (NEAR THE PART)"), std::string::npos);
+  way.retract = 50;
+  way.lift = 70;
+  EXPECT_TRUE(begins("up 50 of 50 mm, actions, up 70 mm, joints ")) << "with a longer tool";
+  EXPECT_FALSE(is_short_of_clearance(way, model));
+  way.lift = 0;
   way.to = way.from;
   EXPECT_EQ(
       describe(way, model, 1000),
-      "approach to line 12: up 20 mm, actions, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 "
-      "at 28.65 deg");
+      "approach to line 12: up 50 of 50 mm, actions, down 50 mm, 345.7 mm in 3.2 s, branch 1, "
+      "theta1 at 28.65 deg");
   way.has_rest = false;
   way.retract = way.descent = 0;
   EXPECT_EQ(describe(way, model, 1000), "approach to line 12: none, the tool is there");
