@@ -116,7 +116,8 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          Count{status.status_sequence});
   append(text, "\"alarm_name\":\"%s\",\"alarm_joint\":%s,\"alarm_line\":%u,",
          std::string(record::word(status.alarm)).c_str(),
-         json_quoted(alarm_joint(status, machine)).c_str(), status.alarm_line);
+         json_quoted(alarm_joint(status, machine)).c_str(),
+         status.alarm != Alarm::kNone ? status.alarm_line : 0);
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

@@ -27,11 +27,20 @@ class ReportWire {
       waiting_ = report;
       return;
     }
+    if (is_well() && under_way_.empty() && !has_direct_) {
+      direct_ = report;
+      has_direct_ = true;
+      return;
+    }
     set_out(report);
     if (is_swapped_) set_out(waiting_);
   }
   /// A report that arrives now; call until there is none.
   [[nodiscard]] bool arrives(dds::DriveFeedback& report) {
+    if (std::exchange(has_direct_, false)) {
+      report = direct_;
+      return true;
+    }
     if (under_way_.empty() || under_way_.front().due > now_) return false;
     report = under_way_.front().report;
     under_way_.pop_front();
@@ -43,6 +52,9 @@ class ReportWire {
     std::int64_t due;
     dds::DriveFeedback report;
   };
+  [[nodiscard]] bool is_well() const noexcept {
+    return delay_periods_ == 0 && !is_doubled_ && !is_swapped_;
+  }
   void set_out(const dds::DriveFeedback& report) {
     for (int n = 0; n < (is_doubled_ ? 2 : 1); ++n) {
       under_way_.push_back({now_ + delay_periods_, report});
@@ -51,7 +63,9 @@ class ReportWire {
 
   std::int64_t now_ = 0, delay_periods_ = 0;
   bool is_doubled_ = false, is_swapped_ = false, has_waiting_ = false;
+  bool has_direct_ = false;
   dds::DriveFeedback waiting_;
+  dds::DriveFeedback direct_;  ///< arrives at once
   std::deque<UnderWay> under_way_;
 };
 

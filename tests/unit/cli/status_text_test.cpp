@@ -61,6 +61,10 @@ TEST(StatusText, TellsProgramsTheSame) {
       text.find("\"alarm_name\":\"following_error\",\"alarm_joint\":\"b2\",\"alarm_line\":840,"),
       std::string::npos)
       << text;
+  status.alarm = Alarm::kNone;
+  text = to_json(status, machine_of_a_stage());
+  EXPECT_NE(text.find("\"alarm_joint\":\"\",\"alarm_line\":0,"), std::string::npos)
+      << "that of the last alarm is none: " << text;
   status.alarm = Alarm::kEmergencyStop;
   text = to_json(status, machine_of_a_stage());
   EXPECT_NE(text.find("\"alarm_name\":\"emergency_stop\",\"alarm_joint\":\"\","), std::string::npos)

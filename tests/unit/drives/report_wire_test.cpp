@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/heap_watch.hpp"
+
 namespace meridian::drives {
 namespace {
 
@@ -28,6 +30,30 @@ using Arrivals = std::vector<std::vector<std::uint64_t>>;
 TEST(ReportWire, ThatIsWellBringsEachReportAtOnce) {
   ReportWire wire;
   EXPECT_EQ(arrivals(wire, 3), (Arrivals{{1}, {2}, {3}}));
+}
+
+TEST(ReportWire, ThatIsWellMakesNoHeapCall) {
+  if (!watch::is_heap_watched()) GTEST_SKIP() << "sanitizers watch the heap themselves";
+  ReportWire wire;
+  dds::DriveFeedback report;
+  int arrived = 0;
+  const watch::HeapWatch heap;
+  for (int n = 0; n < 100; ++n) {
+    wire.work(1);
+    wire.put(report);
+    while (wire.arrives(report)) ++arrived;
+  }
+  const watch::HeapCalls calls = heap.calls();
+  EXPECT_EQ(calls, watch::HeapCalls{}) << watch::HeapWatch::callers(calls);
+  EXPECT_EQ(arrived, 100);
+}
+
+TEST(ReportWire, BringsWhatIsUnderWayAheadOfWhatSetsOutBehindIt) {
+  ReportWire wire;
+  wire.delay(2);
+  EXPECT_EQ(arrivals(wire, 2), (Arrivals{{}, {}}));
+  wire.delay(0);
+  EXPECT_EQ(arrivals(wire, 3), (Arrivals{{1}, {2, 1, 2}, {3}})) << "numbered anew";
 }
 
 TEST(ReportWire, ThatIsLateBringsAllOfThemInTheirOrder) {
