@@ -112,6 +112,12 @@ class SupervisorTest : public testing::Test {
     dds::Action action;
     return comes([&] { return actions_.take(action); }) ? std::optional(action) : std::nullopt;
   }
+  /// Nobody waits for what the program asked for.
+  void abort_program() {
+    tell(EventCode::kEpochAdvanced, 2, Verb::kAbort);
+    Event told;
+    ASSERT_TRUE(comes([&] { return ports_->session_events.try_pop(told); }));
+  }
   /// The controlword that drive 0 heard last.
   [[nodiscard]] std::uint16_t controlword() {
     dds::DriveCommand command;

@@ -94,7 +94,7 @@ TEST_F(SupervisorTest, KnowsTheToolOfAChangeThatEndsBehindAnAbort) {
   show(State::kRunning, false);
   const auto action = ask_for_tool();
   ASSERT_TRUE(action);
-  tell(EventCode::kEpochAdvanced, 2, Verb::kEnable);
+  abort_program();
   show(State::kReady, false);
   ask(Verb::kJog, kMaxJoints + 2);
   EXPECT_TRUE(has_reply(Verb::kJog, Refusal::kWrongState)) << "along a tool that nobody knows";
@@ -112,7 +112,7 @@ TEST_F(SupervisorTest, KeepsTheToolOfAChangeThatIsNotDone) {
   show(State::kRunning, false);
   const auto action = ask_for_tool();
   ASSERT_TRUE(action);
-  tell(EventCode::kEpochAdvanced, 2, Verb::kEnable);
+  abort_program();
   ASSERT_TRUE(
       actions_done_.write({.id = action->id, .service_id = action->service_id, .is_done = false}));
   EXPECT_TRUE(comes([this] { return !ports_->is_tool_changing; }));
@@ -123,7 +123,7 @@ TEST_F(SupervisorTest, TakesTheAnswerOfAChangeInADryRunForTheToolBehindIt) {
   show(State::kRunning, false);
   const auto action = ask_for_tool();
   ASSERT_TRUE(action);
-  tell(EventCode::kEpochAdvanced, 2, Verb::kEnable);
+  abort_program();
   show(State::kOff, true);
   ASSERT_TRUE(comes([this] { return ports_->state == State::kOff; }));
   ASSERT_TRUE(

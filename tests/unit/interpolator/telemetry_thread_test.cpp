@@ -248,6 +248,25 @@ TEST_F(TelemetryThreadTest, KeepsTheApproachInTheStatusWhateverTheStationDoesAnd
   EXPECT_TRUE(comes(statuses, "station cam opened part.apt; " + kApproachWords)) << status_.message;
 }
 
+/// Words that quote an older status are overtaken.
+TEST_F(TelemetryThreadTest, TellsAtOnceWhatTheMachineMadeOfAStop) {
+  service_.status_rate_hz = 1;
+  CycleView view;
+  view.cycles_run = 1;
+  ports_->telemetry_view.store(view);
+  dds::Reader<dds::Status> statuses(participant_);
+  TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
+                         *intake_, clock_, recorder_, journal_, flight_, log_, *ports_);
+  std::thread running([&] { thread.run(); });
+  EXPECT_TRUE(comes(statuses, "")) << "the first";
+  const std::int64_t first_ns = status_.time_ns;
+  tell(EventCode::kRefused, 3, static_cast<std::uint64_t>(Verb::kAbort));
+  EXPECT_TRUE(comes(statuses, ""));
+  EXPECT_LT(status_.time_ns - first_ns, 1'000'000'000) << "a period";
+  ports_->is_stopping = true;
+  running.join();
+}
+
 TEST_F(TelemetryThreadTest, TellsNoApproachOfAProgramThatIsVoid) {
   for (const std::uint64_t epoch : {1U, 2U}) {
     plan_approach(1);
