@@ -35,6 +35,7 @@ void jog_fields(Way way, Message& message, Wire& wire) {
   way(message.operator_id, wire.operator_id);
   way(message.sample, wire.sample);
   way(message.status_seen, wire.status_seen);
+  way(message.service_id_seen, wire.service_id_seen);
   way(message.epoch_seen, wire.epoch_seen);
   way(message.frame, wire.frame);
   way(message.joint, wire.joint);

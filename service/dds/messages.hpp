@@ -118,6 +118,7 @@ struct Jog {
   std::uint64_t operator_id = 0;
   std::uint64_t sample = 0;
   std::uint64_t status_seen = 0;
+  std::uint64_t service_id_seen = 0;  ///< 0: any
   std::uint16_t epoch_seen = 0;
   std::uint8_t frame = 0;  ///< 0: of the joints; 1: of the tool, `joint` is a ToolAxis
   std::uint8_t joint = 0;

@@ -14,12 +14,14 @@ namespace meridian::interpolator {
 
 /// Judges what comes in on `jog`: one operator holds the joints, the one whose verb `jog` was
 /// accepted with the cycle's number for it, and each of his samples is newer than the last, quotes
-/// the epoch in force and a status that was published. What anybody else says changes nothing. How
-/// long a sample was under way nobody knows; that it was said before its operator saw the next
-/// status the service does know, by its own clock, and counts as silence. One thread. Proof:
-/// tests/unit/interpolator/jog_intake_test.cpp.
+/// the epoch in force and a status that this service published. What anybody else says changes
+/// nothing. How long a sample was under way nobody knows; that it was said before its operator saw
+/// the next status the service does know, by its own clock, and counts as silence. One thread.
+/// Proof: tests/unit/interpolator/jog_intake_test.cpp.
 class JogIntake {
  public:
+  explicit JogIntake(std::uint64_t service_id) noexcept : service_id_(service_id) {}
+
   void begin(std::uint64_t operator_id, std::uint64_t hand) noexcept {
     hand_ = hand;
     if (operator_id != holder_) newest_ = 0;
@@ -39,7 +41,8 @@ class JogIntake {
                           jog.frame <= 1 &&
                           jog.joint < (jog.frame == 1 ? kToolAxisCount : joint_count) &&
                           jog.distance >= 0 && jog.dead_man_ns > 0;
-    const bool is_told = superseded_ns || jog.velocity == 0;
+    const bool is_of_us = jog.service_id_seen == 0 || jog.service_id_seen == service_id_;
+    const bool is_told = (superseded_ns && is_of_us) || jog.velocity == 0;
     if (!is_of_holder || !is_sound || !is_told || jog.epoch_seen != epoch) return std::nullopt;
     newest_ = jog.sample;
     return JogOrder{
@@ -56,6 +59,7 @@ class JogIntake {
   }
 
  private:
+  std::uint64_t service_id_;
   bool is_held_ = false;
   std::uint64_t holder_ = 0;  ///< the operator who jogs, or did last
   std::uint64_t hand_ = 0;    ///< Command::request of his `jog`

@@ -30,6 +30,7 @@ Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
       actions_done_(participant),
       actions_(participant),
       drives_(participant, model.joint_count, service_id),
+      jog_intake_(service_id),
       waitset_(participant) {
   waitset_.attach(commands_);
   waitset_.attach(jogs_);

@@ -47,6 +47,7 @@ void JogHand::send(const JogPlan& plan, std::uint16_t epoch, double velocity) {
   (void)jogs_.write({.operator_id = link_.operator_id(),
                      .sample = ++sample_,
                      .status_seen = link_.status() ? link_.status()->status_sequence : 0,
+                     .service_id_seen = link_.status() ? link_.status()->service_id : 0,
                      .epoch_seen = epoch,
                      .frame = static_cast<std::uint8_t>(plan.is_tool ? 1 : 0),
                      .joint = static_cast<std::uint8_t>(plan.joint),

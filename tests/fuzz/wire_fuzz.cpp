@@ -353,7 +353,7 @@ class Listeners {
   dds::Status status_;
   dds::MachineInfo machine_;
   interpolator::CommandPort port_;
-  interpolator::JogIntake hands_;
+  interpolator::JogIntake hands_{kServiceId};
   interpolator::LeaseJudge lease_{kServiceId};
   std::array<std::uint64_t, 128> asked_{};  ///< who said which request
   std::uint64_t request_ = 0, orders_ = 0;

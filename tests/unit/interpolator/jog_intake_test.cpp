@@ -10,6 +10,7 @@ namespace meridian::interpolator {
 namespace {
 
 constexpr std::uint16_t kEpoch = 3;
+constexpr std::uint64_t kService = 99;
 constexpr int kJoints = 5;
 constexpr double kTool_mm = 110;
 
@@ -24,7 +25,7 @@ dds::Jog jog_of(std::uint64_t operator_id, std::uint64_t sample) {
 }
 
 TEST(JogIntake, TakesWhatTheOperatorWhoJogsSays) {
-  JogIntake intake;
+  JogIntake intake(kService);
   EXPECT_FALSE(intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm, 0)) << "nobody jogs";
   intake.begin(7, 31);
   const auto order = intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm, 0);
@@ -40,7 +41,7 @@ TEST(JogIntake, TakesWhatTheOperatorWhoJogsSays) {
 }
 
 TEST(JogIntake, NeverTakesALateRepeatedOrOldSample) {
-  JogIntake intake;
+  JogIntake intake(kService);
   intake.begin(7, 31);
   ASSERT_TRUE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm, 0));
   EXPECT_FALSE(intake.take(jog_of(7, 5), kEpoch, kJoints, kTool_mm, 0));
@@ -53,7 +54,7 @@ TEST(JogIntake, NeverTakesALateRepeatedOrOldSample) {
 }
 
 TEST(JogIntake, CountsOrdersOfAllOperatorsAsOneRow) {
-  JogIntake intake;
+  JogIntake intake(kService);
   intake.begin(7, 31);
   const auto first = intake.take(jog_of(7, 5000), kEpoch, kJoints, kTool_mm, 0);
   intake.begin(9, 32);
@@ -63,7 +64,7 @@ TEST(JogIntake, CountsOrdersOfAllOperatorsAsOneRow) {
 }
 
 TEST(JogIntake, TellsForHowLongASampleWasUnderWayAndTakesNoneOfAStatusThatNeverWas) {
-  JogIntake intake;
+  JogIntake intake(kService);
   intake.begin(7, 31);
   const auto late = intake.take(jog_of(7, 1), kEpoch, kJoints, kTool_mm, 70'000'000);
   ASSERT_TRUE(late);
@@ -75,8 +76,23 @@ TEST(JogIntake, TellsForHowLongASampleWasUnderWayAndTakesNoneOfAStatusThatNeverW
       << "letting go always counts";
 }
 
+/// Every service counts its statuses from 1.
+TEST(JogIntake, TakesNoSampleThatQuotesAnotherServiceButOneThatLetsGo) {
+  JogIntake intake(kService);
+  intake.begin(7, 31);
+  dds::Jog jog = jog_of(7, 1);
+  jog.service_id_seen = kService + 1;
+  EXPECT_FALSE(intake.take(jog, kEpoch, kJoints, kTool_mm, 0));
+  jog.service_id_seen = kService;
+  EXPECT_TRUE(intake.take(jog, kEpoch, kJoints, kTool_mm, 0));
+  jog = jog_of(7, 2);
+  jog.service_id_seen = kService + 1;
+  jog.velocity = 0;
+  EXPECT_TRUE(intake.take(jog, kEpoch, kJoints, kTool_mm, 0));
+}
+
 TEST(JogIntake, PassesOverWhatIsNotSound) {
-  JogIntake intake;
+  JogIntake intake(kService);
   intake.begin(7, 31);
   std::uint64_t sample = 0;
   const auto is_taken = [&](auto change) {
