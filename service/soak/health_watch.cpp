@@ -41,6 +41,12 @@ void HealthWatch::look(pid_t service, double now_s, const dds::Status* status) {
   }
 }
 
+void HealthWatch::take_cutting(double now_s, bool is_cutting) {
+  Histogram one;
+  one.record(is_cutting ? 1 : 0);
+  report_.slices.add(now_s, kCutting, one);
+}
+
 void HealthWatch::take_latencies(double now_s) {
   dds::Latency latency;
   bool has_one = false;

@@ -26,6 +26,8 @@ class HealthWatch {
   void take_bare(double now_s, const Histogram& lateness) {
     report_.slices.add(now_s, kBareThread, lateness);
   }
+  /// Whether the machine moved in a program, of every status.
+  void take_cutting(double now_s, bool is_cutting);
 
  private:
   void take_latencies(double now_s);

@@ -10,23 +10,21 @@
 namespace meridian::soak {
 
 /// Which of the periods that a cycle lost its host accounts for. A witness of highest priority on
-/// the cycle's processor (HostWatch) naps and is late where the processor was away; a stall began
-/// up to a nap before the witness was due, so each is taken for that much longer. What it missed
-/// between two naps is made up for by that, on the average: what is left is the cycle's own.
+/// the cycle's processor (HostWatch) naps and is late where the processor was away. A wake that is
+/// late by a period or more accounts for the periods that its lateness touches, and for no more:
+/// what began within the nap, and what is shorter, remains the cycle's own.
 /// Proof: tests/unit/soak/run_budgets_test.cpp.
 class HostCredit {
  public:
-  HostCredit(std::int64_t period_ns, std::int64_t nap_ns) noexcept
-      : period_ns_(period_ns), nap_ns_(nap_ns) {}
+  explicit HostCredit(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
 
   /// By how much the witness woke too late since the last call.
   void add(double now_s, const Histogram& lateness) {
     std::uint64_t periods = 0;
     for (std::size_t i = 0; i < Histogram::kBuckets; ++i) {
       const std::int64_t late_ns = Histogram::bucket_end_ns(i);
-      if (lateness.bucket(i) == 0 || late_ns < period_ns_ / 4) continue;
-      const auto each = static_cast<std::uint64_t>((late_ns + nap_ns_) / period_ns_ + 1);
-      periods += lateness.bucket(i) * each;
+      if (lateness.bucket(i) == 0 || late_ns < period_ns_) continue;
+      periods += lateness.bucket(i) * static_cast<std::uint64_t>(late_ns / period_ns_ + 1);
     }
     if (periods > 0) credits_.push_back({now_s, periods});
   }
@@ -50,7 +48,7 @@ class HostCredit {
     double at_s = 0;
     std::uint64_t periods = 0;
   };
-  std::int64_t period_ns_, nap_ns_;
+  std::int64_t period_ns_;
   std::deque<Credit> credits_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,13 +19,24 @@ namespace {
 /// A processor that comes back for no longer than this does no more than begin to catch up.
 constexpr std::int64_t kOneStall_ns = 10'000'000;
 
+/// Above every thread of the service; of a user without CAP_SYS_NICE as high as its limit allows.
+[[nodiscard]] bool rise() noexcept {
+  const int top = sched_get_priority_max(SCHED_FIFO);
+  const auto take = [](int priority) {
+    const sched_param wish{.sched_priority = priority};
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &wish) == 0;
+  };
+  if (take(top)) return true;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_RTPRIO, &limit) != 0 || limit.rlim_cur == 0) return false;
+  return take(static_cast<int>(std::min<rlim_t>(limit.rlim_cur, static_cast<rlim_t>(top))));
+}
+
 [[nodiscard]] bool rise_on(int cpu) noexcept {
   cpu_set_t one;
   CPU_ZERO(&one);
   CPU_SET(cpu, &one);
-  const sched_param top{.sched_priority = sched_get_priority_max(SCHED_FIFO)};
-  return pthread_setaffinity_np(pthread_self(), sizeof(one), &one) == 0 &&
-         pthread_setschedparam(pthread_self(), SCHED_FIFO, &top) == 0;
+  return pthread_setaffinity_np(pthread_self(), sizeof(one), &one) == 0 && rise();
 }
 
 }  // namespace

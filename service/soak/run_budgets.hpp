@@ -37,7 +37,8 @@ struct Judgement {
 /// Judges a run by its budgets: page faults of cycle and publisher after Ready, periods lost and
 /// overruns that no stall of the host explains, switches of the cycle, drift of latencies. What
 /// nobody can know here is not judged and says why: rights that were missing, too few samples, a
-/// host that stalled or drifted itself. Proof: tests/unit/soak/run_budgets_test.cpp.
+/// host that stalled or drifted itself, quarters of different work. Proof:
+/// tests/unit/soak/run_budgets_test.cpp.
 [[nodiscard]] std::vector<Judgement> judge_run(const SoakReport& report);
 
 /// A line each, and an array of JSON.
@@ -49,5 +50,7 @@ inline constexpr std::uint64_t kLeastSamples = 60'000;
 
 /// The witness's histogram among the slices of a run.
 inline constexpr const char* kBareThread = "bare thread";
+/// There too: 1 for each status of a machine that moved in a program, 0 for every other.
+inline constexpr const char* kCutting = "cutting";
 
 }  // namespace meridian::soak

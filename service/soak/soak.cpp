@@ -23,6 +23,7 @@
 #include "service/soak/host_credit.hpp"
 #include "service/soak/host_watch.hpp"
 #include "service/soak/judge.hpp"
+#include "service/soak/overrun_excuse.hpp"
 #include "service/soak/plant.hpp"
 #include "service/soak/report_files.hpp"
 #include "service/soak/sample_program.hpp"
@@ -70,7 +71,7 @@ class Soak {
         bridge_ns_(model_.bridge_cycles * model_.cycle_ns),
         host_(bridge_ns_),
         faults_(static_cast<double>(bridge_ns_) * 1e-9),
-        credit_(model_.cycle_ns, HostWatch::nap_ns(bridge_ns_)) {
+        credit_(model_.cycle_ns) {
     report_.machine = model_.name;
     report_.host = probe::host_text();
     report_.seed = options.seed;
@@ -194,13 +195,23 @@ class Soak {
   }
 
   void count(const dds::Status& status) {
-    const std::uint64_t lost = report_.periods_lost;
+    const std::uint64_t lost = report_.periods_lost, overruns = report_.overruns;
     counts_.add(status, report_);
     const Histogram late = host_.lateness(report_.cpu), lately = late.since(bare_);
     bare_ = late;
     credit_.add(now_s(), lately);
     report_.periods_lost_to_host += credit_.explain(now_s(), report_.periods_lost - lost);
+    report_.overruns_by_host +=
+        excuse_.explain(now_s(), report_.overruns - overruns, has_stall_of_late());
     health_.take_bare(now_s(), lately);
+    health_.take_cutting(now_s(), is_moving(status.state));
+  }
+
+  [[nodiscard]] bool has_stall_of_late() const {
+    constexpr auto kNear_ns = static_cast<std::int64_t>(1e9 * OverrunExcuse::kNear_s);
+    return std::ranges::any_of(
+        host_.stalls_since(stream::steady_ns() - kNear_ns),
+        [](const Stall& one) { return one.length_ns >= HostWatch::kStall_ns; });
   }
 
   /// Whether a drive has stopped because setpoints stayed away.
@@ -399,6 +410,7 @@ class Soak {
   HostWatch host_;
   FaultJudge faults_;
   HostCredit credit_;
+  OverrunExcuse excuse_;
   Histogram bare_;                     ///< lateness of the witness, as far as it is taken
   std::optional<dds::Status> newest_;  ///< of this life
   std::optional<Planned> next_, injected_;

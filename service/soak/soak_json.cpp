@@ -66,9 +66,9 @@ std::string to_json(const SoakReport& report) {
          report.acceleration, report.jerk, Count{report.cycles_run});
   append(out,
          " \"periods_lost\": %llu, \"periods_lost_to_host\": %llu, \"overruns\": %llu, "
-         "\"starvations\": %llu,\n",
+         "\"overruns_by_host\": %llu, \"starvations\": %llu,\n",
          Count{report.periods_lost}, Count{report.periods_lost_to_host}, Count{report.overruns},
-         Count{report.starvations});
+         Count{report.overruns_by_host}, Count{report.starvations});
   append(out, " \"service_file\": %s, \"enforced\": %s, \"cpu\": %d, \"traces\": %s,\n",
          json_quoted(report.service_file).c_str(), report.is_enforced ? "true" : "false",
          report.cpu, json_quoted(report.traces).c_str());

@@ -92,6 +92,24 @@ void append_scheduling(std::string& out, const SoakReport& report) {
   if (!report.traces.empty()) append(out, "  traces of slow cycles: %s\n", report.traces.c_str());
 }
 
+/// A soak that is not at its end passes so far, and no further.
+void append_verdict(std::string& out, const SoakReport& report) {
+  out += report.is_clean() ? "PASS" : "FAIL";
+  if (report.is_interrupted) {
+    append(out, "%s, interrupted after %.0f s of %.0f s", report.is_clean() ? " so far" : "",
+           report.elapsed_s, report.asked_s);
+  } else if (!report.is_over && report.is_clean()) {
+    out += " so far";
+  }
+  const auto judgements = judge_run(report);
+  const auto left =
+      std::ranges::count(judgements, Judgement::Verdict::kNotJudged, &Judgement::verdict);
+  append(out,
+         ": %llu violations of limits, tolerance, sequence or state; %zu of %zu budgets judged\n",
+         Count{report.violation_count}, judgements.size() - static_cast<std::size_t>(left),
+         judgements.size());
+}
+
 }  // namespace
 
 GrowthBudgets load_growth_budgets(bool is_traced) {
@@ -137,7 +155,7 @@ void SoakReport::add(const record::CheckReport& check, const std::string& where)
   for (const record::Finding& finding : check.findings) violate(finding.text, where);
 }
 
-bool SoakReport::passed() const {
+bool SoakReport::is_clean() const {
   return violation_count == 0 && host_faults == 0 && finished > 0 && segments_unread == 0 &&
          growth(*this).empty() && std::ranges::none_of(judge_run(*this), [](const Judgement& one) {
            return one.verdict == Judgement::Verdict::kBroken;
@@ -199,9 +217,9 @@ std::string to_text(const SoakReport& report) {
       report.jerk);
   append(out,
          "  cycles %llu, periods lost %llu (to stalls of the host %llu), starved %llu times, "
-         "overruns %llu\n",
+         "overruns %llu (by stalls of the host %llu)\n",
          Count{report.cycles_run}, Count{report.periods_lost}, Count{report.periods_lost_to_host},
-         Count{report.starvations}, Count{report.overruns});
+         Count{report.starvations}, Count{report.overruns}, Count{report.overruns_by_host});
   if (report.is_host_watched) {
     append(out, "  host took a processor away for 10 ms and more: %llu times, at most %.1f ms\n",
            Count{report.host_stalls}, 1e3 * report.host_longest_s);
@@ -220,8 +238,7 @@ std::string to_text(const SoakReport& report) {
   for (const Violation& one : report.violations) {
     append(out, "  VIOLATION: %s (%s)\n", one.text.c_str(), one.where.c_str());
   }
-  append(out, "%s: %llu violations of limits, tolerance, sequence or state\n",
-         report.passed() ? "PASS" : "FAIL", Count{report.violation_count});
+  append_verdict(out, report);
   if (report.host_faults > 0) {
     append(
         out,

@@ -82,8 +82,10 @@ struct SoakReport {
   double velocity = 0, acceleration = 0, jerk = 0;  ///< largest share of a limit
   std::uint64_t cycles_run = 0, periods_lost = 0, overruns = 0, starvations = 0;
   std::uint64_t periods_lost_to_host = 0;  ///< of periods_lost: HostCredit
+  std::uint64_t overruns_by_host = 0;      ///< of overruns: OverrunExcuse
   std::vector<Life> lives;
-  TimeSlices slices;  ///< latencies, and lateness of a bare thread on the cycle's processor
+  /// Latencies, lateness of a bare thread on the cycle's processor, and kCutting.
+  TimeSlices slices;
   std::map<std::string, Drift> latencies;
   std::vector<Violation> violations;  ///< the first kMostViolations
   std::uint64_t violation_count = 0;
@@ -94,8 +96,10 @@ struct SoakReport {
   void violate(std::string text, std::string where);
   /// Takes the judgement of one segment.
   void add(const record::CheckReport& check, const std::string& where);
-  /// Nothing was violated by the machine, and its host let it run.
-  [[nodiscard]] bool passed() const;
+  /// Nothing was violated by the machine until now, and its host let it run.
+  [[nodiscard]] bool is_clean() const;
+  /// The same of a soak that was not interrupted.
+  [[nodiscard]] bool passed() const { return is_clean() && !is_interrupted; }
 };
 
 /// What speaks against the service's memory, files and threads; empty where nothing does. The first

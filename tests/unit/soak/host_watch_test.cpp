@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -89,6 +90,28 @@ TEST(HostWatch, SeesThatProcessorsWereAwayAndTellsWhen) {
   EXPECT_GT(host.lateness(process::last_cpu()).count(), 5U) << "every nap counts, late or not";
   EXPECT_EQ(host.lateness(CPU_SETSIZE).count(), 0U);
   for (const Stall& one : host.stalls_since(now_ns)) EXPECT_GE(one.end_ns, now_ns);
+}
+
+/// As the unit and limits.d leave it: the service's user may have FIFO 98 and no more.
+TEST(HostWatch, WatchesWithinTheLimitOfAUser) {
+  constexpr int kNoRights = 77, kNobody = 65534;
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit limit{98, 98};
+    const sched_param high{.sched_priority = 98}, none{};
+    if (setrlimit(RLIMIT_RTPRIO, &limit) != 0 || setuid(kNobody) != 0 ||
+        sched_setscheduler(0, SCHED_FIFO, &high) != 0) {
+      _exit(kNoRights);
+    }
+    sched_setscheduler(0, SCHED_OTHER, &none);
+    const HostWatch host;
+    for (int i = 0; i < 100 && !host.is_watching(); ++i) usleep(10'000);
+    _exit(host.is_watching() ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  if (WEXITSTATUS(status) == kNoRights) GTEST_SKIP() << "no right to give rights away";
+  EXPECT_EQ(status, 0);
 }
 
 }  // namespace

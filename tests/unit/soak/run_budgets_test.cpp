@@ -8,6 +8,7 @@
 #include <string>
 
 #include "service/soak/host_credit.hpp"
+#include "service/soak/overrun_excuse.hpp"
 #include "service/soak/soak_report.hpp"
 #include "service/soak/time_slices.hpp"
 
@@ -43,19 +44,36 @@ TEST(TimeSlices, GiveTheFirstAndTheLastQuarterOfARunOfAnyLength) {
 }
 
 TEST(HostCredit, ExplainsWhatTheWitnessSawAndNoMore) {
-  HostCredit credit(kMilli, 5 * kMilli);
+  HostCredit credit(kMilli);
   EXPECT_EQ(credit.explain(0, 3), 0U) << "nobody was away";
-  credit.add(1, histogram(200 * kUs, 100));
-  EXPECT_EQ(credit.explain(1, 3), 0U) << "a quarter of a period costs none";
+  credit.add(1, histogram(900 * kUs, 100));
+  EXPECT_EQ(credit.explain(1, 3), 0U) << "less than a period";
   Histogram stall = histogram(20 * kMilli, 1);
   credit.add(2, stall);
-  EXPECT_EQ(credit.explain(2, 20), 20U) << "20 periods and up to a nap";
-  const std::uint64_t left = credit.explain(2, 100);
-  EXPECT_GE(left, 5U);
-  EXPECT_LE(left, 8U) << "buckets are a thirty-second wide";
+  EXPECT_EQ(credit.explain(2, 20), 20U) << "and no more than its lateness covers:";
+  EXPECT_LE(credit.explain(2, 100), 1U) << "a period that it touched, or a bucket's width";
   EXPECT_EQ(credit.explain(2, 1), 0U) << "it is used up";
   credit.add(3, stall);
   EXPECT_EQ(credit.explain(14, 1), 0U) << "long ago";
+}
+
+TEST(HostCredit, LeavesACycleItsOwnLossUnderAWitnessThatIsALittleLate) {
+  HostCredit credit(kMilli);
+  std::uint64_t explained = 0;
+  for (int second = 0; second < 60; ++second) {
+    credit.add(second, histogram(300 * kUs, 2));  // one of a hundred naps of 5 ms
+    explained += credit.explain(second, 10);      // one of a hundred periods
+  }
+  EXPECT_EQ(explained, 0U);
+}
+
+TEST(OverrunExcuse, ReachesNoFartherThanTwoSecondsFromAStall) {
+  OverrunExcuse excuse;
+  EXPECT_EQ(excuse.explain(1, 5, false), 0U);
+  EXPECT_EQ(excuse.explain(2, 3, true), 8U) << "the stall was seen when it was over";
+  EXPECT_EQ(excuse.explain(2.1, 0, true), 0U) << "once";
+  EXPECT_EQ(excuse.explain(10, 7, false), 0U);
+  EXPECT_EQ(excuse.explain(13, 1, true), 1U) << "seven were long before";
 }
 
 /// Eight minutes at 1 kHz with all rights in which all was well.
@@ -145,11 +163,34 @@ TEST_F(RunBudgetsTest, JudgeTheLostPeriodsThatTheHostDoesNotAccountFor) {
   expect("soak_periods_lost", Verdict::kNotJudged, "too short");
 }
 
-TEST_F(RunBudgetsTest, JudgeOverrunsWhereTheHostTookNothingAway) {
+TEST_F(RunBudgetsTest, JudgeTheOverrunsThatNoStallWasNear) {
   report_.overruns = 3;
-  expect("soak_overruns", Verdict::kBroken);
   report_.host_stalls = 1;
-  expect("soak_overruns", Verdict::kNotJudged, "the host");
+  report_.overruns_by_host = 2;
+  expect("soak_overruns", Verdict::kBroken);
+  report_.overruns_by_host = 3;
+  expect("soak_overruns", Verdict::kKept);
+  report_.overruns_by_host = 0;
+  report_.is_host_watched = false;
+  expect("soak_overruns", Verdict::kNotJudged, "not watched");
+}
+
+TEST_F(RunBudgetsTest, CompareComputationOfTheSameWorkAlone) {
+  const auto cut = [this](int quarter, int percent) {
+    report_.slices.add(60 + 120 * quarter, kCutting, histogram(1, 10 * percent));
+    report_.slices.add(60 + 120 * quarter, kCutting, histogram(0, 1000 - 10 * percent));
+  };
+  cut(0, 60);
+  cut(3, 57);
+  expect("soak_computation_drift_p50", Verdict::kKept);
+  report_.slices = {};
+  measure(0, 2 * kUs, 20 * kUs, 10 * kUs);
+  measure(3, 9 * kUs, 20 * kUs, 10 * kUs);
+  cut(0, 40);
+  cut(3, 60);
+  expect("soak_computation_drift_p50", Verdict::kNotJudged,
+         "40 % of the first quarter cut, 60 % of the last");
+  expect("soak_lateness_drift_p50", Verdict::kKept);
 }
 
 TEST_F(RunBudgetsTest, JudgeTheSwitchesOfACycleOfRealTimeClass) {

@@ -196,6 +196,24 @@ SoakReport good_report() {
   return report;
 }
 
+TEST(SoakReport, SaysThatAnInterruptedSoakPassedSoFarAndNoMore) {
+  SoakReport report = good_report();
+  report.is_over = true;
+  EXPECT_NE(to_text(report).find("\nPASS: 0 violations"), std::string::npos) << to_text(report);
+  EXPECT_NE(to_text(report).find("; 1 of 8 budgets judged\n"), std::string::npos)
+      << to_text(report);
+  report.is_interrupted = true;
+  report.elapsed_s = 120;
+  report.asked_s = 28'800;
+  EXPECT_FALSE(report.passed());
+  EXPECT_NE(to_text(report).find("\nPASS so far, interrupted after 120 s of 28800 s: "),
+            std::string::npos)
+      << to_text(report);
+  EXPECT_NE(to_json(report).find("\"passed\": false"), std::string::npos);
+  report.violate("too fast", "part.cl");
+  EXPECT_NE(to_text(report).find("\nFAIL, interrupted after"), std::string::npos);
+}
+
 TEST(SoakReport, PassesOnlyWhereNothingWasWrongAndSomethingWasDone) {
   EXPECT_TRUE(good_report().passed()) << to_text(good_report());
   EXPECT_FALSE(SoakReport{}.passed());
