@@ -96,7 +96,9 @@ TEST(JogEnds, MovesTheToolFromEveryEndOfTravelToWhereThereIsRoom) {
         const double there = one.hold(axis, velocity, 0.4), back = other.hold(axis, -velocity, 0.4);
         EXPECT_GT(std::max(there, back), velocity * 0.1);
         const bool stands = axis < kTiltX && joint >= 3;  // a rotary joint, where the axis is fixed
-        if (stands) EXPECT_GT(std::min(there, back), velocity * 0.1);
+        if (stands) {
+          EXPECT_GT(std::min(there, back), velocity * 0.1);
+        }
       }
     }
   }
