@@ -3,23 +3,79 @@
 
 #include <net/if.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <regex>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 namespace meridian::probe {
 namespace {
 
-/// All that `pattern` finds first in its brackets.
-[[nodiscard]] std::vector<std::string> all_of(const std::string& text, const std::string& pattern) {
-  const std::regex wanted(pattern, std::regex::icase);
-  std::vector<std::string> found;
-  for (std::sregex_iterator at(text.begin(), text.end(), wanted), end; at != end; ++at) {
-    found.push_back((*at)[1].str());
+constexpr std::string_view kBlanks = " \t\r\n";
+
+[[nodiscard]] std::string without_comments(std::string xml) {
+  constexpr std::string_view kEnd = "-->";
+  for (auto at = xml.find("<!--"); at != std::string::npos; at = xml.find("<!--", at)) {
+    const auto end = xml.find(kEnd, at);
+    xml.erase(at, end == std::string::npos ? end : end + kEnd.size() - at);
   }
-  return found;
+  return xml;
+}
+
+[[nodiscard]] std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+/// The first word of `text`, up to one of `ends` or a blank.
+[[nodiscard]] std::string first_word(std::string_view text, std::string_view ends) {
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  const auto end = text.find_first_of(std::string(kBlanks).append(ends));
+  return std::string(text.substr(0, end));
+}
+
+/// An element's begin: its attributes, and the text up to the next element.
+struct Tag {
+  std::string name;  ///< in lower case, as names of attributes
+  std::map<std::string, std::string> attributes;
+  std::string text;
+};
+
+/// Reads name="value" and name='value' from `xml` on; where the tag ends.
+std::size_t read_attributes(std::string_view xml, std::size_t at, Tag& tag) {
+  while (at < xml.size() && xml[at] != '>') {
+    const auto equals = xml.find_first_of("=>", at);
+    if (equals == std::string_view::npos || xml[equals] == '>') return equals;
+    const auto open = xml.find_first_not_of(kBlanks, equals + 1);
+    if (open == std::string_view::npos || (xml[open] != '"' && xml[open] != '\'')) {
+      at = equals + 1;
+      continue;
+    }
+    const auto close = xml.find(xml[open], open + 1);
+    if (close == std::string_view::npos) return close;
+    tag.attributes[lower(first_word(xml.substr(at, equals - at), "="))] =
+        xml.substr(open + 1, close - open - 1);
+    at = close + 1;
+  }
+  return at;
+}
+
+[[nodiscard]] std::vector<Tag> tags_of(std::string_view xml) {
+  std::vector<Tag> out;
+  for (auto at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
+    Tag tag;
+    tag.name = lower(first_word(xml.substr(++at), "/>"));
+    at = read_attributes(xml, at + tag.name.size(), tag);
+    if (at >= xml.size()) break;
+    tag.text = first_word(xml.substr(at + 1), "<,");
+    out.push_back(std::move(tag));
+  }
+  return out;
 }
 
 /// The XML that CYCLONEDDS_URI means: itself, or files, one behind the other. Nothing where one of
@@ -78,6 +134,14 @@ namespace {
     return {"DDS multicast", Health::kBad, "not used, and no peer is named: nobody is found",
             "name the hosts under <Discovery><Peers>"};
   }
+  if (interface.empty()) {
+    if (network.carries_multicast("")) {
+      return {"DDS multicast", Health::kFine, "works where this host sends it by default", ""};
+    }
+    return {"DDS multicast", Health::kNote,
+            "a datagram to a group does not come back where this host sends it by default",
+            "name the interface of the machine's network in CYCLONEDDS_URI, and ask again"};
+  }
   const auto flags = flags_of(host, interface);
   if (!flags || (*flags & IFF_MULTICAST) == 0) {
     return {"DDS multicast", Health::kBad, interface + " carries none",
@@ -116,20 +180,24 @@ namespace {
 }  // namespace
 
 DdsNetwork read_dds_network(const std::string& xml) {
-  const std::string text = std::regex_replace(xml, std::regex("<!--[^]*?-->"), "");
   DdsNetwork out;
-  out.interfaces =
-      all_of(text, R"rx(<NetworkInterface\b[^>]*\b(?:name|address)\s*=\s*"([^"]+)")rx");
-  for (std::string& one : all_of(text, R"(<NetworkInterfaceAddress>\s*([^<\s,]+))")) {
-    if (one != "auto") out.interfaces.push_back(std::move(one));
+  const auto add = [](std::vector<std::string>& to, const std::string& one) {
+    if (!one.empty() && one != "auto") to.push_back(one);
+  };
+  for (Tag& tag : tags_of(without_comments(xml))) {
+    if (tag.name == "networkinterface") {
+      const std::string& name = tag.attributes["name"];
+      add(out.interfaces, name.empty() ? tag.attributes["address"] : name);
+    } else if (tag.name == "networkinterfaceaddress") {
+      add(out.interfaces, tag.text);
+    } else if (tag.name == "peer") {
+      const std::string& address = tag.attributes["address"];
+      add(out.peers, address.substr(0, address.find(':')));  // without a port
+    } else if (tag.name == "allowmulticast") {
+      const std::string allowed = lower(tag.text);
+      out.has_multicast = allowed != "false" && allowed != "none";
+    }
   }
-  for (std::string& one : all_of(text, R"rx(<Peer\b[^>]*\baddress\s*=\s*"([^"]+)")rx")) {
-    one.erase(std::min(one.find(':'), one.size()));  // a port
-    out.peers.push_back(std::move(one));
-  }
-  const auto allowed = all_of(text, R"(<AllowMulticast>\s*([a-z]+))");
-  const bool is_off = !allowed.empty() && (allowed.back() == "false" || allowed.back() == "none");
-  out.has_multicast = !is_off;
   return out;
 }
 
@@ -150,6 +218,7 @@ Findings examine_dds_network(const HostFiles& host, const std::string& cyclone_u
   if (configured.interfaces.empty()) {
     out.push_back({"DDS interface", Health::kNote, "none is named: Cyclone takes the one it likes",
                    "name the interface of the machine's network in CYCLONEDDS_URI"});
+    out.push_back(judge_multicast(host, configured, "", network));
   }
   for (const std::string& said : configured.interfaces) {
     const bool is_name = flags_of(host, said).has_value();

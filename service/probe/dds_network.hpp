@@ -23,7 +23,7 @@ enum class Reach : std::uint8_t {
 struct NetworkView {
   /// Name of the interface that has this address; empty: none.
   std::function<std::string(const std::string& address)> interface_of;
-  /// Whether a datagram to a group comes back on this interface.
+  /// Whether a datagram to a group comes back on this interface; empty: the kernel's choice.
   std::function<bool(const std::string& interface)> carries_multicast;
   std::function<Reach(const std::string& peer)> reach;
 };

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace meridian::probe {
 
@@ -35,6 +36,15 @@ std::vector<std::string> HostFiles::names(const std::string& folder,
   }
   std::sort(out.begin(), out.end());
   return out;
+}
+
+std::optional<std::string> HostFiles::boot_option(const std::string& key) const {
+  std::istringstream words(text("proc/cmdline").value_or(""));
+  std::optional<std::string> value;
+  for (std::string word; words >> word;) {
+    if (word.starts_with(key + "=")) value = word.substr(key.size() + 1);
+  }
+  return value;
 }
 
 }  // namespace meridian::probe

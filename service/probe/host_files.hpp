@@ -19,6 +19,8 @@ class HostFiles {
   /// Names in `folder` that begin with `prefix`, sorted.
   [[nodiscard]] std::vector<std::string> names(const std::string& folder,
                                                const std::string& prefix) const;
+  /// What the kernel was told last behind KEY= when it was started; nothing where it was not.
+  [[nodiscard]] std::optional<std::string> boot_option(const std::string& key) const;
 
  private:
   std::filesystem::path root_;

@@ -22,14 +22,12 @@ const std::string kCpu = "sys/devices/system/cpu/";
   return false;
 }
 
-/// What the kernel was told behind KEY= when it was started.
-[[nodiscard]] std::string boot_option(const HostFiles& host, const std::string& key) {
-  std::istringstream words(host.text("proc/cmdline").value_or(""));
-  std::string value;
-  for (std::string word; words >> word;) {
-    if (word.starts_with(key + "=")) value = word.substr(key.size() + 1);
-  }
-  return value;
+/// What the kernel still does on an isolated processor, of what it can be told to leave; empty:
+/// nothing. Where it ticks no more (nohz_full) it runs no callbacks either, by itself.
+[[nodiscard]] std::string not_kept_off(const HostFiles& host, int cpu) {
+  if (has(host.text(kCpu + "nohz_full").value_or(""), cpu)) return {};
+  const std::string offloaded = host.boot_option("rcu_nocbs").value_or("");
+  return offloaded == "all" || has(offloaded, cpu) ? "nohz_full" : "nohz_full, rcu_nocbs";
 }
 
 }  // namespace
@@ -43,8 +41,16 @@ Findings examine_isolation(const HostFiles& host, int cpu) {
              "set [realtime] cpu in the service file"}};
   }
   const std::string isolated = host.text(kCpu + "isolated").value_or("");
+  // Linux keeps its own work on the first; on a host of one there is nowhere else.
+  const bool is_first = cpu == 0 || online == number;
   const std::string remedy = "boot with isolcpus=managed_irq,domain," + number +
                              " nohz_full=" + number + " rcu_nocbs=" + number;
+  if (is_first) {
+    return {{what, Health::kNote, name + ", on which the kernel does its own work",
+             "choose another in [realtime] cpu of the service file, one that is isolated" +
+                 (isolated.empty() ? "" : ": " + isolated) +
+                 (online == number ? "; this host has no other" : "")}};
+  }
   if (!has(isolated, cpu)) {
     if (isolated.empty()) {
       return {{what, Health::kNote, name + ", not isolated: anything may run beside the cycle",
@@ -53,10 +59,7 @@ Findings examine_isolation(const HostFiles& host, int cpu) {
     return {{what, Health::kNote, name + ", not isolated; that is " + isolated,
              "set [realtime] cpu to one of these in the service file, or " + remedy}};
   }
-  std::string missing;
-  if (!has(host.text(kCpu + "nohz_full").value_or(""), cpu)) missing = "nohz_full";
-  if (!has(boot_option(host, "rcu_nocbs"), cpu))
-    missing += missing.empty() ? "rcu_nocbs" : ", rcu_nocbs";
+  const std::string missing = not_kept_off(host, cpu);
   if (missing.empty()) {
     return {{what, Health::kFine, name + ", isolated, tickless, without callbacks", ""}};
   }

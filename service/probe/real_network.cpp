@@ -66,7 +66,7 @@ class Socket {
   ip_mreqn member{};
   member.imr_multiaddr = group.sin_addr;
   member.imr_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
-  if (member.imr_ifindex == 0) return false;
+  if (member.imr_ifindex == 0 && !interface.empty()) return false;
   const unsigned char no_hop = 0;  // it stays on this host
   const auto set = [&socket](int option, const void* value, socklen_t length) {
     return ::setsockopt(socket.file(), IPPROTO_IP, option, value, length) == 0;

@@ -78,12 +78,20 @@ constexpr int kCyclePriority = 80;
   return {};
 }
 
+/// Whether a kernel with CONFIG_RT_GROUP_SCHED was built or told (from Linux 6.16 on) to leave it.
+[[nodiscard]] bool is_left_off(const HostFiles& host, const std::string& options) {
+  const auto told = host.boot_option("rt_group_sched");
+  if (told) return *told == "0" || *told == "n" || *told == "off";
+  return options.find("\nCONFIG_RT_GROUP_SCHED_DEFAULT_DISABLED=y") != std::string::npos;
+}
+
 /// Version 2 has no file for the share: a kernel with the option refuses all but the root group
 /// wherever the cpu controller is on.
 [[nodiscard]] bool refuses_in_two(const HostFiles& host) {
   const std::string release = host.text("proc/sys/kernel/osrelease").value_or("");
   const std::string options = host.text("boot/config-" + release).value_or("");
   if (options.find("\nCONFIG_RT_GROUP_SCHED=y") == std::string::npos) return false;
+  if (is_left_off(host, options)) return false;
   std::istringstream on(host.text("sys/fs/cgroup/cgroup.subtree_control").value_or(""));
   for (std::string controller; on >> controller;) {
     if (controller == "cpu") return true;
@@ -124,7 +132,8 @@ Findings examine_service_group(const HostFiles& host) {
     return {{what, Health::kBad,
              "this kernel (CONFIG_RT_GROUP_SCHED) refuses FIFO outside of the root control group "
              "while the cpu controller is on",
-             "a kernel without CONFIG_RT_GROUP_SCHED (Debian's has none), or boot with "
+             "a kernel without CONFIG_RT_GROUP_SCHED (Debian's has none), or from Linux 6.16 on "
+             "boot with "
              "rt_group_sched=0; and no CPUWeight=, CPUQuota= in any unit"}};
   }
   if (host.number(top)) {

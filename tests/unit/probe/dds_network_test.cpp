@@ -32,7 +32,9 @@ class DoctorOfDds : public testing::Test {
     return examine_dds_network(
         HostFiles(root_.path()), uri,
         {[](const std::string& address) { return address == "10.0.0.1" ? "eth1" : ""; },
-         [this](const std::string& interface) { return has_multicast_ && interface == "eth1"; },
+         [this](const std::string& interface) {
+           return has_multicast_ && (interface == "eth1" || interface.empty());
+         },
          [this](const std::string& peer) {
            const auto at = peers_.find(peer);
            return at == peers_.end() ? Reach::kAnswers : at->second;
@@ -101,11 +103,34 @@ TEST_F(DoctorOfDds, TriesMulticastWhereItIsUsed) {
   expect(used, "DDS multicast", Health::kBad, "does not come back on eth1");
   write("sys/class/net/eth1/flags", "0x3\n");
   expect(used, "DDS multicast", Health::kBad, "eth1 carries none");
-  const std::string off =
-      R"(<NetworkInterface name="eth1"/><AllowMulticast>false</AllowMulticast>)"
-      "<!-- <AllowMulticast>true</AllowMulticast> -->";
+  const std::string off = R"(<NetworkInterface name="eth1"/><AllowMulticast>false</AllowMulticast>)"
+                          "<!-- <AllowMulticast>true</AllowMulticast> -->";
   expect(xml(off), "DDS multicast", Health::kBad, "nobody is found");
   expect(xml(off, R"(<Peer address="a"/>)"), "DDS multicast", Health::kFine, "not used");
+}
+
+TEST_F(DoctorOfDds, TriesMulticastWhereTheHostSendsItIfNoInterfaceIsNamed) {
+  expect(xml(""), "DDS multicast", Health::kFine, "by default");
+  has_multicast_ = false;
+  expect(xml(""), "DDS multicast", Health::kNote, "does not come back");
+  expect(xml("<AllowMulticast>False</AllowMulticast>"), "DDS multicast", Health::kBad,
+         "nobody is found");
+}
+
+TEST_F(DoctorOfDds, ReadsCommentsAndTagsOfAnyLengthInEitherQuotes) {
+  const std::string comment = "<!-- <Peer address='x'/> " + std::string(500'000, '-') + " -->";
+  const std::string spaces(500'000, ' ');
+  const DdsNetwork read = read_dds_network(
+      comment +
+      xml("<NetworkInterface " + spaces + "priority='1' name = 'eth1' />" + comment,
+          "<Peer Address='10.0.0.2'/><Peer\naddress=\"it's\"/>") +
+      "<!-- not closed <Peer address='y'/>");
+  EXPECT_EQ(read.interfaces, std::vector<std::string>{"eth1"});
+  EXPECT_EQ(read.peers, (std::vector<std::string>{"10.0.0.2", "it's"}));
+  for (const char* broken : {"<", "<Peer", "<Peer address", "<Peer address=", "<Peer address='x",
+                             "<Peer address=x/>", "<Peer/>", "<!--"}) {
+    EXPECT_TRUE(read_dds_network(broken).peers.empty()) << broken;
+  }
 }
 
 TEST_F(DoctorOfDds, AsksEveryPeer) {

@@ -151,6 +151,15 @@ TEST_F(Doctor, ExplainsTheTrapOfTheSecondVersionOfControlGroups) {
   EXPECT_EQ(finding("real time in a unit").health, Health::kFine);
   write("boot/config-6.1.0-rt", "CONFIG_CGROUPS=y\nCONFIG_RT_GROUP_SCHED=y\n");
   expect("real time in a unit", Health::kBad, "outside of the root control group");
+  EXPECT_NE(finding("real time in a unit").remedy.find("from Linux 6.16 on"), std::string::npos);
+  write("proc/cmdline", "quiet rt_group_sched=0\n");
+  EXPECT_EQ(finding("real time in a unit").health, Health::kFine) << "told to leave it off";
+  write("proc/cmdline", "quiet\n");
+  write("boot/config-6.1.0-rt",
+        "A=y\nCONFIG_RT_GROUP_SCHED=y\nCONFIG_RT_GROUP_SCHED_DEFAULT_DISABLED=y\n");
+  EXPECT_EQ(finding("real time in a unit").health, Health::kFine) << "built to leave it off";
+  write("proc/cmdline", "quiet rt_group_sched=1\n");
+  expect("real time in a unit", Health::kBad, "outside of the root control group");
   write("sys/fs/cgroup/cgroup.subtree_control", "cpuset memory\n");
   EXPECT_EQ(finding("real time in a unit").health, Health::kFine);
 }
@@ -164,11 +173,25 @@ TEST_F(Doctor, LooksAtTheProcessorThatTheCycleIsGiven) {
   expect(what, Health::kBad, "of those that are there: 0-3");
   cpu_ = 3;
   write("proc/cmdline", "quiet rcu_nocbs=0-2\n");
-  expect(what, Health::kNote, "isolated, without rcu_nocbs");
+  EXPECT_EQ(finding(what).health, Health::kFine) << "one without a tick has no callbacks either";
   write("sys/devices/system/cpu/nohz_full", "(null)\n");
   expect(what, Health::kNote, "without nohz_full, rcu_nocbs");
+  write("proc/cmdline", "quiet rcu_nocbs=all\n");
+  expect(what, Health::kNote, "without nohz_full:");
   write("sys/devices/system/cpu/isolated", "\n");
   expect(what, Health::kNote, "not isolated: anything may run");
+}
+
+TEST_F(Doctor, IsolatesNoProcessorThatTheKernelNeeds) {
+  const std::string what = "the cycle's processor";
+  cpu_ = 0;
+  expect(what, Health::kNote, "processor 0, on which the kernel does its own work");
+  EXPECT_EQ(finding(what).remedy,
+            "choose another in [realtime] cpu of the service file, one that is isolated: 3");
+  write("sys/devices/system/cpu/online", "0\n");
+  write("sys/devices/system/cpu/isolated", "\n");
+  EXPECT_NE(finding(what).remedy.find("this host has no other"), std::string::npos);
+  EXPECT_EQ(finding(what).remedy.find("isolcpus"), std::string::npos) << finding(what).remedy;
 }
 
 TEST_F(Doctor, FindsWhatIsWrongWithClocksAndTimers) {
