@@ -11,12 +11,14 @@ namespace meridian::soak {
 
 /// Which of the periods that a cycle lost its host accounts for. A witness of highest priority on
 /// the cycle's processor (HostWatch) naps and is late where the processor was away. A wake that is
-/// late by a period or more accounts for the periods that its lateness touches, and for no more:
-/// what began within the nap, and what is shorter, remains the cycle's own.
+/// late by a period or more accounts for the periods that its lateness touches, and for those of
+/// half a nap: a stall that it sees began up to a nap before it was due. Whoever is less late
+/// accounts for none.
 /// Proof: tests/unit/soak/run_budgets_test.cpp.
 class HostCredit {
  public:
-  explicit HostCredit(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
+  HostCredit(std::int64_t period_ns, std::int64_t nap_ns) noexcept
+      : period_ns_(period_ns), nap_ns_(nap_ns) {}
 
   /// By how much the witness woke too late since the last call.
   void add(double now_s, const Histogram& lateness) {
@@ -24,7 +26,8 @@ class HostCredit {
     for (std::size_t i = 0; i < Histogram::kBuckets; ++i) {
       const std::int64_t late_ns = Histogram::bucket_end_ns(i);
       if (lateness.bucket(i) == 0 || late_ns < period_ns_) continue;
-      periods += lateness.bucket(i) * static_cast<std::uint64_t>(late_ns / period_ns_ + 1);
+      const auto each = static_cast<std::uint64_t>((late_ns + nap_ns_ / 2) / period_ns_ + 1);
+      periods += lateness.bucket(i) * each;
     }
     if (periods > 0) credits_.push_back({now_s, periods});
   }
@@ -48,7 +51,7 @@ class HostCredit {
     double at_s = 0;
     std::uint64_t periods = 0;
   };
-  std::int64_t period_ns_;
+  std::int64_t period_ns_, nap_ns_;
   std::deque<Credit> credits_;
 };
 

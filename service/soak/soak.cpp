@@ -71,7 +71,7 @@ class Soak {
         bridge_ns_(model_.bridge_cycles * model_.cycle_ns),
         host_(bridge_ns_),
         faults_(static_cast<double>(bridge_ns_) * 1e-9),
-        credit_(model_.cycle_ns) {
+        credit_(model_.cycle_ns, HostWatch::nap_ns(bridge_ns_)) {
     report_.machine = model_.name;
     report_.host = probe::host_text();
     report_.seed = options.seed;
