@@ -116,8 +116,8 @@ enum class EventCode : std::uint16_t {
            ///< `line`
   kActionAnswered,  ///< a: sequence, x: 1 done, 0 refused
   kJointsHomed,     ///< a: mask of the joints that have their reference now
-  kPlanLooked,  ///< of the planner: branch and winding were chosen over a blocks, the first, or
-                ///< those from block b on; x: 1 if the stream stalled then
+  kPlanLooked,      ///< of the planner: branch and winding were chosen over a blocks, the first, or
+                    ///< those from block b on; x: 1 if the stream stalled then
 };
 
 /// Why the cycle took the machine to FaultStop, or refused to send a setpoint.
