@@ -80,17 +80,19 @@ void FaultCase::expect_provoked() {
   }
   if (fault_.how != How::kWire) return;
   const std::string said = hosts_->wire_said();
-  int frames = 0, lost = 0, twice = 0, past_others = 0, wrong = 0;
+  int frames = 0, lost = 0, twice = 0, past_others = 0, wrong = 0, late = 0;
   EXPECT_EQ(
-      std::sscanf(said.c_str(), "%d frames, %d lost, %d twice, %d past others, %d with a wrong bit",
-                  &frames, &lost, &twice, &past_others, &wrong),
-      5)
+      std::sscanf(said.c_str(),
+                  "%d frames, %d lost, %d twice, %d past others, %d with a wrong bit, %d late",
+                  &frames, &lost, &twice, &past_others, &wrong, &late),
+      6)
       << said;
   const Hosts::Spoilt& asked = fault_.wire;
   EXPECT_EQ(lost > 0, asked.lost > 0) << said;
   EXPECT_EQ(twice > 0, asked.twice > 0) << said;
   EXPECT_EQ(past_others > 0, asked.past_others > 0) << said;
   EXPECT_EQ(wrong > 0, asked.wrong > 0) << said;
+  EXPECT_EQ(late > 0, asked.delay_ms > 0) << said;
 }
 
 std::string FaultCase::story() {

@@ -28,6 +28,7 @@
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kLate{1};  ///< what is held back for less does not count
 
 struct Frame {
   Clock::time_point due;
@@ -71,8 +72,8 @@ class SpoiltWire {
       }
       deliver();
     }
-    std::printf("%d frames, %d lost, %d twice, %d past others, %d with a wrong bit\n", frames_,
-                lost_, twice_, past_others_, wrong_);
+    std::printf("%d frames, %d lost, %d twice, %d past others, %d with a wrong bit, %d late\n",
+                frames_, lost_, twice_, past_others_, wrong_, late_);
   }
 
  private:
@@ -100,7 +101,9 @@ class SpoiltWire {
           std::uniform_int_distribution<std::size_t>(ETH_HLEN, frame.bytes.size() - 1)(engine_);
       frame.bytes[at] = static_cast<std::uint8_t>(frame.bytes[at] ^ (1U << (engine_() % 8)));
     }
+    const auto arrived = frame.due;
     if (!comes_to_pass(past_share_, past_others_)) frame.due += late();
+    late_ += frame.due - arrived >= kLate ? 1 : 0;
     if (comes_to_pass(twice_share_, twice_)) under_way_.push(frame);
     under_way_.push(frame);
   }
@@ -135,7 +138,7 @@ class SpoiltWire {
   bool has_input_ = true;
   double delay_ms_ = 0, jitter_ms_ = 0;
   double lost_share_ = 0, twice_share_ = 0, past_share_ = 0, wrong_share_ = 0;
-  int frames_ = 0, lost_ = 0, twice_ = 0, past_others_ = 0, wrong_ = 0;
+  int frames_ = 0, lost_ = 0, twice_ = 0, past_others_ = 0, wrong_ = 0, late_ = 0;
 };
 
 }  // namespace
