@@ -176,7 +176,9 @@ void run_spirals(Transition transition, Spiral how) {
     unwindings += found.unwindings;
     last += programs;  // every machine its own
   }
-  EXPECT_GT(unwindings, kIsTimed ? 1 : 0);
+  if (kIsTimed) {  // else so few are drawn that the look past the pole may spare them all
+    EXPECT_GT(unwindings, 1);
+  }
 }
 
 TEST(Unwinding, KeepsTravelAndLimitsOnSpiralsFromRestToRest) {

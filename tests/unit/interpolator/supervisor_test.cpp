@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <set>
@@ -173,7 +174,11 @@ TEST_F(SupervisorBurst, TellsEveryStopHoweverMuchWaitsAndAnswersWhatItGoesPast) 
   const std::vector<Verb> taken = obey_until(302);
   ASSERT_GT(taken.size(), 2U);
   EXPECT_EQ(taken[0], Verb::kHold);
-  EXPECT_EQ(taken[1], Verb::kAbort);
+  // Holds are read in several lots where the processor is busy, the abort in the last of them.
+  const auto next =
+      std::find_if(taken.begin(), taken.end(), [](Verb verb) { return verb != Verb::kHold; });
+  ASSERT_NE(next, taken.end());
+  EXPECT_EQ(*next, Verb::kAbort);
   EXPECT_EQ(answered_[1].refusal, Refusal::kOvertaken);
   EXPECT_EQ(answered_[1].text.find("start refused: a hold, an abort or disable"), 0U);
   EXPECT_EQ(answered_[151].text, "too many commands at once; say it again");
