@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Files, SmoothCorpus,
     testing::Values(
-        CorpusRun{"ramsai_1-1_plan_3x.apt", "20,-30,50", 206, 4 * kMs},
+        CorpusRun{"ramsai_1-1_plan_3x.apt", "20,-30,50", 20, 4 * kMs, 25},
         CorpusRun{"ramsai_1-2_plan_5x_depincage_lateral.apt", "20,-30,50", 208, 4 * kMs},
         CorpusRun{"ramsai_1-3_plan_5x_depincage_double.apt", "20,-30,50", 147, kMs, 300},
         CorpusRun{"ramsai_2-1_calotte_3x.apt", "20,-30,50", 25, 4 * kMs, 52},

@@ -65,9 +65,25 @@ std::vector<std::uint32_t> motion_lines(const MachineModel& model, const ToolTab
   return lines;
 }
 
+bool passes_with(const PartAsked& part, const PartCut& cut, double tool_mm) {
+  record::CheckedPath path(tool_mm, part.model.max_feed_mm_per_s);
+  cl::ClReaderOptions reader;
+  reader.first_line = cut.from_line;
+  auto recording = record::RecordingReader::open(cut.recording.string(), part.model);
+  if (!record::read_path(part.file, reader, part.tools, path).empty() || !recording) return false;
+  record::CheckOptions options;
+  options.max_missing = std::numeric_limits<std::uint64_t>::max();
+  options.allow_unfinished = !cut.is_finished;
+  options.from_cycle = cut.from_cycle;
+  options.to_cycle = cut.to_cycle;
+  const auto report = record::check(*recording, path, part.model, options);
+  return report && report->passed();
+}
+
 LinesCut judge(const PartAsked& part, const PartCut& cut) {
   LinesCut lines;
-  record::CheckedPath path(part.model.tool_length_mm, part.model.max_feed_mm_per_s);
+  record::CheckedPath path(cut.tool_mm > 0 ? cut.tool_mm : part.model.tool_length_mm,
+                           part.model.max_feed_mm_per_s);
   cl::ClReaderOptions reader;
   reader.first_line = cut.from_line;
   const std::string refusal = record::read_path(part.file, reader, part.tools, path);

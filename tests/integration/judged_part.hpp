@@ -21,6 +21,7 @@ struct PartCut {
   bool is_finished = true;  ///< up to the part's end
   /// Its FaultStop began where drives were that had lost the path: there joints alone are judged.
   bool has_left_path = false;
+  double tool_mm = 0;  ///< in the spindle at its begin; 0: the machine's
 };
 
 /// The part that was to be cut, and on which machine.
@@ -30,6 +31,9 @@ struct PartAsked {
   std::filesystem::path file;
   std::vector<std::uint32_t> motions;  ///< lines that move the tool
 };
+
+/// Whether the recording passes with this tool in the spindle at the begin of the cut.
+[[nodiscard]] bool passes_with(const PartAsked& part, const PartCut& cut, double tool_mm);
 
 /// Lines of a CL file that move the tool.
 [[nodiscard]] std::vector<std::uint32_t> motion_lines(const MachineModel& model,

@@ -12,6 +12,7 @@
 
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
+#include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
@@ -78,6 +79,7 @@ TEST(PoleForesight, TakesTheBranchOnWhichTheTiltHasTravelFarBehindThePole) {
               {0.05, 1, 2500, Transition::kSmooth},
               {0, 1, 2500, Transition::kExactStop}};
   for (const auto& way : ways) {
+    if (!kIsTimed && way.before == 0) continue;  // the longest say the most
     SCOPED_TRACE(testing::Message() << way.before << " blocks before, " << way.offset_deg
                                     << " deg beside it, tilt on side " << way.side);
     const auto blocks = gently_over_the_pole(way.offset_deg, way.before);
