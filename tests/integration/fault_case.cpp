@@ -111,7 +111,8 @@ void FaultCase::set_up() {
   part_file_ = (plant_->folder() / "part.cls").string();
   std::ofstream(part_file_) << part_.text();
   const std::string tools = std::string(MERIDIAN_SOURCE_DIR) + kToolFile;
-  service_words_ = {"--service", service_file(*plant_, "tools = \"" + tools + "\"\naction_timeout_s = 4\n")};
+  service_words_ = {"--service",
+                    service_file(*plant_, "tools = \"" + tools + "\"\naction_timeout_s = 4\n")};
   plant_->start_service(service_words_);
   plant_->start_drives({"--action-delay", "1"}, &console_);
   ASSERT_TRUE(plant_->enable()) << story();
