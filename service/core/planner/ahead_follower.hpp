@@ -4,13 +4,21 @@
 #include <span>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/cl_block.hpp"
 #include "meridian/path/path_piece.hpp"
-#include "service/core/planner/look_ahead.hpp"
+#include "service/core/planner/ahead_way.hpp"
 
 namespace meridian {
 
 /// One branch, followed over programmed blocks from a start with the free joint anywhere: judges
-/// those of some ways that are on the branch. Units: mm, rad, s. No memory.
+/// those of some ways that are on the branch. Tip and axis run on the programmed lines, arcs and
+/// great circles. Behind a tool block, whose length is not known here, rotary joints alone are
+/// judged. It ends where the axis comes so close to the pole that the branch may be chosen anew.
+/// From a start that is so close it is followed out first; from a start on the pole it sees
+/// nothing. Where a run within the slack may leave the branch beside the pole that it begins at, no
+/// way is lost.
+///
+/// Units: mm, rad, s. No memory.
 class AheadFollower {
  public:
   /// `ways` must stay.

@@ -10,16 +10,20 @@
 
 namespace meridian {
 
-/// look_ahead() block by block, for a look that waits for blocks: how many each of some ways
-/// carries, as far as blocks came. The machine has a free joint. Units: mm, rad. No memory.
+/// How many blocks each of some ways on carries, told block by block, for who waits for them: as
+/// long as no joint and no drive of a stage is outside its travel (AheadFollower follows each
+/// branch). The machine has a free joint. Bounded by the blocks, no memory. Units: mm, rad, s.
 class AheadLook {
  public:
   static constexpr std::size_t kMostWays = 24;
 
   explicit AheadLook(const MachineModel& model) noexcept : model_(model) {}
 
+  /// `start`: the pose where all ways start; of the machine's ways the first kMostWays are looked
+  /// at.
   void begin(double tool_length_mm, const ToolPose& start, const AheadSlack& slack,
              std::span<const AheadWay> ways) noexcept;
+  /// The next block behind `start`; one that starts there, where it is an arc.
   void follow(const ClBlock& block) noexcept;
 
   /// No block to come can change which ways carry farthest: one alone goes on, or none.

@@ -5,7 +5,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
-#include "service/core/planner/look_ahead.hpp"
+#include "service/core/planner/ahead_look.hpp"
 #include "service/core/planner/router.hpp"
 
 /// The approach: retract along the tool axis, joint move, down. Part of Router.
@@ -176,10 +176,13 @@ void Router::look_along(const ClBlock& block, const ToolPose& start, double tool
     return one.sequence == block.sequence;
   });
   if (first == ahead_.end()) return;
-  AheadWays found = ahead_of(ways);
-  const std::span looked(found.data(), static_cast<std::size_t>(ways.count));
-  look_ahead(model_, tool_length_mm, start, slack_, {first, ahead_.end()}, looked);
-  take_looked(looked, ways);
+  const AheadWays found = ahead_of(ways);
+  AheadLook look(model_);
+  look.begin(tool_length_mm, start, slack_, {found.data(), static_cast<std::size_t>(ways.count)});
+  for (auto next = block.is_arc ? first : first + 1; next != ahead_.end(); ++next) {
+    look.follow(*next);
+  }
+  take_looked(look.ways(), ways);
 }
 
 void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,

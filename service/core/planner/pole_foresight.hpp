@@ -5,7 +5,7 @@
 #include <span>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/core/planner/look_ahead.hpp"
+#include "service/core/planner/ahead_way.hpp"
 
 namespace meridian {
 

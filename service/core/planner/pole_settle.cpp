@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "service/core/planner/pole_corridor.hpp"
+#include "service/core/planner/pole_time.hpp"
 
 /// Which zones are taken about a core. Part of PoleCorridor.
 ///

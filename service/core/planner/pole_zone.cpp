@@ -10,6 +10,7 @@
 #include "meridian/path/pose_at.hpp"
 #include "service/core/planner/joint_cells.hpp"
 #include "service/core/planner/parabola.hpp"
+#include "service/core/planner/pole_time.hpp"
 #include "service/core/planner/pole_travel.hpp"
 
 namespace meridian {
@@ -27,104 +28,12 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLeastPart_mm = 1e-4;
 constexpr double kSameWinding_rad = 0.5;
 
-template <class S>
-Pose<S> pose_of(const BandSpan& span, double u) noexcept {
-  const double x = std::clamp(u - span.u0, 0.0, span.length);
-  if constexpr (std::is_same_v<S, double>) {
-    return pose_on(span.c, x);
-  } else {
-    return pose_on(span.c, S::variable(x));
-  }
-}
-
-template <class S>
-Pose<S> pose_of(const PoleTask& task, double u) noexcept {
-  return pose_of<S>(task.spans.span_at(u), u);
-}
-
-/// The quintic at the share `t` of its range of length `h`, with its derivatives by u: they are
-/// differences of what de Casteljau's steps leave.
-Jet<3> free_at(const FreeQuintic& values, double t, double h) noexcept {
-  FreeQuintic level = values;
-  std::array<double, 4> out{};  // by the share
-  for (std::size_t left = 6; left > 1; --left) {
-    if (left == 4) out[3] = 60 * (level[3] - 3 * level[2] + 3 * level[1] - level[0]);
-    if (left == 3) out[2] = 20 * (level[2] - 2 * level[1] + level[0]);
-    if (left == 2) out[1] = 5 * (level[1] - level[0]);
-    for (std::size_t n = 0; n + 1 < left; ++n) level[n] += (level[n + 1] - level[n]) * t;
-  }
-  return Jet<3>::from_derivatives({level[0], out[1] / h, out[2] / (h * h), out[3] / (h * h * h)});
-}
-
 /// Largest value that a smooth function may have about the middle of three samples: there, or at
 /// the top of the parabola through them.
 double top_of(double left, double middle, double right) noexcept {
   const Parabola about(left, middle, right);
   return about.bend > 0 && middle >= left && middle >= right ? about.top() : middle;
 }
-
-/// Time per u at which the joints can follow, seconds per mm.
-double slowness(const MachineModel& model, const BandSpan& span, const Pose<Jet<3>>& pose,
-                const Joints<Jet<3>>& q) noexcept {
-  double tip = 0;
-  for (int i = 0; i < 3; ++i) tip += pose.tip[i].derivative(1) * pose.tip[i].derivative(1);
-  double most = std::max(std::sqrt(tip) / span.feed_mm_per_s, 1 / span.u_speed_mm_per_s);
-  for (int i = 0; i < model.joint_count; ++i) {
-    const JointLimits& limits = model.joints[i].limits;
-    most = std::max(most, std::abs(q[i].derivative(1)) / limits.velocity);
-    const double bend = std::abs(q[i].derivative(2)) / limits.acceleration;
-    if (bend > most * most) most = std::sqrt(bend);
-    const double twist = std::abs(q[i].derivative(3)) / limits.jerk;
-    if (twist > most * most * most) most = std::cbrt(twist);
-  }
-  return most;
-}
-
-/// Time of the exact way on one side of the core, from the reach inwards to a distance `d`, and
-/// where the free joint is there: on the way in its winding is followed.
-class OutsideTime {
- public:
-  OutsideTime(const PoleTask& task, const PolePlace& place, double side) noexcept
-      : reach_(place.reach) {
-    const double core = side < 0 ? place.core_begin : place.core_end;
-    JointVector joints = place.joints;
-    for (int k = 0; k < kNodes; ++k) {
-      const double far = distance(k), near = distance(k + 1);
-      const double u = core + side * 0.5 * (far + near);
-      const BandSpan& span = task.spans.span_at(u);
-      const auto pose = pose_of<Jet<3>>(span, u);
-      const auto at = solve(task.model, task.tool_length_mm, pose, place.branch, joints);
-      const bool is_there = at.status != SolveStatus::kUnreachable;
-      for (int i = 0; is_there && i < task.model.joint_count; ++i) joints[i] = value_of(at.q[i]);
-      free_[k] = joints[free_joint(task.model)];
-      const double time = (far - near) * slowness(task.model, span, pose, at.q);
-      sum_[k + 1] = sum_[k] + (std::isfinite(time) ? time : 0);
-    }
-  }
-
-  [[nodiscard]] double to(double d) const noexcept {
-    const double place = place_of(d);
-    const int k = std::min(static_cast<int>(place), kNodes - 1);
-    return sum_[k] + (place - k) * (sum_[k + 1] - sum_[k]);
-  }
-  /// The free joint not far from `d`.
-  [[nodiscard]] double free_near(double d) const noexcept {
-    return free_[std::min(static_cast<int>(place_of(d)), kNodes - 1)];
-  }
-  [[nodiscard]] double whole() const noexcept { return sum_[kNodes]; }
-  [[nodiscard]] double innermost() const noexcept { return distance(kNodes); }
-
- private:
-  static constexpr int kNodes = 64;
-  static constexpr double kRatio = 0.87;  // 0.87^64 = 1.3e-4
-  [[nodiscard]] double distance(int k) const noexcept { return reach_ * std::pow(kRatio, k); }
-  [[nodiscard]] double place_of(double d) const noexcept {
-    return std::clamp(std::log(d / reach_) / std::log(kRatio), 0.0, 1.0 * kNodes);
-  }
-  double reach_;
-  std::array<double, kNodes + 1> sum_{};
-  std::array<double, kNodes> free_{};
-};
 
 class Search {
  public:
@@ -368,30 +277,6 @@ class Search {
 
 PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept {
   return Search(task, place).run();
-}
-
-double find_time(const PoleTask& task, std::span<const PoleZone> zones, int branch, double begin,
-                 double end) noexcept {
-  constexpr double kPartsOfSpan = 6, kMostParts = 2048;
-  const double least_step = std::max((end - begin) / kMostParts, kLeastPart_mm);
-  std::size_t n = 0;
-  double sum = 0;
-  for (double u = begin, next = begin; u < end; u = next) {
-    next = std::min(u + std::max(task.spans.span_at(u).length / kPartsOfSpan, least_step), end);
-    const double middle = 0.5 * (u + next);
-    for (; n < zones.size() && zones[n].end <= middle; ++n) branch = zones[n].branch_after;
-    const BandSpan& span = task.spans.span_at(middle);
-    const auto pose = pose_of<Jet<3>>(span, middle);
-    auto at = solve(task.model, task.tool_length_mm, pose, branch, {});
-    if (n < zones.size() && zones[n].begin < middle) {
-      const double h = zones[n].end - zones[n].begin;
-      const Jet<3> free = free_at(zones[n].free, (middle - zones[n].begin) / h, h);
-      at = solve_held(task.model, task.tool_length_mm, pose, free);
-    }
-    const double time = (next - u) * slowness(task.model, span, pose, at.q);
-    sum += std::isfinite(time) ? time : 0;
-  }
-  return sum;
 }
 
 FreeQuintic part_of(const FreeQuintic& whole, double from, double to) noexcept {

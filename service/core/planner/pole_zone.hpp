@@ -5,8 +5,8 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/band_span.hpp"
+#include "service/core/planner/ahead_way.hpp"
 #include "service/core/planner/joint_span.hpp"
-#include "service/core/planner/look_ahead.hpp"
 #include "service/core/planner/programmed_axis.hpp"
 
 namespace meridian {
@@ -64,11 +64,6 @@ struct PoleTask {
 /// what lies around: the largest of |P'|/F, |q'|/V, √(|q''|/A), ∛(|q'''|/J) over all joints.
 /// Source: docs/motion.md, section 10. Bounded work, no memory.
 [[nodiscard]] PoleZone find_pole_zone(const PoleTask& task, const PolePlace& place) noexcept;
-
-/// Time from `begin` to `end`, counted as above, with `zones` (ascending) and the exact way
-/// elsewhere, on `branch` as far as the first of them.
-[[nodiscard]] double find_time(const PoleTask& task, std::span<const PoleZone> zones, int branch,
-                               double begin, double end) noexcept;
 
 /// The part of a quintic between shares `from` < `to` of its range.
 [[nodiscard]] FreeQuintic part_of(const FreeQuintic& whole, double from, double to) noexcept;

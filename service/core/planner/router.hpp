@@ -11,7 +11,7 @@
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/approach.hpp"
 #include "service/core/planner/leg_planner.hpp"
-#include "service/core/planner/look_ahead.hpp"
+#include "service/core/planner/ahead_way.hpp"
 #include "service/core/planner/pole_foresight.hpp"
 #include "service/core/planner/staging.hpp"
 

@@ -2,11 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/block_reject.hpp"
-#include "meridian/path/cl_block.hpp"
 
 namespace meridian {
 
@@ -33,19 +30,5 @@ struct AheadWay {
 struct AheadSlack {
   double tip_mm = 0, axis_rad = 0;
 };
-
-/// Follows the joints over `blocks` from `start`, the pose at the end of the first of them (an
-/// arc: at its begin), on the branch of every way, and counts how many blocks each of `ways`
-/// carries: as long as no joint and no drive of a stage is outside its travel. Behind a tool block,
-/// whose length is not known here, rotary joints alone are judged. Tip and axis run on the
-/// programmed lines, arcs and great circles; the look ends where the axis comes so close to the
-/// pole that the branch may be chosen anew. From a start that is so close it is followed out first;
-/// from a start on the pole it sees nothing.
-/// Where a run within the slack may leave the branch beside the pole it begins at, no way is lost.
-///
-/// The machine has a free joint. Bounded by the blocks, no memory. Units: mm, rad, s.
-void look_ahead(const MachineModel& model, double tool_length_mm, const ToolPose& start,
-                const AheadSlack& slack, std::span<const ClBlock> blocks,
-                std::span<AheadWay> ways) noexcept;
 
 }  // namespace meridian
