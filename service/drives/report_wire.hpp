@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "service/dds/messages.hpp"
@@ -23,22 +24,21 @@ class ReportWire {
   void work(int periods) noexcept { now_ += periods; }
   /// A report of this period sets out.
   void put(const dds::DriveFeedback& report) {
-    if (is_swapped_ && !std::exchange(has_waiting_, !has_waiting_)) {
+    if (is_swapped_ && !waiting_) {
       waiting_ = report;
       return;
     }
-    if (is_well() && under_way_.empty() && !has_direct_) {
+    if (is_well() && under_way_.empty() && !direct_) {
       direct_ = report;
-      has_direct_ = true;
       return;
     }
     set_out(report);
-    if (is_swapped_) set_out(waiting_);
+    if (const auto overtaken = std::exchange(waiting_, std::nullopt)) set_out(*overtaken);
   }
   /// A report that arrives now; call until there is none.
   [[nodiscard]] bool arrives(dds::DriveFeedback& report) {
-    if (std::exchange(has_direct_, false)) {
-      report = direct_;
+    if (direct_) {
+      report = *std::exchange(direct_, std::nullopt);
       return true;
     }
     if (under_way_.empty() || under_way_.front().due > now_) return false;
@@ -62,10 +62,9 @@ class ReportWire {
   }
 
   std::int64_t now_ = 0, delay_periods_ = 0;
-  bool is_doubled_ = false, is_swapped_ = false, has_waiting_ = false;
-  bool has_direct_ = false;
-  dds::DriveFeedback waiting_;
-  dds::DriveFeedback direct_;  ///< arrives at once
+  bool is_doubled_ = false, is_swapped_ = false;
+  std::optional<dds::DriveFeedback> waiting_;  ///< for the one behind it
+  std::optional<dds::DriveFeedback> direct_;   ///< arrives at once
   std::deque<UnderWay> under_way_;
 };
 
