@@ -32,7 +32,9 @@ inline constexpr std::array<Octant, 8> kOctants{
 /// It stands beside the C library's because that one is chosen by the host's processor, so that its
 /// bits differ from host to host, and costs three times as much. One division: the angle is brought
 /// below π/8 and its arctangent is z + z³ P(z²), P the Chebyshev fit of degree 10 on [0,
-/// tan²(π/8)], 6e-18 of the angle off. RT: cycle. Proof: tests/unit/geometry/atan2_test.cpp.
+/// tan²(π/8)], 6e-18 of the angle off. Always inlined: whether the cycle's
+/// own calls are must not hang on who else calls it. RT: cycle. Proof:
+/// tests/unit/geometry/atan2_test.cpp.
 [[nodiscard, gnu::always_inline]] inline double atan2(double y, double x) noexcept {
   constexpr double kTanEighth = 0x1.a827999fcef32p-2;  // tan(π/8)
   constexpr double kLeast = 1e-290, kMost = 1e290;     // beyond: the library's

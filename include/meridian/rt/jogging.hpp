@@ -11,7 +11,8 @@
 #include "meridian/rt/on_path.hpp"
 
 /// Jogging: one joint, or the tool, follows the velocity that an operator holds, for as long as
-/// orders keep coming. RT: cycle. Proof: tests/unit/rt/jogging_test.cpp,
+/// orders keep coming. Its larger parts stay out of line: inlined they made a cycle that cuts 40
+/// instructions longer. RT: cycle. Proof: tests/unit/rt/jogging_test.cpp,
 /// tests/property/rt/jog_motion_test.cpp.
 namespace meridian {
 
