@@ -27,6 +27,10 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
   return {budget, figure, reference, is_kept ? Verdict::kKept : Verdict::kBroken, ""};
 }
 
+[[nodiscard]] std::string too_short(const char* what) {
+  return std::string("too short: ") + what + " " + std::to_string(kLeastSamples);
+}
+
 /// The same without a verdict, for the reason `why`.
 [[nodiscard]] Judgement left_open(Judgement judgement, std::string why) {
   judgement.verdict = Verdict::kNotJudged;
@@ -56,7 +60,7 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
   const Judgement judgement = judged(report.budgets.periods_lost, all > 0 ? 100 * own / all : 0);
   if (!report.is_host_watched) return left_open(judgement, kNotWatched);
   if (report.cycles_run < kLeastSamples)
-    return left_open(judgement, "too short: fewer cycles than 60000");
+    return left_open(judgement, too_short("fewer cycles than"));
   return judgement;
 }
 
@@ -83,7 +87,7 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
     most = std::max(most.value_or(0), switches / static_cast<double>(cycles));
   }
   const Judgement judgement = judged(report.budgets.switches, most.value_or(0));
-  if (!most) return left_open(judgement, "too short: no life of 60000 cycles");
+  if (!most) return left_open(judgement, too_short("no life of so many cycles:"));
   return is_real_time ? judgement : left_open(judgement, "the cycle had no real-time priority");
 }
 
@@ -110,7 +114,7 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
   const Histogram &bare_before = first[kBareThread], &bare_after = last[kBareThread];
   const Judgement judgement = judged(drift.budget, us(after), us(before));
   if (std::min(before.count(), after.count()) < kLeastSamples) {
-    return left_open(judgement, "too short: a quarter of the run has fewer samples than 60000");
+    return left_open(judgement, too_short("a quarter of the run has fewer samples than"));
   }
   constexpr double kSameWork = 0.05;
   const double cut_before = first[kCutting].mean_ns(), cut_after = last[kCutting].mean_ns();

@@ -93,15 +93,16 @@ void append_scheduling(std::string& out, const SoakReport& report) {
 }
 
 /// A soak that is not at its end passes so far, and no further.
-void append_verdict(std::string& out, const SoakReport& report) {
-  out += report.is_clean() ? "PASS" : "FAIL";
+void append_verdict(std::string& out, const SoakReport& report,
+                    const std::vector<Judgement>& judgements) {
+  const bool is_clean = report.is_clean(judgements);
+  out += is_clean ? "PASS" : "FAIL";
   if (report.is_interrupted) {
-    append(out, "%s, interrupted after %.0f s of %.0f s", report.is_clean() ? " so far" : "",
+    append(out, "%s, interrupted after %.0f s of %.0f s", is_clean ? " so far" : "",
            report.elapsed_s, report.asked_s);
-  } else if (!report.is_over && report.is_clean()) {
+  } else if (!report.is_over && is_clean) {
     out += " so far";
   }
-  const auto judgements = judge_run(report);
   const auto left =
       std::ranges::count(judgements, Judgement::Verdict::kNotJudged, &Judgement::verdict);
   append(out,
@@ -155,9 +156,9 @@ void SoakReport::add(const record::CheckReport& check, const std::string& where)
   for (const record::Finding& finding : check.findings) violate(finding.text, where);
 }
 
-bool SoakReport::is_clean() const {
+bool SoakReport::is_clean(const std::vector<Judgement>& judgements) const {
   return violation_count == 0 && host_faults == 0 && finished > 0 && segments_unread == 0 &&
-         growth(*this).empty() && std::ranges::none_of(judge_run(*this), [](const Judgement& one) {
+         growth(*this).empty() && std::ranges::none_of(judgements, [](const Judgement& one) {
            return one.verdict == Judgement::Verdict::kBroken;
          });
 }
@@ -233,12 +234,13 @@ std::string to_text(const SoakReport& report) {
            us(drift.all, 0.5), us(drift.all, 0.99), us(drift.all, 0.999), us(drift.all, 1),
            us(drift.first, 0.99), us(drift.last, 0.99));
   }
-  out += "  budgets of the run:\n" + to_text(judge_run(report));
+  const std::vector<Judgement> judgements = judge_run(report);
+  out += "  budgets of the run:\n" + to_text(judgements);
   for (const std::string& text : growth(report)) append(out, "  GROWTH: %s\n", text.c_str());
   for (const Violation& one : report.violations) {
     append(out, "  VIOLATION: %s (%s)\n", one.text.c_str(), one.where.c_str());
   }
-  append_verdict(out, report);
+  append_verdict(out, report, judgements);
   if (report.host_faults > 0) {
     append(
         out,

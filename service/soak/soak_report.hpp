@@ -97,7 +97,9 @@ struct SoakReport {
   /// Takes the judgement of one segment.
   void add(const record::CheckReport& check, const std::string& where);
   /// Nothing was violated by the machine until now, and its host let it run.
-  [[nodiscard]] bool is_clean() const;
+  [[nodiscard]] bool is_clean() const { return is_clean(judge_run(*this)); }
+  /// The same, by what judge_run() said of it.
+  [[nodiscard]] bool is_clean(const std::vector<Judgement>& judgements) const;
   /// The same of a soak that was not interrupted.
   [[nodiscard]] bool passed() const { return is_clean() && !is_interrupted; }
 };
