@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cli/machine_options.hpp"
 
+#include <string>
+
+#include "service/config/config_error.hpp"
 #include "service/config/machine_file.hpp"
 
 namespace meridian::cli {
@@ -11,13 +14,30 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
   command.add_option("--frame", options.frame,
                      "Where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) Ry(b) Rx(a); "
                      "instead of the machine file's frame");
-  command.add_option("--tools", options.tools, "Tool table (TOML) for programs that call tools");
+  CLI::Option* const tools = command.add_option("--tools", options.tools,
+                                                "Tool table (TOML) for programs that call tools");
+  command
+      .add_option("--tool", options.tool,
+                  "Number of the tool that is in the spindle at the begin; instead of the machine "
+                  "file's tool_length_mm")
+      ->needs(tools)
+      ->check(CLI::PositiveNumber);
 }
 
 MachineModel load_machine(const MachineOptions& options) {
   MachineModel model = config::load_machine(options.machine);
   if (!options.frame.empty()) {
     config::place_workpiece(model, config::parse_frame(options.frame));
+  }
+  if (options.tool > 0) {
+    const ToolTable tools = load_tools(options);
+    const Tool* const tool = tools.find(options.tool);
+    if (tool == nullptr) {
+      throw config::ConfigError({.file = options.tools,
+                                 .value = "tool " + std::to_string(options.tool) + " is not there",
+                                 .remedy = "name one of the table's behind --tool"});
+    }
+    model.tool_length_mm = tool->length_mm;
   }
   return model;
 }

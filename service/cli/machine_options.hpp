@@ -16,12 +16,13 @@ struct MachineOptions {
   std::string machine;
   std::string tools;
   std::string frame;
+  int tool = 0;  ///< of the table, in the spindle at the begin; 0: that of the machine file
 };
 
-/// Adds --machine and, where a workpiece is cut, --frame and --tools.
+/// Adds --machine and, where a workpiece is cut, --frame, --tools and --tool.
 void add_machine_options(CLI::App& command, MachineOptions& options, bool has_workpiece);
 
-/// The machine with its workpiece in place. Throws config::ConfigError.
+/// The machine with its workpiece in place and its tool in the spindle. Throws config::ConfigError.
 [[nodiscard]] MachineModel load_machine(const MachineOptions& options);
 /// Empty where no table is named. Throws config::ConfigError.
 [[nodiscard]] ToolTable load_tools(const MachineOptions& options);

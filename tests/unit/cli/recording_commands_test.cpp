@@ -51,6 +51,22 @@ TEST_F(RecordingCommands, SimulateCertifiesItsPlan) {
   EXPECT_NE(outcome.output.find(", 0 refuted, 0 undecided; "), std::string::npos);
 }
 
+TEST_F(RecordingCommands, BeginWithTheToolThatIsInTheSpindle) {
+  const std::string tools = "--tools " MERIDIAN_SOURCE_DIR "/deploy/tools.toml ",
+                    third = tools + "--tool 3 ";
+  const CommandOutput simulated =
+      run_tool("simulate " + part() + kMachine + third + "--record " + recording());
+  EXPECT_EQ(simulated.exit_code, 0) << simulated.output;
+  const std::string check = "check " + recording() + " " + part() + kMachine;
+  EXPECT_EQ(run_tool(check + third).exit_code, 0);
+  EXPECT_EQ(run_tool(check).exit_code, 1) << "20 mm beside the path of the machine file's tool";
+  const CommandOutput unknown = run_tool(check + tools + "--tool 9");
+  EXPECT_EQ(unknown.exit_code, 3);
+  EXPECT_NE(unknown.output.find("tools.toml: tool 9 is not there"), std::string::npos)
+      << unknown.output;
+  EXPECT_EQ(run_tool(check + "--tool 3").exit_code, 2) << "of which table?";
+}
+
 TEST_F(RecordingCommands, BeginInTheMiddleWhereTheyAreToldTo) {
   const std::string from = "--from-line 5 ";
   const CommandOutput simulated =
