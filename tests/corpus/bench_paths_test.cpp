@@ -6,6 +6,7 @@
 
 #include "corpus/simulated_file.hpp"
 #include "service/probe/budgets.hpp"
+#include "service/process/programs.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"
 
@@ -82,30 +83,32 @@ INSTANTIATE_TEST_SUITE_P(Files, BenchPaths,
 TEST(BenchPathsOfTheFolder, AreOursButForRounding) {
   const auto maker = test::shared_folder() / "bench" / "paths.py";
   if (!std::filesystem::exists(maker)) GTEST_SKIP() << maker << " is not here";
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("meridian-bench-" + std::to_string(::getpid()));
+  if (std::system("/usr/bin/python3 -c 'import numpy' >/dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "python3-numpy is not installed";
+  }
+  const process::ScratchFolder folder;
   const std::string command =
-      "/usr/bin/python3 '" + maker.string() + "' '" + folder.string() + "' >/dev/null 2>&1";
-  if (std::system(command.c_str()) != 0) GTEST_SKIP() << "python3-numpy is not installed";
+      "/usr/bin/python3 '" + maker.string() + "' '" + folder.path().string() + "' >/dev/null 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
   for (const std::string& name : bench::path_names()) {
     const std::string ours = bench::path_file(name, bench::kFeed_mm_per_s);
-    const std::string theirs = test::read_text(folder / (name + ".apt"));
+    const std::string theirs = test::read_text(folder.path() / (name + ".apt"));
     cl::ClReader mine(std::string_view(ours), name), other(std::string_view(theirs), name);
     std::size_t count = 0;
-    for (auto a = mine.next(), b = other.next(); a && *a; a = mine.next(), b = other.next()) {
-      ASSERT_TRUE(b && *b) << name << " ends at " << count;
+    for (;; ++count) {
+      const auto a = mine.next(), b = other.next();
+      ASSERT_TRUE(a && b) << name << " " << count;
+      ASSERT_EQ(a->has_value(), b->has_value()) << name << ": one ends at " << count;
+      if (!*a) break;
       EXPECT_EQ((*a)->kind, (*b)->kind);
       const Vector3 tip = to_vector((*a)->tip_mm) - to_vector((*b)->tip_mm);
       const Vector3 axis = to_vector((*a)->axis) - to_vector((*b)->axis);
       EXPECT_LE(tip.cwiseAbs().maxCoeff(), 1.01e-6) << name << " " << count;
       EXPECT_LE(axis.cwiseAbs().maxCoeff(), 2e-9) << name << " " << count;
       EXPECT_EQ((*a)->feed, (*b)->feed);
-      ++count;
     }
     EXPECT_GT(count, 6U);
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
 }
 
 }  // namespace

@@ -85,7 +85,9 @@ class KilledSoak : public testing::Test {
         std::vector<std::string>{(folder_.path() / "soaker").string(), "soak", "--for", "1h",
                                  "--report", report_.string()},
         process::ChildProcess::Options{
-            .environment = {"MERIDIAN_SHARE=" MERIDIAN_SOURCE_DIR "/deploy"},
+            // Who is killed leaves his own scratch folder: inside of ours.
+            .environment = {"MERIDIAN_SHARE=" MERIDIAN_SOURCE_DIR "/deploy",
+                            "TMPDIR=" + folder_.path().string()},
             .error_file = (folder_.path() / "soak.log").string(),
             .output_file = (folder_.path() / "soak.out").string()});
   }

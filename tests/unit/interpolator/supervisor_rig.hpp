@@ -49,11 +49,12 @@ class SupervisorTest : public testing::Test {
   void run() {
     thread_ = std::thread([this] { supervisor_.run(); });
   }
-  /// What operators quote from now on.
+  /// What operators quote from now on; it stays fresh for as long as a test takes.
   void publish_status() {
+    constexpr std::int64_t kMinute_ns = 60'000'000'000;
     dds::Status status;
     status.status_sequence = ++status_;
-    clock_.published(status, monotonic_ns());
+    clock_.published(status, monotonic_ns() + kMinute_ns);
   }
   /// The cycle says what it made of `request`.
   void tell(EventCode code, std::uint64_t request, Verb verb) {

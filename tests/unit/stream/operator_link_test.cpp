@@ -10,7 +10,7 @@
 #include "support/private_domain.hpp"
 
 /// An operator who means a dry run, at services that know of such words and at those of before,
-/// which would take them for any other: the test is the service, and answers nothing.
+/// which would take them for any other: the test is the service.
 namespace meridian::stream {
 namespace {
 
@@ -31,6 +31,24 @@ class OperatorWhoMeansADryRun : public testing::Test {
     dds::CommandRequest request;
     return commands_.take(request) ? std::optional(request) : std::nullopt;
   }
+  /// The next that is sent, however long that takes.
+  [[nodiscard]] std::optional<dds::CommandRequest> next_sent() {
+    const auto patience = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < patience) {
+      if (auto request = sent()) return request;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return std::nullopt;
+  }
+  void answer(const dds::CommandRequest& request) {
+    dds::Reply reply;
+    reply.request = request.request;
+    reply.operator_id = request.operator_id;
+    reply.is_accepted = true;
+    EXPECT_TRUE(replies_.write(reply));
+  }
+
+  static constexpr milliseconds kPatience{5000};
 
   const support::PrivateDomain domain_;
   dds::Participant participant_{{.domain = domain_.id(), .machine = "m"}};
@@ -55,27 +73,27 @@ TEST_F(OperatorWhoMeansADryRun, AsksNothingOfAMachineThatTellsOfNone) {
 
 TEST_F(OperatorWhoMeansADryRun, AsksOnceTheMachineTellsOfIt) {
   ASSERT_NO_FATAL_FAILURE(tell(false));
-  std::thread later([this] {
+  std::thread service([this] {
     std::this_thread::sleep_for(milliseconds(50));
     tell(true);
+    const auto request = next_sent();
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->argument, 1);
+    EXPECT_EQ(request->status_seen, 2U) << "what it quotes told of the dry run";
+    answer(*request);
   });
-  EXPECT_FALSE(link_.ask(Verb::kStart, 1, milliseconds(400))) << "nobody answers";
-  later.join();
-  const auto request = sent();
-  ASSERT_TRUE(request);
-  EXPECT_EQ(request->argument, 1);
-  EXPECT_EQ(request->status_seen, 2U) << "what it quotes told of the dry run";
+  EXPECT_TRUE(link_.ask(Verb::kStart, 1, kPatience));
+  service.join();
 }
 
 TEST_F(OperatorWhoMeansADryRun, AsksNoMoreOnceTheMachineTellsThatItIsOver) {
   ASSERT_NO_FATAL_FAILURE(tell(true));
-  std::thread later([this] {
-    std::this_thread::sleep_for(milliseconds(50));
+  std::thread service([this] {
+    ASSERT_TRUE(next_sent());
     tell(false);
   });
   EXPECT_FALSE(link_.ask(Verb::kEnable, 1, milliseconds(500))) << "the answer is still to come";
-  later.join();
-  EXPECT_TRUE(sent());
+  service.join();
   EXPECT_FALSE(sent()) << "it would be repeated after 300 ms";
 }
 
@@ -87,16 +105,17 @@ TEST_F(OperatorWhoMeansADryRun, IsNobodyWhoSaysItAsEver) {
 
 TEST_F(OperatorWhoMeansADryRun, QuotesInARepetitionWhatHeSawWhenHeSaidIt) {
   ASSERT_NO_FATAL_FAILURE(tell(false));
-  std::thread later([this] {
-    std::this_thread::sleep_for(milliseconds(50));
+  std::thread service([this] {
+    const auto first = next_sent();
     tell(false);
+    const auto second = next_sent();
+    ASSERT_TRUE(first && second) << "it is repeated after 300 ms";
+    EXPECT_EQ(first->status_seen, 1U);
+    EXPECT_EQ(second->status_seen, 1U) << "a stop may have been said behind it";
+    answer(*second);
   });
-  EXPECT_FALSE(link_.ask(Verb::kResume, 0, milliseconds(400))) << "nobody answers";
-  later.join();
-  const auto first = sent(), second = sent();
-  ASSERT_TRUE(first && second) << "it is repeated after 300 ms";
-  EXPECT_EQ(first->status_seen, 1U);
-  EXPECT_EQ(second->status_seen, 1U) << "a stop may have been said behind it";
+  EXPECT_TRUE(link_.ask(Verb::kResume, 0, kPatience));
+  service.join();
 }
 
 /// Who was heard once and says something while he is cut off.
@@ -104,6 +123,7 @@ TEST(OperatorWhoIsCutOff, QuotesWhatHeSawWhenHeSaidItOnceHeIsHeard) {
   const support::PrivateDomain domain;
   dds::Participant participant({.domain = domain.id(), .machine = "m"});
   dds::Writer<dds::Status> statuses(participant);
+  dds::Writer<dds::Reply> replies(participant);
   OperatorLink link(participant, "test");
   const auto tell = [&statuses](std::uint64_t sequence) {
     dds::Status status;
@@ -115,19 +135,25 @@ TEST(OperatorWhoIsCutOff, QuotesWhatHeSawWhenHeSaidItOnceHeIsHeard) {
     const dds::Reader<dds::CommandRequest> before(participant);
     EXPECT_FALSE(link.ask(Verb::kHold, 0, milliseconds(50)));
   }
-  std::optional<dds::Reader<dds::CommandRequest>> commands;
-  std::thread later([&] {
+  std::thread service([&] {
     std::this_thread::sleep_for(milliseconds(50));
     EXPECT_TRUE(tell(2));
     std::this_thread::sleep_for(milliseconds(50));
-    commands.emplace(participant);
+    dds::Reader<dds::CommandRequest> commands(participant);
+    dds::CommandRequest request;
+    const auto patience = std::chrono::steady_clock::now() + milliseconds(5000);
+    while (!commands.take(request) && std::chrono::steady_clock::now() < patience) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    EXPECT_EQ(request.verb, Verb::kResume);
+    EXPECT_EQ(request.status_seen, 1U);
+    dds::Reply reply;
+    reply.request = request.request;
+    reply.operator_id = request.operator_id;
+    EXPECT_TRUE(replies.write(reply));
   });
-  EXPECT_FALSE(link.ask(Verb::kResume, 0, milliseconds(250)));
-  later.join();
-  dds::CommandRequest request;
-  ASSERT_TRUE(commands->take(request));
-  EXPECT_EQ(request.verb, Verb::kResume);
-  EXPECT_EQ(request.status_seen, 1U);
+  EXPECT_TRUE(link.ask(Verb::kResume, 0, milliseconds(5000)));
+  service.join();
 }
 
 }  // namespace
