@@ -123,8 +123,15 @@ class Survey {
   /// The cut begins where the joints leave the place nearest to the path's begin for the first
   /// time, and ends with the last motion of the program: that of the next begins with its approach.
   void find_ends(const RecordingRow& row, bool has_moved) {
-    const bool is_enabled = is_leading(row.flags);
-    if (rows_ > 0 && (!has_moved || !is_enabled)) return;
+    const bool is_led = is_leading(row.flags);
+    // Where drives are switched on, the joints are led from where those stand: that is no motion.
+    if (rows_ > 0 && is_led && !is_leading(last_.flags)) {
+      if (has_run_) return;
+      begins_.clear();
+      has_moved = false;
+    } else if (rows_ > 0 && (!has_moved || !is_led)) {
+      return;
+    }
     if (has_moved && row.kind != MotionKind::kApproach) has_run_ = true;
     if (has_moved && row.kind == MotionKind::kApproach && has_run_) has_later_program_ = true;
     if (has_later_program_) return;

@@ -299,6 +299,28 @@ TEST_F(Check, LeavesALaterProgramAlone) {
   EXPECT_TRUE(report.has_later_program);
 }
 
+/// Drives were moved while they were off, behind a program: rows at rest go on with its kind.
+TEST_F(Check, TakesTheJointsOfDrivesThatAreSwitchedOnElsewhereForNoMotion) {
+  std::vector<CycleRecord> all =
+      SampleRun(model, {cut_to(1, {80, -40, 60}, 0.3, 200), blocks[0]}).records;
+  for (CycleRecord& record : all) record.motion = MotionKind::kApproach;
+  for (std::size_t i = 0; i < 19; ++i) all[i].motion = MotionKind::kCut;
+  for (std::size_t i = 0; i < 10; ++i) {
+    all[i].setpoint.flags = 0;
+    all[i].joints[0] += 5;
+  }
+  for (CycleRecord record : records) {
+    record.setpoint.cycle = all.back().setpoint.cycle + 1;
+    record.setpoint.due_ns = all.back().setpoint.due_ns + model.cycle_ns;
+    all.push_back(record);
+  }
+  records = all;
+  const CheckReport report = run();
+  EXPECT_TRUE(report.passed()) << to_text(report);
+  EXPECT_EQ(report.vertices, 7U);
+  EXPECT_FALSE(report.has_later_program);
+}
+
 TEST_F(Check, TakesAnApproachThatLeavesThePlaceOfTheBeginForNoCut) {
   records = SampleRun(model, {blocks[0], cut_to(1, {80, -40, 60}, 0.3, 200)}).records;
   for (CycleRecord& record : records) record.motion = MotionKind::kApproach;
