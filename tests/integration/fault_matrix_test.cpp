@@ -5,16 +5,14 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <ostream>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "integration/fault_case.hpp"
+#include "support/document_table.hpp"
 
 /// Every fault that can be provoked between processes in every phase of a program. A slice of it
 /// in ctest; MERIDIAN_FAULT_MATRIX=all in the environment makes it all of them, forty minutes.
@@ -89,21 +87,8 @@ TEST_P(FaultMatrix, EndsAsTheDocumentSaysAndTheRestIsCut) {
 
 INSTANTIATE_TEST_SUITE_P(Of, FaultMatrix, testing::ValuesIn(pairs()), name_of_pair);
 
-/// Run with MERIDIAN_REGENERATE=1 to write the table into the document.
 TEST(FaultMatrixTable, IsThatOfTheDocument) {
-  const std::string document = std::string(MERIDIAN_SOURCE_DIR) + "/docs/faults.md";
-  const std::string begin_mark = "<!-- matrix: begin -->\n", end_mark = "<!-- matrix: end -->";
-  std::ostringstream all;
-  all << std::ifstream(document).rdbuf();
-  std::string text = all.str();
-  ASSERT_NE(text.find(begin_mark), std::string::npos);
-  const std::size_t first = text.find(begin_mark) + begin_mark.size();
-  const std::size_t length = text.find(end_mark) - first;
-  if (std::getenv("MERIDIAN_REGENERATE") != nullptr) {
-    std::ofstream(document) << text.replace(first, length, table_of_faults());
-    GTEST_SKIP() << "written";
-  }
-  EXPECT_EQ(text.substr(first, length), table_of_faults());
+  expect_table_of_document(MERIDIAN_SOURCE_DIR "/docs/faults.md", "matrix", table_of_faults());
 }
 
 }  // namespace

@@ -2,13 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
 
+#include "support/document_table.hpp"
 #include "support/draws.hpp"
 #include "unit/interpolator/rehearsal.hpp"
 
@@ -251,7 +250,6 @@ std::string faults_and_phases() {
   return text.str();
 }
 
-/// Run with MERIDIAN_REGENERATE=1 to write the table into the document.
 TEST(FaultPhases, EndAsTheDocumentSaysOnThePathInsideLimitsAndCanBeMended) {
   if (!kIsTimed) {  // a sanitizer sees the same code in some of the pairs
     for (std::size_t n = 0; n < kFaults.size() * kPhases.size(); n += 13) {
@@ -259,20 +257,7 @@ TEST(FaultPhases, EndAsTheDocumentSaysOnThePathInsideLimitsAndCanBeMended) {
     }
     return;
   }
-  const std::string document = std::string(MERIDIAN_SOURCE_DIR) + "/docs/faults.md";
-  const std::string begin_mark = "<!-- phases: begin -->\n", end_mark = "<!-- phases: end -->";
-  std::ostringstream all;
-  all << std::ifstream(document).rdbuf();
-  std::string text = all.str();
-  ASSERT_NE(text.find(begin_mark), std::string::npos);
-  const std::size_t first = text.find(begin_mark) + begin_mark.size();
-  const std::size_t length = text.find(end_mark) - first;
-  const std::string found = faults_and_phases();
-  if (std::getenv("MERIDIAN_REGENERATE") != nullptr) {
-    std::ofstream(document) << text.replace(first, length, found);
-    GTEST_SKIP() << "written";
-  }
-  EXPECT_EQ(text.substr(first, length), found);
+  expect_table_of_document(MERIDIAN_SOURCE_DIR "/docs/faults.md", "phases", faults_and_phases());
 }
 
 }  // namespace

@@ -3,38 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <string>
 
+#include "support/document_table.hpp"
 #include "unit/rt/state_table_text.hpp"
 
 namespace meridian {
 namespace {
 
-const std::string kDocument = std::string(MERIDIAN_SOURCE_DIR) + "/docs/operating.md";
-const std::string kBegin = "<!-- table: begin -->\n", kEnd = "<!-- table: end -->";
-
-std::string read(const std::string& file) {
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-/// Run with MERIDIAN_REGENERATE=1 to write the table into the document.
 TEST(StateTable, IsTheTableOfTheDocument) {
-  std::string text = read(kDocument);
-  const std::size_t begin = text.find(kBegin), end = text.find(kEnd);
-  ASSERT_NE(begin, std::string::npos);
-  ASSERT_NE(end, std::string::npos);
-  const std::size_t first = begin + kBegin.size();
-  if (std::getenv("MERIDIAN_REGENERATE") != nullptr) {
-    text.replace(first, end - first, testing::state_table_text());
-    std::ofstream(kDocument) << text;
-    GTEST_SKIP() << "written";
-  }
-  EXPECT_EQ(text.substr(first, end - first), testing::state_table_text());
+  test::expect_table_of_document(MERIDIAN_SOURCE_DIR "/docs/operating.md", "table",
+                                 testing::state_table_text());
 }
 
 TEST(StateTable, StartsMotionFromLoadedAndFromBehindABlockAndFromNowhereElse) {
