@@ -17,4 +17,10 @@ inline void end_program(std::vector<ClBlock>& blocks) {
   blocks.push_back(end);
 }
 
+/// Numbers blocks in their order, and ends their program.
+inline void number_and_end(std::vector<ClBlock>& blocks) {
+  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
+  end_program(blocks);
+}
+
 }  // namespace meridian::test

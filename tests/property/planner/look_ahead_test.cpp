@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "property/planner/block_stream.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/machines.hpp"
@@ -46,8 +47,7 @@ TEST(LookAhead, BeginsOnTheWindingThatCarriesTheWholeProgram) {
 /// Plans straight lines through `blocks` with a look ahead, from `start`.
 PlanResult plan_with_look(const MachineModel& model, std::vector<ClBlock> blocks,
                           const JointVector& start, Transition transition) {
-  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
-  end_program(blocks);
+  number_and_end(blocks);
   return plan_smooth(model, blocks, start, {transition, 0, 0}, true).last;
 }
 
@@ -81,41 +81,17 @@ TEST(LookAhead, TakesTheBranchOnWhichNoJointLeavesItsTravelLater) {
   }
 }
 
-/// A plan, and what the planner told of it.
-struct ToldPlan {
-  Trace trace;
-  std::vector<FeedMark> marks;
-};
-
 /// The stream stalls behind `blocks_before_stall` blocks; `replayed`: marks of another run.
-ToldPlan plan_with_stall(const MachineModel& model, const std::vector<ClBlock>& blocks,
-                         const JointVector& start, std::size_t blocks_before_stall,
-                         const std::vector<FeedMark>* replayed = nullptr) {
-  ToldPlan plan;
-  const auto port = std::make_unique<MotionPort>();
-  MotionWriter writer(*port);
-  PatientReader reader(*port);
-  SmoothPlanner planner(model);
-  if (replayed != nullptr) planner.replay_feed(*replayed);
-  planner.begin(start, model.tool_length_mm, 0, {Transition::kSmooth, 0, 0});
+StreamOutcome plan_with_stall(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                              const JointVector& start, std::size_t blocks_before_stall,
+                              const std::vector<FeedMark>* replayed = nullptr) {
+  BlockStream stream(model, start, Transition::kSmooth, replayed);
   for (std::size_t n = 0; n < blocks.size(); ++n) {
-    if (n == blocks_before_stall) planner.look_no_further();
-    while (planner.plan(blocks[n], writer).status == PlanStatus::kNoRoom) {
-      reader.read(plan.trace, false);
-    }
-    for (FeedMark mark; planner.take_feed_mark(mark);) plan.marks.push_back(mark);
+    if (n == blocks_before_stall) stream.planner.look_no_further();
+    stream.offer(blocks[n]);
   }
-  reader.read(plan.trace, true);
-  return plan;
-}
-
-bool are_same(const Trace& a, const Trace& b) {
-  if (a.times.size() != b.times.size()) return false;
-  for (std::size_t n = 0; n < a.times.size(); ++n) {
-    if (a.times[n].duration != b.times[n].duration || a.times[n].v != b.times[n].v) return false;
-    if (a.paths[n].joints_begin != b.paths[n].joints_begin) return false;
-  }
-  return true;
+  EXPECT_EQ(stream.outcome.stuck_at, 0U);
+  return stream.end();
 }
 
 TEST(LookAhead, IsReplayedBitForBitWhereAStreamStalledInIt) {
@@ -128,16 +104,16 @@ TEST(LookAhead, IsReplayedBitForBitWhereAStreamStalledInIt) {
   }
   end_program(blocks);
   const JointVector start = joints_of(model, blocks[0]);
-  const ToldPlan stalled = plan_with_stall(model, blocks, start, 20);
+  const StreamOutcome stalled = plan_with_stall(model, blocks, start, 20);
   ASSERT_EQ(stalled.marks.size(), 2U);
   EXPECT_TRUE(stalled.marks[0].is_begin);
   EXPECT_EQ(stalled.marks[1].looked_at, 20U);
   EXPECT_TRUE(stalled.marks[1].is_late);
-  const ToldPlan whole = plan_with_stall(model, blocks, start, ~std::size_t{0});
+  const StreamOutcome whole = plan_with_stall(model, blocks, start, ~std::size_t{0});
   ASSERT_EQ(whole.marks.size(), 2U);
   EXPECT_EQ(whole.marks[1].looked_at, blocks.size() - 1);
   EXPECT_FALSE(whole.marks[1].is_late);
-  EXPECT_FALSE(are_same(whole.trace, stalled.trace)) << "both begin on one winding";
+  EXPECT_NE(whole.trace.duration_s(), stalled.trace.duration_s()) << "both begin on one winding";
   const auto replay = [&](const std::vector<FeedMark>& marks) {
     return plan_with_stall(model, blocks, start, ~std::size_t{0}, &marks).trace;
   };
@@ -167,8 +143,7 @@ TEST(LookAhead, RefusesBeforeItStartsWhatNoWindingCarries) {
     const JointVector start = joints_of(model, blocks[0]);
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       auto program = blocks;
-      for (std::size_t n = 0; n < program.size(); ++n) program[n].sequence = n;
-      end_program(program);
+      number_and_end(program);
       const SmoothTrace trace = plan_smooth(model, program, start, {transition, 0, 0}, true);
       ASSERT_EQ(trace.last.status, PlanStatus::kRefused);
       EXPECT_TRUE(trace.times.empty()) << "it moves";

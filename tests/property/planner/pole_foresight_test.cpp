@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "property/planner/block_stream.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
@@ -21,11 +21,6 @@ namespace {
 
 constexpr double kStep_mm = 1;
 constexpr int kHalf = 600;  // blocks from either end to the pole
-
-void number(std::vector<ClBlock>& blocks) {
-  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
-  end_program(blocks);
-}
 
 /// Straight over the pole or `offset_deg` beside it, leaning by 15 degrees at either end, so gently
 /// that the tilt is 5 degrees off 200 mm behind it; ahead of that `before` blocks to and fro.
@@ -40,7 +35,7 @@ std::vector<ClBlock> gently_over_the_pole(double offset_deg, int before = 0) {
     blocks.push_back(
         leaning(std::hypot(x, offset), std::atan2(offset, x), Vector3(kStep_mm * at, 0, 0)));
   }
-  number(blocks);
+  number_and_end(blocks);
   return blocks;
 }
 
@@ -104,7 +99,7 @@ std::vector<ClBlock> over_and_round(double turn_deg) {
     blocks.push_back(leaning(most, units::rad_from_deg(180 + turn_deg * n / steps),
                              Vector3(60 + 0.5 * n, 0, 0)));
   }
-  number(blocks);
+  number_and_end(blocks);
   return blocks;
 }
 
@@ -120,39 +115,28 @@ TEST(PoleForesight, TurnsCPastThePoleToTheWindingThatCarriesThePath) {
   }
 }
 
-/// Plans `blocks`; `stalls`: the stream stalls where the planner first waits for blocks behind its
-/// look at the begin.
-struct Stalled {
-  SmoothTrace trace;
-  std::vector<FeedMark> marks;
+struct Stalled : StreamOutcome {
   std::size_t at = 0;  ///< block that came late
 };
+
+/// Plans `blocks`; `stalls`: the stream stalls where the planner first waits for blocks behind its
+/// look at the begin.
 Stalled plan_with_stall(const MachineModel& model, const std::vector<ClBlock>& blocks,
                         const JointVector& start, bool stalls,
                         const std::vector<FeedMark>* replayed = nullptr) {
-  Stalled out;
-  const auto port = std::make_unique<MotionPort>();
-  MotionWriter writer(*port);
-  PatientReader reader(*port);
-  SmoothPlanner planner(model);
-  if (replayed != nullptr) planner.replay_feed(*replayed);
-  planner.begin(start, model.tool_length_mm, 0, {Transition::kSmooth, 0, 0});
+  BlockStream stream(model, start, Transition::kSmooth, replayed);
+  std::size_t late = 0;
   for (std::size_t n = 0; n < blocks.size(); ++n) {
-    if (stalls && out.at == 0 && n > SmoothPlanner::kLookAhead && planner.look() > 0) {
-      out.at = n;
-      planner.look_no_further();
-      EXPECT_EQ(planner.look(), 0U);
-      (void)planner.advance(writer);
+    if (stalls && late == 0 && n > SmoothPlanner::kLookAhead && stream.planner.look() > 0) {
+      late = n;
+      stream.planner.look_no_further();
+      EXPECT_EQ(stream.planner.look(), 0U);
+      (void)stream.planner.advance(stream.writer);
     }
-    do {
-      out.trace.last = planner.plan(blocks[n], writer);
-      reader.read(out.trace, false);
-    } while (out.trace.last.status == PlanStatus::kNoRoom);
-    for (FeedMark mark; planner.take_feed_mark(mark);) out.marks.push_back(mark);
-    if (out.trace.last.status != PlanStatus::kOk) break;
+    if (!stream.offer(blocks[n])) break;
+    stream.read();
   }
-  reader.read(out.trace, true);
-  return out;
+  return {stream.end(), late};
 }
 
 /// What is known carries either way, the shorter is taken, which ends at the tilt's travel. It is

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "property/planner/block_stream.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/cpu_time.hpp"
@@ -26,11 +26,6 @@ namespace {
 
 int seeds() { return number_of("MERIDIAN_POLE_STREAMS", draws(1)); }
 int first_seed() { return number_of("MERIDIAN_POLE_STREAM_SEED", 1); }
-
-void number(std::vector<ClBlock>& blocks) {
-  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
-  end_program(blocks);
-}
 
 struct Drawn {
   MachineModel model;
@@ -90,7 +85,7 @@ Drawn draw(int seed) {
   go_to(lean * (units::rad_from_deg(12) / lean.norm()), 60, 1);
   const int behind = whole(0, 2) == 0 ? whole(1900, 2600) : whole(0, 300);
   for (int n = 0; n < behind; ++n) put(lean, n % 40 < 20 ? 1 : -1);
-  number(out.blocks);
+  number_and_end(out.blocks);
   const int branch = whole(0, 1);
   out.start = solve_block(out.model, out.blocks[0], branch);
   JointLimits& limits = out.model.joints[4].limits;
@@ -103,29 +98,24 @@ Drawn draw(int seed) {
   return out;
 }
 
-struct Played {
-  SmoothTrace trace;
-  std::vector<FeedMark> marks;
-  std::size_t stuck_at = 0;                ///< block that never found room
+struct Played : StreamOutcome {
   double excess_s = 0, excess_took_s = 0;  ///< of a call over a quarter of what it published
   std::size_t excess_at = 0;
   std::vector<std::size_t> stalls;
 };
 
-enum class Told { kNothing, kStalls, kReplay, kFinish };
+enum class Told { kNothing, kStalls, kFinish };
 
-/// Blocks of `drawn` in a manner drawn from `manner`.
+/// Blocks of `drawn`, the first `count` or all, in a manner drawn from `manner`; `marks`: of a run
+/// that is replayed.
 Played run(const Drawn& drawn, int manner, Told told, const std::vector<FeedMark>* marks = nullptr,
            std::size_t count = 0) {
   Played out;
   std::mt19937 random(static_cast<unsigned>(manner));
   const auto whole = [&](int a, int b) { return std::uniform_int_distribution<int>(a, b)(random); };
-  const auto port = std::make_unique<MotionPort>();
-  MotionWriter writer(*port);
-  PatientReader reader(*port);
-  SmoothPlanner planner(drawn.model);
-  if (told == Told::kReplay) planner.replay_feed(*marks);
-  planner.begin(drawn.start, drawn.model.tool_length_mm, 0, {drawn.transition, 0, 0});
+  BlockStream stream(drawn.model, drawn.start, drawn.transition, marks);
+  SmoothPlanner& planner = stream.planner;
+  MotionWriter& writer = stream.writer;
   const int every = manner == 0 ? 1 : whole(1, 400);
   const auto timed = [&](std::size_t n, const auto& call) {
     const double before = cpu_s();
@@ -139,45 +129,28 @@ Played run(const Drawn& drawn, int manner, Told told, const std::vector<FeedMark
       out.excess_took_s = took;
     }
   };
-  const auto take = [&] {
-    for (FeedMark mark; planner.take_feed_mark(mark);) out.marks.push_back(mark);
-    for (Unwinding one; planner.take_unwinding(one);) out.trace.unwindings.push_back(one);
-    for (PoleEase one; planner.take_ease(one);) out.trace.eases.push_back(one);
-  };
   if (count == 0) count = drawn.blocks.size();
-  for (std::size_t n = 0; n < count && out.stuck_at == 0; ++n) {
+  for (std::size_t n = 0; n < count; ++n) {
     if (told == Told::kStalls && n > 1 && planner.look() > 0 && whole(0, 30) == 0) {
       if (whole(0, 3) > 0) (void)planner.advance(writer);  // as planner_thread does
       for (int k = 0; k < 5 && planner.look() > 0; ++k) {
         out.stalls.push_back(n);
-        planner.look_no_further();
-        (void)planner.advance(writer);
-        reader.read(out.trace, false);
+        stream.stall();
+        stream.read();
       }
     }
-    for (int tries = 0;; ++tries) {
-      timed(n, [&] { out.trace.last = planner.plan(drawn.blocks[n], writer); });
-      if (out.trace.last.status != PlanStatus::kNoRoom) break;
-      reader.read(out.trace, false);
-      if (tries > 3000) {
-        out.stuck_at = n;
-        break;
-      }
-    }
-    take();
-    if (out.trace.last.status != PlanStatus::kOk) break;
+    if (!stream.offer(drawn.blocks[n], false, [&](const auto& call) { timed(n, call); })) break;
     if (manner != 0 && whole(0, 5) == 0) timed(n, [&] { (void)planner.advance(writer); });
-    if (n % static_cast<std::size_t>(every) == 0) reader.read(out.trace, false);
+    if (n % static_cast<std::size_t>(every) == 0) stream.read();
   }
   if (told == Told::kFinish) {
     planner.finish();
     for (int n = 0; n < 50; ++n) {
       (void)planner.advance(writer);
-      reader.read(out.trace, false);
+      stream.read();
     }
   }
-  take();
-  reader.read(out.trace, true);
+  static_cast<StreamOutcome&>(out) = stream.end();
   return out;
 }
 
@@ -214,7 +187,7 @@ TEST(PoleStreamDrawn, ReplaysStalls) {
       const Played stalled = run(drawn, 100 * seed + manner, Told::kStalls);
       if (stalled.stalls.empty()) continue;
       ++late;
-      const Played replayed = run(drawn, 0, Told::kReplay, &stalled.marks);
+      const Played replayed = run(drawn, 0, Told::kNothing, &stalled.marks);
       std::string told;
       for (const FeedMark& mark : stalled.marks) {
         if (mark.looked_at > 0)
@@ -238,7 +211,7 @@ TEST(PoleStreamDrawn, ReplaysWhatRanBeforeAStationWasGone) {
     for (int manner = 1; manner <= 3; ++manner) {
       const std::size_t until = 10 + random() % (drawn.blocks.size() - 11);
       const Played cut = run(drawn, 0, Told::kFinish, nullptr, until);
-      const Played replayed = run(drawn, 0, Told::kReplay, &cut.marks);
+      const Played replayed = run(drawn, 0, Told::kNothing, &cut.marks);
       // Zones are compared: what the free joint does past the pole.
       std::size_t n = 0, m = 0;
       bool is_same = true;

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "property/planner/block_stream.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/machines.hpp"
@@ -17,11 +17,6 @@
 
 namespace meridian::test::pole_stream {
 namespace {
-
-void number(std::vector<ClBlock>& blocks) {
-  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
-  end_program(blocks);
-}
 
 /// Over the pole in one corner at rest, `behind` blocks behind it, leaning gently, none at the
 /// pole.
@@ -33,42 +28,19 @@ std::vector<ClBlock> over(int behind, int ahead = 20) {
     blocks.push_back(leaning(std::abs(lean), lean < 0 ? 0 : units::rad_from_deg(180),
                              Vector3(at, n > 200 ? 0.01 * n : 0, 0)));
   }
-  number(blocks);
+  number_and_end(blocks);
   return blocks;
 }
 
-struct Outcome {
-  SmoothTrace trace;
-  std::vector<FeedMark> marks;
-  std::size_t stuck_at = 0;  ///< block that never found room
-};
-
-/// As planner_thread: a block that finds no room is offered again, the machine runs meanwhile.
-Outcome stream(const MachineModel& model, const std::vector<ClBlock>& blocks,
-               const JointVector& start, Transition transition,
-               const std::vector<FeedMark>* replayed = nullptr) {
-  Outcome out;
-  const auto port = std::make_unique<MotionPort>();
-  MotionWriter writer(*port);
-  PatientReader reader(*port);
-  SmoothPlanner planner(model);
-  if (replayed != nullptr) planner.replay_feed(*replayed);
-  planner.begin(start, model.tool_length_mm, 0, {transition, 0, 0});
-  for (std::size_t n = 0; n < blocks.size() && out.stuck_at == 0; ++n) {
-    for (int tries = 0;; ++tries) {
-      out.trace.last = planner.plan(blocks[n], writer);
-      if (out.trace.last.status != PlanStatus::kNoRoom) break;
-      reader.read(out.trace, true);
-      if (tries > 3000) {
-        out.stuck_at = n;
-        break;
-      }
-    }
-    for (FeedMark mark; planner.take_feed_mark(mark);) out.marks.push_back(mark);
-    if (out.trace.last.status == PlanStatus::kRefused) break;
+/// All of `blocks`, the machine runs meanwhile.
+StreamOutcome stream_all(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                         const JointVector& start, Transition transition,
+                         const std::vector<FeedMark>* replayed = nullptr) {
+  BlockStream stream(model, start, transition, replayed);
+  for (const ClBlock& block : blocks) {
+    if (!stream.offer(block, true)) break;
   }
-  reader.read(out.trace, true);
-  return out;
+  return stream.end();
 }
 
 TEST(PoleStream, AWayFromRestToRestOverThePoleIsNotStuckHoweverManyBlocksAreBehind) {
@@ -77,8 +49,8 @@ TEST(PoleStream, AWayFromRestToRestOverThePoleIsNotStuckHoweverManyBlocksAreBehi
     for (const int ahead : {20, 2500}) {
       SCOPED_TRACE(testing::Message() << model.name << " ahead " << ahead);
       const auto blocks = over(3000, ahead);
-      const Outcome out =
-          stream(model, blocks, joints_of(model, blocks[0]), Transition::kExactStop);
+      const StreamOutcome out =
+          stream_all(model, blocks, joints_of(model, blocks[0]), Transition::kExactStop);
       EXPECT_EQ(out.stuck_at, 0U);
       EXPECT_EQ(out.trace.last.status, PlanStatus::kOk);
     }
@@ -90,28 +62,19 @@ TEST(PoleStream, GoesOffThePoleAfterASecondWhereNoBlockIsBehind) {
   auto blocks = over(60);
   blocks.resize(22);  // the last leads off the pole
   const JointVector start = joints_of(model, blocks[0]);
-  const auto port = std::make_unique<MotionPort>();
-  MotionWriter writer(*port);
-  PatientReader reader(*port);
-  Trace trace;
-  SmoothPlanner planner(model);
-  planner.begin(start, model.tool_length_mm, 0, {Transition::kExactStop, 0, 0});
-  for (const ClBlock& block : blocks) {
-    for (int n = 0; n < 100 && planner.plan(block, writer).status == PlanStatus::kNoRoom; ++n)
-      reader.read(trace, true);
-  }
-  std::vector<FeedMark> marks;
+  BlockStream stream(model, start, Transition::kExactStop);
+  for (const ClBlock& block : blocks) EXPECT_TRUE(stream.offer(block, true));
   for (int n = 0; n < 200; ++n) {  // as planner_thread where the queue is empty, a second later
-    if (planner.look() > 0) planner.look_no_further();
-    EXPECT_EQ(planner.advance(writer).status, PlanStatus::kOk);
-    reader.read(trace, true);
-    for (FeedMark mark; planner.take_feed_mark(mark);) marks.push_back(mark);
+    if (stream.planner.look() > 0) stream.planner.look_no_further();
+    EXPECT_EQ(stream.planner.advance(stream.writer).status, PlanStatus::kOk);
+    stream.read(true);
   }
-  EXPECT_EQ(planner.look(), 0U);
+  EXPECT_EQ(stream.planner.look(), 0U);
+  const StreamOutcome out = stream.end();
   std::uint64_t last = 0;
-  for (const TimePiece& time : trace.times) last = std::max(last, time.sequence);
+  for (const TimePiece& time : out.trace.times) last = std::max(last, time.sequence);
   EXPECT_EQ(last, blocks.back().sequence);
-  EXPECT_LT(marks.size(), 10U);
+  EXPECT_LT(out.marks.size(), 10U);
 }
 
 /// As LookAhead.BeginsOnTheWinding..., with `dwells` blocks in front that do not move.
@@ -132,7 +95,7 @@ TEST(PoleStream, LooksAtTheBeginOfAProgramBehindBlocksThatDoNotMove) {
       blocks.push_back(
           leaning(0.3, azimuth, {30 * std::cos(azimuth), 30 * std::sin(azimuth), n < 0 ? 1.0 : 0}));
     }
-    number(blocks);
+    number_and_end(blocks);
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       for (const int turn : {-1, 0}) {  // of C where it stands
         JointVector start = joints_of(model, blocks[static_cast<std::size_t>(dwells)]);
@@ -159,41 +122,31 @@ TEST(PoleStream, ReplaysAStallBehindAWayFromRestToRest) {
         const JointVector start = solve_block(model, blocks[0], branch);
         model.joints[4].limits.travel_min = units::rad_from_deg(side > 0 ? -5 : -60);
         model.joints[4].limits.travel_max = units::rad_from_deg(side > 0 ? 60 : 5);
-        const auto port = std::make_unique<MotionPort>();
-        MotionWriter writer(*port);
-        PatientReader reader(*port);
-        SmoothPlanner planner(model);
-        planner.begin(start, model.tool_length_mm, 0, {Transition::kExactStop, 0, 0});
-        planner.look_no_further();
-        SmoothTrace live;
-        std::vector<FeedMark> marks;
+        BlockStream stalled(model, start, Transition::kExactStop);
+        stalled.planner.look_no_further();
         int stalls = 0;
         for (std::size_t n = 0; n < blocks.size(); ++n) {
-          for (int k = 0; k < 1000; ++k) {
-            live.last = planner.plan(blocks[n], writer);
-            if (live.last.status != PlanStatus::kNoRoom) break;
-            reader.read(live, false);
-          }
+          const bool goes_on = stalled.offer(blocks[n]);
           if (n == 21 + behind) {
-            for (; stalls < 5 && planner.look() > 0; ++stalls) {
-              if (advances) (void)planner.advance(writer);
-              planner.look_no_further();
-              (void)planner.advance(writer);
+            for (; stalls < 5 && stalled.planner.look() > 0; ++stalls) {
+              if (advances) (void)stalled.planner.advance(stalled.writer);
+              stalled.stall();
             }
           }
-          for (FeedMark mark; planner.take_feed_mark(mark);) marks.push_back(mark);
-          if (live.last.status != PlanStatus::kOk) break;
+          if (!goes_on) break;
         }
-        reader.read(live, true);
+        StreamOutcome live = stalled.end();
+        EXPECT_EQ(live.stuck_at, 0U);
         EXPECT_LE(stalls, 1) << "told more than once";
         FeedMark begin;
         begin.looked_at = 1;
         // What was looked at of the begin: nothing, one block is as little.
-        marks.insert(marks.begin() + 1, begin);
-        const Outcome again = stream(model, blocks, start, Transition::kExactStop, &marks);
-        EXPECT_EQ(live.last.status, again.trace.last.status);
-        EXPECT_EQ(live.last.reject.sequence, again.trace.last.reject.sequence);
-        EXPECT_EQ(live.times.size(), again.trace.times.size());
+        live.marks.insert(live.marks.begin() + 1, begin);
+        const StreamOutcome again =
+            stream_all(model, blocks, start, Transition::kExactStop, &live.marks);
+        EXPECT_EQ(live.trace.last.status, again.trace.last.status);
+        EXPECT_EQ(live.trace.last.reject.sequence, again.trace.last.reject.sequence);
+        EXPECT_EQ(live.trace.times.size(), again.trace.times.size());
       }
     }
   }

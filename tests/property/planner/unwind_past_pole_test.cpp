@@ -153,8 +153,7 @@ TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
         blocks.push_back(lean(0.01, 80, 12));
         blocks.emplace_back().kind = BlockKind::kDwell;
         for (int n = 1; n <= 12; ++n) blocks.push_back(lean(n, 80 + farther_deg, 12 + n));
-        for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n].sequence = n;
-        end_program(blocks);
+        number_and_end(blocks);
         const int free = free_joint(model);
         const JointVector start = solve_block(model, blocks[0], 0);
         const double sign =
