@@ -94,7 +94,7 @@ class RunBudgetsTest : public testing::Test {
     life.last.cycles_run = 470'000;
     life.last.threads[0].voluntary_switches = 470'000;
     report_.lives.push_back(life);
-    for (int quarter = 0; quarter < 4; ++quarter) measure(quarter, 2 * kUs, 20 * kUs, 10 * kUs);
+    measure_all(0, 0, 0);
   }
 
   void measure(int quarter, std::int64_t computation_ns, std::int64_t lateness_ns,
@@ -103,6 +103,15 @@ class RunBudgetsTest : public testing::Test {
     report_.slices.add(at_s, "cycle computation", histogram(computation_ns, count));
     report_.slices.add(at_s, "wake-up lateness", histogram(lateness_ns, count));
     report_.slices.add(at_s, kBareThread, histogram(bare_ns, count / 5));
+  }
+
+  /// All four quarters anew, each so much slower than the one before it, µs.
+  void measure_all(int computation_us, int lateness_us, int bare_us) {
+    report_.slices = {};
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      measure(quarter, (2 + computation_us * quarter) * kUs, (20 + lateness_us * quarter) * kUs,
+              (10 + bare_us * quarter) * kUs);
+    }
   }
 
   [[nodiscard]] Judgement of(const std::string& budget) const {
@@ -117,6 +126,20 @@ class RunBudgetsTest : public testing::Test {
     EXPECT_EQ(one.verdict, verdict) << budget << ": " << one.figure << " " << one.why;
     EXPECT_NE(one.why.find(why), std::string::npos) << one.why;
     EXPECT_EQ(one.why.empty(), verdict != Verdict::kNotJudged) << "a reason where one is due";
+  }
+
+  /// Of what breaks `budget` the host accounts for `too_few`, then for `enough`; then nobody
+  /// watches it.
+  void expect_less_what_host_did(const std::string& budget, std::uint64_t& by_host,
+                                 std::uint64_t too_few, std::uint64_t enough) {
+    by_host = too_few;
+    expect(budget, Verdict::kBroken);
+    by_host = enough;
+    expect(budget, Verdict::kKept);
+    by_host = 0;
+    report_.is_host_watched = false;
+    expect(budget, Verdict::kNotJudged, "not watched");
+    report_.is_host_watched = true;
   }
 
   SoakReport report_;
@@ -152,13 +175,7 @@ TEST_F(RunBudgetsTest, CountPageFaultsOfCycleAndPublisherFromReadyOn) {
 
 TEST_F(RunBudgetsTest, JudgeTheLostPeriodsThatTheHostDoesNotAccountFor) {
   report_.periods_lost = 2000;
-  expect("soak_periods_lost", Verdict::kBroken);
-  report_.periods_lost_to_host = 1800;
-  expect("soak_periods_lost", Verdict::kKept);
-  report_.periods_lost_to_host = 0;
-  report_.is_host_watched = false;
-  expect("soak_periods_lost", Verdict::kNotJudged, "not watched");
-  report_.is_host_watched = true;
+  expect_less_what_host_did("soak_periods_lost", report_.periods_lost_to_host, 0, 1800);
   report_.cycles_run = 20'000;
   expect("soak_periods_lost", Verdict::kNotJudged, "too short");
 }
@@ -166,13 +183,7 @@ TEST_F(RunBudgetsTest, JudgeTheLostPeriodsThatTheHostDoesNotAccountFor) {
 TEST_F(RunBudgetsTest, JudgeTheOverrunsThatNoStallWasNear) {
   report_.overruns = 3;
   report_.host_stalls = 1;
-  report_.overruns_by_host = 2;
-  expect("soak_overruns", Verdict::kBroken);
-  report_.overruns_by_host = 3;
-  expect("soak_overruns", Verdict::kKept);
-  report_.overruns_by_host = 0;
-  report_.is_host_watched = false;
-  expect("soak_overruns", Verdict::kNotJudged, "not watched");
+  expect_less_what_host_did("soak_overruns", report_.overruns_by_host, 2, 3);
 }
 
 TEST_F(RunBudgetsTest, CompareComputationOfTheSameWorkAlone) {
@@ -204,10 +215,7 @@ TEST_F(RunBudgetsTest, JudgeTheSwitchesOfACycleOfRealTimeClass) {
 }
 
 TEST_F(RunBudgetsTest, FindAComputationThatGrew) {
-  report_.slices = {};
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    measure(quarter, (2 + 2 * quarter) * kUs, 20 * kUs, 10 * kUs);
-  }
+  measure_all(2, 0, 0);
   expect("soak_computation_drift_p50", Verdict::kBroken);
   expect("soak_lateness_drift_p50", Verdict::kKept);
   report_.is_host_watched = false;
@@ -215,15 +223,9 @@ TEST_F(RunBudgetsTest, FindAComputationThatGrew) {
 }
 
 TEST_F(RunBudgetsTest, BlameTheHostWhereABareThreadDriftedToo) {
-  report_.slices = {};
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    measure(quarter, 2 * kUs, (20 + 60 * quarter) * kUs, 10 * kUs);
-  }
+  measure_all(0, 60, 0);
   expect("soak_lateness_drift_p50", Verdict::kBroken);
-  report_.slices = {};
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    measure(quarter, 2 * kUs, (20 + 60 * quarter) * kUs, (10 + 60 * quarter) * kUs);
-  }
+  measure_all(0, 60, 60);
   expect("soak_lateness_drift_p50", Verdict::kNotJudged, "a bare thread");
 }
 
