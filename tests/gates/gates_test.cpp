@@ -19,6 +19,7 @@
 #include "service/probe/budgets.hpp"
 #include "service/process/programs.hpp"
 #include "support/command_output.hpp"
+#include "support/text_file.hpp"
 
 namespace meridian {
 namespace {
@@ -121,10 +122,7 @@ TEST_P(BrokenGate, IsRed) {
     EXPECT_NE(red.output.find(verdict), std::string::npos) << "red by another: " << red.output;
   }
   if (!gate.is_quick) return;
-  std::ifstream in(kTable);
-  std::ostringstream whole;
-  whole << in.rdbuf();
-  const test::CommandOutput green = run_against(whole.str(), gate);
+  const test::CommandOutput green = run_against(test::read_text(kTable), gate);
   EXPECT_EQ(green.exit_code, 0) << "as the table is: " << green.output;
 }
 
