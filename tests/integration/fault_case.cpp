@@ -13,6 +13,7 @@
 
 #include "integration/live_run.hpp"
 #include "service/config/machine_file.hpp"
+#include "support/alarm_letter.hpp"
 
 namespace meridian::test {
 namespace {

@@ -87,27 +87,6 @@ std::string expected(const LiveFault& fault, const Phase& phase) {
   return phase.waits() ? fault.resting : fault.moving;
 }
 
-std::string letter_of(Alarm alarm) {
-  switch (alarm) {
-    case Alarm::kDriveFault:
-      return "D";
-    case Alarm::kFeedbackLost:
-      return "L";
-    case Alarm::kFollowingError:
-      return "F";
-    case Alarm::kEmergencyStop:
-      return "E";
-    case Alarm::kReferenceLost:
-      return "R";
-    case Alarm::kPeriodsLost:
-      return "P";
-    case Alarm::kSetpointsUnheard:
-      return "U";
-    default:
-      return "alarm " + std::to_string(static_cast<int>(alarm));
-  }
-}
-
 std::string table_of_faults() {
   std::string text = "| |";
   for (const Phase& phase : kPhases) text += std::string(" ") + phase.name + " |";

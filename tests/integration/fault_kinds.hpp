@@ -6,7 +6,6 @@
 
 #include "integration/fault_part.hpp"
 #include "integration/hosts.hpp"
-#include "meridian/rt/cycle_data.hpp"
 
 namespace meridian::test {
 
@@ -43,8 +42,6 @@ struct LiveFault {
 [[nodiscard]] std::span<const LiveFault> live_faults();
 
 [[nodiscard]] std::string expected(const LiveFault& fault, const Phase& phase);
-/// "D" for a drive fault and so on.
-[[nodiscard]] std::string letter_of(Alarm alarm);
 /// What is expected of every pair, as in docs/faults.md.
 [[nodiscard]] std::string table_of_faults();
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "support/alarm_letter.hpp"
 #include "support/document_table.hpp"
 #include "support/draws.hpp"
 #include "unit/interpolator/rehearsal.hpp"
@@ -168,27 +169,6 @@ constexpr std::array<const char*, 20> kFaults{
     "spike:b3=10",  "nan:theta1",      "mute:theta1", "silence",   "dead",
     "emergency",    "unreferenced:b4", "deaf=3",      "deaf=100",  "late=20",
     "untold",       "stale=10",        "stale=100",   "doubled",   "swapped"};
-
-std::string letter_of(Alarm alarm) {
-  switch (alarm) {
-    case Alarm::kDriveFault:
-      return "D";
-    case Alarm::kFeedbackLost:
-      return "L";
-    case Alarm::kFollowingError:
-      return "F";
-    case Alarm::kEmergencyStop:
-      return "E";
-    case Alarm::kReferenceLost:
-      return "R";
-    case Alarm::kEnableTimeout:
-      return "T";
-    case Alarm::kSetpointsUnheard:
-      return "U";
-    default:
-      return "alarm " + std::to_string(static_cast<int>(alarm));
-  }
-}
 
 /// The machine can be enabled again once everything is mended.
 void expect_recovery(Rehearsal& plant) {

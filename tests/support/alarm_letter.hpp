@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "meridian/rt/cycle_data.hpp"
+
+namespace meridian::test {
+
+/// An alarm behind a FaultStop as in the tables of docs/faults.md; one that has no letter there by
+/// its number.
+[[nodiscard]] inline std::string letter_of(Alarm alarm) {
+  switch (alarm) {
+    case Alarm::kDriveFault:
+      return "D";
+    case Alarm::kFeedbackLost:
+      return "L";
+    case Alarm::kFollowingError:
+      return "F";
+    case Alarm::kEmergencyStop:
+      return "E";
+    case Alarm::kReferenceLost:
+      return "R";
+    case Alarm::kEnableTimeout:
+      return "T";
+    case Alarm::kPeriodsLost:
+      return "P";
+    case Alarm::kSetpointsUnheard:
+      return "U";
+    default:
+      return "alarm " + std::to_string(static_cast<int>(alarm));
+  }
+}
+
+}  // namespace meridian::test
