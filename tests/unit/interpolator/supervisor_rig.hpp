@@ -119,6 +119,19 @@ class SupervisorTest : public testing::Test {
     Event told;
     ASSERT_TRUE(comes([&] { return ports_->session_events.try_pop(told); }));
   }
+  /// A program waits for a change to tool 7 and is aborted: the change goes on without it.
+  void abort_in_tool_change() {
+    show(State::kRunning, false);
+    change_ = ask_for_tool();
+    ASSERT_TRUE(change_);
+    abort_program();
+  }
+  /// The action peer says that this change is done, or refuses it; the supervisor has heard of it.
+  void end_tool_change(bool is_done) {
+    ASSERT_TRUE(actions_done_.write(
+        {.id = change_->id, .service_id = change_->service_id, .is_done = is_done}));
+    EXPECT_TRUE(comes([this] { return !ports_->is_tool_changing; }));
+  }
   /// The controlword that drive 0 heard last.
   [[nodiscard]] std::uint16_t controlword() {
     dds::DriveCommand command;
@@ -143,6 +156,7 @@ class SupervisorTest : public testing::Test {
   StatusClock clock_;
   Supervisor supervisor_{participant_, model_, tools_, service_, 1, clock_, *ports_};
   std::uint64_t shown_ = 0, request_ = 0, status_ = 4, tool_block_ = 11;
+  std::optional<dds::Action> change_;
   std::uint16_t controlword_ = 0;
   std::thread thread_;
 };

@@ -91,44 +91,29 @@ TEST_F(SupervisorTest, GivesUpAWordWhoseAnswerIsLostAndDoesNotObeyItAgain) {
 
 /// A changer goes on where the program that asked for it is aborted.
 TEST_F(SupervisorTest, KnowsTheToolOfAChangeThatEndsBehindAnAbort) {
-  show(State::kRunning, false);
-  const auto action = ask_for_tool();
-  ASSERT_TRUE(action);
-  abort_program();
+  ASSERT_NO_FATAL_FAILURE(abort_in_tool_change());
   show(State::kReady, false);
   ask(Verb::kJog, kMaxJoints + 2);
   EXPECT_TRUE(has_reply(Verb::kJog, Refusal::kWrongState)) << "along a tool that nobody knows";
   EXPECT_TRUE(ports_->is_tool_changing) << "no program either";
   EXPECT_EQ(ports_->spindle_tool_mm, kToolBefore_mm);
-  ASSERT_TRUE(
-      actions_done_.write({.id = action->id, .service_id = action->service_id, .is_done = true}));
-  EXPECT_TRUE(comes([this] { return !ports_->is_tool_changing; }));
+  ASSERT_NO_FATAL_FAILURE(end_tool_change(true));
   EXPECT_EQ(ports_->spindle_tool_mm, kTool_mm);
   ask(Verb::kJog, kMaxJoints + 2);
   EXPECT_TRUE(take(Verb::kJog));
 }
 
 TEST_F(SupervisorTest, KeepsTheToolOfAChangeThatIsNotDone) {
-  show(State::kRunning, false);
-  const auto action = ask_for_tool();
-  ASSERT_TRUE(action);
-  abort_program();
-  ASSERT_TRUE(
-      actions_done_.write({.id = action->id, .service_id = action->service_id, .is_done = false}));
-  EXPECT_TRUE(comes([this] { return !ports_->is_tool_changing; }));
+  ASSERT_NO_FATAL_FAILURE(abort_in_tool_change());
+  ASSERT_NO_FATAL_FAILURE(end_tool_change(false));
   EXPECT_EQ(ports_->spindle_tool_mm, kToolBefore_mm);
 }
 
 TEST_F(SupervisorTest, TakesTheAnswerOfAChangeInADryRunForTheToolBehindIt) {
-  show(State::kRunning, false);
-  const auto action = ask_for_tool();
-  ASSERT_TRUE(action);
-  abort_program();
+  ASSERT_NO_FATAL_FAILURE(abort_in_tool_change());
   show(State::kOff, true);
   ASSERT_TRUE(comes([this] { return ports_->state == State::kOff; }));
-  ASSERT_TRUE(
-      actions_done_.write({.id = action->id, .service_id = action->service_id, .is_done = true}));
-  EXPECT_TRUE(comes([this] { return !ports_->is_tool_changing; }));
+  ASSERT_NO_FATAL_FAILURE(end_tool_change(true));
   EXPECT_EQ(ports_->spindle_tool_mm, kToolBefore_mm);
   show(State::kOff, false);
   EXPECT_TRUE(comes([this] { return ports_->spindle_tool_mm == kTool_mm; }));
