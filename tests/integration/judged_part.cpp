@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
 
+#include "meridian/expected.hpp"
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/record/read_path.hpp"
@@ -28,6 +32,33 @@ constexpr double kMmPerRad = 50;  ///< what a turn of the axis counts for
     if (element.line == line && element.is_block_end) look(element.pose(1), element.tool_length_mm);
   }
   return least;
+}
+
+/// The part's way, what was recorded of a stretch of it, and how the two are compared.
+struct ReadCut {
+  record::CheckedPath path;
+  record::RecordingReader recording;
+  record::CheckOptions options;
+};
+
+/// Reads both with `tool_mm` in the spindle at the begin of the cut; else why not.
+[[nodiscard]] Expected<ReadCut, std::string> read_both(const PartAsked& part, const PartCut& cut,
+                                                       double tool_mm) {
+  record::CheckedPath path(tool_mm, part.model.max_feed_mm_per_s);
+  cl::ClReaderOptions reader;
+  reader.first_line = cut.from_line;
+  if (const auto refusal = record::read_path(part.file, reader, part.tools, path);
+      !refusal.empty()) {
+    return tl::make_unexpected(refusal);
+  }
+  auto recording = record::RecordingReader::open(cut.recording.string(), part.model);
+  if (!recording) return tl::make_unexpected(recording.error().text());
+  record::CheckOptions options;
+  options.max_missing = std::numeric_limits<std::uint64_t>::max();
+  options.allow_unfinished = !cut.is_finished;
+  options.from_cycle = cut.from_cycle;
+  options.to_cycle = cut.to_cycle;
+  return ReadCut{std::move(path), std::move(*recording), std::move(options)};
 }
 
 /// Limits of every joint and the order of cycles, without the path.
@@ -66,52 +97,34 @@ std::vector<std::uint32_t> motion_lines(const MachineModel& model, const ToolTab
 }
 
 bool passes_with(const PartAsked& part, const PartCut& cut, double tool_mm) {
-  record::CheckedPath path(tool_mm, part.model.max_feed_mm_per_s);
-  cl::ClReaderOptions reader;
-  reader.first_line = cut.from_line;
-  auto recording = record::RecordingReader::open(cut.recording.string(), part.model);
-  if (!record::read_path(part.file, reader, part.tools, path).empty() || !recording) return false;
-  record::CheckOptions options;
-  options.max_missing = std::numeric_limits<std::uint64_t>::max();
-  options.allow_unfinished = !cut.is_finished;
-  options.from_cycle = cut.from_cycle;
-  options.to_cycle = cut.to_cycle;
-  const auto report = record::check(*recording, path, part.model, options);
+  auto read = read_both(part, cut, tool_mm);
+  if (!read) return false;
+  const auto report = record::check(read->recording, read->path, part.model, read->options);
   return report && report->passed();
 }
 
 LinesCut judge(const PartAsked& part, const PartCut& cut) {
   LinesCut lines;
-  record::CheckedPath path(cut.tool_mm > 0 ? cut.tool_mm : part.model.tool_length_mm,
-                           part.model.max_feed_mm_per_s);
-  cl::ClReaderOptions reader;
-  reader.first_line = cut.from_line;
-  const std::string refusal = record::read_path(part.file, reader, part.tools, path);
-  EXPECT_EQ(refusal, "");
-  auto recording = record::RecordingReader::open(cut.recording.string(), part.model);
-  if (!refusal.empty() || !recording) {
-    ADD_FAILURE() << refusal << (recording ? "" : recording.error().text());
+  auto read = read_both(part, cut, cut.tool_mm > 0 ? cut.tool_mm : part.model.tool_length_mm);
+  if (!read) {
+    ADD_FAILURE() << read.error();
     return lines;
   }
-  record::CheckOptions options;
-  options.max_missing = std::numeric_limits<std::uint64_t>::max();
-  options.allow_unfinished = !cut.is_finished;
-  options.from_cycle = cut.from_cycle;
-  options.to_cycle = cut.to_cycle;
+  auto& [path, recording, options] = *read;
   if (cut.has_left_path) {
-    expect_joints_inside(part.model, *recording, options);
-    options.to_cycle = last_on_path(*recording, cut.from_cycle, cut.to_cycle);
+    expect_joints_inside(part.model, recording, options);
+    options.to_cycle = last_on_path(recording, cut.from_cycle, cut.to_cycle);
   }
-  const auto report = record::check(*recording, path, part.model, options);
+  const auto report = record::check(recording, path, part.model, options);
   if (!report) {
     ADD_FAILURE() << report.error().text();
     return lines;
   }
   EXPECT_TRUE(report->passed()) << to_text(*report);
 
-  recording->rewind();
+  recording.rewind();
   JointVector rest{};
-  for (record::RecordingRow row; recording->next(row).value_or(false);) {
+  for (record::RecordingRow row; recording.next(row).value_or(false);) {
     if (row.cycle < report->begin_cycle || row.cycle < cut.from_cycle) continue;
     if (row.cycle > options.to_cycle || (row.flags & kSetpointEnabled) == 0) continue;
     if ((row.flags & kSetpointMoving) == 0 || row.kind == MotionKind::kApproach) continue;
