@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "service/cli/finite_range.hpp"
 #include "service/config/config_error.hpp"
 #include "service/config/machine_file.hpp"
 
@@ -21,7 +22,7 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
                   "Number of the tool that is in the spindle at the begin; instead of the machine "
                   "file's tool_length_mm")
       ->needs(tools)
-      ->check(CLI::PositiveNumber);
+      ->check(finite_positive());
 }
 
 MachineModel load_machine(const MachineOptions& options) {
