@@ -30,7 +30,7 @@ class Witness {
             },
             kDepth) {}
 
-  /// The newest; cycle 0: none was seen yet.
+  /// The newest since take() was called last; cycle 0: none was seen since.
   [[nodiscard]] Setpoint newest() const {
     const std::lock_guard lock(mutex_);
     return seen_.empty() ? Setpoint{} : seen_.back();
