@@ -16,10 +16,12 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "integration/plant.hpp"
 #include "service/probe/budgets.hpp"
+#include "service/process/child_process.hpp"
 #include "support/heap_watch.hpp"
 #include "support/watch_report.hpp"
 
@@ -139,52 +141,85 @@ struct Traced {
   }
 };
 
-/// Only that one thread is traced, for a second.
-Traced trace(int thread, const std::filesystem::path& file) {
-  const std::string command = "timeout -s INT 1 strace -p " + std::to_string(thread) + " -o " +
-                              file.string() + " 2> /dev/null";
-  (void)!std::system(command.c_str());
-  Traced traced;
-  std::ifstream lines(file);
-  for (std::string line; std::getline(lines, line);) {
-    const auto bracket = line.find('(');
-    if (bracket == std::string::npos || line.rfind("---", 0) == 0 || line.rfind("strace", 0) == 0) {
-      continue;
-    }
-    const std::string call = line.substr(0, bracket);
-    ++traced.calls[call];
-    ++traced.count;
-    if (call == "futex" && line.find("FUTEX_WAKE") == std::string::npos) ++traced.futex_waits;
-  }
-  return traced;
-}
+/// strace on one thread, as long as it lives.
+class Strace {
+ public:
+  Strace(int thread, std::filesystem::path file)
+      : file_(std::move(file)),
+        strace_({"/bin/sh", "-c",
+                 "exec strace -p " + std::to_string(thread) + " -o " + file_.string() +
+                     " 2> /dev/null"}) {}
 
-/// While a program is cut, held and aborted.
-TEST_F(Counters, CycleAndPublisherAskTheKernelForNothingButSleepWakeAndSending) {
+  /// Whether it may, and saw a first call.
+  [[nodiscard]] bool has_begun() {
+    std::error_code none;
+    return eventually([&] {
+             const auto size = std::filesystem::file_size(file_, none);
+             return (!none && size > 0) || strace_.wait_for_exit(milliseconds(0));
+           }) &&
+           !strace_.wait_for_exit(milliseconds(0));
+  }
+  /// Ends it: what it saw.
+  [[nodiscard]] Traced end() {
+    strace_.send_signal(SIGINT);
+    EXPECT_TRUE(strace_.wait_for_exit(milliseconds(5000)));
+    Traced traced;
+    std::ifstream lines(file_);
+    for (std::string line; std::getline(lines, line);) {
+      const auto bracket = line.find('(');
+      if (bracket == std::string::npos || line.rfind("---", 0) == 0 ||
+          line.rfind("strace", 0) == 0) {
+        continue;
+      }
+      const std::string call = line.substr(0, bracket);
+      ++traced.calls[call];
+      ++traced.count;
+      if (call == "futex" && line.find("FUTEX_WAKE") == std::string::npos) ++traced.futex_waits;
+    }
+    return traced;
+  }
+
+ private:
+  std::filesystem::path file_;
+  process::ChildProcess strace_;
+};
+
+class SystemCalls : public Counters {
+ protected:
+  /// Those of one thread while a program is cut, held and aborted; none: it cannot be traced.
+  void trace_program(const char* name, Traced& traced) {
+    ASSERT_NO_FATAL_FAILURE(load(40, 600));
+    ASSERT_NO_FATAL_FAILURE(say(Verb::kStart));
+    ASSERT_TRUE(plant_.wait_for(State::kRunning)) << plant_.standing();
+    const watch::Report report = watched_.report(name);
+    const watch::ThreadCounts* const thread = watch::find_thread(report, name);
+    ASSERT_NE(thread, nullptr) << watch::to_text(report);
+    Strace strace(thread->thread_id, plant_.folder() / (std::string(name) + ".strace"));
+    if (!strace.has_begun()) return;
+    std::this_thread::sleep_for(milliseconds(200));
+    ASSERT_NO_FATAL_FAILURE(say(Verb::kHold));
+    ASSERT_TRUE(plant_.wait_for(State::kHeld)) << plant_.standing();
+    ASSERT_NO_FATAL_FAILURE(say(Verb::kAbort));
+    // The next program is let in.
+    ASSERT_TRUE(plant_.runs_until([](const dds::Status& now) {
+      return now.state == State::kReady && now.session == 0;
+    })) << plant_.standing();
+    traced = strace.end();
+    std::printf("%zu system calls of the %s thread: %s\n", traced.count, name,
+                traced.text().c_str());
+    EXPECT_GT(traced.count, 200U) << "it was hardly traced";
+  }
+};
+
+TEST_F(SystemCalls, OfCycleAndPublisherAreNothingButSleepWakeAndSending) {
   if (std::system("strace -V > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "no strace on this host, as on one without the rights to trace";
   }
-  load(40, 600);
-  say(Verb::kStart);
-  ASSERT_TRUE(plant_.wait_for(State::kRunning));
-  const watch::Report report = watched_.report("running");
-  const auto traced = [&](const char* name) {
-    const watch::ThreadCounts* const thread = watch::find_thread(report, name);
-    const auto found =
-        thread == nullptr ? Traced{} : trace(thread->thread_id, plant_.folder() / name);
-    std::printf("%zu system calls of the %s thread in 1 s: %s\n", found.count, name,
-                found.text().c_str());
-    return found;
-  };
-  Traced publisher = traced("publisher");
-  std::thread operator_thread([&] {
-    std::this_thread::sleep_for(milliseconds(500));
-    (void)plant_.say(Verb::kHold);
-    std::this_thread::sleep_for(milliseconds(200));
-    (void)plant_.say(Verb::kAbort);
-  });
-  Traced cycle = traced("cycle");
-  operator_thread.join();
+  Traced publisher, cycle;
+  ASSERT_NO_FATAL_FAILURE(trace_program("publisher", publisher));
+  if (publisher.count > 0) {
+    ASSERT_NO_FATAL_FAILURE(trace_program("cycle", cycle));
+  }
   if (cycle.count == 0 || publisher.count == 0) {
     GTEST_SKIP() << "this host does not let strace attach (no rights)";
   }
