@@ -224,10 +224,7 @@ std::string FaultCase::wait_for_outcome() {
   const std::string letters = expected(fault_, phase_);
   if (fault_.how == How::kServiceDies) return "X";
   if (fault_.is_of_station()) {
-    if (phase_.where == Where::kHolding || phase_.where == Where::kHeld) {
-      EXPECT_TRUE(plant_->wait_for(State::kHeld)) << story();
-      plant_->must(Verb::kResume);
-    }
+    if (phase_.is_held()) resume_held();
     // A smooth plan waits for more behind what it holds back (docs/motion.md, section 9).
     const bool is_smooth = transition() == "smooth";
     const bool is_starved = plant_->runs_until(
@@ -241,8 +238,9 @@ std::string FaultCase::wait_for_outcome() {
   if (phase_.waits() || phase_.where == Where::kHolding) {
     if (!waits_for_fault(is_dull ? kAtOnce : milliseconds(8000))) return "·";
   } else {
-    (void)eventually([this] { return plant_->status().state == State::kFault || has_ended(); },
-                     kLong);
+    EXPECT_TRUE(eventually(
+        [this] { return plant_->status().state == State::kFault || has_ended(); }, kLong))
+        << "neither a Fault nor the end of the program: " << story();
     // It may come to light when the program is at its end already.
     if (plant_->status().state != State::kFault &&
         (is_dull || !waits_for_fault(milliseconds(3000)))) {
@@ -260,11 +258,18 @@ void FaultCase::mend() {
   if (hosts_) hosts_->spoil({});
 }
 
-/// Until the station has heard of the program's end.
-void FaultCase::run_to_end() {
+/// What the operator held.
+void FaultCase::resume_held() {
+  ASSERT_TRUE(plant_->wait_for(State::kHeld)) << story();
+  plant_->must(Verb::kResume);
+}
+
+/// Until the station has heard of the program's end, without an operator, but where a station kept
+/// the machine waiting for longer than it resumes by itself.
+void FaultCase::run_to_end(bool is_kept_waiting) {
   ASSERT_TRUE(plant_->runs_until(
-      [this](const auto& s) {
-        if (s.state == State::kStarved || s.state == State::kHeld) (void)plant_->say(Verb::kResume);
+      [&](const auto& s) {
+        if (is_kept_waiting && s.state == State::kStarved) (void)plant_->say(Verb::kResume);
         return has_ended();
       },
       kLong))
@@ -286,8 +291,11 @@ void FaultCase::go_on() {
     source_->close();
     if (fault_.how == How::kStationStops) station_->send_signal(SIGCONT);
   }
-  ASSERT_NO_FATAL_FAILURE(run_to_end());
+  if (phase_.is_held() && !fault_.is_of_station()) {
+    ASSERT_NO_FATAL_FAILURE(resume_held());
+  }
   first_.recording = plant_->recording();
+  run_to_end(is_piped());
 }
 
 /// The station is gone, and every block that it had sent is cut: another one goes on behind them.

@@ -46,7 +46,8 @@ class FaultCase {
   void replace_station();
   [[nodiscard]] std::uint32_t told_by_journal();
   [[nodiscard]] std::string transition() const;
-  void run_to_end();
+  void resume_held();
+  void run_to_end(bool is_kept_waiting = false);
   void judge_all();
 
   [[nodiscard]] bool has_ended() { return station_ && station_->wait(milliseconds(0)).has_value(); }

@@ -30,6 +30,10 @@ struct Phase {
   [[nodiscard]] bool waits() const noexcept {
     return where == Where::kReady || where == Where::kHeld || where == Where::kStarved;
   }
+  /// Whether the operator has held it.
+  [[nodiscard]] bool is_held() const noexcept {
+    return where == Where::kHolding || where == Where::kHeld;
+  }
 };
 
 /// A small five-axis part for a phase as a CL file, in which every cut is one line, for the machine
