@@ -137,15 +137,19 @@ void FaultCase::start_station(std::uint32_t from_line) {
 }
 
 void FaultCase::start_program(std::uint32_t from_line) {
-  // Nobody is let in while a tool change that the fault cut short is not answered.
   const auto is_loaded = [this] { return plant_->status().state == State::kLoaded; };
+  // Nobody is let in while a tool change that the fault cut short is not answered; whatever else
+  // is refused is not asked for again.
+  const auto is_refused_for_now = [this] {
+    return station_->said().find("which tool is in the spindle is not known") != std::string::npos;
+  };
   int tries = 0;
   do {
     start_station(from_line);
     (void)plant_->runs_until([this](const auto& s) {
       return s.state == State::kLoaded || station_->wait(milliseconds(0)).has_value();
     });
-  } while (!is_loaded() && ++tries < kTries);
+  } while (!is_loaded() && is_refused_for_now() && ++tries < kTries);
   ASSERT_TRUE(is_loaded()) << story();
   ASSERT_NO_FATAL_FAILURE(plant_->must(Verb::kStart));
   has_program_ = true;
@@ -306,7 +310,9 @@ void FaultCase::replace_station() {
   EXPECT_EQ(state.line == fed_line(), is_all) << story();
   first_ = {.recording = plant_->recording(), .is_finished = phase_.where == Where::kEnd};
   ASSERT_NO_FATAL_FAILURE(plant_->must(Verb::kAbort));
-  ASSERT_TRUE(plant_->wait_for(State::kReady)) << story();
+  ASSERT_TRUE(plant_->runs_until([](const auto& s) {
+    return s.state == State::kReady && s.session == 0;
+  })) << story();
   if (phase_.where == Where::kEnd) return;
   first_.to_cycle = witness_->newest().cycle;
   second_ = PartCut{.recording = first_.recording,
