@@ -269,8 +269,8 @@ void FaultCase::resume_held() {
 }
 
 /// Until the station has heard of the program's end, without an operator, but where a station kept
-/// the machine waiting for longer than it resumes by itself.
-void FaultCase::run_to_end(bool is_kept_waiting) {
+/// the machine waiting for longer than it resumes by itself. That is the end of `cut`.
+void FaultCase::run_to_end(PartCut& cut, bool is_kept_waiting) {
   ASSERT_TRUE(plant_->runs_until(
       [&](const auto& s) {
         if (is_kept_waiting && s.state == State::kStarved) (void)plant_->say(Verb::kResume);
@@ -279,6 +279,8 @@ void FaultCase::run_to_end(bool is_kept_waiting) {
       kLong))
       << story();
   ASSERT_EQ(station_->wait(milliseconds(0)), 0) << story();
+  ASSERT_TRUE(plant_->wait_for(State::kReady)) << story();
+  end_at(cut, plant_->status(), lost_before_);
 }
 
 void FaultCase::go_on() {
@@ -299,7 +301,7 @@ void FaultCase::go_on() {
     ASSERT_NO_FATAL_FAILURE(resume_held());
   }
   first_.recording = plant_->recording();
-  run_to_end(is_piped());
+  run_to_end(first_, is_piped());
 }
 
 /// The station is gone, and every block that it had sent is cut: another one goes on behind them.
@@ -313,13 +315,15 @@ void FaultCase::replace_station() {
   ASSERT_TRUE(plant_->runs_until([](const auto& s) {
     return s.state == State::kReady && s.session == 0;
   })) << story();
+  const dds::Status aborted = plant_->status();
+  end_at(first_, aborted);
   if (phase_.where == Where::kEnd) return;
-  first_.to_cycle = witness_->newest().cycle;
+  lost_before_ = cycles_lost(aborted);
   second_ = PartCut{.recording = first_.recording,
                     .from_line = is_all ? fed_line() + 1 : state.line,
                     .from_cycle = first_.to_cycle + 1};
   ASSERT_NO_FATAL_FAILURE(start_program(second_->from_line));
-  run_to_end();
+  run_to_end(*second_);
 }
 
 }  // namespace meridian::test

@@ -47,7 +47,7 @@ class FaultCase {
   [[nodiscard]] std::uint32_t told_by_journal();
   [[nodiscard]] std::string transition() const;
   void resume_held();
-  void run_to_end(bool is_kept_waiting = false);
+  void run_to_end(PartCut& cut, bool is_kept_waiting = false);
   void judge_all();
 
   [[nodiscard]] bool has_ended() { return station_ && station_->wait(milliseconds(0)).has_value(); }
@@ -75,6 +75,7 @@ class FaultCase {
 
   PartCut first_{};                  ///< up to where the program was broken off, or all of it
   std::optional<PartCut> second_;    ///< the rest
+  std::uint64_t lost_before_ = 0;    ///< cycles that this service had lost before the rest
   std::uint32_t line_long_ago_ = 0;  ///< that was cut when a journal may have been written last
   bool has_program_ = false;         ///< one was started when it was broken off
 };

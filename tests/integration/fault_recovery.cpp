@@ -18,6 +18,10 @@ using Where = Phase::Where;
 
 /// The journal is a second old at most, and takes a while to get to the disk of a busy host.
 constexpr std::int64_t kJournalAge_ns = 1'500'000'000;
+/// Of the setpoints on the wire the witness sees all but one in so many, and but for those that the
+/// service lost since its last status: no more than drives bridge.
+constexpr std::uint64_t kSeenPerUnseen = 100;
+constexpr std::uint64_t kBridge_cycles = 50;
 
 /// The line behind `words` in `text`; 0: it is not there.
 [[nodiscard]] std::uint32_t line_behind(const std::string& text, const std::string& words) {
@@ -111,12 +115,14 @@ void FaultCase::send_rubbish() {
 
 /// What it was sending is in the recording of who saw it on the wire; its own is lost with it.
 void FaultCase::kill_service() {
-  const std::uint64_t id = plant_->status().service_id;
+  const dds::Status last = plant_->status();
   if (station_) station_->send_signal(SIGKILL);  // else it opens its program anew
   plant_->service().send_signal(SIGKILL);
   ASSERT_TRUE(plant_->service().wait(milliseconds(2000)));
   first_ = {.recording = plant_->folder() / "wire.csv", .is_finished = false};
   const auto sent = witness_->take();
+  first_.max_missing =
+      last.periods_lost + last.setpoints_overrun + kBridge_cycles + sent.size() / kSeenPerUnseen;
   for (const Setpoint& setpoint : sent) {
     const bool is_old = sent.back().due_ns - setpoint.due_ns > kJournalAge_ns;
     // An approach is that of the first line.
@@ -126,7 +132,8 @@ void FaultCase::kill_service() {
   }
   write_recording(sent, config::load_machine(plant_->machine()), first_.recording);
   plant_->start_service(service_words_);
-  ASSERT_TRUE(eventually([&] { return plant_->status().service_id != id; }, kLong)) << story();
+  ASSERT_TRUE(eventually([&] { return plant_->status().service_id != last.service_id; }, kLong))
+      << story();
   EXPECT_EQ(plant_->status().state, State::kOff) << story();
 }
 
@@ -168,9 +175,10 @@ void FaultCase::recover_and_go_on() {
   if (!is_new_service) {
     constexpr int kBridge_ms = 100;
     first_ = {.recording = plant_->recording(),
-              .to_cycle = stopped.cycle,
               .is_finished = is_over,
               .has_left_path = fault_.milliseconds > kBridge_ms};
+    end_at(first_, stopped);
+    lost_before_ = cycles_lost(stopped);
   }
   if (is_over) return;
   if (station_) {
@@ -183,7 +191,7 @@ void FaultCase::recover_and_go_on() {
                     // From Ready on: where drives are enabled again is no motion of a program.
                     .from_cycle = is_new_service ? 0 : witness_->newest().cycle};
   ASSERT_NO_FATAL_FAILURE(start_program(line));
-  run_to_end();
+  run_to_end(*second_);
 }
 
 void FaultCase::judge_all() {

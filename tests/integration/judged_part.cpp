@@ -54,7 +54,7 @@ struct ReadCut {
   auto recording = record::RecordingReader::open(cut.recording.string(), part.model);
   if (!recording) return tl::make_unexpected(recording.error().text());
   record::CheckOptions options;
-  options.max_missing = std::numeric_limits<std::uint64_t>::max();
+  options.max_missing = cut.max_missing;
   options.allow_unfinished = !cut.is_finished;
   options.from_cycle = cut.from_cycle;
   options.to_cycle = cut.to_cycle;
@@ -136,7 +136,6 @@ LinesCut judge(const PartAsked& part, const PartCut& cut) {
     }
     if (lines.first == 0) lines.first = row.line;
     lines.last = row.line;
-    ++lines.moving;
     rest = row.joints;
   }
   if (lines.last != 0) {

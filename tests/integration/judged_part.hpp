@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/cl/cl_options.hpp"
+#include "service/dds/messages.hpp"
 #include "service/record/check.hpp"
 
 namespace meridian::test {
@@ -21,8 +22,21 @@ struct PartCut {
   bool is_finished = true;  ///< up to the part's end
   /// Its FaultStop began where drives were that had lost the path: there joints alone are judged.
   bool has_left_path = false;
-  double tool_mm = 0;  ///< in the spindle at its begin; 0: the machine's
+  double tool_mm = 0;             ///< in the spindle at its begin; 0: the machine's
+  std::uint64_t max_missing = 0;  ///< cycles that the recording may lack
 };
+
+/// Cycles that the recording of a service lacks by its own account, since it began.
+[[nodiscard]] inline std::uint64_t cycles_lost(const dds::Status& status) {
+  return status.periods_lost + status.records_overrun;
+}
+
+/// `cut` ends where the machine is `now`, and lacks no more cycles than the service lost since it
+/// had lost `lost_before`.
+inline void end_at(PartCut& cut, const dds::Status& now, std::uint64_t lost_before = 0) {
+  cut.to_cycle = now.cycle;
+  cut.max_missing = cycles_lost(now) - lost_before;
+}
 
 /// The part that was to be cut, and on which machine.
 struct PartAsked {
@@ -44,7 +58,6 @@ struct PartAsked {
 struct LinesCut {
   std::uint32_t first = 0, last = 0;  ///< 0: none
   bool is_last_done = false;          ///< the tool came to the end of it
-  std::uint64_t moving = 0;           ///< rows
 };
 
 /// Judges a stretch as `meridian check` does, and that it never goes back. Failures are those of

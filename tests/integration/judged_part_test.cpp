@@ -73,7 +73,7 @@ TEST_F(JudgedPart, SeesALineThatIsLostAndOneThatIsCutTwice) {
   EXPECT_NONFATAL_FAILURE(expect_seam(asked(), before, earlier, middle - 1), "cut twice");
 }
 
-TEST_F(JudgedPart, SeesAPoseBesideThePathAndAnEndThatIsMissing) {
+TEST_F(JudgedPart, SeesAPoseBesideThePathACycleAndAnEndThatAreMissing) {
   const PartCut cut = cut_from(0);
   auto recording = record::RecordingReader::open(cut.recording, model);
   std::vector<Setpoint> seen;
@@ -92,6 +92,12 @@ TEST_F(JudgedPart, SeesAPoseBesideThePathAndAnEndThatIsMissing) {
   seen[seen.size() / 2].position[0] += 0.05;
   write_recording(seen, model, spoilt.recording);
   EXPECT_NONFATAL_FAILURE((void)judge(asked(), spoilt), "off the path");
+  seen[seen.size() / 2].position[0] -= 0.05;
+  seen.erase(seen.begin() + static_cast<long>(seen.size() / 3));
+  write_recording(seen, model, spoilt.recording);
+  EXPECT_NONFATAL_FAILURE((void)judge(asked(), spoilt), "1 cycles are missing, 0 allowed");
+  spoilt.max_missing = 1;
+  (void)judge(asked(), spoilt);
   PartCut short_one = cut_into(middle);
   short_one.is_finished = true;
   EXPECT_NONFATAL_FAILURE((void)judge(asked(), short_one), "FAIL");

@@ -84,8 +84,9 @@ class StationDeath : public testing::TestWithParam<const char*> {
   /// Cuts the rest from `line` on and judges both.
   void go_on(std::uint32_t line) {
     PartCut first{.recording = plant.recording(), .is_finished = false};
-    first.to_cycle = witness.newest().cycle;
-    const PartCut second{
+    const dds::Status between = plant.status();
+    end_at(first, between);
+    PartCut second{
         .recording = plant.recording(), .from_line = line, .from_cycle = first.to_cycle + 1};
     auto words = stream(file());
     words.insert(words.end(), {"--from-line", std::to_string(line), "--station", "another"});
@@ -93,6 +94,8 @@ class StationDeath : public testing::TestWithParam<const char*> {
     ASSERT_TRUE(plant.wait_for(State::kLoaded)) << other.said() << plant.standing();
     ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
     ASSERT_EQ(other.wait(kLong), 0) << other.said() << plant.standing();
+    ASSERT_TRUE(plant.wait_for(State::kReady)) << plant.standing();
+    end_at(second, plant.status(), cycles_lost(between));
     plant.service().send_signal(SIGTERM);
     ASSERT_EQ(plant.service().wait(milliseconds(8000)), 0) << plant.service().said();
     const MachineModel model = config::load_machine(plant.machine());

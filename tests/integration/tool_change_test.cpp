@@ -105,13 +105,15 @@ TEST_F(ToolChange, ThatIsRefusedOrComesTooLateHoldsWithoutMotionUntilItIsDone) {
 
   ASSERT_EQ(station->wait(kPatience), 0) << station->said() << plant.standing();
   EXPECT_EQ(plant.status().alarm, Alarm::kNone);
+  ASSERT_TRUE(plant.wait_for(State::kReady)) << plant.standing();
+  PartCut whole{.recording = plant.recording()};
+  end_at(whole, plant.status());
   plant.service().send_signal(SIGTERM);
   ASSERT_EQ(plant.service().wait(milliseconds(8000)), 0) << plant.service().said();
   const MachineModel model = config::load_machine(plant.machine());
   const ToolTable tools =
       config::load_tools(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/tools.toml");
-  const LinesCut cut =
-      judge({model, tools, file(), part.motions}, {.recording = plant.recording()});
+  const LinesCut cut = judge({model, tools, file(), part.motions}, whole);
   EXPECT_EQ(cut.first, part.motions[1]);
   EXPECT_EQ(cut.last, part.motions.back());
 }
