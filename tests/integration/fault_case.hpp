@@ -55,6 +55,7 @@ class FaultCase {
   [[nodiscard]] bool is_piped() const noexcept;
   [[nodiscard]] std::string story();
   void expect_provoked();
+  void expect_joint();
 
   static constexpr milliseconds kLong{20'000};
 

@@ -39,7 +39,8 @@ const std::array<LiveFault, 29> kFaults{{
     {"`fault`", How::kConsole, "fault:theta2", "D", "D"},
     {"`unpowered`", How::kConsole, "unpowered:b2", "D", "D"},
     {"`blocked`", How::kConsole, kAllBlocked, "FD", "·"},
-    {"`spike`", How::kConsole, "spike:b3", "F·", "F·"},
+    // A report that is followed by another one before the cycle looks is not seen.
+    {"`spike`", How::kConsole, "spike:b3", "F", "F", 0, {}, 5},
     {"`nan`", How::kConsole, "nan:theta1", "L", "L"},
     {"`mute`", How::kConsole, "mute:theta1", "L", "L"},
     {"`silence`", How::kConsole, "silence", "L", "L"},

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <thread>
 
 #include "integration/fault_case.hpp"
+#include "meridian/kinematics/limited.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/writer.hpp"
 
@@ -18,6 +20,7 @@ using Where = Phase::Where;
 
 /// The journal is a second old at most, and takes a while to get to the disk of a busy host.
 constexpr std::int64_t kJournalAge_ns = 1'500'000'000;
+constexpr milliseconds kBetweenTimes{10};
 /// Of the setpoints on the wire the witness sees all but one in so many, and but for those that the
 /// service lost since its last status: no more than drives bridge.
 constexpr std::uint64_t kSeenPerUnseen = 100;
@@ -36,7 +39,10 @@ constexpr std::uint64_t kBridge_cycles = 50;
 void FaultCase::provoke() {
   switch (fault_.how) {
     case How::kConsole:
-      console_.write(std::string(fault_.line) + "\n");
+      for (int n = 0; n < fault_.times; ++n) {
+        if (n > 0) std::this_thread::sleep_for(kBetweenTimes);
+        console_.write(std::string(fault_.line) + "\n");
+      }
       return;
     case How::kStationDies:
       station_->send_signal(SIGKILL);
@@ -59,6 +65,39 @@ void FaultCase::provoke() {
     case How::kWire:
       return hosts_->spoil(fault_.wire);
   }
+}
+
+/// What was to go wrong did go wrong.
+void FaultCase::expect_provoked() {
+  if (fault_.how == How::kConsole) {
+    EXPECT_NE(plant_->drives().said().find("injected: "), std::string::npos) << story();
+  }
+  if (fault_.how != How::kWire) return;
+  const std::string said = hosts_->wire_said();
+  int frames = 0, lost = 0, twice = 0, past_others = 0, wrong = 0, late = 0;
+  EXPECT_EQ(
+      std::sscanf(said.c_str(),
+                  "%d frames, %d lost, %d twice, %d past others, %d with a wrong bit, %d late",
+                  &frames, &lost, &twice, &past_others, &wrong, &late),
+      6)
+      << said;
+  const Hosts::Spoilt& asked = fault_.wire;
+  EXPECT_EQ(lost > 0, asked.lost > 0) << said;
+  EXPECT_EQ(twice > 0, asked.twice > 0) << said;
+  EXPECT_EQ(past_others > 0, asked.past_others > 0) << said;
+  EXPECT_EQ(wrong > 0, asked.wrong > 0) << said;
+  EXPECT_EQ(late > 0, asked.delay_ms > 0) << said;
+}
+
+/// Where one drive was told to fail, the alarm names its joint.
+void FaultCase::expect_joint() {
+  const std::string line = fault_.line;
+  const auto colon = line.find(':');
+  if (colon == std::string::npos || line.find('\n') != std::string::npos) return;
+  const MachineModel model = config::load_machine(plant_->machine());
+  const int joint = plant_->status().alarm_joint;
+  ASSERT_LT(joint, model.joint_count) << story();
+  EXPECT_EQ(drive_spec(model, joint).name, line.substr(colon + 1)) << story();
 }
 
 /// From somebody who has neither drives nor a station, on every topic that means motion.
