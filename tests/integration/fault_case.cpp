@@ -76,6 +76,20 @@ void FaultCase::run() {
   judge_all();
 }
 
+std::string FaultCase::host_said() const {
+  constexpr double kBridge_s = 0.1;  // service_file() of live_run.hpp
+  if (!host_.is_watching()) {
+    return "whether the host took a processor away was not seen: no right to real-time threads";
+  }
+  if (host_.longest_s() <= kBridge_s) return "";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the host kept a processor from a thread of highest priority for %.0f ms, longer "
+                "than the drives bridge",
+                1e3 * host_.longest_s());
+  return text;
+}
+
 std::string FaultCase::story() {
   return plant_->standing() + "\n" + plant_->service().said() + plant_->drives().said() +
          (station_ ? station_->said() : "");

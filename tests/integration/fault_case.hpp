@@ -25,8 +25,8 @@ class FaultCase {
   void run();
   /// What came of it, as in the table; valid behind run().
   [[nodiscard]] const std::string& letter() const noexcept { return letter_; }
-  /// How long the host kept a processor from its thread of highest priority at most, s.
-  [[nodiscard]] double host_away_s() const { return host_.longest_s(); }
+  /// What the host did meanwhile that may have failed it; empty: nothing.
+  [[nodiscard]] std::string host_said() const;
 
  private:
   void set_up();
