@@ -47,8 +47,8 @@ struct CheckOptions {
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.
 ///
 /// Reads the recording twice, in memory that grows with the path alone. Source: docs/recordings.md.
-/// Proof: tests/unit/record/check_test.cpp, check_inverse_time_test.cpp (every kind of finding
-/// provoked).
+/// Proof: tests/unit/record/check_test.cpp, check_ends_test.cpp, check_inverse_time_test.cpp (every
+/// kind of finding provoked).
 [[nodiscard]] Expected<CheckReport, RecordError> check(RecordingReader& recording,
                                                        const CheckedPath& path,
                                                        const MachineModel& model,
