@@ -22,6 +22,7 @@ void reply_fields(Way way, Message& message, Wire& wire) {
   way(message.request, wire.request);
   way(message.operator_id, wire.operator_id);
   way(message.service_id, wire.service_id);
+  way(message.requester, wire.requester);
   way(message.verb, wire.verb);
   way(message.is_accepted, wire.is_accepted);
   way(message.refusal, wire.refusal);
@@ -42,6 +43,15 @@ void jog_fields(Way way, Message& message, Wire& wire) {
   way(message.velocity, wire.velocity);
   way(message.distance, wire.distance);
   way(message.dead_man_ns, wire.dead_man_ns);
+}
+
+template <class Way, class Message, class Wire>
+void enabling_fields(Way way, Message& message, Wire& wire) {
+  way(message.operator_id, wire.operator_id);
+  way(message.sample, wire.sample);
+  way(message.operator_name, wire.operator_name);
+  way(message.device, wire.device);
+  way(message.service_id_seen, wire.service_id_seen);
 }
 
 }  // namespace
@@ -68,6 +78,14 @@ void to_wire(const Jog& message, meridian_wire_Jog& wire) noexcept {
 
 void from_wire(const meridian_wire_Jog& wire, Jog& message) noexcept {
   jog_fields(FromWire(), message, wire);
+}
+
+void to_wire(const Enabling& message, meridian_wire_Enabling& wire) noexcept {
+  enabling_fields(ToWire(), message, wire);
+}
+
+void from_wire(const meridian_wire_Enabling& wire, Enabling& message) {
+  enabling_fields(FromWire(), message, wire);
 }
 
 }  // namespace meridian::dds

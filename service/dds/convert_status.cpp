@@ -21,6 +21,9 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.state, wire.state);
   way(message.realtime_mode, wire.realtime_mode);
   way(message.is_secured, wire.is_secured);
+  way(message.is_open_network, wire.is_open_network);
+  way(message.is_enabling_required, wire.is_enabling_required);
+  way(message.enabling_devices, wire.enabling_devices);
   way(message.is_auxiliary_ignored, wire.is_auxiliary_ignored);
   way(message.alarm, wire.alarm);
   way(message.alarm_joint, wire.alarm_joint);
@@ -64,6 +67,9 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.setpoints_overrun, wire.setpoints_overrun);
   way(message.records_overrun, wire.records_overrun);
   way(message.events_overrun, wire.events_overrun);
+  way(message.commands_dropped, wire.commands_dropped);
+  way(message.replies_dropped, wire.replies_dropped);
+  way(message.stalled_reader, wire.stalled_reader);
   way(message.message, wire.message);
 }
 

@@ -105,6 +105,7 @@ struct Reply {
   std::uint64_t request = 0;
   std::uint64_t operator_id = 0;
   std::uint64_t service_id = 0;
+  std::uint64_t requester = 0;  ///< participant that asked: number_of(), service/dds/sources.hpp
   Verb verb = Verb::kHold;
   bool is_accepted = false;
   Refusal refusal = Refusal::kNone;
@@ -125,6 +126,22 @@ struct Jog {
   double velocity = 0;
   double distance = 0;
   std::int64_t dead_man_ns = 0;
+};
+
+/// What an enabling device says of itself. A value beyond these counts as released.
+enum class EnablingDevice : std::uint8_t {
+  kReleased,
+  kPressed,
+  kLeaves,  ///< its panel is closed: its heartbeat ends
+};
+
+/// `enabling`: the heartbeat of an enabling device.
+struct Enabling {
+  std::uint64_t operator_id = 0;
+  std::uint64_t sample = 0;
+  std::string operator_name{};
+  EnablingDevice device = EnablingDevice::kReleased;
+  std::uint64_t service_id_seen = 0;  ///< 0: any
 };
 
 /// `setpoint`: position and velocity in drive coordinates, drive order.
@@ -193,6 +210,9 @@ struct Status {
   State state = State::kOff;
   RealtimeMode realtime_mode = RealtimeMode::kBestEffort;
   bool is_secured = false;
+  bool is_open_network = false;
+  bool is_enabling_required = false;
+  std::uint8_t enabling_devices = 0;
   bool is_auxiliary_ignored = false;
   Alarm alarm = Alarm::kNone;
   std::uint8_t alarm_joint = 0;
@@ -236,6 +256,9 @@ struct Status {
   std::uint64_t setpoints_overrun = 0;
   std::uint64_t records_overrun = 0;
   std::uint64_t events_overrun = 0;
+  std::uint64_t commands_dropped = 0;
+  std::uint64_t replies_dropped = 0;
+  std::string stalled_reader{};
   std::string message{};
 };
 

@@ -9,6 +9,8 @@
 #include <mutex>
 
 #include "dds_transport.hpp"
+#include "service/dds/loopback_sockets.hpp"
+#include "service/dds/network_config.hpp"
 
 namespace meridian::dds {
 namespace {
@@ -29,20 +31,40 @@ std::map<std::uint32_t, Domain>& domains() {
   throw DdsError(what + ": " + dds_strretcode(-code) + "; " + remedy);
 }
 
+/// In front of whatever CYCLONEDDS_URI says, so that it may say otherwise: no writer waits for a
+/// reader that does not acknowledge.
+constexpr const char* kNeverWaits =
+    "<CycloneDDS><Domain Id=\"any\"><Internal><Watermarks><WhcHigh>64 MB</WhcHigh>"
+    "<WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks></Internal>"
+    "</Domain></CycloneDDS>,";
+
+[[nodiscard]] std::string uri_of_environment() {
+  const char* const uri = std::getenv("CYCLONEDDS_URI");
+  return uri != nullptr ? uri : "";
+}
+
+[[nodiscard]] std::string configuration(const ParticipantOptions& options) {
+  const std::string uri = uri_of_environment();
+  if (!uri.empty()) return kNeverWaits + uri;
+  return options.transport == Transport::kLoopbackRealtime ? kLoopbackRealtimeXml : kLoopbackXml;
+}
+
 void hold_domain(const ParticipantOptions& options) {
-  if (const char* uri = std::getenv("CYCLONEDDS_URI"); uri != nullptr && *uri != '\0') return;
   const std::lock_guard lock(domains_mutex);
   Domain& domain = domains()[options.domain];
   if (domain.users == 0) {
-    const char* xml =
-        options.transport == Transport::kLoopbackRealtime ? kLoopbackRealtimeXml : kLoopbackXml;
-    domain.handle = dds_create_domain(options.domain, xml);
+    const bool stays = uri_of_environment().empty() || !leaves_host(uri_of_environment());
+    const SocketsBefore before;
+    domain.handle = dds_create_domain(options.domain, configuration(options).c_str());
     if (domain.handle < 0) {
       const dds_return_t code = domain.handle;
       domains().erase(options.domain);
       fail("DDS domain " + std::to_string(options.domain) + " cannot be set up", code,
-           "choose a --domain from 0 to 230, or set CYCLONEDDS_URI");
+           "choose a --domain from 0 to 230; is the loopback interface up, is what CYCLONEDDS_URI "
+           "names a file of Cyclone DDS, and are real-time rights there if it asks for real-time "
+           "threads, and its certificates and permissions if it asks for security?");
     }
+    if (stays) before.confine_newer_to_loopback();
   }
   ++domain.users;
 }
@@ -77,6 +99,15 @@ Participant::Participant(const ParticipantOptions& options)
          "real-time threads, and its certificates and permissions if it asks for security?");
   }
   is_secured_ = has_security_plugins();
+  leaves_host_ = !uri_of_environment().empty() && dds::leaves_host(uri_of_environment());
+  if (is_open_network() && options.open_network == OpenNetwork::kRefused) {
+    dds_delete(participant_);
+    release_domain(options.domain);
+    throw DdsError(
+        "CYCLONEDDS_URI leads DDS off this host and names no identity: whoever reaches that network "
+        "could move the machine; make identities (docs/security.md), or allow it with "
+        "open_network = true in the service file, --open-network for drives");
+  }
   dds_qos_t* qos = dds_create_qos();
   const char* partition = options.machine.c_str();
   dds_qset_partition(qos, 1, &partition);

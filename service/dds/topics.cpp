@@ -13,7 +13,9 @@
 namespace meridian::dds {
 namespace {
 
-constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
+/// No write waits for a reader that does not acknowledge: what it has not taken by then is lost to
+/// it alone (docs/topics.md).
+constexpr dds_duration_t kMaxBlocking = 0;
 /// No false alarm by host stalls of 5 ms; receivers judge freshness by sequence and their own
 /// clock.
 constexpr dds_duration_t kCyclicDeadline = DDS_MSECS(20);
@@ -21,28 +23,60 @@ constexpr dds_duration_t kSetpointLease = DDS_MSECS(100);
 
 /// The quality of service of the topics, by group (docs/topics.md).
 enum class Quality : std::uint8_t {
-  kStream,    ///< reliable, keep all: every sample matters
+  kStream,    ///< reliable; writers keep more than credits allow to be sent, readers all
+  kVerb,      ///< reliable; writers keep the newest kKeptVerbs, readers all
   kLatest,    ///< reliable, transient local, keep last 1: late joiners get the newest
+  kOrder,     ///< as kLatest; readers keep those of several senders
+  kClaim,     ///< the same, fewer of them
   kSnapshot,  ///< reliable, keep last 1
   kCyclic,    ///< best effort, keep last 1, deadline
   kSetpoint,  ///< as kCyclic, with manual liveliness
   kJog        ///< best effort, keep last 1
 };
 
+enum class Side : std::uint8_t { kWriter, kReader };
+
+/// Samples that a writer keeps until every reader has acknowledged them. Batches: those of the
+/// whole block queue and as many more (8192 blocks are 256 batches).
+constexpr std::int32_t kKeptBatches = 512, kKeptVerbs = 128;
+/// Samples that wait in a reader where several may send: one does not hide another.
+constexpr std::int32_t kSenders = 16, kOrders = 64;
+
+/// How many samples are kept; 0: all.
+[[nodiscard]] std::int32_t depth_of(Quality quality, Side side) noexcept {
+  const bool is_reader = side == Side::kReader;
+  switch (quality) {
+    case Quality::kStream:
+      return is_reader ? 0 : kKeptBatches;
+    case Quality::kVerb:
+      return is_reader ? 0 : kKeptVerbs;
+    case Quality::kOrder:
+      return is_reader ? kOrders : 1;
+    case Quality::kClaim:
+    case Quality::kJog:
+      return is_reader ? kSenders : 1;
+    default:
+      return 1;
+  }
+}
+
 /// Readers never have resource limits: one that filled up would stop every topic of its process.
-Qos make_qos(Quality quality) {
+Qos make_qos(Quality quality, Side side) {
   Qos qos(dds_create_qos());
-  const bool is_reliable =
-      quality == Quality::kStream || quality == Quality::kLatest || quality == Quality::kSnapshot;
+  const bool is_latest =
+      quality == Quality::kLatest || quality == Quality::kOrder || quality == Quality::kClaim;
+  const bool is_reliable = quality == Quality::kStream || quality == Quality::kVerb || is_latest ||
+                           quality == Quality::kSnapshot;
   dds_qset_reliability(qos.get(),
                        is_reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        kMaxBlocking);
-  if (quality == Quality::kStream) {
+  const std::int32_t depth = depth_of(quality, side);
+  if (depth == 0) {
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
   } else {
-    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   }
-  if (quality == Quality::kLatest) {
+  if (is_latest) {
     dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
@@ -73,16 +107,17 @@ struct Topic;
 MERIDIAN_TOPIC(Batch, ClBatch, "cl_batch", kStream);
 MERIDIAN_TOPIC(SessionRequest, ClSession, "cl_session", kStream);
 MERIDIAN_TOPIC(Credit, ClCredit, "cl_credit", kLatest);
-MERIDIAN_TOPIC(CommandRequest, Command, "command", kStream);
-MERIDIAN_TOPIC(Reply, Reply, "reply", kStream);
+MERIDIAN_TOPIC(CommandRequest, Command, "command", kVerb);
+MERIDIAN_TOPIC(Reply, Reply, "reply", kVerb);
 MERIDIAN_TOPIC(Jog, Jog, "jog", kJog);
+MERIDIAN_TOPIC(Enabling, Enabling, "enabling", kJog);
 MERIDIAN_TOPIC(SetpointSample, Setpoint, "setpoint", kSetpoint);
-MERIDIAN_TOPIC(DriveCommand, DriveCommand, "drive_command", kLatest);
+MERIDIAN_TOPIC(DriveCommand, DriveCommand, "drive_command", kOrder);
 MERIDIAN_TOPIC(DriveFeedback, Feedback, "feedback", kCyclic);
-MERIDIAN_TOPIC(Action, Action, "action", kStream);
-MERIDIAN_TOPIC(ActionDone, ActionDone, "action_done", kStream);
+MERIDIAN_TOPIC(Action, Action, "action", kVerb);
+MERIDIAN_TOPIC(ActionDone, ActionDone, "action_done", kVerb);
 MERIDIAN_TOPIC(Status, Status, "status", kLatest);
-MERIDIAN_TOPIC(MachineInfo, Machine, "machine", kLatest);
+MERIDIAN_TOPIC(MachineInfo, Machine, "machine", kClaim);
 MERIDIAN_TOPIC(Latency, Latency, "latency", kSnapshot);
 
 #undef MERIDIAN_TOPIC
@@ -95,10 +130,10 @@ MERIDIAN_TOPIC(Latency, Latency, "latency", kSnapshot);
 
 /// Creates the topic with an endpoint on it by `make`; both live until the participant goes.
 template <class Message, class Make>
-dds_entity_t make_endpoint(Participant& participant, dds_entity_t& topic, Make make) {
+dds_entity_t make_endpoint(Participant& participant, Side side, dds_entity_t& topic, Make make) {
   using T = Topic<Message>;
   topic = dds_create_topic(participant.handle(), T::descriptor(), T::kName, nullptr, nullptr);
-  const Qos qos = make_qos(T::kQuality);
+  const Qos qos = make_qos(T::kQuality, side);
   const dds_entity_t endpoint = topic < 0 ? topic : make(topic, qos.get());
   if (endpoint < 0) {
     throw DdsError(std::string("DDS topic ") + T::kName + " cannot be used: " + describe(endpoint));
@@ -127,10 +162,11 @@ Reader<Message>::Reader(Participant& participant, std::function<void(Reader&)> o
   impl_->on_data = std::move(on_data);
   impl_->owner = this;
   impl_->reader =
-      make_endpoint<Message>(participant, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
-        if (depth > 0) dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
-        return dds_create_reader(participant.subscriber(), topic, qos, nullptr);
-      });
+      make_endpoint<Message>(
+          participant, Side::kReader, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
+            if (depth > 0) dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+            return dds_create_reader(participant.subscriber(), topic, qos, nullptr);
+          });
   if (impl_->on_data) {
     dds_listener_t* listener = dds_create_listener(impl_.get());
     dds_lset_data_available(listener, &Impl::call);
@@ -173,7 +209,7 @@ int Reader<Message>::matched_writers() const noexcept {
 
 template <class Message>
 bool Reader<Message>::has_source(std::uint64_t source) const noexcept {
-  std::array<dds_instance_handle_t, 64> writers{};
+  std::array<dds_instance_handle_t, 1024> writers{};
   const auto count = dds_get_matched_publications(impl_->reader, writers.data(), writers.size());
   const auto end = writers.begin() + std::clamp<int>(count, 0, static_cast<int>(writers.size()));
   return std::find(writers.begin(), end, source) != end;
@@ -193,9 +229,10 @@ struct Writer<Message>::Impl {
 template <class Message>
 Writer<Message>::Writer(Participant& participant) : impl_(std::make_unique<Impl>()) {
   impl_->writer =
-      make_endpoint<Message>(participant, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
-        return dds_create_writer(participant.publisher(), topic, qos, nullptr);
-      });
+      make_endpoint<Message>(
+          participant, Side::kWriter, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
+            return dds_create_writer(participant.publisher(), topic, qos, nullptr);
+          });
 }
 
 template <class Message>
@@ -244,6 +281,7 @@ MERIDIAN_INSTANTIATE(Credit);
 MERIDIAN_INSTANTIATE(CommandRequest);
 MERIDIAN_INSTANTIATE(Reply);
 MERIDIAN_INSTANTIATE(Jog);
+MERIDIAN_INSTANTIATE(Enabling);
 MERIDIAN_INSTANTIATE(SetpointSample);
 MERIDIAN_INSTANTIATE(DriveCommand);
 MERIDIAN_INSTANTIATE(DriveFeedback);

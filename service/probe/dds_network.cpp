@@ -3,80 +3,16 @@
 
 #include <net/if.h>
 
-#include <algorithm>
-#include <cctype>
+#include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <sstream>
 #include <string_view>
-#include <utility>
+
+#include "service/dds/network_config.hpp"
 
 namespace meridian::probe {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r\n";
-
-[[nodiscard]] std::string without_comments(std::string xml) {
-  constexpr std::string_view kEnd = "-->";
-  for (auto at = xml.find("<!--"); at != std::string::npos; at = xml.find("<!--", at)) {
-    const auto end = xml.find(kEnd, at);
-    xml.erase(at, end == std::string::npos ? end : end + kEnd.size() - at);
-  }
-  return xml;
-}
-
-[[nodiscard]] std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
-/// The first word of `text`, up to one of `ends` or a blank.
-[[nodiscard]] std::string first_word(std::string_view text, std::string_view ends) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  const auto end = text.find_first_of(std::string(kBlanks).append(ends));
-  return std::string(text.substr(0, end));
-}
-
-/// An element's begin: its attributes, and the text up to the next element.
-struct Tag {
-  std::string name;  ///< in lower case, as names of attributes
-  std::map<std::string, std::string> attributes;
-  std::string text;
-};
-
-/// Reads name="value" and name='value' from `xml` on; where the tag ends.
-std::size_t read_attributes(std::string_view xml, std::size_t at, Tag& tag) {
-  while (at < xml.size() && xml[at] != '>') {
-    const auto equals = xml.find_first_of("=>", at);
-    if (equals == std::string_view::npos || xml[equals] == '>') return equals;
-    const auto open = xml.find_first_not_of(kBlanks, equals + 1);
-    if (open == std::string_view::npos || (xml[open] != '"' && xml[open] != '\'')) {
-      at = equals + 1;
-      continue;
-    }
-    const auto close = xml.find(xml[open], open + 1);
-    if (close == std::string_view::npos) return close;
-    tag.attributes[lower(first_word(xml.substr(at, equals - at), "="))] =
-        xml.substr(open + 1, close - open - 1);
-    at = close + 1;
-  }
-  return at;
-}
-
-[[nodiscard]] std::vector<Tag> tags_of(std::string_view xml) {
-  std::vector<Tag> out;
-  for (auto at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
-    Tag tag;
-    tag.name = lower(first_word(xml.substr(++at), "/>"));
-    at = read_attributes(xml, at + tag.name.size(), tag);
-    if (at >= xml.size()) break;
-    tag.text = first_word(xml.substr(at + 1), "<,");
-    out.push_back(std::move(tag));
-  }
-  return out;
-}
 
 /// The XML that CYCLONEDDS_URI means: itself, or files, one behind the other. Nothing where one of
 /// them cannot be read; `missing` is it then.
@@ -125,7 +61,7 @@ std::size_t read_attributes(std::string_view xml, std::size_t at, Tag& tag) {
   return {"DDS interface", Health::kFine, found, ""};
 }
 
-[[nodiscard]] Finding judge_multicast(const HostFiles& host, const DdsNetwork& configured,
+[[nodiscard]] Finding judge_multicast(const HostFiles& host, const dds::NetworkConfig& configured,
                                       const std::string& interface, const NetworkView& network) {
   if (!configured.has_multicast) {
     if (!configured.peers.empty()) {
@@ -179,28 +115,6 @@ std::size_t read_attributes(std::string_view xml, std::size_t at, Tag& tag) {
 
 }  // namespace
 
-DdsNetwork read_dds_network(const std::string& xml) {
-  DdsNetwork out;
-  const auto add = [](std::vector<std::string>& to, const std::string& one) {
-    if (!one.empty() && one != "auto") to.push_back(one);
-  };
-  for (Tag& tag : tags_of(without_comments(xml))) {
-    if (tag.name == "networkinterface") {
-      const std::string& name = tag.attributes["name"];
-      add(out.interfaces, name.empty() ? tag.attributes["address"] : name);
-    } else if (tag.name == "networkinterfaceaddress") {
-      add(out.interfaces, tag.text);
-    } else if (tag.name == "peer") {
-      const std::string& address = tag.attributes["address"];
-      add(out.peers, address.substr(0, address.find(':')));  // without a port
-    } else if (tag.name == "allowmulticast") {
-      const std::string allowed = lower(tag.text);
-      out.has_multicast = allowed != "false" && allowed != "none";
-    }
-  }
-  return out;
-}
-
 Findings examine_dds_network(const HostFiles& host, const std::string& cyclone_uri,
                              const NetworkView& network) {
   if (cyclone_uri.empty()) {
@@ -213,7 +127,7 @@ Findings examine_dds_network(const HostFiles& host, const std::string& cyclone_u
     return {{"DDS interface", Health::kBad, missing + " cannot be read",
              "name a file that this user may read in CYCLONEDDS_URI"}};
   }
-  const DdsNetwork configured = read_dds_network(*xml);
+  const dds::NetworkConfig configured = dds::read_network_config(*xml);
   Findings out;
   if (configured.interfaces.empty()) {
     out.push_back({"DDS interface", Health::kNote, "none is named: Cyclone takes the one it likes",

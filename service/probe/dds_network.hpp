@@ -32,14 +32,6 @@ struct NetworkView {
 /// that is there refuses. Half a second each at most, and a name server's time.
 [[nodiscard]] NetworkView real_network();
 
-/// What a Cyclone configuration says of the network.
-struct DdsNetwork {
-  std::vector<std::string> interfaces;  ///< names or addresses; none: Cyclone chooses
-  std::vector<std::string> peers;
-  bool has_multicast = true;
-};
-[[nodiscard]] DdsNetwork read_dds_network(const std::string& xml);
-
 /// The interface of DDS, whether multicast works there, and whether the peers that are configured
 /// can be reached. `cyclone_uri` is CYCLONEDDS_URI; empty: the configuration that is built in.
 /// Proof: tests/unit/probe/dds_network_test.cpp.

@@ -117,22 +117,6 @@ TEST_F(DoctorOfDds, TriesMulticastWhereTheHostSendsItIfNoInterfaceIsNamed) {
          "nobody is found");
 }
 
-TEST_F(DoctorOfDds, ReadsCommentsAndTagsOfAnyLengthInEitherQuotes) {
-  const std::string comment = "<!-- <Peer address='x'/> " + std::string(500'000, '-') + " -->";
-  const std::string spaces(500'000, ' ');
-  const DdsNetwork read = read_dds_network(
-      comment +
-      xml("<NetworkInterface " + spaces + "priority='1' name = 'eth1' />" + comment,
-          "<Peer Address='10.0.0.2'/><Peer\naddress=\"it's\"/>") +
-      "<!-- not closed <Peer address='y'/>");
-  EXPECT_EQ(read.interfaces, std::vector<std::string>{"eth1"});
-  EXPECT_EQ(read.peers, (std::vector<std::string>{"10.0.0.2", "it's"}));
-  for (const char* broken : {"<", "<Peer", "<Peer address", "<Peer address=", "<Peer address='x",
-                             "<Peer address=x/>", "<Peer/>", "<!--"}) {
-    EXPECT_TRUE(read_dds_network(broken).peers.empty()) << broken;
-  }
-}
-
 TEST_F(DoctorOfDds, AsksEveryPeer) {
   peers_ = {{"192.168.10.1", Reach::kSilent},
             {"192.168.10.2", Reach::kNoRoute},
