@@ -48,6 +48,8 @@ void session_request_fields(Way way, Message& message, Wire& wire) {
   way(message.axis_tolerance_rad, wire.axis_tolerance_rad);
   way(message.policies, wire.policies);
   way(message.options, wire.options);
+  way(message.file_checksum, wire.file_checksum);
+  way(message.from_line, wire.from_line);
 }
 
 template <class Way, class Message, class Wire>

@@ -44,6 +44,7 @@ enum SessionPolicy : std::uint32_t {
   kPolicyExactStop = 2,        ///< rest at the end of every block, whatever the machine's file says
   kPolicySmooth = 4,           ///< on through blocks, whatever it says; not with kPolicyExactStop
   kPolicyRetractFirst = 8,     ///< it begins in the middle: off the part ahead of its first actions
+  kPolicyChanged = 16,         ///< it goes on with a program although its file is another one now
 };
 
 /// `cl_session`: a station asks for the machine, or gives it back.
@@ -57,6 +58,8 @@ struct SessionRequest {
   double axis_tolerance_rad = 0;  ///< 0: the machine's
   std::uint32_t policies = 0;     ///< SessionPolicy, or-ed
   std::string options{};  ///< of the station's command line, at most kMostOptions characters
+  std::uint64_t file_checksum = 0;  ///< FNV-1a, 64 bit, of the file's bytes; 0: not known
+  std::uint32_t from_line = 0;      ///< the program begins with this line; 0: with its first
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.

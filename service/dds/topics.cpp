@@ -106,7 +106,7 @@ struct Topic;
 
 MERIDIAN_TOPIC(Batch, ClBatch, "cl_batch", kStream);
 MERIDIAN_TOPIC(SessionRequest, ClSession, "cl_session", kStream);
-MERIDIAN_TOPIC(Credit, ClCredit, "cl_credit", kLatest);
+MERIDIAN_TOPIC(Credit, ClCredit, "cl_credit", kSnapshot);
 MERIDIAN_TOPIC(CommandRequest, Command, "command", kVerb);
 MERIDIAN_TOPIC(Reply, Reply, "reply", kVerb);
 MERIDIAN_TOPIC(Jog, Jog, "jog", kJog);

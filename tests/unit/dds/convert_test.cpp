@@ -82,7 +82,7 @@ int lost_bytes() {
 }
 
 TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
-  EXPECT_EQ((lost_bytes<SessionRequest, meridian_wire_ClSession>()), 14);  // 11 padding, 3 texts
+  EXPECT_EQ((lost_bytes<SessionRequest, meridian_wire_ClSession>()), 18);  // 15 padding, 3 texts
   EXPECT_EQ((lost_bytes<Credit, meridian_wire_ClCredit>()), 4);            // 3 padding, 1 text
   EXPECT_EQ((lost_bytes<CommandRequest, meridian_wire_Command>()), 6);     // 5 padding, 1 text
   EXPECT_EQ((lost_bytes<Reply, meridian_wire_Reply>()), 4);            // 2 padding, 1 flag, 1 text

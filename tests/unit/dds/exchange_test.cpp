@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <set>
 #include <thread>
 
@@ -74,6 +76,40 @@ TEST(Exchange, GivesALateJoinerTheNewestOfEveryInstance) {
     }
     return seen == 5;
   }));
+}
+
+/// Resident memory of this process, kB.
+long resident_kB() {
+  long total = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> total >> resident;
+  return resident * (::sysconf(_SC_PAGESIZE) / 1024);
+}
+
+TEST(Exchange, KeepsNothingOfSessionsThatAreOver) {
+  constexpr std::uint64_t kWarmUp = 4000, kSessions = 20'000;
+  constexpr long kGrowth_kB = 1000;  // 0.05 kB a session; with a key to forget it were 0.4 kB
+  const support::PrivateDomain domain;
+  Participant stations({.domain = domain.id(), .machine = "m"});
+  Participant service({.domain = domain.id(), .machine = "m"});
+  Writer<SessionRequest> requests(stations);
+  Reader<SessionRequest> asked(service);
+  Writer<Credit> credits(service);
+  Reader<Credit> heard(stations);
+  ASSERT_TRUE(eventually(
+      [&] { return requests.matched_readers() == 1 && credits.matched_readers() == 1; }));
+  long before_kB = 0;
+  SessionRequest request;
+  Credit credit;
+  SampleInfo info;
+  for (std::uint64_t session = 1; session <= kWarmUp + kSessions; ++session) {
+    if (session == kWarmUp) before_kB = resident_kB();
+    ASSERT_TRUE(requests.write({.session = session, .station = "cam", .program = "part"}));
+    ASSERT_TRUE(eventually([&] { return asked.take(request, info) && request.session == session; }));
+    ASSERT_TRUE(credits.write({.session = session, .text = "opened"}));
+    credits.dispose({.session = session});
+    while (heard.take(credit, info)) continue;
+  }
+  EXPECT_LT(resident_kB() - before_kB, kGrowth_kB);
 }
 
 TEST(Exchange, KeepsMachinesOfOneDomainApart) {
