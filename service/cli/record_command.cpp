@@ -60,19 +60,23 @@ template <class Message>
 class Tap {
  public:
   explicit Tap(dds::Participant& participant)
-      : reader_(participant, [this](dds::Reader<Message>& reader) {
-          Arrived<Message> arrived;
-          while (reader.take(arrived.message)) {
-            arrived.arrival_ns = stream::steady_ns();
-            if (!ring_.try_push(arrived)) overrun_.fetch_add(1, std::memory_order_relaxed);
-          }
-        }) {}
+      : reader_(
+            participant,
+            [this](dds::Reader<Message>& reader) {
+              Arrived<Message> arrived;
+              while (reader.take(arrived.message)) {
+                arrived.arrival_ns = stream::steady_ns();
+                if (!ring_.try_push(arrived)) overrun_.fetch_add(1, std::memory_order_relaxed);
+              }
+            },
+            kDepth) {}
 
   [[nodiscard]] const Arrived<Message>* next() { return ring_.peek(0); }
   void pop() { ring_.drop(1); }
   [[nodiscard]] std::uint64_t overrun() const { return overrun_.load(); }
 
  private:
+  static constexpr int kDepth = 64;  ///< that wait while a sample is taken
   SpscRing<Arrived<Message>, 8192> ring_;
   std::atomic<std::uint64_t> overrun_{0};
   dds::Reader<Message> reader_;
@@ -104,13 +108,17 @@ int run(Options& options) {
   stream::EndWatch end;
   record::WireBook book(model);
   record::WireRow row;
+  std::uint64_t service_id = machine->service_id;
   watch_for_stop();
   std::fprintf(stderr, "meridian record: listening to machine %s%s\n", machine->name.c_str(),
                options.until_end ? " until its program ends" : ", Ctrl-C ends");
   const auto begin = std::chrono::steady_clock::now();
   for (bool is_last = false; !is_last;) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-    if (followed.take(statuses, status)) end.see(status);
+    if (followed.take(statuses, status)) {
+      end.see(status);
+      service_id = status.service_id;
+    }
     is_last = stop_flag().load() ||
               (options.duration_s > 0 && passed.count() >= options.duration_s) ||
               (options.until_end && end.is_over());
@@ -122,7 +130,7 @@ int run(Options& options) {
         feedbacks->pop();
       }
       row.setpoint = setpoint->message.setpoint;
-      row.sent_minus_due_ns = setpoint->message.sent_minus_due_ns;
+      row.is_intact = setpoint->message.crc == dds::setpoint_crc(row.setpoint, service_id);
       row.arrival_ns = setpoint->arrival_ns;
       setpoints->pop();
       end.see(row.setpoint);

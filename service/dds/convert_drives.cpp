@@ -14,7 +14,7 @@ void setpoint_sample_fields(Way way, Message& message, Wire& wire) {
   way(message.setpoint.line, wire.line);
   way(message.setpoint.epoch, wire.epoch);
   way(message.setpoint.flags, wire.flags);
-  way(message.sent_minus_due_ns, wire.sent_minus_due_ns);
+  way(message.crc, wire.crc32c);
 }
 
 template <class Way, class Message, class Wire>
@@ -33,6 +33,7 @@ void drive_feedback_fields(Way way, Message& message, Wire& wire) {
   way(message.joint_mask, wire.joint_mask);
   way(message.sample, wire.sample);
   way(message.cycle_seen, wire.cycle_seen);
+  way(message.service_id, wire.service_id);
   way(message.position, wire.position);
   way(message.statusword, wire.statusword);
   way(message.error, wire.error);

@@ -22,8 +22,7 @@ constexpr std::size_t kPayload_bytes = 124;
 constexpr std::size_t kHeader_bytes = 4;
 constexpr const char* kMoulds = "meridian/setpoint_mould";
 static_assert(std::is_trivially_copyable_v<Wire>);
-static_assert(offsetof(Wire, sent_minus_due_ns) + sizeof(Wire::sent_minus_due_ns) ==
-              kPayload_bytes);
+static_assert(offsetof(Wire, crc32c) + sizeof(Wire::crc32c) == kPayload_bytes);
 
 /// The number of references that are held on a sample.
 std::uint32_t references(const ddsi_serdata& sample) noexcept {
@@ -56,7 +55,7 @@ void SetpointWriter::make_moulds(Participant& participant) {
   SetpointSample pattern;
   pattern.setpoint.cycle = 0x0123456789abcdefULL;
   pattern.setpoint.position.fill(1.25);
-  pattern.sent_minus_due_ns = 77;
+  pattern.crc = 77;
   Wire wire{};
   to_wire(pattern, wire);
   for (Mould& mould : moulds_) {

@@ -13,7 +13,8 @@ namespace {
 [[nodiscard]] std::optional<OtherSource> listen(dds::Participant& participant,
                                                 std::uint32_t joint_mask,
                                                 std::chrono::milliseconds window) {
-  dds::Reader<dds::DriveFeedback> reader(participant);
+  constexpr int kDepth = 64;  // samples of several groups do not hide one another
+  dds::Reader<dds::DriveFeedback> reader(participant, {}, kDepth);
   const auto end = std::chrono::steady_clock::now() + window;
   dds::DriveFeedback sample;
   dds::SampleInfo info;

@@ -24,7 +24,7 @@ void DriveCommander::work(const CycleView& view, const DriveWords& words,
     const bool is_news = sent.sample == 0 || sent.controlword != next.controlword ||
                          sent.mode != next.mode || sent.epoch != view.epoch;
     if (!is_news && now_ns - sent_ns_[i] < kRepeat_ns) continue;
-    sent.drive = static_cast<std::uint16_t>(drive);
+    sent.drive = static_cast<std::uint8_t>(drive);
     sent.controlword = next.controlword;
     sent.mode = next.mode;
     sent.epoch = view.epoch;

@@ -8,9 +8,8 @@
 namespace meridian::interpolator {
 namespace {
 
-/// Samples of a group that wait to be taken: two sources of one group number do not hide each
-/// other.
-constexpr int kDepth = 8;
+/// Samples that wait to be taken: sources do not hide one another, and a flood grows nothing.
+constexpr int kDepth = 64;
 constexpr std::int64_t kShow_ns = 50'000'000;
 
 }  // namespace

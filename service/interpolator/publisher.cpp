@@ -5,8 +5,9 @@
 
 namespace meridian::interpolator {
 
-Publisher::Publisher(dds::Participant& participant, Ports& ports)
-    : ports_(ports),
+Publisher::Publisher(dds::Participant& participant, std::uint64_t service_id, Ports& ports)
+    : service_id_(service_id),
+      ports_(ports),
       writer_(participant),
       spans_(ports.spans != nullptr ? &ports.spans->publisher : nullptr) {}
 
@@ -17,12 +18,12 @@ void Publisher::run() noexcept {
     const std::uint32_t seen = ports_.publisher_wake.look();
     while (ports_.setpoints.try_pop(sample.setpoint)) {
       const std::int64_t now_ns = monotonic_ns();
-      sample.sent_minus_due_ns = narrow_ns(now_ns - sample.setpoint.due_ns);
+      sample.crc = dds::setpoint_crc(sample.setpoint, service_id_);
       ports_.sent_times.note(sample.setpoint.cycle, now_ns);
       if (!writer_.write(sample)) ports_.writes_failed.fetch_add(1, std::memory_order_relaxed);
       const std::int64_t written_ns = monotonic_ns();
       (void)ports_.publish_timings.try_push(
-          {sample.sent_minus_due_ns, narrow_ns(written_ns - now_ns)});
+          {narrow_ns(now_ns - sample.setpoint.due_ns), narrow_ns(written_ns - now_ns)});
       spans_.write(trace::Doing::kWrite, now_ns, written_ns, sample.setpoint.cycle);
     }
     ports_.publisher_wake.wait(seen, kLookForStop_ns);

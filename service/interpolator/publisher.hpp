@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "service/dds/messages.hpp"
 #include "service/dds/setpoint_writer.hpp"
 #include "service/interpolator/ports.hpp"
@@ -11,12 +13,13 @@ namespace meridian::interpolator {
 /// Makes no heap call and no page fault while DDS is not secured.
 class Publisher {
  public:
-  Publisher(dds::Participant& participant, Ports& ports);
+  Publisher(dds::Participant& participant, std::uint64_t service_id, Ports& ports);
 
   /// Runs until Ports::is_stopping.
   void run() noexcept;
 
  private:
+  std::uint64_t service_id_;
   Ports& ports_;
   dds::SetpointWriter writer_;
   trace::SpanWriter spans_;

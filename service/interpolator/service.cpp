@@ -122,7 +122,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                     .transport = realtime.has_priorities() ? dds::Transport::kLoopbackRealtime
                                                            : dds::Transport::kLoopback}),
       lease_(participant_, machine_info(parts_, service_id_)),
-      publisher_(participant_, ports_),
+      publisher_(participant_, service_id_, ports_),
       feedback_(participant_, parts_.model, ports_),
       intake_(participant_, parts_.model, tool_lengths_, parts_.service, service_id_, ports_),
       planner_(parts_.model, parts_.tools, ports_),

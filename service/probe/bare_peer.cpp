@@ -95,13 +95,16 @@ void hold_dma_latency() {
 class Answers {
  public:
   explicit Answers(dds::Participant& participant)
-      : reader_(participant, [this](dds::Reader<dds::DriveFeedback>& reader) {
-          dds::DriveFeedback answer;
-          while (reader.take(answer)) {
-            const std::int64_t now_ns = monotonic_ns();
-            if (answer.cycle_seen < seen_ns_.size()) seen_ns_[answer.cycle_seen] = now_ns;
-          }
-        }) {}
+      : reader_(
+            participant,
+            [this](dds::Reader<dds::DriveFeedback>& reader) {
+              dds::DriveFeedback answer;
+              while (reader.take(answer)) {
+                const std::int64_t now_ns = monotonic_ns();
+                if (answer.cycle_seen < seen_ns_.size()) seen_ns_[answer.cycle_seen] = now_ns;
+              }
+            },
+            kDepth) {}
 
   void forget() {
     for (auto& seen : seen_ns_) seen = 0;
@@ -111,6 +114,7 @@ class Answers {
   }
 
  private:
+  static constexpr int kDepth = 64;
   std::vector<std::atomic<std::int64_t>> seen_ns_ = std::vector<std::atomic<std::int64_t>>(200'000);
   dds::Reader<dds::DriveFeedback> reader_;
 };

@@ -35,7 +35,7 @@ Expected<WireWriter, RecordError> WireWriter::create(const std::string& path,
   for (int i = 0; i < model.joint_count; ++i) {
     header.append(",").append(velocity_column(model.joints[i]));
   }
-  header += ",epoch,flags,sent_minus_due_ns,arrival_minus_due_ns,feedback_cycle";
+  header += ",epoch,flags,is_intact,arrival_minus_due_ns,feedback_cycle";
   for (int i = 0; i < model.joint_count; ++i) {
     header.append(",").append(feedback_column(model.joints[i]));
   }
@@ -53,7 +53,7 @@ bool WireWriter::write(const WireRow& seen) noexcept {
   for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(setpoint.position[i]);
   for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(setpoint.velocity[i]);
   row.put(',').put_integer(setpoint.epoch).put(',').put_integer(setpoint.flags);
-  row.put(',').put_integer(seen.sent_minus_due_ns);
+  row.put(',').put_integer(seen.is_intact ? 1 : 0);
   row.put(',').put_integer(seen.arrival_ns - setpoint.due_ns);
   row.put(',').put_integer(seen.feedback_cycle);
   for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(seen.feedback[i]);
@@ -103,6 +103,7 @@ void WireBook::add(const WireRow& row) {
   ++received_;
   const bool is_dry = (setpoint.flags & kSetpointDry) != 0;
   dry_ += is_dry ? 1U : 0U;
+  not_intact_ += row.is_intact ? 0U : 1U;
   if (!is_dry) sent_[setpoint.cycle % kRemembered] = {setpoint.cycle, setpoint.position};
   const std::int64_t age = row.arrival_ns - setpoint.due_ns;
   oldest_ns_ = std::max(oldest_ns_, age);
@@ -129,6 +130,9 @@ std::string WireBook::to_text() const {
     add("  and %llu gaps more\n", static_cast<Count>(gap_count_ - gaps_.size()));
   }
   if (dry_ > 0) add("dry run    %llu of them: no drive followed\n", static_cast<Count>(dry_));
+  if (not_intact_ > 0) {
+    add("checksum   %llu of another service, or corrupted\n", static_cast<Count>(not_intact_));
+  }
   if (off_grid_ > 0) add("  %llu due times off the grid\n", static_cast<Count>(off_grid_));
   if (restarts_ > 0) {
     add("  the service was started anew %llu times\n", static_cast<Count>(restarts_));

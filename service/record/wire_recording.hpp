@@ -19,14 +19,14 @@ namespace meridian::record {
 /// A setpoint as it arrived, with the newest feedback that had come by then.
 struct WireRow {
   Setpoint setpoint;
-  std::int32_t sent_minus_due_ns = 0;
+  bool is_intact = true;             ///< its checksum fits it and the service that was followed
   std::int64_t arrival_ns = 0;       ///< clock of due_ns
   std::uint64_t feedback_cycle = 0;  ///< setpoint that the drives had taken; 0: no feedback yet
   JointVector feedback{};
 };
 
 /// Writes what was seen: a recording that `meridian check` reads. Columns: cycle, due_ns, line, the
-/// joints, their velocities, epoch, flags, sent_minus_due_ns, arrival_minus_due_ns, feedback_cycle,
+/// joints, their velocities, epoch, flags, is_intact, arrival_minus_due_ns, feedback_cycle,
 /// and `<joint>_feedback_mm` or `_rad`. The wire does not tell kind, state and plan time.
 /// Proof: tests/unit/record/wire_recording_test.cpp.
 class WireWriter {
@@ -71,6 +71,7 @@ class WireBook {
   std::int64_t cycle_ns_;
   std::uint64_t received_ = 0, missing_ = 0, longest_gap_ = 0, duplicates_ = 0, restarts_ = 0;
   std::uint64_t gap_count_ = 0, off_grid_ = 0, dry_ = 0;
+  std::uint64_t not_intact_ = 0;
   std::uint64_t last_cycle_ = 0;
   std::int64_t last_due_ = 0;
   std::vector<Gap> gaps_;

@@ -10,7 +10,7 @@ namespace meridian::soak {
 RunWatch::RunWatch(dds::Participant& participant, const MachineModel& model, SoakReport& report)
     : report_(report),
       health_(participant, report),
-      feedback_reader_(participant),
+      feedback_reader_(participant, {}, kFeedbackDepth),
       bridge_ns_(model.bridge_cycles * model.cycle_ns),
       host_(bridge_ns_),
       faults_(static_cast<double>(bridge_ns_) * 1e-9),

@@ -51,6 +51,7 @@ class RunWatch {
 
   SoakReport& report_;
   HealthWatch health_;
+  static constexpr int kFeedbackDepth = 16;
   dds::Reader<dds::DriveFeedback> feedback_reader_;
   dds::DriveFeedback feedback_;  ///< the newest
   std::int64_t bridge_ns_;       ///< what drives bridge

@@ -180,7 +180,7 @@ Seeds wire_seeds() {
   });
   add([](auto& seed) {
     for (const int word : {0x6, 0x7, 0xf}) {
-      for (std::uint16_t drive = 0; drive < 5; ++drive) {
+      for (std::uint8_t drive = 0; drive < 5; ++drive) {
         dds::DriveCommand command{
             .drive = drive, .controlword = static_cast<std::uint16_t>(word), .service_id = 1};
         append<meridian_wire_DriveCommand>(seed, kDriveCommand, command);

@@ -61,7 +61,7 @@ TEST(Exchange, GivesALateJoinerTheNewestOfEveryInstance) {
   Participant participant({.domain = domain.id(), .machine = "m"});
   Writer<DriveCommand> writer(participant);
   for (std::uint16_t word = 6; word < 16; ++word) {
-    for (std::uint16_t drive = 0; drive < 5; ++drive) {
+    for (std::uint8_t drive = 0; drive < 5; ++drive) {
       ASSERT_TRUE(writer.write({.drive = drive, .controlword = word}));
     }
   }

@@ -14,7 +14,7 @@ namespace {
 class Group : public testing::Test {
  protected:
   void command(std::uint16_t controlword, std::uint64_t service = 7) {
-    for (std::uint16_t i = 0; i < 5; ++i) {
+    for (std::uint8_t i = 0; i < 5; ++i) {
       dds::DriveCommand word;
       word.drive = i;
       word.controlword = controlword;
@@ -116,7 +116,7 @@ class TwoServices : public Group {
  protected:
   static constexpr std::uint64_t kObeyed = 41, kOther = 42;  // participants
   void command(std::uint16_t controlword, std::uint64_t service, std::uint64_t sender) {
-    for (std::uint16_t i = 0; i < 5; ++i) {
+    for (std::uint8_t i = 0; i < 5; ++i) {
       dds::DriveCommand word;
       word.drive = i;
       word.controlword = controlword;

@@ -28,7 +28,7 @@ class OnTheWire : public testing::Test {
   /// cycles for an hour, behind it.
   void period() {
     if (++n_ % 50 == 1) {
-      for (std::uint16_t drive = 0; drive < 5; ++drive) {
+      for (std::uint8_t drive = 0; drive < 5; ++drive) {
         dds::DriveCommand command;
         command.drive = drive;
         command.controlword = 0x06;

@@ -43,7 +43,7 @@ struct Rehearsal {
     dds::SetpointSample setpoint;
     setpoint.setpoint = record.setpoint;
     group.take(setpoint);
-    for (std::uint16_t i = 0; i < 5; ++i) group.take(command_of(i, record.state));
+    for (std::uint8_t i = 0; i < 5; ++i) group.take(command_of(i, record.state));
     group.work(1);
     report();
   }
@@ -158,7 +158,7 @@ struct Rehearsal {
     }
     world.in.feedback = merge.feedback();
   }
-  [[nodiscard]] dds::DriveCommand command_of(std::uint16_t drive, State state) const {
+  [[nodiscard]] dds::DriveCommand command_of(std::uint8_t drive, State state) const {
     const HomingAsked asked = asked_of(world.state.homing);
     const interpolator::DriveWords& words = merge.words();
     const interpolator::DriveOrder next =
