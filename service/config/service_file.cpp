@@ -44,6 +44,14 @@ void read_flight(Section section, const std::filesystem::path& folder, FlightCon
   section.finish();
 }
 
+void read_audit(Section section, const std::filesystem::path& folder, AuditConfig& audit) {
+  const std::string name = section.text_or("file", "");
+  if (!name.empty()) audit.file = (folder / name).lexically_normal();
+  audit.file_mb = section.integer_or("file_mb", audit.file_mb, 1, 10'000);
+  audit.files = section.integer_or("files", audit.files, 1, 1000);
+  section.finish();
+}
+
 void read_trace(Section section, const std::filesystem::path& folder, TraceConfig& trace) {
   const std::string name = section.text_or("folder", "");
   if (!name.empty()) trace.folder = (folder / name).lexically_normal();
@@ -91,6 +99,7 @@ ServiceConfig load_service(const std::filesystem::path& path) {
   Section file(path.string(), table);
   ServiceConfig config;
   read_service(file.section("service"), path.parent_path(), config);
+  read_audit(file.section_or("audit_log"), path.parent_path(), config.audit);
   read_flight(file.section_or("flight_recorder"), path.parent_path(), config.flight);
   read_realtime(file.section_or("realtime"), config.realtime);
   read_dds(file.section_or("dds"), config);

@@ -45,6 +45,13 @@ struct FlightConfig {
   int faults = 20;  ///< so many stay in the folder, the oldest go
 };
 
+/// The audit log: who did what (docs/security.md).
+struct AuditConfig {
+  std::filesystem::path file;  ///< empty: MACHINE.audit.log in the state directory, else none
+  int file_mb = 16;            ///< a longer one is put aside as FILE.1
+  int files = 10;              ///< so many are put aside, the oldest goes
+};
+
 /// Traces of slow cycles, docs/realtime.md.
 struct TraceConfig {
   std::filesystem::path folder;          ///< empty: none
@@ -63,6 +70,7 @@ struct ServiceConfig {
   std::filesystem::path log;              ///< log file; empty: standard error
   std::filesystem::path state_directory;  ///< of the journal; empty: $STATE_DIRECTORY, else none
 
+  AuditConfig audit;
   FlightConfig flight;
   RealtimeConfig realtime;
   TraceConfig trace;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "service/dds/sources.hpp"
 #include "service/interpolator/monotonic.hpp"
 
 namespace meridian::interpolator {
@@ -28,7 +29,8 @@ SmoothSettings settings_of(const dds::SessionRequest& request) {
 Intake::Intake(dds::Participant& participant, const MachineModel& model,
                const stream::ToolLengths& tools, const config::ServiceConfig& service,
                std::uint64_t service_id, Ports& ports)
-    : ports_(ports),
+    : participant_(participant),
+      ports_(ports),
       service_(service),
       judge_(model, tools, service_id),
       batches_(participant),
@@ -127,6 +129,9 @@ void Intake::take_requests() {
     publish(judge_.on_request(request, around(),
                               ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
     if (judge_.session() == request.session && judge_.is_held()) {
+      if (station_source_ != info.source) {
+        station_identity_ = dds::describe_source(participant_, requests_.handle(), info.source);
+      }
       station_source_ = info.source;
       is_station_there_ = true;
     }
@@ -215,6 +220,7 @@ void Intake::show() {
     view_.station = judge_.request().station;
     view_.program = judge_.request().program;
     view_.options = judge_.request().options;
+    view_.identity = station_identity_;
     view_.block_count = judge_.request().block_count;
     view_.blocks_received = judge_.next_sequence();
   }

@@ -21,6 +21,7 @@ namespace meridian::interpolator {
 struct SessionView {
   std::uint64_t session = 0;
   std::string station, program, options;
+  std::string identity;  ///< where the station runs
   std::uint64_t block_count = 0;
   std::uint64_t blocks_received = 0;
   std::uint64_t batches_dropped = 0, batches_lost = 0;
@@ -63,6 +64,7 @@ class Intake {
   /// Free places that the judge is not told of, for what is on its way while it computes credits.
   static constexpr std::size_t kReserve = 64;
 
+  dds::Participant& participant_;
   Ports& ports_;
   const config::ServiceConfig& service_;
   stream::IntakeJudge judge_;
@@ -77,6 +79,7 @@ class Intake {
   std::uint64_t cut_off_session_ = 0;  ///< newest one that show_cut_off() told of
   std::int64_t idle_since_ns_ = 0;
   std::uint64_t station_source_ = 0;
+  std::string station_identity_;
   bool is_station_there_ = false;
   std::int64_t looked_ns_ = 0;
   struct Ended {

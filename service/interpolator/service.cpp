@@ -13,6 +13,7 @@
 #include "interpolator_version.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/telemetry/file_name.hpp"
 #include "service/telemetry/log.hpp"
 
 namespace meridian::interpolator {
@@ -99,6 +100,29 @@ namespace {
   return lengths;
 }
 
+[[nodiscard]] telemetry::AuditOptions audit_options(const ServiceParts& parts) {
+  const config::AuditConfig& wish = parts.service.audit;
+  telemetry::AuditOptions options;
+  options.file = wish.file;
+  if (options.file.empty() && !parts.state_folder.empty()) {
+    options.file = parts.state_folder / (telemetry::plain_name(parts.model.name) + ".audit.log");
+  }
+  options.file_bytes = static_cast<std::uint64_t>(wish.file_mb) << 20U;
+  options.files = wish.files;
+  return options;
+}
+
+/// A line about the service itself.
+[[nodiscard]] telemetry::AuditEntry audit_entry(telemetry::AuditKind kind) {
+  std::array<char, 64> host{};
+  (void)::gethostname(host.data(), host.size() - 1);
+  telemetry::AuditEntry entry;
+  entry.identity = "process " + std::to_string(::getpid()) + " on host " + host.data();
+  entry.text = std::string("meridiand ") + kVersion;
+  entry.kind = kind;
+  return entry;
+}
+
 StartError served_already(const dds::MachineInfo& holder) {
   return StartError("machine '" + holder.name + "' is served already by meridiand on host " +
                     holder.host + ", process " + std::to_string(holder.pid) +
@@ -122,13 +146,14 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                     .transport = realtime.has_priorities() ? dds::Transport::kLoopbackRealtime
                                                            : dds::Transport::kLoopback}),
       lease_(participant_, machine_info(parts_, service_id_)),
+      audit_(audit_options(parts_)),
       publisher_(participant_, service_id_, ports_),
       feedback_(participant_, parts_.model, ports_),
       intake_(participant_, parts_.model, tool_lengths_, parts_.service, service_id_, ports_),
       planner_(parts_.model, parts_.tools, ports_),
       cycle_(parts_.model, cycle_options(parts_.service, parts_.homing), ports_),
       supervisor_(participant_, parts_.model, parts_.tools, parts_.service, service_id_,
-                  status_clock_, ports_),
+                  status_clock_, ports_, &audit_),
       recorder_(parts_.recording, parts_.model),
       journal_(parts_.state_folder, parts_.model.name),
       flight_(parts_.service.flight, parts_.model, log_),
@@ -140,6 +165,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
     intake_.set_action_peer(has_action_peer);
     intake_.wake();
   });
+  telemetry_.audit_into(audit_);
   take_lease();
   tell_security();
   tell_last_program();
@@ -228,6 +254,10 @@ void Service::start() {
     journal_.run([this](const std::string& complaint) { log_->error("{}", complaint); });
   });
   flight_thread_ = Thread(realtime_, {"flight", 0, false}, [this] { flight_.run(); });
+  audit_thread_ = Thread(realtime_, {"audit", 0, false}, [this] {
+    audit_.run([this](const std::string& complaint) { log_->error("{}", complaint); });
+  });
+  audit_.append(audit_entry(telemetry::AuditKind::kStart));
   if (tracer_) add("tracer", 0, false, [this] { tracer_->run(ports_.is_stopping); });
   add("telemetry", plan.io_priority, false, [this] { telemetry_.run(); });
   add("intake", plan.io_priority, false, [this] { intake_.run(); });
@@ -257,6 +287,9 @@ void Service::stop() {
   journal_thread_.join();
   flight_.stop();
   flight_thread_.join();
+  if (!is_stopped_) audit_.append(audit_entry(telemetry::AuditKind::kStop));
+  audit_.stop();
+  audit_thread_.join();
   const std::string complaint = recorder_.complaint();
   if (!std::exchange(is_stopped_, true) && !complaint.empty()) log_->error("{}", complaint);
 }

@@ -25,6 +25,7 @@
 #include "service/interpolator/status_clock.hpp"
 #include "service/interpolator/supervisor.hpp"
 #include "service/interpolator/telemetry_thread.hpp"
+#include "service/telemetry/audit_log.hpp"
 #include "service/trace/tracer.hpp"
 
 namespace meridian::interpolator {
@@ -83,6 +84,7 @@ class Service {
   StatusClock status_clock_;
   dds::Participant participant_;
   Lease lease_;
+  telemetry::AuditLog audit_;
   Publisher publisher_;
   FeedbackListener feedback_;
   Intake intake_;
@@ -95,7 +97,7 @@ class Service {
   TelemetryThread telemetry_;
   std::unique_ptr<trace::Tracer> tracer_;
   std::vector<Thread> threads_;
-  Thread recorder_thread_, journal_thread_, flight_thread_;
+  Thread recorder_thread_, journal_thread_, flight_thread_, audit_thread_;
   bool is_stopped_ = false;
 };
 

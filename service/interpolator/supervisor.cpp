@@ -17,13 +17,15 @@ constexpr auto kLookAtRings = std::chrono::milliseconds(2);
 
 Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
                        const ToolTable& tools, const config::ServiceConfig& service,
-                       std::uint64_t service_id, const StatusClock& status_clock, Ports& ports)
+                       std::uint64_t service_id, const StatusClock& status_clock, Ports& ports,
+                       telemetry::AuditLog* audit)
     : model_(model),
       tools_(tools),
       service_(service),
       service_id_(service_id),
       status_clock_(status_clock),
       ports_(ports),
+      audit_(audit),
       commands_(participant),
       replies_(participant),
       jogs_(participant),

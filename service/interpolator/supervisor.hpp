@@ -19,6 +19,7 @@
 #include "service/interpolator/jog_intake.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/status_clock.hpp"
+#include "service/telemetry/audit_log.hpp"
 
 namespace meridian::interpolator {
 
@@ -29,7 +30,7 @@ class Supervisor {
  public:
   Supervisor(dds::Participant& participant, const MachineModel& model, const ToolTable& tools,
              const config::ServiceConfig& service, std::uint64_t service_id,
-             const StatusClock& status_clock, Ports& ports);
+             const StatusClock& status_clock, Ports& ports, telemetry::AuditLog* audit = nullptr);
 
   /// Runs until Ports::is_stopping.
   void run() noexcept;
@@ -99,6 +100,7 @@ class Supervisor {
   std::uint64_t service_id_;
   const StatusClock& status_clock_;
   Ports& ports_;
+  telemetry::AuditLog* audit_;  ///< nullptr: none is kept
   dds::Reader<dds::CommandRequest> commands_;
   dds::Writer<dds::Reply> replies_;
   dds::Reader<dds::Jog> jogs_;

@@ -183,6 +183,9 @@ void TelemetryThread::tell(const Event& event) {
       has_news_ = true;
       break;
     case EventCode::kStateChanged:
+      if (static_cast<State>(event.a) == State::kFault) {
+        note(telemetry::AuditKind::kFault, alarm_message_, intake_.view());
+      }
       // Those of faults end with Fault, however soon the next enable follows the reset.
       if (static_cast<State>(event.b) == State::kFault) {
         status_.alarm = Alarm::kNone;
@@ -297,6 +300,18 @@ void TelemetryThread::say_what_is_new(const SessionView& session, bool has_told_
   if (!is_declared) status_.message = approach_message_ = approach_;
 }
 
+void TelemetryThread::note(telemetry::AuditKind kind, const std::string& text,
+                           const SessionView& session) {
+  if (audit_ == nullptr) return;
+  telemetry::AuditEntry entry;
+  entry.kind = kind;
+  entry.identity = session.identity;
+  entry.operator_name = session.station;
+  entry.state = kind == telemetry::AuditKind::kFault ? State::kFault : view_.record.state;
+  entry.text = text;
+  audit_->append(std::move(entry));
+}
+
 void TelemetryThread::publish_status(std::int64_t now_ns) {
   const CycleRecord& record = view_.record;
   const SessionView session = intake_.view();
@@ -307,7 +322,10 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   // among the records by now, its alarm among the events.
   if (is_other_session) drain();
   const bool has_told_program = (is_other_session || is_last) && tell_program();
-  if (is_other_session && session.session != 0) status.blocks_done = 0;
+  if (is_other_session && session.session != 0) {
+    status.blocks_done = 0;
+    note(telemetry::AuditKind::kSession, session.program, session);
+  }
   if (status.state == State::kFault && record.state == State::kOff) status.alarm = Alarm::kNone;
   ++status.status_sequence;
   status.time_ns = now_ns;

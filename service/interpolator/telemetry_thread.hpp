@@ -15,6 +15,7 @@
 #include "service/interpolator/intake.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/status_clock.hpp"
+#include "service/telemetry/audit_log.hpp"
 #include "service/telemetry/flight_recorder.hpp"
 #include "service/telemetry/journal.hpp"
 #include "service/telemetry/journal_keeper.hpp"
@@ -39,6 +40,9 @@ class TelemetryThread {
   /// Before run(): what the status says until there is something newer.
   void say_first(const std::string& message) { status_.message = message; }
 
+  /// Before run(): Faults and sessions go into this log too.
+  void audit_into(telemetry::AuditLog& audit) { audit_ = &audit; }
+
   /// Runs until Ports::is_stopping; what is in the rings by then is drained.
   void run() noexcept;
 
@@ -59,6 +63,8 @@ class TelemetryThread {
   /// `words` with the approach behind them, where that is still ahead.
   [[nodiscard]] std::string with_approach(const std::string& words) const;
   void keep_journal(std::int64_t now_ns);
+  /// A line of the audit log about what nobody commanded.
+  void note(telemetry::AuditKind kind, const std::string& text, const SessionView& session);
   void publish_status(std::int64_t now_ns);
   void publish_latency(std::int64_t now_ns);
 
@@ -72,6 +78,7 @@ class TelemetryThread {
   telemetry::FlightRecorder& flight_;
   std::shared_ptr<spdlog::logger> log_;
   Ports& ports_;
+  telemetry::AuditLog* audit_ = nullptr;
   dds::Writer<dds::Status> statuses_;
   dds::Writer<dds::Latency> latencies_;
 

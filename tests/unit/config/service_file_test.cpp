@@ -39,6 +39,7 @@ TEST(ServiceFile, GivesWhatItSays) {
       "[service]\nmachine = \"/etc/m.toml\"\nauxiliary = \"ignore\"\nrecording = \"r.csv\"\n"
       "state_directory = \"kept\"\n"
       "bridge_cycles = 7\nblock_queue = 5000\noptional_stop = true\nfeedback_timeout_s = 0.25\n"
+      "[audit_log]\nfile = \"a/who.log\"\nfile_mb = 3\nfiles = 4\n"
       "[flight_recorder]\nfolder = \"faults\"\nseconds = 2.5\nfaults = 7\n"
       "[realtime]\nmode = \"best_effort\"\ncpu = 1\nlock_memory = false\n"
       "[dds]\ndomain = 42\npartition = \"cell 3\"\n"
@@ -48,6 +49,9 @@ TEST(ServiceFile, GivesWhatItSays) {
   EXPECT_EQ(config.recording, file.path().parent_path() / "r.csv");
   EXPECT_EQ(config.flight.folder, file.path().parent_path() / "faults");
   EXPECT_EQ(config.flight.seconds, 2.5);
+  EXPECT_EQ(config.audit.file, file.path().parent_path() / "a/who.log");
+  EXPECT_EQ(config.audit.file_mb, 3);
+  EXPECT_EQ(config.audit.files, 4);
   EXPECT_EQ(config.flight.faults, 7);
   EXPECT_EQ(config.auxiliary, AuxiliaryPolicy::kIgnore);
   EXPECT_TRUE(config.optional_stop);

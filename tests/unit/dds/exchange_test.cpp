@@ -104,7 +104,8 @@ TEST(Exchange, KeepsNothingOfSessionsThatAreOver) {
   for (std::uint64_t session = 1; session <= kWarmUp + kSessions; ++session) {
     if (session == kWarmUp) before_kB = resident_kB();
     ASSERT_TRUE(requests.write({.session = session, .station = "cam", .program = "part"}));
-    ASSERT_TRUE(eventually([&] { return asked.take(request, info) && request.session == session; }));
+    ASSERT_TRUE(
+        eventually([&] { return asked.take(request, info) && request.session == session; }));
     ASSERT_TRUE(credits.write({.session = session, .text = "opened"}));
     credits.dispose({.session = session});
     while (heard.take(credit, info)) continue;
