@@ -136,9 +136,11 @@ int run_drives(const DrivesOptions& options) {
       static_cast<unsigned long long>(report.setpoints_seen),
       static_cast<unsigned long long>(report.periods_bridged),
       static_cast<unsigned long long>(report.actions));
-  if (report.setpoints_of_others > 0) {
-    std::printf("%llu setpoints of services that the drives did not obey were passed over\n",
-                static_cast<unsigned long long>(report.setpoints_of_others));
+  for (std::size_t i = 1; i < drives::kDropKinds; ++i) {
+    const auto kind = static_cast<drives::Drop>(i);
+    if (report.dropped[kind] == 0) continue;
+    std::printf("%llu %s were dropped\n", static_cast<unsigned long long>(report.dropped[kind]),
+                drives::name_of(kind));
   }
   return kFine;
 }

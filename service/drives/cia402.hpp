@@ -10,9 +10,15 @@ namespace meridian::drives {
 /// Object 603Fh.
 enum ErrorCode : std::uint16_t {
   kErrorNone = 0,
-  kErrorDevice = 0x5000,           ///< injected: device hardware
-  kErrorFollowing = 0x8611,        ///< following error beyond the joint's limit
-  kErrorSetpointsStopped = 0x8700  ///< synchronous controller: setpoints stayed away
+  kErrorDevice = 0x5000,            ///< injected: device hardware
+  kErrorFollowing = 0x8611,         ///< following error beyond the joint's limit
+  kErrorSetpointsStopped = 0x8700,  ///< synchronous controller: setpoints stayed away
+  // Manufacturer specific: a setpoint of the master broke the drive's own limits.
+  kErrorSetpointNoNumber = 0xFF01,  ///< position or velocity is no number, or absurd
+  kErrorSetpointTravel = 0xFF02,    ///< outside of travel
+  kErrorSetpointVelocity = 0xFF03,  ///< its velocity is beyond the limit
+  kErrorSetpointStep = 0xFF04,      ///< farther from the last one than the limit reaches
+  kErrorSetpointBegin = 0xFF05      ///< the first one to follow is not where the drive stands
 };
 
 /// Returns the state that `controlword` (object 6040h) leads to from `state`. `before` is the

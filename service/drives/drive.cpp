@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "service/drives/setpoint_check.hpp"
+
 namespace meridian::drives {
 
 namespace {
@@ -20,7 +22,8 @@ constexpr double kSearchShare = 0.1;  ///< of the velocity limit
 }  // namespace
 
 Drive::Drive(const JointSpec& spec, const ServoLag& lag, const HomingPlan& homing)
-    : limits_(spec.limits),
+    : spec_(spec),
+      limits_(spec.limits),
       lag_(lag),
       homing_(homing, spec.home, homing.is_referenced ? 0 : spec.home + away_from_home(spec),
               kSearchShare * spec.limits.velocity),
@@ -101,9 +104,20 @@ void Drive::work(const DriveInput& input, double dt_s) noexcept {
 
 void Drive::take_target(const DriveInput& input, double dt_s) noexcept {
   if (input.is_new) {
+    if (input.is_enabled) {
+      const std::uint16_t error =
+          check_setpoint(spec_, {.position = input.position,
+                                 .velocity = input.velocity,
+                                 .is_fault_stop = input.is_fault_stop,
+                                 .has_begun = is_following_,
+                                 .from = is_following_ ? accepted_ : servo_.position,
+                                 .elapsed_s = input.elapsed_s,
+                                 .is_referenced = is_referenced()});
+      if (error != kErrorNone) return refuse(error, dt_s);
+      target_ = accepted_ = input.position;
+    }
     is_following_ = input.is_enabled;
     target_velocity_ = is_following_ ? input.velocity : 0;
-    if (is_following_) target_ = input.position;
     return;
   }
   if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
@@ -118,8 +132,11 @@ void Drive::search(const DriveInput& input, double dt_s) noexcept {
   servo_.position += renamed;
 }
 
-void Drive::miss_setpoints(double dt_s) noexcept {
-  error_ = kErrorSetpointsStopped;
+void Drive::miss_setpoints(double dt_s) noexcept { refuse(kErrorSetpointsStopped, dt_s); }
+
+/// Goes on with the last velocity that it accepted, and ramps that down.
+void Drive::refuse(std::uint16_t error, double dt_s) noexcept {
+  error_ = error;
   state_ = DriveState::kFaultReaction;
   homing_.ask(false);
   ramp_down(dt_s);

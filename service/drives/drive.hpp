@@ -12,20 +12,22 @@
 
 namespace meridian::drives {
 
-/// What the group tells a drive for one period.
+/// What the group passes to a drive for one period.
 struct DriveInput {
-  bool is_new = false;      ///< a setpoint came since the last period
-  bool is_enabled = false;  ///< it asks to be followed
+  bool is_new = false;         ///< a setpoint came since the last period
+  bool is_enabled = false;     ///< it asks to be followed
+  bool is_fault_stop = false;  ///< it is of a FaultStop
   double position = 0, velocity = 0;
+  double elapsed_s = 0;     ///< since the setpoint before it
   int periods_without = 0;  ///< periods since the newest setpoint, lost ones too
   int bridge_cycles = 3;    ///< so many are bridged by the velocity
   double bridged_s = 0;     ///< what of this step the bridge still covers; 0 with a new setpoint
 };
 
 /// One simulated servo drive in cyclic synchronous position mode or homing mode: CiA 402 states,
-/// servo lag, following error, and the watchdog that bridges missing setpoints by the sent
-/// velocity, then ramps down and goes to fault: nobody's drive stays in operation. Time is the
-/// argument of work(). Proof: tests/unit/drives/drive_test.cpp.
+/// servo lag, following error, the check of each setpoint, and the watchdog that bridges missing
+/// setpoints by the sent velocity, then ramps down and goes to fault: nobody's drive stays in
+/// operation. Time is the argument of work(). Proof: tests/unit/drives/drive_test.cpp.
 class Drive {
  public:
   /// It stands at `home`, or beside it without a reference (HomingPlan).
@@ -59,10 +61,12 @@ class Drive {
  private:
   void take_mode(std::uint8_t mode) noexcept;
   void take_target(const DriveInput& input, double dt_s) noexcept;
+  void refuse(std::uint16_t error, double dt_s) noexcept;
   void search(const DriveInput& input, double dt_s) noexcept;
   void miss_setpoints(double dt_s) noexcept;
   void ramp_down(double dt_s) noexcept;
 
+  JointSpec spec_;
   JointLimits limits_;
   ServoLag lag_;
   DriveState state_ = DriveState::kSwitchOnDisabled;
@@ -72,6 +76,7 @@ class Drive {
   HomingSearch homing_;
   ServoState servo_;
   double target_ = 0, target_velocity_ = 0;
+  double accepted_ = 0;        ///< position of the last setpoint that it follows
   bool is_following_ = false;  ///< took an enabled setpoint since operation was enabled
   bool is_blocked_ = false, has_power_ = true;
   std::optional<double> sick_time_constant_s_;

@@ -9,17 +9,6 @@
 #include "meridian/kinematics/limited.hpp"
 
 namespace meridian::drives {
-namespace {
-
-/// What no drive is ever told, mm or rad and per second: beyond it sums of setpoints lose meaning.
-constexpr double kBeyondAnything = 1e9;
-
-[[nodiscard]] bool is_sane(double value) noexcept {
-  return std::abs(value) < kBeyondAnything;  // false for what is no number
-}
-
-}  // namespace
-
 DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag,
                        const std::vector<HomingPlan>& homing)
     : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9), bridge_cycles_(model.bridge_cycles) {
@@ -37,47 +26,81 @@ bool DriveGroup::is_off() const noexcept {
   });
 }
 
-void DriveGroup::take(const dds::DriveCommand& command, std::uint64_t sender) noexcept {
-  if (command.drive >= drives_.size() || is_dead_) return;
-  if (command.service_id != service_id_) {
-    if (service_id_ != 0 && !is_off()) return;
-    service_id_ = command.service_id;
-    has_setpoint_ = false;
-    for (const Told& told : told_) {
-      if (told.service_id == service_id_) bridge_cycles_ = told.bridge_cycles;
-    }
+Drop DriveGroup::take(const dds::DriveCommand& command, std::uint64_t sender) noexcept {
+  const Master from{sender, command.service_id};
+  const Master before = pin_.master();
+  Drop drop = Drop::kNone;
+  if (command.service_id == 0 || command.drive >= drives_.size()) {
+    drop = Drop::kImplausible;
+  } else if (!pin_.obeys(from)) {
+    drop = Drop::kForeignCommand;
   }
-  sender_ = sender;
-  drives_[command.drive].take_controlword(command.controlword, command.mode);
+  dropped_.count(drop);
+  if (drop != Drop::kNone) return drop;
+  if (before != from) obey_new_master();
+  if (!is_dead_) drives_[command.drive].take_controlword(command.controlword, command.mode);
+  return drop;
 }
+
+void DriveGroup::obey_new_master() noexcept {
+  has_setpoint_ = is_new_ = false;
+  age_ = {};
+  for (const Told& told : told_) {
+    if (told.service_id == pin_.master().service_id) bridge_cycles_ = told.bridge_cycles;
+  }
+}
+
+void DriveGroup::see_master(bool is_there) noexcept { pin_.work(is_there, is_off()); }
 
 void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
   if (!machine.is_serving) return;
   const Told told{machine.service_id, static_cast<int>(machine.bridge_cycles)};
   told_[told_at_++ % told_.size()] = told;
-  if (service_id_ == 0 || service_id_ == told.service_id) bridge_cycles_ = told.bridge_cycles;
+  const std::uint64_t obeyed = pin_.master().service_id;
+  if (obeyed == 0 || obeyed == told.service_id) bridge_cycles_ = told.bridge_cycles;
 }
 
-bool DriveGroup::take(const dds::SetpointSample& setpoint, std::uint64_t sender) noexcept {
-  if (service_id_ != 0 && sender != sender_) {
-    ++setpoints_of_others_;
-    return false;
+Drop DriveGroup::take(const dds::SetpointSample& setpoint, std::uint64_t sender,
+                      std::int64_t arrival_ns) noexcept {
+  const Drop drop = check(setpoint, sender, arrival_ns);
+  dropped_.count(drop);
+  if (drop != Drop::kNone) return drop;
+  if ((setpoint.setpoint.flags & kSetpointDry) != 0) return drop;
+  if (is_dead_ || !setpoint_faults_.lets_pass(setpoint)) return drop;
+  return accept(setpoint);
+}
+
+Drop DriveGroup::check(const dds::SetpointSample& setpoint, std::uint64_t sender,
+                       std::int64_t arrival_ns) noexcept {
+  if (pin_.state() == MasterPin::State::kFree) return Drop::kNoMaster;
+  if (!pin_.is_master(sender)) return Drop::kForeignSetpoint;
+  if (setpoint.crc != dds::setpoint_crc(setpoint.setpoint, pin_.master().service_id)) {
+    return Drop::kChecksum;
   }
-  if ((setpoint.setpoint.flags & kSetpointDry) != 0) return true;
-  if (!is_dead_ && setpoint_faults_.lets_pass(setpoint)) accept(setpoint);
-  return true;
+  if (arrival_ns == 0) return Drop::kNone;
+  const auto longest_ns = static_cast<std::int64_t>(1e9 * cycle_s_ * (bridge_cycles_ + 1));
+  const bool is_late = age_.is_late(setpoint.setpoint.due_ns, arrival_ns, longest_ns, is_off());
+  return is_late ? Drop::kStale : Drop::kNone;
 }
 
-void DriveGroup::accept(const dds::SetpointSample& setpoint) noexcept {
-  const bool is_sound = std::all_of(drives_.begin(), drives_.end(), [&](const Drive& drive) {
-    const auto i = static_cast<std::size_t>(&drive - drives_.data());
-    return is_sane(setpoint.setpoint.position[i]) && is_sane(setpoint.setpoint.velocity[i]);
-  });
-  const bool is_newer = !has_setpoint_ || setpoint.setpoint.cycle > newest_.setpoint.cycle;
-  if (!is_sound || (!is_newer && !is_off())) return;
+Drop DriveGroup::accept(const dds::SetpointSample& setpoint) noexcept {
+  if (has_setpoint_ && setpoint.setpoint.cycle <= newest_.setpoint.cycle) {
+    dropped_.count(Drop::kOutOfOrder);
+    return Drop::kOutOfOrder;
+  }
   newest_ = setpoint;
   has_setpoint_ = is_new_ = true;
   ++setpoints_seen_;
+  return Drop::kNone;
+}
+
+/// Between the setpoint that the drives worked with last and the newest: by the sender's cycles,
+/// and no longer than this side's own periods allow.
+double DriveGroup::elapsed_s() const noexcept {
+  constexpr std::int64_t kSlack = 2;  // periods of two clocks
+  const std::uint64_t cycles = newest_.setpoint.cycle - followed_cycle_;
+  const auto most = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
+  return cycle_s_ * static_cast<double>(std::min(cycles, most));
 }
 
 void DriveGroup::work(int periods) noexcept {
@@ -86,7 +109,7 @@ void DriveGroup::work(int periods) noexcept {
   if (is_dead_) return;
   const double dt_s = cycle_s_ * periods;
   setpoint_faults_.work(periods);
-  for (dds::SetpointSample late; setpoint_faults_.arrives(late);) accept(late);
+  for (dds::SetpointSample late; setpoint_faults_.arrives(late);) static_cast<void>(accept(late));
   // Who slept through a setpoint did not miss it: periods that this side lost count from the next
   // one on, when a service that the same host held up has sent again.
   periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
@@ -96,12 +119,24 @@ void DriveGroup::work(int periods) noexcept {
   const int bridged = is_new_ ? 0 : std::min(periods, bridge_left_);
   bridge_left_ -= bridged;
   if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
+  periods_since_ += periods;
   const bool is_enabled = (newest_.setpoint.flags & kSetpointEnabled) != 0;
+  const bool is_fault_stop = (newest_.setpoint.flags & kSetpointFaultStop) != 0;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    drives_[i].work(
-        {is_new_, is_enabled, newest_.setpoint.position[i], newest_.setpoint.velocity[i],
-         periods_without_, bridge_cycles_, cycle_s_ * bridged},
-        dt_s);
+    drives_[i].work({.is_new = is_new_,
+                     .is_enabled = is_enabled,
+                     .is_fault_stop = is_fault_stop,
+                     .position = newest_.setpoint.position[i],
+                     .velocity = newest_.setpoint.velocity[i],
+                     .elapsed_s = elapsed_s(),
+                     .periods_without = periods_without_,
+                     .bridge_cycles = bridge_cycles_,
+                     .bridged_s = cycle_s_ * bridged},
+                    dt_s);
+  }
+  if (is_new_) {
+    followed_cycle_ = newest_.setpoint.cycle;
+    periods_since_ = 0;
   }
   is_new_ = false;
   work_on_injections(dt_s);
@@ -192,6 +227,7 @@ dds::DriveFeedback DriveGroup::feedback() noexcept {
   feedback.joint_mask = (1U << drives_.size()) - 1;
   feedback.sample = ++sample_;
   feedback.cycle_seen = has_setpoint_ ? newest_.setpoint.cycle : 0;
+  feedback.service_id = pin_.master().service_id;
   feedback.is_emergency_stop = is_emergency_stop_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     feedback.position[i] = drives_[i].position();

@@ -9,16 +9,18 @@
 #include "service/dds/messages.hpp"
 #include "service/drives/drive.hpp"
 #include "service/drives/injection.hpp"
+#include "service/drives/master.hpp"
 #include "service/drives/report_faults.hpp"
 #include "service/drives/report_wire.hpp"
+#include "service/drives/setpoint_age.hpp"
 #include "service/drives/setpoint_faults.hpp"
 
 namespace meridian::drives {
 
 /// All drives of a machine behind one wire: takes the service's setpoints and controlwords, works
-/// once per period, tells feedback. It obeys one service until every drive is off, and takes the
-/// setpoints of that one alone: those that the participant sends whose controlwords it obeys.
-/// Setpoints are fresh by their cycle number, not by their clock.
+/// once per period, reports feedback. It obeys one master (MasterPin), drops what others send, and
+/// checks what the master sends: checksum, order and age here, limits in each drive
+/// (check_setpoint).
 /// Proof: tests/unit/drives/drive_group_test.cpp.
 class DriveGroup {
  public:
@@ -28,11 +30,14 @@ class DriveGroup {
              const std::vector<HomingPlan>& homing = {});
 
   /// `sender`: dds::participant_of() its writer; 0: not known.
-  void take(const dds::DriveCommand& command, std::uint64_t sender = 0) noexcept;
-  /// False: it is of somebody whom the drives do not obey, and nothing changed but their count.
-  bool take(const dds::SetpointSample& setpoint, std::uint64_t sender = 0) noexcept;
-  /// How many periods are bridged is told by the service that is obeyed, or by one that serves
-  /// where none is obeyed yet.
+  Drop take(const dds::DriveCommand& command, std::uint64_t sender) noexcept;
+  /// `arrival_ns`: by the receiver's clock; 0: not known, and age is not checked.
+  Drop take(const dds::SetpointSample& setpoint, std::uint64_t sender,
+            std::int64_t arrival_ns = 0) noexcept;
+  /// Once a period, before work(): whether DDS still knows the master's writer.
+  void see_master(bool is_there) noexcept;
+  /// How many periods are bridged says the service that is obeyed, or one that serves where none is
+  /// obeyed yet.
   void take(const dds::MachineInfo& machine) noexcept;
   /// Goes wrong when its time has come.
   void inject(const Injection& injection) { injections_.push_back(injection); }
@@ -51,14 +56,18 @@ class DriveGroup {
 
   [[nodiscard]] const Drive& drive(int index) const noexcept { return drives_[index]; }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(drives_.size()); }
-  [[nodiscard]] std::uint64_t service_id() const noexcept { return service_id_; }
+  [[nodiscard]] const MasterPin& pin() const noexcept { return pin_; }
+  [[nodiscard]] const DropCounts& dropped() const noexcept { return dropped_; }
   [[nodiscard]] std::uint64_t setpoints_seen() const noexcept { return setpoints_seen_; }
-  [[nodiscard]] std::uint64_t setpoints_of_others() const noexcept { return setpoints_of_others_; }
   [[nodiscard]] std::uint64_t periods_bridged() const noexcept { return periods_bridged_; }
 
  private:
   [[nodiscard]] bool is_off() const noexcept;
-  void accept(const dds::SetpointSample& setpoint) noexcept;
+  [[nodiscard]] Drop check(const dds::SetpointSample& setpoint, std::uint64_t sender,
+                           std::int64_t arrival_ns) noexcept;
+  Drop accept(const dds::SetpointSample& setpoint) noexcept;
+  void obey_new_master() noexcept;
+  [[nodiscard]] double elapsed_s() const noexcept;
   void mend() noexcept;
   void work_on_injections(double dt_s) noexcept;
 
@@ -72,16 +81,18 @@ class DriveGroup {
   };
   std::array<Told, 8> told_{};  ///< newest services, in a ring
   std::size_t told_at_ = 0;
-  std::uint64_t service_id_ = 0;  ///< whom the drives obey; 0: nobody yet
-  std::uint64_t sender_ = 0;      ///< the participant that it is
+  MasterPin pin_;
+  DropCounts dropped_;
+  SetpointAge age_;
   dds::SetpointSample newest_;
   bool has_setpoint_ = false, is_new_ = false;
   int periods_without_ = 0;  ///< since the newest setpoint
   int bridge_left_ = 0;      ///< periods for which the newest setpoint's velocity still leads on
   int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
+  std::uint64_t followed_cycle_ = 0;  ///< of the setpoint that the drives worked with last
+  std::int64_t periods_since_ = 0;    ///< own periods since then
   double enabled_s_ = 0;
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
-  std::uint64_t setpoints_of_others_ = 0;
   bool is_silent_ = false, is_dead_ = false, is_emergency_stop_ = false;
   ReportFaults report_faults_;
   ReportWire report_wire_;

@@ -13,9 +13,9 @@
 #include "meridian/kinematics/limited.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
-#include "service/dds/sources.hpp"
 #include "service/dds/writer.hpp"
 #include "service/drives/action_peer.hpp"
+#include "service/drives/drive_intake.hpp"
 
 namespace meridian::drives {
 
@@ -70,62 +70,6 @@ class StateTeller {
   std::array<DriveState, kMaxJoints> seen_;
 };
 
-/// Setpoints and controlwords from the wire to the group, with who sends them.
-class Orders {
- public:
-  Orders(dds::Participant& participant, const std::function<void(const std::string&)>& say)
-      : participant_(participant),
-        say_(say),
-        setpoints_(participant, {}, kDepth),
-        commands_(participant) {}
-
-  void take(DriveGroup& group) {
-    dds::SampleInfo info;
-    while (commands_.take(command_, info)) {
-      if (info.is_valid)
-        group.take(command_, senders_.participant_of(commands_.handle(), info.source));
-    }
-    while (setpoints_.take(setpoint_, info)) {
-      if (!info.is_valid) continue;
-      const auto sender = senders_.participant_of(setpoints_.handle(), info.source);
-      if (!group.take(setpoint_, sender)) tell_other(info.source);
-    }
-  }
-
- private:
-  /// Setpoints that wait to be taken: those of one service do not hide those of another.
-  static constexpr int kDepth = 16;
-
-  /// Says it of a service whose setpoints come for longer than its first controlword may take.
-  void tell_other(std::uint64_t source) {
-    constexpr std::int64_t kPatience_ns = 250'000'000;
-    const auto known = std::find_if(others_.begin(), others_.end(), [source](const Other& other) {
-      return other.source == source;
-    });
-    Other& other = known != others_.end() ? *known : others_[others_at_++ % others_.size()];
-    if (known == others_.end()) other = {source, monotonic_ns(), false};
-    if (other.is_told || monotonic_ns() - other.first_ns < kPatience_ns) return;
-    other.is_told = true;
-    say_("setpoints of " + dds::describe_source(participant_, setpoints_.handle(), source) +
-         " are passed over: the drives obey another service");
-  }
-
-  const dds::Participant& participant_;
-  const std::function<void(const std::string&)>& say_;
-  dds::Reader<dds::SetpointSample> setpoints_;
-  dds::Reader<dds::DriveCommand> commands_;
-  dds::Senders senders_;
-  dds::SetpointSample setpoint_;
-  dds::DriveCommand command_;
-  struct Other {
-    std::uint64_t source = 0;
-    std::int64_t first_ns = 0;  ///< when a setpoint of it was first passed over
-    bool is_told = false;
-  };
-  std::array<Other, 8> others_{};  ///< in a ring
-  std::size_t others_at_ = 0;
-};
-
 /// The PLC's end of the wire.
 class ActionLink {
  public:
@@ -175,7 +119,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
   for (const Injection& injection : options.injections) group.inject(injection);
   StateTeller teller(model, say);
   dds::Writer<dds::DriveFeedback> feedbacks(participant);
-  Orders orders(participant, say);
+  DriveIntake intake(participant, say);
   dds::Reader<dds::MachineInfo> machines(participant);
   std::optional<ActionLink> actions;
   if (options.is_action_peer) actions.emplace(participant, options);
@@ -193,7 +137,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     const std::int64_t lost = (now_ns - due_ns) / model.cycle_ns;
     due_ns += lost * model.cycle_ns;
     while (machines.take(machine)) group.take(machine);
-    orders.take(group);
+    intake.work(group, now_ns);
     Injection injection;
     while (options.injections_now != nullptr && options.injections_now->try_pop(injection)) {
       group.inject_now(injection);
@@ -206,7 +150,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     report.periods_lost += static_cast<std::uint64_t>(lost);
   }
   report.setpoints_seen = group.setpoints_seen();
-  report.setpoints_of_others = group.setpoints_of_others();
+  report.dropped = intake.dropped(group);
   report.periods_bridged = group.periods_bridged();
   if (actions) report.actions = actions->actions();
   return report;

@@ -34,7 +34,7 @@ struct SimulatedDrivesOptions {
 struct SimulatedDrivesReport {
   std::uint64_t periods = 0, periods_lost = 0, setpoints_seen = 0, periods_bridged = 0;
   std::uint64_t actions = 0;
-  std::uint64_t setpoints_of_others = 0;  ///< of services that the drives did not obey
+  DropCounts dropped;
 };
 
 /// Puts a DriveGroup and an ActionPeer on the wire and works at the machine's cycle time until

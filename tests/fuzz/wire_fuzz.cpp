@@ -256,7 +256,10 @@ class Listeners {
     dds::SetpointSample setpoint;
     in.read<meridian_wire_Setpoint>(setpoint);
     const std::uint64_t before = drives_.setpoints_seen();
-    drives_.take(setpoint);
+    const std::uint64_t sender = 40 + in.next<std::uint8_t>() % 3U;
+    // Else no seed gets past the checksum.
+    if (sender != 42) setpoint.crc = dds::setpoint_crc(setpoint.setpoint, 1);
+    drives_.take(setpoint, sender);
     const bool is_dry = choose(kSetpointOfDryRun, (setpoint.setpoint.flags & kSetpointDry) != 0);
     require(!is_dry || drives_.setpoints_seen() == before, "drives follow a dry run");
     work_drives();
@@ -266,7 +269,8 @@ class Listeners {
     in.read<meridian_wire_DriveCommand>(command);
     command.drive %= 8;
     command.service_id %= 3;
-    drives_.take(command);
+    drives_.take(command, 40 + command.service_id);
+    drives_.see_master(command.mode != 0);
     work_drives();
   }
   void work_drives() {

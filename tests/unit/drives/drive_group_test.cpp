@@ -11,28 +11,39 @@
 namespace meridian::drives {
 namespace {
 
+constexpr std::uint64_t kMaster = 41, kOther = 42;  // participants
+
+dds::SetpointSample signed_by(std::uint64_t service, const Setpoint& setpoint) {
+  return {setpoint, dds::setpoint_crc(setpoint, service)};
+}
+
 class Group : public testing::Test {
  protected:
-  void command(std::uint16_t controlword, std::uint64_t service = 7) {
+  void command(std::uint16_t controlword, std::uint64_t service = 7,
+               std::uint64_t sender = kMaster) {
     for (std::uint8_t i = 0; i < 5; ++i) {
       dds::DriveCommand word;
       word.drive = i;
       word.controlword = controlword;
       word.service_id = service;
-      group_.take(word);
+      group_.take(word, sender);
     }
+  }
+  /// The drives' own ramp is over.
+  void come_to_rest() {
+    for (int n = 0; n < 200; ++n) group_.work(1);
   }
   void enable() {
     for (const std::uint16_t controlword : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F})
       command(controlword);
   }
   void send(double x, std::uint16_t flags = kSetpointEnabled, double velocity = 0) {
-    dds::SetpointSample sample;
-    sample.setpoint.cycle = ++cycle_;
-    sample.setpoint.position[0] = x;
-    sample.setpoint.velocity[0] = velocity;
-    sample.setpoint.flags = flags;
-    group_.take(sample);
+    Setpoint setpoint;
+    setpoint.cycle = ++cycle_;
+    setpoint.position[0] = x;
+    setpoint.velocity[0] = velocity;
+    setpoint.flags = flags;
+    group_.take(signed_by(7, setpoint), kMaster);
   }
 
   MachineModel model_ = test::lai_machine();
@@ -67,20 +78,72 @@ TEST_F(Group, AnOldSetpointIsNotFollowed) {
   send(0.5);
   group_.work(1);
   EXPECT_EQ(group_.feedback().position[0], 1);
+  EXPECT_EQ(group_.dropped()[Drop::kOutOfOrder], 1U);
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled);
 }
 
-TEST_F(Group, ASetpointThatIsNoNumberIsNotFollowed) {
+TEST_F(Group, ASetpointThatIsNoNumberIsRefusedAndTheDriveStops) {
+  for (const double x : {std::numeric_limits<double>::quiet_NaN(), 1e308}) {
+    DriveGroup fresh(model_, {LagKind::kFirstOrder, 0});
+    group_ = fresh;
+    enable();
+    send(1);
+    group_.work(1);
+    send(x);
+    group_.work(1);
+    EXPECT_EQ(group_.feedback().position[0], 1);
+    EXPECT_EQ(group_.drive(0).error(), kErrorSetpointNoNumber);
+    EXPECT_EQ(group_.drive(1).error(), kErrorNone) << "the other drives follow";
+    come_to_rest();
+    EXPECT_EQ(group_.drive(0).state(), DriveState::kFault);
+  }
+}
+
+TEST_F(Group, ASetpointOfTheMasterWithABadChecksumIsDroppedAndCounted) {
   enable();
   send(1);
   group_.work(1);
-  send(std::numeric_limits<double>::quiet_NaN());
+  Setpoint setpoint;
+  setpoint.cycle = ++cycle_;
+  setpoint.position[0] = 1.1;
+  setpoint.flags = kSetpointEnabled;
+  dds::SetpointSample spoilt = signed_by(7, setpoint);
+  spoilt.setpoint.position[0] = 1.2;
+  EXPECT_EQ(group_.take(spoilt, kMaster), Drop::kChecksum);
+  EXPECT_EQ(group_.take(signed_by(8, setpoint), kMaster), Drop::kChecksum) << "of another service";
   group_.work(1);
   EXPECT_EQ(group_.feedback().position[0], 1);
-  send(1e308);
+  EXPECT_EQ(group_.dropped()[Drop::kChecksum], 2U);
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled) << "bridged as if it was lost";
+  EXPECT_EQ(group_.take(signed_by(7, setpoint), kMaster), Drop::kNone);
+}
+
+TEST_F(Group, ASetpointThatTheWireHeldBackIsDropped) {
+  enable();
+  const auto arrive = [this](std::int64_t delay_ns) {
+    Setpoint setpoint;
+    setpoint.cycle = ++cycle_;
+    setpoint.due_ns = static_cast<std::int64_t>(cycle_) * 1'000'000;
+    setpoint.flags = kSetpointEnabled;
+    const Drop drop =
+        group_.take(signed_by(7, setpoint), kMaster, setpoint.due_ns + 5'000'000'000 + delay_ns);
+    group_.work(1);
+    return drop;
+  };
+  EXPECT_EQ(arrive(0), Drop::kNone);
+  EXPECT_EQ(arrive(3'000'000), Drop::kNone);
+  EXPECT_EQ(arrive(30'000'000), Drop::kStale);
+}
+
+TEST_F(Group, AJumpOverManyCyclesGoesNoFartherThanTheDrivesOwnPeriodsAllow) {
+  enable();
+  send(1);
   group_.work(1);
-  send(1, kSetpointEnabled, -1e308);
+  cycle_ += 1'000'000;  // in which 300 km could be passed
+  send(100);
   group_.work(1);
-  EXPECT_EQ(group_.feedback().position[0], 1) << "sums of such numbers overflow";
+  EXPECT_EQ(group_.drive(0).error(), kErrorSetpointStep);
+  EXPECT_EQ(group_.feedback().position[0], 1);
 }
 
 TEST_F(Group, ASetpointOfADryRunIsAsIfNoneHadCome) {
@@ -101,89 +164,146 @@ TEST_F(Group, ASetpointOfADryRunIsAsIfNoneHadCome) {
   EXPECT_EQ(group_.feedback().position[0], 1);
 }
 
-TEST_F(Group, ObeysOneServiceUntilItIsOff) {
+TEST_F(Group, ObeysOneServiceUntilItIsOffAndGone) {
   enable();
-  command(0x00, 8);
+  send(0);
+  group_.work(1);
+  command(0x00, 8, kOther);
   EXPECT_EQ(group_.drive(0).state(), DriveState::kOperationEnabled);
-  command(0x06, 7);
-  command(0x07, 8);
+  command(0x06);
+  command(0x07, 8, kOther);
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kReadyToSwitchOn)
+      << "off, and the master is there";
+  group_.see_master(true);
+  command(0x07, 8, kOther);
+  EXPECT_EQ(group_.feedback().service_id, 7U);
+  group_.see_master(false);
+  EXPECT_EQ(group_.feedback().service_id, 0U) << "nobody";
+  command(0x07, 8, kOther);
   EXPECT_EQ(group_.drive(0).state(), DriveState::kSwitchedOn);
-  EXPECT_EQ(group_.service_id(), 8u);
+  EXPECT_EQ(group_.feedback().service_id, 8U);
+  EXPECT_EQ(group_.dropped()[Drop::kForeignCommand], 15U);
+}
+
+TEST_F(Group, NobodyWhoQuotesTheIdOfTheMasterIsObeyedInAnyState) {
+  const auto attack = [this](const char* when) {
+    for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x00, 0x06, 0x07, 0x0F}) {
+      command(word, 7, kOther);
+    }
+    for (double x = 0; x < 50; x += 0.3) {
+      Setpoint setpoint;
+      setpoint.cycle = 1'000'000 + static_cast<std::uint64_t>(x * 10);
+      setpoint.position[0] = x;
+      setpoint.velocity[0] = 300;
+      setpoint.flags = kSetpointEnabled;
+      EXPECT_EQ(group_.take(signed_by(7, setpoint), kOther), Drop::kForeignSetpoint) << when;
+      group_.work(1);
+      ASSERT_EQ(group_.feedback().position[0], 0) << when;
+    }
+  };
+  command(0x06);
+  send(0, 0);
+  attack("off");
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kReadyToSwitchOn);
+  command(0x07);
+  command(0x0F);
+  send(0);
+  group_.work(1);
+  group_.see_master(true);
+  attack("ready, and the master is silent");
+  come_to_rest();
+  EXPECT_EQ(group_.drive(0).state(), DriveState::kFault) << "its silence is not bridged by others";
+  attack("fault");
+  EXPECT_EQ(group_.feedback().service_id, 7U);
+}
+
+TEST_F(Group, ADriveCommandOfNoServiceOrToNoDriveIsImplausible) {
+  dds::DriveCommand word;
+  EXPECT_EQ(group_.take(word, kMaster), Drop::kImplausible);
+  word.service_id = 7;
+  word.drive = 5;
+  EXPECT_EQ(group_.take(word, kMaster), Drop::kImplausible);
+  EXPECT_EQ(group_.feedback().service_id, 0U) << "such a one pins nobody";
+}
+
+TEST_F(Group, WithoutAMasterNoSetpointIsTaken) {
+  Setpoint setpoint;
+  setpoint.cycle = 1;
+  EXPECT_EQ(group_.take(signed_by(7, setpoint), kMaster), Drop::kNoMaster);
+  EXPECT_EQ(group_.feedback().cycle_seen, 0U);
 }
 
 /// Two services send to the same drives, as each may that did not hear of the other.
 class TwoServices : public Group {
  protected:
-  static constexpr std::uint64_t kObeyed = 41, kOther = 42;  // participants
-  void command(std::uint16_t controlword, std::uint64_t service, std::uint64_t sender) {
-    for (std::uint8_t i = 0; i < 5; ++i) {
-      dds::DriveCommand word;
-      word.drive = i;
-      word.controlword = controlword;
-      word.service_id = service;
-      group_.take(word, sender);
-    }
-  }
-  bool send(std::uint64_t cycle, double x, std::uint16_t flags, std::uint64_t sender) {
-    dds::SetpointSample sample;
-    sample.setpoint.cycle = cycle;
-    sample.setpoint.position[0] = x;
-    sample.setpoint.velocity[0] = 100;
-    sample.setpoint.flags = flags;
-    return group_.take(sample, sender);
+  Drop send(std::uint64_t cycle, double x, std::uint16_t flags, std::uint64_t service,
+            std::uint64_t sender) {
+    Setpoint setpoint;
+    setpoint.cycle = cycle;
+    setpoint.position[0] = x;
+    setpoint.velocity[0] = 100;
+    setpoint.flags = flags;
+    return group_.take(signed_by(service, setpoint), sender);
   }
 };
 
 TEST_F(TwoServices, DrivesTakeTheSetpointsOfTheOneThatTheyObeyAlone) {
-  for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F}) {
-    command(word, 7, kObeyed);
-  }
+  enable();
   for (std::uint64_t n = 0; n < 20; ++n) {  // the other has run for an hour, and is Off
-    EXPECT_TRUE(send(100 + n, 0.1 * static_cast<double>(n), kSetpointEnabled, kObeyed));
-    EXPECT_FALSE(send(3'600'000 + n, -50, 0, kOther));
+    const double x = 0.1 * static_cast<double>(n);
+    EXPECT_EQ(send(100 + n, x, kSetpointEnabled, 7, kMaster), Drop::kNone);
+    EXPECT_EQ(send(3'600'000 + n, -50, 0, 8, kOther), Drop::kForeignSetpoint);
     command(0x06, 8, kOther);
     group_.work(1);
-    ASSERT_NEAR(group_.feedback().position[0], 0.1 * static_cast<double>(n), 1e-12) << n;
+    ASSERT_NEAR(group_.feedback().position[0], x, 1e-12) << n;
     ASSERT_EQ(group_.feedback().cycle_seen, 100 + n);
   }
-  EXPECT_EQ(group_.setpoints_of_others(), 20U);
+  EXPECT_EQ(group_.dropped()[Drop::kForeignSetpoint], 20U);
   EXPECT_EQ(group_.setpoints_seen(), 20U);
 }
 
 TEST_F(TwoServices, AnotherOnesSetpointsDoNotBridgeAGapOfTheOneThatIsObeyed) {
-  for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F}) {
-    command(word, 7, kObeyed);
-  }
-  (void)send(100, 0, kSetpointEnabled, kObeyed);
+  enable();
+  (void)send(100, 0, kSetpointEnabled, 7, kMaster);
   for (std::uint64_t n = 0; n < 10; ++n) {
-    (void)send(101 + n, 0, kSetpointEnabled, kOther);
+    (void)send(101 + n, 0, kSetpointEnabled, 8, kOther);
     group_.work(1);
   }
   EXPECT_NE(group_.drive(0).state(), DriveState::kOperationEnabled) << "their watchdog sees it";
 }
 
-TEST_F(TwoServices, TheOtherOneIsTakenWhenItIsObeyed) {
-  command(0x06, 7, kObeyed);
-  (void)send(3'600'000, 1, 0, kObeyed);
+TEST_F(TwoServices, TheOtherOneIsTakenWhenItIsObeyedAndCountsItsOwnCycles) {
+  command(0x06);
+  (void)send(3'600'000, 1, 0, 7, kMaster);
+  group_.see_master(false);
   command(0x06, 8, kOther);
-  EXPECT_FALSE(send(3'600'001, 1, 0, kObeyed));
-  EXPECT_TRUE(send(5, 1, 0, kOther));
+  EXPECT_EQ(send(3'600'001, 1, 0, 7, kMaster), Drop::kForeignSetpoint);
+  EXPECT_EQ(send(5, 1, 0, 8, kOther), Drop::kNone);
   EXPECT_EQ(group_.feedback().cycle_seen, 5U);
 }
 
-TEST_F(TwoServices, AServiceThatIsFoundAgainUnderAnotherNumberIsTakenWithItsNextWord) {
-  command(0x06, 7, kObeyed);
-  EXPECT_FALSE(send(10, 1, 0, 43));
-  command(0x06, 7, 43);
-  EXPECT_TRUE(send(11, 1, 0, 43));
+TEST_F(TwoServices, TheMasterThatComesBackWhileDrivesRampDownIsTheirMaster) {
+  enable();
+  (void)send(100, 0, kSetpointEnabled, 7, kMaster);
+  group_.work(1);
+  group_.see_master(false);
+  command(0x06, 8, kOther);
+  EXPECT_EQ(group_.pin().state(), MasterPin::State::kGone);
+  EXPECT_EQ(send(101, 0, kSetpointEnabled, 7, kMaster), Drop::kNone);
+  command(0x0F);
+  EXPECT_EQ(group_.pin().state(), MasterPin::State::kPinned);
 }
 
-TEST_F(Group, ObeysTheNextServiceWhereOneDiedBeforeItsFirstEnabledSetpoint) {
+TEST_F(TwoServices, TheNextOneIsObeyedWhereOneDiedAndTheDrivesAreInFault) {
   enable();
-  send(0, 0);
-  for (int n = 0; n < 10; ++n) group_.work(1);
-  command(0x06, 8);
-  EXPECT_EQ(group_.service_id(), 8U);
+  send(100, 0, 0, 7, kMaster);
+  group_.see_master(false);
+  command(0x06, 8, kOther);
+  EXPECT_EQ(group_.pin().master().service_id, 7U);
+  come_to_rest();
+  group_.see_master(false);
+  command(0x06, 8, kOther);
+  EXPECT_EQ(group_.pin().master().service_id, 8U);
 }
 
 TEST_F(Group, DoesNotTakeItsOwnStallForSilenceOfTheService) {
@@ -223,16 +343,6 @@ TEST_F(Group, BridgesAsTheServiceSaysThatItObeysNotOneThatClaimsTheMachine) {
   command(0x06);
   group_.take(service(9, 50, true));
   EXPECT_NEAR(periods_until_quick_stop(), 20, 3) << "obeys 7";
-}
-
-TEST_F(Group, ARestartedServiceMayCountCyclesAnew) {
-  enable();
-  send(1);
-  group_.work(1);
-  command(0x06);
-  cycle_ = 0;
-  send(1);
-  EXPECT_EQ(group_.feedback().cycle_seen, 1u);
 }
 
 TEST_F(Group, InjectsFaultsAfterTheTimeEnabled) {

@@ -31,7 +31,11 @@ Drive enabled_drive(double position = 10, const HomingPlan& homing = {}) {
 }
 
 DriveInput setpoint(double position, double velocity = 0) {
-  return {.is_new = true, .is_enabled = true, .position = position, .velocity = velocity};
+  return {.is_new = true,
+          .is_enabled = true,
+          .position = position,
+          .velocity = velocity,
+          .elapsed_s = kPeriod_s};
 }
 DriveInput nothing(int periods_without) {
   return {.periods_without = periods_without, .bridged_s = kPeriod_s};
@@ -114,12 +118,30 @@ TEST(SimulatedDrive, RampsDownAndFaultsWhenSetpointsStayAway) {
   EXPECT_LT(fastest_change, 2 * 5000);
 }
 
-TEST(SimulatedDrive, AStepBeyondTheFollowingErrorFaults) {
+TEST(SimulatedDrive, RefusesToBeginWhereItDoesNotStand) {
   Drive drive = enabled_drive();
   drive.work(setpoint(30), kPeriod_s);
+  EXPECT_EQ(drive.error(), kErrorSetpointBegin);
+  for (int n = 0; n < 10; ++n) drive.work(setpoint(30), kPeriod_s);
+  EXPECT_EQ(drive.state(), DriveState::kFault);
+  EXPECT_EQ(drive.position(), 10);
+}
+
+TEST(SimulatedDrive, RefusesASetpointThatBreaksItsLimitsAndStopsByItsOwnRamp) {
+  Drive drive = enabled_drive();
+  const double last = run_steadily(drive);
+  drive.work(setpoint(last + 1, kVelocity), kPeriod_s);  // 0.3 mm is what it can do in a period
   EXPECT_EQ(drive.state(), DriveState::kFaultReaction);
-  EXPECT_EQ(drive.error(), kErrorFollowing);
-  EXPECT_NE(drive.statusword() & kStatusFollowingError, 0);
+  EXPECT_EQ(drive.error(), kErrorSetpointStep);
+  double fastest_change = 0, before = drive.velocity();
+  for (int n = 0; drive.state() != DriveState::kFault && n < 1000; ++n) {
+    drive.work(setpoint(last + 1, kVelocity), kPeriod_s);
+    fastest_change = std::max(fastest_change, std::abs(drive.velocity() - before) / kPeriod_s);
+    before = drive.velocity();
+  }
+  EXPECT_EQ(drive.state(), DriveState::kFault);
+  EXPECT_NEAR(drive.position(), last + 1.0, 0.2) << "100 mm/s at 5000 mm/s2";
+  EXPECT_LT(fastest_change, 2 * 5000);
 }
 
 TEST(SimulatedDrive, ABlockedShaftEndsInAFollowingError) {
@@ -128,6 +150,7 @@ TEST(SimulatedDrive, ABlockedShaftEndsInAFollowingError) {
   run_steadily(drive);
   EXPECT_EQ(drive.position(), 10);
   EXPECT_EQ(drive.error(), kErrorFollowing);
+  EXPECT_NE(drive.statusword() & kStatusFollowingError, 0);
 }
 
 TEST(SimulatedDrive, AFaultIsResetAndEnabledAgainWhereItStands) {
@@ -169,7 +192,6 @@ TEST(SimulatedDrive, FindsItsReferenceInHomingModeAndFollowsSetpointsAfterwards)
   EXPECT_NEAR(drive.position(), 10, 1e-5);
   drive.take_controlword(0x0F, dds::kCyclicPositionMode);
   EXPECT_EQ(drive.mode(), dds::kCyclicPositionMode);
-  drive.work(setpoint(10.1), kPeriod_s);
   for (int n = 0; n < 30; ++n) drive.work(setpoint(10.1), kPeriod_s);
   EXPECT_NEAR(drive.position(), 10.1, 1e-5);
 }

@@ -42,8 +42,9 @@ struct Rehearsal {
     const CycleRecord& record = world.run();
     dds::SetpointSample setpoint;
     setpoint.setpoint = record.setpoint;
-    group.take(setpoint);
-    for (std::uint8_t i = 0; i < 5; ++i) group.take(command_of(i, record.state));
+    setpoint.crc = dds::setpoint_crc(record.setpoint, kService);
+    group.take(setpoint, kParticipant);
+    for (std::uint8_t i = 0; i < 5; ++i) group.take(command_of(i, record.state), kParticipant);
     group.work(1);
     report();
   }
@@ -152,6 +153,7 @@ struct Rehearsal {
   int injected = 0;
 
  private:
+  static constexpr std::uint64_t kService = 7, kParticipant = 41;
   void report() {
     for (dds::DriveFeedback sample; group.reports(sample);) {
       merge.take(sample, 7, world.in.now_ns);
@@ -169,7 +171,7 @@ struct Rehearsal {
                                   .is_reset = is_resetting});
     dds::DriveCommand command;
     command.drive = drive;
-    command.service_id = 7;
+    command.service_id = kService;
     command.controlword = next.controlword;
     command.mode = next.mode;
     return command;
