@@ -19,13 +19,14 @@ struct Mode {
   int (*run)(const Options&);
 };
 
-constexpr std::array<Mode, 8> kModes{{{"stick", stick},
+constexpr std::array<Mode, 9> kModes{{{"stick", stick},
                                       {"flood", flood},
                                       {"fake-service", fake_service},
                                       {"fake-drives", fake_drives},
                                       {"crowd", crowd},
                                       {"churn", churn},
                                       {"sessions", open_sessions},
+                                      {"watch", watch},
                                       {"operate", operate}}};
 
 bool read_option(Options& options, std::string_view name, const char* value) {
@@ -56,6 +57,8 @@ bool read_option(Options& options, std::string_view name, const char* value) {
     options.service_process = std::atol(value);
   else if (is("--drives-process"))
     options.drives_process = std::atol(value);
+  else if (is("--file"))
+    options.file = value;
   else if (is("--operator-id"))
     options.operator_id = std::strtoull(value, nullptr, 10);
   else

@@ -12,8 +12,8 @@ class Attack:
     Ready. Each is the attacker's command line from its mode on. `stop`: which of them are stopped
     (SIGSTOP) as soon as they match, `pipe`: the service's stderr is a pipe that nobody reads,
     `full`: its recording and state are on a file system without room, `clock`: its clock of the
-    day jumps, `reuse`: the operator's numbers begin at 1 again before every stop, `noise_hz`:
-    harmless commands of an honest panel."""
+    day jumps, `reuse`: the operator's numbers begin at 1 again before every stop, `at_rest`: it
+    begins in Ready, else in a cut, `may_not_serve`: the service may refuse to serve at all."""
     words: tuple = ()
     early: tuple = ()
     stop: bool = False
@@ -21,6 +21,8 @@ class Attack:
     full: bool = False
     clock: bool = False
     reuse: bool = False
+    at_rest: bool = False
+    may_not_serve: bool = False
 
 
 def _flood(topics, rate, shape="well", *more):
@@ -46,15 +48,17 @@ for _topic in _TOPICS:
     ATTACKS[f"flood {_topic} 10000/s"] = Attack(words=(_flood(_topic, 10000),))
     ATTACKS[f"malformed {_topic} 1000/s"] = Attack(words=(_flood(_topic, 1000, "malformed"),))
     ATTACKS[f"foreign {_topic} 100/s"] = Attack(words=(_flood(_topic, 100, "foreign"),))
-    ATTACKS[f"forged {_topic} 200/s"] = Attack(words=(_flood(_topic, 200, "forged"),))
-ATTACKS["takeover"] = Attack(words=(_flood("drive_command,setpoint", 2000, "forged"),))
+    ATTACKS[f"forged {_topic} 200/s"] = Attack(words=(_flood(_topic, 200, "forged"),), at_rest=True)
+ATTACKS["takeover"] = Attack(words=(_flood("drive_command,setpoint", 2000, "forged"),),
+                             at_rest=True)
 ATTACKS["forged command 2000/s"] = Attack(words=(_flood("command", 2000, "forged"),))
 ATTACKS["reused id"] = Attack(reuse=True)
 # Fakes.
-ATTACKS["fake service before"] = Attack(early=(("fake-service",),))
-ATTACKS["fake service beside"] = Attack(words=(("fake-service",),))
-ATTACKS["fake service, quoting"] = Attack(words=(("fake-service", "--shape", "forged"),))
-ATTACKS["fake drives beside"] = Attack(words=(("fake-drives", "--shape", "forged"),))
+ATTACKS["fake service before"] = Attack(early=(("fake-service",),), may_not_serve=True)
+ATTACKS["fake service beside"] = Attack(words=(("fake-service",),), at_rest=True)
+ATTACKS["fake service, quoting"] = Attack(words=(("fake-service", "--shape", "forged"),),
+                                           at_rest=True)
+ATTACKS["fake drives beside"] = Attack(words=(("fake-drives", "--shape", "forged"),), at_rest=True)
 # Many.
 ATTACKS["60 participants"] = Attack(words=(("crowd", "--count", 60),))
 ATTACKS["participants come and go"] = Attack(words=(("churn", "--count", 4, "--rate", 8),))

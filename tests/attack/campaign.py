@@ -57,12 +57,18 @@ def run_attack(name, seconds, arguments, draw):
         shim = pathlib.Path(arguments.programs).parent / "lib/libattack_clock_steps.so"
         attacks.start_plant(plant, attack, arguments.seed, shim)
         if not plant.enable(20):
-            result["failed"].append(f"never Ready: {plant.operator.state}")
+            if attack.may_not_serve and plant.operator.state in (None, "Off"):
+                result["refused"] = True
+            else:
+                result["failed"].append(f"never Ready: {plant.operator.state}")
             return result
         situations = Situations(plant, draw)
         situations.is_reusing = attack.reuse
+        if not attack.at_rest:
+            situations.to_cut(plant.folder / "long.cls")
         attacks.begin(plant, attack, arguments.seed)
-        time.sleep(1.5)  # in Ready: nothing may move
+        if attack.at_rest:
+            time.sleep(1.5)  # nothing may move
         begin = time.monotonic()
         for what, share in ALL:
             if arguments.situations and what not in arguments.situations:
@@ -170,7 +176,8 @@ def main():
         faults = faults_of(result, limit_ms)
         wrong += len(faults)
         n = len(result["samples"])
-        print(f"{name}: {n} stops; " + ("; ".join(faults) if faults else "fine"), flush=True)
+        fine = "the service does not serve" if result.get("refused") else "fine"
+        print(f"{name}: {n} stops; " + ("; ".join(faults) or fine), flush=True)
         if arguments.json:
             pathlib.Path(arguments.json).write_text(json.dumps(results, indent=1))
     every = [s["seen_ms"] for r in results for s in r["samples"] if "seen_ms" in s]

@@ -23,6 +23,7 @@ struct Options {
   long service_process = 0;  ///< process of the honest service: what else speaks is a stranger
   long drives_process = 0;
   std::uint64_t operator_id = 0;  ///< 0: drawn
+  std::string file;               ///< of a watch
 };
 
 /// Readers of these topics that match and never take.
@@ -39,6 +40,9 @@ int crowd(const Options& options);
 int churn(const Options& options);
 /// Sessions that are opened and closed.
 int open_sessions(const Options& options);
+/// Every setpoint on the wire, into a file (CSV), until SIGTERM: what an outsider knows of the
+/// path.
+int watch(const Options& options);
 /// The honest operator, and who measures (operator.cpp says what it reads and prints).
 int operate(const Options& options);
 

@@ -204,10 +204,10 @@ class Plant:
         while time.monotonic() < end:
             if self.operator.state == "Ready":
                 return True
-            if self.operator.state == "Fault":
-                self.operator.say("reset", 0, 0.5)
-                time.sleep(0.1)
-            self.operator.say("enable", 0, 0.3)
+            # Drives that a service left in fault are reset in Off too.
+            if self.operator.state == "Fault" or self.operator.say("enable", 0, 0.3) is False:
+                self.operator.say("reset", 0, 0.8)
+                continue
             if wait_until(lambda: self.operator.state == "Ready", 0.5):
                 return True
         return False

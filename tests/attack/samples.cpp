@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "attack/content.hpp"
 
@@ -35,6 +36,12 @@ void spoil(Sample& sample, std::mt19937_64& random) {
     for (std::size_t i = 0; i < size; ++i) text[i] = '\0';
     std::snprintf(text, size, "%s", kHostile[random() % std::size(kHostile)]);
   });
+  if constexpr (std::is_same_v<Sample, meridian_wire_Command>) {
+    // Whoever stops the machine is obeyed, whatever else he says.
+    constexpr std::uint8_t kDisable = 1, kHold = 3, kAbort = 5, kNoVerb = 200;
+    const bool is_stop = sample.verb == kDisable || sample.verb == kHold || sample.verb == kAbort;
+    if (is_stop) sample.verb = kNoVerb;
+  }
   if constexpr (std::is_same_v<Sample, meridian_wire_ClBatch>) {
     if (random() % 2 == 0) sample.count %= 64;
   }
