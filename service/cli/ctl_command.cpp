@@ -105,6 +105,15 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
   return std::nullopt;
 }
 
+/// More than one service of a machine is a fake, or two hosts that find each other only now.
+void warn_of_others(const stream::OperatorLink& link, const std::string& machine) {
+  const std::vector<std::string> services = link.services();
+  if (services.size() < 2) return;
+  std::fprintf(stderr, "meridian: WARNING: %zu services speak for machine %s; end those that are "
+               "not its own:\n", services.size(), machine.c_str());
+  for (const std::string& service : services) std::fprintf(stderr, "  %s\n", service.c_str());
+}
+
 int run_ctl(CtlOptions& options) {
   const Verb verb = verbs().at(options.verb);
   std::optional<double> argument = argument_of(verb, options);
@@ -131,6 +140,7 @@ int run_ctl(CtlOptions& options) {
     return run_jog(participant, link, *machine, options.values, options.jog, options.peer);
   }
   const auto reply = link.ask(verb, *argument, options.peer.timeout());
+  warn_of_others(link, options.peer.machine);
   if (!reply) {
     std::fprintf(stderr, "meridian: machine %s does not answer\n", options.peer.machine.c_str());
     return kNoPeer;

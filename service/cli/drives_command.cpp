@@ -28,7 +28,7 @@ struct DrivesOptions {
   std::string lag = "second";
   double time_constant_ms = 2;
   bool has_no_actions = false, is_refusing_actions = false, is_quiet = false, has_console = false;
-  bool is_beside_others = false;
+  bool is_beside_others = false, is_open_network = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
   std::vector<std::string> unreferenced, failing, hanging;  ///< names of drives, or all
@@ -110,7 +110,12 @@ int run_drives(const DrivesOptions& options) {
       {.domain = options.domain,
        .machine = options.partition.empty() ? model.name : options.partition,
        .transport =
-           simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback});
+           simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback,
+       .open_network =
+           options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused});
+  if (participant.is_open_network()) {
+    std::fprintf(stderr, "meridian drives: OPEN NETWORK: whoever reaches it may send setpoints\n");
+  }
   if (!options.is_beside_others && !is_alone(participant, model)) return kMachineRefused;
   std::printf("drives of machine %s in DDS domain %u: %d drives, cycle %.3f ms%s\n",
               model.name.c_str(), options.domain, model.joint_count,
@@ -186,6 +191,9 @@ void add_drives_command(CLI::App& app, int& exit_code) {
   };
   command->add_flag("--beside-others", options->is_beside_others,
                     "Start though somebody else reports these drives; else that is refused");
+  command->add_flag("--open-network", options->is_open_network,
+                    "Start though CYCLONEDDS_URI leads off this host without an identity; else "
+                    "that is refused");
   add_drive_names("--unreferenced", options->unreferenced,
                   "Drives (or all) that do not know where they are until they are homed");
   add_drive_names("--homing-fails", options->failing,

@@ -101,7 +101,20 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
   append(text, "\ncycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
          Count{status.periods_lost},
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "real time" : "best effort",
-         status.is_secured ? "secured" : "open");
+         status.is_secured        ? "secured"
+         : status.is_open_network ? "OPEN NETWORK, unsecured"
+                                  : "open");
+  if (status.is_enabling_required || status.enabling_devices > 0) {
+    append(text, "enabling  %u devices pressed%s\n", status.enabling_devices,
+           status.is_enabling_required ? ", required to move" : "");
+  }
+  if (!status.stalled_reader.empty()) {
+    append(text, "stalled   %s\n", status.stalled_reader.c_str());
+  }
+  if (status.commands_dropped + status.replies_dropped > 0) {
+    append(text, "dropped   %llu commands, %llu replies\n", Count{status.commands_dropped},
+           Count{status.replies_dropped});
+  }
   if (status.is_auxiliary_ignored) append(text, "actions   ignored (auxiliary = \"ignore\")\n");
   append(text, "batches   %llu dropped, %llu asked for again\n", Count{status.batches_dropped},
          Count{status.batches_lost});
@@ -147,6 +160,12 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   append(text, "\"realtime\":\"%s\",\"secured\":%s,",
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "enforced" : "best_effort",
          status.is_secured ? "true" : "false");
+  append(text,
+         "\"open_network\":%s,\"enabling_required\":%s,\"enabling_devices\":%u,"
+         "\"commands_dropped\":%llu,\"replies_dropped\":%llu,\"stalled_reader\":%s,",
+         status.is_open_network ? "true" : "false", status.is_enabling_required ? "true" : "false",
+         status.enabling_devices, Count{status.commands_dropped}, Count{status.replies_dropped},
+         json_quoted(status.stalled_reader).c_str());
   for (std::size_t i = 0; i < joint_count(machine); ++i) {
     const dds::JointInfo& joint = machine.joints[i];
     add(joint.name + (joint.is_rotary ? "_rad" : "_mm"), "%.17g", status.joints[i]);

@@ -33,6 +33,7 @@ void read_realtime(Section section, RealtimeConfig& realtime) {
 void read_dds(Section section, ServiceConfig& config) {
   config.dds_domain = section.integer_or("domain", config.dds_domain, 0, 230);
   config.dds_partition = section.text_or("partition", "");
+  config.open_network = section.truth_or("open_network", config.open_network);
   section.finish();
 }
 
@@ -82,6 +83,9 @@ void read_service(Section section, const std::filesystem::path& folder, ServiceC
       section.number_or("action_timeout_s", config.action_timeout_s, {0.1, 3600});
   config.enable_timeout_s =
       section.number_or("enable_timeout_s", config.enable_timeout_s, {0.1, 600});
+  config.deadman = section.truth_or("deadman", config.deadman);
+  config.deadman_timeout_s =
+      section.number_or("deadman_timeout_s", config.deadman_timeout_s, {0.05, 2});
   config.feedback_timeout_s =
       section.number_or("feedback_timeout_s", config.feedback_timeout_s, {1e-3, 10});
   config.block_queue = section.integer_or("block_queue", config.block_queue, 5000, 1'000'000);

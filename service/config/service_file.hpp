@@ -83,6 +83,9 @@ struct ServiceConfig {
   double action_timeout_s = 60;
   double enable_timeout_s = 5;
   double feedback_timeout_s = 0.1;  ///< older feedback counts as lost
+  bool deadman = false;             ///< nothing moves without an enabling heartbeat
+  double deadman_timeout_s = 0.3;   ///< a heartbeat that is silent for longer is lost
+  bool open_network = false;        ///< starts also where the network is not secured
   int block_queue = 8192;           ///< places; look-ahead and credits
 
   /// Periods that drives bridge when setpoints are missing; see find_bridge_cycles().

@@ -18,12 +18,18 @@ class Followed {
   /// Takes everything that came since the last call and leaves the newest of the service that is
   /// followed in `message`; false where nothing of it came.
   [[nodiscard]] bool take(Reader<Message>& reader, Message& message) {
+    return take(reader, message, [](const Message&, std::uint64_t) {});
+  }
+  /// The same; `on_sample` sees every sample, of others too, with its writer.
+  template <class OnSample>
+  [[nodiscard]] bool take(Reader<Message>& reader, Message& message, OnSample on_sample) {
     bool has_message = false;
     bool is_there = source_ != 0 && reader.has_source(source_);
     Message taken;
     SampleInfo info;
     while (reader.take(taken, info)) {
       if (!info.is_valid) continue;
+      on_sample(taken, info.source);
       const bool is_other = info.source != source_;
       if (is_there && is_other && ++others_ < kSilent) continue;
       others_ = 0;
@@ -34,11 +40,13 @@ class Followed {
     }
     return has_message;
   }
+  /// Writer of the service that is followed, see SampleInfo; 0: none yet.
+  [[nodiscard]] std::uint64_t source() const noexcept { return source_; }
 
  private:
   static constexpr int kSilent = 10;  ///< samples of others in a row
   int others_ = 0;
-  std::uint64_t source_ = 0;  ///< writer of the service, see SampleInfo; 0: none yet
+  std::uint64_t source_ = 0;
 };
 
 }  // namespace meridian::dds

@@ -73,6 +73,11 @@ std::uint64_t participant_of(std::int32_t reader, std::uint64_t source) noexcept
   return writer ? number_of(writer->participant_key) : 0;
 }
 
+std::uint64_t number_of(const Participant& participant) noexcept {
+  dds_guid_t guid{};
+  return dds_get_guid(participant.handle(), &guid) == DDS_RETCODE_OK ? number_of(guid) : 0;
+}
+
 std::uint64_t Senders::participant_of(std::int32_t reader, std::uint64_t source) noexcept {
   const auto found = std::find_if(known_.begin(), known_.end(), [source](const Known& known) {
     return known.source == source && source != 0;
@@ -87,8 +92,14 @@ std::string describe_source(const Participant& participant, std::int32_t reader,
                             std::uint64_t source) {
   const Endpoint writer(dds_get_matched_publication_data(reader, source));
   if (!writer) return "a writer that is gone";
-  const std::string place = place_of(participant, writer->participant_key);
-  return !place.empty() ? place : "participant " + in_hex(writer->participant_key);
+  return describe_participant(participant, writer->participant_key.v);
+}
+
+std::string describe_participant(const Participant& participant, const std::uint8_t* guid) {
+  dds_guid_t key;
+  std::memcpy(key.v, guid, sizeof key.v);
+  const std::string place = place_of(participant, key);
+  return !place.empty() ? place : "participant " + in_hex(key);
 }
 
 }  // namespace meridian::dds

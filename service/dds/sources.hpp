@@ -16,6 +16,9 @@ namespace meridian::dds {
 /// writer is not matched any more. Makes heap calls.
 [[nodiscard]] std::uint64_t participant_of(std::int32_t reader, std::uint64_t source) noexcept;
 
+/// The same number of a participant of this process.
+[[nodiscard]] std::uint64_t number_of(const Participant& participant) noexcept;
+
 /// participant_of(), remembered for the sources that were asked for last. One thread.
 class Senders {
  public:
@@ -25,12 +28,16 @@ class Senders {
   struct Known {
     std::uint64_t source = 0, participant = 0;
   };
-  std::array<Known, 16> known_{};
+  std::array<Known, 128> known_{};
   std::size_t at_ = 0;
 };
 
 /// In words, where it runs: "process 4711 on host mill3"; its GUID where its vendor does not tell.
 [[nodiscard]] std::string describe_source(const Participant& participant, std::int32_t reader,
                                           std::uint64_t source);
+
+/// The same for the participant with that GUID, 16 bytes as on the wire.
+[[nodiscard]] std::string describe_participant(const Participant& participant,
+                                               const std::uint8_t* guid);
 
 }  // namespace meridian::dds

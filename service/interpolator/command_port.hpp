@@ -12,28 +12,41 @@
 
 namespace meridian::interpolator {
 
-/// Operators' words on their way from the commands thread to the cycle, numbered by
-/// Command::request in the order in which they came. Words stand in a row and are taken one in a
-/// cycle; a stop stands in none: it is taken in the next cycle, behind older stops of another verb
-/// at most, and there is always room for it. Of stops of one verb the newest stands for those that
-/// were not taken yet. What a stop goes past is the cycle's to judge (obey()).
+/// Commands on their way to the cycle, numbered by next_request() in the order in which they came.
+/// Those of the commands thread stand in a row and are read one in a cycle; a stop stands in none:
+/// any thread stages it, the cycle reads it in its next period, after older stops of another verb at
+/// most, and there is always room for it. Of stops of one verb the newest stands for those that were
+/// not read yet. What a stop overtakes is the cycle's to decide (obey()).
 ///
-/// Memory order. A stop is stored with release before the words that came with it are published;
-/// the cycle looks at the row (acquire) before it looks for stops. So where it sees a word, it sees
-/// every stop that was said before publish() showed that word: a start never slips out in front of
-/// an abort that came with it.
+/// Memory order. A stop is stored with release before the commands that came after it are published;
+/// the cycle looks at the row (acquire) before it looks for stops. So where it sees a command, it
+/// sees every stop that came before publish() showed that command: a start never slips out in front
+/// of an abort that came with it.
 /// RT: try_pop() in the cycle, wait-free. Proof: tests/unit/interpolator/command_port_test.cpp.
 class CommandPort {
  public:
-  /// Commands thread: takes a stop, or puts a word behind the others, not seen before publish().
+  /// Any thread: the number of the next command, never 0.
+  [[nodiscard]] std::uint64_t next_request() noexcept {
+    return newest_request_.fetch_add(1, std::memory_order_relaxed) + 1;
+  }
+  /// Any thread, wait-free but for others that stage the same verb: a stop for the next cycle. Does
+  /// nothing for a verb that is none.
+  void stage_stop(Verb verb, std::uint64_t request) noexcept {
+    for (std::size_t i = 0; i < kStops.size(); ++i) {
+      if (verb != kStops[i]) continue;
+      std::uint64_t newest = stops_[i].load(std::memory_order_relaxed);
+      while (newest < request && !stops_[i].compare_exchange_weak(
+                                     newest, request, std::memory_order_release,
+                                     std::memory_order_relaxed)) {
+      }
+    }
+  }
+  /// Commands thread: stages a stop, or puts a command behind the others, not seen before publish().
   /// False and nothing changed: the row is full.
   [[nodiscard]] bool stage(const Command& command) noexcept {
-    for (std::size_t i = 0; i < kStops.size(); ++i) {
-      if (command.verb != kStops[i]) continue;
-      stops_[i].store(command.request, std::memory_order_release);
-      return true;
-    }
-    return words_.stage(command);
+    if (!is_stop(command.verb)) return words_.stage(command);
+    stage_stop(command.verb, command.request);
+    return true;
   }
   /// Commands thread: shows the cycle what was staged.
   void publish() noexcept { words_.publish(); }
@@ -74,6 +87,7 @@ class CommandPort {
   }
 
   SpscRing<Command, 64> words_;
+  std::atomic<std::uint64_t> newest_request_{0};
   std::array<std::atomic<std::uint64_t>, kStops.size()> stops_{};  ///< newest of each; 0: none yet
   std::array<std::uint64_t, kStops.size()> taken_{};               ///< the cycle's
 

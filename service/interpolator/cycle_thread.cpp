@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <ctime>
 
+#include "meridian/rt/state_table.hpp"
 #include "service/interpolator/monotonic.hpp"
 
 namespace meridian::interpolator {
@@ -57,6 +58,7 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   inputs_.cycle = period.number;
   inputs_.lost_periods = period.lost;
   inputs_.computation_ns = computation_ns_;
+  watch_enabling(now_ns);
   inputs_.has_command = ports_.commands.try_pop(inputs_.command);
   inputs_.session = ports_.session.load(std::memory_order_relaxed);
 }
@@ -64,6 +66,7 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
 void CycleThread::hand_over() noexcept {
   times_.computed_ns = monotonic_ns();
   computation_ns_ = narrow_ns(times_.computed_ns - times_.woke_ns);
+  show_drives_asked();
   push_or_count(ports_.setpoints, output_.record.setpoint, ports_.setpoints_overrun);
   ports_.publisher_wake.notify();
   times_.handed_ns = monotonic_ns();
@@ -78,6 +81,26 @@ void CycleThread::hand_over() noexcept {
                                  .computation = computation_ns_,
                                  .wake = narrow_ns(times_.handed_ns - times_.computed_ns),
                                  .lost = inputs_.lost_periods});
+}
+
+/// Ahead of the wake, so that the publisher passes it on in this very cycle.
+void CycleThread::show_drives_asked() noexcept {
+  const HomingAsked homing = asked_of(state_.homing);
+  const DrivesAsked asked{is_enabled(output_.record.state) && !state_.is_dry_run, state_.epoch,
+                          homing.mode_mask, homing.start_mask};
+  if (asked == drives_asked_) return;
+  drives_asked_ = asked;
+  ports_.drives_asked.store(asked);
+  ports_.drives_asked_changes.fetch_add(1, std::memory_order_release);
+}
+
+/// Whatever the transport, the commands thread or an operator does: the machine is held where its
+/// enabling heartbeat is missing.
+void CycleThread::watch_enabling(std::int64_t now_ns) noexcept {
+  ports_.enabling.look(now_ns);
+  const bool can_be_held = effect_of(state_.state, Verb::kHold).effect == Effect::kGo;
+  if (!can_be_held || !ports_.enabling.holds_back()) return;
+  ports_.commands.stage_stop(Verb::kHold, ports_.commands.next_request());
 }
 
 void CycleThread::tell_spans() noexcept {

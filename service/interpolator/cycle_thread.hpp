@@ -23,6 +23,8 @@ class CycleThread {
   void gather(const Period& period, std::int64_t now_ns) noexcept;
   void hand_over() noexcept;
   void show() noexcept;
+  void show_drives_asked() noexcept;
+  void watch_enabling(std::int64_t now_ns) noexcept;
   void tell_spans() noexcept;
 
   const MachineModel& model_;
@@ -32,6 +34,7 @@ class CycleThread {
   CycleInputs inputs_;
   StepOutput output_;
   CycleView view_;
+  DrivesAsked drives_asked_;  ///< as it was shown last
   std::int32_t computation_ns_ = 0;
   struct Times {
     std::int64_t woke_ns = 0, gathered_ns = 0, computed_ns = 0, handed_ns = 0;

@@ -16,10 +16,11 @@ class DriveCommander {
  public:
   DriveCommander(dds::Participant& participant, int drive_count, std::uint64_t service_id);
 
-  /// Sends what is due, given what the machine does and what the drives say.
-  void work(const CycleView& view, const DriveWords& words, std::int64_t now_ns) noexcept;
-  /// Lets drives in fault be reset for a while: the operator said so.
-  void reset_faults(std::int64_t now_ns) noexcept { reset_until_ns_ = now_ns + kReset_ns; }
+  /// Sends what is due, given what the machine asks for and what the drives say. Drives in fault are
+  /// reset for a while after `reset_ns`, when the operator asked for it; 0: never.
+  void work(const DrivesAsked& asked, const DriveWords& words, std::int64_t reset_ns,
+            std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::int32_t writer() const noexcept { return writer_.handle(); }
 
  private:
   static constexpr std::int64_t kRepeat_ns = 100'000'000;
@@ -30,7 +31,6 @@ class DriveCommander {
   std::uint64_t service_id_;
   std::array<dds::DriveCommand, kMaxJoints> sent_{};
   std::array<std::int64_t, kMaxJoints> sent_ns_{};
-  std::int64_t reset_until_ns_ = 0;
 };
 
 }  // namespace meridian::interpolator

@@ -46,6 +46,7 @@ void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept
   ports_.feedback.store(merge_.feedback());
   ports_.drive_words.store(merge_.words());
   ports_.drive_words_for_status.store(merge_.words());
+  ports_.drive_words_for_commands.store(merge_.words());
   if (const std::int64_t now_ns = monotonic_ns(); now_ns - shown_ns_ > kShow_ns) {
     sources_.store(merge_.sources());
     shown_ns_ = now_ns;

@@ -42,6 +42,8 @@ class Intake {
   /// Any thread: whether somebody reads actions.
   void set_action_peer(bool is_there) noexcept { has_action_peer_ = is_there; }
   [[nodiscard]] SessionView view() const;
+  /// Of credits, see dds::StalledReaders.
+  [[nodiscard]] std::int32_t writer() const noexcept { return credits_.handle(); }
 
  private:
   void take_events();

@@ -120,9 +120,11 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
 
   constexpr timespec kLeasePeriod{.tv_sec = 0, .tv_nsec = 100'000'000};
   int signal = 0;
+  std::uint32_t looks = 0;
   while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) {
     service->keep_lease();
     service->tell_sources();
+    if (++looks % 10 == 0) service->report_stalled_readers();
     manager.beat(service->heartbeat(), std::chrono::steady_clock::now());
   }
   manager.is_stopping();

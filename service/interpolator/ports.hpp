@@ -18,7 +18,9 @@
 #include "meridian/rt/latest_value.hpp"
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/interpolator/command_port.hpp"
+#include "service/interpolator/enabling_watch.hpp"
 #include "service/interpolator/queue_mark.hpp"
+#include "service/interpolator/reply_queue.hpp"
 #include "service/interpolator/sent_times.hpp"
 #include "service/interpolator/wake.hpp"
 #include "service/record/flight_row.hpp"
@@ -26,7 +28,8 @@
 
 /// Everything that passes between the threads of the service, each with one writer and one reader.
 ///
-///     intake ─blocks─▶ planner ─motion─▶ cycle ─setpoints─▶ publisher
+///     receive thread ─stops─▶ cycle, ─arrivals─▶ commands ─replies─▶ replies
+///     intake ─blocks─▶ planner ─motion─▶ cycle ─setpoints─▶ publisher, ─drives_asked─▶ drives
 ///       ▲ ▲              │ │              ▲ │ ├─events─▶ commands ─told─▶ telemetry
 ///       │ └───rejects────┘ └─actions──▶ commands        ├─records, timings─▶ telemetry ─▶ recorder
 ///       └──────────session_events── commands ──┘        └─views─▶ planner, commands, telemetry
@@ -65,6 +68,44 @@ struct CycleView {
   std::uint64_t cycles_run = 0;
   std::uint64_t periods_lost = 0;
   std::uint64_t starvations = 0;
+};
+
+/// A command as it came from the wire, numbered in the order in which they came.
+struct Arrival {
+  std::uint64_t key = 0;     ///< CommandPort::next_request()
+  std::uint64_t source = 0;  ///< writer, see dds::SampleInfo
+  std::uint64_t request = 0, operator_id = 0, status_seen = 0, service_id_seen = 0;
+  double argument = 0;
+  std::uint16_t epoch_seen = 0;
+  Verb verb = Verb::kHold;
+  std::array<char, 64> operator_name{};  ///< zero-terminated
+};
+
+/// An enabling device began or ended its heartbeat.
+struct EnablingChange {
+  std::uint64_t source = 0;  ///< writer, see dds::SampleInfo
+  EnablingWatch::Beat beat = EnablingWatch::Beat::kKnown;
+  std::array<char, 64> name{};  ///< of its operator, zero-terminated
+};
+
+/// Something for the log, and where it is for the operator for the status too.
+struct Notice {
+  bool is_warning = false, is_for_status = false;
+  std::array<char, dds::kMostText + 1> text{};  ///< zero-terminated
+};
+
+/// Who does not acknowledge what the service writes; empty: nobody.
+struct StalledReader {
+  std::array<char, 128> name{};
+};
+
+/// What the machine asks of its drives.
+struct DrivesAsked {
+  bool is_enabled = false;       ///< to be in operation
+  std::uint16_t epoch = 0;
+  std::uint32_t homing_mask = 0;  ///< to be in homing mode
+  std::uint32_t search_mask = 0;  ///< to search for their reference
+  [[nodiscard]] bool operator==(const DrivesAsked&) const = default;
 };
 
 /// How long the parts of one cycle took. Unit: ns.
@@ -107,7 +148,17 @@ struct Ports {
   SpscRing<Unwinding, 256> unwindings;                  ///< planner to telemetry
   SpscRing<FeedMark, 256> feed_marks;                   ///< planner to telemetry
 
+  SpscRing<Arrival, 1024> arrivals;  ///< receive thread to commands
   CommandPort commands;
+  ReplyQueue replies;  ///< commands to replies
+  Wake reply_wake;
+  LatestValue<DrivesAsked> drives_asked;               ///< cycle to drives, where it changed
+  std::atomic<std::uint32_t> drives_asked_changes{0};  ///< counts them, for the publisher
+  Wake drives_wake;
+  EnablingWatch enabling;
+  SpscRing<EnablingChange, 64> enabling_changes;  ///< receive thread to commands
+  SpscRing<Notice, 64> notices;                   ///< commands to telemetry
+  LatestValue<StalledReader> stalled_reader;      ///< main to telemetry
   LatestValue<Feedback> feedback;
   SpscRing<record::DriveReport, 8192> drive_reports;  ///< receive thread to telemetry: all of them
   LatestValue<ActionAnswer> action_answer;
@@ -126,12 +177,14 @@ struct Ports {
   SpscRing<Event, 4096> told;           ///< all events on to telemetry
   SpscRing<Event, 256> session_events;  ///< kProgramEnd; kEpochAdvanced, b 1: the queue stays
   LatestValue<CycleView> planner_view, commands_view, telemetry_view;
-  LatestValue<DriveWords> drive_words, drive_words_for_status;
+  LatestValue<DriveWords> drive_words, drive_words_for_status, drive_words_for_commands;
 
   std::atomic<bool> is_stopping{false};
   std::atomic<State> state{State::kOff};      ///< of the machine, for who needs no more than that
   std::atomic<bool> may_leave{true};          ///< no drive would be left alone: Off, or a dry run
   std::atomic<std::uint64_t> session{0};      ///< that holds the machine
+  std::atomic<std::uint64_t> stop_status{0};  ///< newest status when a stop came last
+  std::atomic<std::uint64_t> commands_dropped{0}, replies_dropped{0};
   std::atomic<double> spindle_tool_mm{0};     ///< gauge line to tip of the tool in the spindle
   std::atomic<bool> is_tool_changing{false};  ///< that may be another one by now
   QueueMarkWord queue_mark;                   ///< intake to planner: what of `blocks` is good

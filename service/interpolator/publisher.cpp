@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/interpolator/publisher.hpp"
 
+#include <utility>
+
 #include "service/interpolator/monotonic.hpp"
 
 namespace meridian::interpolator {
@@ -14,6 +16,7 @@ Publisher::Publisher(dds::Participant& participant, std::uint64_t service_id, Po
 void Publisher::run() noexcept {
   constexpr std::int64_t kLookForStop_ns = 100'000'000;
   dds::SetpointSample sample;
+  std::uint32_t drives_asked = 0;
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     const std::uint32_t seen = ports_.publisher_wake.look();
     while (ports_.setpoints.try_pop(sample.setpoint)) {
@@ -26,6 +29,8 @@ void Publisher::run() noexcept {
           {narrow_ns(now_ns - sample.setpoint.due_ns), narrow_ns(written_ns - now_ns)});
       spans_.write(trace::Doing::kWrite, now_ns, written_ns, sample.setpoint.cycle);
     }
+    const std::uint32_t changes = ports_.drives_asked_changes.load(std::memory_order_acquire);
+    if (std::exchange(drives_asked, changes) != changes) ports_.drives_wake.notify();
     ports_.publisher_wake.wait(seen, kLookForStop_ns);
   }
 }

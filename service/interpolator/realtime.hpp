@@ -28,7 +28,7 @@ class StartError : public std::runtime_error {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 inline constexpr std::size_t kStack_bytes = 8 * 1024 * 1024;
 #else
-inline constexpr std::size_t kStack_bytes = 384 * 1024;
+inline constexpr std::size_t kStack_bytes = 256 * 1024;
 #endif
 
 /// A thread with a name, a small stack and a place in the schedule.

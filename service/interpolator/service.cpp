@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <thread>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "interpolator_version.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/interpolator/monotonic.hpp"
 #include "service/telemetry/file_name.hpp"
 #include "service/telemetry/log.hpp"
 
@@ -144,7 +146,9 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       participant_({.domain = parts_.domain,
                     .machine = partition_of(parts_),
                     .transport = realtime.has_priorities() ? dds::Transport::kLoopbackRealtime
-                                                           : dds::Transport::kLoopback}),
+                                                           : dds::Transport::kLoopback,
+                    .open_network = parts_.service.open_network ? dds::OpenNetwork::kAllowed
+                                                                : dds::OpenNetwork::kRefused}),
       lease_(participant_, machine_info(parts_, service_id_)),
       audit_(audit_options(parts_)),
       publisher_(participant_, service_id_, ports_),
@@ -159,8 +163,14 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       flight_(parts_.service.flight, parts_.model, log_),
       telemetry_(participant_, parts_.model, parts_.service, service_id_, realtime.mode(), intake_,
                  status_clock_, recorder_, journal_, flight_, log_, ports_),
-      tracer_(make_tracer()) {
+      tracer_(make_tracer()),
+      stalled_readers_(participant_) {
   ports_.spindle_tool_mm = parts_.model.tool_length_mm;
+  ports_.enabling.set_up(parts_.service.deadman,
+                         static_cast<std::int64_t>(1e9 * parts_.service.deadman_timeout_s));
+  supervisor_.watch_readers(stalled_readers_);
+  telemetry_.watch_readers(stalled_readers_);
+  stalled_readers_.watch(intake_.writer(), "cl_credit");
   supervisor_.on_session_event([this](bool has_action_peer) {
     intake_.set_action_peer(has_action_peer);
     intake_.wake();
@@ -209,6 +219,9 @@ void Service::take_lease() {
 void Service::tell_security() {
   if (participant_.is_secured()) {
     log_->info("secured: only identities of this machine's authority take part, each in its role");
+  } else if (participant_.is_open_network()) {
+    log_->warn("OPEN NETWORK: whoever reaches it may command this machine, as open_network allows "
+               "(docs/security.md)");
   } else {
     log_->info("open: whoever reaches DDS domain {} may command this machine (docs/security.md)",
                parts_.domain);
@@ -243,6 +256,22 @@ void Service::tell_sources() {
   });
 }
 
+void Service::report_stalled_readers() {
+  std::string stalled = stalled_readers_.look(monotonic_ns());
+  if (stalled == stalled_) return;
+  if (stalled.empty()) {
+    log_->info("every reader acknowledges again what it is sent");
+  } else {
+    log_->warn("a reader has not acknowledged for 2 s: {}; what it is sent passes it by, nobody "
+               "waits for it", stalled);
+  }
+  stalled_ = std::move(stalled);
+  StalledReader shown;
+  std::memcpy(shown.name.data(), stalled_.data(),
+              std::min(stalled_.size(), shown.name.size() - 1));
+  ports_.stalled_reader.store(shown);
+}
+
 void Service::start() {
   const config::RealtimeConfig& plan = realtime_.wish();
   const auto add = [this](const char* name, int priority, bool is_on_realtime_cpu, auto body) {
@@ -263,6 +292,8 @@ void Service::start() {
   add("intake", plan.io_priority, false, [this] { intake_.run(); });
   add("planner", plan.planner_priority, false, [this] { planner_.run(); });
   add("commands", plan.commands_priority, false, [this] { supervisor_.run(); });
+  add("replies", plan.io_priority, false, [this] { supervisor_.run_replies(); });
+  add("drives", plan.commands_priority, false, [this] { supervisor_.run_drives(); });
   add("publisher", plan.publisher_priority, true, [this] { publisher_.run(); });
   add("cycle", plan.cycle_priority, true, [this] { cycle_.run(); });
 }
@@ -280,6 +311,8 @@ void Service::stop() {
   ports_.is_stopping = true;
   ports_.publisher_wake.notify();
   ports_.planner_wake.notify();
+  ports_.reply_wake.notify();
+  ports_.drives_wake.notify();
   threads_.clear();
   recorder_.stop();
   recorder_thread_.join();

@@ -14,6 +14,7 @@
 #include "service/config/homing_file.hpp"
 #include "service/config/service_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/dds/stalled_reader.hpp"
 #include "service/interpolator/cycle_thread.hpp"
 #include "service/interpolator/feedback_listener.hpp"
 #include "service/interpolator/intake.hpp"
@@ -61,6 +62,9 @@ class Service {
   /// Logs who reports drives, and whom of two that report the same one the machine goes by; to be
   /// called several times a second, by the thread that made the service.
   void tell_sources();
+  /// Logs, and shows in the status, who does not acknowledge what the service sends; to be called
+  /// about once a second, by the thread that made the service.
+  void report_stalled_readers();
   /// Counts up with every cycle: one that stands still is a cycle that hangs.
   [[nodiscard]] std::uint32_t heartbeat() const noexcept { return ports_.publisher_wake.look(); }
   /// Brings the machine to rest and to Off; false where it is not there within `patience`.
@@ -96,6 +100,8 @@ class Service {
   telemetry::FlightRecorder flight_;
   TelemetryThread telemetry_;
   std::unique_ptr<trace::Tracer> tracer_;
+  dds::StalledReaders stalled_readers_;
+  std::string stalled_;  ///< who stalls, as it was reported last
   std::vector<Thread> threads_;
   Thread recorder_thread_, journal_thread_, flight_thread_, audit_thread_;
   bool is_stopped_ = false;

@@ -12,6 +12,8 @@ namespace {
 
 /// Rings of the cycle cannot wake a DDS waitset: look at them so often.
 constexpr auto kLookAtRings = std::chrono::milliseconds(2);
+/// Of one topic at one look: a flood of it does not keep this thread from the others.
+constexpr int kMaxSamples = 256;
 
 }  // namespace
 
@@ -26,15 +28,16 @@ Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
       status_clock_(status_clock),
       ports_(ports),
       audit_(audit),
-      commands_(participant),
-      replies_(participant),
+      participant_(participant),
+      commands_(participant, status_clock, ports),
+      replies_(participant, ports),
       jogs_(participant),
       actions_done_(participant),
       actions_(participant),
-      drives_(participant, model.joint_count, service_id),
+      drives_(participant, model.joint_count, service_id, ports),
+      enabling_(participant, service_id, ports),
       jog_intake_(service_id),
       waitset_(participant) {
-  waitset_.attach(commands_);
   waitset_.attach(jogs_);
   waitset_.attach(actions_done_);
 }
@@ -47,12 +50,12 @@ void Supervisor::run() noexcept {
     ports_.may_leave.store(view_.record.state == State::kOff || view_.is_dry_run,
                            std::memory_order_relaxed);
     take_commands();
+    take_enabling_changes();
     take_jogs();
     take_actions_done();
     take_events();
     send_delayed_resets();
     work_on_switching_off();
-    drives_.work(view_, ports_.drive_words.latest(), monotonic_ns());
     look_for_action_peer();
     waitset_.wait(kLookAtRings);
   }
@@ -79,9 +82,12 @@ void Supervisor::switch_off() noexcept {
 void Supervisor::take_jogs() {
   if (view_.record.state != State::kJogging) jog_intake_.end();
   dds::Jog jog;
-  while (jogs_.take(jog)) {
+  dds::SampleInfo info;
+  for (int left = kMaxSamples; left > 0 && jogs_.take(jog, info); --left) {
+    if (!info.is_valid) continue;
+    const std::uint64_t participant = senders_.participant_of(jogs_.handle(), info.source);
     const auto order =
-        jog_intake_.take(jog, view_.epoch, model_.joint_count,
+        jog_intake_.take(jog, participant, view_.epoch, model_.joint_count,
                          ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                          status_clock_.superseded_for(jog.status_seen, monotonic_ns()));
     if (order) ports_.jog.store(*order);
@@ -161,7 +167,7 @@ void Supervisor::publish_action(const Event& event) {
 
 void Supervisor::take_actions_done() {
   dds::ActionDone done;
-  while (actions_done_.take(done)) {
+  for (int left = kMaxSamples; left > 0 && actions_done_.take(done); --left) {
     if (done.service_id != service_id_) continue;
     if (tool_change_.id != 0 && done.id == tool_change_.id) end_tool_change(done.is_done);
     if (is_action_open_ && done.id == action_id_) settle_action(done.is_done);
@@ -218,9 +224,7 @@ void Supervisor::work_on_switching_off() {
   asked_off_ns_ = now_ns;
   for (const Verb verb : {Verb::kDisable, Verb::kAbort}) {
     if (effect_of(state, verb).effect != Effect::kGo) continue;
-    Pending own{.key = next_key_++, .request = {}, .is_own = true};
-    own.request.verb = verb;
-    send(own);
+    send_own(verb);
     return;
   }
 }

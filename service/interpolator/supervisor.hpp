@@ -15,25 +15,43 @@
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
 #include "service/dds/writer.hpp"
-#include "service/interpolator/drive_commander.hpp"
+#include "service/dds/sources.hpp"
+#include "service/dds/stalled_reader.hpp"
+#include "service/interpolator/command_listener.hpp"
+#include "service/interpolator/command_quota.hpp"
+#include "service/interpolator/drive_command_thread.hpp"
+#include "service/interpolator/enabling_listener.hpp"
 #include "service/interpolator/jog_intake.hpp"
 #include "service/interpolator/ports.hpp"
+#include "service/interpolator/reply_thread.hpp"
 #include "service/interpolator/status_clock.hpp"
 #include "service/telemetry/audit_log.hpp"
 
 namespace meridian::interpolator {
 
-/// The commands thread: operators' verbs and jogs to the cycle and its answers back, actions out
-/// and in, controlwords to the drives, events on to who wants them, and the orderly end of the
-/// service.
+/// The commands thread: operators' commands and jogs to the cycle and its answers back, actions out
+/// and in, events on to who wants them, and the orderly end of the service. Stops reach the cycle
+/// without it (CommandListener); it answers them. It waits for no peer: replies are written by a
+/// thread of their own, controlwords by another.
 class Supervisor {
  public:
   Supervisor(dds::Participant& participant, const MachineModel& model, const ToolTable& tools,
              const config::ServiceConfig& service, std::uint64_t service_id,
              const StatusClock& status_clock, Ports& ports, telemetry::AuditLog* audit = nullptr);
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
 
   /// Runs until Ports::is_stopping.
   void run() noexcept;
+  /// Of replies, actions and controlwords, see dds::StalledReaders.
+  void watch_readers(dds::StalledReaders& stalled) const {
+    stalled.watch(replies_.writer(), "reply");
+    stalled.watch(actions_.handle(), "action");
+    stalled.watch(drives_.writer(), "drive_command");
+  }
+  /// The loops of two further threads, which run as long.
+  void run_replies() noexcept { replies_.run(); }
+  void run_drives() noexcept { drives_.run(); }
   /// Any thread: bring the machine to rest and to Off, then has_switched_off().
   void switch_off() noexcept;
   [[nodiscard]] bool has_switched_off() const noexcept { return is_off_.load(); }
@@ -46,8 +64,9 @@ class Supervisor {
  private:
   struct Pending {
     std::uint64_t key = 0;  ///< Command::request, in the order in which they came; 0: place is free
+    std::uint64_t participant = 0;  ///< who asks, see dds::participant_of(); 0: gone
+    std::uint64_t source = 0;       ///< by which writer, see dds::SampleInfo
     dds::CommandRequest request;
-    bool is_own = false;  ///< the service's, while shutting down: nobody waits for an answer
   };
   /// A tool change that the action peer was asked for, and has not answered.
   struct ToolChange {
@@ -56,21 +75,28 @@ class Supervisor {
     std::int64_t until_ns = 0;  ///< nobody waits for the answer any longer
   };
   struct Answered {
-    std::uint64_t operator_id = 0, request = 0;
-    dds::Reply reply;
+    Pending command;
+    QueuedReply reply;
   };
 
   void take_commands();
   void take_jogs();
-  /// Takes what operators said meanwhile, stops first, no more than `left`, which it counts down;
-  /// true if there may be more.
-  bool take_burst(int& left);
-  void take_command(const Pending& command);
-  [[nodiscard]] bool has_come_before(const dds::CommandRequest& request);
-  /// Why a word that nothing else is said against is late all the same.
-  [[nodiscard]] Refusal judge_turn(const dds::CommandRequest& request) const noexcept;
+  void take_command(const Arrival& arrival);
+  /// Of a stop, which the cycle has been told of already, the answer is waited for.
+  void await_stop(const Pending& command);
+  /// Answers a command that came before as it was answered then; stops never come twice.
+  [[nodiscard]] bool is_repetition(const Pending& command);
+  /// Why a command that nothing else speaks against is refused all the same.
+  [[nodiscard]] Refusal check_turn(const Pending& command) const noexcept;
+  /// Why nothing may move now: an enabling device is required, and none is pressed.
+  [[nodiscard]] bool lacks_enabling(Verb verb) const noexcept;
+  [[nodiscard]] bool is_within_quota(std::uint64_t participant, std::uint64_t source);
   void delay_reset(const Pending& command);
   void send(const Pending& command);
+  /// The place for a command that waits for its answer; nullptr: there is none.
+  [[nodiscard]] Pending* find_place(Verb verb) noexcept;
+  /// The verb of the service's own while it ends.
+  void send_own(Verb verb);
   [[nodiscard]] bool is_pending(Verb verb) const noexcept;
   void take_events();
   void answer(const Event& event);
@@ -79,8 +105,13 @@ class Supervisor {
   void give_up_older(const Event& event);
   /// What an accepted verb leads to; a program's start to its approach.
   [[nodiscard]] std::string what_happens(Verb verb);
-  void reply(const dds::CommandRequest& request, bool is_accepted, Refusal refusal,
-             const std::string& text);
+  void reply(const Pending& command, bool is_accepted, Refusal refusal, const std::string& text);
+  void push_reply(const QueuedReply& queued);
+  void audit(const Pending& command, const QueuedReply& queued);
+  /// Where the participant runs, in words; remembered.
+  [[nodiscard]] const std::string& identity_of(const Pending& command);
+  void take_enabling_changes();
+  void notice(const std::string& text, bool is_for_status);
   void publish_action(const Event& event);
   void take_actions_done();
   void settle_action(bool is_done);
@@ -101,20 +132,22 @@ class Supervisor {
   const StatusClock& status_clock_;
   Ports& ports_;
   telemetry::AuditLog* audit_;  ///< nullptr: none is kept
-  dds::Reader<dds::CommandRequest> commands_;
-  dds::Writer<dds::Reply> replies_;
+  dds::Participant& participant_;
+  CommandListener commands_;
+  ReplyThread replies_;
   dds::Reader<dds::Jog> jogs_;
   dds::Reader<dds::ActionDone> actions_done_;
   dds::Writer<dds::Action> actions_;
-  DriveCommander drives_;
+  DriveCommandThread drives_;
+  EnablingListener enabling_;
+  dds::Senders senders_;
+  CommandQuota quota_;
   JogIntake jog_intake_;
   dds::Waitset waitset_;
   std::function<void(bool)> tell_intake_;
 
   CycleView view_;
   State told_state_ = State::kOff;  ///< by the events so far
-  std::uint64_t next_key_ = 1;
-  std::array<Pending, 128> burst_{};  ///< came together, none of them stops
   std::array<Pending, 96> pending_{};
   std::array<Answered, 512> answered_{};  ///< for requests that come twice
   std::size_t answered_at_ = 0;
@@ -127,7 +160,19 @@ class Supervisor {
   double tool_before_mm_ = 0;  ///< in the spindle when the dry run began
   std::atomic<bool> is_switching_off_{false}, is_off_{false};
   std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
-  std::uint64_t stop_status_ = 0;            ///< newest status when a stop was said last
+  std::uint32_t enabling_losses_ = 0;  ///< that were reported
+  struct EnablingDevice {
+    std::uint64_t source = 0;
+    std::string name;
+  };
+  std::array<EnablingDevice, 16> enabling_devices_{};  ///< newest, in a ring
+  std::size_t enabling_devices_at_ = 0;
+  struct Identity {
+    std::uint64_t participant = 0;
+    std::string name;
+  };
+  std::array<Identity, 32> identities_{};  ///< newest, in a ring
+  std::size_t identities_at_ = 0;
   std::array<Pending, 8> delayed_resets_{};  ///< wait until drives left their fault
   std::size_t delayed_count_ = 0;
   std::int64_t delayed_until_ns_ = 0;

@@ -51,6 +51,8 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
   status_.service_id = service_id_;
   status_.realtime_mode = mode;
   status_.is_secured = participant.is_secured();
+  status_.is_open_network = participant.is_open_network();
+  status_.is_enabling_required = service.deadman;
   latency_.service_id = service_id_;
   for (const char* name : kBooks) latency_.histograms.push_back({name, {}});
   status_.is_auxiliary_ignored = service.auxiliary == config::AuxiliaryPolicy::kIgnore;
@@ -106,6 +108,13 @@ void TelemetryThread::drain() {
                 telemetry::describe(planned, model_));
     }
     recorder_.take(planned);
+  }
+  for (Notice notice; ports_.notices.try_pop(notice);) {
+    log_->log(notice.is_warning ? spdlog::level::warn : spdlog::level::info, "{}",
+              notice.text.data());
+    if (!notice.is_for_status) continue;
+    if (status_.alarm == Alarm::kNone) status_.message = notice.text.data();
+    has_news_ = true;
   }
   Event event;
   while (ports_.told.try_pop(event)) {
@@ -370,6 +379,12 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.setpoints_overrun = ports_.setpoints_overrun + ports_.writes_failed;
   status.records_overrun = ports_.records_overrun + recorder_.rows_lost();
   status.events_overrun = ports_.events_overrun + recorder_.events_lost();
+  status.commands_dropped = ports_.commands_dropped;
+  status.replies_dropped = ports_.replies_dropped;
+  status.enabling_devices = static_cast<std::uint8_t>(ports_.enabling.pressed());
+  if (ports_.stalled_reader.refresh()) {
+    status.stalled_reader = ports_.stalled_reader.latest().name.data();
+  }
   say_what_is_new(session, has_told_program);
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);

@@ -11,6 +11,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/config/service_file.hpp"
 #include "service/dds/messages.hpp"
+#include "service/dds/stalled_reader.hpp"
 #include "service/dds/writer.hpp"
 #include "service/interpolator/intake.hpp"
 #include "service/interpolator/ports.hpp"
@@ -42,6 +43,11 @@ class TelemetryThread {
 
   /// Before run(): Faults and sessions go into this log too.
   void audit_into(telemetry::AuditLog& audit) { audit_ = &audit; }
+  /// Of the status and of latencies, see dds::StalledReaders.
+  void watch_readers(dds::StalledReaders& stalled) const {
+    stalled.watch(statuses_.handle(), "status");
+    stalled.watch(latencies_.handle(), "latency");
+  }
 
   /// Runs until Ports::is_stopping; what is in the rings by then is drained.
   void run() noexcept;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "meridian/rt/state_table.hpp"
+#include "service/dds/sources.hpp"
 
 namespace meridian::stream {
 
@@ -16,6 +17,11 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kRepeat{300};
 /// A dry run that was told on just now is in the status by then.
 constexpr std::chrono::milliseconds kTold{300};
+/// Whoever publishes a status for this machine is known by then: discovery, and two statuses.
+constexpr std::chrono::milliseconds kEverybodySeen{400};
+/// A service that was silent for so long speaks no more.
+constexpr std::chrono::milliseconds kSilent{1500};
+constexpr std::size_t kMaxServices = 16;
 
 }  // namespace
 
@@ -27,6 +33,8 @@ std::uint64_t draw_id() {
 
 OperatorLink::OperatorLink(dds::Participant& participant, std::string operator_name)
     : name_(std::move(operator_name)),
+      participant_(participant),
+      participant_number_(dds::number_of(participant)),
       operator_id_(draw_id()),
       commands_(participant),
       replies_(participant),
@@ -38,9 +46,71 @@ OperatorLink::OperatorLink(dds::Participant& participant, std::string operator_n
 
 bool OperatorLink::take_statuses() {
   dds::Status status;
-  if (!followed_.take(statuses_, status)) return false;
+  const auto see_it = [this](const dds::Status& any, std::uint64_t source) { see(any, source); };
+  const bool has_news = followed_.take(statuses_, status, see_it);
+  const auto now = Clock::now();
+  std::erase_if(services_, [now](const Service& known) { return now - known.seen > kSilent; });
+  if (!has_news) return false;
   status_ = status;
   return true;
+}
+
+void OperatorLink::see(const dds::Status& status, std::uint64_t source) {
+  const auto known =
+      std::find_if(services_.begin(), services_.end(), [source](const Service& service) {
+        return service.source == source;
+      });
+  if (known != services_.end()) {
+    known->seen = Clock::now();
+    known->service_id = status.service_id;
+  } else if (services_.size() < kMaxServices) {
+    services_.push_back({.source = source,
+                         .participant = dds::participant_of(statuses_.handle(), source),
+                         .service_id = status.service_id,
+                         .seen = Clock::now(),
+                         .reply = {}});
+  }
+}
+
+std::vector<std::string> OperatorLink::services() const {
+  std::vector<std::string> names;
+  for (const Service& service : services_) {
+    names.push_back(dds::describe_source(participant_, statuses_.handle(), service.source));
+  }
+  return names;
+}
+
+void OperatorLink::take_replies(Verb verb) {
+  dds::Reply reply;
+  dds::SampleInfo info;
+  while (replies_.take(reply, info)) {
+    const bool is_ours = info.is_valid && reply.operator_id == operator_id_ &&
+                         reply.request == request_ && reply.verb == verb &&
+                         reply.requester == participant_number_;
+    if (!is_ours) continue;
+    const std::uint64_t sender = dds::participant_of(replies_.handle(), info.source);
+    for (Service& service : services_) {
+      const bool is_its = service.participant == sender && service.service_id == reply.service_id;
+      if (is_its && !service.reply) service.reply = reply;
+    }
+  }
+}
+
+/// Of a stop the refusal where one refuses it, and none before everybody who speaks has answered.
+std::optional<dds::Reply> OperatorLink::answer(Verb verb) const {
+  std::optional<dds::Reply> answer;
+  bool is_complete = true;
+  for (const Service& service : services_) {
+    if (!is_stop(verb) && service.source != followed_.source()) continue;
+    if (!service.reply) {
+      is_complete = false;
+    } else if (!answer || !service.reply->is_accepted) {
+      answer = service.reply;
+    }
+  }
+  if (!is_stop(verb)) return answer;
+  const bool is_everybody_seen = Clock::now() - made_ > kEverybodySeen;
+  return is_complete && is_everybody_seen ? answer : std::nullopt;
 }
 
 bool OperatorLink::wait_for_status(Milliseconds timeout) {
@@ -76,6 +146,7 @@ std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Millisec
   request.operator_name = name_;
   request.verb = verb;
   request.argument = argument;
+  for (Service& service : services_) service.reply.reset();
   const bool is_for_dry_run = may_be_dry(verb) && argument != 0;
   const auto begin = Clock::now(), end = begin + timeout;
   const auto told = begin + std::min<Clock::duration>(kTold, timeout / 2);
@@ -83,10 +154,10 @@ std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Millisec
   bool is_quoted = false;
   for (auto now = due; now < end; now = Clock::now()) {
     static_cast<void>(take_statuses());
-    const bool may_send = status_ && (!is_for_dry_run || status_->is_dry_run);
+    const bool may_send = is_stop(verb) || (status_ && (!is_for_dry_run || status_->is_dry_run));
     was_matched_ = was_matched_ || commands_.matched_readers() > 0;
     // What was seen when it was said: who is cut off then says nothing about what he sees later.
-    if (may_send && was_matched_ && !std::exchange(is_quoted, true)) {
+    if (may_send && was_matched_ && status_ && !std::exchange(is_quoted, true)) {
       request.epoch_seen = status_->epoch;
       request.status_seen = status_->status_sequence;
       request.service_id_seen = status_->service_id;
@@ -97,10 +168,8 @@ std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Millisec
       static_cast<void>(commands_.write(request));
       due = now + kRepeat;
     }
-    dds::Reply reply;
-    while (replies_.take(reply)) {
-      if (reply.operator_id == operator_id_ && reply.request == request_) return reply;
-    }
+    take_replies(verb);
+    if (const auto reply = status_ ? answer(verb) : std::nullopt) return reply;
     constexpr Milliseconds kLook{20};
     waitset_.wait(std::min<Clock::duration>(end - now, kLook));
   }

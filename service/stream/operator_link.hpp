@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "meridian/rt/state.hpp"
 #include "service/dds/followed.hpp"
@@ -17,10 +18,14 @@
 
 namespace meridian::stream {
 
-/// An operator's place at a machine: sees its status, asks for verbs and hears the answers. Every
-/// request quotes the newest status that was seen when it was said, also where it is repeated, as
-/// it is until it is answered: one that comes late is stale. The service answers a repetition
-/// without acting twice. One thread.
+/// An operator's end of a machine: sees its status, asks for verbs and gets the answers. Every
+/// request quotes the newest status that was seen when it was made, also where it is repeated, as it
+/// is until it is answered: one that comes late is stale. The service answers a repetition without
+/// acting twice; a stop it obeys each time.
+///
+/// An answer counts where it is the followed service's own, to this participant. Where several
+/// services speak for the machine a stop counts as accepted only when each of them has accepted it:
+/// which of them moves the drives nobody can tell from here. One thread.
 class OperatorLink {
  public:
   using Milliseconds = std::chrono::milliseconds;
@@ -34,6 +39,8 @@ class OperatorLink {
   [[nodiscard]] const std::optional<dds::Status>& status() const noexcept { return status_; }
 
   [[nodiscard]] std::uint64_t operator_id() const noexcept { return operator_id_; }
+  /// Services that spoke for this machine a moment ago, the followed one too, in words.
+  [[nodiscard]] std::vector<std::string> services() const;
 
   /// Asks for `verb` and returns the answer; nothing where the service stays silent. What is said
   /// for a dry run alone (may_be_dry(), argument 1) is said to a machine that tells of one: of any
@@ -48,13 +55,29 @@ class OperatorLink {
       const std::function<void(const dds::Status&)>& look, Milliseconds timeout);
 
  private:
+  /// A service that publishes a status for this machine.
+  struct Service {
+    std::uint64_t source = 0, participant = 0, service_id = 0;
+    std::chrono::steady_clock::time_point seen;
+    std::optional<dds::Reply> reply;  ///< to the request that waits
+  };
+
   bool take_statuses();
+  void see(const dds::Status& status, std::uint64_t source);
+  /// Keeps the answers to the request that waits with the services that gave them.
+  void take_replies(Verb verb);
+  /// The answer to the request that waits, once there is one.
+  [[nodiscard]] std::optional<dds::Reply> answer(Verb verb) const;
   /// Our own answer to `request`, which was not sent.
   [[nodiscard]] dds::Reply refuse_as_not_dry(const dds::CommandRequest& request) const;
 
   std::string name_;
+  dds::Participant& participant_;
+  std::uint64_t participant_number_;
   std::uint64_t operator_id_;
+  std::chrono::steady_clock::time_point made_ = std::chrono::steady_clock::now();
   std::uint64_t request_ = 0;
+  std::vector<Service> services_;
   bool was_matched_ = false;  ///< the service heard us once: whoever it does not hear is cut off
   dds::Writer<dds::CommandRequest> commands_;
   dds::Reader<dds::Reply> replies_;

@@ -332,6 +332,9 @@ std::string describe(Verb verb, Refusal refusal, State state) {
     case Refusal::kOvertaken:
       why = "a hold, an abort or disable was said behind it and came first; say it again";
       break;
+    case Refusal::kNoEnablingDevice:
+      why = "an enabling device is required and none is pressed; press it, then repeat";
+      break;
   }
   return fmt::format("{} refused: {}", name_of(verb), why);
 }

@@ -60,11 +60,13 @@ TEST_F(Scheduling, LetsOnlyThreadsThatNeverUseDdsRunAtNormalClassInTheService) {
   Process& service = plant_.start_service({"--trace", (plant_.folder() / "traces").string()});
   ASSERT_EQ(plant_.status().state, State::kOff) << service.said();
   // The log's thread is called as the program.
-  const std::set<std::string> no_dds{"recorder", "journal", "flight", "tracer", "meridiand"};
+  const std::set<std::string> no_dds{"audit",  "flight", "journal",
+                                     "recorder", "tracer", "meridiand"};
   EXPECT_TRUE(eventually([&] { return normal_ones(service.pid()) == no_dds; }))
       << testing::PrintToString(normal_ones(service.pid()));
   const auto all = policies_of(service.pid());
-  for (const char* name : {"main", "recv", "dq.builtins", "gc", "intake", "telemetry", "cycle"}) {
+  for (const char* name : {"main", "recv", "dq.builtins", "gc", "intake", "telemetry", "cycle",
+                           "replies", "drives"}) {
     EXPECT_TRUE(all.contains(name)) << name;
   }
 }

@@ -158,6 +158,7 @@ enum class Refusal : std::uint8_t {
   kDriveContested,  ///< two sources report the same drive
   kNotDryRun,       ///< said for a dry run alone, and the machine is in none
   kOvertaken,       ///< a stop was said behind it and came first
+  kNoEnablingDevice,  ///< an enabling device is required, and none is pressed
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

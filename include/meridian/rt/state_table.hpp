@@ -92,11 +92,12 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 15> kNames{
+  constexpr std::array<const char*, 16> kNames{
       "none",          "wrong state", "not referenced",  "no program",      "no feedback",
       "out of range",  "stale",       "fault present",   "program present", "slow ramp",
-      "drive enabled", "dry run",     "drive contested", "not a dry run",   "overtaken"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kOvertaken) + 1);
+      "drive enabled", "dry run",     "drive contested", "not a dry run",   "overtaken",
+      "no enabling device"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kNoEnablingDevice) + 1);
   return kNames[static_cast<std::size_t>(refusal)];
 }
 

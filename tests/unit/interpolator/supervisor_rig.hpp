@@ -39,15 +39,18 @@ class SupervisorTest : public testing::Test {
     words.joint_mask = 0x1F;
     words.statusword.fill(0x231);  // ready to switch on
     ports_->drive_words.store(words);
+    ports_->drive_words_for_commands.store(words);
     publish_status();
   }
   void SetUp() override { run(); }
   void TearDown() override {
     ports_->is_stopping = true;
-    thread_.join();
+    for (std::thread& thread : threads_) thread.join();
   }
   void run() {
-    thread_ = std::thread([this] { supervisor_.run(); });
+    threads_.emplace_back([this] { supervisor_.run(); });
+    threads_.emplace_back([this] { supervisor_.run_replies(); });
+    threads_.emplace_back([this] { supervisor_.run_drives(); });
   }
   /// What operators quote from now on; it stays fresh for as long as a test takes.
   void publish_status() {
@@ -71,6 +74,8 @@ class SupervisorTest : public testing::Test {
     view.record.state = state;
     view.is_dry_run = is_dry_run;
     ports_->commands_view.store(view);
+    ports_->drives_asked.store({.is_enabled = is_enabled(state) && !is_dry_run, .epoch = 1});
+    ports_->drives_wake.notify();
   }
   void ask(Verb verb, double argument = 0, std::uint64_t operator_id = 9) {
     ++request_;
@@ -158,7 +163,7 @@ class SupervisorTest : public testing::Test {
   std::uint64_t shown_ = 0, request_ = 0, status_ = 4, tool_block_ = 11;
   std::optional<dds::Action> change_;
   std::uint16_t controlword_ = 0;
-  std::thread thread_;
+  std::vector<std::thread> threads_;
 };
 
 /// What operators say before the thread runs waits for it together.

@@ -128,27 +128,5 @@ TEST_F(SupervisorBurst, WaitsForTheToolNoLongerThanForAnyAction) {
   EXPECT_TRUE(comes([this] { return !ports_->is_tool_changing; }));
 }
 
-/// The answer to the first word is there from the begin: it is given ahead of what operators say
-/// beyond the first look's share.
-TEST_F(SupervisorBurst, LooksAfterTheCycleBetweenManyWordsThatWait) {
-  show(State::kReady, false);
-  ask(Verb::kFeedOverride, 0.5);
-  for (int n = 0; n < 1100; ++n) repeat(Verb::kFeedOverride, 0.5);
-  ask(static_cast<Verb>(kVerbCount));
-  tell(EventCode::kAccepted, 1, Verb::kFeedOverride);
-  run();
-  std::vector<std::uint64_t> order;
-  ASSERT_TRUE(comes([&] {
-    dds::Reply reply;
-    while (replies_.take(reply)) {
-      if (std::find(order.begin(), order.end(), reply.request) == order.end()) {
-        order.push_back(reply.request);
-      }
-    }
-    return order.size() == 2;
-  }));
-  EXPECT_EQ(order, (std::vector<std::uint64_t>{1, 2}));
-}
-
 }  // namespace
 }  // namespace meridian::interpolator

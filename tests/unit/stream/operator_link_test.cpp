@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <optional>
+#include <string>
 #include <thread>
 
+#include "service/dds/sources.hpp"
 #include "support/private_domain.hpp"
 
 /// An operator who means a dry run, at services that know of such words and at those of before,
@@ -44,6 +47,9 @@ class OperatorWhoMeansADryRun : public testing::Test {
     dds::Reply reply;
     reply.request = request.request;
     reply.operator_id = request.operator_id;
+    reply.verb = request.verb;
+    reply.service_id = 1;
+    reply.requester = dds::number_of(participant_);
     reply.is_accepted = true;
     EXPECT_TRUE(replies_.write(reply));
   }
@@ -127,6 +133,7 @@ TEST(OperatorWhoIsCutOff, QuotesWhatHeSawWhenHeSaidItOnceHeIsHeard) {
   OperatorLink link(participant, "test");
   const auto tell = [&statuses](std::uint64_t sequence) {
     dds::Status status;
+    status.service_id = 1;
     status.status_sequence = sequence;
     return statuses.write(status);
   };
@@ -150,10 +157,111 @@ TEST(OperatorWhoIsCutOff, QuotesWhatHeSawWhenHeSaidItOnceHeIsHeard) {
     dds::Reply reply;
     reply.request = request.request;
     reply.operator_id = request.operator_id;
+    reply.verb = request.verb;
+    reply.service_id = 1;
+    reply.requester = dds::number_of(participant);
     EXPECT_TRUE(replies.write(reply));
   });
   EXPECT_TRUE(link.ask(Verb::kResume, 0, milliseconds(5000)));
   service.join();
+}
+
+/// Services that speak for one machine, each a participant of its own, and an operator.
+class OperatorAmongServices : public testing::Test {
+ protected:
+  struct Speaker {
+    Speaker(std::uint32_t domain, std::uint64_t service_id)
+        : id(service_id), participant({.domain = domain, .machine = "m"}) {}
+    void speak() {
+      dds::Status status;
+      status.service_id = id;
+      status.status_sequence = ++sequence;
+      EXPECT_TRUE(statuses.write(status));
+    }
+    /// Answers the newest command, if there is one.
+    void answer(std::uint64_t requester, bool is_accepted, Verb verb = Verb::kHold) {
+      dds::CommandRequest request;
+      while (commands.take(request)) {
+        EXPECT_TRUE(replies.write({.request = request.request,
+                                   .operator_id = request.operator_id,
+                                   .service_id = id,
+                                   .requester = requester,
+                                   .verb = verb,
+                                   .is_accepted = is_accepted,
+                                   .text = std::to_string(id)}));
+      }
+    }
+    std::uint64_t id, sequence = 0;
+    dds::Participant participant;
+    dds::Writer<dds::Status> statuses{participant};
+    dds::Writer<dds::Reply> replies{participant};
+    dds::Reader<dds::CommandRequest> commands{participant};
+  };
+
+  /// What the operator hears of a hold while `work` is done every few ms.
+  template <class Work>
+  std::optional<dds::Reply> hold(Work work, milliseconds timeout) {
+    std::atomic<bool> is_over{false};
+    std::thread services([&] {
+      while (!is_over) {
+        work();
+        std::this_thread::sleep_for(milliseconds(5));
+      }
+    });
+    const auto reply = link_.ask(Verb::kHold, 0, timeout);
+    is_over = true;
+    services.join();
+    return reply;
+  }
+
+  const support::PrivateDomain domain_;
+  dds::Participant participant_{{.domain = domain_.id(), .machine = "m"}};
+  OperatorLink link_{participant_, "test"};
+  std::uint64_t own_ = dds::number_of(participant_);
+  Speaker real_{domain_.id(), 1}, fake_{domain_.id(), 2};
+};
+
+TEST_F(OperatorAmongServices, HearsThatAHoldIsAcceptedOnlyOnceEachHasAcceptedIt) {
+  const auto both = [this] {
+    real_.speak();
+    fake_.speak();
+    fake_.answer(own_, true);
+  };
+  EXPECT_FALSE(hold(both, milliseconds(1200))) << "the fake's answer is not the machine's";
+  EXPECT_EQ(link_.services().size(), 2U);
+  const auto reply = hold([&] { both(), real_.answer(own_, true); }, milliseconds(5000));
+  ASSERT_TRUE(reply);
+  EXPECT_TRUE(reply->is_accepted);
+}
+
+TEST_F(OperatorAmongServices, HearsTheRefusalWhereOneAcceptsAndOneRefuses) {
+  const auto reply = hold(
+      [this] {
+        real_.speak();
+        fake_.speak();
+        fake_.answer(own_, true);
+        real_.answer(own_, false);
+      },
+      milliseconds(5000));
+  ASSERT_TRUE(reply);
+  EXPECT_FALSE(reply->is_accepted);
+  EXPECT_EQ(reply->text, "1");
+}
+
+TEST_F(OperatorAmongServices, TakesNoAnswerToAnotherParticipantOrOfAnotherVerbForHis) {
+  const auto reply = hold(
+      [this] {
+        real_.speak();
+        real_.answer(own_ + 1, true);
+      },
+      milliseconds(800));
+  EXPECT_FALSE(reply) << "it went to somebody who quoted his number";
+  EXPECT_FALSE(hold(
+      [this] {
+        real_.speak();
+        real_.answer(own_, true, Verb::kRapidOverride);
+      },
+      milliseconds(800)));
 }
 
 }  // namespace

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/dds/stalled_reader.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "service/dds/messages.hpp"
+#include "service/dds/reader.hpp"
+#include "service/dds/writer.hpp"
+#include "support/private_domain.hpp"
+
+namespace meridian::dds {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+bool comes(const std::function<bool()>& condition) {
+  const auto end = Clock::now() + milliseconds(5000);
+  while (!condition()) {
+    if (Clock::now() > end) return false;
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  return true;
+}
+
+/// A process with a reader of replies that the test may stop; made before this process has DDS.
+class OtherProcess {
+ public:
+  explicit OtherProcess(std::uint32_t domain) : id_(::fork()) {
+    if (id_ != 0) return;
+    Participant participant({.domain = domain, .machine = "mill"});
+    Reader<Reply> reader(participant);
+    Reply reply;
+    for (;;) {
+      while (reader.take(reply)) {
+      }
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+  }
+  ~OtherProcess() {
+    ::kill(id_, SIGKILL);
+    ::waitpid(id_, nullptr, 0);
+  }
+  void stop() const { ::kill(id_, SIGSTOP); }
+  void go_on() const { ::kill(id_, SIGCONT); }
+  [[nodiscard]] pid_t id() const { return id_; }
+
+ private:
+  pid_t id_;
+};
+
+TEST(StalledReaders, AreNamedWithTheirProcessAndHoldBackNoWrite) {
+  const support::PrivateDomain domain;
+  const OtherProcess other(domain.id());
+  Participant participant({.domain = domain.id(), .machine = "mill"});
+  Writer<Reply> writer(participant);
+  StalledReaders stalled(participant);
+  stalled.watch(writer.handle(), "reply");
+  ASSERT_TRUE(comes([&] { return writer.matched_readers() == 1; }));
+  ASSERT_TRUE(writer.write({.request = 1}));
+  EXPECT_TRUE(comes([&] { return !find_unacknowledged(participant, writer.handle()); }));
+
+  other.stop();
+  auto longest = Clock::duration::zero();
+  for (int n = 0; n < 2000; ++n) {
+    const auto before = Clock::now();
+    ASSERT_TRUE(writer.write({.request = 2, .text = std::string(kMostText, 'x')})) << n;
+    longest = std::max(longest, Clock::now() - before);
+  }
+  EXPECT_LT(longest, milliseconds(50)) << "a write that waits waits for 100 ms";
+  EXPECT_EQ(stalled.look(kSecond_ns), "") << "not yet";
+  const std::string who = stalled.look(4 * kSecond_ns);
+  EXPECT_NE(who.find("process " + std::to_string(other.id()) + " on host "), std::string::npos)
+      << who;
+  EXPECT_NE(who.find("(reply)"), std::string::npos);
+
+  other.go_on();
+  EXPECT_TRUE(comes([&] { return !find_unacknowledged(participant, writer.handle()); }));
+  EXPECT_EQ(stalled.look(9 * kSecond_ns), "");
+}
+
+}  // namespace
+}  // namespace meridian::dds
