@@ -41,7 +41,7 @@ def check_stops(samples, recording):
         one["is_obeyed"] = found is not None if recording else one["state_ns"] > 0
         if found:
             one["seen_ms"], one["slower_ms"], one["cycles"] = found
-        elif one["is_obeyed"]:
+        elif one["state_ns"] > 0 and not recording:
             one["seen_ms"] = 1e-6 * (one["state_ns"] - one["written_ns"])
         if one["slower_due_ns"] and one["is_cruising"]:
             one["wire_ms"] = 1e-6 * (one["slower_due_ns"] - one["written_ns"])

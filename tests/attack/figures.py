@@ -15,6 +15,9 @@ def spread(values):
             "p999": percentile(values, 0.999), "max": max(values, default=float("nan"))}
 
 
+MOVING = ("approaching", "running", "starving", "jogging", "homing")
+
+
 class Recording:
     """The columns of a service's recording that stops are checked by."""
 
@@ -51,7 +54,8 @@ class Recording:
 
     def stop_behind(self, written_ns, limit_ns, states):
         """Of a stop that was written then: (ms until a row of `states`, ms until the first slower
-        setpoint, executed cycles between both). None where there is none within the limit."""
+        setpoint, executed cycles between both). None where the machine goes on for longer than the
+        limit, () where it is at rest then for another reason."""
         i = self.first_behind(written_ns)
         if i == len(self.due_ns):
             return None
@@ -61,7 +65,10 @@ class Recording:
                 break
             i += 1
         else:
-            return None
+            # At rest by then, by a fault or since before: there was nothing to stop.
+            last = min(i, len(self.due_ns) - 1)
+            is_moving = self.state[last] in MOVING or self.flags[last] & 2
+            return None if is_moving else ()
         seen = i
         seen_ms = 1e-6 * (self.due_ns[seen] - written_ns)
         moved = self.flags[max(0, seen - 1)] & 2

@@ -68,14 +68,13 @@ void Observer::take_controlwords() {
   }
 }
 
-/// Where both were switched off just now.
+/// Where both were switched off just now, and both had been on together.
 void Observer::compare_switches() {
-  constexpr std::int64_t kTogether_ns = 10'000'000'000;
-  const std::int64_t behind_ns = operating_.off_ns - following_.off_ns;
   const bool are_both_off = !operating_.is_on && !following_.is_on;
-  if (are_both_off && behind_ns > -kTogether_ns && behind_ns < kTogether_ns) {
-    account_.off_ms.push_back(1e-6 * static_cast<double>(behind_ns));
-  }
+  const bool were_both_on =
+      following_.off_ns > operating_.on_ns && operating_.off_ns > following_.on_ns;
+  if (!are_both_off || !were_both_on) return;
+  account_.off_ms.push_back(1e-6 * static_cast<double>(operating_.off_ns - following_.off_ns));
 }
 
 void Observer::take_setpoints() {

@@ -73,10 +73,11 @@ class Observer {
   /// When something was switched off last, by the time stamp of the sample that said so.
   struct Switch {
     bool is_on = false;
-    std::int64_t off_ns = 0;
+    std::int64_t on_ns = 0, off_ns = 0;
     /// Whether it is switched off by this sample.
     bool goes_off(bool is_on_now, std::int64_t at_ns) noexcept {
       const bool goes = is_on && !is_on_now;
+      if (!is_on && is_on_now) on_ns = at_ns;
       is_on = is_on_now;
       if (goes) off_ns = at_ns;
       return goes;
