@@ -74,10 +74,6 @@ ATTACKS["mixed"] = Attack(words=((*_STICK, "all"), _flood("command", 1000),
                                  ("sessions", "--rate", 100),
                                  ("churn", "--count", 3, "--rate", 3)))
 
-# What ctest runs: each kind once.
-SLICE = ("none", "stuck reply", "stuck reply, 3000/s", "stopped participant", "takeover",
-         "forged command 2000/s", "reused id", "log blocked")
-
 
 def _limit_files():
     """In the service before it becomes its program: no file beyond 64 KiB, as on a full disk."""

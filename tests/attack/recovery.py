@@ -17,6 +17,7 @@ import random
 import re
 import signal
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -226,11 +227,15 @@ def main():
     parser.add_argument("--kills", type=int, default=500)
     parser.add_argument("--minutes", type=float, default=60, help="at the longest")
     parser.add_argument("--corpus", help="folder of CL files; without it a part of its own")
-    parser.add_argument("--folder", default="/tmp/meridian-recovery", help="for parts")
+    parser.add_argument("--folder", help="for parts; default: one that is deleted")
     parser.add_argument("--seed", type=int, default=20260412)
     parser.add_argument("--json")
     parser.add_argument("--keep", action="store_true")
-    return Campaign(parser.parse_args()).run()
+    arguments = parser.parse_args()
+    if arguments.folder:
+        return Campaign(arguments).run()
+    with tempfile.TemporaryDirectory(prefix="meridian-recovery-") as arguments.folder:
+        return Campaign(arguments).run()
 
 
 if __name__ == "__main__":

@@ -72,6 +72,8 @@ class Situations:
         if self.is_reusing:
             self.op.write("renumber 1")
         one = self.op.stop(verb, LIMIT_MS, cruise)
+        if self.is_reusing:  # what is no stop is not said twice
+            self.op.write(f"renumber {1000 * (len(self.samples) + 1)}")
         one.update(situation=situation, verb=verb)
         self.samples.append(one)
         return one
