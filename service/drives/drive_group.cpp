@@ -11,7 +11,9 @@
 namespace meridian::drives {
 DriveGroup::DriveGroup(const MachineModel& model, const ServoLag& lag,
                        const std::vector<HomingPlan>& homing)
-    : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9), bridge_cycles_(model.bridge_cycles) {
+    : cycle_s_(static_cast<double>(model.cycle_ns) * 1e-9),
+      bridge_cycles_(model.bridge_cycles),
+      own_bridge_cycles_(model.bridge_cycles) {
   for (int i = 0; i < model.joint_count; ++i) {
     const auto place = static_cast<std::size_t>(i);
     drives_.emplace_back(drive_spec(model, i), lag,
@@ -45,19 +47,22 @@ Drop DriveGroup::take(const dds::DriveCommand& command, std::uint64_t sender) no
 void DriveGroup::obey_new_master() noexcept {
   has_setpoint_ = is_new_ = false;
   age_ = {};
-  for (const Told& told : told_) {
-    if (told.service_id == pin_.master().service_id) bridge_cycles_ = told.bridge_cycles;
+  bridge_cycles_ = own_bridge_cycles_;
+  for (const Bridge& bridge : bridges_) {
+    if (bridge.by == pin_.master()) bridge_cycles_ = bridge.cycles;
   }
 }
 
 void DriveGroup::see_master(bool is_there) noexcept { pin_.work(is_there, is_off()); }
 
-void DriveGroup::take(const dds::MachineInfo& machine) noexcept {
-  if (!machine.is_serving) return;
-  const Told told{machine.service_id, static_cast<int>(machine.bridge_cycles)};
-  told_[told_at_++ % told_.size()] = told;
-  const std::uint64_t obeyed = pin_.master().service_id;
-  if (obeyed == 0 || obeyed == told.service_id) bridge_cycles_ = told.bridge_cycles;
+void DriveGroup::take(const dds::MachineInfo& machine, std::uint64_t sender) noexcept {
+  if (!machine.is_serving || sender == 0) return;
+  const Bridge bridge{{sender, machine.service_id}, static_cast<int>(machine.bridge_cycles)};
+  if (pin_.state() == MasterPin::State::kFree) {
+    bridges_[next_bridge_++ % bridges_.size()] = bridge;
+  } else if (bridge.by == pin_.master()) {
+    bridge_cycles_ = bridge.cycles;
+  }
 }
 
 Drop DriveGroup::take(const dds::SetpointSample& setpoint, std::uint64_t sender,

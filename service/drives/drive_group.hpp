@@ -36,9 +36,8 @@ class DriveGroup {
             std::int64_t arrival_ns = 0) noexcept;
   /// Once a period, before work(): whether DDS still knows the master's writer.
   void see_master(bool is_there) noexcept;
-  /// How many periods are bridged says the service that is obeyed, or one that serves where none is
-  /// obeyed yet.
-  void take(const dds::MachineInfo& machine) noexcept;
+  /// How many periods are bridged says the master: what others say under its id counts for nothing.
+  void take(const dds::MachineInfo& machine, std::uint64_t sender) noexcept;
   /// Goes wrong when its time has come.
   void inject(const Injection& injection) { injections_.push_back(injection); }
   /// Goes wrong now.
@@ -75,12 +74,13 @@ class DriveGroup {
   std::vector<Injection> injections_;
   double cycle_s_;
   int bridge_cycles_;
-  struct Told {
-    std::uint64_t service_id = 0;
-    int bridge_cycles = 0;
+  struct Bridge {
+    Master by;
+    int cycles = 0;
   };
-  std::array<Told, 8> told_{};  ///< newest services, in a ring
-  std::size_t told_at_ = 0;
+  int own_bridge_cycles_;            ///< of the machine file
+  std::array<Bridge, 8> bridges_{};  ///< of the newest services while there is no master, in a ring
+  std::size_t next_bridge_ = 0;
   MasterPin pin_;
   DropCounts dropped_;
   SetpointAge age_;

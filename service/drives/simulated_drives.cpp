@@ -13,6 +13,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
+#include "service/dds/sources.hpp"
 #include "service/dds/writer.hpp"
 #include "service/drives/action_peer.hpp"
 #include "service/drives/drive_intake.hpp"
@@ -127,6 +128,8 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
 
   SimulatedDrivesReport report;
   dds::MachineInfo machine;
+  dds::SampleInfo info;
+  dds::Senders senders;
   dds::DriveFeedback feedback;
   if (options.has_priority) static_cast<void>(set_priority(SCHED_FIFO, kDrivePriority));
   std::int64_t due_ns = monotonic_ns();
@@ -136,7 +139,10 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     const std::int64_t now_ns = monotonic_ns();
     const std::int64_t lost = (now_ns - due_ns) / model.cycle_ns;
     due_ns += lost * model.cycle_ns;
-    while (machines.take(machine)) group.take(machine);
+    while (machines.take(machine, info)) {
+      if (info.is_valid)
+        group.take(machine, senders.participant_of(machines.handle(), info.source));
+    }
     intake.work(group, now_ns);
     Injection injection;
     while (options.injections_now != nullptr && options.injections_now->try_pop(injection)) {

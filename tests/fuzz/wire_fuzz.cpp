@@ -316,7 +316,7 @@ class Listeners {
     in.read<meridian_wire_Machine>(machine_);
     require(machine_.joint_count <= kMaxJoints, "joints that no machine has");
     machine_.service_id %= 3;
-    drives_.take(machine_);
+    drives_.take(machine_, 40 + machine_.service_id % 3);
     work_drives();
     judge_lease();
     show();

@@ -327,22 +327,20 @@ dds::MachineInfo service(std::uint64_t id, std::uint32_t bridge_cycles, bool is_
   return machine;
 }
 
-TEST_F(Group, BridgesAsTheServiceSaysThatItObeysNotOneThatClaimsTheMachine) {
-  const auto periods_until_quick_stop = [this] {
-    enable();
-    int periods = 0;
-    for (send(0); group_.drive(0).state() == DriveState::kOperationEnabled; ++periods) {
-      group_.work(1);
-      if (periods > 100) break;
-    }
-    return periods;
-  };
-  group_.take(service(7, 20, true));
-  group_.take(service(8, 1, false));
-  group_.take(service(8, 2, true));
+TEST_F(Group, BridgesAsItsMasterSaysNotAsAnyoneWhoQuotesTheMastersId) {
+  group_.take(service(7, 20, true), kMaster);
+  group_.take(service(8, 1, false), kOther);
+  group_.take(service(8, 2, true), kOther);
   command(0x06);
-  group_.take(service(9, 50, true));
-  EXPECT_NEAR(periods_until_quick_stop(), 20, 3) << "obeys 7";
+  group_.take(service(9, 50, true), kOther);
+  group_.take(service(7, 60, true), kOther);
+  enable();
+  int periods = 0;
+  for (send(0); group_.drive(0).state() == DriveState::kOperationEnabled; ++periods) {
+    group_.work(1);
+    if (periods > 100) break;
+  }
+  EXPECT_NEAR(periods, 20, 3);
 }
 
 TEST_F(Group, InjectsFaultsAfterTheTimeEnabled) {

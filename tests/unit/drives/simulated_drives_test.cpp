@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -31,7 +32,7 @@ class OnTheWire : public testing::Test {
       for (std::uint8_t drive = 0; drive < 5; ++drive) {
         dds::DriveCommand command;
         command.drive = drive;
-        command.controlword = 0x06;
+        command.controlword = controlword_;
         command.service_id = 7;
         (void)commands_.write(command);
       }
@@ -43,6 +44,11 @@ class OnTheWire : public testing::Test {
     sample.setpoint.cycle = kOthers + n_;
     sample.crc = dds::setpoint_crc(sample.setpoint, 7);  // it may quote the id: everybody knows it
     (void)others_.write(sample);
+    for (int n = 0; n < flood_; ++n) {
+      ++sample.setpoint.cycle;
+      (void)others_.write(sample);
+      (void)other_commands_.write({.controlword = 0x06, .service_id = 7});
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
@@ -51,10 +57,12 @@ class OnTheWire : public testing::Test {
   const support::PrivateDomain domain_;
   const dds::ParticipantOptions options_{.domain = domain_.id(), .machine = model_.name};
   dds::Participant drives_{options_}, obeyed_{options_}, other_{options_};
-  dds::Writer<dds::DriveCommand> commands_{obeyed_};
+  dds::Writer<dds::DriveCommand> commands_{obeyed_}, other_commands_{other_};
   dds::Writer<dds::SetpointSample> setpoints_{obeyed_}, others_{other_};
   dds::Reader<dds::DriveFeedback> feedback_{obeyed_};
   std::uint64_t n_ = 0;
+  std::uint16_t controlword_ = 0x06;
+  int flood_ = 0;  ///< samples of the other one in a period
   std::atomic<bool> is_stopping_{false};
   std::vector<std::string> said_;  ///< to be read when the thread has ended
   SimulatedDrivesReport report_;
@@ -88,6 +96,32 @@ TEST_F(OnTheWire, DrivesTakeTheSetpointsOfTheServiceWhoseControlwordsTheyObey) {
   for (const std::string& text : said_)
     told += text.find("are dropped: the drives obey") != std::string::npos;
   EXPECT_EQ(told, 1);
+}
+
+TEST_F(OnTheWire, AFloodOfAnotherOneHidesNothingOfTheMaster) {
+  dds::DriveFeedback feedback;
+  const auto is_obeyed = [&] { return feedback_.take(feedback) && feedback.cycle_seen > 100; };
+  while (n_ < 5000 && !is_obeyed()) period();
+  ASSERT_LT(n_, 5000U) << "nobody was obeyed";
+  EXPECT_EQ(feedback.service_id, 7U);
+  flood_ = 40;
+  controlword_ = 0x07;
+  const auto is_switched_on = [&] {
+    while (feedback_.take(feedback)) continue;
+    return drive_state(feedback.statusword[0]) == DriveState::kSwitchedOn;
+  };
+  const std::uint64_t begin = n_;
+  while (n_ < begin + 500 && !is_switched_on()) period();
+  EXPECT_LT(n_, begin + 500) << "the word that was written once in 50 periods was hidden";
+  std::uint64_t behind = 0;
+  for (int n = 0; n < 200; ++n) {
+    period();
+    while (feedback_.take(feedback)) continue;
+    ASSERT_LT(feedback.cycle_seen, kOthers);
+    behind = std::max(behind, 100 + n_ - feedback.cycle_seen);
+    ASSERT_EQ(drive_state(feedback.statusword[0]), DriveState::kSwitchedOn);
+  }
+  EXPECT_LT(behind, 150U) << "periods of 1 ms and a busy host";
 }
 
 }  // namespace
