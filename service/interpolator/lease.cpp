@@ -3,13 +3,20 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
+#include "service/dds/sources.hpp"
 #include "service/interpolator/monotonic.hpp"
 
 namespace meridian::interpolator {
 
-Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim)
-    : claim_(claim), reader_(participant), writer_(participant), judge_(claim.service_id) {
+Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim, Report report)
+    : participant_(participant),
+      claim_(claim),
+      report_(std::move(report)),
+      reader_(participant),
+      writer_(participant),
+      judge_(claim.service_id) {
   say();
 }
 
@@ -26,14 +33,29 @@ void Lease::say() {
 }
 
 void Lease::take(const dds::MachineInfo& info, std::uint64_t source) {
+  // Who says another id than before has the place of before, and none more.
+  std::erase_if(others_, [&](const Other& known) {
+    const bool is_replaced = known.source == source && known.info.service_id != info.service_id;
+    if (is_replaced) judge_.forget(known.info.service_id);
+    return is_replaced;
+  });
+  const bool is_heard = judge_.hear(
+      {.service_id = info.service_id, .is_serving = info.is_serving, .served_ns = info.served_ns},
+      monotonic_ns());
+  if (!is_heard) return report_once(source, "claims this machine implausibly, or as one too many");
   auto other = std::find_if(others_.begin(), others_.end(), [&](const Other& known) {
     return known.info.service_id == info.service_id;
   });
   if (other == others_.end()) other = others_.insert(others_.end(), Other{});
   *other = {.info = info, .source = source};
-  judge_.hear(
-      {.service_id = info.service_id, .is_serving = info.is_serving, .served_ns = info.served_ns},
-      monotonic_ns());
+}
+
+void Lease::report_once(std::uint64_t source, const char* what) {
+  if (std::find(reported_.begin(), reported_.end(), source) != reported_.end()) return;
+  reported_[next_reported_++ % reported_.size()] = source;
+  if (!report_) return;
+  report_(dds::describe_source(participant_, reader_.handle(), source) + ' ' + what +
+          ": what it says is passed over");
 }
 
 void Lease::look() {
@@ -49,16 +71,17 @@ void Lease::look() {
   });
 }
 
-std::optional<dds::MachineInfo> Lease::find_keeper(bool may_leave) {
+std::optional<dds::MachineInfo> Lease::find_keeper(bool may_leave, std::uint64_t master) {
   const std::int64_t before_ns = monotonic_ns();
   look();
-  judge_.judge(before_ns, may_leave);
+  judge_.judge(before_ns, may_leave, master);
   if (judge_.has_to_speak(before_ns)) say();
   const auto keeper = judge_.keeper(before_ns);
   if (!keeper) return std::nullopt;
-  return std::find_if(others_.begin(), others_.end(),
-                      [&](const Other& other) { return other.info.service_id == *keeper; })
-      ->info;
+  const auto found = std::find_if(others_.begin(), others_.end(), [&](const Other& other) {
+    return other.info.service_id == *keeper;
+  });
+  return found != others_.end() ? std::optional(found->info) : std::nullopt;
 }
 
 std::optional<dds::MachineInfo> Lease::find_holder(std::chrono::milliseconds start_window,

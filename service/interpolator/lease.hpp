@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "service/dds/messages.hpp"
@@ -20,8 +23,9 @@ namespace meridian::interpolator {
 /// Proof: tests/unit/interpolator/lease_test.cpp, tests/integration/lease_test.cpp.
 class Lease {
  public:
-  /// Publishes `claim`.
-  Lease(dds::Participant& participant, const dds::MachineInfo& claim);
+  using Report = std::function<void(const std::string&)>;
+  /// Publishes `claim`. `report` gets what is wrong with the claims of others, once each.
+  Lease(dds::Participant& participant, const dds::MachineInfo& claim, Report report = {});
 
   /// Waits until no other service holds the machine, at most `patience` (a killed service counts as
   /// alive until its lease runs out). Returns the holder if there is one still. `start_window` is
@@ -33,23 +37,30 @@ class Lease {
   /// Another service that serves the machine and keeps it, where we heard of it only after hold():
   /// we are to end. To be called several times a second. `may_leave` is false while drives are on:
   /// then there is none. In a dry run none is, so that it gives way as a machine in Off does.
-  [[nodiscard]] std::optional<dds::MachineInfo> find_keeper(bool may_leave);
+  /// `master`: the service that the drives say that they obey, 0: not known; see LeaseJudge.
+  [[nodiscard]] std::optional<dds::MachineInfo> find_keeper(bool may_leave,
+                                                            std::uint64_t master = 0);
 
  private:
   struct Other {
     dds::MachineInfo info;
-    std::uint64_t source = 0;
+    std::uint64_t source = 0;  ///< its writer: one says one thing
   };
 
   void say();
   void look();
   void take(const dds::MachineInfo& info, std::uint64_t source);
+  void report_once(std::uint64_t source, const char* what);
 
+  dds::Participant& participant_;
   dds::MachineInfo claim_;
+  Report report_;
   dds::Reader<dds::MachineInfo> reader_;
   dds::Writer<dds::MachineInfo> writer_;
   LeaseJudge judge_;
-  std::vector<Other> others_;
+  std::vector<Other> others_;                 ///< at most LeaseJudge::kMostOthers
+  std::array<std::uint64_t, 16> reported_{};  ///< writers, in a ring
+  std::size_t next_reported_ = 0;
 };
 
 }  // namespace meridian::interpolator

@@ -17,6 +17,10 @@ namespace meridian::interpolator {
 /// back first: it says that it does not serve any more and leaves kStepBack_ns later, where another
 /// one serves then still. Words that take less than that reach the other before it can leave too,
 /// so one keeps the machine always.
+///
+/// The drives decide first: a service that they obey never leaves, whatever others claim, and gives
+/// no way; one that hears that they obey another service, which serves, gives way to that one. What
+/// nobody can have served (kLongest_ns) is not heard, and no more than kMostOthers are kept.
 /// Proof: tests/unit/interpolator/lease_judge_test.cpp.
 class LeaseJudge {
  public:
@@ -32,18 +36,22 @@ class LeaseJudge {
   static constexpr std::int64_t kUnsure_ns = 3'000'000'000;
   static constexpr std::int64_t kPatience_ns = 4'000'000'000;  ///< for words that tell
   static constexpr std::int64_t kStepBack_ns = 1'500'000'000;
+  static constexpr std::int64_t kLongest_ns = 315'360'000'000'000'000;  ///< 10 years
+  static constexpr std::size_t kMostOthers = 16;
 
   explicit LeaseJudge(std::uint64_t service_id) noexcept : service_id_(service_id) {}
 
   /// The machine is ours from now on.
   void hold(std::int64_t now_ns) noexcept;
-  /// What another service says; `now_ns` is not before the word was taken.
-  void hear(const Word& word, std::int64_t now_ns);
+  /// What another service says; `now_ns` is not before the word was taken. False: it is
+  /// implausible, or one too many, and changes nothing.
+  bool hear(const Word& word, std::int64_t now_ns);
   /// That service is not there any more.
   void forget(std::uint64_t service_id);
   /// Steps back or serves again. `now_ns` is not after words were last taken. A service that may
-  /// not leave the machine, because that moves, does not step back.
-  void judge(std::int64_t now_ns, bool may_leave) noexcept;
+  /// not leave the machine, because that moves, does not step back. `master`: the service that the
+  /// drives say that they obey, 0: not known.
+  void judge(std::int64_t now_ns, bool may_leave, std::uint64_t master = 0) noexcept;
 
   [[nodiscard]] Word word(std::int64_t now_ns) const noexcept;
   /// Whether others are to hear word() now.
@@ -62,7 +70,8 @@ class LeaseJudge {
     std::int64_t lead_ns = std::numeric_limits<std::int64_t>::max();  ///< by which we served longer
   };
 
-  [[nodiscard]] bool gives_way(const Other& other, std::int64_t now_ns) const noexcept;
+  [[nodiscard]] bool gives_way(const Other& other, std::int64_t now_ns,
+                               std::uint64_t master) const noexcept;
 
   std::uint64_t service_id_;
   std::optional<std::int64_t> held_ns_;

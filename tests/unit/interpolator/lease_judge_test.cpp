@@ -286,6 +286,75 @@ TEST(LeaseJudge, TakesWhoServedAlmostAsLongForOneOfTheSameAge) {
   }
 }
 
+TEST(LeaseJudge, LeavesNoMachineWhoseDrivesObeyItWhateverOthersClaim) {
+  LeaseJudge judge(7);
+  judge.hold(0);
+  for (std::int64_t now = kS; now < 20 * kS; now += 100 * kMs) {
+    EXPECT_TRUE(judge.hear({.service_id = 1, .is_serving = true, .served_ns = 9000 * kS}, now));
+    judge.judge(now, true, 7);
+    judge.on_said(judge.word(now), now);
+    ASSERT_TRUE(judge.word(now).is_serving) << now;
+    ASSERT_FALSE(judge.keeper(now)) << now;
+  }
+}
+
+TEST(LeaseJudge, GivesWayToAYoungerOneThatTheDrivesObeyIfThatServes) {
+  for (const bool is_serving : {true, false}) {
+    LeaseJudge judge(1);
+    judge.hold(0);
+    judge.hear({.service_id = 2, .is_serving = is_serving, .served_ns = kS}, 100 * kS);
+    judge.judge(100 * kS, true, 2);
+    EXPECT_EQ(judge.word(100 * kS).is_serving, !is_serving);
+  }
+}
+
+TEST(LeaseJudge, ServesAgainAsSoonAsTheDrivesObeyIt) {
+  LeaseJudge judge(7);
+  judge.hold(0);
+  judge.hear({.service_id = 1, .is_serving = true, .served_ns = 9000 * kS}, kS);
+  judge.judge(kS, true);
+  judge.on_said(judge.word(kS), kS);
+  EXPECT_FALSE(judge.word(kS).is_serving);
+  judge.judge(2 * kS, true, 7);
+  EXPECT_TRUE(judge.word(2 * kS).is_serving);
+  EXPECT_FALSE(judge.keeper(10 * kS));
+}
+
+TEST(LeaseJudge, LeavesTheMachineToTheOneThatTheDrivesObeyWhoeverServedLonger) {
+  for (const std::uint64_t obeyed : {1U, 2U}) {
+    LeaseJudge one(1), two(2);
+    one.hold(0);
+    two.hold(60 * kS);
+    std::int64_t now = 100 * kS;
+    std::optional<std::uint64_t> left_by_one, left_by_two;
+    for (; now < 110 * kS && !left_by_one && !left_by_two; now += 100 * kMs) {
+      one.hear(two.word(now), now);
+      two.hear(one.word(now), now);
+      for (LeaseJudge* const judge : {&one, &two}) {
+        judge->judge(now, true, obeyed);
+        judge->on_said(judge->word(now), now);
+      }
+      left_by_one = one.keeper(now);
+      left_by_two = two.keeper(now);
+    }
+    EXPECT_EQ(left_by_one.has_value(), obeyed == 2);
+    EXPECT_EQ(left_by_two.has_value(), obeyed == 1);
+  }
+}
+
+TEST(LeaseJudge, HearsNothingThatNobodyCanHaveServedNorMoreOthersThanThereAreServices) {
+  LeaseJudge judge(1000);
+  judge.hold(0);
+  EXPECT_FALSE(judge.hear({.service_id = 1, .is_serving = true, .served_ns = INT64_MAX}, kS));
+  EXPECT_FALSE(judge.hear({.service_id = 1, .is_serving = true, .served_ns = 1LL << 60U}, kS));
+  EXPECT_FALSE(judge.hear({.service_id = 0, .is_serving = true, .served_ns = kS}, kS));
+  std::size_t heard = 0;
+  for (std::uint64_t id = 1; id < 1000; ++id) {
+    heard += judge.hear({.service_id = id, .is_serving = false}, kS) ? 1U : 0U;
+  }
+  EXPECT_EQ(heard, LeaseJudge::kMostOthers);
+}
+
 TEST(LeaseJudge, GivesNoWayToWhoServesNoMore) {
   LeaseJudge judge(3);
   judge.hold(0);

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "support/private_domain.hpp"
 
@@ -86,6 +89,58 @@ TEST(Lease, LeavesNoMachineWhoseDrivesAreOn) {
     ASSERT_FALSE(moving.lease.find_keeper(false));
     std::this_thread::sleep_for(milliseconds(20));
   }
+}
+
+/// A service that serves, and somebody who says what he likes on the machine topic.
+struct Claimed {
+  support::PrivateDomain domain;
+  std::vector<std::string> reports;
+  dds::Participant participant{{.domain = domain.id(), .machine = "m"}};
+  Lease lease{participant, Claimant::claim(7),
+              [this](const std::string& text) { reports.push_back(text); }};
+  dds::Participant somebody{{.domain = domain.id(), .machine = "m"}};
+  dds::Writer<dds::MachineInfo> claims{somebody};
+
+  /// Whether the service is to leave within 3 s, the drives obeying `master`.
+  bool leaves(const std::function<dds::MachineInfo(std::uint64_t)>& claim, std::uint64_t master) {
+    lease.hold();
+    const auto end = LeaseClock::now() + milliseconds(3000);
+    for (std::uint64_t n = 1; LeaseClock::now() < end; ++n) {
+      (void)claims.write(claim(n));
+      if (lease.find_keeper(true, master)) return true;
+      std::this_thread::sleep_for(milliseconds(5));
+    }
+    return false;
+  }
+};
+
+dds::MachineInfo served_for(std::uint64_t id, std::int64_t served_ns) {
+  dds::MachineInfo info = Claimant::claim(id);
+  info.is_serving = true;
+  info.served_ns = served_ns;
+  return info;
+}
+
+TEST(Lease, DoesNotLeaveForAClaimOfTheFarFutureAndReportsItOnce) {
+  Claimed claimed;
+  EXPECT_FALSE(claimed.leaves([](std::uint64_t) { return served_for(1, 1LL << 60U); }, 0));
+  ASSERT_EQ(claimed.reports.size(), 1U);
+  EXPECT_NE(claimed.reports[0].find("claims this machine implausibly"), std::string::npos)
+      << claimed.reports[0];
+}
+
+TEST(Lease, DoesNotLeaveForAnyClaimWhileTheDrivesObeyIt) {
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  Claimed claimed;
+  EXPECT_FALSE(claimed.leaves([](std::uint64_t) { return served_for(1, kDay_ns); }, 7));
+  EXPECT_TRUE(claimed.leaves([](std::uint64_t) { return served_for(1, kDay_ns); }, 0))
+      << "nobody says whom the drives obey: who served longer keeps the machine";
+}
+
+TEST(Lease, HearsOneServiceOfOneWriterHoweverManyIdsItDraws) {
+  Claimed claimed;
+  EXPECT_FALSE(claimed.leaves([](std::uint64_t n) { return served_for(100 + n, 0); }, 0));
+  EXPECT_TRUE(claimed.reports.empty()) << "no more than one at a time";
 }
 
 TEST(Lease, WaitsForAHolderThatIsAboutToLeave) {
