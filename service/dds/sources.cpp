@@ -88,6 +88,33 @@ std::uint64_t Senders::participant_of(std::int32_t reader, std::uint64_t source)
   return participant;
 }
 
+std::string describe_writers(const Participant& participant, const char* topic) {
+  constexpr std::size_t kNamed = 5;
+  const Entity reader(
+      "writers",
+      dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
+  dds_guid_t own{};
+  (void)dds_get_guid(participant.handle(), &own);
+  std::string text;
+  std::size_t count = 0;
+  void* sample = nullptr;
+  dds_sample_info_t info;
+  while (dds_take(reader.handle(), &sample, &info, 1, 1) == 1) {
+    const auto* writer = static_cast<const dds_builtintopic_endpoint_t*>(sample);
+    const bool is_other = info.valid_data && std::strcmp(writer->topic_name, topic) == 0 &&
+                          std::memcmp(writer->participant_key.v, own.v, sizeof own.v) != 0;
+    if (is_other && ++count <= kNamed) {
+      const std::string place = place_of(participant, writer->participant_key);
+      text += (text.empty() ? "" : ", ") +
+              (!place.empty() ? place : "participant " + in_hex(writer->participant_key));
+    }
+    (void)dds_return_loan(reader.handle(), &sample, 1);
+    sample = nullptr;
+  }
+  if (count > kNamed) text += " and " + std::to_string(count - kNamed) + " more";
+  return count > 0 ? text : "nobody";
+}
+
 std::string describe_source(const Participant& participant, std::int32_t reader,
                             std::uint64_t source) {
   const Endpoint writer(dds_get_matched_publication_data(reader, source));

@@ -40,4 +40,8 @@ class Senders {
 [[nodiscard]] std::string describe_participant(const Participant& participant,
                                                const std::uint8_t* guid);
 
+/// Where everybody else runs who has a writer on `topic`, in words, five at most and how many more;
+/// "nobody". For reports: makes heap calls and a reader.
+[[nodiscard]] std::string describe_writers(const Participant& participant, const char* topic);
+
 }  // namespace meridian::dds

@@ -16,6 +16,7 @@ struct DriveSource {
   std::uint32_t bound_mask = 0;    ///< joints of the machine that it alone may report
   std::uint64_t sample = 0;
   std::uint64_t cycle_seen = 0;
+  std::uint64_t master = 0;                   ///< service that its drives obey; 0: nobody
   std::int64_t first_ns = 0, arrival_ns = 0;  ///< of its first and its newest sample
   bool has_only_stop = false;                 ///< it has no joint of any machine: a stop input
   bool is_emergency_stop = false;
@@ -40,6 +41,23 @@ static_assert(std::is_trivially_copyable_v<DriveSources>);
   const bool is_both = now_ns - owner.arrival_ns <= silence_ns &&
                        now_ns - other.arrival_ns <= silence_ns && owner.arrival_ns > other.first_ns;
   return is_both && &owner != &other ? owner.bound_mask & other.claimed_mask : 0;
+}
+
+/// The service that the drives of the machine obey, by those who spoke within a second: `own` as
+/// soon as one obeys it, 0 where none says whom, or two say different ones.
+[[nodiscard]] constexpr std::uint64_t master_of(const DriveSources& sources, std::uint64_t own,
+                                                std::int64_t now_ns) noexcept {
+  constexpr std::int64_t kRecent_ns = 1'000'000'000;
+  std::uint64_t master = 0;
+  bool is_agreed = true;
+  for (const DriveSource& source : sources.places) {
+    if (source.writer == 0 || source.joints() == 0 || source.master == 0) continue;
+    if (now_ns - source.arrival_ns > kRecent_ns) continue;
+    if (source.master == own) return own;
+    is_agreed = is_agreed && (master == 0 || master == source.master);
+    master = source.master;
+  }
+  return is_agreed ? master : 0;
 }
 
 }  // namespace meridian::interpolator

@@ -15,11 +15,12 @@ constexpr std::int64_t kShow_ns = 50'000'000;
 }  // namespace
 
 FeedbackListener::FeedbackListener(dds::Participant& participant, const MachineModel& model,
-                                   Ports& ports)
+                                   std::uint64_t service_id, Ports& ports)
     : participant_(participant),
+      service_id_(service_id),
       ports_(ports),
-      merge_(all_joints(model)),
-      teller_(model),
+      merge_(all_joints(model), service_id),
+      teller_(model, service_id),
       spans_(ports.spans != nullptr ? &ports.spans->receive : nullptr),
       reader_(
           participant, [this](auto& reader) { on_data(reader); }, kDepth) {}
@@ -64,12 +65,13 @@ void FeedbackListener::tell_sources(const SourceTeller::Say& say) {
     if (source.writer == 0 || !is_silent || reader_.has_source(source.writer)) continue;
     static_cast<void>(gone_.try_push(source.writer));
   }
+  master_ = master_of(sources, service_id_, now_ns);
   teller_.look(
       sources, now_ns,
       [this](std::uint64_t writer) {
         return dds::describe_source(participant_, reader_.handle(), writer);
       },
-      say);
+      [this] { return dds::describe_writers(participant_, "meridian/drive_command"); }, say);
 }
 
 /// Telemetry that is held up loses reports: rows then carry an older one, and its cycle says so.

@@ -22,11 +22,15 @@ namespace meridian::interpolator {
 /// Proof: tests/integration/sources_test.cpp.
 class FeedbackListener {
  public:
-  FeedbackListener(dds::Participant& participant, const MachineModel& model, Ports& ports);
+  FeedbackListener(dds::Participant& participant, const MachineModel& model,
+                   std::uint64_t service_id, Ports& ports);
 
-  /// Says who reports drives, who went, and who reports what is another one's; to be called several
-  /// times a second, by one thread that may log.
+  /// Says who reports drives, who went, who reports what is another one's, and whose drives obey
+  /// another service; to be called several times a second, by one thread that may log.
   void tell_sources(const SourceTeller::Say& say);
+  /// The service that the machine's drives obey, as of the last tell_sources(): ours as soon as one
+  /// of them does; 0: nobody, or they do not agree.
+  [[nodiscard]] std::uint64_t master() const noexcept { return master_; }
 
  private:
   void on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept;
@@ -34,6 +38,7 @@ class FeedbackListener {
   void time_round_trip(std::uint64_t cycle, std::int64_t now_ns) noexcept;
 
   dds::Participant& participant_;
+  std::uint64_t service_id_;
   Ports& ports_;
   FeedbackMerge merge_;
   std::uint64_t answered_ = 0;  ///< newest cycle that a drive has answered
@@ -41,6 +46,7 @@ class FeedbackListener {
   LatestValue<DriveSources> sources_;
   SpscRing<std::uint64_t, 64> gone_;  ///< writers that DDS does not know any more
   SourceTeller teller_;
+  std::uint64_t master_ = 0;
   trace::SpanWriter spans_;
   dds::Reader<dds::DriveFeedback> reader_;
 };

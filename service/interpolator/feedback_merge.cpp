@@ -35,6 +35,7 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
   place->claimed_mask = sample.joint_mask & joints_;
   place->sample = sample.sample;
   place->cycle_seen = sample.cycle_seen;
+  place->master = sample.service_id;
   if (is_new) place->first_ns = now_ns;
   place->arrival_ns = now_ns;
   place->has_only_stop = sample.joint_mask == 0;
@@ -79,6 +80,8 @@ void FeedbackMerge::take_joints(const dds::DriveFeedback& sample, std::uint32_t 
     const auto set = [bit](std::uint32_t& mask, bool is_set) {
       mask = is_set ? mask | bit : mask & ~bit;
     };
+    const bool is_obeyed = sample.service_id == service_id_ || sample.service_id == 0;
+    set(feedback_.foreign_mask, service_id_ != 0 && !is_obeyed);
     set(feedback_.enabled_mask, state == DriveState::kOperationEnabled);
     set(feedback_.fault_mask, state == DriveState::kFault || state == DriveState::kFaultReaction);
     set(feedback_.referenced_mask, (sample.referenced_mask & bit) != 0);

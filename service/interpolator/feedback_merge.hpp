@@ -26,8 +26,10 @@ class FeedbackMerge {
   /// Where both speak within it, sources contest a joint; who says nothing for longer is silent.
   static constexpr std::int64_t kSilence_ns = 200'000'000;
 
-  explicit FeedbackMerge(std::uint32_t joints = (1U << kMaxJoints) - 1) noexcept
-      : joints_(joints) {}
+  /// `service_id`: ours, which drives are to obey; 0: whomever.
+  explicit FeedbackMerge(std::uint32_t joints = (1U << kMaxJoints) - 1,
+                         std::uint64_t service_id = 0) noexcept
+      : joints_(joints), service_id_(service_id) {}
 
   /// Takes one sample; false if it is not newer or its mask is absurd, and nothing changed.
   /// `may_hand_over`: the machine is Off or in Fault.
@@ -48,6 +50,7 @@ class FeedbackMerge {
   void merge(std::int64_t now_ns) noexcept;
 
   std::uint32_t joints_;  ///< of the machine
+  std::uint64_t service_id_;
   DriveSources sources_;
   std::int64_t stopped_ns_ = 0;  ///< when one without a place said last that its stop input is open
   Feedback feedback_;

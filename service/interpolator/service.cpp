@@ -149,10 +149,11 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                                                            : dds::Transport::kLoopback,
                     .open_network = parts_.service.open_network ? dds::OpenNetwork::kAllowed
                                                                 : dds::OpenNetwork::kRefused}),
-      lease_(participant_, machine_info(parts_, service_id_)),
+      lease_(participant_, machine_info(parts_, service_id_),
+             [this](const std::string& text) { log_->warn("{}", text); }),
       audit_(audit_options(parts_)),
       publisher_(participant_, service_id_, ports_),
-      feedback_(participant_, parts_.model, ports_),
+      feedback_(participant_, parts_.model, service_id_, ports_),
       intake_(participant_, parts_.model, tool_lengths_, parts_.service, service_id_, ports_),
       planner_(parts_.model, parts_.tools, ports_),
       cycle_(parts_.model, cycle_options(parts_.service, parts_.homing), ports_),
@@ -220,8 +221,9 @@ void Service::tell_security() {
   if (participant_.is_secured()) {
     log_->info("secured: only identities of this machine's authority take part, each in its role");
   } else if (participant_.is_open_network()) {
-    log_->warn("OPEN NETWORK: whoever reaches it may command this machine, as open_network allows "
-               "(docs/security.md)");
+    log_->warn(
+        "OPEN NETWORK: whoever reaches it may command this machine, as open_network allows "
+        "(docs/security.md)");
   } else {
     log_->info("open: whoever reaches DDS domain {} may command this machine (docs/security.md)",
                parts_.domain);
@@ -246,7 +248,10 @@ void Service::tell_last_program() {
 }
 
 void Service::keep_lease() {
-  const auto keeper = lease_.find_keeper(ports_.may_leave);
+  const std::uint64_t master = feedback_.master();
+  // In Fault the drives may be another one's: then they are left to it.
+  const bool is_lost = ports_.state == State::kFault && master != 0 && master != service_id_;
+  const auto keeper = lease_.find_keeper(ports_.may_leave || is_lost, master);
   if (keeper) throw served_already(*keeper);
 }
 
@@ -262,13 +267,14 @@ void Service::report_stalled_readers() {
   if (stalled.empty()) {
     log_->info("every reader acknowledges again what it is sent");
   } else {
-    log_->warn("a reader has not acknowledged for 2 s: {}; what it is sent passes it by, nobody "
-               "waits for it", stalled);
+    log_->warn(
+        "a reader has not acknowledged for 2 s: {}; what it is sent passes it by, nobody "
+        "waits for it",
+        stalled);
   }
   stalled_ = std::move(stalled);
   StalledReader shown;
-  std::memcpy(shown.name.data(), stalled_.data(),
-              std::min(stalled_.size(), shown.name.size() - 1));
+  std::memcpy(shown.name.data(), stalled_.data(), std::min(stalled_.size(), shown.name.size() - 1));
   ports_.stalled_reader.store(shown);
 }
 

@@ -47,6 +47,23 @@ void SourceTeller::tell_bound(Known& known, const DriveSource& source, const Say
       fmt::format("{} reports {}", known.name, telemetry::drive_names(news, model_)));
 }
 
+void SourceTeller::tell_master(Known& known, const DriveSource& source,
+                               const CommandersOf& commanders, const Say& say) const {
+  const bool is_other = source.joints() != 0 && source.master != 0 && service_id_ != 0 &&
+                        source.master != service_id_;
+  const std::uint64_t before = std::exchange(known.master, is_other ? source.master : 0);
+  if (before == known.master) return;
+  if (known.master == 0) {
+    say(Weight::kNews, known.name + " obeys no other service any more");
+    return;
+  }
+  say(Weight::kError,
+      fmt::format("{} obeys service {:016x}, not this one ({:016x}): {} cannot be enabled. Drive "
+                  "commands are written by {}: end that one",
+                  known.name, known.master, service_id_,
+                  telemetry::drive_names(source.joints(), model_), commanders()));
+}
+
 void SourceTeller::tell_contest(Known& known, const DriveSource& source,
                                 const DriveSources& sources, std::int64_t now_ns,
                                 const Say& say) const {
@@ -68,13 +85,14 @@ void SourceTeller::tell_contest(Known& known, const DriveSource& source,
 }
 
 void SourceTeller::look(const DriveSources& sources, std::int64_t now_ns, const NameOf& name_of,
-                        const Say& say) {
+                        const CommandersOf& commanders, const Say& say) {
   for (Known& known : known_) known.is_here = false;
   for (const DriveSource& source : sources.places) {
     if (source.writer == 0) continue;
     Known& known = know(source, name_of, say);
     known.is_here = true;
     tell_bound(known, source, say);
+    tell_master(known, source, commanders, say);
   }
   for (Known& known : known_) {
     if (!known.is_here) say(Weight::kNews, known.name + " is gone");

@@ -226,6 +226,12 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
           "and that it tells the cycle of what it takes, then reset",
           name, value);
       break;
+    case Alarm::kDrivesAstray:
+      text = fmt::format(
+          "drive {} is enabled, moves (by {}) or obeys somebody else where this service does not "
+          "ask for it; cut its power, end who commands it, whom the log names, then reset",
+          name, measured);
+      break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";
       break;
@@ -328,6 +334,14 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       why =
           "it was said for a dry run alone, and this is none: drives would move; disable, then "
           "dry-run on";
+      break;
+    case Refusal::kDrivesTaken:
+      why = "the drives obey another service; end that one, the log names who it is";
+      break;
+    case Refusal::kDrivesAstray:
+      why =
+          "drives are enabled or move although the machine has them off; cut their power and end "
+          "who commands them, the log names who it is";
       break;
     case Refusal::kOvertaken:
       why = "a hold, an abort or disable was said behind it and came first; say it again";

@@ -71,6 +71,7 @@ struct Feedback {
   std::uint32_t homed_mask = 0;         ///< those that have attained their reference
   std::uint32_t homing_error_mask = 0;  ///< those whose homing failed
   std::uint32_t contested_mask = 0;     ///< joints that a second source reports too
+  std::uint32_t foreign_mask = 0;       ///< joints whose drives obey another service
   std::uint8_t oldest_joint = 0;   ///< lowest of the group that `arrival_ns` is of; kNoJoint: it
                                    ///< has none, but the stop input
   std::uint8_t deafest_joint = 0;  ///< lowest of the group that `cycle_seen` is of
@@ -139,6 +140,7 @@ enum class Alarm : std::uint8_t {
   kReferenceLost,     ///< of a joint, while a program holds the machine
   kDriveEnabled,      ///< a drive reports operation enabled in a dry run
   kSetpointsUnheard,  ///< drives report, and take no setpoints
+  kDrivesAstray,      ///< drives obey another service, or are on or move where they are to be off
 };
 
 /// Why a verb was refused.
@@ -159,6 +161,8 @@ enum class Refusal : std::uint8_t {
   kNotDryRun,       ///< said for a dry run alone, and the machine is in none
   kOvertaken,       ///< a stop was said behind it and came first
   kNoEnablingDevice,  ///< an enabling device is required, and none is pressed
+  kDrivesTaken,       ///< the drives obey another service
+  kDrivesAstray,      ///< drives are on or move although the machine has them off
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

@@ -150,6 +150,16 @@ struct SingleBlock {
   std::uint64_t next_block = 0;  ///< ends of blocks before it are behind the machine
 };
 
+/// Drives that are to be off, window by window (rt/drive_watch.hpp).
+struct DriveWatch {
+  bool is_astray = false;          ///< enabled or moving at the end of the last window
+  bool has_moved = false;          ///< `moved` is of the window before
+  double time = 0;                 ///< s of this window
+  std::uint32_t enabled_mask = 0;  ///< at its begin
+  JointVector position{};          ///< drive coordinates at its begin
+  JointVector moved{};
+};
+
 /// What the action peer said about the action that the cycle waits for.
 enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
 
@@ -184,6 +194,7 @@ struct CycleState {
   StopInProgress stop;
   Jogging jogging;
   Homing homing;
+  DriveWatch watch;
 
   JointVector joints{};                            ///< last commanded
   JointVector velocity{};                          ///< its time derivative

@@ -66,8 +66,8 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
 }
 
 /// Why the machine may not be enabled now: of a dry run, because the emergency input is open, a
-/// drive is on, or two sources say that they are the same drive. Drives wait for an emergency input
-/// that was open when it was heard last.
+/// drive is on, drives obey another service, or two sources say that they are the same drive.
+/// Drives wait for an emergency input that was open when it was heard last.
 [[nodiscard]] inline Refusal condition_of_enable(const Cycle& c) noexcept {
   const bool is_dry = c.state.is_dry_run;
   if (is_dry && is_drive_enabled(c)) return Refusal::kDriveEnabled;
@@ -75,6 +75,7 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
   if (!is_dry && (c.drives.contested_mask & all_joints(c.machine)) != 0) {
     return Refusal::kDriveContested;
   }
+  if (!is_dry && (c.drives.foreign_mask & all_joints(c.machine)) != 0) return Refusal::kDrivesTaken;
   const bool has_fault = !is_dry && (c.drives.fault_mask & all_joints(c.machine)) != 0;
   const bool is_open = is_dry ? is_emergency_heard(c.machine, c.in) : c.drives.emergency_stop;
   return is_open || has_fault ? Refusal::kFaultPresent : Refusal::kNone;
@@ -113,6 +114,7 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
       }
       return c.reader.piece() != nullptr || next_piece(c) ? Refusal::kNone : Refusal::kNoProgram;
     case Verb::kReset:
+      if (c.state.watch.is_astray) return Refusal::kDrivesAstray;
       return is_emergency_heard(c.machine, c.in) ? Refusal::kFaultPresent : Refusal::kNone;
     case Verb::kFeedOverride:
     case Verb::kRapidOverride: {

@@ -92,13 +92,27 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 16> kNames{
-      "none",          "wrong state", "not referenced",  "no program",      "no feedback",
-      "out of range",  "stale",       "fault present",   "program present", "slow ramp",
-      "drive enabled", "dry run",     "drive contested", "not a dry run",   "overtaken",
-      "no enabling device"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kNoEnablingDevice) + 1);
-  return kNames[static_cast<std::size_t>(refusal)];
+  constexpr std::array<const char*, 18> kNames{"none",
+                                               "wrong state",
+                                               "not referenced",
+                                               "no program",
+                                               "no feedback",
+                                               "out of range",
+                                               "stale",
+                                               "fault present",
+                                               "program present",
+                                               "slow ramp",
+                                               "drive enabled",
+                                               "dry run",
+                                               "drive contested",
+                                               "not a dry run",
+                                               "overtaken",
+                                               "no enabling device",
+                                               "drives taken",
+                                               "drives astray"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kDrivesAstray) + 1);
+  const auto i = static_cast<std::size_t>(refusal);
+  return i < kNames.size() ? kNames[i] : "unknown";
 }
 
 /// Whether `verb` may be said for a dry run alone, by an argument of 1: it leads to motion.

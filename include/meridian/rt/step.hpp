@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "meridian/rt/cycle_state.hpp"
+#include "meridian/rt/drive_watch.hpp"
 #include "meridian/rt/dry_run.hpp"
 #include "meridian/rt/follow_plan.hpp"
 #include "meridian/rt/guard.hpp"
@@ -126,12 +127,14 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
     case State::kOff:
     case State::kFault:
       follow_feedback(c);
+      watch_drives(c);
       return true;
     case State::kEnabling:
       wait_for_drives_on(c);
       return true;
     case State::kDisabling:
       wait_for_drives_off(c);
+      watch_drives(c);
       return true;
     case State::kReady:
     case State::kLoaded:

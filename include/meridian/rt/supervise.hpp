@@ -148,6 +148,7 @@ inline void judge_drives(Cycle& c) noexcept {
   const std::uint32_t all = all_joints(c.machine);
   const std::uint32_t are_on = c.in.feedback.enabled_mask & all;
   if (f.emergency_stop) raise(c, Alarm::kEmergencyStop);
+  if ((f.foreign_mask & all) != 0) raise(c, Alarm::kDrivesAstray, first_bit(f.foreign_mask & all));
   if (c.state.is_dry_run && are_on != 0) raise(c, Alarm::kDriveEnabled, first_bit(are_on));
   if (!is_feedback_there(c)) {
     raise(c, Alarm::kFeedbackLost, first_silent_joint(c),

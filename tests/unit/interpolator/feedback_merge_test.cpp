@@ -56,6 +56,41 @@ TEST(FeedbackMerge, StartsAnewWithADriveProcessThatWasRestarted) {
   EXPECT_EQ(merge.feedback().arrival_ns, 350 * kMilli);
 }
 
+TEST(FeedbackMerge, SaysWhichJointsObeyAnotherService) {
+  constexpr std::uint64_t kOurs = 70, kTheirs = 71, kNobody = 0;
+  FeedbackMerge merge(0b11111, kOurs);
+  const auto report = [&merge](std::uint64_t number, std::uint32_t group, std::uint32_t mask,
+                               std::uint64_t service) {
+    dds::DriveFeedback feedback = sample(group, mask, number);
+    feedback.service_id = service;
+    ASSERT_TRUE(merge.take(feedback, group, static_cast<std::int64_t>(number) * kMilli));
+  };
+  report(1, 1, 0b00111, kOurs);
+  report(1, 2, 0b11000, kTheirs);
+  EXPECT_EQ(merge.feedback().foreign_mask, 0b11000U);
+  EXPECT_EQ(master_of(merge.sources(), kOurs, kMilli), kOurs) << "some obey us";
+  EXPECT_EQ(master_of(merge.sources(), 72, kMilli), 0U) << "they do not agree";
+  report(2, 1, 0b00111, kTheirs);
+  EXPECT_EQ(merge.feedback().foreign_mask, 0b11111U);
+  EXPECT_EQ(master_of(merge.sources(), kOurs, kMilli), kTheirs);
+  EXPECT_EQ(master_of(merge.sources(), kOurs, 5000 * kMilli), 0U) << "nobody has said it of late";
+  report(3, 1, 0b00111, kNobody);
+  report(3, 2, 0b11000, kNobody);
+  EXPECT_EQ(merge.feedback().foreign_mask, 0U);
+}
+
+TEST(FeedbackMerge, AFloodOfGroupsTakesNoDriveAndNoMoreRoom) {
+  FeedbackMerge merge;
+  ASSERT_TRUE(merge.take(sample(1, 0b11111, 1), 7, kMilli));
+  for (std::uint32_t group = 2; group < 10'000; ++group) {
+    (void)merge.take(sample(group, 0b11111, 1), 8, 2 * kMilli);
+  }
+  EXPECT_TRUE(merge.sources().is_full);
+  EXPECT_EQ(merge.feedback().position[0], 10.0);
+  EXPECT_TRUE(merge.take(sample(1, 0b11111, 2), 7, 3 * kMilli));
+  EXPECT_EQ(merge.feedback().cycle_seen, 102U);
+}
+
 TEST(FeedbackMerge, ReadsHomingOfDrivesInHomingModeAlone) {
   FeedbackMerge merge;
   dds::DriveFeedback feedback = sample(1, 0b111, 1);

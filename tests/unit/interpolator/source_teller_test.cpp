@@ -21,6 +21,7 @@ class TellerTest : public testing::Test {
     now_ns_ += kTick_ns;
     teller_.look(
         sources_, now_ns_, [](std::uint64_t writer) { return "process " + std::to_string(writer); },
+        [] { return std::string("process 99"); },
         [&said](telemetry::Weight, const std::string& text) { said.push_back(text); });
     return said;
   }
@@ -38,7 +39,7 @@ class TellerTest : public testing::Test {
   }
 
   const MachineModel model_ = test::lai_machine();
-  SourceTeller teller_{model_};
+  SourceTeller teller_{model_, 7};
   DriveSources sources_;
   std::int64_t now_ns_ = kTick_ns;
 };
@@ -78,6 +79,21 @@ TEST_F(TellerTest, SaysWhatIsTakenFromWhoHasNoDriveOfTheMachine) {
   ASSERT_EQ(said.size(), 2U);
   EXPECT_NE(said[0].find("reports no drive that this machine has"), std::string::npos) << said[0];
   EXPECT_EQ(said[1], "drive group 3 of process 12 reports a stop input and no drive");
+}
+
+TEST_F(TellerTest, SaysOnceWhoseDrivesObeyAnotherServiceAndWhoMayBeThat) {
+  source(0, 11, 0b11, 0b11).master = 7;
+  EXPECT_EQ(look(), Said{"drive group 3 of process 11 reports b3, b2"}) << "they obey this one";
+  source(0, 11, 0b11, 0b11).master = 0x1234;
+  const Said said = look();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0],
+            "drive group 3 of process 11 obeys service 0000000000001234, not this one "
+            "(0000000000000007): b3, b2 cannot be enabled. Drive commands are written by process "
+            "99: end that one");
+  EXPECT_EQ(look(), Said{});
+  source(0, 11, 0b11, 0b11).master = 7;
+  EXPECT_EQ(look(), Said{"drive group 3 of process 11 obeys no other service any more"});
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(Words, LeaveWholePartsOfAnApproachOutWhereThereIsNoRoomForThem) {
 TEST(Words, SayEveryAlarmDifferently) {
   const MachineModel model = test::lai_machine();
   std::set<std::string> texts;
-  constexpr int kLast = static_cast<int>(Alarm::kSetpointsUnheard);
+  constexpr int kLast = static_cast<int>(Alarm::kDrivesAstray);
   for (int alarm = 0; alarm <= kLast; ++alarm) {
     texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 0, model));
   }
@@ -106,8 +106,9 @@ TEST(Words, SayEveryAlarmDifferently) {
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kNoEnablingDevice);
+  constexpr int kLast = static_cast<int>(Refusal::kDrivesAstray);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
+    EXPECT_STRNE(name_of(static_cast<Refusal>(refusal)), "unknown") << refusal;
     for (int state = 0; state < kStateCount; ++state) {
       const std::string text =
           describe(Verb::kStart, static_cast<Refusal>(refusal), static_cast<State>(state));
