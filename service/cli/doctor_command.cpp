@@ -9,6 +9,7 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/machine_name_option.hpp"
 #include "service/config/service_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/probe/dds_network.hpp"
@@ -86,8 +87,10 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->add_option("--domain", options->domain, "DDS domain")
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
-  command->add_option("--machine-name", options->machine,
-                      "Look for this machine only; needed in a secured domain");
+  command
+      ->add_option("--machine-name", options->machine,
+                   "Look for this machine only; needed in a secured domain")
+      ->check(machine_name());
   command->add_option("--service", options->service,
                       "Service file (TOML): its [realtime] cpu is the cycle's processor");
   command

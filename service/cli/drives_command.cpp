@@ -11,6 +11,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/injection_console.hpp"
+#include "service/cli/machine_name_option.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
@@ -160,8 +161,10 @@ void add_drives_command(CLI::App& app, int& exit_code) {
       "servo "
       "lag, following error, watchdog; plays the PLC that answers actions. Runs until interrupted");
   command->add_option("--machine", options->machine_file, "Machine file (TOML)")->required();
-  command->add_option("--machine-name", options->partition,
-                      "DDS partition; default: the machine's name");
+  command
+      ->add_option("--machine-name", options->partition,
+                   "DDS partition; default: the machine's name")
+      ->check(machine_name());
   command->add_option("--domain", options->domain, "DDS domain")
       ->capture_default_str()
       ->check(CLI::Range(0, 230));

@@ -6,6 +6,7 @@
 
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
+#include "service/cli/machine_name_option.hpp"
 #include "service/stream/machine_finder.hpp"
 
 namespace meridian::cli {
@@ -14,8 +15,10 @@ void add_peer_options(CLI::App& command, PeerOptions& options) {
   command.add_option("--domain", options.domain, "DDS domain")
       ->capture_default_str()
       ->check(CLI::Range(0, 230));
-  command.add_option("--machine-name", options.machine,
-                     "Name of the machine; needed where a domain has more than one");
+  command
+      .add_option("--machine-name", options.machine,
+                  "Name of the machine; needed where a domain has more than one")
+      ->check(machine_name());
   command.add_option("--timeout", options.timeout_s, "How long to wait for a service, s")
       ->capture_default_str()
       ->check(finite_range(0.0, 1e6));
@@ -23,6 +26,13 @@ void add_peer_options(CLI::App& command, PeerOptions& options) {
 
 std::optional<dds::MachineInfo> find_machine(PeerOptions& options, int& exit_code) {
   const auto machines = stream::find_machines(options.domain, options.machine, options.timeout());
+  if (machines.size() == 1 && !config::is_machine_name(machines.front().name)) {
+    std::fprintf(stderr,
+                 "meridian: a service says that its machine is '%s', which is no name: %s\n",
+                 machines.front().name.c_str(), config::kMachineNameWords);
+    exit_code = kNoPeer;
+    return std::nullopt;
+  }
   if (machines.size() == 1) {
     if (options.machine.empty()) options.machine = machines.front().name;
     return machines.front();

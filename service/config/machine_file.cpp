@@ -9,6 +9,7 @@
 #include "meridian/units.hpp"
 #include "service/config/homing_file.hpp"
 #include "service/config/kinematics_file.hpp"
+#include "service/config/machine_name.hpp"
 #include "service/config/section.hpp"
 #include "service/config/stage_file.hpp"
 
@@ -17,6 +18,9 @@ namespace {
 
 void read_machine(Section machine, MachineModel& model) {
   model.name = machine.text("name", "name the machine; the DDS partition takes the name");
+  if (!is_machine_name(model.name)) {
+    machine.refuse("name", kMachineNameWords, "name the machine otherwise");
+  }
   model.version = machine.text_or("version", "");
   model.cycle_ns =
       static_cast<std::int64_t>(std::llround(1e3 * machine.number("cycle_us", {125, 4000})));

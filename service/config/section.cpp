@@ -8,6 +8,8 @@
 #include <sstream>
 #include <utility>
 
+#include "service/config/toml_guard.hpp"
+
 namespace meridian::config {
 namespace {
 
@@ -85,12 +87,21 @@ toml::table parse_file(const std::filesystem::path& path) {
                        .remedy = "check the path; deploy/machines has one file per machine"});
   }
   std::ifstream input(path, std::ios::binary);
-  std::ostringstream text;
-  text << input.rdbuf();
-  return parse_text(text.str(), path.string());
+  std::string text(kMaxTomlBytes + 1, '\0');
+  input.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(input.gcount()));
+  return parse_text(text, path.string());
 }
 
 toml::table parse_text(std::string_view text, const std::string& name) {
+  if (const auto bomb = find_toml_bomb(text)) {
+    throw ConfigError({.file = name,
+                       .line = bomb->line,
+                       .value = bomb->words,
+                       .allowed = "names and brackets up to " + std::to_string(kMaxTomlDepth) +
+                                  " deep, " + std::to_string(kMaxTomlBytes) + " bytes",
+                       .remedy = "name a file of this service"});
+  }
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {

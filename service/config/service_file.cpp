@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "service/config/machine_name.hpp"
 #include "service/config/section.hpp"
 
 namespace meridian::config {
@@ -34,6 +35,9 @@ void read_dds(Section section, ServiceConfig& config) {
   config.dds_domain = section.integer_or("domain", config.dds_domain, 0, 230);
   config.dds_partition = section.text_or("partition", "");
   config.open_network = section.truth_or("open_network", config.open_network);
+  if (!config.dds_partition.empty() && !is_machine_name(config.dds_partition)) {
+    section.refuse("partition", kMachineNameWords, "name the partition otherwise");
+  }
   section.finish();
 }
 

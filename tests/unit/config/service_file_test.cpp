@@ -42,7 +42,7 @@ TEST(ServiceFile, GivesWhatItSays) {
       "[audit_log]\nfile = \"a/who.log\"\nfile_mb = 3\nfiles = 4\n"
       "[flight_recorder]\nfolder = \"faults\"\nseconds = 2.5\nfaults = 7\n"
       "[realtime]\nmode = \"best_effort\"\ncpu = 1\nlock_memory = false\n"
-      "[dds]\ndomain = 42\npartition = \"cell 3\"\n"
+      "[dds]\ndomain = 42\npartition = \"cell-3\"\n"
       "[trace]\nfolder = \"traces\"\nlate_us = 80\nfiles = 3\n");
   const ServiceConfig config = load_service(file.path());
   EXPECT_EQ(config.machine, "/etc/m.toml");
@@ -62,7 +62,7 @@ TEST(ServiceFile, GivesWhatItSays) {
   EXPECT_EQ(config.realtime.cpu, 1);
   EXPECT_FALSE(config.realtime.lock_memory);
   EXPECT_EQ(config.dds_domain, 42);
-  EXPECT_EQ(config.dds_partition, "cell 3");
+  EXPECT_EQ(config.dds_partition, "cell-3");
   EXPECT_EQ(config.trace.folder, file.path().parent_path() / "traces");
   EXPECT_EQ(config.trace.late_us, 80);
   EXPECT_EQ(config.trace.files, 3);
