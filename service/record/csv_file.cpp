@@ -15,8 +15,8 @@ constexpr std::size_t kBufferBytes = 256 * 1024;
 
 }  // namespace
 
-Expected<CsvFile, RecordError> CsvFile::create(const std::string& path) {
-  return open(path, O_TRUNC);
+Expected<CsvFile, RecordError> CsvFile::create(const std::string& path, Links links) {
+  return open(path, links == Links::kRefused ? O_TRUNC | O_NOFOLLOW : O_TRUNC);
 }
 
 Expected<CsvFile, RecordError> CsvFile::create_anew(const std::string& path) {
@@ -26,6 +26,10 @@ Expected<CsvFile, RecordError> CsvFile::create_anew(const std::string& path) {
 
 Expected<CsvFile, RecordError> CsvFile::open(const std::string& path, int how) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0644);
+  if (file < 0 && errno == ELOOP && (how & O_NOFOLLOW) != 0) {
+    return tl::make_unexpected(RecordError{path, 0, "is a symbolic link, which is not followed",
+                                           "name a regular file, or remove the link"});
+  }
   if (file < 0) {
     return tl::make_unexpected(
         RecordError{path, 0, std::string("cannot be created: ") + std::strerror(errno),

@@ -43,12 +43,16 @@ class CsvRow {
   char* at_;
 };
 
+/// Whether a symbolic link in the place of a file leads to the file that is written.
+enum class Links { kFollowed, kRefused };
+
 /// A text file that is written row by row: rows gather in a buffer of fixed size that goes to the
 /// file when it is full. After a failed write nothing is written any more. Context: I/O.
 class CsvFile {
  public:
   /// Creates or empties the file.
-  [[nodiscard]] static Expected<CsvFile, RecordError> create(const std::string& path);
+  [[nodiscard]] static Expected<CsvFile, RecordError> create(const std::string& path,
+                                                             Links links = Links::kFollowed);
   /// Creates it in the place of what has that name; a link is not followed.
   [[nodiscard]] static Expected<CsvFile, RecordError> create_anew(const std::string& path);
   /// Writes what is buffered; a failure is lost here, so call close() where it matters.

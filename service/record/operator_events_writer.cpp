@@ -13,7 +13,7 @@ std::string operator_events_path(const std::string& recording) {
 }
 
 Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const std::string& path) {
-  auto file = CsvFile::create(path);
+  auto file = CsvFile::create(path, Links::kRefused);
   if (!file) return tl::make_unexpected(std::move(file.error()));
   (void)file->append("cycle,verb,argument,block,span\n");
   (void)file->flush();

@@ -39,6 +39,7 @@ inline constexpr std::string_view kPlanLookedWord = "plan_looked";
 /// Proof: tests/unit/record/operator_events_writer_test.cpp.
 class OperatorEventsWriter {
  public:
+  /// Its name was made up, not given: a link there is not followed.
   [[nodiscard]] static Expected<OperatorEventsWriter, RecordError> create(const std::string& path);
 
   /// Adds the event if it is_replayed(); others are passed over. False once a write failed.

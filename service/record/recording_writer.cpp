@@ -4,8 +4,9 @@
 namespace meridian::record {
 
 Expected<RecordingWriter, RecordError> RecordingWriter::create(const std::string& path,
-                                                               const MachineModel& model) {
-  auto file = CsvFile::create(path);
+                                                               const MachineModel& model,
+                                                               Links links) {
+  auto file = CsvFile::create(path, links);
   if (!file) return tl::make_unexpected(std::move(file.error()));
   (void)file->append(RecordColumns::header(model) + "\n");
   return RecordingWriter(std::move(*file), model);

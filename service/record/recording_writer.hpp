@@ -22,8 +22,8 @@ namespace meridian::record {
 class RecordingWriter {
  public:
   /// Creates or empties the file and writes the header.
-  [[nodiscard]] static Expected<RecordingWriter, RecordError> create(const std::string& path,
-                                                                     const MachineModel& model);
+  [[nodiscard]] static Expected<RecordingWriter, RecordError> create(
+      const std::string& path, const MachineModel& model, Links links = Links::kFollowed);
   /// Adds a row. False once a write failed (errno in error_number()); the row is dropped then.
   bool write(const CycleRecord& record) noexcept;
   /// Hands what is buffered to the system.

@@ -11,7 +11,7 @@ namespace meridian::telemetry {
 
 Recorder::Recorder(const std::string& path, const MachineModel& model) : path_(path) {
   if (path.empty()) return;
-  auto writer = record::RecordingWriter::create(path, model);
+  auto writer = record::RecordingWriter::create(path, model, record::Links::kRefused);
   if (!writer) throw std::runtime_error(writer.error().text());
   writer_ = std::move(*writer);
   auto events = record::OperatorEventsWriter::create(record::operator_events_path(path));
@@ -33,6 +33,9 @@ void Recorder::take(const Event& event) noexcept {
 
 void Recorder::run() noexcept {
   if (!writer_) return;
+  // What a service that is killed loses at most, and what the next look adds to it.
+  constexpr auto kUnflushed = std::chrono::milliseconds(250);
+  auto flushed = std::chrono::steady_clock::now();
   CycleRecord row;
   Event event;
   for (bool is_last = false; !is_last;) {
@@ -44,6 +47,10 @@ void Recorder::run() noexcept {
       if (!events_writer_->write(event)) events_lost_.fetch_add(1, std::memory_order_relaxed);
     }
     if (events_lost() + events_missed_ > 0) events_writer_->mark_incomplete();
+    if (const auto now = std::chrono::steady_clock::now(); now - flushed >= kUnflushed) {
+      (void)writer_->flush();
+      flushed = now;
+    }
     if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   const bool has_rows = writer_->close(), has_events = events_writer_->close();

@@ -15,7 +15,8 @@
 namespace meridian::telemetry {
 
 /// The recording of record, written by a thread of its own: a slow or full disk loses rows, which
-/// are counted, and nothing else.
+/// are counted, and nothing else. A service that is killed loses the last half second at most.
+/// Links are not followed.
 class Recorder {
  public:
   /// `path` empty: nothing is recorded. Throws std::runtime_error where the file cannot be made.

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -46,6 +48,44 @@ TEST(Recorder, WritesEveryRowThatItTookBeforeItEnds) {
   while (std::getline(file, line)) ++lines;
   EXPECT_EQ(lines, 3001);
   std::filesystem::remove(path);
+}
+
+TEST(Recorder, HasOnDiskWhatIsHalfASecondOldWhoeverKillsIt) {
+  const auto path = temporary_file();
+  {
+    Recorder recorder(path.string(), test::lai_machine());
+    std::thread writer([&] { recorder.run(); });
+    CycleRecord record;
+    record.setpoint.cycle = 4711;
+    ASSERT_TRUE(recorder.take(record));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_EQ(last_line(path.string()).rfind("4711,", 0), 0U) << last_line(path.string());
+    recorder.stop();
+    writer.join();
+  }
+  std::filesystem::remove(path);
+  std::filesystem::remove(record::operator_events_path(path.string()));
+}
+
+TEST(Recorder, FollowsNoLink) {
+  const auto path = temporary_file();
+  const std::filesystem::path other = path.string() + ".other";
+  for (const std::string& name : {path.string(), record::operator_events_path(path.string())}) {
+    std::ofstream(other) << "not ours";
+    std::filesystem::create_symlink(other, name);
+    try {
+      const Recorder recorder(path.string(), test::lai_machine());
+      ADD_FAILURE() << name << " is followed";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(name + ": is a symbolic link", 0), 0U)
+          << error.what();
+    }
+    std::ifstream file(other);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "not ours");
+    std::filesystem::remove(path);
+    std::filesystem::remove(name);
+    std::filesystem::remove(other);
+  }
 }
 
 TEST(Recorder, LosesRowsAndCountsThemWhereTheDiskIsFull) {
