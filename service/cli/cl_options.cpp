@@ -8,6 +8,7 @@
 #include "service/config/machine_file.hpp"
 #include "service/config/range.hpp"
 #include "service/dds/messages.hpp"
+#include "service/text/printable.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::cli {
@@ -24,7 +25,8 @@ std::istream* open_cl_file(const std::string& name, std::ifstream& file) {
 
 void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings) {
   for (const cl::ClWarning& warning : warnings) {
-    std::cerr << name << ":" << warning.line << ": warning: " << warning.message << "\n";
+    std::cerr << text::printable(name) << ":" << warning.line
+              << ": warning: " << text::printable(warning.message) << "\n";
   }
 }
 

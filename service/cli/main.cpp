@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/dds/dds_log.hpp"
+#include "service/text/printable.hpp"
 
 namespace {
 
@@ -16,6 +19,7 @@ constexpr const char* kFooter =
 int main(int argc, char** argv) {
   using namespace meridian::cli;
   int exit_code = kFine;
+  meridian::dds::log_to_stderr();
   try {
     CLI::App app(
         "meridian: CAM station, operator's panel, simulated drives, simulator and checker");
@@ -30,7 +34,9 @@ int main(int argc, char** argv) {
       return app.exit(error) == 0 ? kFine : kUsage;
     }
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "meridian: %s\n", error.what());
+    const std::string words =
+        meridian::text::printable(error.what(), std::string::npos, meridian::text::Newlines::kKept);
+    std::fprintf(stderr, "meridian: %s\n", words.c_str());
     return kInputRefused;
   }
   return exit_code;

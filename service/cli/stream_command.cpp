@@ -16,6 +16,7 @@
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/stream/stream_run.hpp"
+#include "service/text/printable.hpp"
 
 namespace meridian::cli {
 
@@ -28,6 +29,7 @@ struct StreamCommandOptions {
   stream::StreamOptions stream;
   std::string machine_file, tool_file;
   bool has_no_preflight = false;
+  bool is_changed = false;
 };
 
 int exit_code_of(stream::StreamEnd end) {
@@ -79,7 +81,7 @@ bool pass_preflight(StreamCommandOptions& options,
       stream::preflight(options.stream.file, options.stream.reader, machine);
   print_warnings(options.stream.file, report.warnings);
   if (!report.refusal.empty()) {
-    std::fprintf(stderr, "meridian: %s\n", report.refusal.c_str());
+    std::fprintf(stderr, "meridian: %s\n", text::printable(report.refusal).c_str());
     return false;
   }
   std::printf("preflight: %llu blocks, %s at programmed feeds%s\n",
@@ -99,6 +101,7 @@ int run_stream_command(StreamCommandOptions& options) {
   if (asked.transition == Transition::kSmooth) options.stream.policies |= dds::kPolicySmooth;
   if (asked.transition == Transition::kExactStop) options.stream.policies |= dds::kPolicyExactStop;
   if (options.file.first_line > 0) options.stream.policies |= dds::kPolicyRetractFirst;
+  if (options.is_changed) options.stream.policies |= dds::kPolicyChanged;
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
@@ -116,10 +119,10 @@ int run_stream_command(StreamCommandOptions& options) {
   watch_for_stop();
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   ProgressPrinter printer(::isatty(STDOUT_FILENO) != 0);
-  const stream::StreamEnd end =
-      stream::run_stream(participant, options.stream, stop_flag(),
-                         {.say = [&](const std::string& text) { printer.say(text); },
-                          .show = [&](const stream::ProgressView& view) { printer.show(view); }});
+  const stream::StreamEnd end = stream::run_stream(
+      participant, options.stream, stop_flag(),
+      {.say = [&](const std::string& said) { printer.say(text::printable(said)); },
+       .show = [&](const stream::ProgressView& view) { printer.show(view); }});
   printer.end();
   return exit_code_of(end);
 }
@@ -147,6 +150,10 @@ void add_stream_command(CLI::App& app, int& exit_code) {
       ->needs(machine);
   command->add_flag("--wait-end", options->stream.is_waiting_for_end,
                     "Stay until the machine ran the program");
+  command->add_flag(
+      "--changed", options->is_changed,
+      "Go on (--from-line) although file, options or frame are others than those that "
+      "the program was begun with");
   std::array<char, 64> host{};
   static_cast<void>(::gethostname(host.data(), host.size() - 1));
   options->stream.station = host.data();

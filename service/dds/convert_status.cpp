@@ -117,8 +117,8 @@ void machine_info_fields(Way way, Message& message, Wire& wire) {
   way(message.tool_length_mm, wire.tool_length_mm);
   way(message.frame_rotation, wire.frame_rotation);
   way(message.frame_origin_mm, wire.frame_origin_mm);
-  way(message.machine_file, wire.machine_file);
-  way(message.tool_file, wire.tool_file);
+  way.whole(message.machine_file, wire.machine_file);
+  way.whole(message.tool_file, wire.tool_file);
 }
 
 /// "number:count number:count ..." of the buckets that are not empty. What does not fit is left

@@ -8,9 +8,12 @@
 #include <string>
 #include <type_traits>
 
+#include "service/text/printable.hpp"
+
 /// Every message has one list of its fields, way(core field, wire field), that serves both ways.
-/// Enumerations and truth values are octets on the wire, texts have a fixed length there. Used by
-/// convert_*.cpp alone.
+/// Enumerations and truth values are octets on the wire, texts have a fixed length there; those
+/// that come in are printable (text::printable), so that nothing behind here has to see to that.
+/// Used by convert_*.cpp alone.
 namespace meridian::dds {
 
 struct ToWire {
@@ -34,9 +37,13 @@ struct ToWire {
   }
   template <std::size_t N>
   void operator()(const std::string& from, char (&to)[N]) const noexcept {
-    const std::size_t length = std::min(from.size(), N - 1);
+    const std::size_t length = text::whole_characters(from, N - 1);
     std::memcpy(to, from.data(), length);
     std::memset(to + length, 0, N - length);
+  }
+  template <std::size_t N>
+  void whole(const std::string& from, char (&to)[N]) const noexcept {
+    (*this)(from, to);
   }
 };
 
@@ -60,6 +67,11 @@ struct FromWire {
   }
   template <std::size_t N>
   void operator()(std::string& to, const char (&from)[N]) const {
+    to = text::printable({from, ::strnlen(from, N)}, N);
+  }
+  /// The text of a file: its lines stay lines.
+  template <std::size_t N>
+  void whole(std::string& to, const char (&from)[N]) const {
     to.assign(from, ::strnlen(from, N));
   }
 };

@@ -125,7 +125,8 @@ void Intake::take_requests() {
   dds::SessionRequest request;
   dds::SampleInfo info;
   while (requests_.take(request, info)) {
-    if (!info.is_valid) continue;
+    if (!info.is_valid || !may_go_on(request)) continue;
+    const std::uint64_t before = judge_.session();
     publish(judge_.on_request(request, around(),
                               ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
     if (judge_.session() == request.session && judge_.is_held()) {
@@ -134,8 +135,30 @@ void Intake::take_requests() {
       }
       station_source_ = info.source;
       is_station_there_ = true;
+      if (before != request.session) begin_session(request);
     }
   }
+}
+
+bool Intake::may_go_on(const dds::SessionRequest& request) {
+  const bool is_open = request.request == dds::SessionRequestKind::kOpen;
+  if (last_ == nullptr || !is_open || judge_.is_held()) return true;
+  std::string refusal = telemetry::refusal_to_go_on(last_->get(), request, setup_);
+  if (refusal.empty()) return true;
+  publish(judge_.refuse_program(request, std::move(refusal)));
+  return false;
+}
+
+void Intake::begin_session(const dds::SessionRequest& request) {
+  opened_ = judge_.message();
+  remark_ = last_ == nullptr ? "" : telemetry::remark_on(last_->get(), request, setup_);
+  const std::lock_guard lock(view_mutex_);
+  line_ends_.clear();
+}
+
+bool Intake::is_line_end(std::uint64_t session, std::uint64_t block) {
+  const std::lock_guard lock(view_mutex_);
+  return session == view_.session && line_ends_.is_line_end(block);
 }
 
 void Intake::take_batches() {
@@ -162,9 +185,22 @@ bool Intake::push(const stream::Accepted& accepted) {
     ++count;
   }
   pushed_ += count;
+  note_line_ends(accepted, count);
   ports_.blocks.publish();
   ports_.planner_wake.notify();
   return count == accepted.count;
+}
+
+void Intake::note_line_ends(const stream::Accepted& accepted, std::size_t count) {
+  const std::lock_guard lock(view_mutex_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ClBlock& block = accepted.blocks[i];
+    if (block.kind == BlockKind::kEnd) {
+      line_ends_.end();
+    } else {
+      line_ends_.add(block.sequence, block.line);
+    }
+  }
 }
 
 void Intake::show_cut_off() noexcept {
@@ -221,12 +257,15 @@ void Intake::show() {
     view_.program = judge_.request().program;
     view_.options = judge_.request().options;
     view_.identity = station_identity_;
+    view_.file_checksum = judge_.request().file_checksum;
+    view_.from_line = judge_.request().from_line;
     view_.block_count = judge_.request().block_count;
     view_.blocks_received = judge_.next_sequence();
   }
   view_.batches_dropped = counters.batches_duplicate + counters.batches_stale;
   view_.batches_lost = counters.batches_corrupted + counters.batches_gap;
   view_.message = judge_.message();
+  if (!remark_.empty() && view_.message == opened_) view_.message += "; " + remark_;
 }
 
 SessionView Intake::view() const {

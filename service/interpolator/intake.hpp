@@ -14,6 +14,8 @@
 #include "service/dds/writer.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/stream/intake_judge.hpp"
+#include "service/stream/line_ends.hpp"
+#include "service/telemetry/recovery.hpp"
 
 namespace meridian::interpolator {
 
@@ -22,6 +24,8 @@ struct SessionView {
   std::uint64_t session = 0;
   std::string station, program, options;
   std::string identity;  ///< where the station runs
+  std::uint64_t file_checksum = 0;
+  std::uint32_t from_line = 0;
   std::uint64_t block_count = 0;
   std::uint64_t blocks_received = 0;
   std::uint64_t batches_dropped = 0, batches_lost = 0;
@@ -44,16 +48,29 @@ class Intake {
   [[nodiscard]] SessionView view() const;
   /// Of credits, see dds::StalledReaders.
   [[nodiscard]] std::int32_t writer() const noexcept { return credits_.handle(); }
+  /// Any thread: whether `block` of this session is the last of its source line; false also where
+  /// that is not known.
+  [[nodiscard]] bool is_line_end(std::uint64_t session, std::uint64_t block);
+  /// Before run(): a program that is noted there as unfinished is gone on with by its own file,
+  /// with its options and in its frame alone.
+  void go_on_with(const telemetry::LastProgram& last, const telemetry::CutSetup& setup) {
+    last_ = &last;
+    setup_ = setup;
+  }
 
  private:
   void take_events();
   void take_rejects();
   void free_idle_machine();
   void take_requests();
+  /// False, and answered, where it goes on with another program than it says.
+  [[nodiscard]] bool may_go_on(const dds::SessionRequest& request);
+  void begin_session(const dds::SessionRequest& request);
   void take_batches();
   void look_for_station();
   /// False where the queue had no room for all.
   [[nodiscard]] bool push(const stream::Accepted& accepted);
+  void note_line_ends(const stream::Accepted& accepted, std::size_t count);
   /// Lets the planner know where the blocks of a session end that was refused.
   void show_cut_off() noexcept;
   void empty_queue(std::uint16_t epoch) noexcept;
@@ -93,7 +110,12 @@ class Intake {
 
   trace::SpanWriter spans_;
 
+  const telemetry::LastProgram* last_ = nullptr;
+  telemetry::CutSetup setup_;
+  std::string opened_, remark_;  ///< what was said of the newest session, and what goes with it
+
   mutable std::mutex view_mutex_;
+  stream::LineEnds line_ends_;
   SessionView view_;
 };
 

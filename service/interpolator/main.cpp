@@ -2,6 +2,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -17,11 +18,14 @@
 #include "interpolator_version.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/config/service_file.hpp"
+#include "service/dds/dds_log.hpp"
 #include "service/interpolator/notify.hpp"
 #include "service/interpolator/service.hpp"
 #include "service/manual/manual.hpp"
 #include "service/telemetry/flight_recorder.hpp"
 #include "service/telemetry/log.hpp"
+#include "service/text/line_output.hpp"
+#include "service/text/printable.hpp"
 
 namespace meridian::interpolator {
 namespace {
@@ -125,6 +129,7 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
     service->keep_lease();
     service->tell_sources();
     if (++looks % 10 == 0) service->report_stalled_readers();
+    dds::report_left_out();
     manager.beat(service->heartbeat(), std::chrono::steady_clock::now());
   }
   manager.is_stopping();
@@ -137,6 +142,13 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   service->stop();
   log->info("ended");
   return kFine;
+}
+
+/// On standard error, unless nobody reads it.
+void complain(const std::exception& error) {
+  text::LineOutput out(STDERR_FILENO);
+  const std::string words = text::printable(error.what(), std::string::npos, text::Newlines::kKept);
+  (void)out.try_write("meridiand: " + words + "\n");
 }
 
 int run(int argc, char** argv) {
@@ -171,10 +183,10 @@ int run(int argc, char** argv) {
   try {
     return serve(load(options), signals);
   } catch (const config::ConfigError& error) {
-    std::fprintf(stderr, "meridiand: %s\n", error.what());
+    complain(error);
     return kConfigRefused;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "meridiand: %s\n", error.what());
+    complain(error);
     return kCannotStart;
   }
 }
@@ -184,6 +196,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const int code = meridian::interpolator::run(argc, argv);
-  spdlog::shutdown();
+  meridian::telemetry::end_log();
   return code;
 }

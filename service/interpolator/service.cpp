@@ -17,6 +17,7 @@
 #include "service/interpolator/monotonic.hpp"
 #include "service/telemetry/file_name.hpp"
 #include "service/telemetry/log.hpp"
+#include "service/text/checksum.hpp"
 
 namespace meridian::interpolator {
 namespace {
@@ -100,6 +101,21 @@ namespace {
     lengths[static_cast<std::uint32_t>(tool.number)] = tool.length_mm;
   }
   return lengths;
+}
+
+/// What programs are cut with as long as this service lasts; the tool changes.
+[[nodiscard]] telemetry::CutSetup cut_setup(const ServiceParts& parts) {
+  text::Checksum frame;
+  const auto add = [&frame](double value) {
+    frame.add({reinterpret_cast<const char*>(&value), sizeof value});
+  };
+  for (int i = 0; i < 9; ++i) add(parts.model.frame_rotation(i / 3, i % 3));
+  for (const double value : to_array(parts.model.frame_origin_mm)) add(value);
+  telemetry::CutSetup setup;
+  setup.frame = frame.sum();
+  setup.machine = text::checksum_of(parts.machine_file);
+  setup.tools = text::checksum_of(parts.tool_file);
+  return setup;
 }
 
 [[nodiscard]] telemetry::AuditOptions audit_options(const ServiceParts& parts) {
@@ -236,11 +252,15 @@ void Service::tell_last_program() {
     log_->info("no journal of the last executed block is kept: no state_directory is named");
     return;
   }
+  const telemetry::CutSetup setup = cut_setup(parts_);
   if (const auto last = journal_.read()) {
+    last_program_.set(*last);
     const std::string words = telemetry::describe(*last);
     log_->info("{}; {}", words, telemetry::describe_more(*last));
     telemetry_.say_first(words);
   }
+  telemetry_.go_on_from(last_program_, setup);
+  intake_.go_on_with(last_program_, setup);
   if (!journal_.complaint().empty()) {
     log_->warn("{}", journal_.complaint());
     telemetry_.say_first(journal_.complaint());

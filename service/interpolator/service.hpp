@@ -97,6 +97,7 @@ class Service {
   Supervisor supervisor_;
   telemetry::Recorder recorder_;
   telemetry::Journal journal_;
+  telemetry::LastProgram last_program_;
   telemetry::FlightRecorder flight_;
   TelemetryThread telemetry_;
   std::unique_ptr<trace::Tracer> tracer_;

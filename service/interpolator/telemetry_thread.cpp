@@ -31,9 +31,9 @@ constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
 
 TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineModel& model,
                                  const config::ServiceConfig& service, std::uint64_t service_id,
-                                 dds::RealtimeMode mode, const Intake& intake,
-                                 StatusClock& status_clock, telemetry::Recorder& recorder,
-                                 telemetry::Journal& journal, telemetry::FlightRecorder& flight,
+                                 dds::RealtimeMode mode, Intake& intake, StatusClock& status_clock,
+                                 telemetry::Recorder& recorder, telemetry::Journal& journal,
+                                 telemetry::FlightRecorder& flight,
                                  std::shared_ptr<spdlog::logger> log, Ports& ports)
     : model_(model),
       service_(service),
@@ -81,13 +81,25 @@ void TelemetryThread::run() noexcept {
 }
 
 void TelemetryThread::keep_journal(std::int64_t now_ns) {
-  if (!keeper_.is_due(now_ns)) return;
+  if (!keeper_.is_due()) return;
   const SessionView session = intake_.view();
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  const auto entry =
-      keeper_.due({session.session, session.station, session.program, session.options}, now_ns,
-                  std::chrono::nanoseconds(since_1970).count());
-  if (entry) journal_.take(*entry);
+  telemetry::JournalKeeper::Owner owner{session.session, session.station, session.program,
+                                        session.options};
+  owner.file_checksum = session.file_checksum;
+  owner.from_line = session.from_line;
+  owner.setup = setup_;
+  owner.setup.tool_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
+  owner.is_line_end = intake_.is_line_end(session.session, keeper_.block());
+  const std::int64_t time_ns =
+      std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+  auto entry = keeper_.due(owner, now_ns, time_ns);
+  if (entry) {
+    journal_.take(*entry);
+  } else {
+    entry = keeper_.due_position(owner, time_ns);
+    if (entry) journal_.take_position(*entry);
+  }
+  if (entry && last_ != nullptr) last_->set(*entry);
 }
 
 void TelemetryThread::drain() {
@@ -160,6 +172,7 @@ void TelemetryThread::drain_records() {
          report != nullptr && report->arrival_ns <= woke_ns;
          report = ports_.drive_reports.peek(0)) {
       flight_.take(*report);
+      keeper_.see_taken(report->cycle_seen);
       ports_.drive_reports.drop(1);
     }
     flight_.take(record);

@@ -23,6 +23,7 @@
 #include "service/telemetry/motion_watch.hpp"
 #include "service/telemetry/program_summary.hpp"
 #include "service/telemetry/recorder.hpp"
+#include "service/telemetry/recovery.hpp"
 
 namespace meridian::interpolator {
 
@@ -33,7 +34,7 @@ class TelemetryThread {
  public:
   TelemetryThread(dds::Participant& participant, const MachineModel& model,
                   const config::ServiceConfig& service, std::uint64_t service_id,
-                  dds::RealtimeMode mode, const Intake& intake, StatusClock& status_clock,
+                  dds::RealtimeMode mode, Intake& intake, StatusClock& status_clock,
                   telemetry::Recorder& recorder, telemetry::Journal& journal,
                   telemetry::FlightRecorder& flight, std::shared_ptr<spdlog::logger> log,
                   Ports& ports);
@@ -41,6 +42,12 @@ class TelemetryThread {
   /// Before run(): what the status says until there is something newer.
   void say_first(const std::string& message) { status_.message = message; }
 
+  /// Before run(): the program that the journal names, and what the next is cut with.
+  void go_on_from(telemetry::LastProgram& last, const telemetry::CutSetup& setup) {
+    last_ = &last;
+    setup_ = setup;
+    keeper_.go_on_from(last.get());
+  }
   /// Before run(): Faults and sessions go into this log too.
   void audit_into(telemetry::AuditLog& audit) { audit_ = &audit; }
   /// Of the status and of latencies, see dds::StalledReaders.
@@ -77,7 +84,7 @@ class TelemetryThread {
   const MachineModel& model_;
   const config::ServiceConfig& service_;
   std::uint64_t service_id_;
-  const Intake& intake_;
+  Intake& intake_;
   StatusClock& status_clock_;
   telemetry::Recorder& recorder_;
   telemetry::Journal& journal_;
@@ -85,6 +92,8 @@ class TelemetryThread {
   std::shared_ptr<spdlog::logger> log_;
   Ports& ports_;
   telemetry::AuditLog* audit_ = nullptr;
+  telemetry::LastProgram* last_ = nullptr;
+  telemetry::CutSetup setup_;
   dds::Writer<dds::Status> statuses_;
   dds::Writer<dds::Latency> latencies_;
 

@@ -52,6 +52,13 @@ double tip_length(const ClBlock& block, const Array3& begin) {
                     (to - from).dot(normal));
 }
 
+[[nodiscard]] bool holds_control_character(const char* text) noexcept {
+  for (; *text != '\0'; ++text) {
+    if (static_cast<unsigned char>(*text) < 0x20 || *text == 0x7F) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 BlockJudge::BlockJudge(const MachineModel& model, ToolLengths tools)
@@ -76,6 +83,8 @@ BlockReject BlockJudge::judge(ClBlock& block, const ActionPeer& actions) {
     return reject(block, RejectCode::kNotFinite, place);
   }
   block.text[sizeof block.text - 1] = '\0';
+  // It goes on to terminals and to other machines' controls.
+  if (holds_control_character(block.text)) return reject(block, RejectCode::kKind);
   switch (block.kind) {
     case BlockKind::kCut:
     case BlockKind::kRapid:

@@ -93,6 +93,11 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
   return credit(around);
 }
 
+dds::Credit IntakeJudge::refuse_program(const dds::SessionRequest& request, std::string why) {
+  ++counters_.sessions_refused;
+  return stranger(request.session, Verdict::kRefusedProgram, std::move(why));
+}
+
 dds::Credit IntakeJudge::close(const dds::SessionRequest& request, const Surroundings& around) {
   if (request.session != session_ || session_ == 0) {
     if (const dds::Credit* last = find_ended(request.session)) return *last;

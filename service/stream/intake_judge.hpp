@@ -60,6 +60,9 @@ class IntakeJudge {
   [[nodiscard]] dds::Credit on_request(const dds::SessionRequest& request,
                                        const Surroundings& around, double tool_length_mm);
 
+  /// The answer to an open that is refused for a reason that lies outside of the protocol.
+  [[nodiscard]] dds::Credit refuse_program(const dds::SessionRequest& request, std::string why);
+
   /// A batch came. `accepted` gets the blocks that go into the queue. Returns an answer where the
   /// station must hear something at once: send again, refused, complete, not your session.
   [[nodiscard]] std::optional<dds::Credit> on_batch(const dds::Batch& batch,

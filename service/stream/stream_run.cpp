@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 
@@ -14,6 +16,7 @@
 #include "service/stream/station.hpp"
 #include "service/stream/station_link.hpp"
 #include "service/stream/steady_ns.hpp"
+#include "service/text/checksum.hpp"
 
 namespace meridian::stream {
 
@@ -28,6 +31,24 @@ constexpr const char* kStandardInput = "standard input";
 
 bool is_pipe(const StreamOptions& options) { return options.file == "-"; }
 
+/// The checksum of all that is in `file`, which is at its begin again afterwards.
+std::uint64_t checksum_of(std::ifstream& file) {
+  text::Checksum sum;
+  std::array<char, 65'536> bytes;
+  while (file.read(bytes.data(), bytes.size()) || file.gcount() > 0) {
+    sum.add({bytes.data(), static_cast<std::size_t>(file.gcount())});
+  }
+  file.clear();
+  file.seekg(0);
+  return sum.sum();
+}
+
+/// Whether it is a file that is there to be read twice.
+bool is_regular(const StreamOptions& options) {
+  std::error_code ignored;
+  return !is_pipe(options) && std::filesystem::is_regular_file(options.file, ignored);
+}
+
 dds::SessionRequest request_of(const StreamOptions& options) {
   dds::SessionRequest request;
   request.session = draw_id();
@@ -37,6 +58,7 @@ dds::SessionRequest request_of(const StreamOptions& options) {
   request.axis_tolerance_rad = options.axis_tolerance_rad;
   request.policies = options.policies;
   request.options = options.options;
+  request.from_line = options.reader.first_line;
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;
@@ -98,9 +120,10 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
       return StreamEnd::kInputRefused;
     }
   }
+  dds::SessionRequest request = request_of(options);
+  if (is_regular(options)) request.file_checksum = checksum_of(file);
   cl::ClReader reader(file, options.file, options.reader);
   Source source = [&reader] { return supply_of(reader); };
-  const dds::SessionRequest request = request_of(options);
   Station station(request, [&source] { return source(); });
   StationLink link(participant, station);
   std::optional<SourcePump> pump;

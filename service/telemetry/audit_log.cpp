@@ -72,7 +72,7 @@ std::string to_line(const AuditEntry& entry) {
     add("argument", text::json_number("%.9g", entry.argument));
     add("result", entry.is_accepted ? R"("accepted")" : R"("refused")");
     if (!entry.is_accepted) {
-      add("refusal", json_text(name_or_number(entry.refusal, Refusal::kOvertaken)));
+      add("refusal", json_text(name_or_number(entry.refusal, Refusal::kDrivesAstray)));
     }
   }
   add("state", json_text(name_or_number(entry.state, State(kStateCount - 1))));
@@ -170,9 +170,9 @@ bool AuditLog::put(const std::string& line) {
 /// Ahead of the next line, what is missing in front of it.
 void AuditLog::note_losses() {
   const std::uint64_t lost = lost_;
-  if (lost > lost_told_ &&
-      put(lost_line(lost - lost_told_, "came faster than they were written"))) {
-    lost_told_ = lost;
+  if (lost > lost_noted_ &&
+      put(lost_line(lost - lost_noted_, "came faster than they were written"))) {
+    lost_noted_ = lost;
   }
   if (not_written_ > 0 && put(lost_line(not_written_, "could not be written"))) not_written_ = 0;
 }
@@ -197,7 +197,7 @@ void AuditLog::run(const std::function<void(const std::string&)>& complain) noex
       not_written_ += put(to_line(entry)) ? 0 : 1;
       is_dirty = true;
     }
-    if (is_last || not_written_ > 0 || lost_ > lost_told_) note_losses();
+    if (is_last || not_written_ > 0 || lost_ > lost_noted_) note_losses();
     complain_once(complain);
     if (is_dirty && (is_last || ++looks >= kLooksBetweenSyncs)) {
       (void)::fdatasync(file_);

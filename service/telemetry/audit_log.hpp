@@ -87,7 +87,7 @@ class AuditLog {
   std::unique_ptr<AuditQueue<AuditEntry, kQueued>> queue_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::uint64_t> lost_{0};
-  std::uint64_t lost_told_ = 0;    ///< of these, those that a line says
+  std::uint64_t lost_noted_ = 0;    ///< of these, those that a line says
   std::uint64_t not_written_ = 0;  ///< lines that the disk did not take since the last that it did
   bool has_torn_line_ = false;     ///< the file ends within a line
   int file_ = -1, error_ = 0, complained_ = 0;

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -48,6 +49,23 @@ constexpr mode_t kMode = 0640;
   return parse_journal(text, machine);
 }
 
+[[nodiscard]] std::string position_name(const std::filesystem::path& journal) {
+  return std::filesystem::path(journal).replace_extension(".position").string();
+}
+
+/// Brings the entry up to date by the positions that were written behind it.
+void read_positions(const std::string& name, JournalEntry& entry) {
+  const int file = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
+  if (file < 0) return;
+  std::array<char, 2 * kPositionBytes> text{};
+  const ssize_t count = ::pread(file, text.data(), text.size(), 0);
+  (void)::close(file);
+  for (const std::size_t at : {std::size_t{0}, kPositionBytes}) {
+    if (count < static_cast<ssize_t>(at + kPositionBytes)) return;
+    read_position({text.data() + at, kPositionBytes}, entry);
+  }
+}
+
 [[nodiscard]] int sync_folder(const std::filesystem::path& folder) noexcept {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return errno;
@@ -80,6 +98,27 @@ Journal::Journal(const std::filesystem::path& folder, std::string machine, Write
   }
 }
 
+Journal::~Journal() {
+  if (position_file_ >= 0) (void)::close(position_file_);
+}
+
+/// What is there under that name and no regular file is left alone: then no position is kept.
+void Journal::write_position() noexcept {
+  if (position_file_ < 0) {
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK;
+    position_file_ = ::open(position_name(path_).c_str(), kFlags, kMode);
+    struct stat facts {};
+    const bool is_file =
+        position_file_ >= 0 && ::fstat(position_file_, &facts) == 0 && S_ISREG(facts.st_mode);
+    if (!is_file && position_file_ >= 0) (void)::close(std::exchange(position_file_, -1));
+    if (!is_file) return;
+  }
+  const std::string text = to_position(position_.latest());
+  const off_t at = is_second_ ? 0 : static_cast<off_t>(kPositionBytes);
+  is_second_ = !is_second_;
+  (void)!::pwrite(position_file_, text.data(), text.size(), at);
+}
+
 std::optional<JournalEntry> Journal::read() {
   if (path_.empty()) return std::nullopt;
   // No link is followed, no pipe waited for.
@@ -87,7 +126,10 @@ std::optional<JournalEntry> Journal::read() {
   if (file < 0 && errno == ENOENT) return std::nullopt;
   auto entry = parse_file(file, machine_);
   if (file >= 0) (void)::close(file);
-  if (entry) return *entry;
+  if (entry) {
+    read_positions(position_name(path_), *entry);
+    return *entry;
+  }
   put_aside(entry.error());
   return std::nullopt;
 }
@@ -113,7 +155,8 @@ void Journal::run(const std::function<void(const std::string&)>& complain) noexc
       }
       told = error;
     }
-    if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (position_.refresh()) write_position();
+    if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 

@@ -27,6 +27,10 @@ class Journal {
   /// `folder` empty: no journal is kept. It is made where it is not there. `write` is for tests.
   Journal(const std::filesystem::path& folder, std::string machine, Write write = replace_file);
 
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
   /// What the service before left, nothing where it left none; to be called ahead of run(). A file
   /// that is no journal of this machine, torn, unreadable or no regular file is put aside as
   /// NAME.refused and complaint() says so.
@@ -34,6 +38,10 @@ class Journal {
 
   /// Telemetry thread: this is what is true now.
   void take(const JournalEntry& entry) noexcept { newest_.store(entry); }
+
+  /// The same, of what due_position() of the keeper gives: it goes into a file beside, in place and
+  /// not synced, so that a service that is killed leaves it; a loss of power may cost it.
+  void take_position(const JournalEntry& entry) noexcept { position_.store(entry); }
 
   /// Journal's thread: writes until stop() and the newest entry is on disk. `complain` hears once
   /// that it cannot be written, and again only when it could be meanwhile.
@@ -47,12 +55,15 @@ class Journal {
 
  private:
   void put_aside(const std::string& why);
+  void write_position() noexcept;
 
   std::string machine_;
   std::filesystem::path path_;
   Write write_;
   std::string complaint_;
-  LatestValue<JournalEntry> newest_;
+  LatestValue<JournalEntry> newest_, position_;
+  int position_file_ = -1;
+  bool is_second_ = false;  ///< the newest position is the second in its file
   std::atomic<bool> is_stopping_{false};
 };
 

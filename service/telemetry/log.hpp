@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 
@@ -18,7 +19,13 @@ namespace meridian::telemetry {
 
 /// The service's log: lines are queued and written by a thread of their own, so that a blocked
 /// terminal or a full disk holds nobody up; when the queue is full the oldest lines go. `file`
-/// empty: standard error. Throws spdlog::spdlog_ex where the file cannot be opened. Call once.
+/// empty: standard error. Lines that were lost are counted, and the next that is written says how
+/// many. What DDS says goes into it too (service/dds/dds_log.hpp). Throws spdlog::spdlog_ex where
+/// the file cannot be opened. Call once. Proof: tests/integration/blocked_log_test.cpp.
 [[nodiscard]] std::shared_ptr<spdlog::logger> make_log(const std::filesystem::path& file);
+
+/// Writes what is queued and ends the log's thread; where nobody reads for as long as `patience`,
+/// the rest is lost.
+void end_log(std::chrono::milliseconds patience = std::chrono::milliseconds(500));
 
 }  // namespace meridian::telemetry

@@ -18,8 +18,8 @@ namespace {
 using How = LiveFault::How;
 using Where = Phase::Where;
 
-/// The journal is a second old at most, and takes a while to get to the disk of a busy host.
-constexpr std::int64_t kJournalAge_ns = 1'500'000'000;
+/// The position is some 20 ms old, and takes a while to get to the disk of a busy host.
+constexpr std::int64_t kJournalAge_ns = 500'000'000;
 constexpr milliseconds kBetweenTimes{10};
 /// Of the setpoints on the wire the witness sees all but one in so many, and but for those that the
 /// service lost since its last status: no more than drives bridge.

@@ -107,6 +107,42 @@ TEST(Convert, CutsLongTextsAndEndsEndlessOnes) {
   EXPECT_EQ(back.text, std::string(sizeof wire.text, 'y'));
 }
 
+TEST(Convert, LetsNoControlCharacterIn) {
+  const char forged[] = "cam\n2026-01-01 00:00:00 info ended\x1b[2J";
+  const std::string escaped = "cam\\n2026-01-01 00:00:00 info ended\\x1B[2J";
+  const auto read = [&](auto wire, auto message, auto field, auto text) {
+    std::strcpy(field(wire), forged);
+    from_wire(wire, message);
+    EXPECT_EQ(text(message), escaped);
+  };
+  read(
+      meridian_wire_ClSession{}, SessionRequest{}, [](auto& w) { return w.station; },
+      [](auto& m) { return m.station; });
+  read(
+      meridian_wire_ClSession{}, SessionRequest{}, [](auto& w) { return w.program; },
+      [](auto& m) { return m.program; });
+  read(
+      meridian_wire_Command{}, CommandRequest{}, [](auto& w) { return w.operator_name; },
+      [](auto& m) { return m.operator_name; });
+  read(
+      meridian_wire_Machine{}, MachineInfo{}, [](auto& w) { return w.name; },
+      [](auto& m) { return m.name; });
+  read(
+      meridian_wire_ActionDone{}, ActionDone{}, [](auto& w) { return w.text; },
+      [](auto& m) { return m.text; });
+  read(
+      meridian_wire_Status{}, Status{}, [](auto& w) { return w.message; },
+      [](auto& m) { return m.message; });
+  read(
+      meridian_wire_ClCredit{}, Credit{}, [](auto& w) { return w.text; },
+      [](auto& m) { return m.text; });
+  meridian_wire_Machine machine{};
+  std::strcpy(machine.machine_file, "[machine]\nname = 1\n");
+  MachineInfo info;
+  from_wire(machine, info);
+  EXPECT_EQ(info.machine_file, "[machine]\nname = 1\n") << "a file's lines stay";
+}
+
 TEST(Convert, ReadsNoMoreOfHistogramsThanIsThere) {
   meridian_wire_Latency wire{};
   wire.count = 1;

@@ -12,7 +12,8 @@ namespace {
 class Kept {
  public:
   void tell(EventCode code, std::uint64_t a = 0, std::uint64_t b = 0) {
-    keeper_.see({.code = code, .a = a, .b = b}, code == EventCode::kAlarm ? "a fault" : "");
+    keeper_.see({.code = code, .cycle = cycle_, .a = a, .b = b},
+                code == EventCode::kAlarm ? "a fault" : "");
   }
   void set_dry_run(bool is_dry_run) { keeper_.set_dry_run(is_dry_run); }
   void enter(State state) { tell(EventCode::kStateChanged, static_cast<std::uint64_t>(state)); }
@@ -21,14 +22,21 @@ class Kept {
   void run_for(int milliseconds) {
     for (int t = 0; t < milliseconds; t += 10) {
       now_ns_ += 10'000'000;
-      if (const auto entry = keeper_.due(owner, now_ns_, now_ns_)) entries.push_back(*entry);
+      if (const auto entry = keeper_.due(owner, now_ns_, now_ns_))
+        entries.push_back(position = *entry);
+      if (const auto entry = keeper_.due_position(owner, now_ns_)) position = *entry;
     }
   }
+  /// The drives have come so far; what is told from now on is of the cycle behind that.
+  void take(std::uint64_t cycle) { keeper_.see_taken(cycle); }
+  void set_cycle(std::uint64_t cycle) { cycle_ = cycle; }
   JournalKeeper::Owner owner{7, "cam", "part.apt", ""};
+  JournalEntry position;
   std::vector<JournalEntry> entries;
 
  private:
   JournalKeeper keeper_;
+  std::uint64_t cycle_ = 0;
   std::int64_t now_ns_ = 5'000'000'000;
 };
 
@@ -150,6 +158,115 @@ TEST(JournalKeeper, NotesTheEndOfAProgram) {
   kept.run_for(20);
   EXPECT_EQ(kept.entries.back().reached, Reached::kEnd);
   EXPECT_EQ(kept.entries.back().alarm[0], '\0');
+}
+
+TEST(JournalKeeper, KeepsWhatIsCutWhileItsRecoveryIsInterruptedAgainAndAgain) {
+  Kept kept;
+  kept.begin(0);
+  kept.enter(State::kApproaching);
+  kept.enter(State::kRunning);
+  kept.begin(190);  // line 200
+  kept.end(190);
+  kept.begin(191);
+  kept.enter(State::kAborting);
+  kept.enter(State::kReady);
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().next_line, 201U);
+  for (std::uint64_t session = 8; session < 13; ++session) {
+    kept.owner.session = session;
+    kept.owner.from_line = 201;
+    kept.tell(EventCode::kBlockStarted, 0, 2);  // the tool, of line 2
+    kept.enter(State::kApproaching);
+    kept.run_for(20);
+    EXPECT_EQ(kept.entries.back().next_line, 201U);
+    EXPECT_TRUE(is_recovering(kept.entries.back()));
+    if (session % 2 == 0) {
+      kept.tell(EventCode::kBlockDone, 0, 2);
+      kept.tell(EventCode::kBlockStarted, 1, 199);  // the approach
+    }
+    kept.tell(EventCode::kAlarm);
+    kept.enter(State::kFaultStop);
+    kept.enter(State::kFault);
+    kept.run_for(20);
+    EXPECT_EQ(kept.entries.back().next_line, 201U);
+  }
+  kept.owner.session = 20;
+  kept.tell(EventCode::kBlockStarted, 0, 199);
+  kept.enter(State::kApproaching);
+  kept.enter(State::kRunning);
+  kept.tell(EventCode::kBlockStarted, 1, 201);
+  kept.tell(EventCode::kBlockDone, 1, 201);
+  kept.owner.is_line_end = true;
+  kept.run_for(20);
+  EXPECT_EQ(kept.position.next_line, 202U);
+  EXPECT_EQ(kept.position.reached, Reached::kLineDone);
+}
+
+TEST(JournalKeeper, BeginsAnewWithAnotherProgramAndWithTheSameFromItsBegin) {
+  for (const bool is_other : {false, true}) {
+    Kept kept;
+    kept.begin(40);
+    kept.enter(State::kApproaching);
+    kept.enter(State::kReady);
+    kept.run_for(20);
+    ASSERT_EQ(kept.entries.back().next_line, 50U);
+    kept.owner.session = 8;
+    if (is_other) {
+      kept.owner.program = "other.apt";
+      kept.owner.from_line = 5;
+    }
+    kept.begin(0);
+    kept.enter(State::kApproaching);
+    kept.run_for(20);
+    EXPECT_EQ(kept.entries.back().next_line, 10U);
+    EXPECT_STREQ(kept.entries.back().dropped.data(), "part.apt, cut up to line 50");
+  }
+}
+
+TEST(JournalKeeper, GoesOnWithTheSameFileUnderAnotherNameAndNotWithAnotherOfTheSame) {
+  for (const std::uint64_t checksum : {11U, 12U}) {
+    Kept kept;
+    kept.owner.file_checksum = 11;
+    kept.begin(40);
+    kept.enter(State::kApproaching);
+    kept.enter(State::kReady);
+    kept.run_for(20);
+    kept.owner = {8, "cam", checksum == 11 ? "copy.apt" : "part.apt", ""};
+    kept.owner.file_checksum = checksum;
+    kept.owner.from_line = 20;
+    kept.tell(EventCode::kBlockStarted, 0, 2);
+    kept.enter(State::kApproaching);
+    kept.run_for(20);
+    EXPECT_EQ(kept.entries.back().next_line, checksum == 11 ? 50U : 0U);
+  }
+}
+
+TEST(JournalKeeper, CountsWhatTheDrivesHaveTakenAndNothingElse) {
+  Kept kept;
+  kept.take(100);
+  kept.set_cycle(100);
+  kept.begin(0);
+  kept.enter(State::kApproaching);
+  kept.enter(State::kRunning);
+  kept.set_cycle(150);
+  kept.end(0);
+  kept.begin(1);
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().line, 10U) << "the drives are in cycle 100";
+  kept.take(149);
+  kept.run_for(1500);
+  EXPECT_EQ(kept.position.line, 10U);
+  kept.take(150);
+  kept.run_for(20);
+  EXPECT_EQ(kept.position.line, 11U);
+  kept.set_cycle(160);
+  kept.end(1);
+  kept.begin(2);
+  kept.tell(EventCode::kAlarm);
+  kept.enter(State::kFaultStop);
+  kept.enter(State::kFault);
+  kept.run_for(20);
+  EXPECT_EQ(kept.entries.back().next_line, 11U) << "drives died in cycle 150";
 }
 
 }  // namespace

@@ -30,10 +30,16 @@ JournalEntry sample_entry() {
   entry.line = 4720;
   entry.reached = Reached::kDone;
   entry.state = State::kHeld;
+  entry.count = 77;
+  entry.from_line = 4711;
+  entry.next_line = 4720;
+  entry.file_checksum = 0x8000000000000001U;
+  entry.setup = {1, 2, 3, 98.5};
   put_text("cam\none", entry.station);
   put_text("blade = 7.apt", entry.program);
   put_text("--units inch", entry.options);
   put_text("drive b3 reports a fault", entry.alarm);
+  put_text("door.apt, cut up to line 12", entry.dropped);
   return entry;
 }
 
@@ -74,6 +80,15 @@ TEST(JournalEntry, ComesBackFromItsText) {
   EXPECT_EQ(read->line, written.line);
   EXPECT_EQ(read->reached, written.reached);
   EXPECT_EQ(read->state, written.state);
+  EXPECT_EQ(read->count, written.count);
+  EXPECT_EQ(read->from_line, written.from_line);
+  EXPECT_EQ(read->next_line, written.next_line);
+  EXPECT_EQ(read->file_checksum, written.file_checksum);
+  EXPECT_EQ(read->setup.frame, 1U);
+  EXPECT_EQ(read->setup.machine, 2U);
+  EXPECT_EQ(read->setup.tools, 3U);
+  EXPECT_EQ(read->setup.tool_mm, 98.5);
+  EXPECT_STREQ(read->dropped.data(), "door.apt, cut up to line 12");
   EXPECT_STREQ(read->station.data(), "cam one") << "a text never breaks a line";
   EXPECT_STREQ(read->program.data(), "blade = 7.apt");
   EXPECT_STREQ(read->options.data(), "--units inch");
@@ -99,35 +114,48 @@ TEST(JournalEntry, OfSomebodyElseIsRefusedWithTheReason) {
     return read ? std::string("taken") : read.error();
   };
   EXPECT_EQ(why("cycle,due_ns,line\n"), "is no journal of this service");
-  EXPECT_EQ(why("meridian journal 2\nmachine = lai\n"), "is of another version of this service");
+  EXPECT_EQ(why("meridian journal 9\nmachine = lai\n"), "is of another version of this service");
   EXPECT_EQ(why(to_text(sample_entry(), "bench")), "is of machine 'bench', not of 'lai'");
-  EXPECT_EQ(why("meridian journal 1\nmachine = lai\n"), "is torn: its end is missing");
+  EXPECT_EQ(why("meridian journal 2\nmachine = lai\n"), "is torn: its end is missing");
 }
 
-TEST(JournalEntry, TellsFromWhichLineToGoOn) {
+TEST(JournalEntry, NamesTheFirstLineThatIsNotFinished) {
   JournalEntry entry = sample_entry();
-  EXPECT_EQ(
-      describe(entry),
-      "last program: blade = 7.apt, line 4720 done up to block 4710; go on with --from-line 4720,"
-      " or 4721 if that was all of line 4720")
-      << "an arc is many blocks of one line";
+  const auto expect = [&entry](const std::string& words) {
+    EXPECT_EQ(describe(entry), "last program: blade = 7.apt, " + words);
+  };
+  expect("line 4720 done up to block 4710; go on with --from-line 4720");
   entry.reached = Reached::kBegun;
-  EXPECT_EQ(describe(entry),
-            "last program: blade = 7.apt, line 4720 begun; go on with --from-line 4720");
+  expect("line 4720 begun; go on with --from-line 4720");
   entry.state = State::kRunning;
-  EXPECT_EQ(describe(entry),
-            "last program: blade = 7.apt, line 4720 begun at least; go on with --from-line 4720");
-  for (const State state : {State::kFaultStop, State::kFault}) {
-    for (const Reached reached : {Reached::kBegun, Reached::kDone}) {
-      entry.state = state;
-      entry.reached = reached;
-      EXPECT_EQ(describe(entry),
-                "last program: blade = 7.apt, line 4720 at the alarm, what was cut may end earlier "
-                "(flight record); go on with --from-line 4720 at the latest");
-    }
-  }
+  expect("line 4720 begun at least; go on with --from-line 4720");
+  entry.reached = Reached::kLineDone;
+  entry.next_line = 4721;
+  expect("line 4720 done; go on with --from-line 4721");
+  entry.reached = Reached::kBegun;
+  entry.next_line = 4720;
+  entry.state = State::kFault;
+  expect(
+      "line 4720 at the alarm, what was cut may end earlier (flight record); go on with "
+      "--from-line 4720 at the latest");
+  entry.line = 2;
+  entry.from_line = entry.next_line = 4711;
+  expect(
+      "cut up to line 4711; begun again from line 4711, it had not come to the cut; go on with "
+      "--from-line 4711 at the latest");
+  entry.state = State::kApproaching;
+  expect(
+      "cut up to line 4711; begun again from line 4711, it had not come to the cut; go on with "
+      "--from-line 4711");
+  entry.from_line = 4000;
+  entry.line = 4100;
+  expect(
+      "cut up to line 4711; begun again from line 4000, it came to line 4100; go on with "
+      "--from-line 4711, or 4100 for what was begun again");
+  entry.next_line = 0;
+  expect("not begun; stream it from its begin");
   entry.reached = Reached::kEnd;
-  EXPECT_EQ(describe(entry), "last program: blade = 7.apt, ran to its end");
+  expect("ran to its end");
   const std::string more = describe_more(sample_entry());
   for (const char* part : {"2026-09-21", "UTC", "Held", "cam one", "--units inch", "drive b3"}) {
     EXPECT_NE(more.find(part), std::string::npos) << more;
@@ -152,6 +180,68 @@ TEST(Journal, TellsTheNextServiceTheLastEntry) {
   ASSERT_TRUE(entry) << next.complaint();
   EXPECT_EQ(entry->line, 50U);
   EXPECT_FALSE(fs::exists(next.path().string() + ".new"));
+}
+
+TEST(JournalPosition, IsNewerThanItsEntryWholeAndOfItsSessionOrNothing) {
+  const JournalEntry entry = sample_entry();
+  JournalEntry newer = entry;
+  ++newer.count;
+  newer.line = 4800;
+  newer.next_line = 4801;
+  newer.reached = Reached::kLineDone;
+  newer.state = State::kRunning;
+  const std::string text = to_position(newer);
+  ASSERT_EQ(text.size(), kPositionBytes);
+  JournalEntry read = entry;
+  read_position(text, read);
+  EXPECT_EQ(to_text(read, "lai"), to_text(newer, "lai"));
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    std::string changed = text;
+    changed[at] = static_cast<char>(changed[at] ^ 4);
+    read = entry;
+    read_position(changed, read);
+    EXPECT_EQ(read.line, entry.line) << at;
+  }
+  JournalEntry other = entry;
+  other.session = 1;
+  read_position(text, other);
+  EXPECT_EQ(other.line, entry.line);
+  read = newer;
+  read.line = 4900;
+  read_position(text, read);
+  EXPECT_EQ(read.line, 4900U) << "no newer than what is known";
+}
+
+TEST(Journal, OfAServiceThatWasKilledIsBroughtUpToDateByItsNewestPosition) {
+  const Folder folder;
+  JournalEntry entry = sample_entry();
+  {
+    Journal journal(folder.path(), "lai");
+    (void)run_beside(journal, [&] {
+      journal.take(entry);
+      for (int n = 0; n < 5; ++n) {
+        ++entry.count;
+        ++entry.line;
+        journal.take_position(entry);
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      }
+    });
+  }
+  Journal next(folder.path(), "lai");
+  const auto read = next.read();
+  ASSERT_TRUE(read) << next.complaint();
+  EXPECT_EQ(read->line, entry.line);
+  EXPECT_STREQ(read->program.data(), "blade = 7.apt");
+}
+
+TEST(Journal, WritesNoPositionThroughALink) {
+  const Folder folder;
+  fs::create_directories(folder.path());
+  std::ofstream(folder.path() / "other") << "not ours";
+  fs::create_symlink("other", folder.path() / "lai.position");
+  Journal journal(folder.path(), "lai");
+  (void)run_beside(journal, [&] { journal.take_position(sample_entry()); });
+  EXPECT_EQ(test::read_text(folder.path() / "other"), "not ours");
 }
 
 TEST(Journal, PutsAsideWhatIsTornAndGoesOn) {
