@@ -35,7 +35,7 @@ enum ExitCode { kFine = 0, kCannotStart = 1, kUsage = 2, kConfigRefused = 3 };
 struct Options {
   std::string machine, service, recording, state, faults, frame, trace;
   int domain = -1;
-  bool is_best_effort = false, is_manual = false;
+  bool is_best_effort = false, is_open_network = false, is_manual = false;
 };
 
 /// Threads that libraries start get small stacks too: locked memory is resident.
@@ -78,6 +78,7 @@ void make_stacks_small() {
   ServiceParts parts;
   if (!options.service.empty()) parts.service = config::load_service(options.service);
   if (options.is_best_effort) parts.service.realtime.mode = config::RealtimeMode::kBestEffort;
+  if (options.is_open_network) parts.service.open_network = true;
   const std::string machine =
       !options.machine.empty() ? options.machine : parts.service.machine.string();
   if (machine.empty()) throw StartError("no machine: give --machine FILE or name it in --service");
@@ -168,6 +169,9 @@ int run(int argc, char** argv) {
   app.add_option("--frame", options.frame, "workpiece: x,y,z[,a,b,c] in mm and deg");
   app.add_flag("--best-effort", options.is_best_effort,
                "run without real-time rights where they are missing");
+  app.add_flag("--open-network", options.is_open_network,
+               "start though CYCLONEDDS_URI leads off this host without an identity (as open_network "
+               "= true in the service file); else that is refused");
   app.add_flag("--man-page", options.is_manual)->group("");
   try {
     app.parse(argc, argv);
