@@ -125,7 +125,8 @@ void TelemetryThread::drain() {
     log_->log(notice.is_warning ? spdlog::level::warn : spdlog::level::info, "{}",
               notice.text.data());
     if (!notice.is_for_status) continue;
-    if (status_.alarm == Alarm::kNone) status_.message = notice.text.data();
+    notice_ = notice.text.data();
+    if (status_.alarm == Alarm::kNone) status_.message = notice_;
     has_news_ = true;
   }
   Event event;
@@ -224,6 +225,7 @@ void TelemetryThread::tell(const Event& event) {
         status_.alarm = Alarm::kNone;
         has_news_ = true;
       }
+      if (static_cast<State>(event.b) == State::kHeld) notice_.clear();
       if (!approach_.empty() && static_cast<State>(event.a) == State::kApproaching &&
           static_cast<State>(event.b) == State::kLoaded) {
         status_.message = approach_message_ = approach_;
@@ -257,7 +259,9 @@ void TelemetryThread::tell(const Event& event) {
   words += silent_group(event);
   const bool is_told_stop =
       event.code == EventCode::kStopped && status_.alarm == Alarm::kNone;  // else the reason stays
-  if (event.code == EventCode::kAlarm || is_told_stop) status_.message = words;
+  if (event.code == EventCode::kAlarm) status_.message = words;
+  // Why it stopped stays behind how it stopped.
+  if (is_told_stop) status_.message = notice_.empty() ? words : notice_ + "; " + words;
   log_->log(telemetry::level_of(weight), "cycle {}: {}", event.cycle, words);
 }
 

@@ -124,6 +124,7 @@ class TelemetryThread {
   bool has_news_ = true;
   std::string session_message_;  ///< newest of intake that was told
   std::string alarm_message_;    ///< of the newest alarm
+  std::string notice_;           ///< newest that is for the operator, until the machine goes on
   std::string approach_;         ///< how the program that was planned last is approached
   Approach way_;                 ///< the same
   bool is_approach_new_ = false;
