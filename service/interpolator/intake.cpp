@@ -10,6 +10,8 @@ namespace meridian::interpolator {
 namespace {
 
 constexpr auto kIdle = std::chrono::milliseconds(10);
+/// Of one topic at one look: a flood of it does not keep this thread from its other work.
+constexpr int kMaxSamples = 512;
 constexpr std::int64_t kLookForStation_ns = 200'000'000;
 /// A station that asks late still finds its last verdict.
 constexpr std::int64_t kKeepVerdict_ns = 30 * kSecond_ns;
@@ -124,8 +126,8 @@ void Intake::free_idle_machine() {
 void Intake::take_requests() {
   dds::SessionRequest request;
   dds::SampleInfo info;
-  while (requests_.take(request, info)) {
-    if (!info.is_valid || !may_go_on(request)) continue;
+  for (int left = kMaxSamples; left > 0 && requests_.take(request, info); --left) {
+    if (!info.is_valid || !is_within_quota(info.source) || !may_go_on(request)) continue;
     const std::uint64_t before = judge_.session();
     publish(judge_.on_request(request, around(),
                               ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
@@ -138,6 +140,14 @@ void Intake::take_requests() {
       if (before != request.session) begin_session(request);
     }
   }
+}
+
+/// Who opens session after session is not answered each time; his blocks and others notice nothing.
+bool Intake::is_within_quota(std::uint64_t source) {
+  const std::uint64_t participant = senders_.participant_of(requests_.handle(), source);
+  if (quota_.take(participant, monotonic_ns()) == ParticipantQuota::Result::kAllowed) return true;
+  ports_.commands_dropped.fetch_add(1, std::memory_order_relaxed);
+  return false;
 }
 
 bool Intake::may_go_on(const dds::SessionRequest& request) {
@@ -164,7 +174,7 @@ bool Intake::is_line_end(std::uint64_t session, std::uint64_t block) {
 void Intake::take_batches() {
   dds::Batch batch;
   stream::Accepted accepted;
-  while (batches_.take(batch)) {
+  for (int left = kMaxSamples; left > 0 && batches_.take(batch); --left) {
     const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
     std::optional<dds::Credit> answer = judge_.on_batch(batch, around(), accepted);
     if (!push(accepted)) answer = judge_.on_queue_full(around());

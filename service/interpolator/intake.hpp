@@ -12,6 +12,8 @@
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
 #include "service/dds/writer.hpp"
+#include "service/dds/sources.hpp"
+#include "service/interpolator/participant_quota.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/stream/intake_judge.hpp"
 #include "service/stream/line_ends.hpp"
@@ -63,6 +65,7 @@ class Intake {
   void take_rejects();
   void free_idle_machine();
   void take_requests();
+  [[nodiscard]] bool is_within_quota(std::uint64_t source);
   /// False, and answered, where it goes on with another program than it says.
   [[nodiscard]] bool may_go_on(const dds::SessionRequest& request);
   void begin_session(const dds::SessionRequest& request);
@@ -92,6 +95,8 @@ class Intake {
   dds::Writer<dds::Credit> credits_;
   dds::Waitset waitset_;
 
+  dds::Senders senders_;
+  ParticipantQuota quota_{50, 200};  ///< of sessions that are opened or closed
   std::uint64_t pushed_ = 0;           ///< blocks put into the queue, ever
   QueueMark mark_;                     ///< newest that was shown
   std::uint64_t refused_session_ = 0;  ///< newest session that was refused while it held

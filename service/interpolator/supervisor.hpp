@@ -18,10 +18,10 @@
 #include "service/dds/sources.hpp"
 #include "service/dds/stalled_reader.hpp"
 #include "service/interpolator/command_listener.hpp"
-#include "service/interpolator/command_quota.hpp"
 #include "service/interpolator/drive_command_thread.hpp"
 #include "service/interpolator/enabling_listener.hpp"
 #include "service/interpolator/jog_intake.hpp"
+#include "service/interpolator/participant_quota.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/interpolator/reply_thread.hpp"
 #include "service/interpolator/status_clock.hpp"
@@ -141,7 +141,7 @@ class Supervisor {
   DriveCommandThread drives_;
   EnablingListener enabling_;
   dds::Senders senders_;
-  CommandQuota quota_;
+  ParticipantQuota quota_{200, 400};  ///< of commands
   JogIntake jog_intake_;
   dds::Waitset waitset_;
   std::function<void(bool)> tell_intake_;

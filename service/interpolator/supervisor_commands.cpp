@@ -83,10 +83,10 @@ void Supervisor::take_command(const Arrival& arrival) {
 }
 
 bool Supervisor::is_within_quota(std::uint64_t participant, std::uint64_t source) {
-  const CommandQuota::Result result = quota_.take(participant, monotonic_ns());
-  if (result == CommandQuota::Result::kAllowed) return true;
+  const ParticipantQuota::Result result = quota_.take(participant, monotonic_ns());
+  if (result == ParticipantQuota::Result::kAllowed) return true;
   ports_.commands_dropped.fetch_add(1, std::memory_order_relaxed);
-  if (result == CommandQuota::Result::kFirstBeyond) {
+  if (result == ParticipantQuota::Result::kFirstBeyond) {
     notice("commands beyond 200 a second are dropped, stops alone are obeyed: " +
                dds::describe_source(participant_, commands_.reader(), source),
            true);

@@ -226,15 +226,18 @@ class Listeners {
       if (is_stop(command.verb)) stopped = command.request;
       choose(kOvertakenByStop, !machine_that_obeys_.say(command));
       const bool has_hand = command.verb == Verb::kJog && machine_that_obeys_.is_jogging();
-      if (has_hand) hands_.begin(asked_[command.request % asked_.size()], command.request);
+      if (has_hand) {
+        hands_.begin(asked_[command.request % asked_.size()], kParticipant, command.request);
+      }
     }
     if (!machine_that_obeys_.is_jogging()) hands_.end();
   }
+  static constexpr std::uint64_t kParticipant = 4711;
   void take_jog(Supplies& in) {
     dds::Jog jog;
     in.read<meridian_wire_Jog>(jog);
     const auto order =
-        hands_.take(jog, machine_that_obeys_.epoch(), model_.joint_count, model_.tool_length_mm,
+        hands_.take(jog, kParticipant, machine_that_obeys_.epoch(), model_.joint_count, model_.tool_length_mm,
                     times_.superseded_for(jog.status_seen, now_ns_, 50'000'000));
     if (!choose(kHandOnAJoint, order.has_value())) return;
     require(order->sample == ++orders_, "orders out of turn");

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/interpolator/command_quota.hpp"
+#include "service/interpolator/participant_quota.hpp"
 
 #include <gtest/gtest.h>
 
 namespace meridian::interpolator {
 namespace {
 
-using Result = CommandQuota::Result;
+using Result = ParticipantQuota::Result;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 /// How many of `count` commands are allowed, sent over `span_ns` from `from_ns` on.
-int allowed(CommandQuota& quota, std::uint64_t participant, int count, std::int64_t from_ns,
+int allowed(ParticipantQuota& quota, std::uint64_t participant, int count, std::int64_t from_ns,
             std::int64_t span_ns) {
   int result = 0;
   for (int n = 0; n < count; ++n) {
@@ -20,26 +20,26 @@ int allowed(CommandQuota& quota, std::uint64_t participant, int count, std::int6
   return result;
 }
 
-TEST(CommandQuota, LetsAnOverrideKnobAtFiftyASecondPassForever) {
-  CommandQuota quota;
+TEST(ParticipantQuota, LetsAnOverrideKnobAtFiftyASecondPassForever) {
+  ParticipantQuota quota(200, 400);
   EXPECT_EQ(allowed(quota, 1, 50 * 600, kSecond_ns, 600 * kSecond_ns), 50 * 600);
 }
 
-TEST(CommandQuota, HoldsAFloodToTwoHundredASecondBehindTheFirstFourHundred) {
-  CommandQuota quota;
+TEST(ParticipantQuota, HoldsAFloodToTwoHundredASecondBehindTheFirstFourHundred) {
+  ParticipantQuota quota(200, 400);
   const int passed = allowed(quota, 1, 100'000, kSecond_ns, 10 * kSecond_ns);
   EXPECT_GE(passed, 400 + 9 * 200);
   EXPECT_LE(passed, 400 + 10 * 200);
 }
 
-TEST(CommandQuota, OfOneParticipantIsNotThatOfAnother) {
-  CommandQuota quota;
+TEST(ParticipantQuota, OfOneParticipantIsNotThatOfAnother) {
+  ParticipantQuota quota(200, 400);
   (void)allowed(quota, 1, 100'000, kSecond_ns, kSecond_ns);
   EXPECT_EQ(allowed(quota, 2, 400, 2 * kSecond_ns, 1000), 400);
 }
 
-TEST(CommandQuota, OfManyParticipantsForgetsTheOneThatWasSilentForLongest) {
-  CommandQuota quota;
+TEST(ParticipantQuota, OfManyParticipantsForgetsTheOneThatWasSilentForLongest) {
+  ParticipantQuota quota(200, 400);
   (void)allowed(quota, 1, 1000, kSecond_ns, 1000);
   for (std::uint64_t other = 2; other < 200; ++other) {
     EXPECT_EQ(quota.take(other, 2 * kSecond_ns + static_cast<std::int64_t>(other)),
@@ -48,8 +48,8 @@ TEST(CommandQuota, OfManyParticipantsForgetsTheOneThatWasSilentForLongest) {
   EXPECT_EQ(quota.take(199, 3 * kSecond_ns), Result::kAllowed);
 }
 
-TEST(CommandQuota, ReportsAFloodOnceThoughSomeOfItPasses) {
-  CommandQuota quota;
+TEST(ParticipantQuota, ReportsAFloodOnceThoughSomeOfItPasses) {
+  ParticipantQuota quota(200, 400);
   int reports = 0;
   for (int n = 0; n < 50'000; ++n) {
     const auto result = quota.take(1, kSecond_ns + n * kSecond_ns / 10'000);
@@ -64,8 +64,8 @@ TEST(CommandQuota, ReportsAFloodOnceThoughSomeOfItPasses) {
   EXPECT_EQ(reports, 1) << "the next flood is reported again";
 }
 
-TEST(CommandQuota, OfSendersThatAreGoneIsOneForAll) {
-  CommandQuota quota;
+TEST(ParticipantQuota, OfSendersThatAreGoneIsOneForAll) {
+  ParticipantQuota quota(200, 400);
   EXPECT_EQ(allowed(quota, 0, 1000, kSecond_ns, 1000), 400);
 }
 
