@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integration/fault_case.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -30,6 +33,17 @@ constexpr const char* kToolFile = "/deploy/tools.toml";
 
 FaultCase::FaultCase(const LiveFault& fault, const Phase& phase)
     : fault_(fault), phase_(phase), part_(phase) {}
+
+FaultCase::~FaultCase() {
+  if (attacker_) attacker_->send_signal(SIGKILL);
+  attacker_.reset();
+  plant_.reset();
+  if (unread_log_ >= 0) ::close(unread_log_);
+}
+
+bool FaultCase::ends_service() const noexcept {
+  return fault_.how == How::kServiceDies || fault_.how == How::kRecoveryDies;
+}
 
 bool FaultCase::is_piped() const noexcept {
   return fault_.is_of_station() || phase_.where == Where::kStarved;
@@ -107,6 +121,13 @@ void FaultCase::set_up() {
   const std::string tools = std::string(MERIDIAN_SOURCE_DIR) + kToolFile;
   service_words_ = {"--service",
                     service_file(*plant_, "tools = \"" + tools + "\"\naction_timeout_s = 4\n")};
+  if (fault_.how == How::kBlockedLog) {
+    const std::string log = plant_->folder() / "service.log";
+    ASSERT_EQ(::mkfifo(log.c_str(), 0600), 0);
+    unread_log_ = ::open(log.c_str(), O_RDWR | O_CLOEXEC);
+    constexpr int kSmallest = 4096;
+    ASSERT_GE(::fcntl(unread_log_, F_SETPIPE_SZ, kSmallest), 0);
+  }
   plant_->start_service(service_words_);
   plant_->start_drives({"--action-delay", "1"}, &console_);
   ASSERT_TRUE(plant_->enable()) << story();
@@ -219,7 +240,7 @@ bool FaultCase::waits_for_fault(milliseconds patience) {
 
 std::string FaultCase::wait_for_outcome() {
   const std::string letters = expected(fault_, phase_);
-  if (fault_.how == How::kServiceDies) return "X";
+  if (ends_service()) return "X";
   if (fault_.is_of_station()) {
     if (phase_.is_held()) resume_held();
     // A smooth plan waits for more behind what it holds back (docs/motion.md, section 9).

@@ -20,6 +20,9 @@ namespace meridian::test {
 class FaultCase {
  public:
   FaultCase(const LiveFault& fault, const Phase& phase);
+  ~FaultCase();
+  FaultCase(const FaultCase&) = delete;
+  FaultCase& operator=(const FaultCase&) = delete;
 
   /// Runs all of it. Failures are those of GoogleTest.
   void run();
@@ -36,6 +39,10 @@ class FaultCase {
   void provoke();
   void send_rubbish();
   void kill_service();
+  void start_attacker();
+  void restart_killed_service();
+  void break_off_recovery(std::uint32_t line);
+  void enable_again();
   void stop_station();
 
   [[nodiscard]] std::string wait_for_outcome();
@@ -53,6 +60,7 @@ class FaultCase {
   [[nodiscard]] bool has_ended() { return station_ && station_->wait(milliseconds(0)).has_value(); }
   [[nodiscard]] std::uint32_t fed_line() const;
   [[nodiscard]] bool is_piped() const noexcept;
+  [[nodiscard]] bool ends_service() const noexcept;
   [[nodiscard]] std::string story();
   void expect_provoked();
   void expect_joint();
@@ -69,7 +77,8 @@ class FaultCase {
   std::unique_ptr<dds::Reader<dds::Action>> actions_;
   InputPipe console_;
   std::unique_ptr<InputPipe> source_;
-  std::unique_ptr<Process> station_;
+  std::unique_ptr<Process> station_, attacker_;
+  int unread_log_ = -1;  ///< the service's log as a pipe
   std::string part_file_, letter_;
   std::vector<std::string> service_words_;
   int stations_ = 0;

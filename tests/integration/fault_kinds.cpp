@@ -29,7 +29,7 @@ constexpr std::array<Phase, 12> kPhases{{
 constexpr const char* kAllBlocked = "blocked:b3\nblocked:b2\nblocked:b4\nblocked:theta1\n";
 
 // The service bridges 100 ms and waits 300 ms for feedback (service_file() of live_run.hpp).
-const std::array<LiveFault, 29> kFaults{{
+const std::array<LiveFault, 33> kFaults{{
     {"station killed", How::kStationDies, "", "S", "S"},
     {"station stopped", How::kStationStops, "", "S", "S"},
     {"service killed", How::kServiceDies, "", "X", "X"},
@@ -55,6 +55,12 @@ const std::array<LiveFault, 29> kFaults{{
     {"`doubled`", How::kConsole, "doubled", "·", "·"},
     {"`swapped`", How::kConsole, "swapped", "·", "·"},
     {"a stranger's rubbish", How::kRubbish, "", "·", "·"},
+    {"stuck participant", How::kStuck, "stick --topics all --max-samples 1 --lease 600", "·", "·"},
+    {"forged sender", How::kAttacker,
+     "flood --topics drive_command,setpoint --shape forged --rate 1000", "·", "·"},
+    {"log blocked", How::kBlockedLog, "flood --topics command --shape foreign --rate 500", "·",
+     "·"},
+    {"recovery killed twice", How::kRecoveryDies, "", "X", "X"},
     {"wire: 5 % lost", How::kWire, "", "·", "·", 0, {.lost = 5}},
     {"wire: 5 ms late", How::kWire, "", "·", "·", 0, {.delay_ms = 5, .jitter_ms = 1}},
     {"wire: 5 % twice", How::kWire, "", "·", "·", 0, {.twice = 5}},

@@ -20,6 +20,10 @@ struct LiveFault {
     kDrivesDie,     ///< SIGKILL
     kStall,         ///< SIGSTOP of the service for `milliseconds`
     kRubbish,       ///< somebody sends what nobody asked for on every topic that moves machines
+    kAttacker,      ///< `line` is the command line of tests/attack's attacker
+    kStuck,         ///< the same, and it is stopped (SIGSTOP) as soon as it is there
+    kBlockedLog,    ///< the same, and the service's log is a pipe that nobody reads
+    kRecoveryDies,  ///< as kServiceDies, and the next services too, as soon as they move
     kWire           ///< between hosts
   };
   const char* name;

@@ -30,7 +30,7 @@ void PrintTo(const Pair& pair, std::ostream* out) {
 }
 
 /// The slice: each phase, and each way in which faults are provoked.
-constexpr std::array<std::pair<const char*, const char*>, 12> kSlice{{
+constexpr std::array<std::pair<const char*, const char*>, 16> kSlice{{
     {"drives killed", "Ready"},
     {"service stopped, 700 ms", "Approaching"},
     {"station stopped", "in a cut, smooth"},
@@ -43,6 +43,10 @@ constexpr std::array<std::pair<const char*, const char*>, 12> kSlice{{
     {"`emergency`", "at a tool change"},
     {"`stale`, 20 ms", "Starved"},
     {"station killed", "in the last block"},
+    {"stuck participant", "in a cut, exact stop"},
+    {"forged sender", "Ready"},
+    {"log blocked", "in a cut, smooth"},
+    {"recovery killed twice", "in a cut, smooth"},
 }};
 
 [[nodiscard]] bool is_in_slice(const Pair& pair) {

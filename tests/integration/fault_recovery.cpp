@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 #include <thread>
+#include <vector>
 
 #include "integration/fault_case.hpp"
 #include "meridian/kinematics/limited.hpp"
@@ -51,7 +53,12 @@ void FaultCase::provoke() {
     case How::kStationStops:
       return station_->send_signal(SIGSTOP);
     case How::kServiceDies:
+    case How::kRecoveryDies:
       return kill_service();
+    case How::kAttacker:
+    case How::kStuck:
+    case How::kBlockedLog:
+      return start_attacker();
     case How::kDrivesDie:
       plant_->drives().send_signal(SIGKILL);
       ASSERT_TRUE(plant_->drives().wait(milliseconds(2000)));
@@ -174,10 +181,46 @@ void FaultCase::kill_service() {
     }
   }
   write_recording(sent, config::load_machine(plant_->machine()), first_.recording);
+  restart_killed_service();
+}
+
+void FaultCase::restart_killed_service() {
+  const std::uint64_t last = plant_->status().service_id;
   plant_->start_service(service_words_);
-  ASSERT_TRUE(eventually([&] { return plant_->status().service_id != last.service_id; }, kLong))
-      << story();
+  ASSERT_TRUE(eventually([&] { return plant_->status().service_id != last; }, kLong)) << story();
   EXPECT_EQ(plant_->status().state, State::kOff) << story();
+}
+
+/// The service goes on at that line, and is killed as soon as it moves: the next one names the same
+/// line, for nothing was cut.
+void FaultCase::break_off_recovery(std::uint32_t line) {
+  ASSERT_NO_FATAL_FAILURE(start_program(line));
+  ASSERT_TRUE(eventually(
+      [this] { return (witness_->newest().flags & kSetpointMoving) != 0 || has_ended(); }, kLong))
+      << story();
+  station_->send_signal(SIGKILL);
+  plant_->service().send_signal(SIGKILL);
+  ASSERT_TRUE(plant_->service().wait(milliseconds(2000)));
+  ASSERT_NO_FATAL_FAILURE(restart_killed_service());
+  EXPECT_EQ(told_by_journal(), line) << story();
+  ASSERT_NO_FATAL_FAILURE(enable_again());
+}
+
+void FaultCase::start_attacker() {
+  std::vector<std::string> words{"attacker"};
+  std::istringstream line(fault_.line);
+  for (std::string word; line >> word;) words.push_back(word);
+  for (const std::string& word :
+       {std::string("--domain"), plant_->domain(), std::string("--for"), std::string("120")}) {
+    words.push_back(word);
+  }
+  attacker_ = std::make_unique<Process>(words, plant_->folder() / "attacker.log");
+  ASSERT_TRUE(eventually(
+      [this] { return attacker_->said().find("attacking: ") != std::string::npos; }, kLong))
+      << attacker_->said();
+  if (fault_.how != How::kStuck) return;
+  std::this_thread::sleep_for(milliseconds(300));  // until its readers are known
+  attacker_->send_signal(SIGSTOP);
 }
 
 /// The line to go on with, as the new service told it when it began.
@@ -196,6 +239,17 @@ std::uint32_t FaultCase::told_by_journal() {
   return is_done ? line + 1 : line;  // one block a line
 }
 
+void FaultCase::enable_again() {
+  ASSERT_TRUE(eventually(
+      [this] {
+        const auto reset = plant_->say(Verb::kReset);
+        const auto enable = plant_->say(Verb::kEnable);
+        return reset && enable && plant_->wait_for(State::kReady, milliseconds(500));
+      },
+      kLong))
+      << story();
+}
+
 /// Behind a Fault or in a new service: reset, enable, and the rest of the program.
 void FaultCase::recover_and_go_on() {
   const dds::Status stopped = plant_->status();
@@ -205,14 +259,7 @@ void FaultCase::recover_and_go_on() {
       has_program_ && !is_new_service && has_ended() && station_->wait(milliseconds(0)) == 0;
   const std::uint32_t line = is_new_service ? told_by_journal() : stopped.alarm_line;
   mend();
-  ASSERT_TRUE(eventually(
-      [this] {
-        const auto reset = plant_->say(Verb::kReset);
-        const auto enable = plant_->say(Verb::kEnable);
-        return reset && enable && plant_->wait_for(State::kReady, milliseconds(500));
-      },
-      kLong))
-      << story();
+  ASSERT_NO_FATAL_FAILURE(enable_again());
   EXPECT_TRUE(eventually([this] { return plant_->status().alarm == Alarm::kNone; }))
       << plant_->standing();
   if (!is_new_service) {
@@ -229,6 +276,10 @@ void FaultCase::recover_and_go_on() {
   }
   const auto is_at = [this](std::uint32_t n) { return n <= part_.lines.size() - 1; };
   if (!is_at(line)) return;  // all of it is cut
+  if (fault_.how == How::kRecoveryDies && line > 0) {
+    constexpr int kTimes = 2;
+    for (int n = 0; n < kTimes; ++n) ASSERT_NO_FATAL_FAILURE(break_off_recovery(line));
+  }
   second_ = PartCut{.recording = plant_->recording(),
                     .from_line = line,
                     // From Ready on: where drives are enabled again is no motion of a program.

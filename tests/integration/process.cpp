@@ -140,6 +140,7 @@ std::optional<int> Process::wait(milliseconds patience) {
 }
 
 std::string Process::said() const {
+  if (!std::filesystem::is_regular_file(log_)) return {};  // a pipe that nobody is to read
   std::ostringstream all;
   all << std::ifstream(log_).rdbuf();
   return all.str();
