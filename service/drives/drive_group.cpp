@@ -58,9 +58,16 @@ void DriveGroup::see_master(bool is_there) noexcept { pin_.work(is_there, is_off
 void DriveGroup::take(const dds::MachineInfo& machine, std::uint64_t sender) noexcept {
   if (!machine.is_serving || sender == 0) return;
   const Bridge bridge{{sender, machine.service_id}, static_cast<int>(machine.bridge_cycles)};
-  if (pin_.state() == MasterPin::State::kFree) {
+  // A service says it when it comes, which may be before the last master is gone.
+  const auto known = std::find_if(bridges_.begin(), bridges_.end(), [sender](const Bridge& one) {
+    return one.by.participant == sender;
+  });
+  if (known != bridges_.end()) {
+    *known = bridge;
+  } else {
     bridges_[next_bridge_++ % bridges_.size()] = bridge;
-  } else if (bridge.by == pin_.master()) {
+  }
+  if (pin_.state() != MasterPin::State::kFree && bridge.by == pin_.master()) {
     bridge_cycles_ = bridge.cycles;
   }
 }

@@ -79,7 +79,7 @@ class DriveGroup {
     int cycles = 0;
   };
   int own_bridge_cycles_;            ///< of the machine file
-  std::array<Bridge, 8> bridges_{};  ///< of the newest services while there is no master, in a ring
+  std::array<Bridge, 8> bridges_{};  ///< of the newest services, one a participant, in a ring
   std::size_t next_bridge_ = 0;
   MasterPin pin_;
   DropCounts dropped_;

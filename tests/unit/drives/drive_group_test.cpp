@@ -343,6 +343,21 @@ TEST_F(Group, BridgesAsItsMasterSaysNotAsAnyoneWhoQuotesTheMastersId) {
   EXPECT_NEAR(periods, 20, 3);
 }
 
+TEST_F(Group, BridgesAsItsNextMasterSaidWhileItStillObeyedTheLast) {
+  constexpr std::uint64_t kLast = kMaster + 1, kFlood = kMaster + 2;
+  command(0x06, 6, kLast);
+  group_.take(service(7, 20, true), kMaster);
+  for (std::uint64_t id = 100; id < 200; ++id) group_.take(service(id, 1, true), kFlood);
+  group_.see_master(false);
+  enable();
+  int periods = 0;
+  for (send(0); group_.drive(0).state() == DriveState::kOperationEnabled; ++periods) {
+    group_.work(1);
+    if (periods > 100) break;
+  }
+  EXPECT_NEAR(periods, 20, 3);
+}
+
 TEST_F(Group, InjectsFaultsAfterTheTimeEnabled) {
   group_.inject({Injection::Kind::kFault, 0.005, 3});
   enable();
