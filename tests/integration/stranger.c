@@ -130,9 +130,11 @@ static void attack(const char* how, uint64_t service, double seconds) {
   memcpy(setpoint.position, feedback.position, sizeof setpoint.position);
   for (double t = 0; t < seconds; t += 0.001) {
     const unsigned n = (unsigned)(t * 1000);
-    // Shutdown, switch on, enable operation; who forges them begins anew again and again.
+    // Shutdown, switch on, enable operation, each for as long as finding one another may take on a
+    // busy host; who forges them begins anew again and again.
     const unsigned step = is_forged ? n % 15 : n;
-    if (n % 5 == 0) command_drives(commands, service, step < 5 ? 0x06 : step < 10 ? 0x07 : 0x0F);
+    const unsigned ready = is_forged ? 5 : 200, on = is_forged ? 10 : 300;
+    if (n % 5 == 0) command_drives(commands, service, step < ready ? 0x06 : step < on ? 0x07 : 0x0F);
     if (t >= begins && is_jump) setpoint.position[0] = from + 20;
     if (t >= begins && !is_jump && !is_spoilt && !is_hold) {
       setpoint.position[0] += 3.5;
