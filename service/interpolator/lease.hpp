@@ -58,7 +58,7 @@ class Lease {
   dds::Reader<dds::MachineInfo> reader_;
   dds::Writer<dds::MachineInfo> writer_;
   LeaseJudge judge_;
-  std::vector<Other> others_;                 ///< at most LeaseJudge::kMostOthers
+  std::vector<Other> others_;                 ///< at most LeaseJudge::kMaxOthers
   std::array<std::uint64_t, 16> reported_{};  ///< writers, in a ring
   std::size_t next_reported_ = 0;
 };

@@ -13,7 +13,7 @@ bool LeaseJudge::hear(const Word& word, std::int64_t now_ns) {
     return known.service_id == word.service_id;
   });
   if (other == others_.end()) {
-    if (others_.size() >= kMostOthers) return false;
+    if (others_.size() >= kMaxOthers) return false;
     other = others_.insert(others_.end(),
                            Other{.service_id = word.service_id, .beside_since_ns = now_ns});
   }

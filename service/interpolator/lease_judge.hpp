@@ -20,7 +20,7 @@ namespace meridian::interpolator {
 ///
 /// The drives decide first: a service that they obey never leaves, whatever others claim, and gives
 /// no way; one that hears that they obey another service, which serves, gives way to that one. What
-/// nobody can have served (kLongest_ns) is not heard, and no more than kMostOthers are kept.
+/// nobody can have served (kLongest_ns) is not heard, and no more than kMaxOthers are kept.
 /// Proof: tests/unit/interpolator/lease_judge_test.cpp.
 class LeaseJudge {
  public:
@@ -37,7 +37,7 @@ class LeaseJudge {
   static constexpr std::int64_t kPatience_ns = 4'000'000'000;  ///< for words that tell
   static constexpr std::int64_t kStepBack_ns = 1'500'000'000;
   static constexpr std::int64_t kLongest_ns = 315'360'000'000'000'000;  ///< 10 years
-  static constexpr std::size_t kMostOthers = 16;
+  static constexpr std::size_t kMaxOthers = 16;
 
   explicit LeaseJudge(std::uint64_t service_id) noexcept : service_id_(service_id) {}
 

@@ -352,7 +352,7 @@ TEST(LeaseJudge, HearsNothingThatNobodyCanHaveServedNorMoreOthersThanThereAreSer
   for (std::uint64_t id = 1; id < 1000; ++id) {
     heard += judge.hear({.service_id = id, .is_serving = false}, kS) ? 1U : 0U;
   }
-  EXPECT_EQ(heard, LeaseJudge::kMostOthers);
+  EXPECT_EQ(heard, LeaseJudge::kMaxOthers);
 }
 
 TEST(LeaseJudge, GivesNoWayToWhoServesNoMore) {
