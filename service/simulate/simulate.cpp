@@ -6,12 +6,14 @@
 #include <memory>
 
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/planner/time_law.hpp"
 #include "meridian/rt/joint_masks.hpp"
 #include "meridian/rt/state_table.hpp"
 #include "meridian/rt/step.hpp"
 #include "service/certify/plan_tap.hpp"
 #include "service/simulate/block_feed.hpp"
 #include "service/simulate/limit_meter.hpp"
+#include "service/simulate/rest_meter.hpp"
 
 namespace meridian::simulate {
 namespace {
@@ -190,9 +192,29 @@ class Run {
     const TimePiece* piece = motion_.piece();
     const double feed = piece != nullptr ? piece->feed_factor * piece->feed_mm_per_s : 0;
     meter_.add(out_.record, length, feed, report.shares);
+    if (is_exact_stop()) count_rests(report);
     if (options_.explainer != nullptr && !is_approach) {
       options_.explainer->add_cycle(out_.record, piece, path, state_.piece_time, length);
     }
+  }
+
+  [[nodiscard]] bool is_exact_stop() const {
+    return options_.settings.transition.value_or(model_.transition) == Transition::kExactStop;
+  }
+
+  /// In plan time: what the operator holds or slows is no cost of exact stop.
+  void count_rests(SimulateReport& report) {
+    const TimePiece* piece = motion_.piece();
+    const PathPiece* path = motion_.path();
+    const bool is_cut = piece != nullptr && piece->kind == TimeKind::kMove && path != nullptr &&
+                        path->motion == MotionKind::kCut;
+    if (!is_cut || (piece->is_from_rest && piece->window != window_)) rests_.rest();
+    if (piece != nullptr) window_ = piece->window;
+    if (is_cut) {
+      const double speed = state_at(*piece, std::min(state_.piece_time, piece->duration)).ds;
+      rests_.move(speed, out_.record.rate * report.cycle_s);
+    }
+    report.vertex_stops_s = rests_.lost_s();
   }
 
   void keep_event(const Event& event, SimulateReport& report) {
@@ -275,6 +297,8 @@ class Run {
   certify::PlanTap tap_;
   BlockFeed feed_;
   LimitMeter meter_;
+  RestMeter rests_;
+  std::uint32_t window_ = 0;  ///< that the cycle was in
   CycleState state_;
   CycleInputs in_;
   StepOutput out_;

@@ -122,6 +122,10 @@ std::string to_text(const SimulateReport& report, const MachineModel& model) {
   }
   append(text, "time       %.3f s, after an approach of %.3f s; %.3f s of it waiting\n",
          report.program_s, report.approach_s, report.waiting_s);
+  if (report.vertex_stops_s > 0) {
+    append(text, "           exact stop: at least %.3f s of %.3f s are stops at vertices\n",
+           report.vertex_stops_s, report.program_s);
+  }
   append(text, "           the cuts alone at the programmed feed: %.3f s\n", report.at_feed_s);
   if (report.shares.cycles > 0) append_shares(text, report.shares, model);
   if (report.ease_count > 0) append_eases(text, report);

@@ -48,7 +48,9 @@ struct SimulateReport {
   double approach_s = 0;  ///< from the start to the end of the approach
   double program_s = 0;   ///< from there to the end
   double waiting_s = 0;   ///< of it: at rest at dwells, actions, stops, holds
-  double at_feed_s = 0;   ///< what the cuts alone would take at the programmed feed
+  /// Of it, in exact stop: what setting off from rests and coming to them costs the cuts.
+  double vertex_stops_s = 0;
+  double at_feed_s = 0;  ///< what the cuts alone would take at the programmed feed
   double cut_length_mm = 0, rapid_length_mm = 0;
   std::uint64_t blocks = 0, motion_blocks = 0, blocks_done = 0;
   std::uint64_t feeds_limited = 0;  ///< blocks above the machine's highest feed

@@ -114,6 +114,23 @@ TEST_F(Simulate, JoinsBlocksAsASessionAsksInsteadOfAsTheMachineSays) {
   EXPECT_GT(run_simulation(kPart, model, simulation).records.size(), asked.records.size());
 }
 
+TEST_F(Simulate, SaysWhatTheStopsAtVerticesCostInExactStopAlone) {
+  // Four blocks of 20 mm in a row: their rests cost more than those of one block of 80 mm.
+  const std::string head = "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n";
+  std::string text = head;
+  for (int n = 1; n <= 4; ++n) text += "GOTO / " + std::to_string(80 - 20 * n) + ", -40, 20\n";
+  const SimulateReport four = run_simulation(text + "FINI\n", model).report;
+  const SimulateReport one = run_simulation(head + "GOTO / 0, -40, 20\nFINI\n", model).report;
+  EXPECT_NEAR(four.vertex_stops_s, 4 * one.vertex_stops_s, 0.01);
+  // The feed of 20 mm/s is reached in every block: what the rests cost is what they add.
+  EXPECT_NEAR(four.program_s - one.program_s, 3 * one.vertex_stops_s, 0.02);
+  EXPECT_NE(to_text(four, model).find("are stops at vertices"), std::string::npos);
+  model.transition = Transition::kSmooth;
+  const SimulateReport smooth = run_simulation(text + "FINI\n", model).report;
+  EXPECT_EQ(smooth.vertex_stops_s, 0);
+  EXPECT_EQ(to_text(smooth, model).find("are stops at vertices"), std::string::npos);
+}
+
 /// Moves, turns of the axis alone and both, each with a time of its own, that go to and fro.
 [[nodiscard]] std::string in_inverse_time(std::uint32_t seed) {
   std::mt19937 engine(seed);
