@@ -140,7 +140,7 @@ namespace {
 
 void read_tolerances(Section section, MachineModel& model) {
   model.transition =
-      static_cast<Transition>(section.choice_or("transition", 0, {"exact_stop", "smooth"}));
+      static_cast<Transition>(section.choice_or("transition", 1, {"exact_stop", "smooth"}));
   const bool is_smooth = model.transition == Transition::kSmooth;
   model.tolerances.tip_mm =
       section.number("tip_mm", is_smooth ? kTipTolerance_mm : kRestTipTolerance_mm);

@@ -111,6 +111,7 @@ TEST_F(OutsideChecker, KeepsItsPlaceWhereALineTurnsBackFromAnArc) {
 TEST_F(OutsideChecker, PassesTheJointsOfAMachineOnAStage) {
   MachineModel model = config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml");
   model.cycle_ns = kCycle_ns;
+  model.transition = Transition::kExactStop;
   const auto part = scratch_ / "part.apt";
   std::ofstream(part) << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 20, -10, 10, 0, 0, 1\n"
                          "GOTO / 32, 5, 12, 0, 0.28, 0.96\nGOTO / 15, 18, 10, 0.28, 0, 0.96\n"

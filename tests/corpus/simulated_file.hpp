@@ -26,12 +26,13 @@ namespace meridian::test {
 inline constexpr double kTipTolerance_mm = 1e-3;  // what the rest-to-rest planner owes
 inline constexpr double kAxisTolerance_deg = 1e-3;
 
-/// The machine of deploy/machines/lai.toml with the workpiece at `frame` and its own cycle time.
+/// The machine of deploy/machines/lai.toml with the workpiece at `frame` and its own cycle time, in exact stop.
 [[nodiscard]] inline MachineModel lai_at(const char* frame, std::int64_t cycle_ns) {
   MachineModel model =
       config::load_machine(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/lai.toml");
   config::place_workpiece(model, config::parse_frame(frame));
   model.cycle_ns = cycle_ns;
+  model.transition = Transition::kExactStop;
   return model;
 }
 

@@ -63,7 +63,8 @@ Plant::Plant(std::string machine, std::shared_ptr<support::PrivateDomain> domain
       credits_(participant_) {
   std::filesystem::remove_all(folder_);
   std::filesystem::create_directories(folder_);
-  change_machine({{"approach_feed_mm_per_min = [0-9]+", "approach_feed_mm_per_min = 12000"}});
+  change_machine({{"approach_feed_mm_per_min = [0-9]+", "approach_feed_mm_per_min = 12000"},
+                  {"transition = \"smooth\"", "transition = \"exact_stop\""}});
 }
 
 Plant::~Plant() {

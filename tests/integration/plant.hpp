@@ -22,7 +22,8 @@ namespace meridian::test {
 /// Service and drives as processes on a private domain, with the test as operator and station.
 class Plant {
  public:
-  /// `machine`: one of deploy/machines, but for its approach, which takes no time from a test.
+  /// `machine`: one of deploy/machines, but for its approach, which takes no time from a test,
+  /// and for exact stop, so that the tests know where their programs rest.
   explicit Plant(std::string machine = "lai");
   /// In the DDS domain of `other`.
   Plant(std::string machine, const Plant& other);

@@ -109,7 +109,7 @@ TEST_F(RecordingCommands, SimulateLeavesThePartBeforeTheSpindleWhereItBeginsInTh
 
 TEST_F(RecordingCommands, SimulateThenCheckIsFine) {
   const CommandOutput simulated =
-      run_tool("simulate " + part() + kMachine + "--record " + recording());
+      run_tool("simulate " + part() + kMachine + "--transition exact_stop --record " + recording());
   EXPECT_EQ(simulated.exit_code, 0) << simulated.output;
   EXPECT_NE(simulated.output.find("DONE"), std::string::npos) << simulated.output;
   const CommandOutput checked = run_tool("check " + recording() + " " + part() + kMachine +
@@ -187,6 +187,8 @@ TEST_F(RecordingCommands, ASmoothSimulationNeedsTolerancesThatAreSmoothedBy) {
   std::string machine = meridian::test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml");
   const std::string tip = "tip_mm = 0.01\n";
   machine.replace(machine.find(tip), tip.size(), "tip_mm = 0.0005\n");
+  const std::string smooth = "transition = \"smooth\"";
+  machine.replace(machine.find(smooth), smooth.size(), "transition = \"exact_stop\"");
   const TextFile file(machine);
   const std::string line = "simulate " + part() + " --machine " + file.path().string();
   EXPECT_EQ(run_tool(line).exit_code, 0);

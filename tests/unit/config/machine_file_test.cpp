@@ -7,6 +7,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/config/config_error.hpp"
 #include "service/config/homing_file.hpp"
 #include "support/machines.hpp"
 #include "support/text_file.hpp"
@@ -47,6 +48,17 @@ TEST(MachineFile, GivesJointsInMachineOrderAndHouseUnits) {
   EXPECT_DOUBLE_EQ(model.joints[4].limits.velocity, std::numbers::pi / 3);
   EXPECT_DOUBLE_EQ(model.joints[4].limits.fault_jerk, units::rad_from_deg(48000));
   EXPECT_DOUBLE_EQ(model.joints[3].limits.following_error, units::rad_from_deg(2));
+}
+
+TEST(MachineFile, RunsOnThroughBlocksWhereItDoesNotAskForExactStop) {
+  std::string text = test::read_text(kMachines / "lai.toml");
+  const auto begin = text.find("transition = ");
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_EQ(parse_machine(text, "lai.toml").transition, Transition::kSmooth);
+  text.erase(begin, text.find('\n', begin) + 1 - begin);
+  EXPECT_EQ(parse_machine(text, "lai.toml").transition, Transition::kSmooth);
+  text.insert(begin, "transition = \"exact_stop\"\n");
+  EXPECT_EQ(parse_machine(text, "lai.toml").transition, Transition::kExactStop);
 }
 
 TEST(MachineFile, OfTheBenchEqualsTheMachineOfTheTests) {
@@ -125,6 +137,9 @@ TEST(MachineFile, TakesTolerancesFinerThanSmoothRunsHaveWhereItsCutsEndAtRest) {
   const std::string_view tip = "tip_mm = 0.01\n", axis = "axis_deg = 0.1\n";
   text.replace(text.find(tip), tip.size(), "tip_mm = 0.0005\n");
   text.replace(text.find(axis), axis.size(), "axis_deg = 0.001\n");
+  EXPECT_THROW((void)parse_machine(text, "fine"), ConfigError);
+  const std::string_view smooth = "transition = \"smooth\"";
+  text.replace(text.find(smooth), smooth.size(), "transition = \"exact_stop\"");
   const MachineModel model = parse_machine(text, "fine");
   EXPECT_EQ(model.tolerances.tip_mm, 0.0005);
   EXPECT_DOUBLE_EQ(model.tolerances.axis_rad, units::rad_from_deg(0.001));
