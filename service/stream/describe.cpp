@@ -75,7 +75,8 @@ std::string reason(const BlockReject& reject, const MachineModel& model) {
     case RejectCode::kTooComplex:
       return "the block is too long or too curved for one plan; split it";
     case RejectCode::kDiscontinuous:
-      return "its joints would jump; report this as a bug";
+      return "its joints would jump or creep: it leads through a singularity or within a hair's "
+             "breadth of one; move the workpiece, or pass farther off";
   }
   return "unknown reason";
 }

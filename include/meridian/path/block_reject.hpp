@@ -25,7 +25,7 @@ enum class RejectCode : std::uint8_t {
   kApproach,       ///< no way from where the machine stands to the block
   kAxisReversal,   ///< the axis turns by half a turn: no great circle is meant
   kTooComplex,     ///< the block needs more pieces than a plan holds
-  kDiscontinuous   ///< guard of the planner: its joints would have jumped; `value`: the jump
+  kDiscontinuous   ///< at a singularity: its joints would jump, or creep; `value`: the jump
 };
 
 /// The verdict on one block. Units: mm, rad. Trivially copyable: crosses rings.

@@ -25,7 +25,7 @@ struct JointCell {
   LimitedVector d1{}, d2{}, d3{};
 };
 
-/// Why joints cannot follow a path.
+/// Why joints cannot follow a path. kJump: or only next to standstill.
 struct PathFault {
   enum class Kind { kNone, kTravel, kUnreachable, kTooLong, kBranch, kJump } kind = Kind::kNone;
   int joint = -1;  ///< place in limited.hpp; -1: none

@@ -28,6 +28,9 @@ constexpr int kLeastAzimuthCells = 4;  // between two nodes
 /// Rounding of the free joint 8 µrad from the pole is 1e-10, of slides that make up for it so much
 /// of their way to its axis.
 constexpr double kLargestJump_rad = 1e-9, kLargestJump_mm = 1e-7;
+/// A motion creeps that takes longer than this, and so many times longer than its length takes at
+/// the programmed feed, and than its joints take from end to end at their velocity.
+constexpr double kCreep_s = 10, kCreepOfFeed = 1000, kCreepOfJoints = 10;
 
 int cells_for(double amount) noexcept {
   return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMostCells));
@@ -36,6 +39,20 @@ int cells_for(double amount) noexcept {
 /// Distance to the pole at `from_nearest` along the great circle.
 double distance_at(double offset, double from_nearest) noexcept {
   return std::hypot(offset, std::sin(from_nearest));
+}
+
+/// Beside a singularity that the leg is not cut for: no joint has far to go, nor has the tool, and
+/// the rate between them bounds the motion to next to nothing.
+bool creeps(const MachineModel& model, const PathPiece& piece, double duration,
+            double feed_mm_per_s) noexcept {
+  if (!(duration > kCreep_s) || !(feed_mm_per_s > 0)) return false;
+  if (duration < kCreepOfFeed * piece.length / feed_mm_per_s) return false;
+  double joints_s = 0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    const double by = std::abs(piece.joints_end[i] - piece.joints_begin[i]);
+    joints_s = std::max(joints_s, by / model.joints[i].limits.velocity);
+  }
+  return duration > kCreepOfJoints * joints_s;
 }
 
 bool is_solved(const PathPiece& path) noexcept {
@@ -270,6 +287,9 @@ PathFault LegPlanner::stage_run(const Leg& leg, const Node& from, const Node& to
   }
   piece.joints_begin = begin.q;
   piece.joints_end = joints_at(model_, piece, piece.length, end.q).q;
+  if (creeps(model_, piece, choice.profile.duration(), find_tip_feed(leg))) {
+    return {PathFault::Kind::kJump, -1, 0};
+  }
   piece.index = out.first_index + static_cast<std::uint64_t>(out.path_count);
   if (!out.add(piece) || !stage_times(leg, piece, choice, cells, cells.front().begin, out)) {
     return {PathFault::Kind::kTooLong, -1, 0};

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "property/path/hostile_path.hpp"
+#include "property/planner/random_programs.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "service/config/machine_file.hpp"
+#include "support/draws.hpp"
+#include "support/shipped_machines.hpp"
+
+/// No plan creeps: one that does keeps a machine Running for hours without a word.
+namespace meridian::test {
+namespace {
+
+constexpr double kSlow = 1e-3;  // of the programmed feed, and of every joint's velocity
+constexpr double kLongest_s = 10;
+
+/// Whether neither the tool nor any joint gets anywhere in a piece of a cut.
+bool is_creeping(const MachineModel& model, const TimePiece& time, const PathPiece& path) {
+  if (time.kind != TimeKind::kMove || !(time.feed_mm_per_s > 0)) return false;
+  const double from = time.s0, to = state_at(time, time.duration).s;
+  if (to - from > kSlow * time.feed_mm_per_s * time.duration) return false;
+  const JointVector begin = joints_at(model, path, from, path.joints_begin).q;
+  const JointVector end = joints_at(model, path, to, begin).q;
+  for (int i = 0; i < model.joint_count; ++i) {
+    const double way = kSlow * model.joints[i].limits.velocity * time.duration;
+    if (std::abs(end[i] - begin[i]) > way) return false;
+  }
+  return true;
+}
+
+double longest_creep_s(const MachineModel& model, const Trace& trace) {
+  double longest = 0, creeps = 0;
+  for (std::size_t n = 0; n < trace.times.size(); ++n) {
+    const bool is_slow = is_creeping(model, trace.times[n], trace.paths[n]);
+    creeps = is_slow ? creeps + trace.times[n].duration : 0;
+    longest = std::max(longest, creeps);
+  }
+  return longest;
+}
+
+class Creep : public testing::TestWithParam<Transition> {
+ protected:
+  [[nodiscard]] SmoothTrace plan(const MachineModel& model,
+                                 const std::vector<ClBlock>& blocks) const {
+    return plan_smooth(model, blocks, joints_of(model, blocks[0]), {GetParam(), 0, 0}, true);
+  }
+};
+
+/// The wrist of the 6R robot bends from -10 to 10 deg with its other joints at rest, the tool axis
+/// `beside_rad` off the plane in which it would pass the singularity.
+std::vector<ClBlock> past_the_wrist(const MachineModel& robot, double beside_rad) {
+  constexpr int kBlocks = 60, kBend = 4;
+  std::vector<ClBlock> blocks;
+  const auto pose = [&](double bend) {
+    JointVector q = joints_of(robot, [] {
+      ClBlock block;
+      block.tip_mm = {863.985488, -8.715574, 243.673731};
+      block.axis = {-0.640341609, 0.087155743, 0.763129413};
+      return block;
+    }());
+    q[kBend] = bend;
+    return forward(robot, robot.tool_length_mm, q);
+  };
+  const Vector3 across = pose(-0.17).axis.cross(pose(0.17).axis).normalized();
+  for (int n = 0; n <= kBlocks; ++n) {
+    const ToolPose at = pose(0.17 * (2.0 * n / kBlocks - 1));
+    ClBlock block;
+    block.kind = BlockKind::kCut;
+    block.tip_mm = to_array(at.tip);
+    block.axis = to_array((at.axis + std::tan(beside_rad) * across).normalized());
+    block.feed = 50;
+    block.feed_meaning = FeedMeaning::kTip;
+    block.sequence = static_cast<std::uint64_t>(n);
+    block.line = static_cast<std::uint32_t>(n + 1);
+    blocks.push_back(block);
+  }
+  end_program(blocks);
+  return blocks;
+}
+
+TEST_P(Creep, IsNowhereOnTheWayPastASingularityOfTheWrist) {
+  MachineModel robot = config::load_machine(shipped_file("robot-6r"));
+  config::place_workpiece(robot, config::parse_frame("0,0,0"));
+  int refused = 0;
+  for (const double beside_deg : {0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1, 1.0, 5.0}) {
+    SCOPED_TRACE(beside_deg);
+    const SmoothTrace trace = plan(robot, past_the_wrist(robot, units::rad_from_deg(beside_deg)));
+    EXPECT_LT(longest_creep_s(robot, trace), kLongest_s);
+    const bool is_refused = trace.last.status == PlanStatus::kRefused;
+    refused += is_refused ? 1 : 0;
+    if (beside_deg >= 0.1) {
+      EXPECT_FALSE(is_refused) << static_cast<int>(trace.last.reject.code);
+    }
+  }
+  std::printf("%d of 11 passes refused\n", refused);
+}
+
+TEST_P(Creep, IsNowhereInDrawnPrograms) {
+  const auto programs = number_of<std::uint32_t>("MERIDIAN_CREEP_PROGRAMS", 6);
+  double longest = 0;
+  for (const std::string& name : shipped_machines()) {
+    const MachineModel model = config::load_machine(shipped_file(name));
+    for (std::uint32_t seed = 1; seed <= programs; ++seed) {
+      SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+      RandomPrograms draw(seed);
+      const auto drawn = draw.program(model, 8);
+      longest = std::max(longest, longest_creep_s(model, plan(model, drawn)));
+      const auto hostile = HostilePath(seed, 0, 0.4).make_program(1);
+      longest = std::max(longest, longest_creep_s(model, plan(model, hostile)));
+      ASSERT_LT(longest, kLongest_s);
+    }
+  }
+  std::printf("slower than a thousandth of the feed for %.3f s at most\n", longest);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Creep, testing::Values(Transition::kSmooth, Transition::kExactStop),
+                         [](const testing::TestParamInfo<Transition>& transition) {
+                           return transition.param == Transition::kSmooth ? "Smooth" : "ExactStop";
+                         });
+
+}  // namespace
+}  // namespace meridian::test
