@@ -37,7 +37,7 @@ def read_part(file):
             begin = begin if text else number
             text += raw.strip()
             if text.endswith("$"):
-                text = text[:-1]
+                text = text[:-1].rstrip().rstrip(",") + ","  # some CAM systems leave the comma away
                 continue
             word, _, rest = text.replace(" ", "").partition("/")
             text = ""
