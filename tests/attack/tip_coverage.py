@@ -28,10 +28,18 @@ def tip_of(joints, tool_mm, frame):
             H_MM - b4 - length * math.cos(t2) - frame[2])
 
 
+def is_along(axis, begin, end):
+    """Whether a line leads along the tool axis, down or up."""
+    length = math.dist(begin, end)
+    cosine = sum(k * (b - a) / length for k, a, b in zip(axis, begin, end))
+    return abs(cosine) > 1 - 1e-6
+
+
 def read_part(file):
-    """Cut lines: [(line, from, to)], where rapids lead to is in the positions alone."""
+    """Cut lines: [(line, from, to, whether it plunges)], where rapids lead to is in the positions
+    alone. A plunge goes along the tool axis, as every approach does."""
     lines, text, begin = [], "", 0
-    at, is_rapid, is_first = None, False, True
+    at, axis, is_rapid = None, (0.0, 0.0, 1.0), False
     with open(file) as source:
         for number, raw in enumerate(source, 1):
             begin = begin if text else number
@@ -44,9 +52,10 @@ def read_part(file):
             if word == "RAPID":
                 is_rapid = True
             elif word == "GOTO":
-                to = tuple(float(x) for x in rest.split(",")[:3])
+                numbers = [float(x) for x in rest.split(",") if x]
+                to, axis = tuple(numbers[:3]), tuple(numbers[3:6]) or axis
                 if at is not None and not is_rapid and math.dist(at, to) > 1e-9:
-                    lines.append((begin, at, to))
+                    lines.append((begin, at, to, is_along(axis, at, to)))
                 at, is_rapid = to, False
     return lines
 
@@ -77,7 +86,7 @@ def read_watch(file, tool_mm, frame):
 def covered(piece, segment, before, after):
     """Intervals of a line, in mm from its begin, that a piece passed along, and when it last did.
     Rows of the lines before and behind count too: corners are rounded."""
-    line, begin, end = segment
+    line, begin, end, _ = segment
     length = math.dist(begin, end)
     direction = [(b - a) / length for a, b in zip(begin, end)]
     found, last_ns, previous = [], None, None
@@ -121,7 +130,7 @@ def check(part, watch, frame, tool_mm=110.0, ends=None):
     pieces = [p for p in read_watch(watch, tool_mm, frame) if p.line]
     account = {"lines": len(lines), "pieces": len(pieces), "rows": sum(len(p.line) for p in pieces),
                "skipped": [], "cut_again": [], "resumed": 0}
-    numbers = [line for line, _, _ in lines]
+    numbers = [line for line, *_ in lines]
     by_piece = []
     for piece in pieces:
         passed = {}
@@ -150,14 +159,14 @@ def check(part, watch, frame, tool_mm=110.0, ends=None):
         # The line that the machine rested in: the last that any earlier piece moved along.
         rested = max(earlier, default=0)
         for line in sorted(moved):
-            if line >= rested or line not in earlier:
-                continue
+            segment = lines[bisect.bisect_left(numbers, line)]
+            if line >= rested or line not in earlier or segment[3]:
+                continue  # the approach to the line behind a plunge goes down the same line
             j, ns = max(earlier[line], key=lambda one: one[1] or 0)
             kind = ends[j] if ends and j < len(ends) else ""
             late_ns = max(pieces[j].due_ns) - (ns or 0)
             if kind == "kill" and late_ns <= 1_500_000_000:
                 continue
-            segment = lines[bisect.bisect_left(numbers, line)]
             finished = merge([i for p in by_piece[:k] for i in p.get(line, ([], None))[0]])
             if length_of(finished) >= math.dist(segment[1], segment[2]) - 2 * END_MM - 1e-3:
                 account["cut_again"].append((line, k, rested))

@@ -56,6 +56,11 @@ class TipCoverage(unittest.TestCase):
         account = self.account([[(6, 0, 1), (7, 0, 0.5)], [(7, 0, 1), (8, 0, 1)]])
         self.assertEqual((account["skipped"], account["cut_again"]), ([], []))
 
+    def test_a_plunge_is_what_every_approach_goes_down(self):
+        self.assertTrue(tip_coverage.is_along((0.6, 0.0, 0.8), (6, 1, 8), (3, 1, 4)))
+        self.assertFalse(tip_coverage.is_along((0.6, 0.0, 0.8), (6, 1, 8), (3, 1, 4.1)))
+        self.assertFalse(tip_coverage.is_along((0.0, 0.0, 1.0), (0, 0, 10), (10, 0, 10)))
+
     def test_a_line_that_is_left_out_is_skipped(self):
         self.assertEqual([s[0] for s in self.account([[(6, 0, 1)], [(8, 0, 1)]])["skipped"]], [7])
 
