@@ -236,7 +236,7 @@ void Intake::look_for_station() {
 
 void Intake::publish(const std::optional<dds::Credit>& credit) {
   if (!credit) return;
-  (void)credits_.write(*credit);
+  credits_.write(*credit);
   if (credit->session == judge_.session()) {
     if (credit->verdict >= dds::Verdict::kRefusedStation) refused_session_ = credit->session;
     return;
@@ -251,7 +251,7 @@ void Intake::forget_old_sessions() {
   while (!ended_.empty() &&
          (now_ns - ended_.front().at_ns > kKeepVerdict_ns || ended_.size() > 64)) {
     if (ended_.front().credit.session != judge_.session()) {
-      credits_.dispose(ended_.front().credit);
+      credits_.end(ended_.front().credit);
     }
     ended_.pop_front();
   }

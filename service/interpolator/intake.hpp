@@ -10,9 +10,10 @@
 #include "service/config/service_file.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
-#include "service/dds/waitset.hpp"
-#include "service/dds/writer.hpp"
 #include "service/dds/sources.hpp"
+#include "service/dds/stalled_reader.hpp"
+#include "service/dds/waitset.hpp"
+#include "service/interpolator/credit_writer.hpp"
 #include "service/interpolator/participant_quota.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/stream/intake_judge.hpp"
@@ -49,7 +50,9 @@ class Intake {
   void set_action_peer(bool is_there) noexcept { has_action_peer_ = is_there; }
   [[nodiscard]] SessionView view() const;
   /// Of credits, see dds::StalledReaders.
-  [[nodiscard]] std::int32_t writer() const noexcept { return credits_.handle(); }
+  void watch_readers(dds::StalledReaders& stalled) const {
+    stalled.watch([this] { return credits_.handle(); }, "cl_credit");
+  }
   /// Any thread: whether `block` of this session is the last of its source line; false also where
   /// that is not known.
   [[nodiscard]] bool is_line_end(std::uint64_t session, std::uint64_t block);
@@ -92,7 +95,7 @@ class Intake {
   stream::IntakeJudge judge_;
   dds::Reader<dds::Batch> batches_;
   dds::Reader<dds::SessionRequest> requests_;
-  dds::Writer<dds::Credit> credits_;
+  CreditWriter credits_;
   dds::Waitset waitset_;
 
   dds::Senders senders_;
