@@ -11,7 +11,9 @@ struct ClError {
   std::string file;
   std::uint32_t line = 0;  ///< 1-based; 0 where the whole file is meant
   std::string message;
-  std::string remedy;  ///< empty where there is none but to mend the file
+  std::string remedy;     ///< empty where there is none but to mend the file
+  std::string group;      ///< errors of one group are alike; empty: the message without numbers
+  bool is_final = false;  ///< nothing behind it can be read
 
   /// "file:line: message; remedy".
   [[nodiscard]] std::string text() const {
@@ -27,6 +29,7 @@ struct ClError {
 struct ClWarning {
   std::uint32_t line = 0;  ///< where it was seen first
   std::string message;
+  std::uint64_t count = 1;  ///< places alike
 };
 
 }  // namespace meridian::cl

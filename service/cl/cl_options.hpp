@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "meridian/geometry/vector3.hpp"
+#include "service/cl/dialect.hpp"
 #include "service/cl/frame.hpp"
 
 namespace meridian::cl {
@@ -21,6 +24,7 @@ enum class ArcSense : std::uint8_t {
 
 /// What the caller tells the reader beyond the file. Units: mm, s.
 struct ClReaderOptions {
+  std::optional<Dialect> dialect;          ///< `--dialect`: wins over what the file shows
   std::optional<LengthUnit> unit;          ///< `--units`: wins over the unit word of the file
   std::optional<LengthUnit> default_unit;  ///< of the machine file: for files without unit word
   std::optional<double> default_feed_mm_per_s;  ///< `--feed`: for files that cut before a FEDRAT
@@ -32,6 +36,9 @@ struct ClReaderOptions {
   /// restore tool, spindle, coolant and place (restart.hpp); 0: from its begin.
   std::uint32_t first_line = 0;
   std::optional<Frame> frame;  ///< applied to every pose after the frames of the file
+  /// Where the home of the machine puts tip and axis, in W, with this tool in the spindle (nothing:
+  /// the one before any tool change). Empty: the machine is not known, and GOHOME is refused.
+  std::function<std::optional<ToolPose>(std::optional<std::uint32_t>)> home;
 };
 
 }  // namespace meridian::cl

@@ -37,8 +37,8 @@ class ClReader::Impl {
       auto block = read_block();
       if (!block) return tl::make_unexpected(block.error());
       if (!*block || (*block)->kind == BlockKind::kEnd) {
-        Interpreter::Result refusal = interpreter_.refuse(
-            first_line_, "the program has no block from this line on to begin with");
+        Interpreter::Result refusal =
+            final_error(first_line_, "the program has no block from this line on to begin with");
         error_ = refusal.error();
         return refusal;
       }
@@ -50,9 +50,9 @@ class ClReader::Impl {
       before.pass(**block);
     }
     if (before.vendor_line() > 0) {
-      interpreter_.add_warning("restart", before.vendor_line(),
-                               "vendor words in front of the first line are not repeated; see "
-                               "that the machine is as they would leave it");
+      interpreter_.warn("restart", before.vendor_line(),
+                        "vendor words in front of the first line are not repeated; see "
+                        "that the machine is as they would leave it");
     }
     return {};
   }
@@ -77,6 +77,12 @@ class ClReader::Impl {
   }
 
  public:
+  bool go_on() {
+    if (!error_ || error_->is_final) return false;
+    error_.reset();
+    return true;
+  }
+
   ClSummary& summary() {
     ClSummary& summary = interpreter_.summary();
     summary.bytes = lines_.bytes();
@@ -87,40 +93,50 @@ class ClReader::Impl {
   const Interpreter& interpreter() const { return interpreter_; }
 
  private:
+  /// What ends the reading of the file, whatever else may be wrong in it.
+  tl::unexpected<ClError> final_error(std::uint32_t line, const std::string& message,
+                                      const std::string& remedy = {}) const {
+    ClError error = interpreter_.error(line, {message, remedy, {}, 0});
+    error.is_final = true;
+    return tl::make_unexpected(std::move(error));
+  }
+
   Interpreter::Result read_statement() {
     if (!started_) {
       started_ = true;
       Recognised what = recognise_foreign(lines_.head());
       while (!what.is_certain && lines_.read_on()) what = recognise_foreign(lines_.head());
       if (lines_.head().find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
-        return interpreter_.refuse(0, "the file is empty");
+        return final_error(0, "the file is empty");
       }
       if (!what.foreign.empty()) {
-        return interpreter_.refuse(0, "this is " + what.foreign + ", not a CL file",
-                                   "output APT or CLDATA text from the CAM system");
+        return final_error(0, "this is " + what.foreign + ", not a CL file",
+                           "output APT or CLDATA text from the CAM system");
       }
     }
     switch (statements_.next(statement_)) {
       case StatementReader::Outcome::kStatement: {
+        if (const Dialect shown = statements_.take_shown(); shown != Dialect::kUnknown) {
+          interpreter_.see(shown, statement_.line, "a comment");
+        }
         auto taken = interpreter_.take(statement_, blocks_);
-        if (taken && interpreter_.is_finished()) done_ = true;
+        if (interpreter_.is_finished()) done_ = true;
         return taken;
       }
       case StatementReader::Outcome::kEnd:
         done_ = true;
         return interpreter_.finish(lines_.line_number(), lines_.ended_without_newline(), blocks_);
       case StatementReader::Outcome::kCutOff:
-        return interpreter_.refuse(statement_.line,
-                                   "the file is cut short: it ends inside this statement");
+        return final_error(statement_.line, "the file is cut short: it ends inside this statement");
       case StatementReader::Outcome::kBinary:
-        return interpreter_.refuse(statements_.line(), "binary data in the text");
+        return final_error(statements_.line(), "binary data in the text");
       case StatementReader::Outcome::kTooLong:
-        return interpreter_.refuse(statements_.line() + 1, "this line or statement is too long",
-                                   "lines up to 64 KiB, statements up to 1 MiB");
+        return final_error(statements_.line() + 1, "this line or statement is too long",
+                           "lines up to 64 KiB, statements up to 1 MiB");
       case StatementReader::Outcome::kReadError:
         break;
     }
-    return interpreter_.refuse(statements_.line(), "the file cannot be read any further");
+    return final_error(statements_.line(), "the file cannot be read any further");
   }
 
   LineSource lines_;
@@ -148,6 +164,7 @@ ClReader::ClReader(ClReader&&) noexcept = default;
 ClReader& ClReader::operator=(ClReader&&) noexcept = default;
 
 Expected<std::optional<ClBlock>, ClError> ClReader::next() { return impl_->next(); }
+bool ClReader::go_on() { return impl_->go_on(); }
 const ClSummary& ClReader::summary() const noexcept { return impl_->summary(); }
 const std::vector<ClWarning>& ClReader::warnings() const noexcept {
   return impl_->interpreter().warnings();

@@ -34,8 +34,12 @@ class ClReader {
   ClReader(const ClReader&) = delete;
   ClReader& operator=(const ClReader&) = delete;
 
-  /// The next block; nothing behind the block of kind kEnd; an error once and for all.
+  /// The next block; nothing behind the block of kind kEnd. An error stays until go_on().
   [[nodiscard]] Expected<std::optional<ClBlock>, ClError> next();
+
+  /// Leaves the refused statement out, so that next() finds what else is wrong with the file; what
+  /// it gives from then on is for checking alone. False where nothing more can be read.
+  [[nodiscard]] bool go_on();
 
   /// Counts, box, feeds, tools: of what was read so far.
   [[nodiscard]] const ClSummary& summary() const noexcept;

@@ -85,7 +85,9 @@ void ClWriter::write_motion(const ClBlock& b) {
   }
   std::string point;
   add(point, b.tip_mm, kTipDecimals);
-  if (!has_axis_ || b.axis != axis_) add(point, b.axis, kAxisDecimals);
+  // What a missing axis means behind a tilted one differs from system to system.
+  const bool is_tilted = b.axis != Array3{0, 0, 1};
+  if (!has_axis_ || is_tilted || b.axis != axis_) add(point, b.axis, kAxisDecimals);
   axis_ = b.axis;
   has_axis_ = true;
   statement("GOTO", point);

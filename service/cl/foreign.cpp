@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "service/cl/statement.hpp"
-#include "service/cl/words.hpp"
+#include "service/cl/words/word_table.hpp"
 
 namespace meridian::cl {
 namespace {
@@ -95,13 +95,13 @@ bool is_address_line(std::string_view line) {
   return addresses > 0;
 }
 
-constexpr bool is_letter(char c) {
+constexpr bool is_word_letter(char c) {
   return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
 std::string_view leading_word(std::string_view line) {
   std::size_t size = 0;
-  while (size < line.size() && (is_letter(line[size]) || line[size] == '-')) ++size;
+  while (size < line.size() && (is_word_letter(line[size]) || line[size] == '-')) ++size;
   return line.substr(0, size);
 }
 
@@ -113,7 +113,7 @@ bool is_cl_line(std::string_view line) {
   if (takes_free_text(word)) return true;
   line.remove_prefix(word.size());
   skip_blanks(line);
-  return line.starts_with('/') && find_word(word) != Word::kUnknown;
+  return line.starts_with('/') && find_word(word) != nullptr;
 }
 
 /// The word of a line that no text but a Siemens program has; empty where there is none.
@@ -121,7 +121,7 @@ std::string_view siemens_word(std::string_view line) {
   if (line.starts_with("%_N_")) return "_N_";
   for (std::size_t at = 0; at < line.size() && line[at] != ';';) {
     std::size_t stop = at;
-    while (stop < line.size() && is_letter(line[stop])) ++stop;
+    while (stop < line.size() && is_word_letter(line[stop])) ++stop;
     const std::string_view word = line.substr(at, stop - at);
     if (word == "TRAORI" || word == "TRAFOOF") return word;
     if (word.size() == 8 && word.starts_with("CYCLE8")) return word;  // CYCLE800, CYCLE832, ...

@@ -35,6 +35,11 @@ bool parse_rare(std::string_view text, double& value) noexcept {
 }  // namespace
 
 bool parse_number(std::string_view text, double& value) noexcept {
+  std::uint8_t decimals = 0;
+  return parse_number(text, value, decimals);
+}
+
+bool parse_number(std::string_view text, double& value, std::uint8_t& places) noexcept {
   const char* at = text.data();
   const char* const end = at + text.size();
   const bool negative = at != end && *at == '-';
@@ -59,8 +64,10 @@ bool parse_number(std::string_view text, double& value) noexcept {
     const double magnitude =
         static_cast<double>(digits) / kPowerOfTen[static_cast<std::size_t>(decimals)];
     value = negative ? -magnitude : magnitude;
+    places = static_cast<std::uint8_t>(decimals);
     return true;
   }
+  places = kMaxDecimals;
   return count > 0 || at != end ? parse_rare(text, value) : false;
 }
 

@@ -8,6 +8,8 @@
 
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
+#include "service/cl/findings.hpp"
+#include "service/text/printed.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cl {
@@ -30,42 +32,65 @@ void append(std::string& text, const ClPoint& point) {
   append(text, units::per_min_from_per_s(point.feed_mm_per_s), '\n');
 }
 
+/// The points as they are read, so that a pipe sees them at once.
+class PointOutput {
+ public:
+  PointOutput(std::ostream& out, double chord_error_mm) : out_(out), walker_(chord_error_mm) {}
+
+  void add(const ClBlock& block) {
+    walker_.walk(block, [this](const ClPoint& point) {
+      append(text_, point);
+      if (text_.size() > kFlushAt) flush();
+    });
+  }
+  void flush() {
+    out_ << text_;
+    text_.clear();
+  }
+
+ private:
+  std::ostream& out_;
+  PointWalker walker_;
+  std::string text_;
+};
+
 int read_through(const RunOptions& options, std::istream& in, std::ostream& out,
                  std::ostream& err) {
-  ClReader reader(in, options.file == "-" ? "<standard input>" : options.file, options.reader);
-  PointWalker walker(options.chord_error_mm);
-  std::string text;
-  std::size_t warned = 0;
-  const auto warn = [&] {
-    for (; warned < reader.warnings().size(); ++warned) {
-      const ClWarning& warning = reader.warnings()[warned];
-      err << options.file << ":" << warning.line << ": warning: " << warning.message << "\n";
-    }
-  };
+  const std::string name = options.file == "-" ? "<standard input>" : options.file;
+  ClReader reader(in, name, options.reader);
+  PointOutput points(out, options.chord_error_mm);
+  Findings findings;
   while (true) {
     const auto block = reader.next();
     if (!block) {
-      warn();
-      err << block.error().text() << "\n";
-      return kInputRefused;
+      findings.add(block.error());
+      if (!reader.go_on()) break;
+      continue;
     }
     if (!*block) break;
-    if (options.summary) continue;
-    walker.walk(**block, [&](const ClPoint& point) {
-      append(text, point);
-      if (text.size() > kFlushAt) {
-        out << text;
-        text.clear();
-      }
-    });
+    const bool is_wanted = options.what == RunOptions::Output::kPoints && !findings.is_refused();
+    if (is_wanted) points.add(**block);
   }
-  warn();
-  out << (options.summary ? to_text(reader.summary()) : text) << std::flush;
+  const bool is_refused = findings.is_refused();
+  for (const ClWarning& warning : reader.warnings()) findings.add(warning);
+  if (options.what == RunOptions::Output::kJson) {
+    out << "{\"file\": " << text::json_quoted(name)
+        << ", \"is_refused\": " << (is_refused ? "true" : "false")
+        << ",\n\"summary\": " << to_json(reader.summary())
+        << ",\n\"findings\": " << to_json(findings.sorted()) << "}\n";
+  } else {
+    err << to_text(findings.sorted(), name);
+    if (!is_refused && options.what == RunOptions::Output::kSummary) {
+      out << to_text(reader.summary());
+    }
+    if (!is_refused) points.flush();
+  }
+  out.flush();
   if (!out) {
     err << "meridian cl: the output cannot be written\n";
     return kInputRefused;
   }
-  return kFine;
+  return is_refused ? kInputRefused : kFine;
 }
 
 }  // namespace

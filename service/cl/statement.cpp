@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "service/cl/letters.hpp"
 #include "service/cl/number.hpp"
 
 namespace meridian::cl {
 namespace {
 
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
-
-constexpr char capital(char c) noexcept {
-  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-}
 
 constexpr bool is_word_character(char c) noexcept {
   const char up = capital(c);
@@ -36,6 +33,18 @@ std::string_view first_word(std::string_view text) noexcept {
   return text.substr(0, size);
 }
 
+/// Takes "N22", "N22," and "N22 ," off where a word stands behind it.
+std::string_view without_number(std::string_view text) noexcept {
+  if (text.size() < 3 || capital(text.front()) != 'N') return text;
+  std::size_t at = 1;
+  while (at < text.size() && text[at] >= '0' && text[at] <= '9') ++at;
+  const std::size_t digits = at - 1;
+  while (at < text.size() && (is_blank(text[at]) || text[at] == ',')) ++at;
+  const bool has_gap = at > digits + 1;
+  const bool has_word = at < text.size() && capital(text[at]) >= 'A' && capital(text[at]) <= 'Z';
+  return digits > 0 && has_gap && has_word ? text.substr(at) : text;
+}
+
 const char* find(std::string_view text, char c) noexcept {
   return text.empty() ? nullptr
                       : static_cast<const char*>(std::memchr(text.data(), c, text.size()));
@@ -49,7 +58,7 @@ bool is_word(std::string_view text, std::string_view capitals) noexcept {
 }
 
 bool takes_free_text(std::string_view major) noexcept {
-  if (major.size() < 5) return false;
+  if (major.size() < 5 || capital(major.front()) == 'G') return false;
   constexpr std::array<std::string_view, 8> kWords = {"PARTNO", "PPRINT", "INSERT", "REMARK",
                                                       "TPRINT", "LETTER", "TITLES", "PPFUN"};
   return std::any_of(kWords.begin(), kWords.end(),
@@ -115,6 +124,8 @@ StatementReader::Outcome StatementReader::join(std::string_view line, std::strin
 /// True where the comment completes a $$*CATIA0 matrix, which `statement` then holds.
 bool StatementReader::take_comment(std::string_view comment, Statement& statement) {
   ++comments_;
+  constexpr std::uint64_t kHead = 100;  // systems name themselves at the head of a file
+  if (comments_ <= kHead && shown_ == Dialect::kUnknown) shown_ = shown_by_text(comment);
   if (comment.starts_with("*CATIA0")) {
     matrix_rows_ = 0;
     statement.line = lines_.line_number();
@@ -136,7 +147,7 @@ bool StatementReader::take_comment(std::string_view comment, Statement& statemen
   statement.major = {};
   statement.is_catia_matrix = true;
   statement.argument_count = statement.number_count = 12;
-  for (std::size_t i = 0; i < 12; ++i) statement.arguments[i] = {{}, matrix_[i], true};
+  for (std::size_t i = 0; i < 12; ++i) statement.arguments[i] = {{}, matrix_[i], true, 0};
   return true;
 }
 
@@ -144,7 +155,7 @@ void StatementReader::cut(std::string_view text, Statement& out) {
   out.is_comment_data = out.is_catia_matrix = false;
   out.has_empty_argument = out.has_more_arguments = false;
   out.argument_count = out.number_count = 0;
-  text = trimmed(text);
+  text = without_number(trimmed(text));
   std::string_view major =
       starts_number(text.empty() ? ' ' : text.front()) ? std::string_view{} : first_word(text);
   std::size_t used = major.size();
@@ -189,9 +200,11 @@ void StatementReader::cut(std::string_view text, Statement& out) {
     }
     Argument& argument = out.arguments[out.argument_count++];
     argument.text = {start, static_cast<std::size_t>(at - start)};
-    argument.is_number = starts_number(*start) && parse_number(argument.text, argument.number);
+    argument.is_number =
+        starts_number(*start) && parse_number(argument.text, argument.number, argument.decimals);
     out.number_count += argument.is_number ? 1 : 0;
   }
+  out.has_empty_argument |= after_comma;
 }
 
 StatementReader::Outcome StatementReader::next(Statement& statement) {
@@ -211,7 +224,7 @@ StatementReader::Outcome StatementReader::next(Statement& statement) {
     statement.line = lines_.line_number();
     if (data) line.remove_prefix(4);
     std::string_view whole = line;
-    if (data || !takes_free_text(first_word(line))) {
+    if (data || !takes_free_text(first_word(without_number(line)))) {
       const Outcome joined = join(line, whole);
       if (joined != Outcome::kStatement) return joined;
     }

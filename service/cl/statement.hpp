@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "service/cl/dialect.hpp"
 #include "service/cl/line_source.hpp"
 
 namespace meridian::cl {
@@ -15,6 +17,7 @@ struct Argument {
   std::string_view text;
   double number = 0;
   bool is_number = false;
+  std::uint8_t decimals = 0;  ///< of a number: digits behind its point
 };
 
 /// One logical line of a CL file, continuation lines joined: MAJOR / argument, argument ...
@@ -27,7 +30,7 @@ struct Statement {
   std::string_view rest;            ///< behind the major word and its slash, as written
   bool is_comment_data = false;     ///< from `$$->`
   bool is_catia_matrix = false;     ///< `$$*CATIA0`: the twelve numbers of the comments after it
-  bool has_empty_argument = false;  ///< two commas with nothing between them
+  bool has_empty_argument = false;  ///< a comma with nothing before or behind it
   bool has_more_arguments = false;  ///< than kMostArguments
   std::size_t argument_count = 0;   ///< none for words whose rest is free text
   std::size_t number_count = 0;     ///< of the arguments
@@ -48,6 +51,7 @@ struct Statement {
 /// `$` continues a statement on the next line, with or without a comma before it; what stands
 /// behind it on its line is ignored. `$$` begins a comment. Comments that carry data are given out
 /// as statements: `$$-> WORD / ...` (with its own continuation) and the matrix of `$$*CATIA0`.
+/// A statement number (`N22`, and a comma behind it or not) is taken off the word behind it.
 class StatementReader {
  public:
   enum class Outcome : std::uint8_t {
@@ -66,6 +70,9 @@ class StatementReader {
   /// Line at which kCutOff, kBinary or kTooLong was met.
   [[nodiscard]] std::uint32_t line() const noexcept { return lines_.line_number(); }
   [[nodiscard]] std::uint64_t comments() const noexcept { return comments_; }
+  /// What a comment in front of the last statement showed of the system that wrote the file; asked
+  /// once, then kUnknown again.
+  [[nodiscard]] Dialect take_shown() noexcept { return std::exchange(shown_, Dialect::kUnknown); }
 
  private:
   Outcome next_line(std::string_view& line);
@@ -80,6 +87,7 @@ class StatementReader {
   std::array<double, 12> matrix_{};
   int matrix_rows_ = -1;  ///< -1: no $$*CATIA0 open
   std::uint64_t comments_ = 0;
+  Dialect shown_ = Dialect::kUnknown;
 };
 
 /// True where both are equal without regard to case; `capitals` is in capitals.

@@ -26,11 +26,29 @@ std::istream* open_cl_file(const std::string& name, std::ifstream& file) {
 void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings) {
   for (const cl::ClWarning& warning : warnings) {
     std::cerr << text::printable(name) << ":" << warning.line
-              << ": warning: " << text::printable(warning.message) << "\n";
+              << ": warning: " << text::printable(warning.message);
+    if (warning.count > 1) std::cerr << " (" << warning.count << " places, first here)";
+    std::cerr << "\n";
   }
 }
 
-void add_cl_file_options(CLI::App& command, ClFileOptions& options) {
+namespace {
+
+std::vector<std::string> dialect_names() {
+  std::vector<std::string> names;
+  for (const cl::DialectTraits& row : cl::dialects()) {
+    if (!row.name.empty()) names.emplace_back(row.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_cl_file_options(CLI::App& command, ClFileOptions& options, const char* dialect_name) {
+  command
+      .add_option(dialect_name, options.dialect,
+                  "CAM system that wrote the file, where the file does not show it")
+      ->check(CLI::IsMember(dialect_names()));
   command
       .add_option("--units", options.units, "Unit of the file: mm or inch; wins over its unit word")
       ->check(CLI::IsMember({"mm", "inch"}));
@@ -92,6 +110,7 @@ std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
     if (value > 0) text::append(digits, "%.9g", value);
     return digits;
   };
+  add("--dialect", file.dialect);
   add("--units", file.units);
   add("--feed", number(file.feed_mm_per_min.value_or(0)));
   for (const std::string& word : file.allow_unknown) add("--allow-unknown", word);
@@ -111,6 +130,7 @@ void add_frame_option(CLI::App& command, ClFileOptions& options) {
 
 cl::ClReaderOptions reader_options(const ClFileOptions& options) {
   cl::ClReaderOptions out;
+  if (!options.dialect.empty()) out.dialect = cl::find_dialect(options.dialect);
   if (options.units == "mm") out.unit = cl::LengthUnit::kMillimetre;
   if (options.units == "inch") out.unit = cl::LengthUnit::kInch;
   if (options.arc_sense == "right") out.arc_sense = cl::ArcSense::kRight;

@@ -16,7 +16,7 @@ namespace meridian::cli {
 
 /// The options about a CL file that every subcommand which reads one takes alike.
 struct ClFileOptions {
-  std::string units;
+  std::string units, dialect;
   std::string arc_sense = "form";
   std::string frame;
   std::optional<double> feed_mm_per_min;
@@ -34,8 +34,11 @@ void add_cl_file(CLI::App& command, std::string& name);
 /// What the reader found odd and took nevertheless, a line each on standard error.
 void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings);
 
-/// Adds --units, --feed, --allow-unknown, --allow-no-end, --arc-sense and --from-line to `command`.
-void add_cl_file_options(CLI::App& command, ClFileOptions& options);
+/// Adds --dialect, --units, --feed, --allow-unknown, --allow-no-end, --arc-sense and
+/// --from-line to `command`.
+/// `dialect_name`: for a command to which --dialect is the dialect of its output.
+void add_cl_file_options(CLI::App& command, ClFileOptions& options,
+                         const char* dialect_name = "--dialect");
 
 /// How the cuts of a program join, where not as the machine's file says.
 struct JoinOptions {

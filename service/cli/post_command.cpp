@@ -140,7 +140,7 @@ void add_post_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 99999999));
   command->add_flag("--line-words", options->post.has_line_words,
                     "N words: the line of the CL file that a block comes from");
-  add_cl_file_options(*command, options->cl);
+  add_cl_file_options(*command, options->cl, "--cl-dialect");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -115,7 +115,7 @@ TEST_F(OutsideChecker, PassesTheJointsOfAMachineOnAStage) {
   const auto part = scratch_ / "part.apt";
   std::ofstream(part) << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 20, -10, 10, 0, 0, 1\n"
                          "GOTO / 32, 5, 12, 0, 0.28, 0.96\nGOTO / 15, 18, 10, 0.28, 0, 0.96\n"
-                         "GOTO / 0, 0, 20\nCIRCLE / 5, 0, 20, 0, 0, 1, 5\n"
+                         "GOTO / 0, 0, 20, 0.28, 0, 0.96\nCIRCLE / 5, 0, 20, 0, 0, 1, 5\n"
                          "GOTO / 10, 0, 20, 0.28, 0, 0.96\nRAPID\n"
                          "GOTO / -8, 0, 14, 0, 0.1908, 0.98163\nFINI\n";
   const SimulatedFile simulated(part, model);
@@ -127,11 +127,12 @@ TEST_F(OutsideChecker, PassesTheJointsOfAMachineOnAStage) {
 TEST_F(OutsideChecker, RefusesWhatOursRefuses) {
   const auto part = scratch_ / "part.apt";
   std::ofstream(part) << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
-                         "GOTO / 90, -40, 20\nGOTO / 90, -35, 20\nFINI\n";
+                         "GOTO / 90, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -35, 20, 0, 0.6, 0.8\nFINI\n";
   const SimulatedFile simulated(part, test::lai_at("0,0,0", kCycle_ns));
   EXPECT_EQ(judge(simulated), 0);
-  std::ofstream(part) << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
-                         "GOTO / 90, -40.002, 20\nGOTO / 90, -35, 20\nFINI\n";
+  std::ofstream(part)
+      << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
+         "GOTO / 90, -40.002, 20, 0, 0.6, 0.8\nGOTO / 90, -35, 20, 0, 0.6, 0.8\nFINI\n";
   EXPECT_NE(judge(simulated), 0);
 }
 

@@ -259,8 +259,9 @@ std::vector<BadFile> bad_files() {
           {"binary.apt", std::string("PK\x03\x04\0\0\x01\xff", 8), "a ZIP archive"},
           {"noise.apt", std::string("PARTNO\n\0\x01\x02\0\xfe\0\0", 14), "binary data"},
           {"empty.apt", "", "the file is empty"},
-          {"unitless.apt", "FEDRAT/6000,MMPM\nGOTO/0,0,150,0,0,1\nFINI\n",
-           "the file does not say its unit"},
+          {"feedless.apt", "UNITS/MM\nGOTO/0,0,150,0,0,1\nFINI\n", "no FEDRAT before it"},
+          {"axisless.apt", "UNITS/MM\nFEDRAT/6000\nGOTO/0,0,150,0,0.6,0.8\nGOTO/20,0,150\nFINI\n",
+           "a point without a tool axis behind a tilted one"},
           {"program.nc", "%\nO1000\nN10 G21 G90\nN20 G1 X1. Y2. Z3. F500\nM30\n%\n",
            "a Fanuc NC program"}};
 }

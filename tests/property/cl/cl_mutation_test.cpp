@@ -70,7 +70,9 @@ TEST(Mutation, GivesSoundBlocksOrARefusalWithItsPlace) {
   constexpr int kMutants = 20000;
   for (int i = 0; i < kMutants; ++i) {
     const std::string text = i == 0 ? std::string(kProgram) : mutant(random);
-    ClReader reader(std::string_view(text), "mutant");
+    ClReaderOptions options;
+    options.dialect = Dialect::kNx;
+    ClReader reader(std::string_view(text), "mutant", options);
     PointWalker walker(0.1);
     std::uint64_t sequence = 0;
     bool ended = false;

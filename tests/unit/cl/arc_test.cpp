@@ -129,9 +129,72 @@ TEST(Circle, OfAHelixOfSeveralTurnsBecomesOneArcPerTurn) {
   EXPECT_EQ(m[1].sweep_rad, 2 * kPi);
   EXPECT_DOUBLE_EQ(m[1].tip_mm[2], -1.25);
   EXPECT_DOUBLE_EQ(m[2].tip_mm[2], -2.5);
-  EXPECT_NE(read_body("GOTO/-1,0,0\nCIRCLE/0,0,-2,0,0,-1,1,.002,.5,1,0,TIMES,2\nGOTO/0,1,-2.5\n")
-                .error.find("helix"),
+}
+
+/// TIMES,n are n - 1 whole turns and the arc to the end: here 360 and 270 of 630 degrees.
+TEST(Circle, OfAHelixThatDoesNotEndAboveItsBeginHasAPartialTurnAtItsEnd) {
+  const auto read =
+      read_body("GOTO/-1,0,0\nCIRCLE/0,0,0,0,0,-1,1,.002,.5,1,0,TIMES,2\nGOTO/0,1,-6.3\n");
+  ASSERT_EQ(read.error, "");
+  const auto m = read.motion();
+  ASSERT_EQ(m.size(), 3U);
+  EXPECT_EQ(m[1].sweep_rad, 2 * kPi);
+  EXPECT_NEAR(m[1].tip_mm[0], -1, 1e-12);
+  EXPECT_NEAR(m[1].tip_mm[2], -3.6, 1e-12);
+  EXPECT_NEAR(m[2].sweep_rad, 1.5 * kPi, 1e-12);
+  EXPECT_EQ(m[2].tip_mm, (Array3{0, 1, -6.3}));
+  EXPECT_NEAR(m[2].centre_mm[2], -3.6, 1e-12);
+  EXPECT_NEAR(read.summary.cut_length_mm, std::hypot(3.5 * kPi, 6.3), 1e-9);
+}
+
+TEST(Circle, OfSeveralTurnsMayStayInItsPlaneAndRise) {
+  const auto flat = read_body("GOTO/5,0,0\nCIRCLE/0,0,0,0,0,1,5,TIMES,3\nGOTO/5,0,0\n").motion();
+  ASSERT_EQ(flat.size(), 4U);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(flat[i].sweep_rad, 2 * kPi);
+  const auto rising = read_body("GOTO/5,0,0\nCIRCLE/0,0,0,0,0,1,5,TIMES,2\nGOTO/-5,0,3\n").motion();
+  ASSERT_EQ(rising.size(), 3U);
+  EXPECT_NEAR(rising[1].tip_mm[2], 2, 1e-12);
+  EXPECT_NEAR(rising[2].sweep_rad, kPi, 1e-12);
+}
+
+TEST(Circle, OfAHelixInInverseTimeTakesTheTimeOfOneBlock) {
+  const auto m =
+      read_body("FEDRAT/INVERS,2\nGOTO/5,0,0\nCIRCLE/0,0,0,0,0,1,5,TIMES,2\nGOTO/-5,0,3\n")
+          .motion();
+  ASSERT_EQ(m.size(), 3U);
+  EXPECT_NEAR(1 / m[1].feed + 1 / m[2].feed, 30, 1e-9);
+  EXPECT_NEAR(m[2].feed / m[1].feed, 2, 1e-9);
+}
+
+TEST(Circle, OfMovarcTurnsByTheSignOfItsSweep) {
+  const auto left = read_body("GOTO/10,0,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,90\nGOTO/0,10,0\n");
+  ASSERT_EQ(left.error, "");
+  EXPECT_NEAR(left.motion().at(1).sweep_rad, kPi / 2, 1e-12);
+  const auto right = read_body("GOTO/10,0,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,-270\nGOTO/0,10,0\n");
+  ASSERT_EQ(right.error, "");
+  EXPECT_NEAR(right.motion().at(1).sweep_rad, 1.5 * kPi, 1e-12);
+  EXPECT_NE(read_body("GOTO/10,0,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,80\nGOTO/0,10,0\n")
+                .error.find("its end lies elsewhere"),
             std::string::npos);
+}
+
+/// Creo writes the points of an arc as a list: only the last one ends it.
+TEST(Circle, OfCreoEndsAtTheLastPointOfItsList) {
+  const auto read = read_body(
+      "GOTO / 10.0, 0.0, 0.0\nCIRCLE / 0.0, 0.0, 0.0,  $\n0.0, 0.0, 1.0, 10.0\n"
+      "GOTO / 7.0710678119, 7.0710678119, 0.0\n0.0, 10.0, 0.0\n-10.0, 0.0, 0.0\nGOTO/-10,5,0\n",
+      written_by(Dialect::kCreo));
+  ASSERT_EQ(read.error, "");
+  const auto m = read.motion();
+  ASSERT_EQ(m.size(), 3U);
+  EXPECT_NEAR(m[1].sweep_rad, kPi, 1e-9);
+  EXPECT_EQ(m[1].tip_mm, (Array3{-10, 0, 0}));
+  EXPECT_EQ(read.summary.listed_points, 2U);
+  EXPECT_EQ(read_body("GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\n-10,0,0\n",
+                      written_by(Dialect::kCreo))
+                .motion()
+                .size(),
+            2U);  // at the end of the file too
 }
 
 TEST(Circle, WithFourNumbersTakesItsSenseFromIndirv) {

@@ -130,12 +130,22 @@ TEST(Feed, BeyondTheMachineIsFlaggedOnceAndKept) {
   EXPECT_EQ(read.summary.feeds_limited, 3U);
 }
 
-TEST(Units, OfNoneAreRefusedWithTheRemedy) {
-  const auto read = read_text("FEDRAT/100,MMPM\nGOTO/0,0,0\nFINI\n");
-  EXPECT_EQ(read.error_line, 2U);
-  EXPECT_NE(read.error.find("--units mm"), std::string::npos);
-  EXPECT_TRUE(read.blocks.empty());
-  EXPECT_EQ(read_text("FEDRAT/100,MMPM\nGOTO/0,0,0\nFINI\n", metric()).error, "");
+TEST(Units, OfNoneAreMillimetreAndThatIsSaid) {
+  const auto read = read_text("FEDRAT/100,MMPM\nGOTO/1,0,0\nFINI\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().at(0).tip_mm[0], 1);
+  EXPECT_EQ(read.summary.unit_source, UnitSource::kStation);
+  EXPECT_TRUE(read.warned_of("NO UNIT WORD"));
+  EXPECT_TRUE(read.warned_of("--units inch"));
+  EXPECT_NE(to_text(read.summary).find("NO UNIT WORD"), std::string::npos);
+  const auto told = read_text("FEDRAT/100,MMPM\nGOTO/1,0,0\nFINI\n", metric());
+  EXPECT_TRUE(told.warnings.empty());
+  EXPECT_EQ(told.summary.unit_source, UnitSource::kCaller);
+}
+
+TEST(Units, OfNoneBesideAFeedInInchAreFlagged) {
+  const auto read = read_text("FEDRAT/10,IPM\nGOTO/1,0,0\nFINI\n");
+  EXPECT_TRUE(read.warned_of("points in millimetre, but feed in inch"));
 }
 
 TEST(Units, DefaultOfTheMachineHelpsAndIsTold) {
@@ -143,7 +153,7 @@ TEST(Units, DefaultOfTheMachineHelpsAndIsTold) {
   options.default_unit = LengthUnit::kInch;
   const auto read = read_text("FEDRAT/1,IPM\nGOTO/1,0,0\nFINI\n", options);
   EXPECT_EQ(read.motion().at(0).tip_mm[0], 25.4);
-  EXPECT_TRUE(read.warned_of("default unit"));
+  EXPECT_TRUE(read.warned_of("read in inch, the machine's default"));
 }
 
 TEST(Units, ComeByBothWordsAndBothSpellings) {

@@ -26,7 +26,7 @@ TEST(Frames, ThatChangeAreGivenInTheFirst) {
   // The second frame lies at (100, 0, 0) of the first and is turned by 90 deg about z.
   const auto read = read_body(
       "MSYS/10,0,0,1,0,0,0,1,0\nGOTO/1,2,3,0,0,1\n"
-      "MSYS/110,0,0,0,1,0,-1,0,0\nGOTO/1,2,3,.6,0,.8\nGODLTA/1,0,0\n"
+      "MSYS/110,0,0,0,1,0,-1,0,0\nGOTO/1,2,3,.6,0,.8\nGODLTA/1,0,0,.6,0,.8\n"
       "MSYS/10,0,0,1,0,0,0,1,0\nGOTO/1,2,3,0,0,1\n");
   ASSERT_EQ(read.error, "");
   const auto m = read.motion();
@@ -104,8 +104,8 @@ TEST(Frames, OfTheCallerComeOnTop) {
   frame.origin = {100, 0, 0};
   options.frame = frame;
   const auto m = read_text(
-                     "FEDRAT/60\nMSYS/5,0,0,1,0,0,0,1,0\nGOTO/1,2,3,.6,0,.8\nGOTO/0,0,0\n"
-                     "MSYS/6,0,0,1,0,0,0,1,0\nGOTO/0,0,0\nFINI\n",
+                     "FEDRAT/60\nMSYS/5,0,0,1,0,0,0,1,0\nGOTO/1,2,3,.6,0,.8\n"
+                     "GOTO/0,0,0,.6,0,.8\nMSYS/6,0,0,1,0,0,0,1,0\nGOTO/0,0,0,.6,0,.8\nFINI\n",
                      options)
                      .motion();
   expect_near(m.at(0).tip_mm, {98, 1, 3});

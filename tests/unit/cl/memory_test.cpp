@@ -29,9 +29,10 @@ class EndlessProgram : public std::streambuf {
     const double x = 10 * std::cos(t);
     const double y = 10 * std::sin(t);
     if (count_ % 3 == 0) {
-      std::snprintf(text.data(), text.size(),
-                    "PAINT/COLOR,%d\r\n$$ note\nCIRCLE/0,0,0,0,0,-1,10\nGOTO/%.10f,%.10f,0\n",
-                    count_, x, y);
+      std::snprintf(
+          text.data(), text.size(),
+          "PAINT/COLOR,%d\r\n$$ note\nCIRCLE/0,0,0,0,0,-1,10\nGOTO/%.10f,%.10f,0,0.,.6,.8\n",
+          count_, x, y);
     } else {
       std::snprintf(text.data(), text.size(), "FEDRAT/%d,MMPM\nGOTO/%.10f,%.10f,0,$\n0.,.6,.8\n",
                     1000 + count_ % 100, x, y);

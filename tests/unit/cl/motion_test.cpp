@@ -12,8 +12,9 @@
 namespace meridian::cl {
 namespace {
 
-TEST(Reader, KeepsTheAxisModalWhereGotoHasThreeNumbers) {
-  const auto read = read_body("GOTO/1,2,3,0,.6,.8\nGOTO/4,5,6\nGOTO/4,5,7,0,0,1\n");
+TEST(Reader, KeepsTheAxisWhereGotoOfNxHasThreeNumbers) {
+  const auto read =
+      read_body("GOTO/1,2,3,0,.6,.8\nGOTO/4,5,6\nGOTO/4,5,7,0,0,1\n", written_by(Dialect::kNx));
   ASSERT_EQ(read.error, "");
   const auto m = read.motion();
   ASSERT_EQ(m.size(), 3U);
@@ -58,7 +59,8 @@ TEST(Reader, LetsFeedBehindRapidWinAndSaysSo) {
 }
 
 TEST(Reader, AddsGodltaToThePositionInAllItsForms) {
-  const auto read = read_body("GOTO/1,2,3,0,.6,.8\nGODLTA/1,0,-1\nGODLTA/10\nGODLTA/0,0,1,0,0,1\n");
+  const auto read = read_body("GOTO/1,2,3,0,.6,.8\nGODLTA/1,0,-1\nGODLTA/10\nGODLTA/0,0,1,0,0,1\n",
+                              written_by(Dialect::kNx));
   ASSERT_EQ(read.error, "");
   const auto m = read.motion();
   EXPECT_EQ(m[1].tip_mm, (Array3{2, 2, 2}));

@@ -61,8 +61,14 @@ inline ClReaderOptions metric() {
 /// Head that most tests share: metric, with a feed.
 inline constexpr std::string_view kHead = "UNITS/MM\nFEDRAT/600,MMPM\n";
 
-inline ReadText read_body(std::string_view body) {
-  return read_text(std::string(kHead) + std::string(body) + "FINI\n");
+inline ReadText read_body(std::string_view body, const ClReaderOptions& options = {}) {
+  return read_text(std::string(kHead) + std::string(body) + "FINI\n", options);
+}
+
+inline ClReaderOptions written_by(Dialect dialect) {
+  ClReaderOptions options;
+  options.dialect = dialect;
+  return options;
 }
 
 }  // namespace meridian::cl

@@ -96,9 +96,8 @@ TEST(Refusal, OfOrphanNumbers) {
 TEST(Refusal, OfWordsThatMoveTheMachineBehindOurBack) {
   for (const char* line :
        {"CYCLE/DRILL,10,MMPM,100,5", "CYCLE/TAP,10,OFF,2", "CYCLE/DEEP2,12.5,IPM,5,.1", "GOHOME",
-        "TRACUT/1,0,0,0,0,1,0,0,0,0,1,0", "TRANS/1,2,3", "ROTABL/90,CLW", "COPY/1,TRANSL,10,0,0,3",
-        "ORIGIN/10,0,0", "CALL/SUB1", "MODE/INCR", "SET/MODE,INCR", "SPINDL/SFM,200",
-        "THREAD/TURN"}) {
+        "ROTABL/90,CLW", "COPY/1,TRANSL,10,0,0,3", "CALL/SUB1", "MODE/INCR", "SET/MODE,INCR",
+        "SPINDL/SFM,200", "THREAD/TURN"}) {
     EXPECT_EQ(read_body("GOTO/1,2,3\n" + std::string(line) + "\nGOTO/1,2,4\n").error_line, 4U)
         << line;
   }

@@ -12,7 +12,7 @@ namespace {
 const std::string kProgram =
     "UNITS/MM\nLOADTL/7\nSPINDL/9000,RPM,CLW\nCOOLNT/FLOOD\n"
     "COOLNT/MIST\nFEDRAT/600,MMPM\nGOTO/1,0,0\nGOTO/2,0,0,0,0.6,0.8\n"
-    "DELAY/1\nGOTO/3,0,0\nFEDRAT/300,MMPM\nGOTO/4,0,0\nFINI\n";
+    "DELAY/1\nGOTO/3,0,0,0,0.6,0.8\nFEDRAT/300,MMPM\nGOTO/4,0,0,0,0.6,0.8\nFINI\n";
 //                             9        10          11               12
 
 ReadText from_line(std::uint32_t line, const std::string& text = kProgram) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/words.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
 #include "read_text.hpp"
+#include "service/cl/words/word_table.hpp"
 
 namespace meridian::cl {
 namespace {
@@ -128,13 +127,17 @@ TEST(Words, OfDwellAndStop) {
   EXPECT_NE(read_body("DELAY/-1\nGOTO/0,0,0\n").error, "");
 }
 
-TEST(Words, ForViewersAreSkippedWithOneWarningEach) {
+TEST(Words, ForViewersAreSkippedAndCounted) {
   const auto read = read_body(
       "PAINT/PATH\nPAINT/SPEED,10\nPAINT/COLOR,186\nDISPLY/ON\nGOTO/0,0,0\nPAINT/TOOL,NOMORE\n");
   EXPECT_EQ(read.error, "");
-  EXPECT_EQ(read.warnings.size(), 2U);
-  EXPECT_EQ(read.warnings.at(0).line, 3U);
-  EXPECT_EQ(read.summary.display_words, 5U);
+  EXPECT_TRUE(read.warnings.empty());
+  ASSERT_EQ(read.summary.skipped.size(), 2U);
+  EXPECT_EQ(read.summary.skipped[0].word, "PAINT");
+  EXPECT_EQ(read.summary.skipped[0].count, 4U);
+  EXPECT_EQ(read.summary.skipped[0].line, 3U);
+  EXPECT_EQ(skipped_text(read.summary), "PAINT (4), DISPLY (1)");
+  EXPECT_NE(to_text(read.summary).find("PAINT (4)"), std::string::npos);
 }
 
 TEST(Words, OfVendorsThatDoNotShapeThePathAreSkipped) {
@@ -142,10 +145,10 @@ TEST(Words, OfVendorsThatDoNotShapeThePathAreSkipped) {
       "CSI_SET_FLUTE_LENGTH/20\nCSI_SET_FLUTE_LENGTH/30\nCSI_STOCK/\"a b\"\nINSERT/(Bohren) [T1] "
       "\"x\"\n"
       "CUTCOM/LEFT\nCUTCOM/OFF\nCYCLE/INIT\nCYCLE/OFF\nMULTAX\nMULTAX/ON\nSET/MODE,ABSOL\n"
-      "PPWORD / A, B, C\nREMARK free $ text\nORIGIN/0,0,0\nGOTO/0,0,0\n");
+      "REMARK free $ text\nORIGIN/0,0,0\nGOTO/0,0,0\n");
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.blocks.size(), 2U);
-  EXPECT_EQ(read.warnings.size(), 4U);  // two CSI_ words, INSERT, CUTCOM
+  EXPECT_EQ(read.warnings.size(), 2U);  // INSERT, CUTCOM
   EXPECT_TRUE(read.warned_of("CUTCOM is not applied"));
 }
 
@@ -157,13 +160,14 @@ TEST(Words, OfInsertedTextAreFlaggedAsTheyMayMoveTheMachine) {
   EXPECT_TRUE(read.warned_of("text for another control"));
 }
 
-TEST(Words, ThatDoNotShapeThePathAreSkippedWithOneWarningEach) {
+TEST(Words, ThatAskAPostprocessorForSomethingAreFlaggedOnceEach) {
   const auto read =
       read_body("LINTOL/ON\nLINTOL/OFF\nOPSKIP/ON\nSEQNO/10\nSEQNO/20\nPPFUN/x\nGOTO/0,0,0\n");
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.blocks.size(), 2U);
-  EXPECT_EQ(read.warnings.size(), 4U);
-  EXPECT_TRUE(read.warned_of("SEQNO is skipped"));
+  ASSERT_EQ(read.warnings.size(), 2U);  // LINTOL, OPSKIP
+  EXPECT_TRUE(read.warned_of("LINTOL is skipped"));
+  EXPECT_EQ(read.warnings[0].count, 2U);
 }
 
 TEST(Words, ThatTheCallerAllowsGoToTheMachine) {

@@ -25,9 +25,9 @@ std::string written(const std::vector<ClBlock>& blocks) {
 TEST(Writer, WritesWhatTheReaderReadsBack) {
   const auto first = read_body(
       "LOADTL/7\nSPINDL/900,CCLW\nCOOLNT/MIST\nRAPID\nGOTO/-123.4567891,2000.25,-.0000001,.1,.2,"
-      ".974679434\nDELAY/.25\nGOTO/1,2,3\nFEDRAT/33.3,MMPM\nGOTO/10,0,0,0,0,1\n"
+      ".974679434\nDELAY/.25\nGOTO/1,2,3,.1,.2,.974679434\nFEDRAT/33.3,MMPM\nGOTO/10,0,0,0,0,1\n"
       "CIRCLE/0,0,0,0,0,-1,10\nGOTO/0,10,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,5,0,.6,.8\n"
-      "FEDRAT/INVERS,30\nGOTO/0,0,0\nAUXFUN/8\nSTOP\nOPSTOP\nCOOLNT/OFF\nSPINDL/OFF\n");
+      "FEDRAT/INVERS,30\nGOTO/0,0,0,0,.6,.8\nAUXFUN/8\nSTOP\nOPSTOP\nCOOLNT/OFF\nSPINDL/OFF\n");
   ASSERT_EQ(first.error, "");
   const auto second = read_text(written(first.blocks));
   ASSERT_EQ(second.error, "") << written(first.blocks);

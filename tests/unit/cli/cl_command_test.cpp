@@ -46,11 +46,40 @@ TEST(ClCommand, TellsASummary) {
 
 TEST(ClCommand, RefusesWithExitCodeThree) {
   EXPECT_EQ(run_tool("cl /no/such/file").exit_code, 3);
-  const CommandOutput outcome = run_tool("cl -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'");
+  const CommandOutput outcome = run_tool("cl -", "printf 'UNITS/MM\\nGOTO/1,2,3\\n'");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.output.find("--units mm"), std::string::npos);
+  EXPECT_NE(outcome.output.find("--feed MM_PER_MIN"), std::string::npos);
   EXPECT_EQ(run_tool("cl --units mm -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'").exit_code, 0);
   EXPECT_EQ(run_tool("cl --units mm --feed 60 -", "printf 'GOTO/1,2,3'").exit_code, 0);
+}
+
+TEST(ClCommand, ReadsAFileWithoutAUnitInMillimetreAndSaysSo) {
+  const CommandOutput outcome = run_tool("cl -s -", "printf 'FEDRAT/60\\nGOTO/1,2,3\\n'");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.output.find("warning: NO UNIT WORD"), std::string::npos) << outcome.output;
+}
+
+TEST(ClCommand, GivesEverythingThatIsWrongWithAFileAtOnceAsTextAndAsJson) {
+  const std::string program =
+      "printf 'UNITS/MM\\nFOO/1\\nGOTO/1,2,3\\nFEDRAT/-1\\nFOO/2\\nGOTO/1,2\\nFINI\\n'";
+  const CommandOutput text = run_tool("cl -", program);
+  EXPECT_EQ(text.exit_code, 3);
+  for (const char* part : {":2: unknown word", "(2 places, first here)", ":3: cutting motion",
+                           ":4: feed", ":6: GOTO needs"}) {
+    EXPECT_NE(text.output.find(part), std::string::npos) << part << "\n" << text.output;
+  }
+  const CommandOutput json = run_tool("cl --json -", program);
+  EXPECT_EQ(json.exit_code, 3);
+  EXPECT_NE(json.output.find("\"is_refused\": true"), std::string::npos) << json.output;
+  EXPECT_NE(json.output.find("\"line\": 6, \"severity\": \"refusal\""), std::string::npos);
+  EXPECT_NE(json.output.find("\"dialect\": \"APT\""), std::string::npos);
+}
+
+TEST(ClCommand, PrintsTheTableOfWords) {
+  const CommandOutput words = run_tool("cl --words");
+  EXPECT_EQ(words.exit_code, 0);
+  EXPECT_NE(words.output.find("GOTO/x,y,z[,i,j,k]"), std::string::npos) << words.output;
+  EXPECT_NE(words.output.find("PROBE/..."), std::string::npos) << words.output;
 }
 
 TEST(ClCommand, PassesEachWordThatIsAllowed) {

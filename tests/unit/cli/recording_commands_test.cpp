@@ -17,8 +17,8 @@ using meridian::test::TextFile;
 
 const std::string kMachine = " --machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml ";
 constexpr const char* kPart =
-    "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -40, 20\n"
-    "GOTO / 90, -35, 20\nFINI\n";
+    "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
+    "GOTO / 90, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -35, 20, 0, 0.6, 0.8\nFINI\n";
 
 class RecordingCommands : public testing::Test {
  protected:
@@ -97,7 +97,7 @@ std::string line_of_first_motion(const std::string& recording) {
 TEST_F(RecordingCommands, SimulateLeavesThePartBeforeTheSpindleWhereItBeginsInTheMiddle) {
   const TextFile part(
       "UNITS / MM\nSPINDL / RPM, 8000, CLW\nFEDRAT / 1200, MMPM\n"
-      "GOTO / 80, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -40, 20\nFINI\n",
+      "GOTO / 80, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -40, 20, 0, 0.6, 0.8\nFINI\n",
       ".apt");
   const std::string simulate = "simulate " + part.path().string() + kMachine +
                                "--auxiliary ignore --record " + recording() + " ";
@@ -123,8 +123,8 @@ TEST_F(RecordingCommands, SimulateThenCheckIsFine) {
 TEST_F(RecordingCommands, CheckSaysNoWhereTheMotionIsNotThatOfTheFile) {
   ASSERT_EQ(run_tool("simulate " + part() + kMachine + "--record " + recording()).exit_code, 0);
   const TextFile other(
-      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -40, 20\n"
-      "GOTO / 90, -35.002, 20\nFINI\n",
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
+      "GOTO / 90, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -35.002, 20, 0, 0.6, 0.8\nFINI\n",
       ".apt");
   const std::string arguments = "check " + recording() + " " + other.path().string() + kMachine;
   EXPECT_EQ(run_tool(arguments).exit_code, 0) << "inside the machine's tolerance";
@@ -230,9 +230,9 @@ TEST_F(RecordingCommands, WrongInputIsRefusedByName) {
   const CommandOutput no_recording = run_tool("check " + part() + " " + part() + kMachine);
   EXPECT_EQ(no_recording.exit_code, 3);
   EXPECT_NE(no_recording.output.find("no recording"), std::string::npos) << no_recording.output;
-  const CommandOutput unitless =
+  const CommandOutput feedless =
       run_tool("simulate " + TextFile("GOTO/1,2,3\nFINI\n", ".apt").path().string() + kMachine);
-  EXPECT_EQ(unitless.exit_code, 3);
+  EXPECT_EQ(feedless.exit_code, 3);
   const TextFile events("5,dance\n", ".csv");
   const CommandOutput bad_events =
       run_tool("simulate " + part() + kMachine + "--events " + events.path().string());

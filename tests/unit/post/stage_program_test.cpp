@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kTurning =
     "UNITS/MM\nMULTAX/ON\nFEDRAT/600,MMPM\nGOTO/20,0,10,0,0,1\nGOTO/30,5,10,0.1,0.1,0.98995\n"
-    "RAPID\nGOTO/30,5,60\nFINI\n";
+    "RAPID\nGOTO/30,5,60,0.1,0.1,0.98995\nFINI\n";
 
 /// A program for a staged machine, read as its controller would.
 struct Read {

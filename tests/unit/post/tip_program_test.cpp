@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kProgram =
     "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/6000,RPM,CLW\nCOOLNT/FLOOD\nRAPID\n"
     "GOTO/10,20,60,0,0,1\nFEDRAT/600,MMPM\nGOTO/10,20,50\nGOTO/30,20,50,0,-0.6,0.8\nDELAY/0.5\n"
-    "OPSTOP\nRAPID\nGOTO/30,20,80\nFINI\n";
+    "OPSTOP\nRAPID\nGOTO/30,20,80,0,-0.6,0.8\nFINI\n";
 
 /// Lines of the program without comments and, in Klartext, without block numbers.
 std::string lines_of(const std::string& text) {

@@ -118,9 +118,11 @@ TEST_F(Simulate, SaysWhatTheStopsAtVerticesCostInExactStopAlone) {
   // Four blocks of 20 mm in a row: their rests cost more than those of one block of 80 mm.
   const std::string head = "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n";
   std::string text = head;
-  for (int n = 1; n <= 4; ++n) text += "GOTO / " + std::to_string(80 - 20 * n) + ", -40, 20\n";
+  for (int n = 1; n <= 4; ++n)
+    text += "GOTO / " + std::to_string(80 - 20 * n) + ", -40, 20, 0, 0.6, 0.8\n";
   const SimulateReport four = run_simulation(text + "FINI\n", model).report;
-  const SimulateReport one = run_simulation(head + "GOTO / 0, -40, 20\nFINI\n", model).report;
+  const SimulateReport one =
+      run_simulation(head + "GOTO / 0, -40, 20, 0, 0.6, 0.8\nFINI\n", model).report;
   EXPECT_NEAR(four.vertex_stops_s, 4 * one.vertex_stops_s, 0.01);
   // The feed of 20 mm/s is reached in every block: what the rests cost is what they add.
   EXPECT_NEAR(four.program_s - one.program_s, 3 * one.vertex_stops_s, 0.02);
@@ -368,8 +370,9 @@ TEST_F(Simulate, DoesActionsAtOnceAndResumesAtStops) {
 
 TEST_F(Simulate, ChangesToolsOfItsTable) {
   const char* text =
-      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.1, 0.994987\nGOTO / 95, -40, 20\n"
-      "LOADTL / 3\nGOTO / 95, -40, 30\nGOTO / 80, -40, 30\nFINI\n";
+      "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.1, 0.994987\n"
+      "GOTO / 95, -40, 20, 0, 0.1, 0.994987\nLOADTL / 3\nGOTO / 95, -40, 30, 0, 0.1, 0.994987\n"
+      "GOTO / 80, -40, 30, 0, 0.1, 0.994987\nFINI\n";
   const ToolTable tools({{3, 130, 8}});
   const SimulatedRun run = run_simulation(text, model, {}, tools);
   EXPECT_EQ(run.report.outcome, Outcome::kDone) << to_text(run.report, model);
