@@ -11,20 +11,21 @@
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/record/joint_judge.hpp"
-#include "service/record/path_judge.hpp"
+#include "service/record/path_check.hpp"
 #include "service/record/unwind_judge.hpp"
 
 namespace meridian::record {
 namespace {
 
-/// Distances to the path's ends this close to the least count as there, mm.
-constexpr double kSamePlace_mm = 1e-6;
+/// Distances to the path's begin this close to the least count as there, in tip tolerances.
+constexpr double kSameBegin = 0.1;
 constexpr double kMmPerRad = 50;  ///< what a turn of the axis counts for in them
 
 /// What the first reading of a recording finds: its grid, and where the cut begins and ends.
 class Survey {
  public:
-  Survey(const CheckedPath& path, const MachineModel& model) : path_(path), model_(model) {}
+  Survey(const CheckedPath& path, const MachineModel& model, double tip_tolerance_mm)
+      : path_(path), model_(model), slack_(kSameBegin * tip_tolerance_mm) {}
 
   void add(const RecordingRow& row) {
     if (rows_ == 0) first_cycle_ = row.cycle;
@@ -120,8 +121,8 @@ class Survey {
     return (pose.tip - to.tip).norm() + kMmPerRad * angle_between(pose.axis, to.axis);
   }
 
-  /// The cut begins where the joints leave the place nearest to the path's begin for the first
-  /// time, and ends with the last motion of the program: that of the next begins with its approach.
+  /// The cut begins where the joints leave the path's begin for the first time, as near to it as
+  /// ever, and ends with the last motion of the program: that of the next begins with its approach.
   void find_ends(const RecordingRow& row, bool has_moved) {
     const bool is_led = is_leading(row.flags);
     // Where drives are switched on, the joints are led from where those stand: that is no motion.
@@ -139,10 +140,18 @@ class Survey {
     // What lay beside the begin before the approach was the place of another program.
     if (has_moved && row.kind == MotionKind::kApproach) begins_.clear();
     const double to_begin = distance(row, path_.begin_tool_length_mm(), path_.begin());
-    if (begins_.empty() || to_begin < begins_.back().distance) {
-      begins_.push_back({to_begin, row.cycle});
-      while (begins_.front().distance > to_begin + kSamePlace_mm) begins_.pop_front();
-    }
+    note_begin(to_begin, row.cycle);
+  }
+
+  /// Of each stay at the begin the nearest pose, of those that came nearer than the ones before.
+  void note_begin(double distance, std::uint64_t cycle) {
+    if (begins_.empty()) is_there_ = false;
+    if (is_there_ && distance > begins_.back().distance + slack_) is_there_ = false;
+    if (!begins_.empty() && distance >= begins_.back().distance) return;
+    if (is_there_) begins_.pop_back();
+    is_there_ = true;
+    begins_.push_back({distance, cycle});
+    while (begins_.front().distance > distance + slack_) begins_.pop_front();
   }
 
   const CheckedPath& path_;
@@ -158,6 +167,8 @@ class Survey {
     std::uint64_t cycle;  ///< the last one at rest there
   };
   std::deque<Begin> begins_;  ///< nearer and nearer to the path's begin, all as near as the last
+  double slack_;
+  bool is_there_ = false;  ///< the last of them has not been left
   LimitedVector largest_{};
 };
 
@@ -176,6 +187,13 @@ template <class Use>
 }
 
 }  // namespace
+
+double CheckOptions::max_feed_factor() const noexcept {
+  if (overrides.empty()) return feed_factor;
+  double highest = 1;
+  for (const FeedOverride& set : overrides) highest = std::max(highest, set.factor);
+  return highest;
+}
 
 Expected<CheckReport, RecordError> check(RecordingReader& recording, const CheckedPath& path,
                                          const MachineModel& model, const CheckOptions& wanted) {
@@ -196,7 +214,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   report.tip_length_mm = path.tip_length_mm();
   report.cycle_s = static_cast<double>(model.cycle_ns) * 1e-9;
 
-  Survey survey(path, model);
+  Survey survey(path, model, options.tip_tolerance_mm);
   auto read = for_each(recording, options, [&survey](const RecordingRow& row) { survey.add(row); });
   if (!read) return tl::make_unexpected(std::move(read.error()));
   survey.finish(report, options);
@@ -205,14 +223,19 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   if (report.rows == 0) return report;
 
   JointJudge joints(model, survey.largest());
-  PathJudge tool(model, path, options);
+  PathCheck tool(model, path, options);
   UnwindJudge unwinding(model, path.begin_tool_length_mm(), options);
   const bool has_cut = survey.has_cut(options);
+  std::uint64_t next_cycle = report.begin_cycle, missing = 0;
   read = for_each(recording, options, [&](const RecordingRow& row) {
     joints.add(row, recording.has_velocity());
     if (has_cut && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
       if ((row.flags & kSetpointDryEnabled) != 0) ++report.dry_cut_cycles;
-      if (!unwinding.add(row)) tool.add(row);
+      missing += row.cycle > next_cycle ? row.cycle - next_cycle : 0;
+      next_cycle = row.cycle + 1;
+      if (unwinding.add(row)) return;
+      tool.add(row, missing);
+      missing = 0;
     }
   });
   if (!read) return tl::make_unexpected(std::move(read.error()));

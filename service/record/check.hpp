@@ -26,15 +26,18 @@ struct CheckOptions {
   bool allow_unfinished = false;        ///< the run was ended before the path was
   std::uint64_t from_cycle = 0;         ///< rows before are not looked at
   std::uint64_t to_cycle = std::numeric_limits<std::uint64_t>::max();
+
+  /// Highest feed override of the run, at least 1.
+  [[nodiscard]] double max_feed_factor() const noexcept;
 };
 
 /// Judges a recording against the path of its CL file and the limits of the machine, by forward
 /// kinematics and finite differences alone:
 ///
-/// * every commanded pose, at the setpoints and at three places between neighbouring ones (cubic
-///   through four), has a programmed pose near the place being cut within tip and axis tolerance
-///   together; every CL vertex is passed within the tip tolerance, the whole path is cut, and
-///   nothing more;
+/// * there is a monotone matching of commanded poses and path, from begin to end, in which every
+///   pose, at the setpoints and at three points between neighbouring ones (cubic through four), and
+///   every CL vertex in its turn is within tip and axis tolerance together: nothing is missing,
+///   nothing more is cut, nothing in another order;
 /// * rows of kind `unwind` leave the path along the tool axis alone, turn the free joint by whole
 ///   turns off the part, and come back to where they left;
 /// * tip speed never above the programmed feed, times the feed override in force or in force as

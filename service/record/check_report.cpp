@@ -55,6 +55,8 @@ std::string_view word(Finding::Kind kind) noexcept {
       return "axis";
     case Finding::Kind::kVertex:
       return "vertex";
+    case Finding::Kind::kOrder:
+      return "order";
     case Finding::Kind::kUnfinished:
       return "unfinished";
     case Finding::Kind::kFeed:

@@ -57,6 +57,7 @@ struct Finding {
     kTip,
     kAxis,
     kVertex,
+    kOrder,
     kUnfinished,
     kFeed,
     kTurnRate,

@@ -127,18 +127,4 @@ void CheckedPath::add(const ClBlock& block, double new_tool_length_mm) {
   end_ = goal;
 }
 
-std::size_t CheckedPath::element_at(double s) const noexcept {
-  const auto after =
-      std::upper_bound(elements_.begin(), elements_.end(), s,
-                       [](double value, const PathElement& element) { return value < element.s; });
-  return after == elements_.begin() ? 0 : static_cast<std::size_t>(after - elements_.begin()) - 1;
-}
-
-double CheckedPath::way_at(double s) const noexcept {
-  const PathElement& element = elements_[element_at(s)];
-  if (!(element.length > 0)) return element.way;
-  const double share = std::clamp((s - element.s) / element.length, 0.0, 1.0);
-  return element.way + share * element.way_length;
-}
-
 }  // namespace meridian::record

@@ -37,6 +37,8 @@ struct PathElement {
 
   /// Of `length`, what the tip goes.
   [[nodiscard]] double tip_length() const noexcept;
+  /// The way at `t` in [0, 1].
+  [[nodiscard]] double way_to(double t) const noexcept { return way + t * way_length; }
   /// Pose at `t` in [0, 1].
   [[nodiscard]] ToolPose pose(double t) const noexcept;
   /// Derivative of pose by t.
@@ -62,9 +64,6 @@ class CheckedPath {
   [[nodiscard]] std::uint32_t begin_line() const noexcept { return begin_line_; }
   [[nodiscard]] std::uint64_t motion_block_count() const noexcept { return motion_blocks_; }
   [[nodiscard]] double tip_length_mm() const noexcept { return tip_length_mm_; }
-  /// The element at common length `s`, and the way there. There is one at least.
-  [[nodiscard]] std::size_t element_at(double s) const noexcept;
-  [[nodiscard]] double way_at(double s) const noexcept;
   /// Common length of all elements.
   [[nodiscard]] double length() const noexcept { return length_; }
 

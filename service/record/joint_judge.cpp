@@ -80,6 +80,7 @@ void JointJudge::judge_velocity(int joint) {
 }
 
 /// The recorded drives are those of the recorded joints, to rounding; how near a dead point was.
+/// Before drives are led nobody may know yet where they are.
 void JointJudge::judge_stage(const RecordingRow& row) {
   const LimitedVector wanted = limited_of(model_, row.joints);
   double apart = 0;
@@ -90,7 +91,8 @@ void JointJudge::judge_stage(const RecordingRow& row) {
   note(unfit_, apart, !(apart <= kStageFit_mm));
   const double determinant = std::abs(stage::determinant(model_.stage, row.joints));
   stage_use_.determinant_mm =
-      has_row_ ? std::min(stage_use_.determinant_mm, determinant) : determinant;
+      has_led_ ? std::min(stage_use_.determinant_mm, determinant) : determinant;
+  has_led_ = true;
 }
 
 void JointJudge::add(const RecordingRow& row, bool has_velocity) {
@@ -105,7 +107,7 @@ void JointJudge::add(const RecordingRow& row, bool has_velocity) {
   run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;
   if ((row.flags & kSetpointFaultStop) != 0) ++fault_rows_;
   if ((row.flags & kSetpointDryEnabled) != 0) ++dry_rows_;
-  if (has_stage(model_)) judge_stage(row);
+  if (has_stage(model_) && is_leading(row.flags)) judge_stage(row);
   for (int i = 0; i < limited_count(model_); ++i) {
     const double q = row.places[i];
     const JointSpec& spec = limited_spec(model_, i);

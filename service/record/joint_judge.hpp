@@ -33,7 +33,7 @@ class JointJudge {
   LimitedVector ulp_{};
   std::array<RecordingRow, kDepth> rows_{};  ///< newest last
   int run_ = 0;                              ///< consecutive enabled cycles at the end of rows_
-  bool has_row_ = false, is_homing_ = false;
+  bool has_row_ = false, has_led_ = false, is_homing_ = false;
   std::array<JointUse, kMaxLimited> use_{};
   std::array<std::array<Excess, 3>, kMaxLimited> over_{};
   std::array<Excess, kMaxLimited> outside_{};

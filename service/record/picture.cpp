@@ -120,6 +120,12 @@ void print_data(std::FILE* out, const PictureData& data, const MachineModel& mod
 /// Column of a joint's lowest position; the highest and the shares of its three limits follow.
 [[nodiscard]] constexpr int column_of(int joint) { return 6 + 5 * joint; }
 
+[[nodiscard]] bool has_joint(const MachineModel& model, bool is_rotary) {
+  return std::any_of(model.joints.begin(), model.joints.begin() + model.joint_count,
+                     [&](const JointSpec& joint) { return joint.is_rotary == is_rotary; });
+}
+
+/// One panel of the linear joints or of the rotary ones, of which there is one at least.
 void print_joints(std::FILE* out, const MachineModel& model, bool is_rotary) {
   std::fprintf(out, "set ylabel 'joints, %s'\n", is_rotary ? "deg" : "mm");
   const char* separator = "plot";
@@ -133,7 +139,7 @@ void print_joints(std::FILE* out, const MachineModel& model, bool is_rotary) {
                  quoted(model.joints[i].name).c_str());
     separator = ",";
   }
-  std::fputs(separator[0] == 'p' ? "plot NaN notitle\n" : "\n", out);
+  std::fputs("\n", out);
 }
 
 void print_velocities(std::FILE* out, const MachineModel& model) {
@@ -215,18 +221,19 @@ void print_script(std::FILE* out, const PictureData& data, const MachineModel& m
       "set tmargin 0.8\nset format x ''\n",
       out);
   std::fprintf(out, "set xrange [0:%.7g]\n", data.columns.back().time_s);
-  constexpr double kHeight = 0.9 / 6;
-  int place = 0;
+  const int panels = 4 + has_joint(model, false) + has_joint(model, true);
+  const double height = 0.9 / panels;
+  int panel = 0;
   const auto next = [&] {
-    std::fprintf(out, "set origin 0.5,%.4f\nset size 0.5,%.4f\n", 0.95 - kHeight * ++place,
-                 kHeight);
+    std::fprintf(out, "set origin 0.5,%.4f\nset size 0.5,%.4f\n", 0.95 - height * ++panel, height);
   };
   next();
   print_feed(out, data);
-  next();
-  print_joints(out, model, false);
-  next();
-  print_joints(out, model, true);
+  for (const bool is_rotary : {false, true}) {
+    if (!has_joint(model, is_rotary)) continue;
+    next();
+    print_joints(out, model, is_rotary);
+  }
   next();
   print_velocities(out, model);
   next();

@@ -27,21 +27,21 @@ constexpr double kNoFeed = PathElement::kNoFeed;
 
 }  // namespace
 
-SpeedJudge::SpeedJudge(const MachineModel& model, const CheckedPath& path, double reach,
+SpeedJudge::SpeedJudge(const MachineModel& model, const CheckedPath& path,
                        const CheckOptions& options)
     : model_(model),
       path_(path),
       options_(options),
-      reach_(reach),
       period_(static_cast<double>(model.cycle_ns) * 1e-9),
       overrides_(options.overrides, ramp_cycles(model)) {}
 
 /// The fastest that blocks on a stretch of the path ask for; where one is in inverse time also
 /// those within reach, and where all are the axis is bounded too. No block in inverse time counts
 /// for less than a tolerance over the reach.
-SpeedJudge::Speeds SpeedJudge::asked_about(double s_low, double s_high) const noexcept {
+SpeedJudge::Speeds SpeedJudge::asked_between(PathMatching::Position low,
+                                             PathMatching::Position high) const noexcept {
   const auto& elements = path_.elements();
-  std::size_t first = path_.element_at(s_low), last = path_.element_at(s_high);
+  std::size_t first = low.element, last = high.element;
   bool is_timed = false, bounds_axis = true;
   for (std::size_t i = first; i <= last; ++i) {
     is_timed = is_timed || elements[i].is_timed;
@@ -49,8 +49,8 @@ SpeedJudge::Speeds SpeedJudge::asked_about(double s_low, double s_high) const no
   }
   if (is_timed) {
     const auto has_feed = [&](std::size_t i) { return elements[i].feed_mm_per_s < kNoFeed; };
-    const double from = path_.way_at(s_low) - kSpeedReach_mm;
-    const double to = path_.way_at(s_high) + kSpeedReach_mm;
+    const double from = elements[first].way_to(low.t) - kSpeedReach_mm;
+    const double to = elements[last].way_to(high.t) + kSpeedReach_mm;
     while (first > 0 && elements[first].way >= from && has_feed(first - 1)) --first;
     while (last + 1 < elements.size() && elements[last + 1].way <= to && has_feed(last + 1)) ++last;
   }
@@ -66,13 +66,12 @@ SpeedJudge::Speeds SpeedJudge::asked_about(double s_low, double s_high) const no
   return out;
 }
 
-void SpeedJudge::add(const ToolPose& from, const ToolPose& to, double s_from, double s_to,
-                     std::uint64_t cycle, std::uint32_t line) {
+void SpeedJudge::add(const ToolPose& from, const ToolPose& to, PathMatching::Position low,
+                     PathMatching::Position high, std::uint64_t cycle, std::uint32_t line) {
   const double speed = (to.tip - from.tip).norm() / period_;
   speed_.raise(speed, cycle, line);
   if (path_.elements().empty()) return;
-  const Speeds asked =
-      asked_about(std::min(s_from, s_to) - reach_, std::max(s_from, s_to) + reach_);
+  const Speeds asked = asked_between(low, high);
   const double factor = options_.overrides.empty() ? options_.feed_factor : overrides_.at(cycle);
   double allowed = asked.tip_mm_per_s * factor;
   if (model_.max_feed_mm_per_s > 0 && std::isfinite(allowed)) {

@@ -5,6 +5,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/record/check.hpp"
+#include "service/record/path_matching.hpp"
 
 namespace meridian::record {
 
@@ -13,14 +14,12 @@ namespace meridian::record {
 /// check_inverse_time_test.cpp.
 class SpeedJudge {
  public:
-  /// `reach`: how far along the path a place may lie from where its pose is matched, mm.
-  SpeedJudge(const MachineModel& model, const CheckedPath& path, double reach,
-             const CheckOptions& options);
+  SpeedJudge(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
 
-  /// From one setpoint to the next one, which is that of `cycle`; `s_from` and `s_to`: where on the
-  /// path they were matched. Cycles go up.
-  void add(const ToolPose& from, const ToolPose& to, double s_from, double s_to,
-           std::uint64_t cycle, std::uint32_t line);
+  /// From one setpoint to the next one, which is that of `cycle`; all matchings of the two are
+  /// between `low` and `high`. Cycles go up.
+  void add(const ToolPose& from, const ToolPose& to, PathMatching::Position low,
+           PathMatching::Position high, std::uint64_t cycle, std::uint32_t line);
   /// Adds what was found to the report.
   void finish(CheckReport& report) const;
 
@@ -29,12 +28,13 @@ class SpeedJudge {
   struct Speeds {
     double tip_mm_per_s = 0, turn_rad_per_s = 0;
   };
-  [[nodiscard]] Speeds asked_about(double s_low, double s_high) const noexcept;
+  [[nodiscard]] Speeds asked_between(PathMatching::Position low,
+                                     PathMatching::Position high) const noexcept;
 
   const MachineModel& model_;
   const CheckedPath& path_;
   CheckOptions options_;
-  double reach_, period_;
+  double period_;
   FeedInForce overrides_;
   Peak feed_, speed_;
   Excess feed_over_, turn_over_;

@@ -7,21 +7,14 @@
 namespace meridian::record {
 namespace {
 
-/// Tolerances by which a match may lag where a tool turns round ahead of its path, and the ends.
+/// Tolerances by which it is not known where on its path the tool is, and the ends.
 constexpr double kLag = 10;
-
-[[nodiscard]] double highest_override(const CheckOptions& options) {
-  if (options.overrides.empty()) return options.feed_factor;
-  double most = 1;
-  for (const FeedOverride& set : options.overrides) most = std::max(most, set.factor);
-  return most;
-}
 
 }  // namespace
 
 TimeJudge::TimeJudge(const CheckedPath& path, double tolerance_mm, double period_s,
                      const CheckOptions& options)
-    : path_(path), tolerance_(tolerance_mm), period_(period_s), factor_(highest_override(options)) {
+    : path_(path), tolerance_(tolerance_mm), period_(period_s), factor_(options.max_feed_factor()) {
   entered_.reserve(path.elements().size());
   worst_.kind = Finding::Kind::kBlockTime;
 }

@@ -7,16 +7,12 @@
 #include <numbers>
 
 #include "meridian/geometry/great_circle.hpp"
-#include "service/record/path_follower.hpp"
 #include "support/sample_recording.hpp"
 
 namespace meridian::record {
 namespace {
 
 using test::cut_to;
-
-constexpr double kTip_mm = 1e-3;
-constexpr double kAxis_rad = 1e-5;
 
 TEST(CheckedPath, BeginsAtTheFirstMotionBlock) {
   CheckedPath path(100, 0);
@@ -91,53 +87,6 @@ TEST(CheckedPath, MovesTheTipWithANewTool) {
   ASSERT_EQ(path.elements().size(), 1U);
   EXPECT_EQ(path.elements()[0].pose(0).tip, Vector3(0, 0, -30));
   EXPECT_EQ(path.elements()[0].tool_length_mm, 130);
-}
-
-TEST(PathFollower, MinimisesTipAndAxisTogether) {
-  CheckedPath path(100, 0);
-  path.add(cut_to(1, {0, 0, 0}, 0, 10), 0);
-  path.add(cut_to(2, {0.01, 0, 0}, 0.2, 10), 0);  // the axis turns fast: the nearest tip is far off
-  PathFollower follower(path, kTip_mm, kAxis_rad * 100);
-  const ToolPose pose{{0.0040, 0, 0}, {std::sin(0.0802), 0, std::cos(0.0802)}};
-  const PoseMatch match = follower.follow(pose);
-  EXPECT_LT(follower.badness(match), 0.2);
-  for (double t = 0; t <= 1; t += 1e-4) {
-    EXPECT_LE(follower.badness(match), follower.measure(pose, 0, t) + 1e-6);
-  }
-}
-
-TEST(PathFollower, GoesThereAndBackOnTheSameLine) {
-  CheckedPath path(100, 0);
-  path.add(cut_to(1, {0, 0, 0}, 0, 10), 0);
-  path.add(cut_to(2, {5, 0, 0}, 0, 10), 0);
-  path.add(cut_to(3, {0, 0, 0}, 0, 10), 0);
-  path.add(cut_to(4, {5, 0, 0}, 0, 10), 0);
-  PathFollower follower(path, kTip_mm, kAxis_rad);
-  for (int i = 0; i <= 3000; ++i) {
-    const double s = 0.005 * i;
-    const double x = s < 5 ? s : s < 10 ? 10 - s : s - 10;
-    const PoseMatch match = follower.follow({{x, 0, 0}, {0, 0, 1}});
-    ASSERT_LT(match.tip_mm, 1e-9);
-    ASSERT_NEAR(match.s, s, 1e-6);
-  }
-}
-
-TEST(PathFollower, CountsWhatIsBesideAnArc) {
-  CheckedPath path(100, 0);
-  path.add(cut_to(1, {10, 0, 0}, 0, 10), 0);
-  ClBlock arc = cut_to(2, {10, 0, 0}, 0, 10);
-  arc.is_arc = true;
-  arc.sweep_rad = 2 * std::numbers::pi;
-  path.add(arc, 0);
-  PathFollower follower(path, kTip_mm, kAxis_rad);
-  for (int i = 0; i <= 6283; ++i) {
-    const double angle = 0.001 * i;
-    const double radius = 10 + (i > 3000 ? 0.0007 : 0);
-    const PoseMatch match =
-        follower.follow({{radius * std::cos(angle), radius * std::sin(angle), 0}, {0, 0, 1}});
-    ASSERT_NEAR(match.tip_mm, radius - 10, 1e-9) << i;
-    ASSERT_NEAR(match.s, 10 * angle, 1e-4);
-  }
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <string>
 
 #include "scratch.hpp"
 #include "service/record/picture_data.hpp"
+#include "support/family_machines.hpp"
 #include "support/machines.hpp"
 #include "support/sample_recording.hpp"
 
@@ -67,6 +69,28 @@ TEST_F(Picture, SaysThatTheFeedIsUnknownWhereTheFileHasNone) {
   ASSERT_FALSE(draw(reader, path, model, "part", svg.path()));
   EXPECT_EQ(test::read_text(svg.path()).find("feed unknown"), std::string::npos);
   EXPECT_NE(test::read_text(svg.path()).find("programmed"), std::string::npos);
+}
+
+TEST(PictureOfARobot, HasNoPanelOfLinearJoints) {
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "gnuplot is not installed";
+  MachineModel model = test::robot_machine(true);
+  for (int i = 0; i < model.joint_count; ++i) model.joints[i].name = "j" + std::to_string(i + 1);
+  JointVector joints{0.1, 0.2, -0.3, 0.1, 0.7, 0.2};
+  std::vector<CycleRecord> records(200);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    joints[0] += 1e-5 * static_cast<double>(i);
+    records[i].joints = records[i].setpoint.position = joints;
+    records[i].setpoint.cycle = i + 1;
+    records[i].setpoint.flags = kSetpointEnabled;
+  }
+  const Scratch csv(".csv"), svg(".svg");
+  RecordingReader reader = test::write_and_open(csv.path(), model, records);
+  const auto error = draw(reader, CheckedPath{0, 0}, model, "part", svg.path());
+  ASSERT_FALSE(error) << error->text();
+  const std::string text = test::read_text(svg.path());
+  EXPECT_NE(text.find("joints, deg"), std::string::npos);
+  EXPECT_EQ(text.find("joints, mm"), std::string::npos);
 }
 
 TEST_F(Picture, ShowsTheToolAxisAlongTheCut) {

@@ -126,6 +126,16 @@ TEST_F(StageRecording, ADriveThatIsNotWhereTheJointsPutItIsFound) {
   expect_only(Finding::Kind::kStage, "1e-07");
 }
 
+TEST_F(StageRecording, DrivesThatNobodyHasHeardOfYetAreNotHeldAgainstTheJoints) {
+  for (std::size_t i = 0; i < 5; ++i) {
+    records[i].setpoint.flags = 0;
+    records[i].setpoint.position = JointVector{};
+  }
+  EXPECT_TRUE(run().passed()) << to_text(run());
+  records[2].setpoint.flags = kSetpointEnabled;
+  EXPECT_FALSE(run().passed());
+}
+
 TEST_F(StageRecording, ADriveBeyondItsLimitsIsFoundByName) {
   model.stage_drives[1].limits.velocity = 5;
   expect_only(Finding::Kind::kVelocity, "u2");
