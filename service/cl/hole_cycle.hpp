@@ -18,7 +18,8 @@ enum class HoleKind : std::uint8_t {
   kDeep,       ///< in pecks, out of the hole behind each
   kChipBreak,  ///< in pecks, a little back behind each
   kFeedOut,    ///< feed in, dwell, feed out: REAM, BORE
-  kStopOut     ///< feed in, dwell, spindle stop, rapid out, spindle start: BORE,DRAG
+  kStopOut,    ///< feed in, dwell, spindle stop, rapid out, spindle start: BORE,DRAG
+  kRefused     ///< nothing: its definition was refused, and its holes say no more than that
 };
 
 /// Where the tool goes behind a hole.

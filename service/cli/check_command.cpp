@@ -59,12 +59,14 @@ void find_overrides(Options& options, const MachineModel& model) {
 }
 
 int check(Options& options, const MachineModel& model) {
-  const ToolTable tools = load_tools(options.machine);
+  ToolTable tools = load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
   if (!options.file.empty()) {
+    cl::ClReaderOptions reading = reader_options(options.cl, model);
+    add_unknown_tools(options.file, reading, options.machine, tools);
+    set_home(reading, model, tools);
     std::vector<cl::ClWarning> warnings;
-    const std::string refusal =
-        record::read_path(options.file, reader_options(options.cl, model), tools, path, &warnings);
+    const std::string refusal = record::read_path(options.file, reading, tools, path, &warnings);
     print_warnings(options.file, warnings);
     if (!refusal.empty()) return refuse(refusal);
   }

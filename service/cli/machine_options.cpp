@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cli/machine_options.hpp"
 
+#include <iostream>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/config/config_error.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/stream/preflight.hpp"
 
 namespace meridian::cli {
 
@@ -23,6 +28,10 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
                   "file's tool_length_mm")
       ->needs(tools)
       ->check(finite_positive());
+  command
+      .add_option("--unknown-tool-length", options.unknown_tool_length_mm,
+                  "Length of every tool that the program calls and the table has not, mm")
+      ->check(finite_range(0.0, 1e4));
 }
 
 MachineModel load_machine(const MachineOptions& options) {
@@ -45,6 +54,42 @@ MachineModel load_machine(const MachineOptions& options) {
 
 ToolTable load_tools(const MachineOptions& options) {
   return options.tools.empty() ? ToolTable() : config::load_tools(options.tools);
+}
+
+void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reader,
+                       const MachineOptions& options, ToolTable& tools) {
+  if (!options.unknown_tool_length_mm || file == "-") return;
+  std::vector<Tool> all = tools.tools();
+  for (const int number : stream::unknown_tools(file, reader, tools)) {
+    all.push_back({number, *options.unknown_tool_length_mm, 0});
+  }
+  tools = ToolTable(std::move(all));
+}
+
+void set_home(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools) {
+  reader.home = [model, tools](std::optional<std::uint32_t> number) -> std::optional<ToolPose> {
+    double length_mm = model.tool_length_mm;
+    if (number) {
+      const Tool* const tool = tools.find(static_cast<int>(*number));
+      if (tool == nullptr) return std::nullopt;
+      length_mm = tool->length_mm;
+    }
+    JointVector home{};
+    for (int i = 0; i < model.joint_count; ++i) home[i] = model.joints[i].home;
+    return forward(model, length_mm, home);
+  };
+}
+
+bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,
+               const MachineModel& model, ToolTable& tools) {
+  add_unknown_tools(file, reader, options, tools);
+  set_home(reader, model, tools);
+  if (file == "-") return true;
+  const stream::PreflightReport report = stream::preflight(
+      file, reader,
+      stream::PreflightMachine{model, tools, "give --tools FILE or --unknown-tool-length MM"});
+  std::cerr << to_text(report.findings, file);
+  return !report.is_refused;
 }
 
 cl::ClReaderOptions reader_options(const ClFileOptions& file, const MachineModel& model) {

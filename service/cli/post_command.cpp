@@ -33,7 +33,7 @@ int refuse(const std::string& message) {
 
 int run(Options options) {
   const MachineModel model = load_machine(options.machine);
-  const ToolTable tools = load_tools(options.machine);
+  ToolTable tools = load_tools(options.machine);
   const std::map<std::string, post::Dialect> dialects = {
       {"joints", post::Dialect::kJoints},
       {"fanuc", post::Dialect::kFanuc},
@@ -50,9 +50,11 @@ int run(Options options) {
   std::ifstream file;
   std::istream* const input = open_cl_file(options.file, file);
   if (input == nullptr) return refuse(options.file + ": cannot be opened");
-  cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
+  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
+  cl::ClReader reader(*input, options.file, reading);
   const auto program = post::write_nc(reader, options.file, model, tools, options.post);
-  print_warnings(options.file, reader.warnings());
+  if (options.file == "-") print_warnings(options.file, reader.warnings());
   if (!program) {
     const post::PostError& error = program.error();
     return refuse(options.file + (error.line > 0 ? ":" + std::to_string(error.line) : "") + ": " +

@@ -112,7 +112,7 @@ int run(const Options& options) {
   if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
   if (options.pole_policy == "exact") model.pole_policy = PolePolicy::kExact;
   if (options.override_ramp_s > 0) model.override_ramp_s = options.override_ramp_s;
-  const ToolTable tools = load_tools(options.machine);
+  ToolTable tools = load_tools(options.machine);
   simulate::SimulateOptions simulation;
   simulation.settings = settings_of(options.join);
   simulation.settings.retracts_first = options.cl.first_line > 0;
@@ -139,7 +139,9 @@ int run(const Options& options) {
   std::ifstream file;
   std::istream* const input = open_cl_file(options.file, file);
   if (input == nullptr) return refuse(options.file + ": cannot be opened");
-  cl::ClReader reader(*input, options.file, reader_options(options.cl, model));
+  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
+  cl::ClReader reader(*input, options.file, reading);
   std::optional<record::RecordingWriter> writer;
   const std::string lost =
       text::refusal_to_write({options.file, options.events, options.start_from,
@@ -159,7 +161,7 @@ int run(const Options& options) {
       reader, options.file, model, tools, simulation, [&writer](const CycleRecord& row) {
         if (writer) (void)writer->write(row);
       });
-  print_warnings(options.file, reader.warnings());
+  if (options.file == "-") print_warnings(options.file, reader.warnings());
   std::cout << to_text(report, model);
   if (const std::string failure = explaining.finish(); !failure.empty()) return refuse(failure);
   if (writer && !writer->close()) {

@@ -11,6 +11,7 @@
 #include "meridian/units.hpp"
 #include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/machine_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/progress_text.hpp"
 #include "service/config/machine_file.hpp"
@@ -79,11 +80,8 @@ bool pass_preflight(StreamCommandOptions& options,
                     const std::optional<stream::PreflightMachine>& machine) {
   stream::PreflightReport report =
       stream::preflight(options.stream.file, options.stream.reader, machine);
-  print_warnings(options.stream.file, report.warnings);
-  if (!report.refusal.empty()) {
-    std::fprintf(stderr, "meridian: %s\n", text::printable(report.refusal).c_str());
-    return false;
-  }
+  std::fputs(to_text(report.findings, options.stream.file).c_str(), stderr);
+  if (report.is_refused) return false;
   std::printf("preflight: %llu blocks, %s at programmed feeds%s\n",
               static_cast<unsigned long long>(report.blocks),
               time_text(report.times.total_s()).c_str(),
@@ -113,6 +111,7 @@ int run_stream_command(StreamCommandOptions& options) {
   } else if (judged_for && judged_for->model.default_unit_inch) {
     reader.default_unit = cl::LengthUnit::kInch;
   }
+  if (judged_for) set_home(reader, judged_for->model, judged_for->tools.value_or(ToolTable()));
   const bool is_read_first = !options.has_no_preflight && options.stream.file != "-";
   if (is_read_first && !pass_preflight(options, judged_for)) return kInputRefused;
 

@@ -7,6 +7,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/kinematics/travel_rounding.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/units.hpp"
 
@@ -69,7 +70,19 @@ PlannedWay::PlannedWay(const MachineModel& model, ToolTable tools)
   planner_.begin(home, model.tool_length_mm, epoch_);
 }
 
-Expected<std::vector<WayPiece>, PostError> PlannedWay::plan(const ClBlock& block) {
+/// A line that ends beyond travel by rounding alone ends at the end of travel, as in the service.
+ClBlock PlannedWay::inside_travel(ClBlock block) const {
+  if (!is_motion(block.kind) || block.is_arc) return block;
+  const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis)};
+  if (const auto taken = taken_into_travel(model_, tool_length_mm(), pose, joints())) {
+    block.tip_mm = to_array(taken->tip);
+    block.axis = to_array(taken->axis);
+  }
+  return block;
+}
+
+Expected<std::vector<WayPiece>, PostError> PlannedWay::plan(const ClBlock& told) {
+  const ClBlock block = inside_travel(told);
   const PlanResult result = planner_.plan(block, writer_);
   if (result.status != PlanStatus::kOk) {
     return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});

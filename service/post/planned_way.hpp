@@ -30,7 +30,7 @@ class PlannedWay {
   PlannedWay(const MachineModel& model, ToolTable tools);
 
   /// The pieces of `block` in order; empty where it does not move.
-  [[nodiscard]] Expected<std::vector<WayPiece>, PostError> plan(const ClBlock& block);
+  [[nodiscard]] Expected<std::vector<WayPiece>, PostError> plan(const ClBlock& told);
 
   /// The next motion block is approached anew: after a tool change nobody knows the way there.
   void begin_again();
@@ -39,6 +39,8 @@ class PlannedWay {
   [[nodiscard]] double tool_length_mm() const noexcept { return planner_.tool_length_mm(); }
 
  private:
+  [[nodiscard]] ClBlock inside_travel(ClBlock block) const;
+
   const MachineModel& model_;
   std::unique_ptr<MotionPort> port_;
   MotionWriter writer_;

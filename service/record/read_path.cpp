@@ -4,8 +4,18 @@
 #include <fstream>
 
 #include "service/cl/cl_reader.hpp"
+#include "service/cl/findings.hpp"
 
 namespace meridian::record {
+namespace {
+
+cl::ClError unknown_tool(const std::string& file, const ClBlock& block) {
+  const std::string what =
+      "tool " + std::to_string(static_cast<long>(block.value)) + " is not in the tool table";
+  return {file, block.line, what, "give --tools FILE or --unknown-tool-length MM", what, false};
+}
+
+}  // namespace
 
 std::string read_path(const std::string& file, const cl::ClReaderOptions& options,
                       const ToolTable& tools, CheckedPath& path,
@@ -13,24 +23,28 @@ std::string read_path(const std::string& file, const cl::ClReaderOptions& option
   std::ifstream in(file, std::ios::binary);
   if (!in) return file + ": cannot be opened";
   cl::ClReader reader(in, file, options);
+  cl::Findings findings;
   for (;;) {
     const auto block = reader.next();
-    if (!block) return block.error().text();
-    if (!*block) {
-      if (warnings != nullptr) *warnings = reader.warnings();
-      return "";
+    if (!block) {
+      findings.add(block.error());
+      if (!reader.go_on()) break;
+      continue;
     }
-    double tool_length_mm = 0;
-    if ((*block)->kind == BlockKind::kTool) {
-      const Tool* tool = tools.find(static_cast<int>((*block)->value));
-      if (tool == nullptr) {
-        return file + ":" + std::to_string((*block)->line) +
-               ": the tool is not in the tool table; name one with --tools";
-      }
-      tool_length_mm = tool->length_mm;
+    if (!*block) break;
+    const Tool* const tool = (*block)->kind == BlockKind::kTool
+                                 ? tools.find(static_cast<int>((*block)->value))
+                                 : nullptr;
+    if ((*block)->kind == BlockKind::kTool && tool == nullptr) {
+      findings.add(unknown_tool(file, **block));
+      continue;
     }
-    path.add(**block, tool_length_mm);
+    if (!findings.is_refused()) path.add(**block, tool != nullptr ? tool->length_mm : 0);
   }
+  if (warnings != nullptr) *warnings = reader.warnings();
+  std::string text = to_text(findings.sorted(), file);
+  if (!text.empty()) text.pop_back();  // the last line end
+  return text;
 }
 
 }  // namespace meridian::record

@@ -12,7 +12,8 @@
 namespace meridian::record {
 
 /// Adds the program of a CL file to `path`, and what is odd about it to `warnings` where that is
-/// given. Returns why the file is refused, empty where it is not.
+/// given. Returns why the file is refused, everything that is in the way, a line each; empty where
+/// it is not.
 [[nodiscard]] std::string read_path(const std::string& file, const cl::ClReaderOptions& options,
                                     const ToolTable& tools, CheckedPath& path,
                                     std::vector<cl::ClWarning>* warnings = nullptr);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/travel_rounding.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::stream {
@@ -72,6 +73,8 @@ void BlockJudge::begin(double tool_length_mm) {
   has_tip_ = false;
   feeds_limited_ = 0;
   first_limited_line_ = 0;
+  poses_rounded_ = 0;
+  first_rounded_line_ = 0;
 }
 
 BlockReject BlockJudge::judge(ClBlock& block, const ActionPeer& actions) {
@@ -169,7 +172,23 @@ BlockReject BlockJudge::judge_feed(ClBlock& block) {
   return reject(block, RejectCode::kNone);
 }
 
-BlockReject BlockJudge::judge_pose(const ClBlock& block) {
+/// A line that ends beyond travel by rounding alone is taken to the end of travel. Where only one
+/// of several branches is, it is taken there too: the path may come along that branch.
+BlockReject BlockJudge::judge_pose(ClBlock& block) {
+  bool is_marginal = false;
+  const BlockReject verdict = find_joints(block, is_marginal);
+  if (!is_marginal || block.is_arc) return verdict;
+  const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis)};
+  const auto taken = taken_into_travel(model_, tool_length_mm_, pose, joints_);
+  if (!taken) return verdict;
+  block.tip_mm = to_array(taken->tip);
+  block.axis = to_array(taken->axis);
+  if (poses_rounded_++ == 0) first_rounded_line_ = block.line;
+  return find_joints(block, is_marginal);
+}
+
+/// `is_marginal`: on some branch a joint is outside travel, and none by more than rounding makes.
+BlockReject BlockJudge::find_joints(const ClBlock& block, bool& is_marginal) {
   const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis)};
   BlockReject first = reject(block, RejectCode::kUnreachable);
   bool has_joints = false;
@@ -181,6 +200,7 @@ BlockReject BlockJudge::judge_pose(const ClBlock& block) {
       joints_ = found.q;
       return true;
     }
+    is_marginal = is_marginal || taken_into_travel(model_, tool_length_mm_, found.q).has_value();
     if (!has_joints) {
       first = reject(block, RejectCode::kTravel, limited_value(model_, found.q, outside), outside);
     }

@@ -39,19 +39,24 @@ class BlockJudge {
   void begin(double tool_length_mm);
 
   /// Returns the verdict on the next block, code kNone if it may pass. A block that passes has its
-  /// tool axis and arc normal normalised (twice makes no difference) and a feed above the
-  /// machine's maximum limited to it.
+  /// tool axis and arc normal normalised (twice makes no difference), a feed above the machine's
+  /// maximum limited to it, and the pose of a line that is beyond travel by rounding alone
+  /// (travel_rounding.hpp) taken to the end of travel.
   [[nodiscard]] BlockReject judge(ClBlock& block, const ActionPeer& actions);
 
   [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return feeds_limited_; }
   [[nodiscard]] std::uint32_t first_limited_line() const noexcept { return first_limited_line_; }
+  /// Poses taken to the end of travel, and the line of the first.
+  [[nodiscard]] std::uint64_t poses_rounded() const noexcept { return poses_rounded_; }
+  [[nodiscard]] std::uint32_t first_rounded_line() const noexcept { return first_rounded_line_; }
   [[nodiscard]] double tool_length_mm() const noexcept { return tool_length_mm_; }
 
  private:
   [[nodiscard]] BlockReject judge_motion(ClBlock& block);
   [[nodiscard]] BlockReject judge_arc(ClBlock& block) const;
   [[nodiscard]] BlockReject judge_feed(ClBlock& block);
-  [[nodiscard]] BlockReject judge_pose(const ClBlock& block);
+  [[nodiscard]] BlockReject judge_pose(ClBlock& block);
+  [[nodiscard]] BlockReject find_joints(const ClBlock& block, bool& is_marginal);
   [[nodiscard]] BlockReject judge_tool(const ClBlock& block);
 
   const MachineModel& model_;
@@ -62,7 +67,12 @@ class BlockJudge {
   bool has_tip_ = false;
   std::uint64_t feeds_limited_ = 0;
   std::uint32_t first_limited_line_ = 0;
+  std::uint64_t poses_rounded_ = 0;
+  std::uint32_t first_rounded_line_ = 0;
 };
+
+/// The reason of a verdict for a person, and what is allowed; without line and block.
+[[nodiscard]] std::string reason_of(const BlockReject& reject, const MachineModel& model);
 
 /// Says a verdict in one sentence for a person: line, block, reason, what is allowed.
 [[nodiscard]] std::string describe(const BlockReject& reject, const MachineModel& model);

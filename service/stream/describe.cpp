@@ -34,7 +34,9 @@ std::string joint_text(const BlockReject& reject, const MachineModel& model) {
               unit, shown(joint.limits.travel_min), shown(joint.limits.travel_max), unit);
 }
 
-std::string reason(const BlockReject& reject, const MachineModel& model) {
+}  // namespace
+
+std::string reason_of(const BlockReject& reject, const MachineModel& model) {
   switch (reject.code) {
     case RejectCode::kNone:
       return "nothing is wrong";
@@ -81,12 +83,10 @@ std::string reason(const BlockReject& reject, const MachineModel& model) {
   return "unknown reason";
 }
 
-}  // namespace
-
 std::string describe(const BlockReject& reject, const MachineModel& model) {
   return text("line %u, block %llu: ", reject.line,
               static_cast<unsigned long long>(reject.sequence)) +
-         reason(reject, model);
+         reason_of(reject, model);
 }
 
 }  // namespace meridian::stream

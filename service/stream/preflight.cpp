@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/stream/preflight.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <utility>
 
+#include "meridian/kinematics/limited.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/stream/block_judge.hpp"
 
@@ -50,49 +53,126 @@ class IdealTime {
   bool has_tip_ = false;
 };
 
+/// Judges the blocks of a file and goes on behind those that are refused.
+class BlockFindings {
+ public:
+  BlockFindings(const PreflightMachine& machine, std::string file)
+      : machine_(machine), file_(std::move(file)), judge_(machine.model, lengths_of(machine)) {}
+
+  void judge(ClBlock block, cl::Findings& findings) {
+    const bool is_tool = block.kind == BlockKind::kTool;
+    if (is_tool && !machine_.tools) return;
+    // An arc is judged from the end of the block before it, which must have been judged.
+    const bool lacks_begin = block.is_arc && !is_begin_judged_;
+    if (is_motion(block.kind) && (!is_tool_known_ || lacks_begin)) {
+      is_begin_judged_ = false;
+      return;
+    }
+    const BlockReject verdict = judge_.judge(block, {.is_there = true});
+    const bool passes = verdict.code == RejectCode::kNone;
+    if (is_tool) is_tool_known_ = passes;
+    if (is_motion(block.kind)) is_begin_judged_ = passes;
+    if (!passes) findings.add(finding(verdict));
+  }
+  /// A statement was refused: where the tool is then nobody knows.
+  void lose_position() { is_begin_judged_ = false; }
+
+  /// What the judge changed in blocks that pass.
+  void add_changes(cl::Findings& findings) const {
+    if (judge_.feeds_limited() > 0) {
+      findings.add(cl::ClWarning{judge_.first_limited_line(),
+                                 "a feed above the machine's, which will be limited to it",
+                                 judge_.feeds_limited()});
+    }
+    if (judge_.poses_rounded() > 0) {
+      findings.add(cl::ClWarning{judge_.first_rounded_line(),
+                                 "a position beyond travel by no more than 1 um or 1e-4 deg: taken "
+                                 "to the end of travel",
+                                 judge_.poses_rounded()});
+    }
+  }
+
+ private:
+  [[nodiscard]] cl::ClError finding(const BlockReject& verdict) const {
+    const MachineModel& model = machine_.model;
+    cl::ClError error{file_, verdict.line, reason_of(verdict, model), {}, {}, false};
+    if (verdict.code == RejectCode::kUnknownTool) {
+      error.group = error.message =
+          "tool " + std::to_string(static_cast<long>(verdict.value)) + " is not in the tool table";
+      error.remedy = machine_.tool_remedy;
+    }
+    if (verdict.code == RejectCode::kTravel && verdict.joint >= 0) {
+      error.group = "travel of " + limited_spec(model, verdict.joint).name;
+    }
+    return error;
+  }
+
+  const PreflightMachine& machine_;
+  std::string file_;
+  BlockJudge judge_;
+  bool is_tool_known_ = true, is_begin_judged_ = true;
+};
+
+PreflightReport not_opened() {
+  PreflightReport report;
+  report.is_refused = true;
+  report.findings.push_back({cl::Finding::Severity::kRefusal, 0, "cannot be opened",
+                             "check the path and the right to read it", 1});
+  return report;
+}
+
 }  // namespace
 
 PreflightReport preflight(const std::string& file, const cl::ClReaderOptions& options,
                           const std::optional<PreflightMachine>& machine) {
-  PreflightReport report;
   std::ifstream input(file, std::ios::binary);
-  if (!input) {
-    report.refusal = file + ": cannot be opened; check the path and the right to read it";
-    return report;
-  }
+  if (!input) return not_opened();
+  PreflightReport report;
   cl::ClReader reader(input, file, options);
-  const MachineModel model = machine ? machine->model : MachineModel{};
-  BlockJudge judge(model, machine ? lengths_of(*machine) : ToolLengths{});
-  const bool has_tools = machine && machine->tools;
+  cl::Findings findings;
+  std::optional<BlockFindings> judge;
+  if (machine) judge.emplace(*machine, file);
   IdealTime ideal;
   while (true) {
     auto next = reader.next();
     if (!next) {
-      report.refusal = next.error().text();
-      break;
+      findings.add(next.error());
+      if (judge) judge->lose_position();
+      if (!reader.go_on()) break;
+      continue;
     }
     if (!*next) break;
     ClBlock block = **next;
     block.sequence = report.blocks;
-    const bool is_judged = machine && (has_tools || block.kind != BlockKind::kTool);
-    if (is_judged) {
-      const BlockReject verdict = judge.judge(block, {.is_there = true});
-      if (verdict.code != RejectCode::kNone) {
-        report.refusal = file + ": " + describe(verdict, model);
-        break;
-      }
-    }
+    if (judge) judge->judge(block, findings);
     report.contains_actions = report.contains_actions || is_action(block.kind);
     report.times.append(ideal.of(block));
     ++report.blocks;
   }
-  report.warnings = reader.warnings();
-  if (judge.feeds_limited() > 0) {
-    report.warnings.push_back(
-        {judge.first_limited_line(), "feeds of " + std::to_string(judge.feeds_limited()) +
-                                         " blocks are above the machine's and will be limited"});
-  }
+  for (const cl::ClWarning& warning : reader.warnings()) findings.add(warning);
+  if (judge) judge->add_changes(findings);
+  report.is_refused = findings.is_refused();
+  report.findings = findings.sorted();
   return report;
+}
+
+std::vector<int> unknown_tools(const std::string& file, const cl::ClReaderOptions& options,
+                               const ToolTable& tools) {
+  std::ifstream input(file, std::ios::binary);
+  cl::ClReader reader(input, file, options);
+  std::vector<int> unknown;
+  while (true) {
+    const auto next = reader.next();
+    if (!next && !reader.go_on()) break;
+    if (!next) continue;
+    if (!*next) break;
+    if ((*next)->kind != BlockKind::kTool) continue;
+    const int number = static_cast<int>((*next)->value);
+    const bool is_there = tools.find(number) != nullptr ||
+                          std::find(unknown.begin(), unknown.end(), number) != unknown.end();
+    if (!is_there) unknown.push_back(number);
+  }
+  return unknown;
 }
 
 }  // namespace meridian::stream

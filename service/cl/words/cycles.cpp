@@ -116,6 +116,8 @@ void end_cycle(Modal& m) {
 Outcome read_cycle_word(Modal& m, const Statement& s) {
   auto told = read_cycle(s, m.dialect);
   if (!told) {
+    m.cycle.emplace().kind = HoleKind::kRefused;
+    m.last_cycle = m.cycle;
     if (told.error().group.empty())
       told.error().group = "CYCLE/" + std::string(s.rest.substr(0, 12));
     return tl::make_unexpected(told.error());
@@ -152,6 +154,10 @@ Outcome read_cycle_word(Modal& m, const Statement& s) {
 }
 
 Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
+  if (m.cycle->kind == HoleKind::kRefused) {
+    m.path.lose_position();
+    return {};
+  }
   const auto feed = feed_of_cycle(m, line);
   if (!feed) return tl::make_unexpected(feed.error());
   if (m.cycle->dwell_revolutions > 0 && !m.spindle.turns()) {

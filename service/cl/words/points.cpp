@@ -192,8 +192,12 @@ Outcome read_home(Modal& m, const Statement& s) {
   const auto home = m.options.home ? m.options.home(m.tool) : std::nullopt;
   if (!home) {
     return refuse("GOHOME moves to the home of the machine, which is not known here",
-                  "name the machine file (--machine), and a tool table with every tool");
+                  "simulate, post, check and stream know it by their machine file");
   }
+  m.remarks.warn("home", s.line, [] {
+    return "GOHOME: a straight rapid to the home of the machine file; see that nothing is in the "
+           "way";
+  });
   m.next = NextMotion::kFeed;
   return m.path.line_to(home->tip, home->axis, {BlockKind::kRapid, FeedMeaning::kNone, 0}, s.line);
 }

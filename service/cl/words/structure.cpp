@@ -46,7 +46,10 @@ Outcome read_fini(Modal& m, const Statement& s) {
 }
 
 Outcome read_program_name(Modal& m, const Statement& s) {
-  if (m.summary.program.empty()) m.summary.program = std::string(s.rest.substr(0, 80));
+  const std::size_t begin = s.rest.find_first_not_of(' ');
+  if (m.summary.program.empty() && begin != std::string_view::npos) {
+    m.summary.program = std::string(s.rest.substr(begin, 80));
+  }
   return {};
 }
 

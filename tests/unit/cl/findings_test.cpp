@@ -58,6 +58,13 @@ TEST(Findings, BehindARefusedMotionDoNotComeOfIt) {
   EXPECT_EQ(findings.refusals(), 1U);
 }
 
+TEST(Findings, OfARefusedCycleAreOneWhateverItsHoles) {
+  const auto findings = find_all(
+      "UNITS/MM\nGOTO/0,0,50\nFEDRAT/60\nCYCLE/TAP,FEDTO,5,RAPTO,2\nGOTO/1,0,0\nGOTO/2,0,0\n"
+      "CYCLE/OFF\nGOTO/3,0,50\nFINI\n");
+  EXPECT_EQ(findings.refusals(), 2U);  // no feed in line 2, tapping in line 4
+}
+
 TEST(Findings, OfAlikeMessagesAreOne) {
   Findings findings;
   for (std::uint32_t line = 7; line > 4; --line) {

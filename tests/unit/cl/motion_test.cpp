@@ -52,6 +52,25 @@ TEST(Reader, HoldsRapidForOneMotion) {
   EXPECT_EQ(m[3].kind, BlockKind::kRapid);
 }
 
+TEST(Reader, GoesToTheHomeOfTheMachineWithTheToolInTheSpindleAndSaysSo) {
+  ClReaderOptions options;
+  options.home = [](std::optional<std::uint32_t> tool) -> std::optional<ToolPose> {
+    if (tool && *tool != 7) return std::nullopt;
+    return ToolPose{{0, 0, tool ? 300.0 : 400.0}, {0, 0, 1}};
+  };
+  const auto read =
+      read_body("GOTO/1,2,3,0,.6,.8\nGOHOME\nLOADTL/7\nGOTO/1,2,3,0,.6,.8\nHOME\n", options);
+  ASSERT_EQ(read.error, "");
+  const auto m = read.motion();
+  ASSERT_EQ(m.size(), 4U);
+  EXPECT_EQ(m[1].kind, BlockKind::kRapid);
+  EXPECT_EQ(m[1].tip_mm, (Array3{0, 0, 400}));
+  EXPECT_EQ(m[1].axis, (Array3{0, 0, 1}));
+  EXPECT_EQ(m[3].tip_mm, (Array3{0, 0, 300}));
+  EXPECT_TRUE(read.warned_of("nothing is in the way"));
+  EXPECT_NE(read_body("GOTO/1,2,3\nLOADTL/8\nGOHOME\n", options).error, "");
+}
+
 TEST(Reader, LetsFeedBehindRapidWinAndSaysSo) {
   const auto read = read_body("RAPID\nFEDRAT/60,MMPM\nGOTO/0,0,9\n");
   EXPECT_EQ(read.motion().at(0).kind, BlockKind::kCut);

@@ -67,6 +67,26 @@ TEST_F(RecordingCommands, BeginWithTheToolThatIsInTheSpindle) {
   EXPECT_EQ(run_tool(check + "--tool 3").exit_code, 2) << "of which table?";
 }
 
+TEST_F(RecordingCommands, TakeALengthForToolsThatNoTableKnows) {
+  const TextFile part(
+      "UNITS / MM\nLOADTL / 9\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
+      "GOTO / 90, -40, 20, 0, 0.6, 0.8\nLOADTL / 9\nRAPID\nGOTO / 80, -40, 40, 0, 0, 1\nFINI\n",
+      ".apt");
+  const std::string simulate =
+      "simulate " + part.path().string() + kMachine + "--record " + recording() + " ";
+  const CommandOutput unknown = run_tool(simulate);
+  EXPECT_EQ(unknown.exit_code, 3);
+  EXPECT_NE(unknown.output.find(":2: tool 9 is not in the tool table (2 places, first here); give "
+                                "--tools FILE or --unknown-tool-length MM"),
+            std::string::npos)
+      << unknown.output;
+  const CommandOutput known = run_tool(simulate + "--unknown-tool-length 100");
+  EXPECT_EQ(known.exit_code, 0) << known.output;
+  const std::string check = "check " + recording() + " " + part.path().string() + kMachine;
+  EXPECT_EQ(run_tool(check).exit_code, 3);
+  EXPECT_EQ(run_tool(check + "--unknown-tool-length 100").exit_code, 0);
+}
+
 TEST_F(RecordingCommands, BeginInTheMiddleWhereTheyAreToldTo) {
   const std::string from = "--from-line 5 ";
   const CommandOutput simulated =

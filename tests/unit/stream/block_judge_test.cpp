@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "support/machines.hpp"
 #include "support/programs.hpp"
 
@@ -142,6 +143,31 @@ TEST_F(Judge, NamesTheJointThatLeavesTravel) {
   const std::string text = describe(verdict, model_);
   EXPECT_NE(text.find("line 13, block 3: b4 at -"), std::string::npos) << text;
   EXPECT_NE(text.find("(travel -600 to 600 mm)"), std::string::npos) << text;
+}
+
+TEST_F(Judge, TakesALineThatIsBeyondTravelByRoundingToTheEndOfTravelAndCountsIt) {
+  JointVector q{};
+  for (int i = 0; i < model_.joint_count; ++i) q[i] = model_.joints[i].home;
+  q[4] = .2;  // off the pole, where the free joint would find room elsewhere
+  const double max = model_.joints[2].limits.travel_max;
+  ClBlock block = test::good_cut(0);
+  const auto ends_at = [&](double at) {
+    q[2] = at;
+    const ToolPose pose = forward(model_, model_.tool_length_mm, q);
+    block.tip_mm = to_array(pose.tip);
+    block.axis = to_array(pose.axis);
+  };
+  ends_at(max + 9e-4);
+  EXPECT_EQ(code(block), RejectCode::kNone);
+  EXPECT_EQ(judge_.poses_rounded(), 1U);
+  EXPECT_EQ(judge_.first_rounded_line(), block.line);
+  EXPECT_LE((to_vector(last_.tip_mm) - to_vector(block.tip_mm)).norm(), 1e-3);
+  const ClBlock once = last_;
+  EXPECT_EQ(code(once), RejectCode::kNone);  // of itself no more
+  EXPECT_EQ(last_.tip_mm, once.tip_mm);
+  EXPECT_EQ(judge_.poses_rounded(), 1U);
+  ends_at(max + 1.2e-3);
+  EXPECT_EQ(code(block), RejectCode::kTravel);
 }
 
 TEST_F(Judge, RefusesATiltBeyondTheHead) {
