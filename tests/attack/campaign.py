@@ -26,7 +26,8 @@ from situations import ALL, LIMIT_MS, STOPPED, Situations, write_parts
 
 MAX_CYCLES = 2            # hold seen -> first decelerating setpoint
 MAX_P999_MS = 20.0        # written by the operator -> seen, whole campaign on a quiet host
-MAX_OFF_MS = 2.0          # p50 of the drives' off-word behind the state: one cycle, and its sending
+MAX_OFF_MS = 1.0          # p50 of the drives' off-word behind the state: one cycle
+LEAST_FOR_P999 = 1000     # stops of a whole campaign: fewer have no such percentile
 MOVED_MM = 0.001          # the resolution of a simulated shaft at rest
 SETTINGS = f'tools = "{pathlib.Path(__file__).resolve().parents[2]}/deploy/tools.toml"\n' \
            'bridge_cycles = 50\naction_timeout_s = 20\n'
@@ -188,6 +189,9 @@ def main():
     whole = spread(every)
     print(f"\nall: {whole['n']} stops seen, p50 {whole['p50']:.2f}, p99 {whole['p99']:.2f}, "
           f"p99.9 {whole['p999']:.2f}, max {whole['max']:.2f} ms; wrong: {wrong}")
+    if whole["n"] >= LEAST_FOR_P999 and whole["p999"] > limit_ms:
+        print(f"written to seen {whole['p999']:.1f} ms at p99.9 of all, more than {limit_ms:.1f}")
+        return 1
     return 1 if wrong else 0
 
 
