@@ -18,7 +18,7 @@ std::string StalledReaders::look(std::int64_t now_ns) {
   constexpr std::int64_t kPatience_ns = 2'000'000'000;
   std::string stalled;
   for (Watched& watched : writers_) {
-    const auto behind = find_unacknowledged(participant_, watched.writer());
+    const auto behind = find_unacknowledged(participant_, watched.writer);
     if (!behind) {
       watched.since_ns = 0;
     } else if (watched.since_ns == 0 || behind->up_to != watched.up_to) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,18 +31,14 @@ class StalledReaders {
 
   /// `topic`: for the message.
   void watch(std::int32_t writer, std::string topic) {
-    watch([writer] { return writer; }, std::move(topic));
-  }
-  /// Of a writer that may be replaced by another.
-  void watch(std::function<std::int32_t()> writer, std::string topic) {
-    writers_.push_back({std::move(writer), std::move(topic), 0, 0, {}});
+    writers_.push_back({writer, std::move(topic), 0, 0, {}});
   }
   /// To be called about once a second: who stalls, with the topic; empty: nobody.
   [[nodiscard]] std::string look(std::int64_t now_ns);
 
  private:
   struct Watched {
-    std::function<std::int32_t()> writer;
+    std::int32_t writer;
     std::string topic;
     std::uint64_t up_to = 0;
     std::int64_t since_ns = 0;  ///< it has stood there; 0: nobody is behind

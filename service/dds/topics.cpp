@@ -106,7 +106,7 @@ struct Topic;
 
 MERIDIAN_TOPIC(Batch, ClBatch, "cl_batch", kStream);
 MERIDIAN_TOPIC(SessionRequest, ClSession, "cl_session", kStream);
-MERIDIAN_TOPIC(Credit, ClCredit, "cl_credit", kSnapshot);
+MERIDIAN_TOPIC(Credit, ClCredit, "cl_credit", kVerb);
 MERIDIAN_TOPIC(CommandRequest, Command, "command", kVerb);
 MERIDIAN_TOPIC(Reply, Reply, "reply", kVerb);
 MERIDIAN_TOPIC(Jog, Jog, "jog", kJog);
@@ -252,13 +252,6 @@ template <class Message>
 bool Writer<Message>::write(const Message& message) noexcept {
   to_wire(message, impl_->wire);
   return dds_write(impl_->writer, &impl_->wire) == DDS_RETCODE_OK;
-}
-
-template <class Message>
-void Writer<Message>::dispose(const Message& message) noexcept {
-  to_wire(message, impl_->wire);
-  (void)dds_dispose(impl_->writer, &impl_->wire);
-  (void)dds_unregister_instance(impl_->writer, &impl_->wire);
 }
 
 template <class Message>

@@ -21,8 +21,6 @@ class Writer {
   void register_instance(const Message& message) noexcept;
   /// False: not sent; reliable topics with a full history blocked for their max blocking time.
   [[nodiscard]] bool write(const Message& message) noexcept;
-  /// Ends the message's instance; late joiners do not get it any more.
-  void dispose(const Message& message) noexcept;
   [[nodiscard]] int matched_readers() const noexcept;
   [[nodiscard]] std::int32_t handle() const noexcept;
 

@@ -13,8 +13,6 @@ constexpr auto kIdle = std::chrono::milliseconds(10);
 /// Of one topic at one look: a flood of it does not keep this thread from its other work.
 constexpr int kMaxSamples = 512;
 constexpr std::int64_t kLookForStation_ns = 200'000'000;
-/// A station that asks late still finds its last verdict.
-constexpr std::int64_t kKeepVerdict_ns = 30 * kSecond_ns;
 
 /// What a session asks the planner for.
 SmoothSettings settings_of(const dds::SessionRequest& request) {
@@ -54,7 +52,6 @@ void Intake::run() noexcept {
     look_for_station();
     free_idle_machine();
     publish(judge_.due_credit(around()));
-    forget_old_sessions();
     show();
     waitset_.wait(kIdle);
   }
@@ -236,24 +233,9 @@ void Intake::look_for_station() {
 
 void Intake::publish(const std::optional<dds::Credit>& credit) {
   if (!credit) return;
-  credits_.write(*credit);
-  if (credit->session == judge_.session()) {
-    if (credit->verdict >= dds::Verdict::kRefusedStation) refused_session_ = credit->session;
-    return;
-  }
-  const auto is_same = [&](const Ended& ended) { return ended.credit.session == credit->session; };
-  ended_.erase(std::remove_if(ended_.begin(), ended_.end(), is_same), ended_.end());
-  ended_.push_back({*credit, monotonic_ns()});
-}
-
-void Intake::forget_old_sessions() {
-  const std::int64_t now_ns = monotonic_ns();
-  while (!ended_.empty() &&
-         (now_ns - ended_.front().at_ns > kKeepVerdict_ns || ended_.size() > 64)) {
-    if (ended_.front().credit.session != judge_.session()) {
-      credits_.end(ended_.front().credit);
-    }
-    ended_.pop_front();
+  (void)credits_.write(*credit);
+  if (credit->session == judge_.session() && credit->verdict >= dds::Verdict::kRefusedStation) {
+    refused_session_ = credit->session;
   }
 }
 

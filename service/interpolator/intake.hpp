@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <mutex>
 #include <string>
 
@@ -10,10 +9,9 @@
 #include "service/config/service_file.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
-#include "service/dds/sources.hpp"
-#include "service/dds/stalled_reader.hpp"
 #include "service/dds/waitset.hpp"
-#include "service/interpolator/credit_writer.hpp"
+#include "service/dds/writer.hpp"
+#include "service/dds/sources.hpp"
 #include "service/interpolator/participant_quota.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/stream/intake_judge.hpp"
@@ -50,9 +48,7 @@ class Intake {
   void set_action_peer(bool is_there) noexcept { has_action_peer_ = is_there; }
   [[nodiscard]] SessionView view() const;
   /// Of credits, see dds::StalledReaders.
-  void watch_readers(dds::StalledReaders& stalled) const {
-    stalled.watch([this] { return credits_.handle(); }, "cl_credit");
-  }
+  [[nodiscard]] std::int32_t writer() const noexcept { return credits_.handle(); }
   /// Any thread: whether `block` of this session is the last of its source line; false also where
   /// that is not known.
   [[nodiscard]] bool is_line_end(std::uint64_t session, std::uint64_t block);
@@ -82,7 +78,6 @@ class Intake {
   void empty_queue(std::uint16_t epoch) noexcept;
   void show_mark() noexcept;
   void publish(const std::optional<dds::Credit>& credit);
-  void forget_old_sessions();
   void show();
   [[nodiscard]] stream::Surroundings around() noexcept;
 
@@ -95,7 +90,7 @@ class Intake {
   stream::IntakeJudge judge_;
   dds::Reader<dds::Batch> batches_;
   dds::Reader<dds::SessionRequest> requests_;
-  CreditWriter credits_;
+  dds::Writer<dds::Credit> credits_;
   dds::Waitset waitset_;
 
   dds::Senders senders_;
@@ -109,11 +104,6 @@ class Intake {
   std::string station_identity_;
   bool is_station_there_ = false;
   std::int64_t looked_ns_ = 0;
-  struct Ended {
-    dds::Credit credit;
-    std::int64_t at_ns = 0;
-  };
-  std::deque<Ended> ended_;  ///< credits of sessions that are over, to be disposed of in time
   std::atomic<bool> has_action_peer_{false};
 
   trace::SpanWriter spans_;

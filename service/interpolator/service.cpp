@@ -187,7 +187,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                          static_cast<std::int64_t>(1e9 * parts_.service.deadman_timeout_s));
   supervisor_.watch_readers(stalled_readers_);
   telemetry_.watch_readers(stalled_readers_);
-  intake_.watch_readers(stalled_readers_);
+  stalled_readers_.watch(intake_.writer(), "cl_credit");
   supervisor_.on_session_event([this](bool has_action_peer) {
     intake_.set_action_peer(has_action_peer);
     intake_.wake();

@@ -21,7 +21,7 @@ constexpr Topic topic(const char* name, const dds_topic_descriptor_t& descriptor
 const std::array<Topic, 15> kTopics{{
     topic<meridian_wire_ClBatch>("cl_batch", meridian_wire_ClBatch_desc, Quality::kStream),
     topic<meridian_wire_ClSession>("cl_session", meridian_wire_ClSession_desc, Quality::kStream),
-    topic<meridian_wire_ClCredit>("cl_credit", meridian_wire_ClCredit_desc, Quality::kSnapshot),
+    topic<meridian_wire_ClCredit>("cl_credit", meridian_wire_ClCredit_desc, Quality::kStream),
     topic<meridian_wire_Command>("command", meridian_wire_Command_desc, Quality::kStream),
     topic<meridian_wire_Reply>("reply", meridian_wire_Reply_desc, Quality::kStream),
     topic<meridian_wire_Jog>("jog", meridian_wire_Jog_desc, Quality::kJog),
