@@ -11,6 +11,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
+#include "service/cli/view_option.hpp"
 #include "service/record/check.hpp"
 #include "service/record/compare.hpp"
 #include "service/record/operator_events_writer.hpp"
@@ -21,7 +22,7 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string recording, file, picture;
+  std::string recording, file, picture, html;
   std::vector<std::string> same;
   double tip_tolerance_mm = 0, axis_tolerance_deg = 0;
   bool is_json = false, is_feed_factor_given = false;
@@ -58,6 +59,37 @@ void find_overrides(Options& options, const MachineModel& model) {
   }
 }
 
+/// The recording as a page, with what was found; a message where that fails.
+[[nodiscard]] std::string write_view(const Options& options, const MachineModel& model,
+                                     const ToolTable& tools, const record::CheckedPath& path,
+                                     const record::CheckReport& report,
+                                     record::RecordingReader& recording) {
+  ViewFile view(model, options.html);
+  if (!view.is_wanted()) return "";
+  recording.rewind();
+  record::RecordingRow row;
+  for (;;) {
+    const auto read = recording.next(row);
+    if (!read) return read.error().text();
+    if (!*read) break;
+    Setpoint setpoint{.cycle = row.cycle, .due_ns = row.due_ns};
+    setpoint.position = drives_at(model, row.places);
+    setpoint.line = row.line;
+    setpoint.flags = row.flags;
+    view.add(setpoint, {.tool_length_mm = path.begin_tool_length_mm()});
+  }
+  panel::RunView::Words words;
+  words.title = options.recording + ", " + model.name;
+  words.limits = {"not known from a recording"};
+  words.summary = to_text(report);
+  for (const record::Finding& finding : report.findings) {
+    std::string text = finding.text;
+    if (finding.line > 0) text += " (line " + std::to_string(finding.line) + ")";
+    words.findings.push_back(std::move(text));
+  }
+  return view.write(tools, words);
+}
+
 int check(Options& options, const MachineModel& model) {
   ToolTable tools = load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
@@ -83,6 +115,8 @@ int check(Options& options, const MachineModel& model) {
   auto report = record::check(*recording, path, model, options.check);
   if (!report) return refuse(report.error().text());
   report->path_name = options.file;
+  const std::string lost = write_view(options, model, tools, path, *report, *recording);
+  if (!lost.empty()) return refuse(lost);
   std::cout << (options.is_json ? to_json(*report) : to_text(*report));
   return report->passed() ? kFine : kVerdictNo;
 }
@@ -135,6 +169,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_option("--to-cycle", options->check.to_cycle, "Leave out the cycles behind");
   command->add_option("--picture", options->picture,
                       "Draw tip path, joints, speeds and rates to this .png or .svg");
+  add_view_option(*command, options->html);
   command->add_flag("--json", options->is_json, "The report as JSON");
   add_cl_file_options(*command, options->cl);
   command->callback([options, factor, &exit_code] {

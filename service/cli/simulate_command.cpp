@@ -13,6 +13,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
+#include "service/cli/view_option.hpp"
 #include "service/record/recording_reader.hpp"
 #include "service/record/recording_writer.hpp"
 #include "service/simulate/feed_picture.hpp"
@@ -25,7 +26,7 @@ namespace {
 
 struct Options {
   std::string file, record, events, start_from, auxiliary = "ignore", pole_policy;
-  std::string explain_table, picture;
+  std::string explain_table, picture, html;
   double override_ramp_s = 0;
   bool stops_at_optional = false, is_explained = false, is_certified = false;
   MachineOptions machine;
@@ -55,15 +56,17 @@ int refuse(const std::string& message) {
   }
 }
 
-/// Where the time went, as the options ask for it: told, as a table, as a picture.
+/// Where the time went, as the options ask for it: told, as a table, as a picture, as a page.
 class Explaining {
  public:
   Explaining(const Options& options, const MachineModel& model)
-      : options_(options), model_(model), picture_(model) {
+      : options_(options), model_(model), picture_(model), view_(model, options.html) {
+    cause_.tool_length_mm = model.tool_length_mm;
     if (!options.explain_table.empty()) {
       table_.emplace(options.explain_table).out() << simulate::explained_header(model);
     }
-    const bool is_wanted = options.is_explained || table_ || !options.picture.empty();
+    const bool is_wanted =
+        options.is_explained || table_ || !options.picture.empty() || view_.is_wanted();
     if (!is_wanted) return;
     explainer_.emplace(
         model,
@@ -72,13 +75,18 @@ class Explaining {
         },
         [this](const simulate::ExplainedCycle& cycle) {
           if (!options_.picture.empty()) picture_.add(cycle);
+          cause_ = {cycle.programmed_mm_per_s, cycle.limit, cycle.tool_length_mm};
         });
   }
 
   [[nodiscard]] simulate::Explainer* explainer() { return explainer_ ? &*explainer_ : nullptr; }
 
+  /// Every cycle that is sent, after what was said of it.
+  void add(const CycleRecord& record) { view_.add(record.setpoint, cause_); }
+
   /// Writes what was asked for; a message where that fails.
-  [[nodiscard]] std::string finish() {
+  [[nodiscard]] std::string finish(const simulate::SimulateReport& report, const ToolTable& tools) {
+    if (const std::string lost = view_.write(tools, words(report)); !lost.empty()) return lost;
     if (options_.is_explained) std::cout << to_text(explainer_->explanation(), model_);
     if (table_ && !table_->commit()) return options_.explain_table + ": cannot be written";
     if (options_.picture.empty()) return "";
@@ -89,9 +97,23 @@ class Explaining {
   }
 
  private:
+  [[nodiscard]] panel::RunView::Words words(const simulate::SimulateReport& report) const {
+    panel::RunView::Words out;
+    out.title = std::filesystem::path(options_.file).filename().string() + ", " + model_.name;
+    for (std::size_t i = 0; i < simulate::limit_count(model_); ++i) {
+      out.limits.push_back(simulate::name_of(static_cast<simulate::LimitId>(i), model_));
+    }
+    if (!report.reason.empty()) out.findings.push_back(report.reason);
+    out.summary = to_text(report, model_);
+    if (explainer_) out.summary += to_text(explainer_->explanation(), model_);
+    return out;
+  }
+
   const Options& options_;
   const MachineModel& model_;
   simulate::FeedPicture picture_;
+  ViewFile view_;
+  panel::RunView::Cause cause_;
   std::optional<text::WholeFile> table_;
   std::optional<simulate::Explainer> explainer_;
 };
@@ -143,10 +165,10 @@ int run(const Options& options) {
   if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
   cl::ClReader reader(*input, options.file, reading);
   std::optional<record::RecordingWriter> writer;
-  const std::string lost =
-      text::refusal_to_write({options.file, options.events, options.start_from,
-                              options.machine.machine, options.machine.tools},
-                             {options.record, options.explain_table, options.picture});
+  const std::string lost = text::refusal_to_write(
+      {options.file, options.events, options.start_from, options.machine.machine,
+       options.machine.tools},
+      {options.record, options.explain_table, options.picture, options.html});
   if (!lost.empty()) return refuse(lost);
   if (!options.record.empty()) {
     auto created = record::RecordingWriter::create(options.record, model);
@@ -157,13 +179,16 @@ int run(const Options& options) {
   simulation.explainer = explaining.explainer();
   std::optional<certify::Certifier> certifier;
   if (options.is_certified) simulation.certifier = &certifier.emplace(model);
-  const simulate::SimulateReport report = simulate::simulate(
-      reader, options.file, model, tools, simulation, [&writer](const CycleRecord& row) {
-        if (writer) (void)writer->write(row);
-      });
+  const simulate::SimulateReport report =
+      simulate::simulate(reader, options.file, model, tools, simulation,
+                         [&writer, &explaining](const CycleRecord& row) {
+                           if (writer) (void)writer->write(row);
+                           explaining.add(row);
+                         });
   if (options.file == "-") print_warnings(options.file, reader.warnings());
   std::cout << to_text(report, model);
-  if (const std::string failure = explaining.finish(); !failure.empty()) return refuse(failure);
+  if (const std::string failure = explaining.finish(report, tools); !failure.empty())
+    return refuse(failure);
   if (writer && !writer->close()) {
     return refuse(options.record + ": " + std::strerror(writer->error_number()));
   }
@@ -192,6 +217,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->add_option("--picture", options->picture,
                       "Draw the feed, programmed and achieved, and what held it to this .png or "
                       ".svg");
+  add_view_option(*command, options->html);
   command->add_flag("--certify", options->is_certified,
                     "Prove that the plan keeps every limit between its setpoints too; exit code 1 "
                     "where it does not, or where that could not be decided");

@@ -125,7 +125,8 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
   if (take_cycle_) {
     const Open* const open = find(block);
     take_cycle_({period_s_, way_mm, way_mm / period_s_,
-                 open != nullptr ? open->block.programmed_mm_per_s : 0, view.limit});
+                 open != nullptr ? open->block.programmed_mm_per_s : 0, view.limit,
+                 tool_length_mm});
   }
   ++explanation_.cycles;
   explanation_.time_s = period_s_ * static_cast<double>(explanation_.cycles);

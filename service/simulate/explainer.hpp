@@ -19,6 +19,7 @@ struct ExplainedCycle {
   double way_mm = 0;  ///< of the tip
   double feed_mm_per_s = 0, programmed_mm_per_s = 0;
   LimitId limit = kNoLimit;
+  double tool_length_mm = 0;
 };
 
 /// Follows a run cycle by cycle and accounts its time to blocks, limits and causes. A stretch that

@@ -32,7 +32,8 @@ JogResult JogHand::jog(const JogPlan& plan, const std::atomic<bool>& is_let_go,
   while (jogs_.matched_readers() == 0 && Clock::now() < end) {
     (void)link_.wait_for_status(kBetweenSamples);
   }
-  const auto reply = link_.ask(Verb::kJog, plan.joint + (plan.is_tool ? kMaxJoints : 0), timeout);
+  const auto reply =
+      link_.ask(Verb::kJog, plan.joint + (plan.is_tool ? kMaxJoints : 0), timeout, plan.seen);
   if (!reply || jogs_.matched_readers() == 0) return {JogEnd::kNoAnswer};
   if (!reply->is_accepted) return {JogEnd::kRefused, reply->text};
   const JointVector from = joints_of(link_);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "service/dds/messages.hpp"
@@ -21,6 +22,7 @@ struct JogPlan {
   double time_s = 0;    ///< held for so long; 0: until the distance is behind it
   double distance = 0;  ///< 0: as far as travel reaches
   double dead_man_s = 0.15;
+  std::optional<Seen> seen{};  ///< when it was pressed, OperatorLink::ask()
 };
 
 enum class JogEnd : std::uint8_t {

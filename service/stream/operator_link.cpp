@@ -57,9 +57,8 @@ bool OperatorLink::take_statuses() {
 
 void OperatorLink::see(const dds::Status& status, std::uint64_t source) {
   const auto known =
-      std::find_if(services_.begin(), services_.end(), [source](const Service& service) {
-        return service.source == source;
-      });
+      std::find_if(services_.begin(), services_.end(),
+                   [source](const Service& service) { return service.source == source; });
   if (known != services_.end()) {
     known->seen = Clock::now();
     known->service_id = status.service_id;
@@ -139,7 +138,8 @@ dds::Reply OperatorLink::refuse_as_not_dry(const dds::CommandRequest& request) c
                   "asked of it"};
 }
 
-std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Milliseconds timeout) {
+std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Milliseconds timeout,
+                                            const std::optional<Seen>& seen) {
   dds::CommandRequest request;
   request.request = ++request_;
   request.operator_id = operator_id_;
@@ -158,9 +158,9 @@ std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Millisec
     was_matched_ = was_matched_ || commands_.matched_readers() > 0;
     // What was seen when it was said: who is cut off then says nothing about what he sees later.
     if (may_send && was_matched_ && status_ && !std::exchange(is_quoted, true)) {
-      request.epoch_seen = status_->epoch;
-      request.status_seen = status_->status_sequence;
-      request.service_id_seen = status_->service_id;
+      request.epoch_seen = seen ? seen->epoch : status_->epoch;
+      request.status_seen = seen ? seen->status_sequence : status_->status_sequence;
+      request.service_id_seen = seen ? seen->service_id : status_->service_id;
     }
     const bool was_sent = due > begin;
     if (status_ && !may_send && !was_sent && now >= told) return refuse_as_not_dry(request);

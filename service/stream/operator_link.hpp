@@ -18,10 +18,18 @@
 
 namespace meridian::stream {
 
+/// What an operator saw when he said something: it is quoted, so that the service refuses what was
+/// said to a machine that is another one by now.
+struct Seen {
+  std::uint64_t service_id = 0;
+  std::uint16_t epoch = 0;
+  std::uint64_t status_sequence = 0;
+};
+
 /// An operator's end of a machine: sees its status, asks for verbs and gets the answers. Every
-/// request quotes the newest status that was seen when it was made, also where it is repeated, as it
-/// is until it is answered: one that comes late is stale. The service answers a repetition without
-/// acting twice; a stop it obeys each time.
+/// request quotes the newest status that was seen when it was made, also where it is repeated, as
+/// it is until it is answered: one that comes late is stale. The service answers a repetition
+/// without acting twice; a stop it obeys each time.
 ///
 /// An answer counts where it is the followed service's own, to this participant. Where several
 /// services speak for the machine a stop counts as accepted only when each of them has accepted it:
@@ -45,7 +53,9 @@ class OperatorLink {
   /// Asks for `verb` and returns the answer; nothing where the service stays silent. What is said
   /// for a dry run alone (may_be_dry(), argument 1) is said to a machine that tells of one: of any
   /// other the answer is our own refusal, for services of before took the word for any other.
-  [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout);
+  /// `seen`: what the operator saw elsewhere, in the place of the newest status that came in here.
+  [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout,
+                                              const std::optional<Seen>& seen = std::nullopt);
 
   /// Waits until the machine is in a state that `is_there` likes, after `reply` (the answer to the
   /// verb that is to lead there), and returns that state. `look` sees every status meanwhile.

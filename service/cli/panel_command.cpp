@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "service/cli/commands.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/panel/panel.hpp"
+#include "service/panel/server.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  PeerOptions peer;
+  panel::PanelOptions panel;
+};
+
+int run(Options& options) {
+  int exit_code = kFine;
+  const auto machine = find_machine(options.peer, exit_code);
+  if (!machine) return exit_code;
+  watch_for_stop();
+  dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
+  try {
+    panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
+      std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
+                  static_cast<unsigned>(port));
+      std::fflush(stdout);
+    });
+  } catch (const panel::ServerError& error) {
+    std::fprintf(stderr, "meridian: %s\n", error.what());
+    return kUsage;
+  }
+  return kFine;
+}
+
+}  // namespace
+
+void add_panel_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "panel", "The operator's page: serves it to browsers on this host until interrupted");
+  command->add_option("--port", options->panel.port, "Port on loopback; 0: any that is free")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  command->add_flag("--watch", options->panel.is_watching,
+                    "The page shows and asks for nothing: no buttons");
+  const char* const user = std::getenv("USER");
+  options->panel.operator_name = user != nullptr ? user : "operator";
+  command->add_option("--operator", options->panel.operator_name, "Who asks, for the log")
+      ->capture_default_str();
+  add_peer_options(*command, options->peer);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli

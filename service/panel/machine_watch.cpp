@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/panel/machine_watch.hpp"
+
+#include <utility>
+
+#include "service/config/machine_file.hpp"
+#include "service/panel/scene.hpp"
+
+namespace meridian::panel {
+namespace {
+
+/// Cyclic topics keep so many samples between two polls: a quarter of a second at 2 kHz.
+constexpr int kDepth = 512;
+/// A service speaks twenty times a second; one that was silent for so long is gone.
+constexpr std::chrono::milliseconds kSilent{1500};
+
+/// Whether both say the same of the machine; who serves it, and for how long, aside.
+[[nodiscard]] bool is_same_machine(const dds::MachineInfo& a, const dds::MachineInfo& b) {
+  return a.machine_file == b.machine_file && a.tool_file == b.tool_file &&
+         a.frame_rotation == b.frame_rotation && a.frame_origin_mm == b.frame_origin_mm &&
+         a.tool_length_mm == b.tool_length_mm && a.service_id == b.service_id;
+}
+
+/// The machine as the service has it: its file, with the frame and the tool in force. Throws
+/// ConfigError.
+[[nodiscard]] MachineModel model_of(const dds::MachineInfo& info) {
+  MachineModel model = config::parse_machine(info.machine_file, info.name);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      model.frame_rotation(row, column) =
+          info.frame_rotation[static_cast<std::size_t>(3 * row + column)];
+    }
+    model.frame_origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
+  }
+  model.tool_length_mm = info.tool_length_mm;
+  return model;
+}
+
+}  // namespace
+
+MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub)
+    : hub_(hub),
+      machines_(participant),
+      statuses_(participant),
+      setpoints_(participant, {}, kDepth),
+      feedbacks_(participant, {}, kDepth),
+      latencies_(participant) {}
+
+void MachineWatch::adopt(const dds::MachineInfo& info) {
+  machine_ = info;
+  motion_.reset();
+  model_.reset();
+  std::string scene;
+  try {
+    model_ = std::make_unique<MachineModel>(model_of(info));
+    motion_ = std::make_unique<Motion>(*model_);
+    const bool has_tools = !info.tool_file.empty();
+    scene = describe_scene(*model_,
+                           has_tools ? config::parse_tools(info.tool_file, "tools") : ToolTable());
+  } catch (const config::ConfigError&) {
+    // Its file does not fit the topic, or another version wrote it: shown without a picture.
+  }
+  hub_.publish(Hub::kMachine, machine_text(info, scene));
+}
+
+void MachineWatch::take_machine() {
+  dds::MachineInfo info;
+  while (machines_.take(info)) {
+    const bool is_followed = !status_ || info.service_id == status_->service_id;
+    if (!info.is_serving || !is_followed) continue;
+    if (!machine_ || !is_same_machine(*machine_, info)) adopt(info);
+  }
+}
+
+void MachineWatch::take_motion() {
+  dds::SetpointSample setpoint;
+  while (setpoints_.take(setpoint)) {
+    const bool is_its = motion_ && status_ &&
+                        setpoint.crc == dds::setpoint_crc(setpoint.setpoint, status_->service_id);
+    if (is_its) motion_->add(setpoint.setpoint);
+  }
+  dds::DriveFeedback feedback;
+  while (feedbacks_.take(feedback)) {
+    if (motion_) motion_->add_feedback(feedback.cycle_seen, feedback.joint_mask, feedback.position);
+  }
+}
+
+void MachineWatch::take_status() {
+  dds::Status status;
+  const auto now = Clock::now();
+  if (!followed_.take(statuses_, status)) {
+    if (status_ && now - heard_ > kSilent) {
+      status_.reset();
+      newest_status_ = 0;
+      hub_.publish(Hub::kFrame, silent_text());
+    }
+    return;
+  }
+  heard_ = now;
+  status_ = std::move(status);
+  newest_status_ = status_->status_sequence;
+  if (!model_ || !machine_ || machine_->service_id != status_->service_id) return;
+  if (news_.add(*status_, *model_, std::chrono::system_clock::now())) {
+    hub_.publish(Hub::kNews, news_text(news_));
+  }
+  hub_.publish(Hub::kFrame, frame_text(*status_, *model_, machine_->tool_length_mm, *motion_));
+  motion_->clear();
+}
+
+void MachineWatch::poll() {
+  take_machine();
+  take_motion();
+  take_status();
+  dds::Latency latency;
+  while (latencies_.take(latency)) {
+    if (status_ && latency.service_id == status_->service_id) {
+      hub_.publish(Hub::kLatency, latency_text(latency));
+    }
+  }
+}
+
+}  // namespace meridian::panel

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "service/dds/followed.hpp"
+#include "service/dds/messages.hpp"
+#include "service/dds/participant.hpp"
+#include "service/dds/reader.hpp"
+#include "service/panel/frame.hpp"
+#include "service/panel/hub.hpp"
+#include "service/panel/motion.hpp"
+#include "service/panel/news.hpp"
+
+namespace meridian::panel {
+
+/// Reads what one machine says on the topics and publishes it to the hub, 25 frames a second. It
+/// only reads, and polls: the rate of the setpoints costs no wake-ups. One thread.
+class MachineWatch {
+ public:
+  /// `hub` and `participant` must live on. Throws DdsError.
+  MachineWatch(dds::Participant& participant, Hub& hub);
+
+  /// Takes what came and publishes what is new.
+  void poll();
+
+  /// status_sequence of the newest status, for any thread; 0: none.
+  [[nodiscard]] std::uint64_t newest_status() const noexcept { return newest_status_; }
+  /// The newest status of the followed service; nothing: it is silent.
+  [[nodiscard]] const std::optional<dds::Status>& status() const noexcept { return status_; }
+  [[nodiscard]] const std::optional<dds::MachineInfo>& machine() const noexcept { return machine_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void take_machine();
+  void take_motion();
+  void take_status();
+  /// Builds the model from what the machine topic says of it.
+  void adopt(const dds::MachineInfo& info);
+
+  Hub& hub_;
+  dds::Reader<dds::MachineInfo> machines_;
+  dds::Reader<dds::Status> statuses_;
+  dds::Reader<dds::SetpointSample> setpoints_;
+  dds::Reader<dds::DriveFeedback> feedbacks_;
+  dds::Reader<dds::Latency> latencies_;
+  dds::Followed<dds::Status> followed_;
+  std::optional<dds::MachineInfo> machine_;
+  std::optional<dds::Status> status_;
+  std::unique_ptr<MachineModel> model_;  ///< motion_ refers to it
+  std::unique_ptr<Motion> motion_;
+  News news_;
+  Clock::time_point heard_{};
+  std::atomic<std::uint64_t> newest_status_{0};
+};
+
+}  // namespace meridian::panel

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/panel/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meridian::panel {
+namespace {
+
+/// Frames are made 25 times a second; of a page that was silent for longer the rest is left out.
+constexpr std::size_t kMaxTrail = 512, kMaxSamples = 1024;
+
+}  // namespace
+
+Motion::Motion(const MachineModel& model, int trail_every)
+    : model_(model), trail_every_(trail_every), tool_length_mm_(model.tool_length_mm) {
+  trail_.reserve(kMaxTrail);
+  samples_.reserve(kMaxSamples);
+}
+
+void Motion::add(const Setpoint& setpoint) {
+  if (joints_ && setpoint.cycle <= cycle_ && cycle_ - setpoint.cycle < kKept) return;
+  const bool is_next = joints_ && setpoint.cycle == cycle_ + 1 && is_leading(setpoint.flags);
+  cycle_ = setpoint.cycle;
+  sent_[cycle_ % kKept] = {cycle_, setpoint.position};
+  joints_ = stage::joints_of(model_.stage, setpoint.position);
+  differentiate(*joints_, is_next);
+  if (samples_.size() < kMaxSamples) samples_.push_back({cycle_, *joints_, following_});
+  if (cycle_ % static_cast<std::uint64_t>(trail_every_) == 0 && trail_.size() < kMaxTrail) {
+    trail_.push_back({forward(model_, tool_length_mm_, *joints_), setpoint.line});
+  }
+}
+
+/// Finite differences of one cycle after the other; a lost cycle breaks the row.
+void Motion::differentiate(const JointVector& joints, bool is_next) {
+  const double rate = 1e9 / static_cast<double>(model_.cycle_ns);
+  derivatives_ = is_next ? std::min(derivatives_ + 1, 3) : 0;
+  std::array<JointVector, 3> now{joints, {}, {}};
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const JointLimits& limits = model_.joints[at].limits;
+    const std::array<double, 3> limit{limits.velocity, limits.acceleration, limits.jerk};
+    double value = joints[at];
+    for (int order = 0; order < derivatives_; ++order) {
+      const auto of = static_cast<std::size_t>(order);
+      value = (value - before_[of][at]) * rate;
+      if (of + 1 < now.size()) now[of + 1][at] = value;
+      const double share = limit[of] > 0 ? std::abs(value) / limit[of] : 0;
+      shares_[at][of] = std::max(shares_[at][of], share);
+    }
+  }
+  before_ = now;
+}
+
+void Motion::add_feedback(std::uint64_t cycle_seen, std::uint32_t joint_mask,
+                          const JointVector& position) {
+  const Sent& sent = sent_[cycle_seen % kKept];
+  if (cycle_seen == 0 || sent.cycle != cycle_seen) return;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if ((joint_mask >> i & 1U) != 0) following_[i] = sent.position[i] - position[i];
+  }
+}
+
+void Motion::clear() {
+  trail_.clear();
+  samples_.clear();
+  shares_ = {};
+}
+
+}  // namespace meridian::panel

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an operator asks for. Every word quotes the frame that he saw; the machine answers in words.
+import { byId, setText } from "./dom.js";
+import { fixed } from "./units.js";
+
+// Asked once more before they go out: they may move the machine.
+const kConfirmed = {
+  start: (frame) => ["Start the program?", `${frame.program}: the machine moves to its first point.`, frame.message],
+  resume: () => ["Resume?", "The machine goes on along the path.", ""],
+  home: () => ["Home all joints?", "Every drive looks for its reference by itself.", ""],
+};
+
+export class Operate {
+  constructor(link, seen) {
+    this.link = link;
+    this.seen = seen;
+    this.id = 0;
+    this.dialog = byId("confirm");
+    for (const button of document.querySelectorAll("[data-verb]")) {
+      button.addEventListener("click", () => this.press(button.dataset.verb));
+    }
+    for (const button of document.querySelectorAll("[data-switch]")) {
+      button.addEventListener("click", () => this.ask(button.dataset.switch, button.getAttribute("aria-pressed") === "true" ? 0 : 1));
+    }
+    for (const [verb, id] of [["feed_override", "feed-slider"], ["rapid_override", "rapid-slider"]]) {
+      const slider = byId(id);
+      slider.addEventListener("input", () => setText(byId(`${id}-text`), `${slider.value} %`));
+      slider.addEventListener("change", () => this.ask(verb, Number(slider.value) / 100));
+    }
+    byId("take-over").addEventListener("click", () => link.say({ do: "take_over", id: 0 }));
+    byId("confirm-yes").addEventListener("click", () => this.dialog.close("yes"));
+    byId("confirm-no").addEventListener("click", () => this.dialog.close("no"));
+    this.dialog.addEventListener("close", () => {
+      if (this.dialog.returnValue === "yes") this.ask(this.dialog.dataset.verb, 0);
+    });
+    // A hold is never wrong.
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && !this.dialog.open) this.ask("hold", 0);
+    });
+  }
+
+  press(verb) {
+    const frame = this.seen();
+    const words = kConfirmed[verb];
+    if (!words || !frame) return this.ask(verb, 0);
+    const [title, text, message] = words(frame);
+    setText(byId("confirm-title"), title);
+    setText(byId("confirm-text"), text);
+    setText(byId("confirm-message"), message);
+    this.dialog.dataset.verb = verb;
+    this.dialog.returnValue = "no";
+    this.dialog.showModal();
+    return undefined;
+  }
+
+  ask(verb, argument) {
+    const frame = this.seen();
+    if (!frame) return this.report(false, "no link to the machine: nothing was asked");
+    const said = this.link.say({ do: verb, id: ++this.id, argument, seen: this.quoted(frame) });
+    if (!said) this.report(false, "no link to the panel: nothing was asked");
+    return undefined;
+  }
+
+  quoted(frame) {
+    return { service: frame.service, epoch: frame.epoch, sequence: frame.sequence };
+  }
+
+  report(isAccepted, text) {
+    if (!text) return;
+    byId("reply").className = isAccepted ? "accepted" : "refused";
+    setText(byId("reply"), text);
+  }
+
+  setFrame(frame) {
+    for (const button of document.querySelectorAll("[data-verb]")) {
+      button.disabled = !this.isOperator || !frame.can.includes(button.dataset.verb);
+    }
+    // Stops are everybody's.
+    for (const verb of ["hold", "abort"]) {
+      document.querySelector(`[data-verb="${verb}"]`).disabled = !frame.can.includes(verb);
+    }
+    for (const button of document.querySelectorAll("[data-switch]")) {
+      button.disabled = !this.isOperator || !frame.can.includes(button.dataset.switch);
+      button.setAttribute("aria-pressed", String(frame[button.dataset.switch]));
+    }
+    for (const [id, value] of [["feed-slider", frame.feed_override], ["rapid-slider", frame.rapid_override]]) {
+      const slider = byId(id);
+      slider.disabled = !this.isOperator;
+      if (document.activeElement === slider && slider.matches(":active")) continue;
+      slider.value = String(Math.round(100 * value));
+      setText(byId(`${id}-text`), `${fixed(100 * value, 0)} %`);
+    }
+  }
+
+  setMachine(scene) {
+    byId("feed-slider").max = String(Math.round(100 * (scene?.max_override ?? 1)));
+  }
+
+  setOperator(who) {
+    this.isOperator = who === "you" || who === "nobody";
+    document.body.dataset.operator = who;
+    byId("take-over").hidden = who !== "another";
+    setText(byId("who"), { another: "Another page operates this machine.", watching: "This panel only watches." }[who] ?? "");
+  }
+
+  setReply(message) {
+    this.report(message.accepted, message.accepted ? message.text : `refused: ${message.text.replace(/^refused: /, "")}`);
+  }
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+import { byId } from "./dom.js";
+import { Display } from "./display.js";
+import { Jog } from "./jog.js";
+import { Link } from "./link.js";
+import { Operate } from "./operate.js";
+import { Report } from "./report.js";
+import { View } from "./view.js";
+
+const display = new Display();
+const view = new View(byId("picture"), (hit) => {
+  if (hit?.isPath) return panel.report.show(hit.index);
+  const line = hit ? view.trail.lines[hit.index] : 0;
+  byId("picked").textContent = line > 0 ? `line ${line}` : "";
+  return undefined;
+});
+const panel = { display, view, frame: null, sequence: 0 };
+window.meridian = panel;
+
+// ---- dark and light
+function setTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+  view.setTheme(theme);
+  try {
+    localStorage.setItem("theme", theme);
+  } catch {
+    // Private windows keep nothing.
+  }
+}
+const prefersLight = matchMedia("(prefers-color-scheme: light)").matches;
+let theme = prefersLight ? "light" : "dark";
+try {
+  theme = localStorage.getItem("theme") ?? theme;
+} catch {
+  // Private windows keep nothing.
+}
+setTheme(theme);
+byId("theme").addEventListener("click", () =>
+  setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+
+// ---- the picture's own buttons
+for (const button of document.querySelectorAll("[data-view]")) {
+  button.addEventListener("click", () => view.look(button.dataset.view));
+}
+for (const button of document.querySelectorAll("[data-show]")) {
+  button.addEventListener("click", () => {
+    const isShown = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", String(isShown));
+    if (button.dataset.show === "follow") view.follow(isShown);
+    else view.show(button.dataset.show, isShown);
+  });
+}
+
+// ---- what the panel's process says
+const receive = {
+  machine(message) {
+    display.setMachine(message);
+    byId("no-picture").hidden = message.scene !== null;
+    panel.operate.setMachine(message.scene);
+    if (!message.scene) return;
+    view.setMachine(message.scene);
+    panel.jog.setMachine(message.scene);
+  },
+  frame(frame) {
+    panel.frame = frame;
+    panel.received = performance.now();
+    display.setFrame(frame);
+    panel.operate.setFrame(frame);
+    panel.jog.setFrame(frame);
+    view.setAtPole(frame.at_pole);
+    view.setJoints(frame.now ?? frame.joints, frame.tool_length);
+    const top = Math.max(frame.feed_programmed, 1);
+    view.trail.add(frame.trail, frame.feed_achieved / top);
+  },
+  news: (message) => display.setNews(message.items),
+  reply: (message) => panel.operate.setReply(message),
+  operator: (message) => panel.operate.setOperator(message.who),
+  latency: (message) => display.setLatency(message.stages),
+  silent() {
+    panel.frame = null;
+    display.setSilent("Silent");
+  },
+};
+
+// A file that was opened from a disk has its run in itself, and no machine.
+const embedded = document.getElementById("report");
+
+function connect() {
+  panel.link = new Link(
+    (message) => receive[message.t]?.(message),
+    (isOpen) => {
+      document.body.classList.toggle("is-cut", !isOpen);
+      if (!isOpen) {
+        panel.frame = null;
+        panel.jog?.release();
+        display.setSilent("No link");
+      }
+    },
+  );
+  panel.operate = new Operate(panel.link, () => panel.frame);
+  panel.jog = new Jog(panel.link, panel, panel.operate);
+}
+
+if (embedded) panel.report = new Report(JSON.parse(embedded.textContent), view, display);
+else connect();

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies that machines are drawn with: plain solids with their edges.
+import {
+  BoxGeometry, ConeGeometry, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
+  MeshStandardMaterial, Vector3,
+} from "three";
+
+export const palette = {
+  dark: { body: 0x5b6675, moving: 0x7f8da0, accent: 0x3aa0ff, table: 0x6d7886, tool: 0xd9dee6, holder: 0x9aa4b2,
+          edge: 0x11161d, floor: 0x2a3340, floorMajor: 0x3a4657 },
+  light: { body: 0xb9c2cd, moving: 0xd3dae2, accent: 0x1f7ae0, table: 0xc4ccd6, tool: 0x59636f, holder: 0x8f99a6,
+           edge: 0x5d6772, floor: 0xd5dbe2, floorMajor: 0xb8c1cc },
+};
+
+export class Solids {
+  constructor(theme) {
+    const colours = palette[theme];
+    this.materials = {};
+    for (const role of ["body", "moving", "accent", "table", "tool", "holder"]) {
+      this.materials[role] = new MeshStandardMaterial({
+        color: colours[role], roughness: 0.55, metalness: role === "tool" ? 0.6 : 0.25 });
+    }
+    this.edge = new LineBasicMaterial({ color: colours.edge, transparent: true, opacity: 0.55 });
+  }
+
+  solid(geometry, role) {
+    const group = new Group();
+    group.add(new Mesh(geometry, this.materials[role]));
+    group.add(new LineSegments(new EdgesGeometry(geometry, 28), this.edge));
+    return group;
+  }
+
+  // A box with its sides along x, y, z of M.
+  box(centre, size, role) {
+    const body = this.solid(new BoxGeometry(...size), role);
+    body.position.copy(centre);
+    return body;
+  }
+
+  // A cylinder about `centre` along `direction`.
+  cylinder(centre, direction, radius, length, role, radiusEnd = radius) {
+    const body = this.solid(new CylinderGeometry(radiusEnd, radius, length, 40), role);
+    body.position.copy(centre);
+    body.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), direction);
+    return body;
+  }
+
+  // A square beam between two points.
+  beam(from, to, width, role, widthEnd = width) {
+    const along = to.clone().sub(from);
+    const length = along.length();
+    const round = new CylinderGeometry(widthEnd * Math.SQRT1_2, width * Math.SQRT1_2, length, 4);
+    const geometry = round.rotateY(Math.PI / 4).toNonIndexed();
+    geometry.computeVertexNormals();
+    const body = this.solid(geometry, role);
+    body.position.copy(from).addScaledVector(along, 0.5);
+    body.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), along.normalize());
+    return body;
+  }
+
+  cone(tip, axis, halfAngle, length, material) {
+    const geometry = new ConeGeometry(Math.tan(halfAngle) * length, length, 48, 1, true);
+    const body = new Mesh(geometry, material);
+    body.position.copy(tip).addScaledVector(axis, length / 2);
+    body.quaternion.setFromUnitVectors(new Vector3(0, -1, 0), axis);
+    return body;
+  }
+}
+

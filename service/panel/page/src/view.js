@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture: camera, light, floor, and whatever machine, path and trail hang in it. Draws only when something changed.
+import {
+  Box3, DirectionalLight, GridHelper, HemisphereLight, Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Scene,
+  SphereGeometry, Vector2, Vector3, WebGLRenderer, DoubleSide,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Machine } from "./machine.js";
+import { palette } from "./shapes.js";
+import { Trail } from "./trail.js";
+
+const kViews = {
+  iso: [0.85, -1.25, 0.75], front: [0, -1, 0.0001], right: [1, 0, 0.0001], top: [0, -0.0001, 1],
+};
+
+export class View {
+  constructor(canvas, onPick) {
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(32, 1, 1, 50000);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener("change", () => this.ask());
+    this.sky = new HemisphereLight(0xffffff, 0x445060, 1.6);
+    this.sky.position.set(0, 0, 1);
+    this.sun = new DirectionalLight(0xffffff, 1.9);
+    this.sun.position.set(0.5, -1, 1.4);
+    this.scene.add(this.sky, this.sun);
+    this.trail = new Trail();
+    this.theme = "dark";
+    this.follows = false;
+    this.shown = { machine: true, trail: true, fan: false };
+    this.frames = 0;
+    this.onPick = onPick;
+    this.watchPicks();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  // ---- what is shown
+
+  setMachine(description) {
+    this.description = description;
+    this.machine?.root.removeFromParent();
+    this.machine = new Machine(description, this.theme);
+    this.scene.add(this.machine.root);
+    this.machine.frames.workpiece.add(this.trail.root);
+    if (this.path) this.machine.frames.workpiece.add(this.path.root);
+    this.drawFloor();
+    this.drawMarks();
+    this.apply();
+    if (!this.isPlaced) this.look("iso");
+    this.isPlaced = true;
+    this.ask();
+  }
+
+  setPath(path) {
+    this.path?.root.removeFromParent();
+    this.path = path;
+    if (path) this.machine?.frames.workpiece.add(path.root);
+    this.apply();
+    this.ask();
+  }
+
+  setTheme(theme) {
+    this.theme = theme;
+    this.trail.setTheme(theme);
+    if (this.description) {
+      const joints = this.joints;
+      this.setMachine(this.description);
+      if (joints) this.setJoints(joints);
+    }
+    this.ask();
+  }
+
+  drawFloor() {
+    this.floor?.removeFromParent();
+    const size = this.machine.size;
+    const colours = palette[this.theme];
+    this.floor = new GridHelper(12 * size, 24, colours.floorMajor, colours.floor);
+    this.floor.rotation.x = Math.PI / 2;
+    this.floor.position.z = this.machine.floor - 0.12 * size;
+    this.scene.add(this.floor);
+  }
+
+  // The tip, and the cone about the pole in which the free joint has no direction of its own.
+  drawMarks() {
+    const { machine, description } = this;
+    const dot = new Mesh(new SphereGeometry(0.022 * machine.size, 20, 14), new MeshBasicMaterial({ color: 0xff5a36 }));
+    machine.frames.tip.add(dot);
+    if (description.free_joint < 0) return;
+    this.coneMaterial = new MeshBasicMaterial({ color: 0xf5a524, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false });
+    const kHalf = 0.05;
+    this.cone = machine.solids.cone(new Vector3(), new Vector3(...description.pole), kHalf, 1.3 * machine.size, this.coneMaterial);
+    machine.frames.workpiece.add(this.cone);
+  }
+
+  setJoints(joints, toolLength) {
+    if (!this.machine) return;
+    this.joints = joints;
+    if (toolLength !== undefined) this.machine.setTool(toolLength);
+    this.machine.setJoints(joints);
+    if (this.cone) {
+      const { tip } = this.machine.frames.pose();
+      const pole = new Vector3(...this.description.pole);
+      this.cone.position.set(...tip).addScaledVector(pole, 0.65 * this.machine.size);
+    }
+    if (this.follows) this.followTip();
+    this.ask();
+  }
+
+  setAtPole(isAtPole) {
+    if (this.coneMaterial) this.coneMaterial.opacity = isAtPole ? 0.5 : 0.12;
+  }
+
+  show(what, isShown) {
+    this.shown[what] = isShown;
+    this.apply();
+    this.ask();
+  }
+
+  apply() {
+    this.trail.root.visible = this.shown.trail;
+    this.trail.fan.visible = this.shown.fan;
+    if (this.path) {
+      this.path.root.visible = this.shown.trail;
+      this.path.fan.visible = this.shown.fan;
+    }
+    if (!this.machine) return;
+    const { materials, edge } = this.machine.solids;
+    const ofMachine = new Set([...Object.values(materials), edge]);
+    this.machine.root.traverse((one) => {
+      if (ofMachine.has(one.material)) one.visible = this.shown.machine;
+    });
+  }
+
+  // ---- the camera
+
+  box() {
+    const box = new Box3();
+    const { machine } = this;
+    const centre = new Vector3().setFromMatrixPosition(machine.frames.workpiece.matrixWorld);
+    const tip = new Vector3().setFromMatrixPosition(machine.frames.tip.matrixWorld);
+    const around = 2.6 * machine.size;
+    for (const point of [centre, tip]) box.expandByPoint(point);
+    box.expandByVector(new Vector3(around, around, around));
+    return box;
+  }
+
+  look(name) {
+    if (!this.machine) return;
+    const box = this.box();
+    const centre = box.getCenter(new Vector3());
+    const radius = box.getSize(new Vector3()).length() / 2;
+    const aspect = Math.min(1, this.camera.aspect);
+    const distance = (0.98 * radius) / Math.sin((this.camera.fov * Math.PI) / 360) / aspect;
+    const direction = new Vector3(...kViews[name]).normalize();
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction, distance);
+    this.camera.near = distance / 200;
+    this.camera.far = distance * 20;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.ask();
+  }
+
+  follow(isFollowing) {
+    this.follows = isFollowing;
+    if (isFollowing) this.followTip();
+  }
+
+  followTip() {
+    const tip = new Vector3().setFromMatrixPosition(this.machine.frames.tip.matrixWorld);
+    this.camera.position.add(tip.clone().sub(this.controls.target));
+    this.controls.target.copy(tip);
+    this.controls.update();
+  }
+
+  // Where on the canvas the tip is, in pixels of the page.
+  tipPixel() {
+    this.camera.updateMatrixWorld();
+    const at = new Vector3().setFromMatrixPosition(this.machine.frames.tip.matrixWorld).project(this.camera);
+    const { clientWidth, clientHeight } = this.canvas;
+    return [((at.x + 1) / 2) * clientWidth, ((1 - at.y) / 2) * clientHeight];
+  }
+
+  // ---- drawing and clicks
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas.parentElement;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.ask();
+  }
+
+  ask() {
+    if (this.isAsked) return;
+    this.isAsked = true;
+    requestAnimationFrame(() => {
+      this.isAsked = false;
+      this.frames += 1;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+
+  watchPicks() {
+    let from = null;
+    this.canvas.addEventListener("pointerdown", (event) => (from = [event.clientX, event.clientY]));
+    this.canvas.addEventListener("pointerup", (event) => {
+      const isClick = from && Math.hypot(event.clientX - from[0], event.clientY - from[1]) < 4;
+      if (isClick && this.machine) this.pick(event);
+    });
+  }
+
+  pick(event) {
+    const area = this.canvas.getBoundingClientRect();
+    const at = new Vector2(((event.clientX - area.left) / area.width) * 2 - 1, 1 - ((event.clientY - area.top) / area.height) * 2);
+    const ray = new Raycaster();
+    ray.setFromCamera(at, this.camera);
+    ray.params.Line.threshold = 0.012 * this.camera.position.distanceTo(this.controls.target);
+    const lines = [this.path?.line, this.trail.line].filter((line) => line?.visible);
+    const hit = ray.intersectObjects(lines, false)[0];
+    this.onPick?.(hit ? { index: hit.index, isPath: hit.object === this.path?.line } : null);
+  }
+
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "service/dds/participant.hpp"
+
+namespace meridian::panel {
+
+struct PanelOptions {
+  std::uint16_t port = 8090;  ///< of loopback; 0: any that is free
+  std::string operator_name;  ///< for messages and the log
+  bool is_watching = false;   ///< the page has no buttons, and nothing that it says is passed on
+};
+
+/// Serves the page of one machine until `is_ending`. `on_ready` gets the port. Throws DdsError and
+/// ServerError. Never touches motion: what a page asks for goes the way of `meridian ctl`.
+void run_panel(dds::Participant& participant, const PanelOptions& options,
+               const std::atomic<bool>& is_ending,
+               const std::function<void(std::uint16_t)>& on_ready);
+
+}  // namespace meridian::panel

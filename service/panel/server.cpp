@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/panel/server.hpp"
+
+#include <civetweb.h>
+
+#include <array>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "service/panel/page.hpp"
+#include "service/panel/page_client.hpp"
+#include "service/panel/request_guard.hpp"
+
+namespace meridian::panel {
+namespace {
+
+/// No script, style, picture or link but the page's own; nobody shows it in a frame.
+constexpr const char* kHeaders =
+    "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; "
+    "img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'\r\n"
+    "X-Content-Type-Options: nosniff\r\n"
+    "Referrer-Policy: no-referrer\r\n"
+    "Cross-Origin-Opener-Policy: same-origin\r\n"
+    "Cross-Origin-Resource-Policy: same-origin\r\n"
+    "Cache-Control: no-cache\r\n";
+
+[[nodiscard]] std::string_view header_of(const mg_connection* connection, const char* name) {
+  const char* const value = mg_get_header(connection, name);
+  return value != nullptr ? value : "";
+}
+
+void answer(mg_connection* connection, const char* status, std::string_view type,
+            std::string_view body, bool is_gzip = false) {
+  const std::string_view method = mg_get_request_info(connection)->request_method;
+  mg_printf(connection,
+            "HTTP/1.1 %s\r\n%sContent-Type: %.*s\r\nContent-Length: %zu\r\n%sConnection: close\r\n"
+            "\r\n",
+            status, kHeaders, static_cast<int>(type.size()), type.data(), body.size(),
+            is_gzip ? "Content-Encoding: gzip\r\n" : "");
+  if (method != "HEAD") mg_write(connection, body.data(), body.size());
+}
+
+void refuse(mg_connection* connection, const char* status, std::string_view why) {
+  answer(connection, status, "text/plain; charset=utf-8", why);
+}
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(Hub& shared, PageHandler page_handler) : hub(shared), handler(std::move(page_handler)) {}
+
+  [[nodiscard]] bool is_from_here(const mg_connection* connection) const {
+    return is_own_host(header_of(connection, "Host"), port);
+  }
+  int serve(mg_connection* connection);
+  [[nodiscard]] bool admits(const mg_connection* connection);
+  void open(mg_connection* connection);
+  [[nodiscard]] bool read(mg_connection* connection, int bits, std::string_view text);
+  void close(const mg_connection* connection);
+
+  Hub& hub;
+  PageHandler handler;
+  mg_context* context = nullptr;
+  std::uint16_t port = 0;
+  std::mutex mutex;
+  std::map<const mg_connection*, std::unique_ptr<PageClient>> pages;
+};
+
+/// Answers one request; 1: done.
+int Server::Impl::serve(mg_connection* connection) {
+  const mg_request_info* const request = mg_get_request_info(connection);
+  const std::string_view method = request->request_method;
+  const std::string_view path = request->local_uri != nullptr ? request->local_uri : "";
+  if (!is_from_here(connection)) {
+    refuse(connection, "403 Forbidden", "this is no name of the panel's host\n");
+  } else if (method != "GET" && method != "HEAD") {
+    refuse(connection, "405 Method Not Allowed", "GET and HEAD alone\n");
+  } else if (path == "/metrics" && handler.metrics) {
+    answer(connection, "200 OK", "text/plain; version=0.0.4; charset=utf-8", handler.metrics());
+  } else if (const auto file = find_page_file(path)) {
+    answer(connection, "200 OK", file->type, file->bytes, file->is_gzip);
+  } else {
+    refuse(connection, "404 Not Found", "the panel has no such page\n");
+  }
+  return 1;
+}
+
+bool Server::Impl::admits(const mg_connection* connection) {
+  const std::lock_guard lock(mutex);
+  return is_from_here(connection) &&
+         is_own_origin(header_of(connection, "Origin"), header_of(connection, "Host")) &&
+         pages.size() < kMaxPages;
+}
+
+void Server::Impl::open(mg_connection* connection) {
+  PageClient* page = nullptr;
+  {
+    const std::lock_guard lock(mutex);
+    auto& client = pages[connection];
+    client = std::make_unique<PageClient>(hub, connection);
+    page = client.get();
+  }
+  handler.on_open(*page);
+  page->start();
+}
+
+/// Whether the connection stays.
+bool Server::Impl::read(mg_connection* connection, int bits, std::string_view text) {
+  constexpr int kFinal = 0x80, kOpcode = 0x0f;
+  const int opcode = bits & kOpcode;
+  if (opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG) return true;
+  const bool is_whole_text = opcode == MG_WEBSOCKET_OPCODE_TEXT && (bits & kFinal) != 0;
+  if (!is_whole_text || text.size() > kMaxText) return false;
+  PageClient* page = nullptr;
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = pages.find(connection);
+    if (found == pages.end()) return false;
+    page = found->second.get();
+  }
+  handler.on_text(*page, text);
+  return true;
+}
+
+void Server::Impl::close(const mg_connection* connection) {
+  std::unique_ptr<PageClient> page;
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = pages.find(connection);
+    if (found == pages.end()) return;
+    page = std::move(found->second);
+    pages.erase(found);
+  }
+  handler.on_close(*page);
+}
+
+Server::Server(Hub& hub, std::uint16_t port, PageHandler handler)
+    : impl_(std::make_unique<Impl>(hub, std::move(handler))) {
+  mg_init_library(MG_FEATURES_WEBSOCKET);
+  const std::string address = "127.0.0.1:" + std::to_string(port);
+  const std::array<const char*, 17> options{"listening_ports",
+                                            address.c_str(),
+                                            "num_threads",
+                                            "24",
+                                            "request_timeout_ms",
+                                            "10000",
+                                            "websocket_timeout_ms",
+                                            "20000",
+                                            "enable_websocket_ping_pong",
+                                            "yes",
+                                            "max_request_size",
+                                            "8192",
+                                            "tcp_nodelay",
+                                            "1",
+                                            "enable_directory_listing",
+                                            "no",
+                                            nullptr};
+  mg_callbacks callbacks{};
+  impl_->context = mg_start(&callbacks, impl_.get(), const_cast<const char**>(options.data()));
+  if (impl_->context == nullptr) {
+    throw ServerError("nothing can listen at http://" + address +
+                      ": another program does, or a panel that runs already; choose --port");
+  }
+  mg_server_port bound{};
+  if (mg_get_server_ports(impl_->context, 1, &bound) > 0) {
+    impl_->port = static_cast<std::uint16_t>(bound.port);
+  }
+  Impl* const self = impl_.get();
+  mg_set_request_handler(
+      self->context, "/",
+      [](mg_connection* connection, void* data) {
+        return static_cast<Impl*>(data)->serve(connection);
+      },
+      self);
+  mg_set_websocket_handler(
+      self->context, "/live",
+      [](const mg_connection* connection, void* data) {
+        return static_cast<Impl*>(data)->admits(connection) ? 0 : 1;
+      },
+      [](mg_connection* connection, void* data) { static_cast<Impl*>(data)->open(connection); },
+      [](mg_connection* connection, int bits, char* text, std::size_t size, void* data) {
+        return static_cast<Impl*>(data)->read(connection, bits, {text, size}) ? 1 : 0;
+      },
+      [](const mg_connection* connection, void* data) {
+        static_cast<Impl*>(data)->close(connection);
+      },
+      self);
+}
+
+Server::~Server() {
+  impl_->hub.close();
+  mg_stop(impl_->context);
+  mg_exit_library();
+}
+
+std::uint16_t Server::port() const noexcept { return impl_->port; }
+
+}  // namespace meridian::panel

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "service/config/machine_file.hpp"
+#include "service/panel/hub.hpp"
+#include "service/panel/motion.hpp"
+#include "service/panel/news.hpp"
+#include "service/panel/page.hpp"
+#include "service/panel/request_guard.hpp"
+
+namespace meridian::panel {
+namespace {
+
+using namespace std::chrono_literals;
+
+[[nodiscard]] const MachineModel& trunnion() {
+  static const MachineModel kModel =
+      config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml");
+  return kModel;
+}
+
+TEST(RequestGuard, KnowsItsOwnNames) {
+  EXPECT_TRUE(is_own_host("127.0.0.1:8090", 8090));
+  EXPECT_TRUE(is_own_host("localhost:8090", 8090));
+  EXPECT_TRUE(is_own_host("[::1]:8090", 8090));
+  for (const char* const foreign : {"", "evil.example:8090", "127.0.0.1", "127.0.0.1:80",
+                                    "127.0.0.1:80901", "localhost.evil.example:8090"}) {
+    EXPECT_FALSE(is_own_host(foreign, 8090)) << foreign;
+  }
+}
+
+TEST(RequestGuard, AnotherSiteIsNoOrigin) {
+  EXPECT_TRUE(is_own_origin("http://localhost:8090", "localhost:8090"));
+  for (const char* const foreign : {"", "null", "http://evil.example", "http://localhost:8091",
+                                    "https://localhost:8090", "http://127.0.0.1:8090"}) {
+    EXPECT_FALSE(is_own_origin(foreign, "localhost:8090")) << foreign;
+  }
+}
+
+TEST(Hub, AReaderThatWasAwayGetsTheNewestOfEachKind) {
+  Hub hub;
+  Hub::Cursor cursor;
+  hub.publish(Hub::kFrame, "old");
+  hub.publish(Hub::kFrame, "new");
+  hub.publish(Hub::kMachine, "machine");
+  const auto texts = hub.wait(cursor, 0ms);
+  ASSERT_EQ(texts.size(), 2U);
+  EXPECT_EQ(*texts[0], "machine");
+  EXPECT_EQ(*texts[1], "new");
+  EXPECT_TRUE(hub.wait(cursor, 0ms).empty());
+}
+
+TEST(Hub, AClosedHubLetsItsReadersGo) {
+  Hub hub;
+  Hub::Cursor cursor;
+  hub.publish(Hub::kFrame, "frame");
+  hub.close();
+  EXPECT_TRUE(hub.wait(cursor, 10s).empty());
+}
+
+/// Joint X of the machine at `x` mm in cycle `cycle`.
+[[nodiscard]] Setpoint setpoint_at(std::uint64_t cycle, double x) {
+  Setpoint setpoint;
+  setpoint.cycle = cycle;
+  setpoint.position[0] = x;
+  setpoint.flags = kSetpointEnabled;
+  return setpoint;
+}
+
+TEST(Motion, ShareOfTheVelocityLimitIsThatOfTheFiniteDifference) {
+  Motion motion(trunnion());
+  motion.add(setpoint_at(1, 0));
+  motion.add(setpoint_at(2, 0.15));  // 150 mm/s of 300
+  EXPECT_NEAR(motion.shares()[0][0], 0.5, 1e-9);
+  EXPECT_EQ(motion.shares()[0][1], 0);  // one difference gives no acceleration
+  motion.clear();
+  EXPECT_EQ(motion.shares()[0][0], 0);
+}
+
+TEST(Motion, ALostCycleMakesNoFalseAcceleration) {
+  Motion motion(trunnion());
+  motion.add(setpoint_at(1, 0));
+  motion.add(setpoint_at(2, 0.1));
+  motion.add(setpoint_at(5, 0.4));
+  motion.add(setpoint_at(6, 0.5));
+  EXPECT_NEAR(motion.shares()[0][0], 1.0 / 3, 1e-9);
+  EXPECT_EQ(motion.shares()[0][1], 0);
+}
+
+TEST(Motion, TheTrailIsForwardKinematics) {
+  Motion motion(trunnion(), 1);
+  motion.add(setpoint_at(8, 12.5));
+  ASSERT_EQ(motion.trail().size(), 1U);
+  EXPECT_NEAR(motion.trail()[0].pose.tip[0], 12.5, 1e-12);
+  EXPECT_NEAR(motion.trail()[0].pose.axis[2], 1, 1e-15);
+}
+
+TEST(Motion, FeedbackIsComparedWithTheSetpointThatItSaw) {
+  Motion motion(trunnion());
+  motion.add(setpoint_at(1, 1.0));
+  motion.add(setpoint_at(2, 2.0));
+  motion.add_feedback(1, 1, JointVector{0.75});
+  EXPECT_NEAR(motion.following()[0], 0.25, 1e-12);
+  motion.add_feedback(777, 1, JointVector{100});  // never seen
+  EXPECT_NEAR(motion.following()[0], 0.25, 1e-12);
+}
+
+TEST(News, AnAlarmIsToldOnceWithItsRemedy) {
+  News news;
+  dds::Status status;
+  status.service_id = 7;
+  EXPECT_FALSE(news.add(status, trunnion(), {}));
+  status.alarm = Alarm::kEmergencyStop;
+  EXPECT_TRUE(news.add(status, trunnion(), {}));
+  EXPECT_FALSE(news.add(status, trunnion(), {}));
+  ASSERT_EQ(news.items().size(), 1U);
+  EXPECT_EQ(news.items()[0].severity, Severity::kAlarm);
+  EXPECT_NE(news.items()[0].text.find("reset"), std::string::npos) << news.items()[0].text;
+}
+
+TEST(News, KeepsNoMoreThanItsRoom) {
+  News news;
+  dds::Status status;
+  status.service_id = 7;
+  for (int i = 0; i < 1000; ++i) {
+    status.message = std::to_string(i);
+    news.add(status, trunnion(), {});
+  }
+  EXPECT_EQ(news.items().size(), News::kKept);
+  EXPECT_EQ(news.items().back().text, "999");
+}
+
+TEST(Page, IsWhatItsBudgetAllows) {
+  std::size_t bytes = 0;
+  for (const char* const path : {"/", "/panel.js", "/panel.css"}) {
+    const auto file = find_page_file(path);
+    ASSERT_TRUE(file) << path;
+    bytes += file->bytes.size();
+  }
+  EXPECT_LT(bytes, 1'000'000U);
+  EXPECT_FALSE(find_page_file("/../etc/passwd"));
+  EXPECT_NE(viewer_html().find("MERIDIAN_REPORT"), std::string_view::npos);
+}
+
+}  // namespace
+}  // namespace meridian::panel

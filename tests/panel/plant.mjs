@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// A service, its drives and a panel in a domain of their own, and a browser in front of it.
+import { spawn, execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { setPriority, tmpdir } from "node:os";
+import { join } from "node:path";
+
+export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+export async function until(what, isTrue, ms = 20000) {
+  const end = Date.now() + ms;
+  for (;;) {
+    const value = await isTrue();
+    if (value) return value;
+    if (Date.now() > end) throw new Error(`time is up: ${what}`);
+    await sleep(30);
+  }
+}
+
+export class Plant {
+  constructor(bin, source, machine) {
+    Object.assign(this, { bin, source, machine: join(source, "deploy/machines", machine) });
+    this.domain = String(100 + (process.pid % 120));
+    this.folder = mkdtempSync(join(tmpdir(), "meridian-panel-"));
+    this.children = [];
+    this.env = { ...process.env, CYCLONEDDS_URI: `file://${source}/deploy/cyclonedds-loopback.xml` };
+  }
+
+  spawn(program, ...words) {
+    const child = spawn(join(this.bin, program), words, { env: this.env });
+    child.text = "";
+    for (const stream of [child.stdout, child.stderr]) stream.on("data", (data) => (child.text += data));
+    child.ended = new Promise((resolve) => child.on("exit", resolve));
+    this.children.push(child);
+    return child;
+  }
+
+  tool(...words) {
+    try {
+      return execFileSync(join(this.bin, "meridian"), words, { env: this.env, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+    } catch (error) {
+      return `failed (${error.status}): ${error.stdout}${error.stderr}`;
+    }
+  }
+
+  status() {
+    const text = this.tool("status", "--json", "--domain", this.domain);
+    return text.startsWith("{") ? JSON.parse(text) : { state: "" };
+  }
+
+  async start() {
+    this.recording = join(this.folder, "recording.csv");
+    this.spawn("meridiand", "--machine", this.machine, "--service", join(this.source, "deploy/service.toml"), "--domain",
+      this.domain, "--best-effort", "--record", this.recording);
+    this.spawn("meridian", "drives", "--machine", this.machine, "--domain", this.domain);
+    this.panel = await this.startPanel();
+  }
+
+  async startPanel() {
+    const panel = this.spawn("meridian", "panel", "--domain", this.domain, "--port", "0", "--timeout", "20");
+    this.url = await until("the panel says where it is", () => /http:\S+/.exec(panel.text)?.[0], 30000);
+    return panel;
+  }
+
+  async stop() {
+    for (const child of this.children.reverse()) {
+      child.kill("SIGTERM");
+      const isOver = await Promise.race([child.ended.then(() => true), sleep(5000)]);
+      if (!isOver) child.kill("SIGKILL");
+    }
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}
+
+// The resident memory of a process, KiB.
+export function memoryOf(pid) {
+  return Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
+}
+
+// A process and all that it started.
+export function familyOf(pid) {
+  const parents = new Map();
+  for (const name of readdirSync("/proc").filter((entry) => /^\d+$/.test(entry))) {
+    try {
+      const fields = readFileSync(`/proc/${name}/stat`, "utf8").replace(/^.*\) /, "").split(" ");
+      parents.set(Number(name), Number(fields[1]));
+    } catch {
+      // It ended meanwhile.
+    }
+  }
+  const family = [pid];
+  for (const one of family) for (const [child, parent] of parents) if (parent === one) family.push(child);
+  return family;
+}
+
+export const kChromium = "/usr/bin/chromium";
+
+// Playwright from where npm fetched it; nothing where it or the browser is not there.
+export function findPlaywright(fetched) {
+  if (!existsSync(kChromium) || !existsSync(join(fetched, "node_modules/playwright-core"))) return null;
+  return createRequire(join(fetched, "package.json"))("playwright-core");
+}
+
+export async function openBrowser(playwright, url, theme = "dark") {
+  const server = await playwright.chromium.launchServer({ executablePath: kChromium, headless: true,
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"] });
+  const browser = await playwright.chromium.connect(server.wsEndpoint());
+  const context = await browser.newContext({ viewport: { width: 1920, height: 1080 }, colorScheme: theme });
+  const page = await context.newPage();
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  await page.goto(url);
+  // Software rendering takes what it gets: the machine comes first.
+  for (const pid of familyOf(server.process().pid)) setPriority(pid, 15);
+  return { server, browser, page, errors, pid: server.process().pid };
+}

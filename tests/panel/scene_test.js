@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture's tip and tool axis equal forward() for every shipped machine file and a hundred poses each.
+import { execFileSync } from "node:child_process";
+import { Frames } from "../../service/panel/page/src/screws.js";
+import { Machine } from "../../service/panel/page/src/machine.js";
+
+const kTip_mm = 1e-6; // reach 5e3 mm * eps = 1e-12, a million times
+const kAxis = 1e-9;
+const kLeastMachines = 10;
+const [cases, machines] = process.argv.slice(4);
+const text = execFileSync(cases, [machines], { encoding: "utf8", maxBuffer: 1 << 28 });
+const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
+
+let worstTip = 0, worstAxis = 0, count = 0, failures = 0;
+for (const line of text.trim().split("\n")) {
+  const { scene, poses } = JSON.parse(line);
+  const drawn = new Machine(scene, "dark");
+  for (const frames of [new Frames(scene), drawn.frames]) {
+    for (const pose of poses) {
+      frames.setTool(pose.tool);
+      frames.setJoints(pose.joints);
+      const { tip, axis } = frames.pose();
+      const apart = distance(tip, pose.tip), turned = distance(axis, pose.axis);
+      worstTip = Math.max(worstTip, apart);
+      worstAxis = Math.max(worstAxis, turned);
+      if (!(apart <= kTip_mm) || !(turned <= kAxis)) {
+        failures += 1;
+        console.log(`${scene.name}: tip off by ${apart} mm, axis by ${turned}`);
+      }
+    }
+  }
+  // Every body of every machine stands somewhere: no NaN reaches the picture.
+  drawn.setJoints(poses[0].joints);
+  drawn.root.traverse((one) => {
+    if (!one.matrixWorld.elements.every(Number.isFinite)) {
+      failures += 1;
+      console.log(`${scene.name}: a body has no position`);
+    }
+  });
+  count += 1;
+}
+console.log(`${count} machines, tip within ${worstTip.toExponential(2)} mm, axis within ${worstAxis.toExponential(2)}`);
+process.exit(failures === 0 && count >= kLeastMachines ? 0 : 1);
