@@ -8,6 +8,8 @@
 namespace meridian::cl {
 namespace {
 
+constexpr double kLongestNormal = 1e9;  // beyond it a number lost its point; squares must be finite
+
 /// Angle from a to b, right-handed about the unit vector n, in (0, 2π].
 double sweep(const Vector3& a, const Vector3& b, const Vector3& n) {
   const double angle = std::atan2(n.dot(a.cross(b)), a.dot(b));
@@ -19,7 +21,7 @@ double sweep(const Vector3& a, const Vector3& b, const Vector3& n) {
 Arc solve_arc(const Vector3& begin, const Vector3& end, const Vector3& centre,
               const Vector3& normal) {
   Arc arc;
-  if (!(normal.norm() > 1e-6)) {
+  if (!(normal.norm() > 1e-6 && normal.norm() < kLongestNormal)) {
     arc.status = Arc::Status::kNoRadius;
     return arc;
   }

@@ -67,10 +67,12 @@ Outcome begin_motion(Modal& m, std::uint32_t line) {
 Expected<Vector3, Refusal> point_in_w(const Modal& m, const double* xyz) {
   const double to_mm = m.units.to_mm;
   const Vector3 p{xyz[0] * to_mm, xyz[1] * to_mm, xyz[2] * to_mm};
-  if (!(p.cwiseAbs().maxCoeff() <= kFarthest_mm)) {
+  const Vector3 in_w = m.frames.point(p);
+  const double farthest = std::max(p.cwiseAbs().maxCoeff(), in_w.cwiseAbs().maxCoeff());
+  if (!(p.allFinite() && in_w.allFinite() && farthest <= kFarthest_mm)) {
     return refuse("a coordinate lies beyond 1e6 mm");
   }
-  return m.frames.point(p);
+  return in_w;
 }
 
 Outcome set_axis(Modal& m, const double* ijk, ToolAxis::Source source) {

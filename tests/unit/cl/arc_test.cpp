@@ -166,6 +166,10 @@ TEST(Circle, OfAHelixInInverseTimeTakesTheTimeOfOneBlock) {
   EXPECT_NEAR(m[2].feed / m[1].feed, 2, 1e-9);
 }
 
+TEST(Circle, WithANormalBeyondAllNumbersIsRefused) {
+  EXPECT_NE(read_body("GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1e308,10\nGOTO/0,10,0\n").error, "");
+}
+
 TEST(Circle, OfMovarcTurnsByTheSignOfItsSweep) {
   const auto left = read_body("GOTO/10,0,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,90\nGOTO/0,10,0\n");
   ASSERT_EQ(left.error, "");

@@ -97,6 +97,12 @@ TEST(Frames, ThatAreNoneAreRefused) {
   EXPECT_EQ(read_body("CSYS/.99999,0,0,0,0,1.0001,0,0,0,0,1,0\nGOTO/0,0,0\n").error, "");
 }
 
+TEST(Frames, ThatLeadBeyondAllMachinesAreRefused) {
+  EXPECT_NE(read_body("TRANS/1e308,0,0\nGOTO/1,2,3\n").error.find("beyond 1e6 mm"),
+            std::string::npos);
+  EXPECT_NE(read_body("GOTO/0,0,0\nMSYS/2e6,0,0,1,0,0,0,1,0\nGOTO/1,2,3\n").error, "");
+}
+
 TEST(Frames, OfTheCallerComeOnTop) {
   ClReaderOptions options = metric();
   Frame frame;
