@@ -31,6 +31,26 @@ std::filesystem::path corpus() { return test::shared_folder() / "cl_corpus"; }
 
 void PrintTo(const CorpusFile& file, std::ostream* out) { *out << file.name; }
 
+/// What stands in a file by plain text matching, not by our reader.
+struct PlainText {
+  unsigned long three = 0, six = 0, circles = 0;
+  std::array<double, 6> box{};
+};
+
+PlainText plain_text(const std::filesystem::path& path) {
+  const std::string command = std::string("/usr/bin/python3 ") + MERIDIAN_SOURCE_DIR +
+                              "/tests/corpus/extract_cl.py '" + path.string() + "'";
+  PlainText text;
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return text;
+  auto& box = text.box;
+  const int read = std::fscanf(pipe, "%lu %lu %lu %lf %lf %lf %lf %lf %lf", &text.three, &text.six,
+                               &text.circles, &box[0], &box[1], &box[2], &box[3], &box[4], &box[5]);
+  EXPECT_EQ(pclose(pipe), 0);
+  EXPECT_EQ(read, 9);
+  return text;
+}
+
 class Corpus : public testing::TestWithParam<CorpusFile> {
  protected:
   void SetUp() override {
@@ -60,24 +80,13 @@ TEST_P(Corpus, AgreesWithItsSourcesAndWithPlainTextExtraction) {
   EXPECT_NEAR(s.tilt_max_rad * deg, file.tilt_max_deg, 0.05);
   EXPECT_NEAR(s.axis_change_max_rad * deg, file.axis_change_deg, 0.005);
 
-  const std::string command = std::string("/usr/bin/python3 ") + MERIDIAN_SOURCE_DIR +
-                              "/tests/corpus/extract_cl.py '" + path_.string() + "'";
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  unsigned long three = 0;
-  unsigned long six = 0;
-  unsigned long circles = 0;
-  std::array<double, 6> box{};
-  const int read = std::fscanf(pipe, "%lu %lu %lu %lf %lf %lf %lf %lf %lf", &three, &six, &circles,
-                               &box[0], &box[1], &box[2], &box[3], &box[4], &box[5]);
-  EXPECT_EQ(pclose(pipe), 0);
-  ASSERT_EQ(read, 9);
-  EXPECT_EQ(s.goto_three, three);
-  EXPECT_EQ(s.goto_six, six);
-  EXPECT_EQ(s.arcs, circles);
+  const PlainText text = plain_text(path_);
+  EXPECT_EQ(s.goto_three, text.three);
+  EXPECT_EQ(s.goto_six, text.six);
+  EXPECT_EQ(s.arcs, text.circles);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(s.box_min_mm[i], box[2 * i], kPrinted_mm);
-    EXPECT_NEAR(s.box_max_mm[i], box[2 * i + 1], kPrinted_mm);
+    EXPECT_NEAR(s.box_min_mm[i], text.box[2 * i], kPrinted_mm);
+    EXPECT_NEAR(s.box_max_mm[i], text.box[2 * i + 1], kPrinted_mm);
   }
 }
 
@@ -157,6 +166,44 @@ TEST(CorpusNc, ProgramsAreRefusedAsSiemens) {
     EXPECT_NE(block.error().message.find("Siemens NC program"), std::string::npos);
   }
 }
+
+struct SolidWorksFile {
+  const char* name;
+  std::uint64_t holes;
+  double z_min_mm;
+};
+
+void PrintTo(const SolidWorksFile& file, std::ostream* out) { *out << file.name; }
+
+class SolidWorksCorpus : public testing::TestWithParam<SolidWorksFile> {};
+
+/// Their cycles begin where the cycle retracts to, so levels and axes that are read wrong show.
+TEST_P(SolidWorksCorpus, IsReadWithoutAnOptionAndItsCyclesBeginWhereTheyRetractTo) {
+  const auto path = corpus() / GetParam().name;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  std::ifstream in(path, std::ios::binary);
+  ClReader reader(in, GetParam().name);
+  auto block = reader.next();
+  while (block && *block) block = reader.next();
+  ASSERT_TRUE(block) << block.error().text();
+  const ClSummary& s = reader.summary();
+  EXPECT_EQ(s.dialect, "SolidWorks CAM APT");
+  EXPECT_EQ(s.holes, GetParam().holes);
+  EXPECT_NEAR(s.box_min_mm[2], GetParam().z_min_mm, 1e-5);
+  const PlainText text = plain_text(path);
+  EXPECT_EQ(s.goto_three, text.three);
+  EXPECT_EQ(s.goto_six, text.six);
+  EXPECT_EQ(s.arcs, text.circles);
+  for (const ClWarning& warning : reader.warnings()) {
+    EXPECT_EQ(warning.message.find("are its levels right"), std::string::npos) << warning.line;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ClFiles, SolidWorksCorpus,
+    testing::Values(SolidWorksFile{"solidworks_boss.apt", 0, -125.381909},
+                    SolidWorksFile{"solidworks_manufacture3_top.apt", 31, -9.00161},
+                    SolidWorksFile{"solidworks_sacrifice_board.apt", 28, -55}));
 
 TEST(CorpusUnits, FilesWithoutAUnitWordAreReadInTheStationsUnitAndThatIsSaid) {
   const auto path = corpus() / "nx_coremill.cls";
