@@ -10,7 +10,7 @@ void Hub::publish(Kind kind, std::string text) {
   {
     const std::lock_guard lock(mutex_);
     texts_[kind] = std::move(shared);
-    ++numbers_[kind];
+    if (kind < kPageKinds) ++numbers_[kind];
   }
   changed_.notify_all();
 }
@@ -21,7 +21,7 @@ std::vector<Hub::Text> Hub::wait(Cursor& cursor, std::chrono::milliseconds patie
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, patience, [&] { return is_closed_ || has_news(cursor); });
   std::vector<Text> out;
-  for (std::size_t kind = 0; kind < kKinds && !is_closed_; ++kind) {
+  for (std::size_t kind = 0; kind < kPageKinds && !is_closed_; ++kind) {
     if (cursor.seen[kind] != numbers_[kind]) out.push_back(texts_[kind]);
   }
   cursor.seen = numbers_;

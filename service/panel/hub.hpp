@@ -17,12 +17,21 @@ namespace meridian::panel {
 /// holds up nobody, and nothing grows. Any thread. Proof: tests/panel/panel_unit_test.cpp.
 class Hub {
  public:
-  enum Kind : std::size_t { kMachine, kNews, kLatency, kFrame, kKinds };
+  /// Pages get the first ones, kPageKinds of them.
+  enum Kind : std::size_t {
+    kMachine,
+    kNews,
+    kLatency,
+    kFrame,
+    kPageKinds,
+    kMetrics = kPageKinds,
+    kKinds
+  };
   using Text = std::shared_ptr<const std::string>;
 
   /// How far a reader has come; one each.
   struct Cursor {
-    std::array<std::uint64_t, kKinds> seen{};
+    std::array<std::uint64_t, kPageKinds> seen{};
   };
 
   /// Puts the newest text of `kind` in the place of the last.
@@ -45,7 +54,7 @@ class Hub {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::array<Text, kKinds> texts_{};
-  std::array<std::uint64_t, kKinds> numbers_{};
+  std::array<std::uint64_t, kPageKinds> numbers_{};  ///< how many texts of a kind there were
   bool is_closed_ = false;
 };
 

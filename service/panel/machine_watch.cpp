@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "service/config/machine_file.hpp"
+#include "service/panel/metrics.hpp"
 #include "service/panel/scene.hpp"
 
 namespace meridian::panel {
@@ -33,6 +34,7 @@ constexpr std::chrono::milliseconds kSilent{1500};
     model.frame_origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
   }
   model.tool_length_mm = info.tool_length_mm;
+  model.bridge_cycles = static_cast<int>(info.bridge_cycles);
   return model;
 }
 
@@ -107,16 +109,28 @@ void MachineWatch::take_status() {
   motion_->clear();
 }
 
+void MachineWatch::take_latency() {
+  dds::Latency latency;
+  while (latencies_.take(latency)) {
+    if (!status_ || latency.service_id != status_->service_id) continue;
+    hub_.publish(Hub::kLatency, latency_text(latency));
+    latency_ = latency;
+  }
+}
+
+void MachineWatch::publish_metrics() {
+  const auto now = Clock::now();
+  if (!machine_ || now < metrics_due_) return;
+  metrics_due_ = now + std::chrono::seconds(1);
+  hub_.publish(Hub::kMetrics, metrics_text(*machine_, status_, latency_));
+}
+
 void MachineWatch::poll() {
   take_machine();
   take_motion();
   take_status();
-  dds::Latency latency;
-  while (latencies_.take(latency)) {
-    if (status_ && latency.service_id == status_->service_id) {
-      hub_.publish(Hub::kLatency, latency_text(latency));
-    }
-  }
+  take_latency();
+  publish_metrics();
 }
 
 }  // namespace meridian::panel

@@ -41,6 +41,9 @@ class MachineWatch {
   void take_machine();
   void take_motion();
   void take_status();
+  void take_latency();
+  /// What /metrics answers, once a second.
+  void publish_metrics();
   /// Builds the model from what the machine topic says of it.
   void adopt(const dds::MachineInfo& info);
 
@@ -53,10 +56,11 @@ class MachineWatch {
   dds::Followed<dds::Status> followed_;
   std::optional<dds::MachineInfo> machine_;
   std::optional<dds::Status> status_;
+  std::optional<dds::Latency> latency_;
   std::unique_ptr<MachineModel> model_;  ///< motion_ refers to it
   std::unique_ptr<Motion> motion_;
   News news_;
-  Clock::time_point heard_{};
+  Clock::time_point heard_{}, metrics_due_{};
   std::atomic<std::uint64_t> newest_status_{0};
 };
 

@@ -56,7 +56,12 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     pages.emplace(desk_of(*desk, watch));
   }
   {
-    const Server server(hub, options.port, pages ? operating(*pages) : watching());
+    PageHandler handler = pages ? operating(*pages) : watching();
+    handler.metrics = [&hub] {
+      const Hub::Text text = hub.newest(Hub::kMetrics);
+      return text ? *text : std::string();
+    };
+    const Server server(hub, options.port, std::move(handler));
     on_ready(server.port());
     while (!is_ending) {
       watch.poll();

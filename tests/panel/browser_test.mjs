@@ -3,12 +3,12 @@
 import { connect } from "node:net";
 import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { familyOf, findPlaywright, memoryOf, openBrowser, Plant, sleep, until } from "./plant.mjs";
+import { familyOf, findPlaywright, kLarge, kSmall, memoryOf, openBrowser, Plant, sleep, until } from "./plant.mjs";
 
 const [bin, source, fetched, pictures] = process.argv.slice(2).map((path) => resolve(path));
 const playwright = findPlaywright(fetched);
 if (!playwright) {
-  console.log("SKIPPED: chromium or playwright-core is not here (deploy/install_packages panel)");
+  console.log("SKIPPED: chromium or playwright-core is not here (deploy/install_packages browser)");
   process.exit(77);
 }
 mkdirSync(pictures, { recursive: true });
@@ -42,7 +42,11 @@ async function afterStalls(page, test) {
   }
 }
 const click = (page, verb) => page.click(`[data-verb="${verb}"]:enabled`, { timeout: 15000 });
-const picture = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
+async function picture(page, name) {
+  await page.setViewportSize(kLarge);
+  await page.screenshot({ path: join(pictures, `${name}.png`) });
+  await page.setViewportSize(kSmall);
+}
 const jointOf = (status) => status.b3_mm;
 const firstJog = ".jog-row:first-child button:last-child";
 
@@ -117,8 +121,8 @@ async function jogEndsWhereverTheHandIsLost(first) {
   let open = first;
   await inState(open.page, "Ready");
   await press(open.page);
-  await picture(open.page, "panel-jog");
   await restAfter(() => open.page.mouse.up(), "let go");
+  await picture(open.page, "panel-jog");
   await press(open.page);
   await restAfter(() => open.page.evaluate(() => window.dispatchEvent(new Event("blur"))), "focus lost");
   await open.page.mouse.up();
@@ -136,7 +140,7 @@ async function jogEndsWhereverTheHandIsLost(first) {
   await inState(open.page, "Ready");
   await press(open.page);
   await restAfter(() => familyOf(open.pid).reverse().forEach((pid) => process.kill(pid, "SIGKILL")), "browser killed");
-  open = await openBrowser(playwright, plant.url, "light");
+  open = await openBrowser(playwright, plant, "light");
   await inState(open.page, "Ready");
   await sleep(500);
   must(plant.status().state === "Ready", "a reload moved the machine");
@@ -203,7 +207,7 @@ const run = async (name, test, ...words) => {
 };
 try {
   await plant.start();
-  open = await openBrowser(playwright, plant.url);
+  open = await openBrowser(playwright, plant);
   await run("PageShowsTheStatus", pageShowsTheStatus, open);
   await run("APartRunsByClicksAlone", aPartRunsByClicksAlone, open);
   open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);

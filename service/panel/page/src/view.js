@@ -99,7 +99,10 @@ export class View {
   }
 
   setJoints(joints, toolLength) {
-    if (!this.machine) return;
+    const seen = JSON.stringify([joints, toolLength, this.theme, this.follows]);
+    if (!this.machine || (this.drawn === this.machine && this.seen === seen)) return;
+    this.drawn = this.machine;
+    this.seen = seen;
     this.joints = joints;
     if (toolLength !== undefined) this.machine.setTool(toolLength);
     this.machine.setJoints(joints);
