@@ -43,6 +43,7 @@ struct CheckOptions {
 /// * tip speed never above the programmed feed, times the feed override in force or in force as
 ///   long before as the machine takes to follow; inverse time: tip and axis never faster than the
 ///   fastest block within 5 mm asks for, and no block in less than its time;
+/// * the machine does not creep while it runs (creep_check.hpp);
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
 /// * not a dry run and a run that drives followed in one recording, of which the first alone would

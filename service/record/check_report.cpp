@@ -61,6 +61,8 @@ std::string_view word(Finding::Kind kind) noexcept {
       return "unfinished";
     case Finding::Kind::kFeed:
       return "feed";
+    case Finding::Kind::kCreep:
+      return "creep";
     case Finding::Kind::kTurnRate:
       return "turn_rate";
     case Finding::Kind::kBlockTime:

@@ -60,6 +60,7 @@ struct Finding {
     kOrder,
     kUnfinished,
     kFeed,
+    kCreep,
     kTurnRate,
     kBlockTime,
     kVelocity,

@@ -44,6 +44,7 @@ PathCheck::PathCheck(const MachineModel& model, const CheckedPath& path,
       vertices_(path, options.tip_tolerance_mm),
       speeds_(model, path, options),
       times_(path, reach_of_match(options), static_cast<double>(model.cycle_ns) * 1e-9, options),
+      creep_(model),
       tolerance_{options.tip_tolerance_mm, options.axis_tolerance_rad} {}
 
 double PathCheck::axis_tolerance_at(const Vector3& axis) const noexcept {
@@ -110,10 +111,24 @@ void PathCheck::note(PathMatching::Step step, const Sample& at, bool is_setpoint
   }
 }
 
+/// Plan time per time while the program runs; of a recording without plan time 1 where joints move.
+double PathCheck::rate_between(const Sample& from, const Sample& to) const noexcept {
+  if (!to.is_running) return 0;
+  if (!(to.plan_time_s > 0)) return from.joints == to.joints ? 0 : 1;
+  const double period = static_cast<double>(model_.cycle_ns) * 1e-9;
+  return std::clamp((to.plan_time_s - from.plan_time_s) / period, 0.0, 1.0);
+}
+
 void PathCheck::compare_speeds(const Sample& from, const Sample& to, PathMatching::Position low) {
   const double length = elements_[low.element].tool_length_mm;
-  speeds_.add(forward(model_, length, from.joints), forward(model_, length, to.joints), low,
-              matching_.highest(), to.cycle, to.line);
+  const ToolPose begin = forward(model_, length, from.joints);
+  const ToolPose end = forward(model_, length, to.joints);
+  speeds_.add(begin, end, low, matching_.highest(), to.cycle, to.line);
+  if (path_.elements().empty()) return;
+  creep_.add({from.joints, to.joints, (end.tip - begin.tip).norm(),
+              speeds_.feed_between(low, matching_.highest()),
+              matching_.lowest().element - low.element, rate_between(from, to)},
+             to.cycle, to.line);
 }
 
 /// Goes from the last but one sample to the last: between them first, where four say how.
@@ -123,7 +138,7 @@ void PathCheck::step(bool has_between) {
   const bool is_next = to.cycle == from.cycle + 1;
   const bool is_rest = from.joints == to.joints && samples_[0].joints == from.joints &&
                        samples_[3].joints == to.joints;
-  if (is_rest && is_next) return;
+  if (is_rest && is_next && rate_between(from, to) == 0) return;
   const PathMatching::Position low = matching_.lowest();
   if (has_between && !is_rest) {
     for (const double x : {0.25, 0.5, 0.75}) {
@@ -150,7 +165,9 @@ void PathCheck::step(bool has_between) {
 void PathCheck::add(const RecordingRow& row, std::uint64_t missing) {
   const bool is_next = known_ > 0 && row.cycle == samples_[3].cycle + 1;
   std::rotate(samples_.begin(), samples_.begin() + 1, samples_.end());
-  samples_[3] = {row.cycle, row.line, row.joints, known_ > 0 ? missing : 0};
+  samples_[3] = {row.cycle,       row.line,
+                 row.joints,      known_ > 0 ? missing : 0,
+                 row.plan_time_s, row.state == State::kRunning};
   run_ = is_next ? std::min(run_ + 1, 4) : 1;
   known_ = std::min(known_ + 1, 4);
   if (known_ == 1) {
@@ -180,6 +197,7 @@ void PathCheck::finish(CheckReport& report) {
   find_deviations(report);
   speeds_.finish(report);
   times_.finish(report);
+  creep_.finish(report);
   vertices_.finish(report);
   find_disorder(report, is_at_end);
 }

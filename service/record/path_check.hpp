@@ -7,6 +7,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/record/check.hpp"
+#include "service/record/creep_check.hpp"
 #include "service/record/path_matching.hpp"
 #include "service/record/speed_judge.hpp"
 #include "service/record/time_judge.hpp"
@@ -34,6 +35,8 @@ class PathCheck {
     std::uint32_t line = 0;
     JointVector joints{};
     std::uint64_t missing = 0;
+    double plan_time_s = 0;
+    bool is_running = false;
   };
   /// How far poses are off the path.
   struct Deviations {
@@ -45,6 +48,7 @@ class PathCheck {
   void match(const JointVector& joints, const Sample& at, bool is_setpoint);
   void note(PathMatching::Step step, const Sample& at, bool is_setpoint);
   void compare_speeds(const Sample& from, const Sample& to, PathMatching::Position low);
+  [[nodiscard]] double rate_between(const Sample& from, const Sample& to) const noexcept;
   void find_deviations(CheckReport& report) const;
   void find_disorder(CheckReport& report, bool is_at_end) const;
   [[nodiscard]] PathMatching::Gap gap_before(const Sample& at) const;
@@ -59,6 +63,7 @@ class PathCheck {
   VertexCheck vertices_;
   SpeedJudge speeds_;
   TimeJudge times_;
+  CreepCheck creep_;
   Tolerance tolerance_;              ///< at the last pose
   std::array<Sample, 4> samples_{};  ///< newest last
   int known_ = 0;                    ///< how many of them are filled

@@ -16,6 +16,12 @@ class SpeedJudge {
  public:
   SpeedJudge(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
 
+  /// The fastest tip speed that blocks between two positions ask for, mm/s.
+  [[nodiscard]] double feed_between(PathMatching::Position low,
+                                    PathMatching::Position high) const noexcept {
+    return asked_between(low, high).tip_mm_per_s;
+  }
+
   /// From one setpoint to the next one, which is that of `cycle`; all matchings of the two are
   /// between `low` and `high`. Cycles go up.
   void add(const ToolPose& from, const ToolPose& to, PathMatching::Position low,
