@@ -134,8 +134,8 @@ void OperatorDesk::jog(const stream::JogPlan& plan, std::shared_ptr<JogGrip> gri
     const GripWatch watch(*grip);
     grip->check(JogGrip::Clock::now());
     if (grip->is_let_go()) return on_outcome({true, ""});
-    stream::JogHand hand(participant_, link);
-    on_outcome(outcome_of(hand.jog(plan, grip->is_let_go(), kPatience)));
+    if (!hand_) hand_ = std::make_unique<stream::JogHand>(participant_, link);
+    on_outcome(outcome_of(hand_->jog(plan, grip->is_let_go(), kPatience)));
   };
   if (!others_.add(std::move(task))) on_outcome({false, "too much was asked at once"});
 }

@@ -67,6 +67,8 @@ class OperatorDesk {
   dds::Participant& participant_;
   std::mutex mutex_;
   std::weak_ptr<JogGrip> grip_;  ///< the newest
+  /// Of the others' thread. One for all jogs: the service goes by the numbers of its samples.
+  std::unique_ptr<stream::JogHand> hand_;
   Lane stops_, others_;
 };
 
