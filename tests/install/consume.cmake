@@ -1,4 +1,4 @@
-# cmake -D BUILD= -D CONSUMER= -D WORK= -D VERSION= -D COMPILER= -P consume.cmake
+# cmake -D BUILD= -D CONSUMER= -D EXAMPLES= -D WORK= -D VERSION= -D COMPILER= -P consume.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -25,6 +25,15 @@ run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PA
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 message(STATUS "${output}")
+
+# The examples of the docs, against the installed library and its machine files.
+run(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${WORK}/examples -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+  -D CMAKE_CXX_COMPILER=${COMPILER})
+run(${CMAKE_COMMAND} --build ${WORK}/examples)
+foreach(example embed kinematics)
+  run(${WORK}/examples/${example} ${WORK}/prefix/share/meridian/machines/lai.toml)
+  message(STATUS "${example}: ${output}")
+endforeach()
 
 # A package of another minor version is not what was asked for.
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/other -G Ninja
