@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/units.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/machine_options.hpp"
+#include "service/inspect/pose_solutions.hpp"
+
+namespace meridian::cli {
+namespace {
+
+struct Options {
+  MachineOptions machine;
+  std::vector<double> pose, joints;
+};
+
+int refuse(const std::string& message) {
+  std::cerr << "meridian pose: " << message << "\n";
+  return kInputRefused;
+}
+
+bool are_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+int show_joints(const MachineModel& model, const std::vector<double>& at_edge) {
+  const auto count = static_cast<std::size_t>(model.joint_count);
+  if (at_edge.size() != count) {
+    return refuse("--joints has " + std::to_string(at_edge.size()) + " values, the machine has " +
+                  std::to_string(count) + " joints");
+  }
+  JointVector q{};
+  for (std::size_t i = 0; i < count; ++i) {
+    q[i] = model.joints[i].is_rotary ? units::rad_from_deg(at_edge[i]) : at_edge[i];
+  }
+  std::cout << inspect::joints_text(model, q);
+  const int outside = first_joint_outside_travel(model, q, 1e-9);
+  if (outside < 0) return kFine;
+  std::cout << "OUTSIDE TRAVEL: " << limited_spec(model, outside).name << "\n";
+  return kVerdictNo;
+}
+
+int show_pose(const MachineModel& model, const std::vector<double>& values) {
+  constexpr double kLeastAxis = 1e-9;
+  const Vector3 axis(values[3], values[4], values[5]);
+  const double length = axis.norm();
+  if (!std::isfinite(length) || !(length > kLeastAxis)) {
+    return refuse("the tool axis i j k is no direction");
+  }
+  const ToolPose pose{{values[0], values[1], values[2]}, axis / length};
+  const auto solutions = inspect::solve_all(model, pose);
+  if (solutions.empty()) {
+    std::cout << "out of reach: " << inspect::why_unreachable(model, pose) << "\n";
+    return kVerdictNo;
+  }
+  std::cout << inspect::to_text(solutions, model);
+  const bool is_possible = std::any_of(solutions.begin(), solutions.end(),
+                                       [](const auto& one) { return one.outside < 0; });
+  return is_possible ? kFine : kVerdictNo;
+}
+
+int run(const Options& options) {
+  if (options.pose.empty() == options.joints.empty()) {
+    std::cerr << "meridian pose: give a pose x y z i j k, or --joints\n";
+    return kUsage;
+  }
+  if (!are_finite(options.pose) || !are_finite(options.joints)) {
+    return refuse("every value must be a finite number");
+  }
+  const MachineModel model = load_machine(options.machine);
+  return options.joints.empty() ? show_pose(model, options.pose)
+                                : show_joints(model, options.joints);
+}
+
+}  // namespace
+
+void add_pose_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "pose",
+      "A pose of the tool to joints, every branch with its windings, drives and distance from "
+      "singularity; or joints to the pose. Exit code 1 where nothing inside travel reaches it");
+  command
+      ->add_option("pose", options->pose,
+                   "Tip x y z in mm and tool axis i j k, in the workpiece; behind -- where a "
+                   "number is negative")
+      ->expected(6);
+  command
+      ->add_option("--joints", options->joints,
+                   "Joints in machine order, separated by commas, mm and deg")
+      ->delimiter(',')
+      ->expected(1, kMaxJoints);
+  add_machine_options(*command, options->machine, false);
+  command->add_option("--frame", options->machine.frame,
+                      "Where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) Ry(b) Rx(a); "
+                      "instead of the machine file's frame");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace meridian::cli

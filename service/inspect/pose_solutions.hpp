@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/kinematics.hpp"
+
+namespace meridian::inspect {
+
+/// One branch of the inverse kinematics at a pose. Units: mm, rad.
+struct PoseSolution {
+  int branch = 0;
+  JointVector q{};          ///< in the windings nearest to home that travel allows
+  bool is_at_pole = false;  ///< a rotary joint is free there and stands at home
+  double measure = 0;       ///< distance from singularity, see meridian::measure()
+  int outside = -1;         ///< first joint or drive of the stage beyond travel; -1: none
+  double beyond = 0;        ///< by how much it is
+};
+
+/// Every branch that puts the tool at `pose`, each once, those beyond travel too. Empty where the
+/// pose is out of reach. Frame: W. Proof: tests/unit/inspect/pose_solutions_test.cpp.
+[[nodiscard]] std::vector<PoseSolution> solve_all(const MachineModel& model, const ToolPose& pose);
+
+/// The whole turns by which rotary joint `joint` may leave `q` and stay inside travel.
+struct Windings {
+  int down = 0, up = 0;  ///< 0 for a linear or an endless joint
+};
+[[nodiscard]] Windings windings_at(const MachineModel& model, const JointVector& q, int joint);
+
+/// What the pose asks for that the machine has not; only for poses without a solution.
+[[nodiscard]] std::string why_unreachable(const MachineModel& model, const ToolPose& pose);
+
+/// Report on the solutions of a pose: joints, drives, other windings, measure, what is beyond.
+[[nodiscard]] std::string to_text(const std::vector<PoseSolution>& solutions,
+                                  const MachineModel& model);
+/// Report on tip and axis of given joints.
+[[nodiscard]] std::string joints_text(const MachineModel& model, const JointVector& q);
+
+}  // namespace meridian::inspect
