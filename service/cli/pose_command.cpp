@@ -18,6 +18,7 @@ namespace {
 struct Options {
   MachineOptions machine;
   std::vector<double> pose, joints;
+  bool is_json = false;
 };
 
 int refuse(const std::string& message) {
@@ -29,7 +30,7 @@ bool are_finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-int show_joints(const MachineModel& model, const std::vector<double>& at_edge) {
+int show_joints(const MachineModel& model, const std::vector<double>& at_edge, bool is_json) {
   const auto count = static_cast<std::size_t>(model.joint_count);
   if (at_edge.size() != count) {
     return refuse("--joints has " + std::to_string(at_edge.size()) + " values, the machine has " +
@@ -39,14 +40,14 @@ int show_joints(const MachineModel& model, const std::vector<double>& at_edge) {
   for (std::size_t i = 0; i < count; ++i) {
     q[i] = model.joints[i].is_rotary ? units::rad_from_deg(at_edge[i]) : at_edge[i];
   }
-  std::cout << inspect::joints_text(model, q);
+  std::cout << (is_json ? inspect::joints_json(model, q) : inspect::joints_text(model, q));
   const int outside = first_joint_outside_travel(model, q, 1e-9);
   if (outside < 0) return kFine;
-  std::cout << "OUTSIDE TRAVEL: " << limited_spec(model, outside).name << "\n";
+  std::cerr << "OUTSIDE TRAVEL: " << limited_spec(model, outside).name << "\n";
   return kVerdictNo;
 }
 
-int show_pose(const MachineModel& model, const std::vector<double>& values) {
+int show_pose(const MachineModel& model, const std::vector<double>& values, bool is_json) {
   constexpr double kLeastAxis = 1e-9;
   const Vector3 axis(values[3], values[4], values[5]);
   const double length = axis.norm();
@@ -55,11 +56,13 @@ int show_pose(const MachineModel& model, const std::vector<double>& values) {
   }
   const ToolPose pose{{values[0], values[1], values[2]}, axis / length};
   const auto solutions = inspect::solve_all(model, pose);
-  if (solutions.empty()) {
+  if (is_json) {
+    std::cout << inspect::to_json(solutions, model, pose);
+  } else if (solutions.empty()) {
     std::cout << "out of reach: " << inspect::why_unreachable(model, pose) << "\n";
-    return kVerdictNo;
+  } else {
+    std::cout << inspect::to_text(solutions, model);
   }
-  std::cout << inspect::to_text(solutions, model);
   const bool is_possible = std::any_of(solutions.begin(), solutions.end(),
                                        [](const auto& one) { return one.outside < 0; });
   return is_possible ? kFine : kVerdictNo;
@@ -74,8 +77,8 @@ int run(const Options& options) {
     return refuse("every value must be a finite number");
   }
   const MachineModel model = load_machine(options.machine);
-  return options.joints.empty() ? show_pose(model, options.pose)
-                                : show_joints(model, options.joints);
+  return options.joints.empty() ? show_pose(model, options.pose, options.is_json)
+                                : show_joints(model, options.joints, options.is_json);
 }
 
 }  // namespace
@@ -96,6 +99,7 @@ void add_pose_command(CLI::App& app, int& exit_code) {
                    "Joints in machine order, separated by commas, mm and deg")
       ->delimiter(',')
       ->expected(1, kMaxJoints);
+  command->add_flag("--json", options->is_json, "As JSON");
   add_machine_options(*command, options->machine, false);
   command->add_option("--frame", options->machine.frame,
                       "Where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) Ry(b) Rx(a); "

@@ -38,4 +38,9 @@ struct Windings {
 /// Report on tip and axis of given joints.
 [[nodiscard]] std::string joints_text(const MachineModel& model, const JointVector& q);
 
+/// The same two as JSON for programs; mm and deg.
+[[nodiscard]] std::string to_json(const std::vector<PoseSolution>& solutions,
+                                  const MachineModel& model, const ToolPose& pose);
+[[nodiscard]] std::string joints_json(const MachineModel& model, const JointVector& q);
+
 }  // namespace meridian::inspect

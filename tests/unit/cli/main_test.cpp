@@ -91,10 +91,11 @@ std::set<std::string> built_commands() {
   for (std::string line; std::getline(list, line);) {
     std::istringstream words(line);
     std::string word;
-    if (std::getline(words, word, '(') && word == "meridian_command" && words >> word) {
+    if (std::getline(words >> std::ws, word, '(') && word == "meridian_command" && words >> word) {
       names.insert(word);
     }
   }
+  if (!MERIDIAN_HAS_PANEL) names.erase("panel");
   return names;
 }
 
