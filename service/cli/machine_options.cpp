@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cli/machine_options.hpp"
 
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <utility>
@@ -56,9 +57,14 @@ ToolTable load_tools(const MachineOptions& options) {
   return options.tools.empty() ? ToolTable() : config::load_tools(options.tools);
 }
 
+bool can_be_read_twice(const std::string& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error);
+}
+
 void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reader,
                        const MachineOptions& options, ToolTable& tools) {
-  if (!options.unknown_tool_length_mm || file == "-") return;
+  if (!options.unknown_tool_length_mm || !can_be_read_twice(file)) return;
   std::vector<Tool> all = tools.tools();
   for (const int number : stream::unknown_tools(file, reader, tools)) {
     all.push_back({number, *options.unknown_tool_length_mm, 0});
@@ -84,7 +90,7 @@ bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const Machi
                const MachineModel& model, ToolTable& tools) {
   add_unknown_tools(file, reader, options, tools);
   set_home(reader, model, tools);
-  if (file == "-") return true;
+  if (!can_be_read_twice(file)) return true;
   const stream::PreflightReport report = stream::preflight(
       file, reader,
       stream::PreflightMachine{model, tools, "give --tools FILE or --unknown-tool-length MM"});

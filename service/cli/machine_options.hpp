@@ -34,12 +34,15 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
 /// spindle.
 void set_home(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools);
 
+/// Whether the file can be read a second time: no pipe.
+[[nodiscard]] bool can_be_read_twice(const std::string& file);
+
 /// Tools that the file calls and the table has not join it where the options tell their length.
 void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reader,
                        const MachineOptions& options, ToolTable& tools);
 
 /// Reads the whole file first and says everything that is in the way of it on this machine, and
-/// what is odd; false where it is refused. Standard input passes: what is wrong there is found on
+/// what is odd; false where it is refused. A pipe passes: what is wrong there is found on
 /// the way. Adds unknown tools and tells the reader the machine's home.
 [[nodiscard]] bool pass_file(const std::string& file, cl::ClReaderOptions& reader,
                              const MachineOptions& options, const MachineModel& model,

@@ -54,7 +54,7 @@ int run(Options options) {
   if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
   cl::ClReader reader(*input, options.file, reading);
   const auto program = post::write_nc(reader, options.file, model, tools, options.post);
-  if (options.file == "-") print_warnings(options.file, reader.warnings());
+  if (!can_be_read_twice(options.file)) print_warnings(options.file, reader.warnings());
   if (!program) {
     const post::PostError& error = program.error();
     return refuse(options.file + (error.line > 0 ? ":" + std::to_string(error.line) : "") + ": " +

@@ -185,7 +185,7 @@ int run(const Options& options) {
                            if (writer) (void)writer->write(row);
                            explaining.add(row);
                          });
-  if (options.file == "-") print_warnings(options.file, reader.warnings());
+  if (!can_be_read_twice(options.file)) print_warnings(options.file, reader.warnings());
   std::cout << to_text(report, model);
   if (const std::string failure = explaining.finish(report, tools); !failure.empty())
     return refuse(failure);

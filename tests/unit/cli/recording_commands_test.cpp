@@ -67,6 +67,12 @@ TEST_F(RecordingCommands, BeginWithTheToolThatIsInTheSpindle) {
   EXPECT_EQ(run_tool(check + "--tool 3").exit_code, 2) << "of which table?";
 }
 
+TEST_F(RecordingCommands, SimulateReadsAPipeOnce) {
+  const CommandOutput outcome = run_tool("simulate /dev/fd/0" + kMachine, "cat " + part());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("3 of motion"), std::string::npos) << outcome.output;
+}
+
 TEST_F(RecordingCommands, TakeALengthForToolsThatNoTableKnows) {
   const TextFile part(
       "UNITS / MM\nLOADTL / 9\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
