@@ -14,21 +14,23 @@ std::optional<Unacknowledged> find_unacknowledged(const Participant& participant
                         describe_participant(participant, behind.participant)};
 }
 
-std::string StalledReaders::look(std::int64_t now_ns) {
+bool StallWatch::look(const std::optional<Unacknowledged>& behind, std::int64_t now_ns) {
   constexpr std::int64_t kPatience_ns = 2'000'000'000;
+  const bool stands =
+      behind && first_ && behind->up_to == first_->up_to && behind->who == first_->who;
+  if (!stands) {
+    first_ = behind;
+    since_ns_ = now_ns;
+  }
+  return stands && now_ns - since_ns_ >= kPatience_ns;
+}
+
+std::string StalledReaders::look(std::int64_t now_ns) {
   std::string stalled;
   for (Watched& watched : writers_) {
     const auto behind = find_unacknowledged(participant_, watched.writer);
-    if (!behind) {
-      watched.since_ns = 0;
-    } else if (watched.since_ns == 0 || behind->up_to != watched.up_to) {
-      watched.since_ns = now_ns;
-      watched.up_to = behind->up_to;
-    }
-    const bool is_stalled = behind && now_ns - watched.since_ns >= kPatience_ns;
-    watched.who = is_stalled ? behind->who : "";
-    if (!is_stalled) continue;
-    stalled += (stalled.empty() ? "" : "; ") + watched.who + " (" + watched.topic + ")";
+    if (!watched.watch.look(behind, now_ns)) continue;
+    stalled += (stalled.empty() ? "" : "; ") + behind->who + " (" + watched.topic + ")";
   }
   return stalled;
 }

@@ -24,6 +24,18 @@ struct Unacknowledged {
 [[nodiscard]] std::optional<Unacknowledged> find_unacknowledged(const Participant& participant,
                                                                 std::int32_t writer);
 
+/// How long one reader of one writer has stayed where it is. Readers that come and go, each behind
+/// for a moment where the last one was, are several readers: none of them stalls.
+class StallWatch {
+ public:
+  /// Whether the reader that is `behind` now has been so, without a step on, for 2 s.
+  [[nodiscard]] bool look(const std::optional<Unacknowledged>& behind, std::int64_t now_ns);
+
+ private:
+  std::optional<Unacknowledged> first_;  ///< as it was when it was seen there first
+  std::int64_t since_ns_ = 0;            ///< of `first_`
+};
+
 /// Finds readers that stay behind for 2 s. Time is an argument; one thread.
 class StalledReaders {
  public:
@@ -31,7 +43,7 @@ class StalledReaders {
 
   /// `topic`: for the message.
   void watch(std::int32_t writer, std::string topic) {
-    writers_.push_back({writer, std::move(topic), 0, 0, {}});
+    writers_.push_back({writer, std::move(topic), {}});
   }
   /// To be called about once a second: who stalls, with the topic; empty: nobody.
   [[nodiscard]] std::string look(std::int64_t now_ns);
@@ -40,9 +52,7 @@ class StalledReaders {
   struct Watched {
     std::int32_t writer;
     std::string topic;
-    std::uint64_t up_to = 0;
-    std::int64_t since_ns = 0;  ///< it has stood there; 0: nobody is behind
-    std::string who;            ///< empty: not stalled
+    StallWatch watch;
   };
   const Participant& participant_;
   std::vector<Watched> writers_;

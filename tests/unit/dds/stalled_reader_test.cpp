@@ -58,6 +58,18 @@ class OtherProcess {
   pid_t id_;
 };
 
+TEST(StallWatch, TakesReadersThatComeAndGoForNobodyWhoStalls) {
+  StallWatch watch;
+  const auto behind = [](std::string who) { return Unacknowledged{7, 9, std::move(who)}; };
+  for (int second = 0; second < 10; ++second) {
+    EXPECT_FALSE(watch.look(behind("process " + std::to_string(second)), second * kSecond_ns));
+  }
+  EXPECT_FALSE(watch.look(behind("process 9"), 10 * kSecond_ns)) << "1 s";
+  EXPECT_TRUE(watch.look(behind("process 9"), 11 * kSecond_ns)) << "2 s";
+  EXPECT_FALSE(watch.look(std::nullopt, 12 * kSecond_ns));
+  EXPECT_FALSE(watch.look(behind("process 9"), 13 * kSecond_ns)) << "it had caught up";
+}
+
 TEST(StalledReaders, AreNamedWithTheirProcessAndHoldBackNoWrite) {
   const support::PrivateDomain domain;
   const OtherProcess other(domain.id());
