@@ -8,20 +8,28 @@
 
 namespace meridian::interpolator {
 
-DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group) noexcept {
+DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group,
+                                       std::int64_t now_ns) noexcept {
   for (DriveSource& source : sources_.places) {
     if (source.writer == writer && source.group == group) return &source;
   }
   for (DriveSource& source : sources_.places) {
     if (source.writer == 0) return &source;
   }
-  return nullptr;
+  DriveSource* idlest = nullptr;
+  for (DriveSource& source : sources_.places) {
+    const bool counts = source.bound_mask != 0 || source.has_only_stop || source.is_emergency_stop;
+    if (counts || now_ns - source.arrival_ns <= kSilence_ns) continue;
+    if (idlest == nullptr || source.arrival_ns < idlest->arrival_ns) idlest = &source;
+  }
+  if (idlest != nullptr) *idlest = {};
+  return idlest;
 }
 
 bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
                          std::int64_t now_ns, bool may_hand_over) noexcept {
   if (writer == 0 || (sample.joint_mask >> kMaxJoints) != 0) return false;
-  DriveSource* const place = find_place(writer, sample.drive_group);
+  DriveSource* const place = find_place(writer, sample.drive_group, now_ns);
   if (place == nullptr) {
     sources_.is_full = true;
     if (sample.is_emergency_stop) stopped_ns_ = now_ns;

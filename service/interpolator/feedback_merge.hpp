@@ -44,7 +44,9 @@ class FeedbackMerge {
   [[nodiscard]] const DriveSources& sources() const noexcept { return sources_; }
 
  private:
-  [[nodiscard]] DriveSource* find_place(std::uint64_t writer, std::uint32_t group) noexcept;
+  /// The place of this source, a free one, or one whose source is silent and takes part in nothing.
+  [[nodiscard]] DriveSource* find_place(std::uint64_t writer, std::uint32_t group,
+                                        std::int64_t now_ns) noexcept;
   void bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept;
   void take_joints(const dds::DriveFeedback& sample, std::uint32_t joints) noexcept;
   void merge(std::int64_t now_ns) noexcept;

@@ -91,6 +91,30 @@ TEST(FeedbackMerge, AFloodOfGroupsTakesNoDriveAndNoMoreRoom) {
   EXPECT_EQ(merge.feedback().cycle_seen, 102U);
 }
 
+TEST(FeedbackMerge, ASilentFloodOfGroupsShutsNoDriveOut) {
+  FeedbackMerge merge;
+  for (std::uint32_t group = 2; group < 100; ++group) {
+    (void)merge.take(sample(group, 0b11111, 1), 8, kMilli);
+  }
+  ASSERT_TRUE(merge.sources().is_full);
+  const bool is_off = true;
+  ASSERT_TRUE(merge.take(sample(1, 0b11111, 1), 7, 300 * kMilli, is_off));
+  EXPECT_EQ(merge.feedback().joint_mask, 0b11111U);
+  EXPECT_EQ(merge.feedback().position[0], 10.0) << "its writer lives, but says nothing any more";
+}
+
+TEST(FeedbackMerge, KeepsAnOpenStopInputInAFlood) {
+  FeedbackMerge merge;
+  dds::DriveFeedback open = sample(1, 0b1, 1);
+  open.is_emergency_stop = true;
+  ASSERT_TRUE(merge.take(sample(1, 0b1, 1), 7, kMilli));
+  ASSERT_TRUE(merge.take(open, 9, kMilli));
+  for (std::uint32_t group = 2; group < 100; ++group) {
+    (void)merge.take(sample(group, 0b11110, 1), 8, kMilli + group * 300 * kMilli);
+  }
+  EXPECT_TRUE(merge.feedback().emergency_stop);
+}
+
 TEST(FeedbackMerge, ReadsHomingOfDrivesInHomingModeAlone) {
   FeedbackMerge merge;
   dds::DriveFeedback feedback = sample(1, 0b111, 1);
