@@ -279,9 +279,14 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     }
     const LimitedVector here = limited_of(model_, reference);
     if (k > 0) {
-      const auto fault = judge_turns(model_, values, cell.at[static_cast<std::size_t>(k - 1)].d1,
-                                     here, at.d1, draft.h / FeedCell::kSteps);
-      if (fault.kind != PathFault::Kind::kNone) return fault;
+      const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
+      const double step = draft.h / FeedCell::kSteps;
+      PathFault fault = judge_turns(model_, values, last.d1, here, at.d1, step);
+      if (!is_fault(fault)) {
+        fault = check_joins(model_, {values, last.d1, last.d2, last.d3},
+                            {here, at.d1, at.d2, at.d3}, step);
+      }
+      if (is_fault(fault)) return fault;
     }
     values = here;
     const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here

@@ -12,11 +12,15 @@
 namespace meridian {
 namespace {
 
+constexpr double kJointNoise_rad = 1e-9;  // of a robot's joint, well off its singular places
+
 /// Joints and drives of the stage, and their derivatives, at one place.
 struct Sample {
   double share_rate = 0;
   JointVector joints{};
   LimitedVector q, d1, d2, d3;  ///< filled as far as limited_count()
+
+  [[nodiscard]] JointPlace place() const noexcept { return {q, d1, d2, d3}; }
 
   void set(int i, const Jet<3>& x) noexcept {
     q[i] = x.derivative(0);
@@ -95,6 +99,21 @@ PathFault judge_turns(const MachineModel& model, const LimitedVector& a, const L
   return {};
 }
 
+PathFault check_joins(const MachineModel& model, const JointPlace& a, const JointPlace& b,
+                      double h) noexcept {
+  if (model.family != MachineFamily::kRobot) return {};
+  for (int i = 0; i < model.joint_count; ++i) {
+    const double by = b.q[i] - a.q[i];
+    const double off = std::abs(by - 0.5 * h * (a.d1[i] + b.d1[i]));
+    // What smooth joints may be off the trapezoid, and rounding.
+    const double bend =
+        std::abs(b.d1[i] - a.d1[i]) + h * (std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
+                                           h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i])));
+    if (!(off <= kJointNoise_rad + h * bend)) return {PathFault::Kind::kJump, i, by};
+  }
+  return {};
+}
+
 PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, double begin,
                             double end, int cells, JointVector& joints) noexcept {
   if (count_ + cells > kCapacity) return {PathFault::Kind::kTooLong, -1, 0};
@@ -119,7 +138,8 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
         return {PathFault::Kind::kUnreachable, -1, 0};
       }
       PathFault fault = judge_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
-      if (fault.kind == PathFault::Kind::kNone) fault = judge_travel(model, at[k].q);
+      if (!is_fault(fault)) fault = judge_travel(model, at[k].q);
+      if (!is_fault(fault)) fault = check_joins(model, at[k - 1].place(), at[k].place(), h / 2);
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }
     for (int i = 0; i < count; ++i) {

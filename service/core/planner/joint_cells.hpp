@@ -73,6 +73,19 @@ class CellTable {
                                     const LimitedVector& da, const LimitedVector& b,
                                     const LimitedVector& db, double h) noexcept;
 
+/// Value and derivatives of everything that has limits at one place of a path.
+struct JointPlace {
+  const LimitedVector &q, &d1, &d2, &d3;
+};
+
+/// Whether the joints of a robot go from `a` to `b`, `h` apart, as their derivatives there say. At
+/// a singular place they may not: a joint without a direction of its own keeps the value it came
+/// with there, and beside it turns at once, by half a turn where the path goes straight through.
+/// Machines of other families pass: their one singular place is the pole, which the path is cut
+/// for.
+[[nodiscard]] PathFault check_joins(const MachineModel& model, const JointPlace& a,
+                                    const JointPlace& b, double h) noexcept;
+
 /// One cell that bounds both.
 [[nodiscard]] JointCell merged(const JointCell& a, const JointCell& b) noexcept;
 
