@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -13,6 +15,7 @@
 #include "service/cli/injection_console.hpp"
 #include "service/cli/machine_name_option.hpp"
 #include "service/cli/peer_options.hpp"
+#include "service/cli/stoppable_output.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
 #include "service/drives/line_teller.hpp"
@@ -118,35 +121,25 @@ int run_drives(const DrivesOptions& options) {
     std::fprintf(stderr, "meridian drives: OPEN NETWORK: whoever reaches it may send setpoints\n");
   }
   if (!options.is_beside_others && !is_alone(participant, model)) return kMachineRefused;
-  std::printf("drives of machine %s in DDS domain %u: %d drives, cycle %.3f ms%s\n",
-              model.name.c_str(), options.domain, model.joint_count,
-              static_cast<double>(model.cycle_ns) * 1e-6,
-              simulated.is_action_peer ? ", answers actions" : "");
-  std::fflush(stdout);
-  const auto say = [&](const std::string& text) {
-    if (options.is_quiet) return;
-    std::printf("%s\n", text.c_str());
-    std::fflush(stdout);
-  };
-  drives::SimulatedDrivesReport report;
-  {
-    drives::LineTeller lines(say);
-    report = drives::run_simulated_drives(participant, model, simulated, stop_flag(),
-                                          [&](const std::string& text) { lines.tell(text); });
-  }
-  std::printf(
-      "drives stopped: %llu periods, %llu lost, %llu setpoints, %llu periods bridged, %llu "
-      "actions\n",
-      static_cast<unsigned long long>(report.periods),
-      static_cast<unsigned long long>(report.periods_lost),
-      static_cast<unsigned long long>(report.setpoints_seen),
-      static_cast<unsigned long long>(report.periods_bridged),
-      static_cast<unsigned long long>(report.actions));
+  StoppableOutput output;
+  // Drives wait for nobody who reads what they say, at their begin and end neither.
+  drives::LineTeller lines([&](const std::string& text) { output.print(text); });
+  lines.tell(fmt::format("drives of machine {} in DDS domain {}: {} drives, cycle {:.3f} ms{}",
+                         model.name, options.domain, model.joint_count,
+                         static_cast<double>(model.cycle_ns) * 1e-6,
+                         simulated.is_action_peer ? ", answers actions" : ""));
+  const auto report = drives::run_simulated_drives(participant, model, simulated, stop_flag(),
+                                                   [&](const std::string& text) {
+                                                     if (!options.is_quiet) lines.tell(text);
+                                                   });
+  lines.tell(fmt::format(
+      "drives stopped: {} periods, {} lost, {} setpoints, {} periods bridged, {} actions",
+      report.periods, report.periods_lost, report.setpoints_seen, report.periods_bridged,
+      report.actions));
   for (std::size_t i = 1; i < drives::kDropKinds; ++i) {
     const auto kind = static_cast<drives::Drop>(i);
     if (report.dropped[kind] == 0) continue;
-    std::printf("%llu %s were dropped\n", static_cast<unsigned long long>(report.dropped[kind]),
-                drives::name_of(kind));
+    lines.tell(fmt::format("{} {} were dropped", report.dropped[kind], drives::name_of(kind)));
   }
   return kFine;
 }

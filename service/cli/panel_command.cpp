@@ -5,6 +5,7 @@
 
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
+#include "service/dds/participant.hpp"
 #include "service/panel/panel.hpp"
 #include "service/panel/server.hpp"
 
@@ -14,14 +15,27 @@ namespace {
 struct Options {
   PeerOptions peer;
   panel::PanelOptions panel;
+  bool is_open_network = false;
 };
 
 int run(Options& options) {
+  const auto open_network =
+      options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused;
+  {  // Before a machine is looked for: on an open network a stranger may answer.
+    const dds::Participant first(
+        {.domain = options.peer.domain, .machine = {}, .open_network = open_network});
+    if (first.is_open_network()) {
+      std::fprintf(stderr,
+                   "meridian panel: OPEN NETWORK: whoever reaches it may command machines\n");
+    }
+  }
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   watch_for_stop();
-  dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
+  dds::Participant participant({.domain = options.peer.domain,
+                                .machine = options.peer.machine,
+                                .open_network = open_network});
   try {
     panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
       std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
@@ -50,6 +64,8 @@ void add_panel_command(CLI::App& app, int& exit_code) {
   options->panel.operator_name = user != nullptr ? user : "operator";
   command->add_option("--operator", options->panel.operator_name, "Who asks, for the log")
       ->capture_default_str();
+  command->add_flag("--open-network", options->is_open_network,
+                    "Start though CYCLONEDDS_URI leads off this host without an identity");
   add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

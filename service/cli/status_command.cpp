@@ -14,6 +14,7 @@
 #include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
+#include "service/cli/stoppable_output.hpp"
 #include "service/dds/followed.hpp"
 #include "service/dds/latency_since.hpp"
 #include "service/dds/participant.hpp"
@@ -123,6 +124,7 @@ int run_status(StatusOptions& options) {
   if (is_latency) return print_latency(participant, options);
   TopicLink<dds::Status> link(participant);
   if (options.is_watching) watch_for_stop();
+  StoppableOutput output;
   do {
     const auto status = link.next(options.peer.timeout());
     if (!status) {
@@ -130,9 +132,7 @@ int run_status(StatusOptions& options) {
                    options.peer.machine.c_str());
       return kNoPeer;
     }
-    std::printf("%s\n", options.is_json ? to_json(*status, *machine).c_str()
-                                        : describe(*status, *machine).c_str());
-    std::fflush(stdout);
+    output.print(options.is_json ? to_json(*status, *machine) : describe(*status, *machine));
   } while (options.is_watching && !stop_flag().load());
   return kFine;
 }

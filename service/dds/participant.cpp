@@ -106,7 +106,7 @@ Participant::Participant(const ParticipantOptions& options)
     throw DdsError(
         "CYCLONEDDS_URI leads DDS off this host and names no identity: whoever reaches that network "
         "could move the machine; make identities (docs/security.md), or allow it with "
-        "open_network = true in the service file, --open-network for drives");
+        "open_network = true in the service file, --open-network for drives and panel");
   }
   dds_qos_t* qos = dds_create_qos();
   const char* partition = options.machine.c_str();

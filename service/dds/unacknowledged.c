@@ -6,7 +6,8 @@
 #include <stddef.h>
 #include <string.h>
 
-// clang-format off: these need what stands before them
+// These need what stands before them.
+// clang-format off
 #include <dds/ddsi/ddsi_entity.h>
 #include <dds/ddsi/q_hbcontrol.h>
 #include <dds/ddsi/ddsi_deliver_locally.h>

@@ -97,5 +97,27 @@ TEST(BlockedLog, IsNotWaitedForAtTheEnd) {
   EXPECT_EQ(plant.service().wait(milliseconds(4000)), 0);
 }
 
+TEST(BlockedLog, HoldsUpNoDrivesFromTheirBeginToTheirEnd) {
+  Plant plant;
+  const FullPipe drives_log(plant.folder() / "drives.log");
+  plant.start_service({"--service", service_file(plant)});
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.standing();
+  plant.drives().send_signal(SIGTERM);
+  EXPECT_EQ(plant.drives().wait(milliseconds(4000)), 0);
+}
+
+TEST(BlockedLog, KeepsNoWatcherAlive) {
+  Plant plant;
+  const FullPipe watched(plant.folder() / "watch.log");
+  plant.start_service({"--service", service_file(plant)});
+  ASSERT_TRUE(eventually([&] { return plant.status().state == State::kOff; }));
+  Process watcher({"meridian", "status", "--watch", "--domain", plant.domain()},
+                  plant.folder() / "watch.log");
+  std::this_thread::sleep_for(milliseconds(1500));
+  watcher.send_signal(SIGTERM);
+  EXPECT_EQ(watcher.wait(milliseconds(4000)), 0);
+}
+
 }  // namespace
 }  // namespace meridian::test

@@ -17,8 +17,8 @@ class Enabling : public testing::Test {
  protected:
   void start(bool is_required) {
     const auto file = plant_.folder() / "service.toml";
-    std::ofstream(file) << "[service]\nmachine = \"" << plant_.machine() << "\"\ndeadman = "
-                        << (is_required ? "true" : "false") << "\n";
+    std::ofstream(file) << "[service]\nmachine = \"" << plant_.machine()
+                        << "\"\ndeadman = " << (is_required ? "true" : "false") << "\n";
     plant_.start_service({"--service", file.string()});
     plant_.start_drives();
     ASSERT_TRUE(plant_.enable()) << plant_.service().said();
@@ -32,10 +32,9 @@ class Enabling : public testing::Test {
         << device_->said();
   }
   void run_program() {
-    ASSERT_TRUE(plant_.stream(small_program(60, 100),
-                              [](const stream::Station& station) {
-                                return station.state() == stream::StationState::kComplete;
-                              }));
+    ASSERT_TRUE(plant_.stream(small_program(60, 100), [](const stream::Station& station) {
+      return station.state() == stream::StationState::kComplete;
+    }));
     ASSERT_TRUE(plant_.wait_for(State::kLoaded)) << plant_.standing();
     ASSERT_NO_FATAL_FAILURE(plant_.must(Verb::kStart));
     ASSERT_TRUE(plant_.wait_for(State::kRunning)) << plant_.standing();
@@ -46,10 +45,9 @@ class Enabling : public testing::Test {
 
 TEST_F(Enabling, IsRequiredBeforeAnythingMoves) {
   ASSERT_NO_FATAL_FAILURE(start(true));
-  ASSERT_TRUE(plant_.stream(small_program(60, 100),
-                            [](const stream::Station& station) {
-                              return station.state() == stream::StationState::kComplete;
-                            }));
+  ASSERT_TRUE(plant_.stream(small_program(60, 100), [](const stream::Station& station) {
+    return station.state() == stream::StationState::kComplete;
+  }));
   ASSERT_TRUE(plant_.wait_for(State::kLoaded)) << plant_.standing();
   const auto start = plant_.say(Verb::kStart);
   ASSERT_TRUE(start);
@@ -68,9 +66,8 @@ TEST_F(Enabling, HoldsTheMachineWhereItsProcessIsKilledStoppedOrReleased) {
     EXPECT_TRUE(plant_.wait_for(State::kHeld, milliseconds(3000)))
         << signal << ": " << plant_.standing();
     const std::string why = signal == SIGINT ? "anna was released" : "anna fell silent";
-    EXPECT_TRUE(eventually([&] {
-      return plant_.status().message.find(why) != std::string::npos;
-    })) << plant_.status().message;
+    EXPECT_TRUE(eventually([&] { return plant_.status().message.find(why) != std::string::npos; }))
+        << plant_.status().message;
     if (signal == SIGINT) break;
     device_->send_signal(SIGKILL);
     ASSERT_NO_FATAL_FAILURE(press());
@@ -79,18 +76,20 @@ TEST_F(Enabling, HoldsTheMachineWhereItsProcessIsKilledStoppedOrReleased) {
   }
 }
 
-TEST(OpenNetwork, IsRefusedByServiceAndDrivesUnlessItIsAllowed) {
+TEST(OpenNetwork, IsRefusedByServiceDrivesAndPanelUnlessItIsAllowed) {
   Plant plant;
   const auto xml = plant.folder() / "all.xml";
   std::ofstream(xml) << "<CycloneDDS><Domain Id=\"any\"><General><AllowMulticast>false"
                         "</AllowMulticast></General></Domain></CycloneDDS>";
   const std::string uri = "file://" + xml.string();
   ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
-  Process service({"meridiand", "--machine", plant.machine(), "--domain", plant.domain(),
-                   "--best-effort"},
-                  plant.folder() / "refused.log");
+  Process service(
+      {"meridiand", "--machine", plant.machine(), "--domain", plant.domain(), "--best-effort"},
+      plant.folder() / "refused.log");
   Process drives({"meridian", "drives", "--machine", plant.machine(), "--domain", plant.domain()},
                  plant.folder() / "refused_drives.log");
+  Process panel({"meridian", "panel", "--port", "0", "--domain", plant.domain()},
+                plant.folder() / "refused_panel.log");
   ::unsetenv("CYCLONEDDS_URI");
   EXPECT_EQ(service.wait(milliseconds(5000)), 1) << service.said();
   EXPECT_NE(service.said().find("open_network = true"), std::string::npos) << service.said();
@@ -98,6 +97,9 @@ TEST(OpenNetwork, IsRefusedByServiceAndDrivesUnlessItIsAllowed) {
   ASSERT_TRUE(code) << drives.said();
   EXPECT_NE(*code, 0);
   EXPECT_NE(drives.said().find("--open-network"), std::string::npos) << drives.said();
+  ASSERT_NE(panel.wait(milliseconds(5000)).value_or(0), 0) << panel.said();
+  if (panel.said().find("not expected") != std::string::npos) GTEST_SKIP() << "without the panel";
+  EXPECT_NE(panel.said().find("--open-network"), std::string::npos) << panel.said();
 }
 
 }  // namespace

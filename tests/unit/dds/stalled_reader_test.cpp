@@ -6,8 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -37,24 +40,36 @@ class OtherProcess {
  public:
   explicit OtherProcess(std::uint32_t domain) : id_(::fork()) {
     if (id_ != 0) return;
-    Participant participant({.domain = domain, .machine = "mill"});
-    Reader<Reply> reader(participant);
-    Reply reply;
-    for (;;) {
-      while (reader.take(reply)) {
+    {
+      Participant participant({.domain = domain, .machine = "mill"});
+      Reader<Reply> reader(participant);
+      Reply reply;
+      ::signal(SIGTERM, [](int) { is_leaving_ = 1; });
+      while (is_leaving_ == 0) {
+        while (reader.take(reply)) {
+        }
+        std::this_thread::sleep_for(milliseconds(1));
       }
-      std::this_thread::sleep_for(milliseconds(1));
     }
+    ::_exit(0);
   }
   ~OtherProcess() {
+    if (id_ < 0) return;
     ::kill(id_, SIGKILL);
     ::waitpid(id_, nullptr, 0);
   }
   void stop() const { ::kill(id_, SIGSTOP); }
   void go_on() const { ::kill(id_, SIGCONT); }
+  /// Its participant says goodbye.
+  void leave() {
+    ::kill(id_, SIGTERM);
+    ::waitpid(id_, nullptr, 0);
+    id_ = -1;
+  }
   [[nodiscard]] pid_t id() const { return id_; }
 
  private:
+  static inline volatile std::sig_atomic_t is_leaving_ = 0;
   pid_t id_;
 };
 
@@ -98,6 +113,29 @@ TEST(StalledReaders, AreNamedWithTheirProcessAndHoldBackNoWrite) {
   other.go_on();
   EXPECT_TRUE(comes([&] { return !find_unacknowledged(participant, writer.handle()); }));
   EXPECT_EQ(stalled.look(9 * kSecond_ns), "");
+}
+
+TEST(StalledReaders, TheOneThatIsThereIsNamedWhoeverLeft) {
+  const support::PrivateDomain domain;
+  constexpr int kCount = 6;
+  std::array<std::unique_ptr<OtherProcess>, kCount> others;
+  for (auto& other : others) other = std::make_unique<OtherProcess>(domain.id());
+  Participant participant({.domain = domain.id(), .machine = "mill"});
+  Writer<Reply> writer(participant);
+  ASSERT_TRUE(comes([&] { return writer.matched_readers() == kCount; }));
+  const OtherProcess& stuck = *others[kCount / 2];
+  stuck.stop();
+  std::this_thread::sleep_for(milliseconds(20));
+  for (auto& other : others) {
+    ASSERT_TRUE(writer.write({.request = 2}));
+    if (other.get() != &stuck) other->leave();
+    ASSERT_TRUE(writer.write({.request = 3}));
+    std::this_thread::sleep_for(milliseconds(50));
+    const auto behind = find_unacknowledged(participant, writer.handle());
+    ASSERT_TRUE(behind);
+    EXPECT_NE(behind->who.find("process " + std::to_string(stuck.id()) + " "), std::string::npos)
+        << behind->who;
+  }
 }
 
 }  // namespace
