@@ -11,6 +11,7 @@
 #include "service/cli/finite_range.hpp"
 #include "service/config/config_error.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/stream/home_pose.hpp"
 #include "service/stream/preflight.hpp"
 
 namespace meridian::cli {
@@ -73,17 +74,7 @@ void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reade
 }
 
 void set_home(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools) {
-  reader.home = [model, tools](std::optional<std::uint32_t> number) -> std::optional<ToolPose> {
-    double length_mm = model.tool_length_mm;
-    if (number) {
-      const Tool* const tool = tools.find(static_cast<int>(*number));
-      if (tool == nullptr) return std::nullopt;
-      length_mm = tool->length_mm;
-    }
-    JointVector home{};
-    for (int i = 0; i < model.joint_count; ++i) home[i] = model.joints[i].home;
-    return forward(model, length_mm, home);
-  };
+  reader.home = stream::home_pose(model, tools);
 }
 
 bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,

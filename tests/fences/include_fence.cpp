@@ -28,11 +28,12 @@ std::string core_room(const std::string& path_in_core) {
 
 using Library = std::pair<std::string_view, std::string_view>;
 constexpr std::array kLibraries{
-    Library{"Eigen/", "eigen"},   Library{"unsupported/Eigen/", "eigen"},
-    Library{"tl/", "expected"},   Library{"spdlog/", "spdlog"},
-    Library{"fmt/", "spdlog"},    Library{"toml++/", "toml"},
-    Library{"CLI/", "cli11"},     Library{"dds/", "cyclone"},
-    Library{"nlohmann/", "json"}, Library{"civetweb.h", "civetweb"},
+    Library{"Eigen/", "eigen"},       Library{"unsupported/Eigen/", "eigen"},
+    Library{"tl/", "expected"},       Library{"spdlog/", "spdlog"},
+    Library{"fmt/", "spdlog"},        Library{"toml++/", "toml"},
+    Library{"CLI/", "cli11"},         Library{"dds/", "cyclone"},
+    Library{"nlohmann/", "json"},     Library{"civetweb.h", "civetweb"},
+    Library{"pybind11/", "pybind11"},
 };
 
 std::string standard_part(const std::string& name) {
