@@ -6,6 +6,7 @@
 #include <optional>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
@@ -21,6 +22,7 @@ namespace {
 struct Options {
   std::string file, output, dialect = "joints";
   std::optional<double> axis_deg, rapid_feed_mm_per_min;
+  std::vector<std::string> zeros;
   post::PostOptions post;
   MachineOptions machine;
   ClFileOptions cl;
@@ -31,15 +33,35 @@ int refuse(const std::string& message) {
   return kInputRefused;
 }
 
+const std::map<std::string, post::Dialect>& dialects() {
+  static const std::map<std::string, post::Dialect> all = {
+      {"joints", post::Dialect::kJoints},   {"fanuc", post::Dialect::kFanuc},
+      {"siemens", post::Dialect::kSiemens}, {"heidenhain", post::Dialect::kHeidenhain},
+      {"krl", post::Dialect::kKrl},         {"rapid", post::Dialect::kRapid},
+      {"ls", post::Dialect::kLs},           {"urscript", post::Dialect::kUrScript}};
+  return all;
+}
+
+std::vector<std::string> dialect_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, dialect] : dialects()) names.push_back(name);
+  return names;
+}
+
 int run(Options options) {
   const MachineModel model = load_machine(options.machine);
   ToolTable tools = load_tools(options.machine);
-  const std::map<std::string, post::Dialect> dialects = {
-      {"joints", post::Dialect::kJoints},
-      {"fanuc", post::Dialect::kFanuc},
-      {"siemens", post::Dialect::kSiemens},
-      {"heidenhain", post::Dialect::kHeidenhain}};
-  options.post.dialect = dialects.at(options.dialect);
+  options.post.dialect = dialects().at(options.dialect);
+  for (const std::string& zero : options.zeros) {  // "J2=-90", checked by the command line
+    options.post.zero_deg[static_cast<std::size_t>(zero[1] - '1')] = std::stod(zero.substr(3));
+  }
+  if (options.post.is_forearm_coupled && options.post.dialect != post::Dialect::kLs) {
+    return refuse("--coupled is of FANUC's robots: give it with --dialect ls");
+  }
+  if (!post::is_robot_language(options.post.dialect) &&
+      (!options.zeros.empty() || !options.post.program_name.empty())) {
+    return refuse("--zero and --program-name are of robots' languages: krl, rapid, ls, urscript");
+  }
   if (options.axis_deg) options.post.axis_rad = units::rad_from_deg(*options.axis_deg);
   if (options.rapid_feed_mm_per_min) {
     options.post.rapid_feed_mm_per_s = units::per_s_from_per_min(*options.rapid_feed_mm_per_min);
@@ -101,8 +123,9 @@ void add_post_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--dialect", options->dialect,
                    "joints: joint words and feed in inverse time, for controllers without "
-                   "tool-centre control; fanuc: G43.4; siemens: TRAORI; heidenhain: FUNCTION TCPM")
-      ->check(CLI::IsMember({"joints", "fanuc", "siemens", "heidenhain"}))
+                   "tool-centre control; fanuc: G43.4; siemens: TRAORI; heidenhain: FUNCTION TCPM; "
+                   "robots: krl (KUKA), rapid (ABB), ls (FANUC), urscript (Universal Robots)")
+      ->check(CLI::IsMember(dialect_names()))
       ->capture_default_str();
   command
       ->add_option("--chord-mm", options->post.chord_mm,
@@ -140,6 +163,16 @@ void add_post_command(CLI::App& app, int& exit_code) {
       ->add_option("--program-number", options->post.program_number,
                    "fanuc: O word; without it none is written")
       ->check(CLI::Range(1, 99999999));
+  command->add_option("--program-name", options->post.program_name,
+                      "Robots: name of the program; else made from the CL file's");
+  command
+      ->add_option("--zero", options->zeros,
+                   "Robots: what the controller shows for an axis whose joint is at zero, degrees, "
+                   "such as J2=-90; once for each axis")
+      ->check(matches("J[1-6]=-?[0-9]{1,3}([.][0-9]{1,5})?", "an axis and degrees, as J2=-90"));
+  command->add_flag("--coupled", options->post.is_forearm_coupled,
+                    "ls: J3 counts from the horizontal, as most FANUC robots show it: joints two "
+                    "and three together");
   command->add_flag("--line-words", options->post.has_line_words,
                     "N words: the line of the CL file that a block comes from");
   add_cl_file_options(*command, options->cl, "--cl-dialect");

@@ -80,7 +80,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
   const auto duration = [&](const BlockEnd& from, const BlockEnd& to) {
     return std::max(piece_s * (to.share - from.share), least_time(from.axes, to.axes));
   };
-  const bool has_mm_per_min = parts_.options.dialect != Dialect::kJoints;
+  const bool has_mm_per_min = program_.motion() != BlockMotion::kDrives;
   const bool is_timed = block.feed_meaning == FeedMeaning::kInverseTime && !is_rapid;
   if (has_mm_per_min && is_timed && tip_mm == 0 && piece.kind != PathKind::kTurn) {
     return PostError{block.line,

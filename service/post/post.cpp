@@ -16,6 +16,8 @@
 #include "service/post/piece_writer.hpp"
 #include "service/post/planned_way.hpp"
 #include "service/post/program.hpp"
+#include "service/post/robot_axes.hpp"
+#include "service/post/robot_name.hpp"
 #include "service/post/tip_frame.hpp"
 
 namespace meridian::post {
@@ -36,10 +38,30 @@ constexpr double kMostDwell_s = 24 * 3600;
       return make_siemens_program(parts);
     case Dialect::kHeidenhain:
       return make_heidenhain_program(parts);
+    case Dialect::kKrl:
+      return make_krl_program(parts);
+    case Dialect::kRapid:
+      return make_rapid_program(parts);
+    case Dialect::kLs:
+      return make_ls_program(parts);
+    case Dialect::kUrScript:
+      return make_urscript_program(parts);
     case Dialect::kJoints:
       break;
   }
   return make_joint_program(parts);
+}
+
+/// Why no program can be written in the robot's language; nothing where one can.
+[[nodiscard]] Refusal refuse_robot(const ProgramParts& parts) {
+  if (parts.options.retract) {
+    return PostError{0, "--retract is an NC block, which robots do not have; leave it out"};
+  }
+  if (auto axes = RobotAxes::of(parts.model, parts.words, parts.options); !axes) {
+    return axes.error();
+  }
+  if (auto name = robot_name(parts.options, parts.name); !name) return name.error();
+  return {};
 }
 
 /// One program on its way from CL blocks to NC blocks.
@@ -48,9 +70,9 @@ class Post {
   Post(const ToolTable& tools, const ProgramParts& parts)
       : model_(parts.model),
         options_(parts.options),
-        can_retract_(options_.retract || options_.dialect != Dialect::kJoints ||
-                     parts.retract_sense != 0),
         program_(make_program(parts)),
+        can_retract_(options_.retract || program_->motion() != BlockMotion::kDrives ||
+                     parts.retract_sense != 0),
         way_(model_, tools),
         writer_(parts, tolerance_of(model_, options_), *program_),
         name_(parts.name) {}
@@ -68,6 +90,20 @@ class Post {
 
   [[nodiscard]] Refusal take(const ClBlock& block) {
     program_->at_line(block.line);
+    if (Refusal refusal = write(block)) return refusal;
+    const std::string why = program_->refusal();
+    if (why.empty()) return {};
+    return PostError{block.line, why};
+  }
+
+  [[nodiscard]] bool is_ended() const noexcept { return is_ended_; }
+
+  [[nodiscard]] NcProgram result() const {
+    return {program_->text(), program_->blocks(), motion_blocks_, feeds_limited_};
+  }
+
+ private:
+  [[nodiscard]] Refusal write(const ClBlock& block) {
     switch (block.kind) {
       case BlockKind::kCut:
       case BlockKind::kRapid:
@@ -94,13 +130,6 @@ class Post {
     return PostError{block.line, "a kind of block that is not known"};
   }
 
-  [[nodiscard]] bool is_ended() const noexcept { return is_ended_; }
-
-  [[nodiscard]] NcProgram result() const {
-    return {program_->text(), program_->blocks(), motion_blocks_, feeds_limited_};
-  }
-
- private:
   void retract() {
     if (can_retract_ && !is_retracted_) program_->retract();
     is_retracted_ = true;
@@ -212,8 +241,8 @@ class Post {
 
   const MachineModel& model_;
   const PostOptions& options_;
-  bool can_retract_;
   std::unique_ptr<Program> program_;
+  bool can_retract_;
   PlannedWay way_;
   PieceWriter writer_;
   std::string name_;
@@ -230,7 +259,9 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
   if (!words) return tl::make_unexpected(words.error());
   ProgramParts parts{model, *words, options, std::filesystem::path(name).filename().string(),
                      0,     {}};
-  if (options.dialect == Dialect::kJoints) {
+  if (is_robot_language(options.dialect)) {
+    if (auto refusal = refuse_robot(parts)) return tl::make_unexpected(*refusal);
+  } else if (options.dialect == Dialect::kJoints) {
     parts.retract_sense = retract_sense(model, *words);
   } else if (has_stage(model)) {
     return tl::make_unexpected(PostError{

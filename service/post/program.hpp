@@ -33,6 +33,9 @@ class Program {
   /// What keeps the first motion from being written; empty: nothing.
   [[nodiscard]] virtual std::string missing() const { return ""; }
 
+  /// Why what was written so far cannot stand; empty: nothing. Asked after every CL block.
+  [[nodiscard]] virtual std::string refusal() const { return ""; }
+
   /// How the controller moves between the targets that it is given.
   [[nodiscard]] virtual BlockMotion motion() const noexcept = 0;
 
@@ -109,5 +112,9 @@ struct ProgramParts {
 [[nodiscard]] std::unique_ptr<Program> make_fanuc_program(const ProgramParts& parts);
 [[nodiscard]] std::unique_ptr<Program> make_siemens_program(const ProgramParts& parts);
 [[nodiscard]] std::unique_ptr<Program> make_heidenhain_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_krl_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_rapid_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_ls_program(const ProgramParts& parts);
+[[nodiscard]] std::unique_ptr<Program> make_urscript_program(const ProgramParts& parts);
 
 }  // namespace meridian::post
