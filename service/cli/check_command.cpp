@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "meridian/units.hpp"
+#include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/cli/view_option.hpp"
+#include "service/proof/program_check.hpp"
 #include "service/record/check.hpp"
 #include "service/record/compare.hpp"
 #include "service/record/operator_events_writer.hpp"
@@ -121,6 +123,47 @@ int check(Options& options, const MachineModel& model) {
   return report->passed() ? kFine : kVerdictNo;
 }
 
+[[nodiscard]] bool is_program(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(256, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return proof::is_nc_program(head);
+}
+
+/// A posted program in place of a recording.
+int check_program(const Options& options, const MachineModel& model) {
+  if (options.file.empty()) return refuse("meridian check: name the CL file of the program");
+  ToolTable tools = load_tools(options.machine);
+  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
+  std::ifstream cl_file(options.file, std::ios::binary);
+  cl::ClReader reader(cl_file, options.file, reading);
+  std::vector<ClBlock> blocks;
+  for (;;) {
+    const auto block = reader.next();
+    if (!block) {
+      return refuse(options.file + ":" + std::to_string(block.error().line) + ": " +
+                    block.error().message);
+    }
+    if (!*block) break;
+    blocks.push_back(**block);
+  }
+  std::ifstream program(options.recording, std::ios::binary);
+  const auto steps = proof::read_joint_program(program, model);
+  if (!steps) {
+    return refuse(options.recording + ":" + std::to_string(steps.error().line) + ": " +
+                  steps.error().message);
+  }
+  proof::ProgramReport report = proof::check_program(
+      *steps, blocks, model, tools,
+      {options.tip_tolerance_mm, units::rad_from_deg(options.axis_tolerance_deg)});
+  report.program = options.recording;
+  report.path_name = options.file;
+  std::cout << (options.is_json ? to_json(report) : to_text(report));
+  return report.passed() ? kFine : kVerdictNo;
+}
+
 int run(Options& options) {
   const MachineModel model = load_machine(options.machine);
   if (!options.same.empty()) return compare(options, model);
@@ -128,6 +171,7 @@ int run(Options& options) {
     std::cerr << "meridian check: name a recording, or two behind --same\n";
     return kUsage;
   }
+  if (is_program(options.recording)) return check_program(options, model);
   return check(options, model);
 }
 
@@ -138,8 +182,10 @@ void add_check_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "check",
       "A recording judged against its CL file by forward kinematics, and against the limits of the "
-      "machine; or two recordings compared bit for bit. Exit code 1 where anything is wrong");
-  command->add_option("recording", options->recording, "Recording (CSV)");
+      "machine; a posted NC program of joint words, run as its control would, against its CL file; "
+      "or two recordings compared bit for bit. Exit code 1 where anything is wrong");
+  command->add_option("recording", options->recording,
+                      "Recording (CSV), or NC program of joint words");
   command->add_option("file", options->file,
                       "CL file that it cut; without one only joints and cycles are judged");
   add_machine_options(*command, options->machine, true);
