@@ -2,13 +2,19 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 
+#include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
+#include "service/config/config_error.hpp"
 #include "service/inspect/inspection.hpp"
 #include "service/inspect/joint_pattern.hpp"
 #include "service/inspect/machine_picture.hpp"
+#include "service/inspect/placing.hpp"
+#include "service/inspect/program_poses.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli {
@@ -16,7 +22,9 @@ namespace {
 
 struct Options {
   MachineOptions machine;
-  std::string picture, pattern;
+  ClFileOptions cl;
+  std::string picture, pattern, program, box;
+  bool may_turn = false;
 };
 
 int refuse(const std::string& message) {
@@ -24,11 +32,50 @@ int refuse(const std::string& message) {
   return kInputRefused;
 }
 
+/// `x0,x1,y0,y1,z0,z1` in mm; throws config::ConfigError.
+inspect::PlacingBox read_box(const std::string& text) {
+  inspect::PlacingBox box;
+  std::istringstream numbers(text);
+  bool is_fine = true;
+  for (std::size_t i = 0; i < 3 && is_fine; ++i) {
+    char comma = ',';
+    if (i > 0) numbers >> comma;
+    is_fine = comma == ',' && (numbers >> box.low_mm[i] >> comma >> box.high_mm[i]) &&
+              comma == ',' && box.low_mm[i] <= box.high_mm[i];
+  }
+  if (is_fine && numbers.peek() == std::istringstream::traits_type::eof()) return box;
+  throw config::ConfigError({.file = "--box",
+                             .value = "'" + text + "' is no box",
+                             .remedy = "give x0,x1,y0,y1,z0,z1 in mm, the smaller of each first"});
+}
+
+/// Looks for a frame in which the whole program fits.
+int place(const Options& options, const MachineModel& model) {
+  ToolTable tools = load_tools(options.machine);
+  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  add_unknown_tools(options.program, reading, options.machine, tools);
+  set_home(reading, model, tools);
+  std::ifstream file;
+  std::istream* const input = open_cl_file(options.program, file);
+  if (input == nullptr) return refuse(options.program + ": cannot be opened");
+  cl::ClReader reader(*input, options.program, reading);
+  const auto poses = inspect::read_poses(reader, model, tools);
+  if (!poses) return refuse(poses.error().text());
+  if (poses->empty()) return refuse(options.program + " moves nothing");
+  inspect::PlacingBox box =
+      options.box.empty() ? inspect::widest_box(model, *poses) : read_box(options.box);
+  box.may_turn = options.may_turn;
+  const inspect::Placing found = inspect::find_placing(model, *poses, box);
+  std::cout << to_text(found, model);
+  return found.fit.margin >= 0 ? kFine : kVerdictNo;
+}
+
 int run(const Options& options) {
   const std::string lost =
       text::refusal_to_write({options.machine.machine}, {options.picture, options.pattern});
   if (!lost.empty()) return refuse(lost);
   const MachineModel model = load_machine(options.machine);
+  if (!options.program.empty()) return place(options, model);
   const inspect::Inspection inspection = inspect::inspect(model);
   std::cout << to_text(inspection, model);
   if (!options.picture.empty()) {
@@ -60,6 +107,26 @@ void add_machine_command(CLI::App& app, int& exit_code) {
                       "Draw axes, pivots, tool and workpiece in three views to this .png or .svg");
   command->add_option("--pattern", options->pattern,
                       "Write a CL file that moves each joint alone, forwards and back");
+  CLI::Option* const program = command->add_option(
+      "--place", options->program,
+      "A part program: find the frame in which it fits with the largest margin to all ends of "
+      "travel. Exit code 1 where there is none");
+  command
+      ->add_option(
+          "--box", options->box,
+          "With --place: where the origin of the workpiece may lie, x0,x1,y0,y1,z0,z1 in mm; "
+          "default: wherever the machine reaches")
+      ->needs(program);
+  command->add_flag("--turn", options->may_turn, "With --place: the workpiece may turn about z")
+      ->needs(program);
+  command->add_option("--tools", options->machine.tools, "With --place: tool table (TOML)")
+      ->needs(program);
+  command
+      ->add_option("--unknown-tool-length", options->machine.unknown_tool_length_mm,
+                   "With --place: length of tools that the table has not, mm")
+      ->needs(program)
+      ->check(finite_range(0.0, 1e4));
+  add_cl_file_options(*command, options->cl);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
