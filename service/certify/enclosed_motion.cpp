@@ -50,7 +50,7 @@ namespace {
     if (!is_exact) return joints_at(model, path, s, reference);
   }
   const Enclosure free = begin + quintic_at(from_begin, Enclosure(s / path.length));
-  return solve_held(model, path.tool_length_mm, pose_at(path, s), free);
+  return solve_driven(model, path.tool_length_mm, pose_at(path, s), free, path.branch, reference);
 }
 
 }  // namespace

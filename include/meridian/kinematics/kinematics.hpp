@@ -269,6 +269,35 @@ template <class S>
   return out;
 }
 
+/// Whether solve_driven() has a joint to drive: the roll of a 6R robot, or free_joint().
+[[nodiscard]] inline bool has_wrist_roll(const MachineModel& model) noexcept {
+  return model.family == MachineFamily::kRobot && model.robot.has_spherical_wrist;
+}
+
+/// As solve_held(), and for a 6R robot with its roll at `free`: the tip is that of `pose`, the axis
+/// the nearest that it has with that roll, on the front and the elbow of `branch`, rotary joints in
+/// the windings nearest to `reference`. Frame: W. RT: cycle. Proof: tests/property/kinematics.
+template <class S>
+[[nodiscard]] inline Solution<S> solve_driven(const MachineModel& model, double tool_length_mm,
+                                              const Pose<S>& pose, const S& free, int branch,
+                                              const JointVector& reference) noexcept {
+  if (!has_wrist_roll(model)) return solve_held(model, tool_length_mm, pose, free);
+  const Pose<S> any = pose_in_machine(model, pose);
+  const Pose<S> in_machine{any.tip, detail::made_unit(any.axis)};
+  Solution<S> out{{}, SolveStatus::kOk};
+  if (!robot::solve_with_roll(model.robot, tool_length_mm, in_machine, branch, free, reference,
+                              out.q) ||
+      !detail::all_finite(out.q)) {
+    out.status = SolveStatus::kUnreachable;
+    return out;
+  }
+  for (const int joint : {robot::kYaw, robot::kShoulder, robot::kElbow}) {
+    detail::wind(out.q, joint, reference);
+  }
+  detail::wind(out.q, static_cast<int>(robot::kBend), reference);
+  return out;
+}
+
 /// Moves every rotary joint that has travel to the winding inside it that is nearest to
 /// `reference`; where none is inside, to the winding nearest to `reference`. Endless joints go to
 /// the nearest winding. For the first pose of a path: nothing that follows a path may call it.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 #include "meridian/geometry/jet.hpp"
 #include "meridian/geometry/vector3.hpp"
@@ -180,6 +181,53 @@ template <class S>
   q[kBend] = atan2(S(sign.flip * hypot(y, z)), x);
   q[kRoll] = atan2(S(-sign.flip * y), S(sign.flip * z));
   return true;
+}
+
+/// Rounds of solve_with_roll(). Each leaves d times what the arm turns per mm of the one before, a
+/// tenth in the middle of the reach.
+inline constexpr int kRollRounds = 12;
+
+/// The joints of a 6R robot with its roll at `roll`, the front and the elbow of `branch`: the tip
+/// is that of `pose` as far as the rounds settle, the axis the nearest that the wrist has with that
+/// roll; the bend takes the sign that fits. Returns whether the pose is in reach; so near to the
+/// base axis that the yaw is free it is not. Windings are the caller's. RT: cycle. Proof:
+/// tests/property/kinematics.
+template <class S>
+[[nodiscard]] inline bool solve_with_roll(const RobotKinematics& k, double tool_length_mm,
+                                          const Pose<S>& pose, int branch, const S& roll,
+                                          const JointVector& reference, Joints<S>& q) noexcept {
+  const SinCos<S> r = sin_cos(roll);
+  Pose<S> wanted = pose;  // its axis: the one that the wrist gives
+  for (int round = 0; round < kRollRounds; ++round) {
+    q = {};
+    const ArmSolution<S> arm = solve_arm(k, tool_length_mm, wanted, signs_of(branch), reference, q);
+    if (!arm.is_reachable) return false;
+    const Vec3<S> a = arm.frame.to_arm(pose.axis);
+    const SinCos<S> e = sin_cos(S(q[kShoulder] + q[kElbow]));
+    const S x = -(e.cos * a[0] + e.sin * a[2]), z = e.sin * a[0] - e.cos * a[2];
+    q[kBend] = atan2(S(z * r.cos + a[1] * r.sin), x);
+    const SinCos<S> bend = sin_cos(q[kBend]);
+    const S along = bend.cos, across = -(bend.sin * r.sin), up = bend.sin * r.cos;
+    wanted.axis = arm.frame.from_arm(S(e.sin * up - e.cos * along), S(0.0) - across,
+                                     S(0.0) - (e.sin * along + e.cos * up));
+  }
+  q[kRoll] = roll;
+  q[kSpin] = S(reference[kSpin]);
+  return true;
+}
+
+/// The angle from the tool to the forearm's line, where the wrist of a 6R robot is singular, with
+/// the front and the elbow of `branch`; π out of reach.
+[[nodiscard]] inline double wrist_distance(const RobotKinematics& k, double tool_length_mm,
+                                           const Pose<double>& pose, int branch,
+                                           const JointVector& reference) noexcept {
+  JointVector q{};
+  const auto arm = solve_arm(k, tool_length_mm, pose, signs_of(branch), reference, q);
+  if (!arm.is_reachable) return std::numbers::pi;
+  const SinCos<double> e = sin_cos(q[kShoulder] + q[kElbow]);
+  const double x = e.cos * arm.tool[0] + e.sin * arm.tool[2];
+  const double z = e.cos * arm.tool[2] - e.sin * arm.tool[0];
+  return atan2(hypot(arm.tool[1], z), std::abs(x));
 }
 
 /// sqrt(det JᵀJ), eq. 5.6 and 5.10: zero with the wrist on the base axis, the arm stretched or

@@ -30,14 +30,15 @@ template <class S>
   }
   const Pose<S> pose = pose_at(piece, s);
   if (piece.kind == PathKind::kSpline && piece.is_free_driven) {
-    return solve_held(model, piece.tool_length_mm, pose,
-                      quintic_at(piece.free_quintic, S(s / piece.length)));
+    return solve_driven(model, piece.tool_length_mm, pose,
+                        quintic_at(piece.free_quintic, S(s / piece.length)), piece.branch,
+                        reference);
   }
   if (piece.is_free_driven || piece.kind == PathKind::kTurn) {
     const double by = piece.free_end - piece.free_begin;
     const S free =
         is_point || by == 0 ? S(piece.free_begin) : S(piece.free_begin + by * (s / piece.length));
-    return solve_held(model, piece.tool_length_mm, pose, free);
+    return solve_driven(model, piece.tool_length_mm, pose, free, piece.branch, reference);
   }
   return solve(model, piece.tool_length_mm, pose, piece.branch, reference);
 }

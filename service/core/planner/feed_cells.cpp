@@ -18,9 +18,10 @@ constexpr double kLargestJump = 1.0;     // rad between two samples: another bra
 /// Of a joint at the begin: rounding, 1e-10 rad of the free joint 8 µrad from the pole, and of
 /// slides that make up for it so much of their way to its axis.
 constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
-constexpr double kNoCell_mm = 1e-6;  // of u: an end that is not worth a cell
-constexpr int kRounds = 16;          // of halving: lengths of a ratio of 60 000
-constexpr double kNone = 1e-12;      // derivative that counts as none
+constexpr double kNoCell_mm = 1e-6;      // of u: an end that is not worth a cell
+constexpr double kLeastSplit_mm = 0.02;  // of u: below, motion would creep
+constexpr int kRounds = 16;              // of halving: lengths of a ratio of 60 000
+constexpr double kNone = 1e-12;          // derivative that counts as none
 
 double square(double x) noexcept { return x * x; }
 
@@ -93,8 +94,9 @@ PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& re
                                 CellSample& out) const noexcept {
   const auto pose = pose_on(span.band.c, Jet<3>::variable(x));
   const auto at = span.is_free_driven
-                      ? solve_held(model_, tool_length_mm_, pose,
-                                   quintic_at(span.free, Jet<3>::variable(x) / span.band.length))
+                      ? solve_driven(model_, tool_length_mm_, pose,
+                                     quintic_at(span.free, Jet<3>::variable(x) / span.band.length),
+                                     span.branch, reference)
                       : solve(model_, tool_length_mm_, pose, span.branch, reference);
   if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
   const double tip_speed = speed_square(pose.tip);
@@ -231,6 +233,19 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
   drafts_.clear();
 }
 
+/// Beside a singular place of a robot joints turn sharply: into halves, as long as there is room.
+bool CellGrid::split(std::size_t draft) noexcept {
+  if (model_.family != MachineFamily::kRobot || drafts_.size() == drafts_.capacity() ||
+      drafts_[draft].h < kLeastSplit_mm) {
+    return false;
+  }
+  Draft half = drafts_[draft];
+  half.h = drafts_[draft].h *= 0.5;
+  half.x += half.h;
+  drafts_.insert(drafts_.begin() + static_cast<std::ptrdiff_t>(draft) + 1, half);
+  return true;
+}
+
 PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
   while (used < drafts_.size() && last_ - first_ < kCells) {
@@ -238,6 +253,10 @@ PathFault CellGrid::make_cells() noexcept {
     const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kLeast;
     if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
     fault_ = make_cell(drafts_[used]);
+    if (fault_.kind == PathFault::Kind::kJump && split(used)) {
+      fault_ = {};
+      continue;
+    }
     if (fault_.kind != PathFault::Kind::kNone) {
       faulty_span_ = next_span_ + static_cast<std::uint64_t>(drafts_[used].waiting);
       break;

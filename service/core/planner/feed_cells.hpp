@@ -141,6 +141,7 @@ class CellGrid {
   void draft_cells(const JointSpan& span) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
+  [[nodiscard]] bool split(std::size_t draft) noexcept;
   [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
 
   const MachineModel& model_;

@@ -13,6 +13,7 @@ namespace meridian {
 namespace {
 
 constexpr double kJointNoise_rad = 1e-9;  // of a robot's joint, well off its singular places
+constexpr double kMostOff = 0.01;         // of a joint between samples, of what it bends by
 
 /// Joints and drives of the stage, and their derivatives, at one place.
 struct Sample {
@@ -104,12 +105,12 @@ PathFault check_joins(const MachineModel& model, const JointPlace& a, const Join
   if (model.family != MachineFamily::kRobot) return {};
   for (int i = 0; i < model.joint_count; ++i) {
     const double by = b.q[i] - a.q[i];
-    const double off = std::abs(by - 0.5 * h * (a.d1[i] + b.d1[i]));
-    // What smooth joints may be off the trapezoid, and rounding.
+    const double off = std::abs(by - 0.5 * h * (a.d1[i] + b.d1[i] + h / 6 * (a.d2[i] - b.d2[i])));
+    // A share of what the derivatives bend the joint by, and rounding.
     const double bend =
         std::abs(b.d1[i] - a.d1[i]) + h * (std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
                                            h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i])));
-    if (!(off <= kJointNoise_rad + h * bend)) return {PathFault::Kind::kJump, i, by};
+    if (!(off <= kJointNoise_rad + kMostOff * h * bend)) return {PathFault::Kind::kJump, i, by};
   }
   return {};
 }

@@ -137,8 +137,9 @@ PathFault LegPlanner::append_cells(CellTable& table, const PathPiece& path, doub
   const JointVector at_begin = joints;
   for (int round = 0;; ++round) {
     const PathFault fault = table.append(model_, path, begin, end, cells, joints);
-    const bool is_fine = table.coarseness() <= kCoarse || round == kMostRefinements;
-    if (is_fine || fault.kind != PathFault::Kind::kNone || first + 2 * cells > kMostCells) {
+    const bool is_jump = fault.kind == PathFault::Kind::kJump;
+    const bool is_coarse = is_jump || (table.coarseness() > kCoarse && !is_fault(fault));
+    if (!is_coarse || round == kMostRefinements || first + 2 * cells > kMostCells) {
       return fault;
     }
     table.go_back(first);

@@ -18,19 +18,6 @@ constexpr double kLeastPart_mm = 1e-6;
 /// of axis, so a zone beside them still has half of its reach.
 constexpr double kOutOfReach_rad = 0.5 * kPoleReach_mm / kAxisLength_mm_per_rad;
 
-/// `span` from x = `from` on, `length` long.
-BandSpan part_of_span(const BandSpan& span, double from, double length) noexcept {
-  BandSpan out = span;
-  out.u0 = span.u0 + from;
-  out.length = length;
-  for (auto& c : out.c) {  // Taylor shift
-    for (int round = 0; round < 4; ++round) {
-      for (int k = 3; k >= round; --k) c[k] += from * c[k + 1];
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 PoleCorridor::PoleCorridor(const MachineModel& model, PoleForesight* foresight)

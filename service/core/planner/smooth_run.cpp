@@ -36,6 +36,7 @@ SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight*
     : model_(model),
       raise_(raise),
       corridor_(model, foresight),
+      wrist_(model),
       feed_(model, feed_settings(model)),
       authority_(model),
       travel_(model),
@@ -49,6 +50,8 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   band_.begin(start.pose, tolerance);
   corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
                    pole_tolerance_rad, start.is_on_pole});
+  wrist_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
+                tolerance.axis_rad});
   begin_feed(start.branch);
   ends_.clear();
   const int free = free_joint(model_);
@@ -249,12 +252,18 @@ void SmoothRun::note_ease(const JointSpan* span) noexcept {
 
 const JointSpan* SmoothRun::next_span() noexcept {
   for (;;) {
-    if (const JointSpan* span = corridor_.next()) return span;
+    if (const JointSpan* span = wrist_.next()) return span;
+    if (const JointSpan* span = corridor_.next()) {
+      wrist_.push(*span);
+      continue;
+    }
     if (is_band_finished_ || corridor_.needs_ahead()) return nullptr;
     const BandSpan* band = band_.next();
     if (band != nullptr) note_block_ends();
     while (const auto mark = band_.next_axis()) {
-      if (mark->u > 0) corridor_.mark(mark->u, to_vector(mark->axis));
+      if (!(mark->u > 0)) continue;
+      corridor_.mark(mark->u, to_vector(mark->axis));
+      wrist_.mark(mark->u, to_vector(mark->axis));
     }
     if (band != nullptr) {
       BandSpan limited = *band;
@@ -263,6 +272,7 @@ const JointSpan* SmoothRun::next_span() noexcept {
     } else if (band_.is_done()) {
       is_band_finished_ = true;
       corridor_.finish();
+      wrist_.finish();
     } else {
       return nullptr;
     }
