@@ -19,7 +19,9 @@ class ProgrammedAxis {
   static constexpr int kCapacity = 32768;
   static constexpr double kLeastGap_mm = 0.01;
 
-  ProgrammedAxis() : marks_(kCapacity) {}
+  ProgrammedAxis() : ProgrammedAxis(true) {}
+  /// `is_used`: false where nothing will be added, which then has no store.
+  explicit ProgrammedAxis(bool is_used) : marks_(is_used ? kCapacity : 1) {}
 
   /// Starts with `axis` at u = 0.
   void begin(const Vector3& axis) noexcept;

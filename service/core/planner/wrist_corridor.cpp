@@ -21,7 +21,10 @@ constexpr double kOutOfReach_rad = 0.6;
 
 }  // namespace
 
-WristCorridor::WristCorridor(const MachineModel& model) : model_(model), spans_(kSpans) {}
+WristCorridor::WristCorridor(const MachineModel& model)
+    : model_(model),
+      programmed_(has_wrist_roll(model)),
+      spans_(has_wrist_roll(model) ? kSpans : 1) {}
 
 void WristCorridor::begin(const Start& start) noexcept {
   is_used_ = has_wrist_roll(model_);
