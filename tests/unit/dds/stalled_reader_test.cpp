@@ -73,6 +73,13 @@ class OtherProcess {
   pid_t id_;
 };
 
+/// Whether `process` is who has not acknowledged all.
+bool names(const Participant& participant, std::int32_t writer, const OtherProcess& process) {
+  const auto behind = find_unacknowledged(participant, writer);
+  const std::string who = "process " + std::to_string(process.id()) + " ";
+  return behind && behind->who.find(who) != std::string::npos;
+}
+
 TEST(StallWatch, TakesReadersThatComeAndGoForNobodyWhoStalls) {
   StallWatch watch;
   const auto behind = [](std::string who) { return Unacknowledged{7, 9, std::move(who)}; };
@@ -130,11 +137,8 @@ TEST(StalledReaders, TheOneThatIsThereIsNamedWhoeverLeft) {
     ASSERT_TRUE(writer.write({.request = 2}));
     if (other.get() != &stuck) other->leave();
     ASSERT_TRUE(writer.write({.request = 3}));
-    std::this_thread::sleep_for(milliseconds(50));
-    const auto behind = find_unacknowledged(participant, writer.handle());
-    ASSERT_TRUE(behind);
-    EXPECT_NE(behind->who.find("process " + std::to_string(stuck.id()) + " "), std::string::npos)
-        << behind->who;
+    EXPECT_TRUE(comes([&] { return names(participant, writer.handle(), stuck); }))
+        << find_unacknowledged(participant, writer.handle()).value_or(Unacknowledged{}).who;
   }
 }
 
