@@ -2,9 +2,30 @@
 #include "fences/text_fence.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 
 namespace meridian::fences {
+namespace {
+
+constexpr std::ptrdiff_t kWidestProse = 100;
+
+/// Characters, not bytes, of text in UTF-8.
+std::ptrdiff_t width(const std::string& line) {
+  return std::count_if(line.begin(), line.end(), [](char byte) { return (byte & 0xC0) != 0x80; });
+}
+
+bool starts_a_fence(const std::string& line) {
+  const std::size_t first = line.find_first_not_of(' ');
+  return first != std::string::npos && line.compare(first, 3, "```") == 0;
+}
+
+bool is_prose(const std::string& line) {
+  const std::size_t first = line.find_first_not_of(' ');
+  return first < 4 && line[first] != '|';
+}
+
+}  // namespace
 
 std::vector<TextRule> read_text_rules(const SourceFile& file) {
   std::vector<TextRule> rules;
@@ -56,6 +77,22 @@ std::vector<Finding> find_missing_heads(const std::vector<SourceFile>& files) {
     if (file.path.ends_with(".hpp") &&
         std::find(file.lines.begin(), file.lines.end(), "#pragma once") == file.lines.end()) {
       findings.push_back({file.path, 0, "no #pragma once"});
+    }
+  }
+  return findings;
+}
+
+std::vector<Finding> find_wide_prose(const std::vector<SourceFile>& pages) {
+  std::vector<Finding> findings;
+  for (const SourceFile& page : pages) {
+    bool code = false;
+    for (std::size_t i = 0; i < page.lines.size(); ++i) {
+      const std::string& line = page.lines[i];
+      if (starts_a_fence(line)) {
+        code = !code;
+      } else if (!code && is_prose(line) && width(line) > kWidestProse) {
+        findings.push_back({page.path, i + 1, "prose wider than 100 characters"});
+      }
     }
   }
   return findings;

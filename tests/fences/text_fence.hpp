@@ -26,4 +26,8 @@ struct TextRule {
 /// Sources that do not start with the SPDX line, headers without #pragma once.
 [[nodiscard]] std::vector<Finding> find_missing_heads(const std::vector<SourceFile>& files);
 
+/// Lines of prose of a Markdown page that are longer than 100 characters: the reader has two pages
+/// side by side. Code, tables and indented equations are left out, for they cannot be broken.
+[[nodiscard]] std::vector<Finding> find_wide_prose(const std::vector<SourceFile>& pages);
+
 }  // namespace meridian::fences

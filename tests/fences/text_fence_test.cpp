@@ -89,5 +89,19 @@ TEST(TextFence, CatchesAMissingLicenceLineAndPragma) {
       0U);
 }
 
+TEST(TextFence, ProseOfThePagesIsAtMost100CharactersWide) {
+  auto pages = project_files({".md"});
+  pages.push_back(read_file(MERIDIAN_SOURCE_DIR, "README.md"));
+  EXPECT_GT(pages.size(), 30U) << "the fence saw hardly any page";
+  EXPECT_EQ(to_text(find_wide_prose(pages)), "");
+}
+
+TEST(TextFence, CatchesWideProseAndNotWhatCannotBeBroken) {
+  const std::string wide(101, 'x'), greek = "   é" + std::string(96, 'x');
+  EXPECT_EQ(find_wide_prose({{"a.md", {wide, "- " + wide, greek}}}).size(), 2U);
+  EXPECT_EQ(find_wide_prose({{"a.md", {"```sh", wide, "```", "| " + wide, "    " + wide}}}).size(),
+            0U);
+}
+
 }  // namespace
 }  // namespace meridian::fences
