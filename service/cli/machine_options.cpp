@@ -16,9 +16,7 @@
 
 namespace meridian::cli {
 
-void add_machine_options(CLI::App& command, MachineOptions& options, bool has_workpiece) {
-  command.add_option("-m,--machine", options.machine, "Machine file (TOML)")->required();
-  if (!has_workpiece) return;
+void add_workpiece_options(CLI::App& command, MachineOptions& options) {
   command.add_option("--frame", options.frame,
                      "Where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) Ry(b) Rx(a); "
                      "instead of the machine file's frame");
@@ -30,6 +28,12 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
                   "file's tool_length_mm")
       ->needs(tools)
       ->check(finite_positive());
+}
+
+void add_machine_options(CLI::App& command, MachineOptions& options, bool has_workpiece) {
+  command.add_option("-m,--machine", options.machine, "Machine file (TOML)")->required();
+  if (!has_workpiece) return;
+  add_workpiece_options(command, options);
   command
       .add_option("--unknown-tool-length", options.unknown_tool_length_mm,
                   "Length of every tool that the program calls and the table has not, mm")

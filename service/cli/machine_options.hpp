@@ -21,6 +21,9 @@ struct MachineOptions {
   int tool = 0;  ///< of the table, in the spindle at the begin; 0: that of the machine file
 };
 
+/// Adds --frame, --tools and --tool: where the workpiece lies and what is in the spindle.
+void add_workpiece_options(CLI::App& command, MachineOptions& options);
+
 /// Adds --machine and, where a workpiece is cut, --frame, --tools, --tool and
 /// --unknown-tool-length.
 void add_machine_options(CLI::App& command, MachineOptions& options, bool has_workpiece);

@@ -9,13 +9,14 @@
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
+#include "service/cli/machine_options.hpp"
 #include "service/cli/peer_options.hpp"
-#include "service/config/machine_file.hpp"
 #include "service/dds/followed.hpp"
 #include "service/dds/reader.hpp"
 #include "service/record/flight_picture.hpp"
 #include "service/record/flight_report.hpp"
 #include "service/record/wire_recording.hpp"
+#include "service/ros/conversion.hpp"
 #include "service/stream/end_watch.hpp"
 #include "service/stream/steady_ns.hpp"
 
@@ -23,7 +24,8 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string output, flight, machine, picture;
+  std::string output, flight, recording, mcap, picture;
+  MachineOptions machine;
   double duration_s = 0;
   bool until_end = false;
   std::int64_t max_missing = -1;
@@ -153,12 +155,13 @@ int run(Options& options) {
   return is_bad ? kVerdictNo : kFine;
 }
 
+int refuse(const record::RecordError& error) {
+  std::cerr << error.text() << "\n";
+  return kInputRefused;
+}
+
 int read(const Options& options) {
-  const auto refuse = [](const record::RecordError& error) {
-    std::cerr << error.text() << "\n";
-    return kInputRefused;
-  };
-  const MachineModel model = config::load_machine(options.machine);
+  const MachineModel model = load_machine(options.machine);
   auto recording = record::RecordingReader::open(options.flight, model);
   if (!recording) return refuse(recording.error());
   const auto report = record::read_flight(*recording, model);
@@ -169,6 +172,14 @@ int read(const Options& options) {
   return error ? refuse(*error) : kFine;
 }
 
+int convert(const Options& options) {
+  const MachineModel model = load_machine(options.machine);
+  const auto report = ros::convert(options.recording, options.mcap, model);
+  if (!report) return refuse(report.error());
+  std::cout << ros::to_text(*report, options.mcap);
+  return kFine;
+}
+
 }  // namespace
 
 void add_record_command(CLI::App& app, int& exit_code) {
@@ -177,17 +188,29 @@ void add_record_command(CLI::App& app, int& exit_code) {
       "record",
       "Setpoints and feedback as they are seen on the wire, into a recording, with the gaps, the "
       "age of what arrives and the following error. Or, with --read, what such a recording or one "
-      "of "
-      "the flight recorder says of a fault");
+      "of the flight recorder says of a fault. Or, with --convert, any recording as an MCAP file "
+      "for Foxglove and PlotJuggler");
   command->add_option("output", options->output, "Recording to write (CSV)");
   CLI::Option* const read_option =
       command->add_option("--read", options->flight,
                           "Instead: tell alarm, stop, following errors and what drives reported, "
                           "out of this file of the flight recorder or of this command");
-  CLI::Option* const machine =
-      command->add_option("-m,--machine", options->machine, "For --read: machine file (TOML)")
-          ->needs(read_option);
+  CLI::Option* const convert_option =
+      command
+          ->add_option("--convert", options->recording,
+                       "Instead: write this recording (CSV) of the service, the simulator, the "
+                       "flight recorder or this command, with its events, to the file behind "
+                       "--mcap")
+          ->excludes(read_option);
+  CLI::Option* const mcap =
+      command->add_option("--mcap", options->mcap, "For --convert: MCAP file to write")
+          ->needs(convert_option);
+  convert_option->needs(mcap);
+  CLI::Option* const machine = command->add_option("-m,--machine", options->machine.machine,
+                                                   "For --read and --convert: machine file (TOML)");
   read_option->needs(machine);
+  convert_option->needs(machine);
+  add_workpiece_options(*command, options->machine);
   command->add_option("--picture", options->picture, "For --read: draw it to this .png or .svg")
       ->needs(read_option);
   command->add_option("--duration", options->duration_s, "End after so many seconds")
@@ -196,11 +219,18 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->add_option("--max-missing", options->max_missing,
                       "Exit code 1 where more cycles are missing");
   add_peer_options(*command, options->peer);
-  command->callback([options, &exit_code] {
-    if (options->flight.empty() == options->output.empty()) {
-      throw CLI::ValidationError("record", "name the recording to write, or one behind --read");
+  command->callback([options, machine, &exit_code] {
+    const bool is_listening = options->flight.empty() && options->recording.empty();
+    if (is_listening && machine->count() > 0) {
+      throw CLI::ValidationError("--machine", "belongs to --read or --convert");
     }
-    exit_code = options->flight.empty() ? run(*options) : read(*options);
+    if (is_listening == options->output.empty()) {
+      throw CLI::ValidationError("record",
+                                 "name the recording to write, or one behind --read or --convert");
+    }
+    exit_code = !options->recording.empty() ? convert(*options)
+                : is_listening              ? run(*options)
+                                            : read(*options);
   });
 }
 

@@ -40,6 +40,7 @@ class RecordingReader::Impl {
   std::string_view first_row;
   std::uint64_t line = 1;
   bool has_velocity = false, has_plan_time = false, has_feedback = false;
+  bool has_state = false, has_alarm = false, has_statuswords = false;
   std::vector<std::string> names;  ///< of limited.hpp
   ActuatorStage stage;
   int joint_count = 0;
@@ -72,8 +73,8 @@ class RecordingReader::Impl {
     std::string_view header = cut_line(rest);
     first_row = rest;
     bool has_cycle = false, has_due = false;
-    std::uint32_t positions = 0, velocities = 0, feedbacks = 0;
-    bool has_feedback_cycle = false;
+    std::uint32_t positions = 0, velocities = 0, feedbacks = 0, statuswords = 0;
+    bool has_feedback_cycle = false, has_kind = false, has_rate = false, has_sequence = false;
     for (int i = 0; i < limited_count(model); ++i) names.push_back(limited_spec(model, i).name);
     while (!header.empty()) {
       columns.push_back(find_column(cut(header, ','), model));
@@ -84,6 +85,12 @@ class RecordingReader::Impl {
       if (column.field == Field::kPlace) positions |= 1U << column.place;
       if (column.field == Field::kVelocity) velocities |= 1U << column.place;
       if (column.field == Field::kFeedback) feedbacks |= 1U << column.place;
+      if (column.field == Field::kStatusword) statuswords |= 1U << column.place;
+      has_state |= column.field == Field::kState;
+      has_kind |= column.field == Field::kKind;
+      has_rate |= column.field == Field::kRate;
+      has_sequence |= column.field == Field::kSequence;
+      has_alarm |= column.field == Field::kAlarm;
       has_feedback_cycle |= column.field == Field::kFeedbackCycle;
     }
     const std::string remedy =
@@ -108,6 +115,8 @@ class RecordingReader::Impl {
     }
     has_velocity = velocities == all;
     has_feedback = has_feedback_cycle && feedbacks == joints;
+    has_statuswords = has_feedback && statuswords == joints;
+    has_state = has_state && has_kind && has_rate && has_sequence;
     return std::nullopt;
   }
 };
@@ -161,6 +170,9 @@ void RecordingReader::rewind() noexcept {
 
 bool RecordingReader::has_velocity() const noexcept { return impl_->has_velocity; }
 bool RecordingReader::has_plan_time() const noexcept { return impl_->has_plan_time; }
+bool RecordingReader::has_state() const noexcept { return impl_->has_state; }
+bool RecordingReader::has_alarm() const noexcept { return impl_->has_alarm; }
+bool RecordingReader::has_statuswords() const noexcept { return impl_->has_statuswords; }
 bool RecordingReader::has_feedback() const noexcept { return impl_->has_feedback; }
 const std::string& RecordingReader::path() const noexcept { return impl_->path; }
 

@@ -70,6 +70,12 @@ class RecordingReader {
 
   [[nodiscard]] bool has_velocity() const noexcept;
   [[nodiscard]] bool has_plan_time() const noexcept;
+  /// Whether there is what the cycle says of itself: state, kind, block, rate.
+  [[nodiscard]] bool has_state() const noexcept;
+  /// Whether there are alarms.
+  [[nodiscard]] bool has_alarm() const noexcept;
+  /// Whether there is what every drive says of itself.
+  [[nodiscard]] bool has_statuswords() const noexcept;
   /// Whether there is the feedback of every drive, with the setpoint that it had seen.
   [[nodiscard]] bool has_feedback() const noexcept;
   [[nodiscard]] const std::string& path() const noexcept;

@@ -33,7 +33,7 @@ constexpr std::array kLibraries{
     Library{"fmt/", "spdlog"},        Library{"toml++/", "toml"},
     Library{"CLI/", "cli11"},         Library{"dds/", "cyclone"},
     Library{"nlohmann/", "json"},     Library{"civetweb.h", "civetweb"},
-    Library{"pybind11/", "pybind11"},
+    Library{"pybind11/", "pybind11"}, Library{"zstd.h", "zstd"},
 };
 
 std::string standard_part(const std::string& name) {

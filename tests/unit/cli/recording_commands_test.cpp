@@ -67,6 +67,30 @@ TEST_F(RecordingCommands, BeginWithTheToolThatIsInTheSpindle) {
   EXPECT_EQ(run_tool(check + "--tool 3").exit_code, 2) << "of which table?";
 }
 
+TEST_F(RecordingCommands, RecordConvertsToMcap) {
+  const TextFile mcap{"", ".mcap"};
+  ASSERT_EQ(run_tool("simulate " + part() + kMachine + "--record " + recording()).exit_code, 0);
+  const std::string convert = "record --convert " + recording() + kMachine;
+  const CommandOutput outcome = run_tool(convert + "--mcap " + mcap.path().string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find(" MB an hour\n"), std::string::npos) << outcome.output;
+  EXPECT_EQ(meridian::test::read_text(mcap.path()).substr(0, 5), "\x89MCAP");
+
+  const CommandOutput damaged =
+      run_tool("record --convert " + part() + kMachine + "--mcap " + mcap.path().string());
+  EXPECT_EQ(damaged.exit_code, 3);
+  EXPECT_NE(damaged.output.find(part() + ":1: no recording"), std::string::npos) << damaged.output;
+}
+
+TEST_F(RecordingCommands, RecordSaysWhichOptionsBelongTogether) {
+  EXPECT_EQ(run_tool("record --convert " + recording() + kMachine).exit_code, 2) << "whereto?";
+  EXPECT_EQ(run_tool("record --mcap x.mcap" + kMachine).exit_code, 2) << "of what?";
+  EXPECT_EQ(run_tool("record --convert a.csv --mcap b.mcap").exit_code, 2) << "which machine?";
+  EXPECT_EQ(run_tool("record --convert a.csv --mcap b.mcap --read c.csv" + kMachine).exit_code, 2);
+  EXPECT_EQ(run_tool("record").exit_code, 2);
+  EXPECT_EQ(run_tool("record x.csv --convert a.csv --mcap b.mcap" + kMachine).exit_code, 2);
+}
+
 TEST_F(RecordingCommands, SimulateReadsAPipeOnce) {
   const CommandOutput outcome = run_tool("simulate /dev/fd/0" + kMachine, "cat " + part());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;

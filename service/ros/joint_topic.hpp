@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/mcap/writer.hpp"
+#include "service/record/recording_reader.hpp"
+#include "service/ros/cdr.hpp"
+#include "service/ros/message_types.hpp"
+#include "service/ros/pace.hpp"
+
+namespace meridian::ros {
+
+/// `/joint_states`: where the joints, then the drives of a stage, are sent, and how fast, 50 times
+/// a second for what knows this type and no other; sensor_msgs/JointState.
+/// Proof: tests/unit/ros/motion_file_test.cpp.
+class JointTopic {
+ public:
+  JointTopic(mcap::Writer& writer, const MachineModel& model, const Contents& contents);
+  void write(const record::RecordingRow& row);
+
+ private:
+  mcap::Writer& writer_;
+  const MachineModel& model_;
+  Contents contents_;
+  std::uint16_t channel_;
+  Pace pace_{kScreenPeriod_ns};
+  Cdr message_;
+};
+
+}  // namespace meridian::ros

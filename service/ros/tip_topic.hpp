@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "meridian/geometry/vector3.hpp"
+#include "service/mcap/writer.hpp"
+#include "service/ros/cdr.hpp"
+#include "service/ros/pace.hpp"
+
+namespace meridian::ros {
+
+/// A rotation as x, y, z, w.
+using Quaternion = std::array<double, 4>;
+
+/// The least rotation that takes +z to the unit vector `axis`; to -z it turns about x.
+[[nodiscard]] Quaternion from_z_to(const Vec3<double>& axis) noexcept;
+
+/// `/tip`: the tool tip in the frame `workpiece`, 50 times a second; its orientation takes +z along
+/// the tool axis to the shank; geometry_msgs/PoseStamped. Proof:
+/// tests/unit/ros/motion_file_test.cpp.
+class TipTopic {
+ public:
+  explicit TipTopic(mcap::Writer& writer);
+  void write(std::int64_t due_ns, const Pose<double>& pose);
+
+ private:
+  mcap::Writer& writer_;
+  std::uint16_t channel_;
+  Pace pace_{kScreenPeriod_ns};
+  Cdr message_;
+};
+
+}  // namespace meridian::ros

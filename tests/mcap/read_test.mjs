@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// read_test.mjs MERIDIAN SOURCE FETCHED FOLDER: simulates the sample part, converts its recording and holds every message
+// of the MCAP file against the rows of the CSV file.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { createReadStream, mkdirSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { load, McapFile } from "./mcap_file.mjs";
+
+const [meridian, source, fetched, folder] = process.argv.slice(2);
+let libraries;
+try {
+  libraries = load(fetched);
+} catch (error) {
+  console.log(`skipped: npm has not fetched the reader (${error.code})`);
+  process.exit(77);
+}
+
+const kMostBytesAnHour = 400e6;
+const kCycle_s = 1e-3;
+mkdirSync(folder, { recursive: true });
+const csv = join(folder, "run.csv"), mcap = join(folder, "run.mcap");
+const machine = ["--machine", join(source, "deploy/machines/lai.toml"), "--tools", join(source, "deploy/tools.toml")];
+
+execFileSync(meridian, ["simulate", join(source, "deploy/parts/blossom.apt"), ...machine, "--record", csv]);
+const events = [["10", "feed_override", "0.5"], ["2000", "hold", "0"], ["2001", "resume", "0"]];
+writeFileSync(join(folder, "run.events.csv"), "cycle,verb,argument,block,span\n" + events.map((row) => row.join(",") + "\n").join(""));
+console.log(execFileSync(meridian, ["record", "--convert", csv, "--mcap", mcap, ...machine, "--tool", "1"]).toString().trim());
+
+// The rows of the CSV file, one object each.
+async function* rows() {
+  let names;
+  for await (const line of createInterface({ input: createReadStream(csv) })) {
+    const fields = line.split(",");
+    if (names === undefined) names = fields;
+    else yield Object.fromEntries(fields.map((field, i) => [names[i], field]));
+  }
+}
+
+const near = (is, wanted, tolerance, what) =>
+  assert.ok(Math.abs(is - wanted) <= tolerance, `${what}: ${is} instead of ${wanted}`);
+const ns = (time) => BigInt(time.sec) * 1_000_000_000n + BigInt(time.nanosec ?? time.nsec);
+
+const file = new McapFile(mcap, libraries);
+const reader = await file.indexed();
+assert.equal(reader.header.profile, "ros2");
+const decoders = new Map();
+for (const [id, channel] of reader.channelsById) {
+  assert.equal(channel.messageEncoding, "cdr");
+  decoders.set(id, file.decoder(reader.schemasById.get(channel.schemaId)));
+}
+const topics = [...reader.channelsById.values()].map((channel) => channel.topic).sort();
+assert.deepEqual(topics, ["/cycle", "/events", "/joint_states", "/limit_shares", "/tip"]);
+const types = Object.fromEntries([...reader.channelsById.values()].map(
+  (channel) => [channel.topic, reader.schemasById.get(channel.schemaId).name]));
+assert.equal(types["/joint_states"], "sensor_msgs/msg/JointState");
+assert.equal(types["/tip"], "geometry_msgs/msg/PoseStamped");
+assert.equal(types["/events"], "rcl_interfaces/msg/Log");
+
+// The messages of one topic in the order of the file's time.
+async function* messages(topic) {
+  for await (const message of reader.readMessages({ topics: [topic] })) {
+    yield { logTime: message.logTime, fields: decoders.get(message.channelId).readMessage(message.data) };
+  }
+}
+
+const joints = ["b3", "b2", "b4", "theta1", "theta2"];
+const names = { b3: "b3_mm", b2: "b2_mm", b4: "b4_mm", theta1: "theta1_rad", theta2: "theta2_rad" };
+const in_ros_units = (name, value) => Number(value) * (names[name].endsWith("_mm") ? 1e-3 : 1);
+const cycles = messages("/cycle");
+const sent = new Map();  // what the topics of the screen are held against, by their time
+let count = 0, before;
+for await (const row of rows()) {
+  const what = `row ${count}`;
+  const { logTime, fields } = (await cycles.next()).value;
+  assert.equal(logTime, BigInt(row.due_ns), what);
+  assert.equal(ns(fields.header.stamp), BigInt(row.due_ns), what);
+  assert.equal(fields.cycle, BigInt(row.cycle), what);
+  assert.equal(fields.line, Number(row.line), what);
+  assert.equal(fields.block, BigInt(row.sequence), what);
+  assert.equal(fields.flags, Number(row.flags), what);
+  near(fields.rate, Number(row.rate), 1e-7, `${what} rate`);
+  near(fields.plan_time, Number(row.plan_time_s), 1e-6, `${what} plan time`);
+  for (const joint of joints) {
+    near(fields.position[joint], in_ros_units(joint, row[names[joint]]), 6e-11, `${what} ${joint}`);
+    near(fields.velocity[joint], in_ros_units(joint, row[`${names[joint]}_per_s`]), 6.1e-8, `${what} ${joint} velocity`);
+  }
+  if (before !== undefined) {
+    const way = Math.hypot(fields.tip.x - before.x, fields.tip.y - before.y, fields.tip.z - before.z);
+    near(fields.feed, way / kCycle_s, 2e-6, `${what} feed`);
+  }
+  before = fields.tip;
+  if (count === 0 || logTime % 20_000_000n === 0n) sent.set(logTime, fields);
+  ++count;
+}
+assert.ok((await cycles.next()).done, "more messages than rows");
+
+// Fifty a second, of rows that are there.
+let screen = 0;
+for await (const { logTime, fields } of messages("/joint_states")) {
+  const row = sent.get(logTime);
+  assert.deepEqual(fields.name, joints);
+  assert.deepEqual([...fields.position], joints.map((joint) => row.position[joint]));
+  ++screen;
+}
+assert.equal(screen, sent.size);
+for await (const { logTime, fields } of messages("/tip")) {
+  const row = sent.get(logTime), { x, y, z, w } = fields.pose.orientation;
+  assert.deepEqual({ ...fields.pose.position }, { ...row.tip });
+  const axis = { x: 2 * (x * z + y * w), y: 2 * (y * z - x * w), z: 1 - 2 * (x * x + y * y) };
+  for (const along of ["x", "y", "z"]) near(axis[along], row.axis[along], 5e-7, `tool axis along ${along}`);
+  --screen;
+}
+assert.equal(screen, 0);
+assert.ok(count > 1000, `${count} rows`);
+
+let most = 0, shares = 0;
+for await (const { fields } of messages("/limit_shares")) {
+  for (const joint of joints) most = Math.max(most, fields[joint].velocity, fields[joint].acceleration, fields[joint].jerk);
+  ++shares;
+}
+assert.ok(most > 0.5 && most < 1.01, `the largest share of a limit is ${most}`);
+assert.ok(Math.abs(shares - count / 20) <= 2, `${shares} messages of shares`);
+
+const told = [];
+for await (const { fields } of messages("/events")) if (fields.name === "operator") told.push(fields.msg);
+assert.deepEqual(told, events.map(([, verb, argument]) => `${verb} ${argument}`));
+
+// Once more without the summary; and what a process leaves that is killed.
+const counted = new Map();
+for (const record of file.records()) {
+  if (record.type === "Message") counted.set(record.channelId, (counted.get(record.channelId) ?? 0n) + 1n);
+}
+assert.deepEqual(counted, reader.statistics.channelMessageCounts);
+assert.ok(reader.chunkIndexes.length > 3, "several chunks");
+const half = Number(reader.chunkIndexes[1].chunkStartOffset) + 1000;
+let left = 0;
+for (const record of file.records(half)) left += record.type === "Message" ? 1 : 0;
+assert.ok(left > 100, `${left} messages in front of a cut`);
+file.close();
+
+const bytes_an_hour = (statSync(mcap).size / (count * kCycle_s)) * 3600;
+const csv_an_hour = (statSync(csv).size / (count * kCycle_s)) * 3600;
+console.log(`${count} rows, every one there; an hour ${(bytes_an_hour / 1e6).toFixed(0)} MB, CSV ${(csv_an_hour / 1e6).toFixed(0)} MB`);
+assert.ok(bytes_an_hour < kMostBytesAnHour, `an hour of it is ${(bytes_an_hour / 1e6).toFixed(0)} MB`);
