@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "meridian/geometry/vector3.hpp"
@@ -12,6 +14,9 @@
 #include "service/cl/frame.hpp"
 
 namespace meridian::cl {
+
+class LineSource;
+class ProgramSource;
 
 enum class LengthUnit : std::uint8_t { kMillimetre, kInch };
 
@@ -39,6 +44,11 @@ struct ClReaderOptions {
   /// Where the home of the machine puts tip and axis, in W, with this tool in the spindle (nothing:
   /// the one before any tool change). Empty: the machine is not known, and GOHOME is refused.
   std::function<std::optional<ToolPose>(std::optional<std::uint32_t>)> home;
+  /// Makes the reader of an NC program: from its lines, its name, these options and why it is taken
+  /// for one (nc::reader_of, which may know the machine). Empty: NC programs are refused.
+  std::function<std::unique_ptr<ProgramSource>(LineSource&, const std::string&,
+                                               const ClReaderOptions&, std::string_view)>
+      nc;
 };
 
 }  // namespace meridian::cl

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cl/cl_reader.hpp"
 
+#include "service/cl/cl_program.hpp"
 #include "service/cl/foreign.hpp"
-#include "service/cl/interpreter.hpp"
 #include "service/cl/line_source.hpp"
 #include "service/cl/restart.hpp"
-#include "service/cl/statement.hpp"
 
 namespace meridian::cl {
 
@@ -14,9 +13,10 @@ class ClReader::Impl {
   template <class Input>
   Impl(Input& input, const std::string& name, ClReaderOptions options)
       : lines_(input),
-        statements_(lines_),
-        first_line_(options.first_line),
-        interpreter_(name, std::move(options)) {}
+        name_(name),
+        options_(std::move(options)),
+        first_line_(options_.first_line),
+        program_(std::make_unique<ClProgram>(lines_, name_, options_)) {}
 
   Expected<std::optional<ClBlock>, ClError> next() {
     if (first_line_ > 0 && !has_restarted_) {
@@ -30,14 +30,14 @@ class ClReader::Impl {
 
  private:
   /// Reads up to the first line that is wanted; what leads there is in restored_ then.
-  Interpreter::Result restart() {
+  ProgramSource::Result restart() {
     Restart before;
     has_restarted_ = true;
     for (;;) {
       auto block = read_block();
       if (!block) return tl::make_unexpected(block.error());
       if (!*block || (*block)->kind == BlockKind::kEnd) {
-        Interpreter::Result refusal =
+        ProgramSource::Result refusal =
             final_error(first_line_, "the program has no block from this line on to begin with");
         error_ = refusal.error();
         return refusal;
@@ -50,9 +50,9 @@ class ClReader::Impl {
       before.pass(**block);
     }
     if (before.vendor_line() > 0) {
-      interpreter_.warn("restart", before.vendor_line(),
-                        "vendor words in front of the first line are not repeated; see "
-                        "that the machine is as they would leave it");
+      program_->warn("restart", before.vendor_line(),
+                     "vendor words in front of the first line are not repeated; see "
+                     "that the machine is as they would leave it");
     }
     return {};
   }
@@ -84,66 +84,60 @@ class ClReader::Impl {
   }
 
   ClSummary& summary() {
-    ClSummary& summary = interpreter_.summary();
+    ClSummary& summary = program_->summary();
     summary.bytes = lines_.bytes();
     summary.lines = lines_.line_number();
-    summary.comments = statements_.comments();
     return summary;
   }
-  const Interpreter& interpreter() const { return interpreter_; }
+  const ProgramSource& program() const { return *program_; }
 
  private:
   /// What ends the reading of the file, whatever else may be wrong in it.
   tl::unexpected<ClError> final_error(std::uint32_t line, const std::string& message,
                                       const std::string& remedy = {}) const {
-    ClError error = interpreter_.error(line, {message, remedy, {}, 0});
+    ClError error = program_->error(line, {message, remedy, {}, 0});
     error.is_final = true;
     return tl::make_unexpected(std::move(error));
   }
 
-  Interpreter::Result read_statement() {
+  /// Which language the text is in, by its head and by what the caller said.
+  ProgramSource::Result begin() {
+    Recognised what = recognise_foreign(lines_.head());
+    while (!what.is_certain && lines_.read_on()) what = recognise_foreign(lines_.head());
+    if (lines_.head().find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
+      return final_error(0, "the file is empty");
+    }
+    const bool is_told = options_.dialect && is_nc(*options_.dialect);
+    const bool is_text = what.foreign.empty() || what.is_nc;
+    const bool is_shown = what.program != Dialect::kUnknown && !options_.dialect;
+    if (options_.nc && is_text && (is_told || is_shown)) {
+      if (!is_told) options_.dialect = what.program;
+      program_ = options_.nc(lines_, name_, options_, is_told ? "--dialect" : what.shown_by);
+      return {};
+    }
+    if (what.foreign.empty()) return {};
+    return final_error(0, "this is " + what.foreign + ", not a CL file",
+                       what.is_nc && options_.nc
+                           ? "--dialect fanuc reads NC programs of ISO and Fanuc words; else "
+                             "output APT or CLDATA text from the CAM system"
+                           : "output APT or CLDATA text from the CAM system");
+  }
+
+  ProgramSource::Result read_statement() {
     if (!started_) {
       started_ = true;
-      Recognised what = recognise_foreign(lines_.head());
-      while (!what.is_certain && lines_.read_on()) what = recognise_foreign(lines_.head());
-      if (lines_.head().find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
-        return final_error(0, "the file is empty");
-      }
-      if (!what.foreign.empty()) {
-        return final_error(0, "this is " + what.foreign + ", not a CL file",
-                           "output APT or CLDATA text from the CAM system");
-      }
+      if (auto begun = begin(); !begun) return begun;
     }
-    switch (statements_.next(statement_)) {
-      case StatementReader::Outcome::kStatement: {
-        if (const Dialect shown = statements_.take_shown(); shown != Dialect::kUnknown) {
-          interpreter_.see(shown, statement_.line, "a comment");
-        }
-        auto taken = interpreter_.take(statement_, blocks_);
-        if (interpreter_.is_finished()) done_ = true;
-        return taken;
-      }
-      case StatementReader::Outcome::kEnd:
-        done_ = true;
-        return interpreter_.finish(lines_.line_number(), lines_.ended_without_newline(), blocks_);
-      case StatementReader::Outcome::kCutOff:
-        return final_error(statement_.line, "the file is cut short: it ends inside this statement");
-      case StatementReader::Outcome::kBinary:
-        return final_error(statements_.line(), "binary data in the text");
-      case StatementReader::Outcome::kTooLong:
-        return final_error(statements_.line() + 1, "this line or statement is too long",
-                           "lines up to 64 KiB, statements up to 1 MiB");
-      case StatementReader::Outcome::kReadError:
-        break;
-    }
-    return final_error(statements_.line(), "the file cannot be read any further");
+    auto done = program_->read(blocks_);
+    if (program_->is_done()) done_ = true;
+    return done;
   }
 
   LineSource lines_;
-  StatementReader statements_;
+  std::string name_;
+  ClReaderOptions options_;
   std::uint32_t first_line_ = 0;
-  Interpreter interpreter_;
-  Statement statement_;
+  std::unique_ptr<ProgramSource> program_;
   std::vector<ClBlock> blocks_;  ///< of the last statement
   std::size_t given_ = 0;
   std::vector<ClBlock> restored_;  ///< what a restart begins with
@@ -167,7 +161,7 @@ Expected<std::optional<ClBlock>, ClError> ClReader::next() { return impl_->next(
 bool ClReader::go_on() { return impl_->go_on(); }
 const ClSummary& ClReader::summary() const noexcept { return impl_->summary(); }
 const std::vector<ClWarning>& ClReader::warnings() const noexcept {
-  return impl_->interpreter().warnings();
+  return impl_->program().warnings();
 }
 
 }  // namespace meridian::cl

@@ -46,6 +46,25 @@ void append_path(std::string& text, const ClSummary& s) {
          s.cut_length_mm, s.rapid_length_mm, s.cut_time_s + s.dwell_time_s);
 }
 
+void append_points(std::string& text, const ClSummary& s) {
+  if (!s.nc.is_nc) {
+    append(text, "GOTO           %llu with 3 numbers, %llu with 6; %llu of zero length\n",
+           Count{s.goto_three}, Count{s.goto_six}, Count{s.zero_length});
+    return;
+  }
+  append(text, "points         %llu with tool-centre control, %llu without; %llu of zero length\n",
+         Count{s.goto_six}, Count{s.goto_three}, Count{s.zero_length});
+  append(text, "work offset    %s: where the part lies, as the machine file or --frame says\n",
+         s.nc.work_offset.empty() ? "none" : s.nc.work_offset.c_str());
+  if (s.nc.axis_tolerance_rad > 0) {
+    append(text,
+           "rotary words   %llu blocks cut into %llu, so that the tool axis stays within %.3g deg "
+           "of joints that turn evenly\n",
+           Count{s.nc.turned_blocks}, Count{s.nc.turned_pieces},
+           units::deg_from_rad(s.nc.axis_tolerance_rad));
+  }
+}
+
 std::string array_json(const Array3& a) {
   std::string out = "[";
   for (std::size_t i = 0; i < 3; ++i) {
@@ -79,8 +98,7 @@ std::string to_text(const ClSummary& s) {
          blocks_of(s, BlockKind::kDwell), blocks_of(s, BlockKind::kAuxiliary),
          blocks_of(s, BlockKind::kTool),
          blocks_of(s, BlockKind::kStop) + blocks_of(s, BlockKind::kOptionalStop));
-  append(text, "GOTO           %llu with 3 numbers, %llu with 6; %llu of zero length\n",
-         Count{s.goto_three}, Count{s.goto_six}, Count{s.zero_length});
+  append_points(text, s);
   if (s.listed_points > 0) append(text, "point lists    %llu points\n", Count{s.listed_points});
   append(text, "arcs           %llu (%llu full circles, radius mismatch up to %.3g um)\n",
          Count{s.arcs}, Count{s.full_circles}, s.arc_mismatch_max_mm * 1e3);
@@ -139,7 +157,13 @@ std::string to_json(const ClSummary& s) {
   for (std::size_t i = 0; i < s.tools.size(); ++i) {
     append(text, "%s%u", i > 0 ? ", " : "", s.tools[i]);
   }
-  append(text, "],\n  \"skipped\": {");
+  text += "],\n";
+  if (s.nc.is_nc) {
+    append(text, "  \"work_offset\": %s,\n  \"turned_blocks\": %llu,\n  \"turned_pieces\": %llu,\n",
+           text::json_quoted(s.nc.work_offset).c_str(), Count{s.nc.turned_blocks},
+           Count{s.nc.turned_pieces});
+  }
+  text += "  \"skipped\": {";
   for (std::size_t i = 0; i < s.skipped.size(); ++i) {
     append(text, "%s%s: %llu", i > 0 ? ", " : "", text::json_quoted(s.skipped[i].word).c_str(),
            Count{s.skipped[i].count});

@@ -29,6 +29,15 @@ struct SkippedWord {
   std::uint32_t line = 0;  ///< of the first
 };
 
+/// What only NC programs have.
+struct NcSummary {
+  bool is_nc = false;
+  std::string work_offset;          ///< as written; empty: none was
+  std::uint64_t turned_blocks = 0;  ///< with rotary words, cut to follow joints that turn evenly
+  std::uint64_t turned_pieces = 0;  ///< what became of them
+  double axis_tolerance_rad = 0;    ///< by which they are cut; 0: no machine is known
+};
+
 /// What was read so far. Units: mm, rad, s; frame: W. Bounded, whatever the length of the file.
 struct ClSummary {
   static constexpr std::size_t kMostTools = 64;
@@ -71,6 +80,7 @@ struct ClSummary {
   double arc_mismatch_max_mm = 0;
   std::vector<std::uint32_t> tools;  ///< numbers loaded, in order of first use, at most kMostTools
   std::vector<SkippedWord> skipped;  ///< each word once, in order of first use
+  NcSummary nc;
 
   /// What the last digit of the file's coordinates is worth.
   [[nodiscard]] double resolution_mm() const noexcept {

@@ -9,7 +9,7 @@
 
 namespace meridian::cl {
 
-/// The CAM systems whose CL files differ in what they mean.
+/// The CAM systems whose CL files differ in what they mean, and languages of NC programs.
 enum class Dialect : std::uint8_t {
   kUnknown,
   kNx,
@@ -20,8 +20,12 @@ enum class Dialect : std::uint8_t {
   kHyperMill,
   kMakino,
   kHsm,
-  kIso
+  kIso,
+  kFanuc  ///< no CL file: an NC program of ISO and Fanuc words
 };
+
+/// Whether it is the language of NC programs.
+[[nodiscard]] constexpr bool is_nc(Dialect dialect) noexcept { return dialect == Dialect::kFanuc; }
 
 /// What a point of three numbers means where the tool axis was tilted before it.
 enum class MissingAxis : std::uint8_t {

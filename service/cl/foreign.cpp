@@ -192,19 +192,23 @@ std::string name_of(const std::string& text, const Lines& lines) {
 Recognised recognise_foreign(std::string_view head) {
   constexpr std::size_t kEnoughLines = 32;
   for (const Magic& magic : kMagics) {
-    if (head.starts_with(magic.bytes)) return {std::string(magic.name), true};
+    if (head.starts_with(magic.bytes)) {
+      return {std::string(magic.name), true, false, Dialect::kUnknown, {}};
+    }
   }
   const auto control = std::count_if(head.begin(), head.end(), [](unsigned char c) {
     return c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f' && c != '\x1a';
   });
   if (control > 0 && (head.find('\0') != std::string_view::npos ||
                       control * 20 > static_cast<std::ptrdiff_t>(head.size()))) {
-    return {"binary data", true};
+    return {"binary data", true, false, Dialect::kUnknown, {}};
   }
   const std::string text = in_capitals(head);
   const Lines lines(text);
-  if (lines.cl > 0) return {{}, true};
-  if (has(text, "BEGIN PGM")) return {std::string(kHeidenhain), true};
+  if (lines.cl > 0) return {{}, true, false, Dialect::kUnknown, {}};
+  if (has(text, "BEGIN PGM")) {
+    return {std::string(kHeidenhain), true, true, Dialect::kUnknown, {}};
+  }
   if (lines.all == 0 && lines.siemens.empty()) return {};
   const std::string name = name_of(text, lines);
   const bool is_named = !name.starts_with("an NC program");
@@ -212,7 +216,16 @@ Recognised recognise_foreign(std::string_view head) {
                         (is_named && lines.addresses * 4 > lines.all) ||
                         (lines.percent && lines.addresses > 0);
   const bool is_enough = lines.all >= kEnoughLines;
-  return is_gcode ? Recognised{name, is_named || is_enough} : Recognised{{}, is_enough};
+  Recognised out;
+  out.is_certain = is_enough;
+  if (!is_gcode) return out;
+  constexpr std::string_view kFanuc = "a Fanuc NC program (";
+  out = {name, is_named || is_enough, true, Dialect::kUnknown, {}};
+  if (name.starts_with(kFanuc)) {
+    out.program = Dialect::kFanuc;
+    out.shown_by = name.substr(kFanuc.size(), name.size() - kFanuc.size() - 1);
+  }
+  return out;
 }
 
 }  // namespace meridian::cl

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "service/cl/dialect.hpp"
+
 namespace meridian::cl {
 
 struct Recognised {
@@ -12,6 +14,9 @@ struct Recognised {
   std::string foreign;
   /// More of the text would say nothing else.
   bool is_certain = false;
+  bool is_nc = false;                   ///< it is an NC program
+  Dialect program = Dialect::kUnknown;  ///< of an NC program whose words tell it for certain
+  std::string shown_by;                 ///< what tells it: "G43.4"
 };
 
 /// `head` is the first 64 KiB or less.

@@ -98,7 +98,7 @@ int check(Options& options, const MachineModel& model) {
   if (!options.file.empty()) {
     cl::ClReaderOptions reading = reader_options(options.cl, model);
     add_unknown_tools(options.file, reading, options.machine, tools);
-    set_home(reading, model, tools);
+    tell_machine(reading, model, tools);
     std::vector<cl::ClWarning> warnings;
     const std::string refusal = record::read_path(options.file, reading, tools, path, &warnings);
     print_warnings(options.file, warnings);

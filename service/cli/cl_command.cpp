@@ -7,19 +7,42 @@
 #include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
+#include "service/cli/machine_options.hpp"
 
 namespace meridian::cli {
+namespace {
+
+/// What the reader is told; poses come out in the frame around the workpiece.
+cl::ClReaderOptions reading(const ClFileOptions& file, MachineOptions machine) {
+  if (machine.machine.empty()) return reader_options(file);
+  machine.frame = file.frame;
+  const MachineModel model = load_machine(machine);
+  cl::ClReaderOptions out = reader_options(file, model);
+  tell_machine(out, model, load_tools(machine));
+  if (out.frame) {
+    out.home = [home = out.home, frame = *out.frame](std::optional<std::uint32_t> tool) {
+      std::optional<ToolPose> pose = home(tool);
+      if (pose) pose = ToolPose{frame.point(pose->tip), frame.direction(pose->axis)};
+      return pose;
+    };
+  }
+  return out;
+}
+
+}  // namespace
 
 void add_cl_command(CLI::App& app, int& exit_code) {
   struct Options {
     cl::RunOptions run;
     ClFileOptions file;
+    MachineOptions machine;
     bool is_summary = false, is_json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "cl",
-      "A CL file as plain points, one `x y z i j k feed` a line (mm, mm/min; feed of the block "
+      "A CL file or NC program as plain points, one `x y z i j k feed` a line (mm, mm/min; feed of "
+      "the block "
       "that ends there, 0 for rapid; arcs as chords), or a summary of what was read");
   add_cl_file(*command, options->run.file);
   command->add_option("-o,--output", options->run.output, "Write to this file");
@@ -40,10 +63,17 @@ void add_cl_command(CLI::App& app, int& exit_code) {
                    "How far chords may lie from their arc, mm")
       ->capture_default_str()
       ->check(finite_range(1e-6, 1.0));
+  CLI::Option* const machine = command->add_option(
+      "-m,--machine", options->machine.machine,
+      "Machine file (TOML): what rotary words of NC programs turn, and where GOHOME leads");
+  command
+      ->add_option("--tools", options->machine.tools,
+                   "Tool table (TOML): lengths for moves to the machine's own places")
+      ->needs(machine);
   add_cl_file_options(*command, options->file);
   add_frame_option(*command, options->file);
   command->callback([options, &exit_code] {
-    options->run.reader = reader_options(options->file);
+    options->run.reader = reading(options->file, options->machine);
     if (options->is_summary) options->run.what = cl::RunOptions::Output::kSummary;
     if (options->is_json) options->run.what = cl::RunOptions::Output::kJson;
     exit_code = cl::run_cl(options->run, std::cout, std::cerr);

@@ -8,13 +8,18 @@
 #include "service/config/machine_file.hpp"
 #include "service/config/range.hpp"
 #include "service/dds/messages.hpp"
+#include "service/nc/nc_reader.hpp"
 #include "service/text/printable.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::cli {
 
 void add_cl_file(CLI::App& command, std::string& name) {
-  command.add_option("file", name, "CL file (APT or CLDATA text); - is standard input")->required();
+  command
+      .add_option("file", name,
+                  "CL file (APT or CLDATA text) or NC program with tool-centre control; - is "
+                  "standard input")
+      ->required();
 }
 
 std::istream* open_cl_file(const std::string& name, std::ifstream& file) {
@@ -46,8 +51,10 @@ std::vector<std::string> dialect_names() {
 
 void add_cl_file_options(CLI::App& command, ClFileOptions& options, const char* dialect_name) {
   command
-      .add_option(dialect_name, options.dialect,
-                  "CAM system that wrote the file, where the file does not show it")
+      .add_option(
+          dialect_name, options.dialect,
+          "CAM system that wrote the file, where the file does not show it; fanuc: an NC program "
+          "of ISO and Fanuc words")
       ->check(CLI::IsMember(dialect_names()));
   command
       .add_option("--units", options.units, "Unit of the file: mm or inch; wins over its unit word")
@@ -130,6 +137,7 @@ void add_frame_option(CLI::App& command, ClFileOptions& options) {
 
 cl::ClReaderOptions reader_options(const ClFileOptions& options) {
   cl::ClReaderOptions out;
+  out.nc = nc::reader_of_programs();
   if (!options.dialect.empty()) out.dialect = cl::find_dialect(options.dialect);
   if (options.units == "mm") out.unit = cl::LengthUnit::kMillimetre;
   if (options.units == "inch") out.unit = cl::LengthUnit::kInch;

@@ -11,6 +11,7 @@
 #include "service/cli/finite_range.hpp"
 #include "service/config/config_error.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/nc/nc_reader.hpp"
 #include "service/stream/home_pose.hpp"
 #include "service/stream/preflight.hpp"
 
@@ -77,14 +78,15 @@ void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reade
   tools = ToolTable(std::move(all));
 }
 
-void set_home(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools) {
+void tell_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools) {
+  reader.nc = nc::reader_of_programs(model, tools);
   reader.home = stream::home_pose(model, tools);
 }
 
 bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,
                const MachineModel& model, ToolTable& tools) {
   add_unknown_tools(file, reader, options, tools);
-  set_home(reader, model, tools);
+  tell_machine(reader, model, tools);
   if (!can_be_read_twice(file)) return true;
   const stream::PreflightReport report = stream::preflight(
       file, reader,
@@ -98,6 +100,7 @@ cl::ClReaderOptions reader_options(const ClFileOptions& file, const MachineModel
   if (model.default_unit_mm) out.default_unit = cl::LengthUnit::kMillimetre;
   if (model.default_unit_inch) out.default_unit = cl::LengthUnit::kInch;
   out.max_feed_mm_per_s = model.max_feed_mm_per_s;
+  out.nc = nc::reader_of_programs(model, ToolTable());
   return out;
 }
 

@@ -34,8 +34,8 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
 [[nodiscard]] ToolTable load_tools(const MachineOptions& options);
 
 /// Tells a reader where GOHOME leads: tip and axis of the machine's home with the tool in the
-/// spindle.
-void set_home(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools);
+/// spindle; and what the axis words of NC programs do.
+void tell_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools);
 
 /// Whether the file can be read a second time: no pipe.
 [[nodiscard]] bool can_be_read_twice(const std::string& file);

@@ -111,7 +111,7 @@ int run_stream_command(StreamCommandOptions& options) {
   } else if (judged_for && judged_for->model.default_unit_inch) {
     reader.default_unit = cl::LengthUnit::kInch;
   }
-  if (judged_for) set_home(reader, judged_for->model, judged_for->tools.value_or(ToolTable()));
+  if (judged_for) tell_machine(reader, judged_for->model, judged_for->tools.value_or(ToolTable()));
   const bool is_read_first = !options.has_no_preflight && options.stream.file != "-";
   if (is_read_first && !pass_preflight(options, judged_for)) return kInputRefused;
 
@@ -136,8 +136,9 @@ void add_stream_command(CLI::App& app, int& exit_code) {
       "come, progress and what the machine says. Blocks alone move nothing: start is `meridian "
       "ctl start`");
   command
-      ->add_option("file", options->stream.file,
-                   "CL file (APT or CLDATA text); - is standard input, without preflight")
+      ->add_option(
+          "file", options->stream.file,
+          "CL file (APT or CLDATA text) or NC program; - is standard input, without preflight")
       ->required();
   command->add_flag("--no-preflight", options->has_no_preflight,
                     "Stream at once, for endless sources; what is wrong is found on the way");

@@ -8,6 +8,7 @@
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/nc/nc_reader.hpp"
 #include "service/simulate/simulate.hpp"
 #include "service/stream/home_pose.hpp"
 #include "service/stream/preflight.hpp"
@@ -33,6 +34,7 @@ cl::ClReaderOptions reading_of(const SimulationOptions& options, const MachineMo
   if (model.default_unit_mm) reading.default_unit = cl::LengthUnit::kMillimetre;
   if (model.default_unit_inch) reading.default_unit = cl::LengthUnit::kInch;
   reading.max_feed_mm_per_s = model.max_feed_mm_per_s;
+  reading.nc = nc::reader_of_programs(model, ToolTable());
   return reading;
 }
 
@@ -88,6 +90,7 @@ Simulation simulate_file(const std::string& file, const Machine& machine,
   cl::ClReaderOptions reading = reading_of(options, model);
   const ToolTable tools = tools_of(file, reading, options);
   reading.home = stream::home_pose(model, tools);
+  reading.nc = nc::reader_of_programs(model, tools);
   const auto findings = stream::preflight(
       file, reading,
       stream::PreflightMachine{model, tools, "give tools or unknown_tool_length_mm"});

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fuzz/fuzz_targets.hpp"
+#include "fuzz/read_all.hpp"
 #include "service/cl/cl_points.hpp"
 #include "service/cl/cl_reader.hpp"
 
@@ -32,9 +33,7 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-void read_cl(Bytes bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  cl::ClReader reader(text, "fuzz");
+void read_all(cl::ClReader& reader) {
   std::uint64_t sequence = 0;
   bool has_ended = false, is_whole = true;
   for (;;) {
@@ -53,6 +52,12 @@ void read_cl(Bytes bytes) {
     if (is_motion((*block)->kind)) check_motion(**block);
   }
   require(has_ended || !is_whole, "a program without an end that is no error");
+}
+
+void read_cl(Bytes bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  cl::ClReader reader(text, "fuzz");
+  read_all(reader);
 }
 
 Seeds cl_seeds() {

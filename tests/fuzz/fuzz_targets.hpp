@@ -18,6 +18,10 @@ using Seeds = std::vector<std::vector<std::uint8_t>>;
 void read_cl(Bytes bytes);
 [[nodiscard]] Seeds cl_seeds();
 
+/// An NC program, on a machine whose axes its words turn.
+void read_nc(Bytes bytes);
+[[nodiscard]] Seeds nc_seeds();
+
 /// A machine file: refused by name, or a machine whose kinematics hold water.
 void read_machine(Bytes bytes);
 /// Those that are shipped, from `folder`.
@@ -33,7 +37,7 @@ struct Target {
   void (*run)(Bytes);
 };
 inline constexpr Target kTargets[] = {
-    {"cl", read_cl}, {"machine", read_machine}, {"wire", judge_wire}};
+    {"cl", read_cl}, {"machine", read_machine}, {"wire", judge_wire}, {"nc", read_nc}};
 
 /// Ends the process with `what` where `holds` is false.
 void require(bool holds, const char* what);

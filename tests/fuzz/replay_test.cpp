@@ -54,6 +54,8 @@ void replay(const Target& target, const Seeds& seeds) {
 
 TEST(Fuzzing, OfTheClReaderFindsNothing) { replay(kTargets[0], cl_seeds()); }
 
+TEST(Fuzzing, OfTheNcReaderFindsNothing) { replay(kTargets[3], nc_seeds()); }
+
 TEST(Fuzzing, OfTheMachineFileFindsNothing) {
   replay(kTargets[1], machine_seeds(MERIDIAN_SOURCE_DIR "/deploy/machines"));
 }

@@ -236,9 +236,9 @@ class Listeners {
   void take_jog(Supplies& in) {
     dds::Jog jog;
     in.read<meridian_wire_Jog>(jog);
-    const auto order =
-        hands_.take(jog, kParticipant, machine_that_obeys_.epoch(), model_.joint_count, model_.tool_length_mm,
-                    times_.superseded_for(jog.status_seen, now_ns_, 50'000'000));
+    const auto order = hands_.take(jog, kParticipant, machine_that_obeys_.epoch(),
+                                   model_.joint_count, model_.tool_length_mm,
+                                   times_.superseded_for(jog.status_seen, now_ns_, 50'000'000));
     if (!choose(kHandOnAJoint, order.has_value())) return;
     require(order->sample == ++orders_, "orders out of turn");
     require(std::isfinite(order->velocity) && order->distance >= 0, "an order without a number");

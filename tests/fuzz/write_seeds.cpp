@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   };
   write("cl", cl_seeds());
   write("machine", machine_seeds(argv[2]));
+  write("nc", nc_seeds());
   write("wire", wire_seeds());
   return 0;
 }

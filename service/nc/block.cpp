@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/nc/block.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "service/cl/written_text.hpp"
+#include "service/nc/codes.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::refuse;
+
+constexpr std::string_view kLetters = "GMXYZABCUVWIJKRFSTHDPQLEO";
+
+/// What the G codes of a block say that holds for this block alone.
+struct OneShot {
+  enum class Kind : std::uint8_t { kMove, kDwell, kHome, kMachinePlace, kSetting };
+  Kind kind = Kind::kMove;
+};
+
+std::string code_of(const Word& word) { return "G" + std::string(word.digits); }
+
+cl::Outcome check_addresses(const Line& line) {
+  for (const Word& word : line.words) {
+    if (word.address.size() == 1 && kLetters.find(word.address.front()) == std::string_view::npos) {
+      return refuse("address " + std::string(word.address) + " is not understood");
+    }
+  }
+  return {};
+}
+
+/// Codes that were let through by name go to the machine.
+cl::Outcome take_unknown(State& s, const Line& line, const Word& word) {
+  const auto& allowed = s.cl.options.allowed_words;
+  const std::string code = code_of(word);
+  if (std::find(allowed.begin(), allowed.end(), code) != allowed.end()) {
+    s.cl.path.vendor_word(code, word.number, line.number);
+    return {};
+  }
+  return refuse(code + " is not known here",
+                "--allow-unknown " + code + " passes it to the machine as a vendor word",
+                "unknown " + code);
+}
+
+cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot) {
+  switch (row.kind) {
+    case GKind::kMotion:
+      s.modes.motion = static_cast<Motion>(row.value);
+      break;
+    case GKind::kPlane:
+      s.modes.plane = row.value;
+      break;
+    case GKind::kUnit:
+      return set_unit(s, row.value != 0 ? cl::LengthUnit::kInch : cl::LengthUnit::kMillimetre);
+    case GKind::kDistance:
+      s.modes.is_incremental = row.value != 0;
+      break;
+    case GKind::kCentre:
+      s.modes.is_centre_absolute = row.value != 0;
+      break;
+    case GKind::kFeed:
+      if (s.modes.feed_unit != static_cast<cl::FeedUnit>(row.value)) s.cl.written_feed = {};
+      s.modes.feed_unit = static_cast<cl::FeedUnit>(row.value);
+      s.cl.feed.reset();
+      break;
+    case GKind::kControl:
+      return set_control(s, line, static_cast<Control>(row.value));
+    case GKind::kWorkOffset:
+      return set_work_offset(s, line, row.tenths);
+    case GKind::kDwell:
+      shot.kind = OneShot::Kind::kDwell;
+      break;
+    case GKind::kHome:
+      shot.kind = OneShot::Kind::kHome;
+      break;
+    case GKind::kMachinePlace:
+      shot.kind = OneShot::Kind::kMachinePlace;
+      break;
+    case GKind::kSetting:
+      shot.kind = OneShot::Kind::kSetting;
+      break;
+    case GKind::kNothing:
+    case GKind::kRefused:
+      break;
+  }
+  return {};
+}
+
+/// Two of one kind contradict each other, but for those that say nothing.
+cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
+                        std::array<bool, 16>& seen) {
+  if (row.kind == GKind::kNothing || row.kind == GKind::kSetting) return {};
+  bool& is_seen = seen[static_cast<std::size_t>(row.kind)];
+  if (is_seen) return refuse("two G codes of one group in a block");
+  is_seen = true;
+  const bool is_shot = row.kind == GKind::kDwell || row.kind == GKind::kHome;
+  if (is_shot && motion_kind) return refuse("two G codes of one group in a block");
+  if (is_shot || row.kind == GKind::kMachinePlace) motion_kind = row.kind;
+  return {};
+}
+
+cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
+  std::optional<GKind> motion_kind;
+  std::array<bool, 16> seen{};
+  for (const Word& word : line.words) {
+    if (!word.is('G')) continue;
+    const GRow* const row = find_g(word.number);
+    if (row == nullptr) {
+      if (auto done = take_unknown(s, line, word); !done) return done;
+      continue;
+    }
+    if (row->kind == GKind::kRefused) {
+      return refuse(code_of(word) + ": " + std::string(row->note), std::string(row->remedy),
+                    code_of(word));
+    }
+    if (auto done = check_kinds(*row, motion_kind, seen); !done) return done;
+    if (row->kind == GKind::kNothing || row->kind == GKind::kSetting) {
+      s.cl.summary.skip(code_of(word), line.number);
+    }
+    if (auto done = take_code(s, line, *row, shot); !done) return done;
+  }
+  return {};
+}
+
+bool moves(const Line& line) {
+  return std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
+    constexpr std::string_view kMoving = "XYZABCUVWIJKR";
+    return word.address.size() > 1 || kMoving.find(word.address.front()) != std::string_view::npos;
+  });
+}
+
+cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
+  switch (shot.kind) {
+    case OneShot::Kind::kDwell:
+      return dwell(s, line);
+    case OneShot::Kind::kHome:
+      return move_to_machine_place(s, line, false);
+    case OneShot::Kind::kMachinePlace:
+      return move_to_machine_place(s, line, true);
+    case OneShot::Kind::kMove:
+    case OneShot::Kind::kSetting:
+      break;
+  }
+  if (!moves(line)) return {};
+  if (shot.kind == OneShot::Kind::kSetting) {
+    s.cl.remarks.warn("setting", line.number, [] {
+      return std::string("axis words beside a setting of the control are taken as motion");
+    });
+  }
+  return move(s, line);
+}
+
+}  // namespace
+
+cl::Outcome run_block(State& s, const Line& line) {
+  if (auto done = check_addresses(line); !done) return done;
+  OneShot shot;
+  if (auto done = take_codes(s, line, shot); !done) return done;
+  if (auto done = act_before(s, line); !done) return done;
+  if (auto done = run_motion(s, line, shot); !done) return done;
+  return act_behind(s, line);
+}
+
+}  // namespace meridian::nc

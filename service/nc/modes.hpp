@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meridian/geometry/vector3.hpp"
+#include "service/cl/modal.hpp"
+
+namespace meridian::nc {
+
+enum class Motion : std::uint8_t { kNone, kRapid, kLine, kClockwise, kCounterClockwise };
+
+/// What X Y Z mean.
+enum class Control : std::uint8_t {
+  kNone,    ///< G49: the tip where nothing is tilted
+  kLength,  ///< G43: the same
+  kRotary,  ///< G43.4: the tip; the rotary words give the tool axis
+  kVector   ///< G43.5: the tip; I J K are the tool axis
+};
+[[nodiscard]] constexpr bool holds_tip(Control control) noexcept {
+  return control == Control::kRotary || control == Control::kVector;
+}
+
+/// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
+struct Modes {
+  Motion motion = Motion::kNone;
+  Control control = Control::kNone;
+  std::uint8_t plane = 2;  ///< the axis across it
+  bool is_incremental = false;
+  bool is_centre_absolute = false;
+  cl::FeedUnit feed_unit = cl::FeedUnit::kPerMinute;
+  int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
+  std::optional<std::uint32_t> next_tool;
+};
+
+/// A rotary axis as the program has turned it, deg as written; nothing: by the control, unknown.
+struct RotaryAt {
+  std::string address;
+  std::optional<double> deg;
+};
+
+/// Where the program has put the tool. Lengths in the unit of the program, from its zero.
+struct Place {
+  std::array<std::optional<double>, 3> tip;  ///< nothing: not known here
+  std::vector<RotaryAt> rotary;              ///< of every axis that was told
+  std::array<double, 3> vector{0, 0, 1};     ///< of G43.5, unit
+  bool has_vector = false;
+
+  [[nodiscard]] bool is_known() const noexcept { return tip[0] && tip[1] && tip[2]; }
+  void forget() noexcept { tip = {}; }
+  [[nodiscard]] bool is_turned() const noexcept;
+};
+
+}  // namespace meridian::nc

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "service/cl/modal.hpp"
+#include "service/nc/machine_axes.hpp"
+#include "service/nc/modes.hpp"
+#include "service/nc/nc_line.hpp"
+
+/// What the words of an NC program do. Each takes the line, changes what holds for later ones, and
+/// gives blocks to the path, the same as the words of a CL file do.
+namespace meridian::nc {
+
+struct State {
+  State(cl::ClReaderOptions options, std::shared_ptr<const MachineAxes> machine)
+      : cl(std::move(options)), axes(std::move(machine)) {}
+
+  cl::Modal cl;
+  std::shared_ptr<const MachineAxes> axes;  ///< null: the machine is not known
+  Modes modes;
+  Place place;
+  ToolPose in_w{Vector3::Zero(), Vector3::UnitZ()};  ///< where the path ended, without --frame
+};
+
+// points.cpp
+/// The words of a line that move: its points by the motion in force.
+[[nodiscard]] cl::Outcome move(State& s, const Line& line);
+/// A point of the program, in its unit, in W without --frame, in mm.
+[[nodiscard]] Vector3 in_w(const State& s, const Vector3& written);
+
+/// Where a line leads.
+struct Target {
+  Place place;
+  Vector3 axis = Vector3::UnitZ();  ///< in W, without --frame
+  bool turns = false;               ///< some rotary word says another angle than before
+};
+
+// lines.cpp
+[[nodiscard]] cl::Outcome line_to(State& s, const Line& line, const Target& to);
+// arcs.cpp
+[[nodiscard]] cl::Outcome arc_to(State& s, const Line& line, const Target& to);
+/// One end of a motion in the path: `tip` in the unit of the program.
+struct PathEnd {
+  Vector3 tip, axis;
+};
+/// lines.cpp: the feed of the motion in force.
+[[nodiscard]] Expected<cl::MotionFeed, cl::Refusal> feed_of_motion(State& s, const Line& line);
+/// lines.cpp: to W with --frame.
+[[nodiscard]] Expected<ToolPose, cl::Refusal> in_path(const State& s, const PathEnd& end);
+
+// home.cpp
+/// G28, and G53 with `is_machine_place`.
+[[nodiscard]] cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place);
+
+// control.cpp
+[[nodiscard]] cl::Outcome set_control(State& s, const Line& line, Control control);
+[[nodiscard]] cl::Outcome set_work_offset(State& s, const Line& line, int tenths);
+[[nodiscard]] cl::Outcome set_unit(State& s, cl::LengthUnit unit);
+
+// actions.cpp
+/// F, S and T, and M codes that come before the motion of their block.
+[[nodiscard]] cl::Outcome act_before(State& s, const Line& line);
+/// M codes that come behind it: stops, spindle and coolant off, the end.
+[[nodiscard]] cl::Outcome act_behind(State& s, const Line& line);
+[[nodiscard]] cl::Outcome dwell(State& s, const Line& line);
+
+}  // namespace meridian::nc

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
+#include "fuzz/fuzz_targets.hpp"
+#include "fuzz/read_all.hpp"
+#include "service/config/machine_file.hpp"
+#include "service/nc/nc_reader.hpp"
+
+namespace meridian::fuzz {
+namespace {
+
+cl::ClReaderOptions options_of_nc() {
+  const MachineModel model =
+      config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml");
+  cl::ClReaderOptions options;
+  options.dialect = cl::Dialect::kFanuc;
+  options.nc = nc::reader_of_programs(model, ToolTable({{1, 110, 5}}));
+  return options;
+}
+
+}  // namespace
+
+void read_nc(Bytes bytes) {
+  static const cl::ClReaderOptions options = options_of_nc();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  cl::ClReader reader(text, "fuzz", options);
+  read_all(reader);
+}
+
+Seeds nc_seeds() {
+  constexpr std::string_view kPrograms[] = {
+      "%\nO0001 (A)\nG17 G21 G40 G49 G80 G90 G94\nG54\nG91 G28 Z0.\nG90\nT1 M6\nS6000 M3\nM8\n"
+      "G0 A0. C0.\nG0 X10. Y20.\nG43.4 H1\nG0 X10. Y20. Z60.\nG1 Z50. F600.\n"
+      "G1 X30. A30. C90.\nG4 X0.5\nG49\nG91 G28 Z0.\nG90 G53 G0 Z-1.\nM5\nM9\nM30\n%\n",
+      "G20 G90\nG43.5 H1\nG0 X0. Y0. Z2. I0. J0. K1.\nG93 G1 X1. I0. J-.6 K.8 F30.\n"
+      "/G94 G1 X2. F10. ; on\nG95 S100 M3\nG1 X3. F.01\nM1\nM2\n",
+      "%\nG21\nG0 X10. Y0. Z0.\nG2 X0. Y10. I-10. J0. F100\nG3 X10. Y0. R-10. Z5.\nG18 G2 I-5.\n"
+      "G19 G3 Y5. R20.\nG91 G1 X1 Y1\nN10 M88\nG65 P1 A#2\nIF [#1] GOTO 5\n%\n"};
+  Seeds seeds;
+  for (const std::string_view program : kPrograms) {
+    seeds.emplace_back(program.begin(), program.end());
+  }
+  return seeds;
+}
+
+}  // namespace meridian::fuzz

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// G28 and G53: moves to places of the machine.
+#include <gtest/gtest.h>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/post/axis_words.hpp"
+#include "unit/nc/read_nc.hpp"
+
+namespace meridian::nc {
+namespace {
+
+constexpr double kNear_mm = 1e-6;
+
+TEST(NcMachinePlaces, MeanNothingBeforeTheFirstMotion) {
+  const ReadText read = read_nc("G91 G28 Z0.\nG90\nG0 X0. Y0. Z5.\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().size(), 1U);
+}
+
+TEST(NcMachinePlaces, NeedTheMachineBehindIt) {
+  const ReadText read = read_nc("G0 X0. Y0. Z5.\nG91 G28 Z0.\n");
+  EXPECT_NE(read.error.find("G28 moves to a place of the machine, which is not known here; "
+                            "--machine FILE"),
+            std::string::npos)
+      << read.error;
+}
+
+TEST(NcMachinePlaces, LiftTheToolToTheHomeOfItsAxis) {
+  MachineModel model = shipped("trunnion-ac");
+  const ReadText read = read_nc("G0 X1. Y2. Z5.\nG91 G28 Z0.\nG90 X3.\n", on(model));
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  EXPECT_EQ(motion[1].kind, BlockKind::kRapid);
+  EXPECT_NEAR(motion[1].tip_mm[0], 1, kNear_mm);
+  EXPECT_NEAR(motion[1].tip_mm[1], 2, kNear_mm);
+  JointVector home{};
+  for (int i = 0; i < model.joint_count; ++i) home[i] = model.joints[i].home;
+  const double height = forward(model, model.tool_length_mm, home).tip[2];
+  EXPECT_NEAR(motion[1].tip_mm[2], height, kNear_mm);
+  EXPECT_NEAR(motion[2].tip_mm[0], 3, kNear_mm);
+  EXPECT_NEAR(motion[2].tip_mm[2], height, kNear_mm);
+}
+
+TEST(NcMachinePlaces, OfG53AreJointPositions) {
+  const MachineModel model = shipped("trunnion-ac");
+  const auto words = post::AxisWords::of(model);
+  ASSERT_TRUE(words);
+  const int z = words->find("Z");
+  const ReadText read = read_nc("G0 X1. Y2. Z5.\nG53 G0 Z-10.\n", on(model));
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 2U);
+  const ToolPose pose{tip(motion[1]), axis(motion[1])};
+  const auto solved = solve(model, model.tool_length_mm,
+                            Pose<double>{{pose.tip[0], pose.tip[1], pose.tip[2]},
+                                         {pose.axis[0], pose.axis[1], pose.axis[2]}},
+                            0, JointVector{});
+  EXPECT_NEAR(words->value(z, solved.q[z]), -10, 1e-3);
+}
+
+TEST(NcMachinePlaces, AreNotReachedByWayOfAPoint) {
+  const ReadText read = read_nc("G0 X1. Y2. Z5.\nG28 Z0.\n", on(shipped("trunnion-ac")));
+  EXPECT_NE(read.error.find("by way of a point between; write G91 G28"), std::string::npos);
+}
+
+TEST(NcMachinePlaces, RapidsThatTurnWithoutToolCentreControlAreSaid) {
+  const ReadText read =
+      read_nc("G0 A0. C0.\nG43.4 H1\nG0 X1. Y2. Z5.\nG49\nG0 A30.\nG43.4 H1\nG0 X1. Y2. Z9.\n",
+              on(shipped("trunnion-ac")));
+  ASSERT_EQ(read.error, "");
+  EXPECT_TRUE(read.warned_of("rapids behind which the tip is not known"));
+  EXPECT_EQ(read.motion().size(), 2U);
+}
+
+}  // namespace
+}  // namespace meridian::nc

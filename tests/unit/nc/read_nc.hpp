@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "service/config/machine_file.hpp"
+#include "service/nc/nc_reader.hpp"
+#include "unit/cl/read_text.hpp"
+
+namespace meridian::nc {
+
+using cl::ClReaderOptions;
+using cl::ReadText;
+
+[[nodiscard]] inline MachineModel shipped(const std::string& name) {
+  return config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/" + name + ".toml");
+}
+
+inline constexpr double kTiny = 1e-9;  ///< mm, or of a unit vector
+
+/// Options for NC programs without a machine.
+[[nodiscard]] inline ClReaderOptions without_machine() {
+  ClReaderOptions options;
+  options.dialect = cl::Dialect::kFanuc;
+  options.nc = reader_of_programs();
+  return options;
+}
+
+[[nodiscard]] inline ClReaderOptions on(const MachineModel& model) {
+  ClReaderOptions options = without_machine();
+  options.nc = reader_of_programs(
+      model, ToolTable({{1, model.tool_length_mm, 5}, {2, model.tool_length_mm + 20, 5}}));
+  return options;
+}
+
+/// A metric program with `body` between its head and M30.
+[[nodiscard]] inline ReadText read_nc(std::string_view body,
+                                      const ClReaderOptions& options = without_machine()) {
+  return cl::read_text("%\nG21 G90 G94 G17\nF600\n" + std::string(body) + "M30\n%\n", options);
+}
+
+[[nodiscard]] inline Vector3 tip(const ClBlock& block) { return to_vector(block.tip_mm); }
+[[nodiscard]] inline Vector3 axis(const ClBlock& block) { return to_vector(block.axis); }
+
+}  // namespace meridian::nc

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "support/text_file.hpp"
+#include "unit/nc/read_nc.hpp"
+
+namespace meridian::nc {
+namespace {
+
+constexpr std::string_view kVectors = "G21 G90\nG43.5 H1\nG0 X0. Y0. Z9. I0. J0. K1.\nM30\n";
+constexpr std::string_view kPlain = "G21 G90\nG0 X0. Y0. Z9.\nG1 X1. F100\nM30\n";
+
+ClReaderOptions untold() {
+  ClReaderOptions options = without_machine();
+  options.dialect.reset();
+  return options;
+}
+
+TEST(NcPrograms, AreKnownByToolCentreControl) {
+  const ReadText read = cl::read_text(kVectors, untold());
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.dialect, "NC program, Fanuc and ISO words");
+  EXPECT_EQ(read.summary.dialect_reason, "G43.5");
+}
+
+TEST(NcPrograms, AreKnownByMarkAndNumber) {
+  const ReadText read = cl::read_text("%\nO1234\n" + std::string(kPlain), untold());
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.dialect_reason, "% and O number");
+}
+
+TEST(NcPrograms, AreNotGuessed) {
+  const ReadText read = cl::read_text(kPlain, untold());
+  EXPECT_NE(read.error.find("this is an NC program (G code), not a CL file; --dialect fanuc"),
+            std::string::npos)
+      << read.error;
+  EXPECT_EQ(cl::read_text(kPlain, without_machine()).error, "");
+}
+
+TEST(NcPrograms, OfOtherControlsAreRefusedAsBefore) {
+  const ReadText read = cl::read_text("TRAORI\nG1 X1 A3=0 B3=0 C3=1\nM30\n", untold());
+  EXPECT_NE(read.error.find("a Siemens NC program (TRAORI)"), std::string::npos) << read.error;
+}
+
+TEST(NcPrograms, AreRefusedWhereTheCallerSaysItIsACamFile) {
+  ClReaderOptions options = untold();
+  options.dialect = cl::Dialect::kNx;
+  EXPECT_NE(cl::read_text(kVectors, options).error.find("a Fanuc NC program"), std::string::npos);
+}
+
+TEST(NcPrograms, AreRefusedByReadersThatWereNotTaughtThem) {
+  EXPECT_NE(cl::read_text(kVectors).error.find("a Fanuc NC program (G43.5), not a CL file"),
+            std::string::npos);
+}
+
+TEST(NcDocumentation, ShowsAnExampleThatIsReadWithoutAWarning) {
+  const std::string example = test::read_text(MERIDIAN_SOURCE_DIR "/docs/examples/first.nc");
+  ASSERT_FALSE(example.empty());
+  EXPECT_NE(
+      test::read_text(MERIDIAN_SOURCE_DIR "/docs/nc-programs.md").find("```\n" + example + "```"),
+      std::string::npos);
+  const ReadText read = cl::read_text(example, untold());
+  EXPECT_EQ(read.error, "");
+  EXPECT_TRUE(read.warnings.empty());
+  EXPECT_EQ(read.motion().size(), 4U);
+}
+
+}  // namespace
+}  // namespace meridian::nc
