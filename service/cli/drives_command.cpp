@@ -18,8 +18,8 @@
 #include "service/cli/stoppable_output.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/drive/other_source.hpp"
 #include "service/drives/line_teller.hpp"
-#include "service/drives/other_source.hpp"
 #include "service/drives/simulated_drives.hpp"
 
 namespace meridian::cli {
@@ -76,7 +76,7 @@ std::vector<drives::HomingPlan> homing_plans(const DrivesOptions& options,
 [[nodiscard]] bool is_alone(dds::Participant& participant, const MachineModel& model) {
   // Others report every few ms; the time is for finding one another.
   constexpr auto kWindow = std::chrono::milliseconds(400);
-  const auto other = drives::find_other_source(participant, all_joints(model), kWindow);
+  const auto other = drive::find_other_source(participant, all_joints(model), kWindow);
   if (!other) return true;
   std::string names;
   for (int drive = 0; drive < model.joint_count; ++drive) {
@@ -136,10 +136,10 @@ int run_drives(const DrivesOptions& options) {
       "drives stopped: {} periods, {} lost, {} setpoints, {} periods bridged, {} actions",
       report.periods, report.periods_lost, report.setpoints_seen, report.periods_bridged,
       report.actions));
-  for (std::size_t i = 1; i < drives::kDropKinds; ++i) {
-    const auto kind = static_cast<drives::Drop>(i);
+  for (std::size_t i = 1; i < drive::kDropKinds; ++i) {
+    const auto kind = static_cast<drive::Drop>(i);
     if (report.dropped[kind] == 0) continue;
-    lines.tell(fmt::format("{} {} were dropped", report.dropped[kind], drives::name_of(kind)));
+    lines.tell(fmt::format("{} {} were dropped", report.dropped[kind], drive::name_of(kind)));
   }
   return kFine;
 }

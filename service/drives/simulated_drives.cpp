@@ -13,10 +13,9 @@
 #include "meridian/kinematics/limited.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
-#include "service/dds/sources.hpp"
 #include "service/dds/writer.hpp"
+#include "service/drive/intake.hpp"
 #include "service/drives/action_peer.hpp"
-#include "service/drives/drive_intake.hpp"
 
 namespace meridian::drives {
 
@@ -53,12 +52,12 @@ class StateTeller {
 
   void look(const DriveGroup& group) {
     for (int i = 0; i < group.size(); ++i) {
-      const Drive& drive = group.drive(i);
+      const drive::FollowingAxis& drive = group.drive(i);
       const auto place = static_cast<std::size_t>(i);
       if (seen_[place] == drive.state()) continue;
       seen_[place] = drive.state();
       char error[32] = "";
-      if (drive.error() != kErrorNone) {
+      if (drive.error() != drive::kErrorNone) {
         std::snprintf(error, sizeof error, " (error %04Xh)", drive.error());
       }
       say_("drive " + drive_spec(model_, i).name + ": " + name_of(drive.state()) + error);
@@ -120,16 +119,12 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
   for (const Injection& injection : options.injections) group.inject(injection);
   StateTeller teller(model, say);
   dds::Writer<dds::DriveFeedback> feedbacks(participant);
-  DriveIntake intake(participant, say);
-  dds::Reader<dds::MachineInfo> machines(participant);
+  drive::Intake intake(participant, say);
   std::optional<ActionLink> actions;
   if (options.is_action_peer) actions.emplace(participant, options);
   feedbacks.register_instance(group.feedback());
 
   SimulatedDrivesReport report;
-  dds::MachineInfo machine;
-  dds::SampleInfo info;
-  dds::Senders senders;
   dds::DriveFeedback feedback;
   if (options.has_priority) static_cast<void>(set_priority(SCHED_FIFO, kDrivePriority));
   std::int64_t due_ns = monotonic_ns();
@@ -139,11 +134,8 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     const std::int64_t now_ns = monotonic_ns();
     const std::int64_t lost = (now_ns - due_ns) / model.cycle_ns;
     due_ns += lost * model.cycle_ns;
-    while (machines.take(machine, info)) {
-      if (info.is_valid)
-        group.take(machine, senders.participant_of(machines.handle(), info.source));
-    }
-    intake.work(group, now_ns);
+    intake.look(now_ns);
+    intake.receive(group);
     Injection injection;
     while (options.injections_now != nullptr && options.injections_now->try_pop(injection)) {
       group.inject_now(injection);
@@ -156,7 +148,8 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
     report.periods_lost += static_cast<std::uint64_t>(lost);
   }
   report.setpoints_seen = group.setpoints_seen();
-  report.dropped = intake.dropped(group);
+  report.dropped = group.dropped();
+  intake.add_dropped(report.dropped);
   report.periods_bridged = group.periods_bridged();
   if (actions) report.actions = actions->actions();
   return report;

@@ -34,7 +34,7 @@ struct SimulatedDrivesOptions {
 struct SimulatedDrivesReport {
   std::uint64_t periods = 0, periods_lost = 0, setpoints_seen = 0, periods_bridged = 0;
   std::uint64_t actions = 0;
-  DropCounts dropped;
+  drive::DropCounts dropped;
 };
 
 /// Puts a DriveGroup and an ActionPeer on the wire and works at the machine's cycle time until

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "service/drives/cia402.hpp"
+#include "service/drive/cia402.hpp"
 #include "service/stream/steady_ns.hpp"
 
 namespace meridian::soak {
@@ -56,7 +56,7 @@ bool RunWatch::has_stall_of_late() const {
 /// Whether a drive has stopped because setpoints stayed away.
 bool RunWatch::misses_setpoints() {
   while (feedback_reader_.take(feedback_)) continue;
-  return std::ranges::find(feedback_.error, drives::kErrorSetpointsStopped) !=
+  return std::ranges::find(feedback_.error, drive::kErrorSetpointsStopped) !=
          feedback_.error.end();
 }
 

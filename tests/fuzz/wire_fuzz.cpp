@@ -319,7 +319,8 @@ class Listeners {
     in.read<meridian_wire_Machine>(machine_);
     require(machine_.joint_count <= kMaxJoints, "joints that no machine has");
     machine_.service_id %= 3;
-    drives_.take(machine_, 40 + machine_.service_id % 3);
+    const auto bridge = drive::bridge_of(machine_, 40 + machine_.service_id % 3);
+    if (bridge) drives_.take(*bridge);
     work_drives();
     judge_lease();
     show();

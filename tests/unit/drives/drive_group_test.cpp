@@ -11,6 +11,9 @@
 namespace meridian::drives {
 namespace {
 
+using drive::Drop;
+using drive::MasterPin;
+
 constexpr std::uint64_t kMaster = 41, kOther = 42;  // participants
 
 dds::SetpointSample signed_by(std::uint64_t service, const Setpoint& setpoint) {
@@ -36,6 +39,9 @@ class Group : public testing::Test {
   void enable() {
     for (const std::uint16_t controlword : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F})
       command(controlword);
+  }
+  void hear(const dds::MachineInfo& machine, std::uint64_t sender) {
+    if (const auto bridge = drive::bridge_of(machine, sender)) group_.take(*bridge);
   }
   void send(double x, std::uint16_t flags = kSetpointEnabled, double velocity = 0) {
     Setpoint setpoint;
@@ -92,8 +98,8 @@ TEST_F(Group, ASetpointThatIsNoNumberIsRefusedAndTheDriveStops) {
     send(x);
     group_.work(1);
     EXPECT_EQ(group_.feedback().position[0], 1);
-    EXPECT_EQ(group_.drive(0).error(), kErrorSetpointNoNumber);
-    EXPECT_EQ(group_.drive(1).error(), kErrorNone) << "the other drives follow";
+    EXPECT_EQ(group_.drive(0).error(), drive::kErrorSetpointNoNumber);
+    EXPECT_EQ(group_.drive(1).error(), drive::kErrorNone) << "the other drives follow";
     come_to_rest();
     EXPECT_EQ(group_.drive(0).state(), DriveState::kFault);
   }
@@ -142,7 +148,7 @@ TEST_F(Group, AJumpOverManyCyclesGoesNoFartherThanTheDrivesOwnPeriodsAllow) {
   cycle_ += 1'000'000;  // in which 300 km could be passed
   send(100);
   group_.work(1);
-  EXPECT_EQ(group_.drive(0).error(), kErrorSetpointStep);
+  EXPECT_EQ(group_.drive(0).error(), drive::kErrorSetpointStep);
   EXPECT_EQ(group_.feedback().position[0], 1);
 }
 
@@ -328,12 +334,12 @@ dds::MachineInfo service(std::uint64_t id, std::uint32_t bridge_cycles, bool is_
 }
 
 TEST_F(Group, BridgesAsItsMasterSaysNotAsAnyoneWhoQuotesTheMastersId) {
-  group_.take(service(7, 20, true), kMaster);
-  group_.take(service(8, 1, false), kOther);
-  group_.take(service(8, 2, true), kOther);
+  hear(service(7, 20, true), kMaster);
+  hear(service(8, 1, false), kOther);
+  hear(service(8, 2, true), kOther);
   command(0x06);
-  group_.take(service(9, 50, true), kOther);
-  group_.take(service(7, 60, true), kOther);
+  hear(service(9, 50, true), kOther);
+  hear(service(7, 60, true), kOther);
   enable();
   int periods = 0;
   for (send(0); group_.drive(0).state() == DriveState::kOperationEnabled; ++periods) {
@@ -346,8 +352,8 @@ TEST_F(Group, BridgesAsItsMasterSaysNotAsAnyoneWhoQuotesTheMastersId) {
 TEST_F(Group, BridgesAsItsNextMasterSaidWhileItStillObeyedTheLast) {
   constexpr std::uint64_t kLast = kMaster + 1, kFlood = kMaster + 2;
   command(0x06, 6, kLast);
-  group_.take(service(7, 20, true), kMaster);
-  for (std::uint64_t id = 100; id < 200; ++id) group_.take(service(id, 1, true), kFlood);
+  hear(service(7, 20, true), kMaster);
+  for (std::uint64_t id = 100; id < 200; ++id) hear(service(id, 1, true), kFlood);
   group_.see_master(false);
   enable();
   int periods = 0;
@@ -365,10 +371,10 @@ TEST_F(Group, InjectsFaultsAfterTheTimeEnabled) {
     send(0);
     group_.work(1);
   }
-  EXPECT_EQ(group_.drive(3).error(), kErrorNone);
+  EXPECT_EQ(group_.drive(3).error(), drive::kErrorNone);
   send(0);
   group_.work(1);
-  EXPECT_EQ(group_.drive(3).error(), kErrorDevice);
+  EXPECT_EQ(group_.drive(3).error(), drive::kErrorDevice);
 }
 
 TEST_F(Group, InjectsSilenceAndTheStopInput) {

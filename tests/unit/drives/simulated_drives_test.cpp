@@ -92,7 +92,7 @@ TEST_F(OnTheWire, DrivesTakeTheSetpointsOfTheServiceWhoseControlwordsTheyObey) {
   is_stopping_ = true;
   thread_.join();
   thread_ = std::thread([] {});
-  EXPECT_GT(report_.dropped[Drop::kForeignSetpoint], 0U);
+  EXPECT_GT(report_.dropped[drive::Drop::kForeignSetpoint], 0U);
   int told = 0;
   for (const std::string& text : said_)
     told += text.find("are dropped: the drives obey") != std::string::npos;

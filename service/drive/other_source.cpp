@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/other_source.hpp"
+#include "service/drive/other_source.hpp"
 
 #include <thread>
 
@@ -7,7 +7,7 @@
 #include "service/dds/reader.hpp"
 #include "service/dds/sources.hpp"
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 [[nodiscard]] std::optional<OtherSource> listen(dds::Participant& participant,
@@ -41,4 +41,4 @@ std::optional<OtherSource> find_other_source(dds::Participant& participant,
   }
 }
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/cia402.hpp"
+#include "service/drive/cia402.hpp"
 
 #include <gtest/gtest.h>
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 constexpr std::uint16_t kDisableVoltage = 0x00, kQuickStop = 0x02, kShutdown = 0x06,
@@ -71,4 +71,4 @@ TEST(Cia402, StatuswordsAreThoseOfTheStandard) {
 }
 
 }  // namespace
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// A service as drives know it: the DDS participant of its writers and the id that it says it has.
 struct Master {
@@ -18,7 +18,7 @@ struct Master {
 /// that participant is there, whatever id others quote. They are free again when it is gone (its
 /// writer is not matched any more: it ended, or its lease ran out) and every drive is off; a
 /// participant that comes back before that is their master as before.
-/// Proof: tests/unit/drives/master_test.cpp, over all transitions.
+/// Proof: tests/unit/drive/master_test.cpp, over all transitions.
 class MasterPin {
  public:
   enum class State : std::uint8_t {
@@ -100,4 +100,4 @@ class DropCounts {
   std::array<std::uint64_t, kDropKinds> counts_{};
 };
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

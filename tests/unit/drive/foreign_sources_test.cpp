@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/foreign_sources.hpp"
+#include "service/drive/foreign_sources.hpp"
 
 #include <gtest/gtest.h>
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -28,4 +28,4 @@ TEST(ForeignSources, ReportsNoTwoWithinASecondHoweverManySend) {
 }
 
 }  // namespace
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/setpoint_age.hpp"
+#include "service/drive/setpoint_age.hpp"
 
 #include <gtest/gtest.h>
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000, kLongest = 4 * kMs;
@@ -42,4 +42,4 @@ TEST(SetpointAge, IsMeasuredAnewWhileDrivesAreOff) {
 }
 
 }  // namespace
-}  // namespace meridian::drives
+}  // namespace meridian::drive

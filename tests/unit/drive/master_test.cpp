@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/master.hpp"
+#include "service/drive/master.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 using State = MasterPin::State;
@@ -100,4 +100,4 @@ TEST(MasterPin, ObeysTheNextOneWhenTheFirstIsGoneAndDrivesAreOff) {
 }
 
 }  // namespace
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/setpoint_check.hpp"
+#include "service/drive/setpoint_check.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
@@ -84,4 +84,4 @@ TEST(SetpointCheck, KnowsNoTravelOfAnEndlessJointAndNoLimitThatIsNotGiven) {
 }
 
 }  // namespace
-}  // namespace meridian::drives
+}  // namespace meridian::drive

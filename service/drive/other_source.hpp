@@ -8,7 +8,7 @@
 
 #include "service/dds/participant.hpp"
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// Somebody who reports drives.
 struct OtherSource {
@@ -22,4 +22,4 @@ struct OtherSource {
                                                            std::uint32_t joint_mask,
                                                            std::chrono::milliseconds window);
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

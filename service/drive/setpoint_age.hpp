@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// How long setpoints were held back on their way, without comparing two clocks: the least delay
 /// that was seen, `arrival_ns` by the receiver's clock minus `due_ns` by the sender's, is what the
-/// clocks are apart. Times in ns. Proof: tests/unit/drives/setpoint_age_test.cpp.
+/// clocks are apart. Times in ns. Proof: tests/unit/drive/setpoint_age_test.cpp.
 class SetpointAge {
  public:
   /// Whether this setpoint came more than `longest_ns` later than the fastest one. While drives are
@@ -34,4 +34,4 @@ class SetpointAge {
   std::int64_t least_ = 0, last_ns_ = 0;
 };
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -5,7 +5,7 @@
 
 #include "meridian/rt/drive_state.hpp"
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// Object 603Fh.
 enum ErrorCode : std::uint16_t {
@@ -18,13 +18,14 @@ enum ErrorCode : std::uint16_t {
   kErrorSetpointTravel = 0xFF02,    ///< outside of travel
   kErrorSetpointVelocity = 0xFF03,  ///< its velocity is beyond the limit
   kErrorSetpointStep = 0xFF04,      ///< farther from the last one than the limit reaches
-  kErrorSetpointBegin = 0xFF05      ///< the first one to follow is not where the drive stands
+  kErrorSetpointBegin = 0xFF05,     ///< the first one to follow is not where the drive stands
+  kErrorNoPosition = 0xFF06         ///< the position that the hardware reads is no number
 };
 
 /// Returns the state that `controlword` (object 6040h) leads to from `state`. `before` is the
 /// controlword before it: a fault is reset by the rising edge of bit 7 alone. Faults themselves and
 /// the end of a fault reaction are the drive's, not the controlword's.
-/// Proof: tests/unit/drives/cia402_test.cpp.
+/// Proof: tests/unit/drive/cia402_test.cpp.
 [[nodiscard]] constexpr DriveState next_state(DriveState state, std::uint16_t controlword,
                                               std::uint16_t before) noexcept {
   if (state == DriveState::kFaultReaction) return state;
@@ -80,4 +81,4 @@ enum ErrorCode : std::uint16_t {
 inline constexpr std::uint16_t kStatusFollows = 0x1000;  ///< CSP: follows the command value
 inline constexpr std::uint16_t kStatusFollowingError = 0x2000;
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/drives/cia402.hpp"
+#include "service/drive/cia402.hpp"
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// A setpoint that one drive is to follow, and what it is checked against. Units: mm or rad, s.
 struct CheckedSetpoint {
@@ -36,7 +36,7 @@ inline constexpr double kBeginShare = 0.5;       ///< of the following error: st
 
 /// Why the drive refuses the setpoint, as libfranka's robots do: object 603Fh; kErrorNone: it
 /// follows. Limits that are 0 are not checked. Acceleration is not checked: the drives' own limits
-/// are those of a FaultStop, and the step is. Proof: tests/unit/drives/setpoint_check_test.cpp.
+/// are those of a FaultStop, and the step is. Proof: tests/unit/drive/setpoint_check_test.cpp.
 [[nodiscard]] inline std::uint16_t check_setpoint(const JointSpec& drive,
                                                   const CheckedSetpoint& asked) noexcept {
   const JointLimits& limits = drive.limits;
@@ -61,4 +61,4 @@ inline constexpr double kBeginShare = 0.5;       ///< of the following error: st
   return step > fastest * asked.elapsed_s + kStepMargin ? kErrorSetpointStep : kErrorNone;
 }
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// Who sent what the drives dropped: says of each source once that it is to be reported, and never
 /// two within a second. Fixed memory: a source that was reported long ago may be reported again.
-/// Proof: tests/unit/drives/foreign_sources_test.cpp.
+/// Proof: tests/unit/drive/foreign_sources_test.cpp.
 class ForeignSources {
  public:
   /// One that just takes over, or has not heard of the master yet, is not worth a line.
@@ -41,4 +41,4 @@ class ForeignSources {
   std::int64_t reported_ns_ = 0;
 };
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive
