@@ -52,6 +52,38 @@ TEST(Cia402, AFaultIsResetByTheRisingEdgeAlone) {
   EXPECT_EQ(next_state(DriveState::kFaultReaction, kFaultReset, 0), DriveState::kFaultReaction);
 }
 
+TEST(Cia402, EveryCommandInEveryStateLeadsWhereTheTableSays) {
+  using S = DriveState;
+  struct Row {
+    S from, disable, quick_stop, shutdown, switch_on, enable, reset;
+  };
+  const Row table[] = {
+      {S::kNotReady, S::kSwitchOnDisabled, S::kSwitchOnDisabled, S::kNotReady, S::kNotReady,
+       S::kNotReady, S::kSwitchOnDisabled},
+      {S::kSwitchOnDisabled, S::kSwitchOnDisabled, S::kSwitchOnDisabled, S::kReadyToSwitchOn,
+       S::kSwitchOnDisabled, S::kSwitchOnDisabled, S::kSwitchOnDisabled},
+      {S::kReadyToSwitchOn, S::kSwitchOnDisabled, S::kSwitchOnDisabled, S::kReadyToSwitchOn,
+       S::kSwitchedOn, S::kSwitchedOn, S::kSwitchOnDisabled},
+      {S::kSwitchedOn, S::kSwitchOnDisabled, S::kSwitchOnDisabled, S::kReadyToSwitchOn,
+       S::kSwitchedOn, S::kOperationEnabled, S::kSwitchOnDisabled},
+      {S::kOperationEnabled, S::kSwitchOnDisabled, S::kQuickStop, S::kReadyToSwitchOn,
+       S::kSwitchedOn, S::kOperationEnabled, S::kSwitchOnDisabled},
+      {S::kQuickStop, S::kSwitchOnDisabled, S::kQuickStop, S::kQuickStop, S::kQuickStop,
+       S::kQuickStop, S::kSwitchOnDisabled},
+      {S::kFaultReaction, S::kFaultReaction, S::kFaultReaction, S::kFaultReaction,
+       S::kFaultReaction, S::kFaultReaction, S::kFaultReaction},
+      {S::kFault, S::kFault, S::kFault, S::kFault, S::kFault, S::kFault, S::kSwitchOnDisabled},
+  };
+  for (const Row& row : table) {
+    EXPECT_EQ(next_state(row.from, kDisableVoltage, 0), row.disable) << name_of(row.from);
+    EXPECT_EQ(next_state(row.from, kQuickStop, 0), row.quick_stop) << name_of(row.from);
+    EXPECT_EQ(next_state(row.from, kShutdown, 0), row.shutdown) << name_of(row.from);
+    EXPECT_EQ(next_state(row.from, kSwitchOn, 0), row.switch_on) << name_of(row.from);
+    EXPECT_EQ(next_state(row.from, kEnable, 0), row.enable) << name_of(row.from);
+    EXPECT_EQ(next_state(row.from, kFaultReset, 0), row.reset) << name_of(row.from);
+  }
+}
+
 TEST(Cia402, StatuswordsSayWhatAControllerReads) {
   for (int n = 0; n <= static_cast<int>(DriveState::kFault); ++n) {
     const auto state = static_cast<DriveState>(n);
