@@ -28,7 +28,8 @@ struct Axis {
   std::string name;
   int joint = -1;  ///< its place in drive order, from 0; -1: its place in the list
   bool is_rotary = false, is_endless = false;
-  double travel_min = 0, travel_max = 0;
+  double home = 0;  ///< where the machine file has its home; the library does not use it
+  double travel_min = 0, travel_max = 0;  ///< not checked where they are equal
   double velocity = 0;
   double following_error = 0;     ///< largest distance of the position from the setpoint
   double fault_acceleration = 0;  ///< of the ramp after a fault

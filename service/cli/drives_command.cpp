@@ -18,8 +18,8 @@
 #include "service/cli/stoppable_output.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/drive/line_teller.hpp"
 #include "service/drive/other_source.hpp"
-#include "service/drives/line_teller.hpp"
 #include "service/drives/simulated_drives.hpp"
 
 namespace meridian::cli {
@@ -123,7 +123,7 @@ int run_drives(const DrivesOptions& options) {
   if (!options.is_beside_others && !is_alone(participant, model)) return kMachineRefused;
   StoppableOutput output;
   // Drives wait for nobody who reads what they say, at their begin and end neither.
-  drives::LineTeller lines([&](const std::string& text) { output.print(text); });
+  drive::LineTeller lines([&](const std::string& text) { output.print(text); });
   lines.tell(fmt::format("drives of machine {} in DDS domain {}: {} drives, cycle {:.3f} ms{}",
                          model.name, options.domain, model.joint_count,
                          static_cast<double>(model.cycle_ns) * 1e-6,

@@ -43,7 +43,4 @@ class ActionPeer {
   std::deque<Due> due_;
 };
 
-/// Returns "spindle clockwise 8000 rev/min" and the like.
-[[nodiscard]] std::string describe(const dds::Action& action);
-
 }  // namespace meridian::drives

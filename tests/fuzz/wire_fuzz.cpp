@@ -12,6 +12,7 @@
 #include "meridian/rt/state_table.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/dds/convert.hpp"
+#include "service/drive/action_words.hpp"
 #include "service/drives/action_peer.hpp"
 #include "service/drives/drive_group.hpp"
 #include "service/interpolator/command_port.hpp"
@@ -301,7 +302,7 @@ class Listeners {
   void take_action(Supplies& in) {
     dds::Action action;
     in.read<meridian_wire_Action>(action);
-    require(!drives::describe(action).empty(), "an action without words");
+    require(!drive::describe(action).empty(), "an action without words");
     peer_.take(action, now_ns_);
     const auto answer = peer_.due_answer(now_ns_);
     require(answer && answer->id == action.id, "an answer to another action");

@@ -37,7 +37,7 @@ TEST(SimulatedPlc, RefusesWhenToldTo) {
 }
 
 TEST(SimulatedPlc, NamesTheActionWithItsValue) {
-  EXPECT_EQ(describe(action(1)), "spindle clockwise 8000 rev/min");
+  EXPECT_EQ(drive::describe(action(1)), "spindle clockwise 8000 rev/min");
 }
 
 }  // namespace

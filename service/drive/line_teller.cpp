@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/line_teller.hpp"
+#include "service/drive/line_teller.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 LineTeller::LineTeller(Print print) : print_(std::move(print)) {
   thread_ = std::jthread([this](const std::stop_token& stop) {
@@ -34,4 +34,4 @@ void LineTeller::print_waiting() {
   if (news > 0) print_(std::to_string(news) + " lines lost: nobody took them in time");
 }
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/line_teller.hpp"
+#include "service/drive/line_teller.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace meridian::drives {
+namespace meridian::drive {
 namespace {
 
 TEST(LineTeller, PrintsEveryLineInItsOrderUntilItsEnd) {
@@ -44,4 +44,4 @@ TEST(LineTeller, LetsNobodyWaitForAPrinterThatIsHeldAndSaysWhatWasLost) {
 }
 
 }  // namespace
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/action_peer.hpp"
+#include "service/drive/action_words.hpp"
 
 #include <cstdio>
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 std::string describe(const dds::Action& action) {
   char buffer[96];
@@ -12,30 +12,30 @@ std::string describe(const dds::Action& action) {
     return std::string(buffer);
   };
   switch (action.kind) {
-    case ActionKind::kNone:
+    case meridian::ActionKind::kNone:
       return "nothing";
-    case ActionKind::kSpindleOff:
+    case meridian::ActionKind::kSpindleOff:
       return "spindle off";
-    case ActionKind::kSpindleClockwise:
+    case meridian::ActionKind::kSpindleClockwise:
       return with("spindle clockwise %.6g rev/min");
-    case ActionKind::kSpindleCounterClockwise:
+    case meridian::ActionKind::kSpindleCounterClockwise:
       return with("spindle counter-clockwise %.6g rev/min");
-    case ActionKind::kCoolantOff:
+    case meridian::ActionKind::kCoolantOff:
       return "coolant off";
-    case ActionKind::kCoolantFlood:
+    case meridian::ActionKind::kCoolantFlood:
       return "coolant flood";
-    case ActionKind::kCoolantMist:
+    case meridian::ActionKind::kCoolantMist:
       return "coolant mist";
-    case ActionKind::kCoolantThrough:
+    case meridian::ActionKind::kCoolantThrough:
       return "coolant through the tool";
-    case ActionKind::kToolChange:
+    case meridian::ActionKind::kToolChange:
       return with("change to tool %.6g");
-    case ActionKind::kStop:
+    case meridian::ActionKind::kStop:
       return "program stop";
-    case ActionKind::kVendorWord:
+    case meridian::ActionKind::kVendorWord:
       return "vendor word " + action.text;
   }
   return "unknown action";
 }
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -12,11 +12,11 @@
 
 #include "meridian/rt/spsc_ring.hpp"
 
-namespace meridian::drives {
+namespace meridian::drive {
 
 /// Prints lines for a thread that may not wait: a terminal that is held, a pipe that nobody reads
 /// or a busy disk stops a thread of its own instead. Lines that find no room are lost, and another
-/// one says how many. Proof: tests/unit/drives/line_teller_test.cpp.
+/// one says how many. Proof: tests/unit/drive/line_teller_test.cpp.
 class LineTeller {
  public:
   using Print = std::function<void(const std::string&)>;
@@ -46,4 +46,4 @@ class LineTeller {
   std::jthread thread_;
 };
 
-}  // namespace meridian::drives
+}  // namespace meridian::drive

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace meridian::drive {
+
+/// Wake-ups at start + n periods: a thread that oversleeps keeps its phase and learns how many it
+/// lost.
+class Pace {
+ public:
+  explicit Pace(std::int64_t period_ns) noexcept;
+
+  /// Sleeps until the next wake-up; returns how many were lost before it.
+  int sleep() noexcept;
+  /// When it woke, on the monotonic clock.
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
+
+ private:
+  std::int64_t period_ns_, due_ns_, now_ns_;
+};
+
+/// Of the monotonic clock.
+[[nodiscard]] std::int64_t monotonic_ns() noexcept;
+
+/// The calling thread at that SCHED_FIFO priority, or with SCHED_OTHER for 0. False: no right to
+/// it.
+bool set_priority(int priority) noexcept;
+
+/// The calling thread, and those that it starts, off the last processor: a service on this host
+/// uses it for its cycle.
+void keep_off_last_processor() noexcept;
+
+}  // namespace meridian::drive

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef MERIDIAN_TEST_C_PROGRAM_H
+#define MERIDIAN_TEST_C_PROGRAM_H
+
+#include "meridian/drive.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Motors in C that stand at once where they are told to. */
+struct c_motors {
+  double position[6];
+  int periods, is_stop_open, reports;
+  int stops_after; /* periods; 0: never */
+  volatile int is_stopping;
+  meridian_drive_output output[6];
+};
+
+meridian_drive_hardware c_hardware(struct c_motors* motors);
+/* One linear axis "X" of machine "c_mill" in `domain`. */
+meridian_drives* open_c_drives(struct c_motors* motors, uint32_t domain, char* why, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
