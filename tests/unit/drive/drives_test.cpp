@@ -22,7 +22,7 @@ namespace {
 class Library : public testing::Test {
  protected:
   Library() {
-    options_.machine_file = std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/lai.toml";
+    options_.machine_file = MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml";
     options_.domain = domain_.id();
     options_.priority = 0;
     options_.bridge_cycles = 100;  // the host of a test takes processors away

@@ -14,7 +14,7 @@ namespace {
 
 Options of_file() {
   Options options;
-  options.machine_file = std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/lai.toml";
+  options.machine_file = MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml";
   return options;
 }
 Options by_hand() {

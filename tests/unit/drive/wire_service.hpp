@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <thread>
 
+#include "meridian/rt/drive_state.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/writer.hpp"

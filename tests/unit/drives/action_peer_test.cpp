@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "service/drive/action_words.hpp"
+
 namespace meridian::drives {
 namespace {
 
