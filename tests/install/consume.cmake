@@ -35,6 +35,35 @@ foreach(example embed kinematics)
   message(STATUS "${example}: ${output}")
 endforeach()
 
+# Drives of one's own, which need nothing but the package: they cut the sample part where the programs are there.
+file(GLOB drive_library ${WORK}/prefix/lib*/libmeridian-drive.so ${WORK}/prefix/lib*/*/libmeridian-drive.so)
+if(drive_library)
+  foreach(header drive.hpp drive_axis.hpp drive_hardware.hpp drive_action.hpp)
+    file(STRINGS ${WORK}/prefix/include/meridian/${header} foreign REGEX "# *include \"")
+    list(FILTER foreign EXCLUDE REGEX "meridian/drive_[a-z]+.hpp")
+    if(foreign)
+      message(FATAL_ERROR "${header} includes more than the standard library: ${foreign}")
+    endif()
+  endforeach()
+  run(${CMAKE_COMMAND} -S ${EXAMPLES}/drives -B ${WORK}/drives -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
+    -D CMAKE_CXX_COMPILER=${COMPILER})
+  run(${CMAKE_COMMAND} --build ${WORK}/drives)
+  file(STRINGS ${EXAMPLES}/drives/my_drives.cpp lines)
+  list(LENGTH lines count)
+  if(count GREATER 30)
+    message(FATAL_ERROR "the example has ${count} lines, and may have 30")
+  endif()
+  if(EXISTS ${WORK}/prefix/bin/meridiand)
+    run(${CMAKE_COMMAND} -E env MERIDIAN_DRIVES=${WORK}/drives/my_drives MERIDIAN_MAX_MISSING=1000000
+      ${EXAMPLES}/../../deploy/demo ${WORK}/prefix/bin ${WORK}/demo)
+    file(STRINGS ${WORK}/demo/drives.log enabled REGEX "operation enabled")
+    if(NOT enabled)
+      message(FATAL_ERROR "my_drives was not enabled")
+    endif()
+    message(STATUS "my_drives cut the sample part")
+  endif()
+endif()
+
 # A package of another minor version is not what was asked for.
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/other -G Ninja
   -D CMAKE_PREFIX_PATH=${WORK}/prefix -D WANTED_VERSION=99.0
