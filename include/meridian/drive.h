@@ -1,4 +1,4 @@
-/* SPDX-License-Identifier: Apache-2.0 */
+// SPDX-License-Identifier: Apache-2.0
 #ifndef MERIDIAN_DRIVE_H
 #define MERIDIAN_DRIVE_H
 

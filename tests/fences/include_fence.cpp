@@ -90,7 +90,7 @@ std::string target_of_include(const std::string& written) {
     return "";
   }
   const std::string name = written.substr(1, written.size() - 2);
-  if (name.starts_with("meridian/") && name.ends_with(".hpp")) {
+  if (name.starts_with("meridian/") && (name.ends_with(".hpp") || name.ends_with(".h"))) {
     return core_room(without_prefix(name, "meridian/"));
   }
   if (name.starts_with("service/")) {

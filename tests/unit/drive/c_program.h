@@ -1,4 +1,4 @@
-/* SPDX-License-Identifier: Apache-2.0 */
+// SPDX-License-Identifier: Apache-2.0
 #ifndef MERIDIAN_TEST_C_PROGRAM_H
 #define MERIDIAN_TEST_C_PROGRAM_H
 
