@@ -20,7 +20,7 @@ std::atomic<bool> is_stopping{false};
 
 /// my_drives MACHINE [DOMAIN]: drives whose motors stand at once where they are told to.
 int main(int count, char** arguments) try {
-  std::signal(SIGINT, [](int) { is_stopping = true; });
+  for (int end : {SIGINT, SIGTERM}) std::signal(end, [](int) { is_stopping = true; });
   Motors motors;
   Options options{.machine_file = count > 1 ? arguments[1] : "lai.toml", .act = act};
   options.domain = count > 2 ? std::atoi(arguments[2]) : 0;
