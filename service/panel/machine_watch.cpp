@@ -6,6 +6,7 @@
 #include "service/config/machine_file.hpp"
 #include "service/panel/metrics.hpp"
 #include "service/panel/scene.hpp"
+#include "service/stream/served_model.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -20,22 +21,6 @@ constexpr std::chrono::milliseconds kSilent{1500};
   return a.machine_file == b.machine_file && a.tool_file == b.tool_file &&
          a.frame_rotation == b.frame_rotation && a.frame_origin_mm == b.frame_origin_mm &&
          a.tool_length_mm == b.tool_length_mm && a.service_id == b.service_id;
-}
-
-/// The machine as the service has it: its file, with the frame and the tool in force. Throws
-/// ConfigError.
-[[nodiscard]] MachineModel model_of(const dds::MachineInfo& info) {
-  MachineModel model = config::parse_machine(info.machine_file, info.name);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      model.frame_rotation(row, column) =
-          info.frame_rotation[static_cast<std::size_t>(3 * row + column)];
-    }
-    model.frame_origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
-  }
-  model.tool_length_mm = info.tool_length_mm;
-  model.bridge_cycles = static_cast<int>(info.bridge_cycles);
-  return model;
 }
 
 }  // namespace
@@ -54,7 +39,7 @@ void MachineWatch::adopt(const dds::MachineInfo& info) {
   model_.reset();
   std::string scene;
   try {
-    model_ = std::make_unique<MachineModel>(model_of(info));
+    model_ = std::make_unique<MachineModel>(stream::served_model(info));
     motion_ = std::make_unique<Motion>(*model_);
     const bool has_tools = !info.tool_file.empty();
     scene = describe_scene(*model_,

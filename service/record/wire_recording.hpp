@@ -23,6 +23,11 @@ struct WireRow {
   std::int64_t arrival_ns = 0;       ///< clock of due_ns
   std::uint64_t feedback_cycle = 0;  ///< setpoint that the drives had taken; 0: no feedback yet
   JointVector feedback{};
+
+  // What else the drives said by then, for which the file of a WireWriter has no columns.
+  std::int64_t feedback_ns = 0;  ///< arrival of the newest feedback; 0: none yet
+  std::array<std::uint16_t, kMaxJoints> statusword{}, drive_error{};
+  bool is_emergency_stop = false;
 };
 
 /// Writes what was seen: a recording that `meridian check` reads. Columns: cycle, due_ns, line, the

@@ -41,10 +41,10 @@ void CycleTopic::put_positions(const record::RecordingRow& row, const Pose<doubl
     const double value = row.places[static_cast<std::size_t>(i)];
     message_.put(rounded(in_ros_units(limited_spec(model_, i), value), kPositionPlaces));
   }
-  for (const double value : pose.tip) message_.put(rounded(m_from_mm(value), kTipPlaces));
+  for (const double value : pose.tip) message_.put(rounded(m_from_mm(value), kPositionPlaces));
   for (int i = 0; contents_.has_feedback && i < model_.joint_count; ++i) {
     const double value = row.feedback[static_cast<std::size_t>(i)];
-    message_.put(rounded(in_ros_units(drive_spec(model_, i), value), kTipPlaces));
+    message_.put(rounded(in_ros_units(drive_spec(model_, i), value), kFeedbackPlaces));
   }
 }
 

@@ -12,7 +12,7 @@ DrivesTopic::DrivesTopic(mcap::Writer& writer, const MachineModel& model, const 
       model_(model),
       contents_(contents),
       channel_(add_topic(writer, "/drives", drives_type(model, contents))),
-      pace_(contents.has_statuswords ? 0 : kScreenPeriod_ns) {}
+      pace_(contents.has_alarm ? 0 : kScreenPeriod_ns) {}
 
 void DrivesTopic::write(const record::RecordingRow& row) {
   const auto count = static_cast<std::size_t>(model_.joint_count);
@@ -31,7 +31,7 @@ void DrivesTopic::write(const record::RecordingRow& row) {
   }
   for (std::size_t i = 0; i < count; ++i) {
     const JointSpec& spec = drive_spec(model_, static_cast<int>(i));
-    message_.put(rounded_float(in_ros_units(spec, worst_[i]), kTipPlaces));
+    message_.put(rounded_float(in_ros_units(spec, worst_[i]), kFeedbackPlaces));
     if (!contents_.has_statuswords) continue;
     message_.put(row.statusword[i]).put(row.drive_error[i]);
   }

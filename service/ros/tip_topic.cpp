@@ -22,8 +22,8 @@ TipTopic::TipTopic(mcap::Writer& writer)
 void TipTopic::write(std::int64_t due_ns, const Pose<double>& pose) {
   if (!pace_.is_due(due_ns)) return;
   message_.begin().put_header(due_ns, "workpiece");
-  for (const double value : pose.tip) message_.put(rounded(m_from_mm(value), kTipPlaces));
-  for (const double part : from_z_to(pose.axis)) message_.put(rounded(part, kTipPlaces));
+  for (const double value : pose.tip) message_.put(rounded(m_from_mm(value), kPositionPlaces));
+  for (const double part : from_z_to(pose.axis)) message_.put(rounded(part, kPositionPlaces));
   (void)writer_.write(channel_, static_cast<std::uint64_t>(due_ns), message_.bytes());
 }
 

@@ -13,10 +13,10 @@ namespace meridian::ros {
   return std::ldexp(std::nearbyint(std::ldexp(value, binary_places)), -binary_places);
 }
 
-inline constexpr int kPositionPlaces = 33;  ///< steps of 1.2e-10 m or rad
-inline constexpr int kVelocityPlaces = 23;  ///< 1.2e-7 m/s or rad/s
-inline constexpr int kTipPlaces = 30;       ///< 1e-9 m
-inline constexpr int kAxisPlaces = 22;      ///< 2.4e-7, of a unit vector
+inline constexpr int kPositionPlaces = 30;  ///< steps of 1e-9 m or rad, of what is sent
+inline constexpr int kFeedbackPlaces = 27;  ///< 7.5e-9 m or rad
+inline constexpr int kVelocityPlaces = 20;  ///< 1e-6 m/s or rad/s
+inline constexpr int kAxisPlaces = 20;      ///< 1e-6, of a unit vector
 inline constexpr int kTimePlaces = 20;      ///< 1e-6 s
 inline constexpr int kSharePlaces = 12;     ///< 2.4e-4 of a limit
 

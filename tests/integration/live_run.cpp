@@ -11,6 +11,8 @@
 
 #include "service/config/machine_file.hpp"
 #include "service/record/compare.hpp"
+#include "support/mcap_reading.hpp"
+#include "support/text_file.hpp"
 
 namespace meridian::test {
 namespace {
@@ -30,14 +32,35 @@ using Words = std::vector<std::string>;
 /// `meridian record` beside the station, listening already.
 [[nodiscard]] std::unique_ptr<Process> listen(const Plant& plant, const LiveRun& live) {
   auto record = std::make_unique<Process>(
-      Words{"meridian", "record", live.wire, "--until-end", "--max-missing", "1000000", "--domain",
-            plant.domain(), "--machine-name", live.machine},
+      Words{"meridian", "record", live.wire, "--mcap", live.wire + ".mcap", "--until-end",
+            "--max-missing", "1000000", "--domain", plant.domain(), "--machine-name", live.machine},
       plant.folder() / "record.log");
   EXPECT_TRUE(
       eventually([&] { return record->said().find("listening to machine") != std::string::npos; },
                  milliseconds(8000)))
       << record->said();
   return record;
+}
+
+/// The MCAP file that was written beside `wire`: its rows, cycle by cycle, and its states.
+void expect_as_mcap(const std::string& wire, const std::vector<std::uint64_t>& cycles) {
+  const McapContent content = read_mcap(read_text(wire + ".mcap"));
+  EXPECT_TRUE(content.has_end && content.is_sound);
+  std::vector<std::uint64_t> written;
+  std::size_t running = 0;
+  for (const McapMessage& message : content.messages) {
+    CdrParts parts(message.data);
+    (void)parts.number<std::uint64_t>();  // its time
+    if (message.topic == "/cycle") {
+      EXPECT_EQ(parts.text(), "");
+      written.push_back(parts.number<std::uint64_t>());
+    } else if (message.topic == "/events") {
+      (void)parts.number<std::uint8_t>();
+      running += parts.text() == "state" && parts.text() == "running" ? 1U : 0U;
+    }
+  }
+  EXPECT_EQ(written, cycles);
+  EXPECT_GE(running, 1U);
 }
 
 }  // namespace
@@ -129,7 +152,9 @@ void expect_on_wire(const Plant& plant, const LiveRun& live) {
   record::RecordingRow seen, sent;
   const auto is_there = [](auto has_row) { return has_row && *has_row; };
   std::size_t count = 0, moving = 0;
+  std::vector<std::uint64_t> cycles;
   while (is_there(wire->next(seen))) {
+    cycles.push_back(seen.cycle);
     while (sent.cycle < seen.cycle) ASSERT_TRUE(is_there(service->next(sent))) << seen.cycle;
     if (sent.cycle != seen.cycle) continue;  // the recorder of the service lost it: counted there
     ++count;
@@ -144,6 +169,7 @@ void expect_on_wire(const Plant& plant, const LiveRun& live) {
   std::printf("%zu cycles on the wire, %zu of them in motion, as the service recorded them\n",
               count, moving);
   EXPECT_GT(moving, 1000U);
+  expect_as_mcap(live.wire, cycles);
 }
 
 void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live) {

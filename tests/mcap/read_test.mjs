@@ -83,12 +83,12 @@ for await (const row of rows()) {
   near(fields.rate, Number(row.rate), 1e-7, `${what} rate`);
   near(fields.plan_time, Number(row.plan_time_s), 1e-6, `${what} plan time`);
   for (const joint of joints) {
-    near(fields.position[joint], in_ros_units(joint, row[names[joint]]), 6e-11, `${what} ${joint}`);
-    near(fields.velocity[joint], in_ros_units(joint, row[`${names[joint]}_per_s`]), 6.1e-8, `${what} ${joint} velocity`);
+    near(fields.position[joint], in_ros_units(joint, row[names[joint]]), 4.7e-10, `${what} ${joint}`);
+    near(fields.velocity[joint], in_ros_units(joint, row[`${names[joint]}_per_s`]), 4.8e-7, `${what} ${joint} velocity`);
   }
   if (before !== undefined) {
     const way = Math.hypot(fields.tip.x - before.x, fields.tip.y - before.y, fields.tip.z - before.z);
-    near(fields.feed, way / kCycle_s, 2e-6, `${what} feed`);
+    near(fields.feed, way / kCycle_s, 3e-6, `${what} feed`);
   }
   before = fields.tip;
   if (count === 0 || logTime % 20_000_000n === 0n) sent.set(logTime, fields);
@@ -109,7 +109,7 @@ for await (const { logTime, fields } of messages("/tip")) {
   const row = sent.get(logTime), { x, y, z, w } = fields.pose.orientation;
   assert.deepEqual({ ...fields.pose.position }, { ...row.tip });
   const axis = { x: 2 * (x * z + y * w), y: 2 * (y * z - x * w), z: 1 - 2 * (x * x + y * y) };
-  for (const along of ["x", "y", "z"]) near(axis[along], row.axis[along], 5e-7, `tool axis along ${along}`);
+  for (const along of ["x", "y", "z"]) near(axis[along], row.axis[along], 2e-6, `tool axis along ${along}`);
   --screen;
 }
 assert.equal(screen, 0);

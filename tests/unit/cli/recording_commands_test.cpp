@@ -84,7 +84,8 @@ TEST_F(RecordingCommands, RecordConvertsToMcap) {
 
 TEST_F(RecordingCommands, RecordSaysWhichOptionsBelongTogether) {
   EXPECT_EQ(run_tool("record --convert " + recording() + kMachine).exit_code, 2) << "whereto?";
-  EXPECT_EQ(run_tool("record --mcap x.mcap" + kMachine).exit_code, 2) << "of what?";
+  EXPECT_EQ(run_tool("record --read a.csv --mcap x.mcap" + kMachine).exit_code, 2);
+  EXPECT_EQ(run_tool("record x.csv" + kMachine).exit_code, 2) << "what for?";
   EXPECT_EQ(run_tool("record --convert a.csv --mcap b.mcap").exit_code, 2) << "which machine?";
   EXPECT_EQ(run_tool("record --convert a.csv --mcap b.mcap --read c.csv" + kMachine).exit_code, 2);
   EXPECT_EQ(run_tool("record").exit_code, 2);

@@ -39,7 +39,7 @@ TEST(RosUnits, AreMetresAndStayWhatTheyAreWhenReadAgain) {
   rotary.is_rotary = true;
   EXPECT_EQ(in_ros_units(linear, 250.0), 0.25);
   EXPECT_EQ(in_ros_units(rotary, 250.0), 250.0);
-  EXPECT_NEAR(rounded(0.1234567890123456, kPositionPlaces), 0.1234567890123456, 5.9e-11);
+  EXPECT_NEAR(rounded(0.1234567890123456, kPositionPlaces), 0.1234567890123456, 4.7e-10);
   const double once = rounded(0.1234567890123456, kPositionPlaces);
   EXPECT_EQ(rounded(once, kPositionPlaces), once);
   EXPECT_EQ(rounded(-0.5, 40), -0.5);
