@@ -118,7 +118,7 @@ class ClReader::Impl {
     if (what.foreign.empty()) return {};
     return final_error(0, "this is " + what.foreign + ", not a CL file",
                        what.is_nc && options_.nc
-                           ? "--dialect fanuc reads NC programs of ISO and Fanuc words; else "
+                           ? "--dialect fanuc or siemens reads NC programs of their words; else "
                              "output APT or CLDATA text from the CAM system"
                            : "output APT or CLDATA text from the CAM system");
   }

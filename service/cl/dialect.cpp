@@ -24,6 +24,7 @@ constexpr std::array kDialects = std::to_array<DialectTraits>({
     {Dialect::kHsm, "hsm", "HSM APT", kAsk, false, false, CycleNumbers::kDepthUnitFeed},
     {Dialect::kIso, "iso", "ISO 4343 APT", kAsk, false, false, kNumbersAsk},
     {Dialect::kFanuc, "fanuc", "NC program, Fanuc and ISO words", kStays, false, true, kNumbersAsk},
+    {Dialect::kSiemens, "siemens", "NC program, Siemens words", kStays, false, true, kNumbersAsk},
 });
 
 struct Evidence {

@@ -21,11 +21,14 @@ enum class Dialect : std::uint8_t {
   kMakino,
   kHsm,
   kIso,
-  kFanuc  ///< no CL file: an NC program of ISO and Fanuc words
+  kFanuc,   ///< no CL file: an NC program of ISO and Fanuc words
+  kSiemens  ///< no CL file: an NC program of Siemens words
 };
 
 /// Whether it is the language of NC programs.
-[[nodiscard]] constexpr bool is_nc(Dialect dialect) noexcept { return dialect == Dialect::kFanuc; }
+[[nodiscard]] constexpr bool is_nc(Dialect dialect) noexcept {
+  return dialect == Dialect::kFanuc || dialect == Dialect::kSiemens;
+}
 
 /// What a point of three numbers means where the tool axis was tilted before it.
 enum class MissingAxis : std::uint8_t {

@@ -219,12 +219,14 @@ Recognised recognise_foreign(std::string_view head) {
   Recognised out;
   out.is_certain = is_enough;
   if (!is_gcode) return out;
-  constexpr std::string_view kFanuc = "a Fanuc NC program (";
   out = {name, is_named || is_enough, true, Dialect::kUnknown, {}};
-  if (name.starts_with(kFanuc)) {
-    out.program = Dialect::kFanuc;
-    out.shown_by = name.substr(kFanuc.size(), name.size() - kFanuc.size() - 1);
-  }
+  const auto take = [&](std::string_view begin, Dialect program) {
+    if (!name.starts_with(begin)) return;
+    out.program = program;
+    out.shown_by = name.substr(begin.size(), name.size() - begin.size() - 1);
+  };
+  take("a Fanuc NC program (", Dialect::kFanuc);
+  take("a Siemens NC program (", Dialect::kSiemens);
   return out;
 }
 

@@ -53,8 +53,8 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options, const char* 
   command
       .add_option(
           dialect_name, options.dialect,
-          "CAM system that wrote the file, where the file does not show it; fanuc: an NC program "
-          "of ISO and Fanuc words")
+          "CAM system that wrote the file, where the file does not show it; fanuc, siemens: an NC "
+          "program of their words")
       ->check(CLI::IsMember(dialect_names()));
   command
       .add_option("--units", options.units, "Unit of the file: mm or inch; wins over its unit word")

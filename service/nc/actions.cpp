@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meridian/units.hpp"
 #include "service/cl/written_text.hpp"
 #include "service/nc/codes.hpp"
 #include "service/nc/state.hpp"
@@ -102,6 +103,9 @@ bool comes_before(const MRow* row) {
 }
 
 cl::Outcome act(State& s, const Line& line, const Word& word, const MRow* row) {
+  const bool ends_subprogram = s.modes.language == Language::kSiemens && word.number == 17;
+  if (ends_subprogram)
+    return refuse("M17: the end of a subprogram", "output a main program", "M17");
   if (row == nullptr) return pass_on(s, line, word);
   const auto action = static_cast<ActionKind>(row->value);
   switch (row->kind) {
@@ -130,6 +134,22 @@ cl::Outcome act(State& s, const Line& line, const Word& word, const MRow* row) {
                 "let the CAM system write one program without it", "M" + std::string(word.digits));
 }
 
+/// D0 takes the length of the tool out of force, D1 and its kin put it in; a tool change too.
+void note_tool_offset(State& s, const Line& line) {
+  const Word* const d = line.find("D");
+  if (d == nullptr || s.modes.is_oriented) return;
+  s.modes.control = d->number == 0 ? Control::kNone : Control::kLength;
+}
+
+cl::Outcome rest(State& s, const Line& line, double time_s) {
+  if (!(time_s >= 0 && time_s <= kLongestDwell_s)) {
+    return refuse("dwell of " + cl::short_number(time_s) + " s makes no sense");
+  }
+  s.cl.summary.dwell_time_s += time_s;
+  s.cl.path.act(BlockKind::kDwell, ActionKind::kNone, time_s, line.number);
+  return {};
+}
+
 bool starts_spindle(const Line& line) {
   return std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
     return word.is('M') && (word.number == 3 || word.number == 4);
@@ -139,6 +159,7 @@ bool starts_spindle(const Line& line) {
 }  // namespace
 
 cl::Outcome act_before(State& s, const Line& line) {
+  if (s.modes.language == Language::kSiemens) note_tool_offset(s, line);
   if (auto done = take_feed(s, line); !done) return done;
   if (auto done = take_speed(s, line, starts_spindle(line)); !done) return done;
   if (auto done = take_tool(s, line); !done) return done;
@@ -174,12 +195,19 @@ cl::Outcome dwell(State& s, const Line& line) {
     s.cl.remarks.warn("dwell", line.number,
                       [] { return std::string("G4 P with a decimal point: taken as seconds"); });
   }
-  if (!(time_s >= 0 && time_s <= kLongestDwell_s)) {
-    return refuse("dwell of " + cl::short_number(time_s) + " s makes no sense");
+  return rest(s, line, time_s);
+}
+
+cl::Outcome siemens_dwell(State& s, const Line& line) {
+  const Word* const seconds = line.find("F");
+  const Word* const turns = line.find("S");
+  if ((seconds == nullptr) == (turns == nullptr)) {
+    return refuse("G4 needs one time", "G4 F in seconds, G4 S in revolutions");
   }
-  s.cl.summary.dwell_time_s += time_s;
-  s.cl.path.act(BlockKind::kDwell, ActionKind::kNone, time_s, line.number);
-  return {};
+  if (seconds != nullptr) return rest(s, line, seconds->number);
+  if (!s.cl.spindle.turns())
+    return refuse("dwell in revolutions, but no spindle speed is in force");
+  return rest(s, line, turns->number * units::kMinute_s / s.cl.spindle.speed_rpm);
 }
 
 }  // namespace meridian::nc

@@ -39,7 +39,7 @@ cl::Outcome centre_by_radius(const State& s, double radius, WrittenArc& arc) {
 
 cl::Outcome centre_by_words(const State& s, const Line& line, WrittenArc& arc) {
   constexpr std::array<std::string_view, 3> kAddresses = {"I", "J", "K"};
-  if (s.modes.control == Control::kVector) {
+  if (s.modes.control == Control::kVector && s.modes.language == Language::kFanuc) {
     return refuse("an arc under G43.5 without R: I J K are the tool axis there", "write it with R");
   }
   bool has_centre = false;
@@ -54,10 +54,21 @@ cl::Outcome centre_by_words(const State& s, const Line& line, WrittenArc& arc) {
     }
     has_centre = true;
     const auto at = static_cast<Eigen::Index>(k);
-    arc.centre[at] = s.modes.is_centre_absolute ? word->number : arc.begin[at] + word->number;
+    const bool is_absolute = word->way == Word::Way::kAbsolute || s.modes.is_centre_absolute;
+    arc.centre[at] = is_absolute ? word->number : arc.begin[at] + word->number;
   }
   if (!has_centre) return refuse("an arc without R and without a centre (I, J, K)");
   return {};
+}
+
+/// TURN=n: so many whole circles before the arc.
+Expected<int, cl::Refusal> turns_of(const Line& line) {
+  const Word* const turn = line.find("TURN");
+  if (turn == nullptr) return 0;
+  if (!(turn->number >= 0 && turn->number <= 999 && turn->number == std::floor(turn->number))) {
+    return refuse("TURN=" + std::string(turn->digits) + " is no number of circles");
+  }
+  return static_cast<int>(turn->number) + 1;
 }
 
 }  // namespace
@@ -84,7 +95,7 @@ cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
     arc.end[static_cast<Eigen::Index>(k)] = *to.place.tip[k];
   }
   arc.normal = Vector3::Unit(s.modes.plane) * (s.modes.motion == Motion::kClockwise ? -1 : 1);
-  const Word* const radius = line.find("R");
+  const Word* const radius = line.find(s.modes.language == Language::kSiemens ? "CR" : "R");
   if (auto done = radius != nullptr ? centre_by_radius(s, radius->number, arc)
                                     : centre_by_words(s, line, arc);
       !done) {
@@ -96,7 +107,9 @@ cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
       s.axes ? Vector3(s.axes->to_program().transpose() * arc.normal) : arc.normal;
   const auto centre = in_path(s, {arc.centre, normal});
   if (!centre) return tl::make_unexpected(centre.error());
-  const cl::ArcPath path{centre->tip, centre->axis, 0, 0, line.number};
+  const auto turns = turns_of(line);
+  if (!turns) return tl::make_unexpected(turns.error());
+  const cl::ArcPath path{centre->tip, centre->axis, 0, *turns, line.number};
   if (auto done = s.cl.path.arc_to(path, end->tip, end->axis, *feed, line.number); !done) {
     return done;
   }

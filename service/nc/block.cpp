@@ -7,6 +7,7 @@
 
 #include "service/cl/written_text.hpp"
 #include "service/nc/codes.hpp"
+#include "service/nc/siemens_names.hpp"
 
 namespace meridian::nc {
 namespace {
@@ -105,9 +106,10 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
 cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
   std::optional<GKind> motion_kind;
   std::array<bool, 16> seen{};
+  const bool is_siemens = s.modes.language == Language::kSiemens;
   for (const Word& word : line.words) {
     if (!word.is('G')) continue;
-    const GRow* const row = find_g(word.number);
+    const GRow* const row = is_siemens ? find_siemens_g(word.number) : find_g(word.number);
     if (row == nullptr) {
       if (auto done = take_unknown(s, line, word); !done) return done;
       continue;
@@ -157,8 +159,16 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
 
 cl::Outcome run_block(State& s, const Line& line) {
   if (auto done = check_addresses(line); !done) return done;
+  if (s.modes.language == Language::kSiemens) {
+    if (auto done = check_siemens_addresses(s, line); !done) return done;
+  }
   OneShot shot;
   if (auto done = take_codes(s, line, shot); !done) return done;
+  bool has_machine_place = false;
+  if (auto done = take_names(s, line, has_machine_place); !done) return done;
+  if (has_machine_place && moves(line)) shot.kind = OneShot::Kind::kMachinePlace;
+  const bool is_dwell = shot.kind == OneShot::Kind::kDwell;
+  if (is_dwell && s.modes.language == Language::kSiemens) return siemens_dwell(s, line);
   if (auto done = act_before(s, line); !done) return done;
   if (auto done = run_motion(s, line, shot); !done) return done;
   return act_behind(s, line);

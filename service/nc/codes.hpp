@@ -54,6 +54,8 @@ struct MRow {
 [[nodiscard]] std::span<const GRow> g_rows();
 /// Null where nobody knows the code.
 [[nodiscard]] const GRow* find_g(double code) noexcept;
+/// The same in a Siemens program.
+[[nodiscard]] const GRow* find_siemens_g(double code) noexcept;
 [[nodiscard]] const MRow* find_m(double code) noexcept;
 
 }  // namespace meridian::nc

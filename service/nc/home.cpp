@@ -13,7 +13,7 @@ using cl::refuse;
 
 bool is_axis_word(const Word& word) {
   const char c = word.address.front();
-  return (c >= 'X' && c <= 'Z') || (c >= 'A' && c <= 'C') || word.address.size() > 1;
+  return (c >= 'X' && c <= 'Z') || word.may_be_rotary();
 }
 
 bool is_linear(const Word& word) { return word.address.front() >= 'X'; }
@@ -39,7 +39,8 @@ cl::Outcome check_intermediate(const State& s, const Line& line) {
 }  // namespace
 
 cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place) {
-  const char* const code = is_machine_place ? "G53" : "G28";
+  const bool is_siemens = s.modes.language == Language::kSiemens;
+  const char* const code = !is_machine_place ? "G28" : is_siemens ? "SUPA" : "G53";
   std::vector<MachineAxes::Target> targets;
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   for (const Word& word : line.words) {
@@ -52,7 +53,7 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_pl
   if (!is_machine_place) {
     if (auto done = check_intermediate(s, line); !done) return done;
   } else if (s.modes.is_incremental || s.modes.motion > Motion::kLine) {
-    return refuse("G53 needs G90, and G0 or G1");
+    return refuse(std::string(code) + " needs G90, and G0 or G1");
   }
   if (!s.cl.path.has_moved()) {
     move_unseen(s, line);

@@ -25,6 +25,8 @@ enum class Control : std::uint8_t {
   return control == Control::kRotary || control == Control::kVector;
 }
 
+enum class Language : std::uint8_t { kFanuc, kSiemens };
+
 /// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
 struct Modes {
   Motion motion = Motion::kNone;
@@ -35,6 +37,10 @@ struct Modes {
   cl::FeedUnit feed_unit = cl::FeedUnit::kPerMinute;
   int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
   std::optional<std::uint32_t> next_tool;
+  Language language = Language::kFanuc;
+  bool is_oriented = false;       ///< TRAORI: vectors or rotary words, as each block has them
+  bool turns_evenly = true;       ///< rotary joints between two blocks; else the axis: great circle
+  bool has_machine_axes = false;  ///< ORIMKS: directions are the machine's
 };
 
 /// A rotary axis as the program has turned it, deg as written; nothing: by the control, unknown.

@@ -137,14 +137,26 @@ const Word* Line::find(std::string_view address) const noexcept {
   return at == words.end() ? nullptr : &*at;
 }
 
+bool Word::may_be_rotary() const noexcept {
+  const char letter = address.front();
+  if (address.size() == 1) return letter >= 'A' && letter <= 'C';
+  return address != "CR" && address != "TURN" && address != "A3" && address != "B3" &&
+         address != "C3";
+}
+
+void Line::begin(std::string_view line, std::uint32_t at) {
+  number = at;
+  is_tape_mark = has_block_delete = false;
+  words.clear();
+  names.clear();
+  comment = {};
+  comments = 0;
+  text.assign(line);
+  for (char& c : text) c = cl::capital(c);
+}
+
 cl::Outcome cut(std::string_view text, std::uint32_t number, Line& line) {
-  line.number = number;
-  line.is_tape_mark = line.has_block_delete = false;
-  line.words.clear();
-  line.comment = {};
-  line.comments = 0;
-  line.text.assign(text);
-  for (char& c : line.text) c = cl::capital(c);
+  line.begin(text, number);
   return Cutter(line.text, line).cut();
 }
 

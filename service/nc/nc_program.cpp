@@ -5,6 +5,8 @@
 
 #include "service/cl/letters.hpp"
 #include "service/nc/block.hpp"
+#include "service/nc/siemens_line.hpp"
+#include "service/nc/siemens_names.hpp"
 
 namespace meridian::nc {
 namespace {
@@ -37,6 +39,11 @@ std::string trimmed(std::string_view text) {
 NcProgram::NcProgram(cl::LineSource& lines, std::string name, const cl::ClReaderOptions& options,
                      std::string_view reason, std::shared_ptr<const MachineAxes> machine)
     : lines_(lines), name_(std::move(name)), state_(in_capitals(options), std::move(machine)) {
+  if (options.dialect == cl::Dialect::kSiemens) {
+    state_.modes.language = Language::kSiemens;
+    state_.modes.control = Control::kLength;  // D1 is in force with every tool
+    state_.modes.turns_evenly = false;
+  }
   state_.cl.path.set_max_feed(options.max_feed_mm_per_s);
   cl::ClSummary& summary = state_.cl.summary;
   summary.dialect = state_.cl.dialect.traits().title;
@@ -81,10 +88,16 @@ cl::ProgramSource::Result NcProgram::read(Blocks& out) {
 }
 
 cl::Outcome NcProgram::take(std::string_view text) {
-  if (auto done = cut(text, lines_.line_number(), line_); !done) return done;
+  const bool is_siemens = state_.modes.language == Language::kSiemens;
+  auto done = is_siemens ? cut_siemens(text, lines_.line_number(), line_)
+                         : cut(text, lines_.line_number(), line_);
+  if (is_siemens) {
+    if (auto named = check_names(line_); !named) return named;
+  }
+  if (!done) return done;
   take_comments();
   if (line_.is_tape_mark) return take_tape_mark();
-  if (line_.words.empty()) return {};
+  if (line_.words.empty() && line_.names.empty()) return {};
   ++state_.cl.summary.statements;
   if (line_.has_block_delete) {
     state_.cl.remarks.warn("block delete", line_.number, [] {

@@ -14,12 +14,6 @@ namespace {
 using cl::refuse;
 
 constexpr std::array<std::string_view, 3> kTip = {"X", "Y", "Z"};
-constexpr std::array<std::string_view, 3> kCentre = {"I", "J", "K"};
-
-bool is_rotary_address(const Word& word) {
-  const char letter = word.address.front();
-  return (letter >= 'A' && letter <= 'C') || word.address.size() > 1;
-}
 
 /// Numbers without a point are whole units here; older controls count least increments.
 void note_digits(State& s, const Line& line, const Word& word) {
@@ -49,24 +43,30 @@ std::optional<double> rotary_of(const Place& place, std::string_view address) {
   return std::nullopt;
 }
 
+bool is_relative(const State& s, const Word& word) {
+  return word.way == Word::Way::kModal ? s.modes.is_incremental
+                                       : word.way == Word::Way::kIncremental;
+}
+
 cl::Outcome take_tip(State& s, const Line& line, Target& to) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Word* const word = line.find(kTip[k]);
     if (word == nullptr) continue;
     note_digits(s, line, *word);
     std::optional<double>& at = to.place.tip[k];
-    if (s.modes.is_incremental && !at) {
+    const bool is_incremental = is_relative(s, *word);
+    if (is_incremental && !at) {
       return refuse("G91, but where " + std::string(kTip[k]) + " stands is not known here",
                     "write a G0 with X, Y and Z under G90 first", "not known");
     }
-    at = s.modes.is_incremental ? *at + word->number : word->number;
+    at = is_incremental ? *at + word->number : word->number;
   }
   return {};
 }
 
 cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
   for (const Word& word : line.words) {
-    if (!is_rotary_address(word)) continue;
+    if (!word.may_be_rotary()) continue;
     const std::string address(word.address);
     if (s.modes.control == Control::kVector) {
       return refuse("rotary word " + address + " under G43.5, where I J K give the tool axis");
@@ -77,10 +77,11 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
     }
     note_digits(s, line, word);
     const std::optional<double> before = rotary_of(to.place, address);
-    if (s.modes.is_incremental && !before) {
+    const bool is_incremental = is_relative(s, word);
+    if (is_incremental && !before) {
       return refuse("G91, but where " + address + " stands is not known here");
     }
-    const double deg = s.modes.is_incremental ? *before + word.number : word.number;
+    const double deg = is_incremental ? *before + word.number : word.number;
     if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg");
     to.turns = to.turns || before.value_or(0) != deg;
     set_rotary(to.place, address, deg);
@@ -88,29 +89,12 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
   return {};
 }
 
-/// The tool axis as I J K tell it under G43.5: from the tip to the spindle, any length.
-cl::Outcome take_vector(const Line& line, Target& to) {
-  std::array<const Word*, 3> words{};
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    words[k] = line.find(kCentre[k]);
-    count += words[k] != nullptr ? 1 : 0;
-  }
-  if (count == 0) return {};
-  if (count < 3) return refuse("under G43.5 the tool axis needs all three of I, J and K");
-  const Vector3 v{words[0]->number, words[1]->number, words[2]->number};
-  const double norm = v.norm();
-  if (!(norm > 1e-6 && norm < 1e9)) return refuse("I J K give no direction");
-  to.place.vector = to_array(Vector3(v / norm));
-  to.place.has_vector = true;
-  return {};
-}
-
 cl::Outcome find_axis(const State& s, Target& to) {
   if (s.modes.control == Control::kRotary) {
     if (!s.axes) {
       return refuse(
-          "rotary words under G43.4 need the machine that they are written for: which axes turn "
+          "rotary words with tool-centre control need the machine that they are written for: which "
+          "axes turn "
           "what is in its machine file",
           "--machine FILE", "machine");
     }
@@ -122,7 +106,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
   if (s.modes.control == Control::kVector) {
     if (!to.place.has_vector && to.place.is_turned()) {
       return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not told",
-                    "write I, J and K into the first block behind G43.5");
+                    "write the tool axis into the first block with tool-centre control");
     }
     if (to.place.has_vector) axis = to_vector(to.place.vector);
   }
@@ -133,7 +117,8 @@ cl::Outcome find_axis(const State& s, Target& to) {
 /// Words that mean nothing where they stand.
 cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
   for (const char* const address : {"I", "J", "K", "R"}) {
-    const bool is_vector = s.modes.control == Control::kVector && address[0] != 'R';
+    const bool is_vector = s.modes.control == Control::kVector && address[0] != 'R' &&
+                           s.modes.language == Language::kFanuc;
     if (line.find(address) != nullptr && !is_arc && !is_vector) {
       return refuse(std::string("word ") + address + " in a block that is no arc");
     }
@@ -143,7 +128,8 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
       return refuse(std::string("word ") + address + " moves an axis beside X, Y and Z");
     }
   }
-  if (line.find("E") != nullptr || line.find("D") != nullptr) {
+  const bool is_fanuc = s.modes.language == Language::kFanuc;  // else D is the tool's own offset
+  if (line.find("E") != nullptr || (is_fanuc && line.find("D") != nullptr)) {
     return refuse("word E or D in a motion block is not understood");
   }
   return {};
@@ -188,11 +174,12 @@ cl::Outcome move(State& s, const Line& line) {
       s.modes.motion == Motion::kClockwise || s.modes.motion == Motion::kCounterClockwise;
   if (auto done = check_words(s, line, is_arc); !done) return done;
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
+  if (auto done = choose_orientation(s, line); !done) return done;
   Target to{s.place, Vector3::UnitZ(), false};
   if (auto done = take_tip(s, line, to); !done) return done;
   if (auto done = take_rotary(s, line, to); !done) return done;
   if (s.modes.control == Control::kVector && !is_arc) {
-    if (auto done = take_vector(line, to); !done) return done;
+    if (auto done = take_vector(s, line, to); !done) return done;
   }
   if (auto done = find_axis(s, to); !done) return done;
   const bool is_cut = s.modes.motion != Motion::kRapid;

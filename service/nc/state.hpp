@@ -37,6 +37,13 @@ struct Target {
   bool turns = false;               ///< some rotary word says another angle than before
 };
 
+// orientation.cpp
+/// The tool axis of I J K under G43.5, of A3 B3 C3 under TRAORI: from the tip to the spindle, any
+/// length.
+[[nodiscard]] cl::Outcome take_vector(const State& s, const Line& line, Target& to);
+/// Under TRAORI every block says by its words how it tells the tool axis.
+[[nodiscard]] cl::Outcome choose_orientation(State& s, const Line& line);
+
 // lines.cpp
 [[nodiscard]] cl::Outcome line_to(State& s, const Line& line, const Target& to);
 // arcs.cpp
@@ -65,5 +72,7 @@ struct PathEnd {
 /// M codes that come behind it: stops, spindle and coolant off, the end.
 [[nodiscard]] cl::Outcome act_behind(State& s, const Line& line);
 [[nodiscard]] cl::Outcome dwell(State& s, const Line& line);
+/// G4 F in seconds, G4 S in revolutions of the spindle.
+[[nodiscard]] cl::Outcome siemens_dwell(State& s, const Line& line);
 
 }  // namespace meridian::nc

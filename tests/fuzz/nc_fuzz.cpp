@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <string_view>
 
 #include "fuzz/fuzz_targets.hpp"
@@ -9,11 +10,11 @@
 namespace meridian::fuzz {
 namespace {
 
-cl::ClReaderOptions options_of_nc() {
+cl::ClReaderOptions options_of_nc(cl::Dialect dialect) {
   const MachineModel model =
       config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml");
   cl::ClReaderOptions options;
-  options.dialect = cl::Dialect::kFanuc;
+  options.dialect = dialect;
   options.nc = nc::reader_of_programs(model, ToolTable({{1, 110, 5}}));
   return options;
 }
@@ -21,10 +22,13 @@ cl::ClReaderOptions options_of_nc() {
 }  // namespace
 
 void read_nc(Bytes bytes) {
-  static const cl::ClReaderOptions options = options_of_nc();
+  static const std::array kOptions = {options_of_nc(cl::Dialect::kFanuc),
+                                      options_of_nc(cl::Dialect::kSiemens)};
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  cl::ClReader reader(text, "fuzz", options);
-  read_all(reader);
+  for (const cl::ClReaderOptions& options : kOptions) {
+    cl::ClReader reader(text, "fuzz", options);
+    read_all(reader);
+  }
 }
 
 Seeds nc_seeds() {
@@ -35,7 +39,12 @@ Seeds nc_seeds() {
       "G20 G90\nG43.5 H1\nG0 X0. Y0. Z2. I0. J0. K1.\nG93 G1 X1. I0. J-.6 K.8 F30.\n"
       "/G94 G1 X2. F10. ; on\nG95 S100 M3\nG1 X3. F.01\nM1\nM2\n",
       "%\nG21\nG0 X10. Y0. Z0.\nG2 X0. Y10. I-10. J0. F100\nG3 X10. Y0. R-10. Z5.\nG18 G2 I-5.\n"
-      "G19 G3 Y5. R20.\nG91 G1 X1 Y1\nN10 M88\nG65 P1 A#2\nIF [#1] GOTO 5\n%\n"};
+      "G19 G3 Y5. R20.\nG91 G1 X1 Y1\nN10 M88\nG65 P1 A#2\nIF [#1] GOTO 5\n%\n",
+      "%_N_A_MPF\n;$PATH=/_N_MPF_DIR\nTRAFOOF\nG17 G710 G40 G90 G94\nG54\nSUPA G0 Z0 D0\nT1\nM6\n"
+      "S6000 M3\nG0 C0 A0\nG0 X10 Y20\nD1\nTRAORI(1)\nORIWKS ORIVECT\nG0 X10 Y20 Z=60 A3=0 B3=0 "
+      "C3=1\nG1 Z=IC(-5) F600\nG1 X30 B3=-.6 C3=.8\nG4 F0.5\nG4 S3\nORIAXES\nG1 A30 C=90\n"
+      "MSG(\"A;(B\")\nG3 X0 Y10 CR=30\nG2 X1 Y1 I=AC(2) J3 TURN=2\nTRAFOOF\nM1=5\nT=\"2\"\nR1=5\n"
+      "IF R1 GOTOF A\nM30\n"};
   Seeds seeds;
   for (const std::string_view program : kPrograms) {
     seeds.emplace_back(program.begin(), program.end());

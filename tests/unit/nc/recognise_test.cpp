@@ -29,17 +29,25 @@ TEST(NcPrograms, AreKnownByMarkAndNumber) {
   EXPECT_EQ(read.summary.dialect_reason, "% and O number");
 }
 
+TEST(NcPrograms, OfSiemensAreKnownByTheirNames) {
+  const ReadText read =
+      cl::read_text("TRAORI\nG54 G710\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\nM30\n", untold());
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.dialect_reason, "TRAORI");
+}
+
 TEST(NcPrograms, AreNotGuessed) {
   const ReadText read = cl::read_text(kPlain, untold());
-  EXPECT_NE(read.error.find("this is an NC program (G code), not a CL file; --dialect fanuc"),
-            std::string::npos)
+  EXPECT_NE(
+      read.error.find("this is an NC program (G code), not a CL file; --dialect fanuc or siemens"),
+      std::string::npos)
       << read.error;
   EXPECT_EQ(cl::read_text(kPlain, without_machine()).error, "");
 }
 
 TEST(NcPrograms, OfOtherControlsAreRefusedAsBefore) {
-  const ReadText read = cl::read_text("TRAORI\nG1 X1 A3=0 B3=0 C3=1\nM30\n", untold());
-  EXPECT_NE(read.error.find("a Siemens NC program (TRAORI)"), std::string::npos) << read.error;
+  const ReadText read = cl::read_text("0 BEGIN PGM A MM\n1 L X+0 R0 FMAX\n", untold());
+  EXPECT_NE(read.error.find("a Heidenhain NC program"), std::string::npos) << read.error;
 }
 
 TEST(NcPrograms, AreRefusedWhereTheCallerSaysItIsACamFile) {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Siemens programs: their words, TRAORI, and what is refused.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "meridian/units.hpp"
+#include "unit/nc/read_nc.hpp"
+
+namespace meridian::nc {
+namespace {
+
+ClReaderOptions siemens(ClReaderOptions options = without_machine()) {
+  options.dialect = cl::Dialect::kSiemens;
+  return options;
+}
+
+ReadText read_siemens(std::string_view body, const ClReaderOptions& options = siemens()) {
+  return cl::read_text("; PART\nG17 G710 G40 G90 G94\nF600\n" + std::string(body) + "M30\n",
+                       options);
+}
+
+TEST(SiemensProgram, TakesTheAxisFromItsVector) {
+  const ReadText read = read_siemens(
+      "TRAFOOF\nG54\nT1\nM6\nD1\nTRAORI\nG54\nORIWKS ORIVECT\nG0 X0 Y0 Z10 A3=0 B3=0 C3=1\n"
+      "G1 X1 B3=-6 C3=8\nX2\nTRAFOOF\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  EXPECT_LT((axis(motion[1]) - Vector3(0, -0.6, 0.8)).norm(), kTiny);
+  EXPECT_EQ(axis(motion[2]), axis(motion[1]));
+  EXPECT_EQ(read.summary.dialect, "NC program, Siemens words");
+  EXPECT_EQ(read.summary.nc.work_offset, "G54");
+  EXPECT_FALSE(read.warned_of("no decimal point"));
+}
+
+TEST(SiemensProgram, KnowsItsWaysOfWritingNumbers) {
+  const ReadText read = read_siemens("G0 X=1.5 Y2 Z=AC(3)\nG1 X=IC(2) Y=IC(-1)\nG91 X1 Z=AC(9)\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  EXPECT_EQ(tip(motion[1]), Vector3(3.5, 1, 3));
+  EXPECT_EQ(tip(motion[2]), Vector3(4.5, 1, 9));
+}
+
+TEST(SiemensProgram, TurnsArcsByRadiusCentreAndTurns) {
+  const ReadText read = read_siemens(
+      "G0 X10 Y0 Z0\nG3 X0 Y10 CR=10\nG3 X-10 Y0 I=AC(0) J=AC(0)\nG3 X0 Y-10 Z-3 I10 J0 TURN=2\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 6U);
+  EXPECT_NEAR(motion[1].sweep_rad, std::numbers::pi / 2, kTiny);
+  EXPECT_LT(to_vector(motion[2].centre_mm).norm(), kTiny);
+  EXPECT_NEAR(motion[3].sweep_rad, 2 * std::numbers::pi, kTiny);
+  EXPECT_EQ(tip(motion[5]), Vector3(0, -10, -3));
+}
+
+TEST(SiemensProgram, TurnsTheAxisByRotaryWordsOnTheGreatCircleUnlessTold) {
+  const std::string head = "G0 A30 C0\nTRAORI\nG0 X0 Y0 Z50\n";
+  const auto options = siemens(on(shipped("trunnion-ac")));
+  const ReadText circle = read_siemens(head + "ORIVECT\nG1 X90 C90\n", options);
+  ASSERT_EQ(circle.error, "");
+  EXPECT_EQ(circle.motion().size(), 2U);
+  EXPECT_NEAR(axis(circle.motion()[1])[2], std::cos(units::rad_from_deg(30)), kTiny);
+  const ReadText joints = read_siemens(head + "ORIAXES\nG1 X90 C90\n", options);
+  ASSERT_EQ(joints.error, "");
+  EXPECT_GT(joints.motion().size(), 5U);
+}
+
+TEST(SiemensProgram, DwellsAndActs) {
+  const ReadText read = read_siemens(
+      "G0 X0 Y0 Z0\nS600 M3\nG4 F0.5\nG4 S5\nM1=5\nT=\"12\" M6\nMSG(\"ON; (AND ON)\")\nG1 X1\n");
+  ASSERT_EQ(read.error, "");
+  ASSERT_EQ(read.blocks.size(), 8U);
+  EXPECT_EQ(read.blocks[1].value, 600);
+  EXPECT_DOUBLE_EQ(read.blocks[2].value, 0.5);
+  EXPECT_DOUBLE_EQ(read.blocks[3].value, 0.5);
+  EXPECT_EQ(read.blocks[4].action, ActionKind::kSpindleOff);
+  EXPECT_EQ(read.blocks[5].value, 12);
+  EXPECT_DOUBLE_EQ(read.blocks[6].feed, 10) << "the dwell's F is no feed";
+}
+
+TEST(SiemensProgram, GoesToPlacesOfTheMachine) {
+  const auto options = siemens(on(shipped("trunnion-ac")));
+  EXPECT_EQ(read_siemens("SUPA G0 Z0 D0\nG0 X0 Y0 Z5\n", options).motion().size(), 1U);
+  const ReadText read = read_siemens("G0 X0 Y0 Z5\nSUPA G0 Z0 D0\n", options);
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().size(), 2U);
+  EXPECT_TRUE(read.warned_of("SUPA: a straight rapid"));
+}
+
+struct Refused {
+  const char* line;
+  const char* says;
+};
+
+TEST(SiemensProgram, RefusesByName) {
+  const std::vector<Refused> cases = {{"R1=5", "an R parameter"},
+                                      {"X=R1", "X=R1 is for the control to work out"},
+                                      {"X=10+5", "an expression"},
+                                      {"DEF REAL A", "DEF: variables, jumps"},
+                                      {"IF X1", "IF: variables, jumps"},
+                                      {"GOTOF END1", "GOTOF: variables, jumps"},
+                                      {"CYCLE800(1,\"A\",0)", "CYCLE800: a frame"},
+                                      {"TRANS X10", "TRANS: a frame"},
+                                      {"AROT Z30", "AROT: a frame"},
+                                      {"BSPLINE", "BSPLINE: a spline"},
+                                      {"TRANSMIT", "TRANSMIT: a transformation"},
+                                      {"MCALL CYCLE81(1)", "MCALL: a cycle"},
+                                      {"CYCLE81(1,2,3)", "the word CYCLE81 is not known here"},
+                                      {"T=\"MILL\"", "a name where a number is needed"},
+                                      {"A3=0 B3=0 C3=1 G1 X1", "A3, B3, C3 without TRAORI"},
+                                      {"A2=10 X1", "address A2= is not understood"},
+                                      {"G43.4", "G43.4 is not known here"},
+                                      {"G70", "G70: inch for lengths"},
+                                      {"G55 G0 X1", "a second work offset"},
+                                      {"M17", "the end of a subprogram"},
+                                      {"START:", "what begins with ':'"},
+                                      {"$AC_TIMER", "a variable of the control"},
+                                      {"MSG(\"open", "without its closing bracket"},
+                                      {"TRAORI(1) G1 X1 A3=0 ORIAXES", "under ORIAXES"},
+                                      {"TRAORI ORIMKS G1 X1 A3=1", "in the axes of the machine"}};
+  for (const Refused& c : cases) {
+    const ReadText read = read_siemens("G54 G0 X0 Y0 Z0\n" + std::string(c.line) + "\n");
+    EXPECT_EQ(read.error_line, 5U) << c.line << ": " << read.error;
+    EXPECT_NE(read.error.find(c.says), std::string::npos) << c.line << ": " << read.error;
+  }
+}
+
+TEST(SiemensProgram, ClearsFramesThatNobodySet) {
+  EXPECT_EQ(read_siemens("TRANS\nROT\nCYCLE800()\nG0 X0 Y0 Z0\n").error, "");
+}
+
+}  // namespace
+}  // namespace meridian::nc
