@@ -19,6 +19,8 @@
 #include "service/record/operator_events_writer.hpp"
 #include "service/record/picture.hpp"
 #include "service/record/read_path.hpp"
+#include "service/record/recorded_frame.hpp"
+#include "service/stream/frame_sum.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -164,8 +166,19 @@ int check_program(const Options& options, const MachineModel& model) {
   return report.passed() ? kFine : kVerdictNo;
 }
 
+/// Where the workpiece lay, as the recorder wrote it beside the recording; --frame goes first.
+void find_frame(const Options& options, MachineModel& model) {
+  if (!options.machine.frame.empty() || options.recording.empty()) return;
+  std::ifstream file(record::operator_events_path(options.recording), std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (const auto frame = record::find_recorded_frame(text)) {
+    stream::place_frame(model, frame->rotation, frame->origin_mm);
+  }
+}
+
 int run(Options& options) {
-  const MachineModel model = load_machine(options.machine);
+  MachineModel model = load_machine(options.machine);
+  find_frame(options, model);
   if (!options.same.empty()) return compare(options, model);
   if (options.recording.empty()) {
     std::cerr << "meridian check: name a recording, or two behind --same\n";

@@ -12,6 +12,7 @@
 #include "meridian/rt/state_table.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
+#include "service/cli/frame_options.hpp"
 #include "service/cli/hand_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
@@ -28,6 +29,8 @@ struct CtlOptions {
   std::vector<std::string> values;
   JogOptions jog;
   std::vector<const CLI::Option*> of_jog;  ///< what is said of a jog alone
+  FrameOptions frame;
+  std::vector<const CLI::Option*> of_frame;
   double wait_s = 60;
   bool is_for_dry_run = false;
 };
@@ -46,7 +49,8 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"home", Verb::kHome},
                                                   {"single-block", Verb::kSingleBlock},
                                                   {"optional-stop", Verb::kOptionalStop},
-                                                  {"dry-run", Verb::kDryRun}};
+                                                  {"dry-run", Verb::kDryRun},
+                                                  {"frame", Verb::kFrame}};
   return kVerbs;
 }
 
@@ -75,8 +79,13 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
     return options.wait.empty() ? nullptr
                                 : "--wait is not for jog, which ends when the joint rests";
   }
-  const bool has_jog = std::any_of(options.of_jog.begin(), options.of_jog.end(),
-                                   [](const CLI::Option* option) { return option->count() > 0; });
+  const auto is_said = [](const CLI::Option* option) { return option->count() > 0; };
+  const auto has_any = [&](const std::vector<const CLI::Option*>& of) {
+    return std::any_of(of.begin(), of.end(), is_said);
+  };
+  if (verb != Verb::kFrame && has_any(options.of_frame))
+    return "--at and --name are for frame alone";
+  const bool has_jog = has_any(options.of_jog);
   return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
 }
 
@@ -93,7 +102,7 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
       verb == Verb::kSingleBlock || verb == Verb::kOptionalStop || verb == Verb::kDryRun;
   if (is_switch) return switch_of(options);
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
-  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome;
+  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kFrame;
   double percent = 0;
   bool is_right = has_joints || options.values.size() == (is_override ? 1U : 0U);
   if (is_right && is_override) {
@@ -109,8 +118,10 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
 void warn_of_others(const stream::OperatorLink& link, const std::string& machine) {
   const std::vector<std::string> services = link.services();
   if (services.size() < 2) return;
-  std::fprintf(stderr, "meridian: WARNING: %zu services speak for machine %s; end those that are "
-               "not its own:\n", services.size(), machine.c_str());
+  std::fprintf(stderr,
+               "meridian: WARNING: %zu services speak for machine %s; end those that are "
+               "not its own:\n",
+               services.size(), machine.c_str());
   for (const std::string& service : services) std::fprintf(stderr, "  %s\n", service.c_str());
 }
 
@@ -128,9 +139,19 @@ int run_ctl(CtlOptions& options) {
                  all_states().c_str());
     return kUsage;
   }
+  std::optional<FrameOrder> order;
+  const bool is_list = verb == Verb::kFrame && options.values == std::vector<std::string>{"list"};
+  if (verb == Verb::kFrame && !is_list) {
+    order = frame_order(options.values, options.frame);
+    if (!order) return kUsage;
+  }
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
+  if (is_list) {
+    std::fputs(frames_text(*machine).c_str(), stdout);
+    return kFine;
+  }
   if (verb == Verb::kHome && (*argument = home_argument(*machine, options.values)) < 0) {
     return kUsage;
   }
@@ -139,7 +160,8 @@ int run_ctl(CtlOptions& options) {
   if (verb == Verb::kJog) {
     return run_jog(participant, link, *machine, options.values, options.jog, options.peer);
   }
-  const auto reply = link.ask(verb, *argument, options.peer.timeout());
+  const auto reply = order ? link.ask(*order, options.peer.timeout())
+                           : link.ask(verb, *argument, options.peer.timeout());
   warn_of_others(link, options.peer.machine);
   if (!reply) {
     std::fprintf(stderr, "meridian: machine %s does not answer\n", options.peer.machine.c_str());
@@ -165,11 +187,13 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(names))
       ->type_name("VERB");
   command
-      ->add_option("value", options->values,
-                   "override: 0 to feed_override_max_percent of the machine's file (150), "
-                   "rapid-override: 0 to 100 %; jog: JOINT (or tool-x, -y, -z, -a, -b) and its "
-                   "velocity in mm/s or deg/s; home: "
-                   "joints, default all; single-block, optional-stop, dry-run: on or off")
+      ->add_option(
+          "value", options->values,
+          "override: 0 to feed_override_max_percent of the machine's file (150), "
+          "rapid-override: 0 to 100 %; jog: JOINT (or tool-x, -y, -z, -a, -b) and its "
+          "velocity in mm/s or deg/s; home: "
+          "joints, default all; single-block, optional-stop, dry-run: on or off; frame: set, "
+          "select or clear and a number, or list")
       ->type_name("VALUE");
   CLI::Option* const time =
       command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
@@ -187,6 +211,13 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
           ->capture_default_str()
           ->check(finite_range(60.0, 500.0));
   options->of_jog = {time, distance, dead_man};
+  CLI::Option* const at =
+      command->add_option("--at", options->frame.at,
+                          "frame set: where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) "
+                          "Ry(b) Rx(a)");
+  CLI::Option* const name =
+      command->add_option("--name", options->frame.name, "frame set: what it is called");
+  options->of_frame = {at, name};
   CLI::Option* const wait =
       command
           ->add_option(

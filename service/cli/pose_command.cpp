@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "meridian/units.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/machine_options.hpp"
+#include "service/cli/peer_options.hpp"
+#include "service/cli/told_machine.hpp"
+#include "service/config/machine_file.hpp"
 #include "service/inspect/pose_solutions.hpp"
 
 namespace meridian::cli {
@@ -17,6 +21,7 @@ namespace {
 
 struct Options {
   MachineOptions machine;
+  PeerOptions peer;
   std::vector<double> pose, joints;
   bool is_json = false;
 };
@@ -68,7 +73,22 @@ int show_pose(const MachineModel& model, const std::vector<double>& values, bool
   return is_possible ? kFine : kVerdictNo;
 }
 
-int run(const Options& options) {
+/// The machine of the file, or the one that answers, as it is set up now; nothing and an exit code
+/// where there is none.
+std::optional<MachineModel> find_model(Options& options, int& exit_code) {
+  if (!options.machine.machine.empty()) return load_machine(options.machine);
+  const auto info = find_machine(options.peer, exit_code);
+  if (!info) return std::nullopt;
+  auto model = told_machine(*info);
+  if (!model) {
+    exit_code = refuse("machine " + info->name + " does not tell its file; name it by --machine");
+  } else if (!options.machine.frame.empty()) {
+    config::place_workpiece(*model, config::parse_frame(options.machine.frame));
+  }
+  return model;
+}
+
+int run(Options& options) {
   if (options.pose.empty() == options.joints.empty()) {
     std::cerr << "meridian pose: give a pose x y z i j k, or --joints\n";
     return kUsage;
@@ -76,9 +96,11 @@ int run(const Options& options) {
   if (!are_finite(options.pose) || !are_finite(options.joints)) {
     return refuse("every value must be a finite number");
   }
-  const MachineModel model = load_machine(options.machine);
-  return options.joints.empty() ? show_pose(model, options.pose, options.is_json)
-                                : show_joints(model, options.joints, options.is_json);
+  int exit_code = kFine;
+  const auto model = find_model(options, exit_code);
+  if (!model) return exit_code;
+  return options.joints.empty() ? show_pose(*model, options.pose, options.is_json)
+                                : show_joints(*model, options.joints, options.is_json);
 }
 
 }  // namespace
@@ -100,10 +122,13 @@ void add_pose_command(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->expected(1, kMaxJoints);
   command->add_flag("--json", options->is_json, "As JSON");
-  add_machine_options(*command, options->machine, false);
+  command->add_option("-m,--machine", options->machine.machine,
+                      "Machine file (TOML); default: the machine that answers, with the work frame "
+                      "that is in force there");
   command->add_option("--frame", options->machine.frame,
                       "Where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) Ry(b) Rx(a); "
-                      "instead of the machine file's frame");
+                      "instead of the machine's frame");
+  add_peer_options(*command, options->peer);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -18,6 +18,7 @@
 #include "service/record/recording_writer.hpp"
 #include "service/simulate/feed_picture.hpp"
 #include "service/simulate/simulate.hpp"
+#include "service/stream/frame_sum.hpp"
 #include "service/stream/smooth_tolerances.hpp"
 #include "service/text/whole_file.hpp"
 
@@ -152,6 +153,10 @@ int run(const Options& options) {
     auto events = simulate::read_operator_events(text, options.events, model.most_feed_override);
     if (!events) return refuse(events.error());
     simulation.events = std::move(*events);
+    const auto& frame = simulation.events.frame;
+    if (frame && options.machine.frame.empty()) {
+      stream::place_frame(model, frame->rotation, frame->origin_mm);
+    }
   }
   if (!options.start_from.empty()) {
     const auto drives = first_drives(options.start_from, model);

@@ -44,6 +44,18 @@ void append_alarm(std::string& text, const dds::Status& status, const dds::Machi
   text += "\n";
 }
 
+/// "frame     3 (vice)", of the set-up; that of the machine file goes without saying.
+void append_frame(std::string& text, const dds::Status& status, const dds::MachineInfo& machine) {
+  if (status.work_frame == 0) return;
+  const auto row =
+      std::find_if(machine.work_frames.begin(), machine.work_frames.end(),
+                   [&status](const WorkFrame& frame) { return frame.number == status.work_frame; });
+  const bool has_name = row != machine.work_frames.end() && row->name.front() != '\0';
+  append(text, "frame     %u", status.work_frame);
+  if (has_name) append(text, " (%s)", row->name.data());
+  text += "\n";
+}
+
 }  // namespace
 
 const char* text_of(State state) {
@@ -89,6 +101,7 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
          status.feed_override * 100, status.rapid_override * 100,
          status.is_single_block ? ", single block" : "",
          status.stops_at_optional ? ", optional stops" : "");
+  append_frame(text, status, machine);
   append(text, "buffer    %u blocks, %u pieces, %.2f s planned; starved %llu times\n",
          status.blocks_queued, status.pieces_queued, status.planned_s, Count{status.starvations});
   append(text, "joints   ");
@@ -131,6 +144,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          std::string(record::word(status.alarm)).c_str(),
          json_quoted(alarm_joint(status, machine)).c_str(),
          status.alarm != Alarm::kNone ? status.alarm_line : 0);
+  append(text, "\"work_frame\":%u,", status.work_frame);
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

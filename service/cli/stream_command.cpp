@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "meridian/units.hpp"
 #include "service/cli/cl_options.hpp"
@@ -14,8 +15,10 @@
 #include "service/cli/machine_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/progress_text.hpp"
+#include "service/cli/told_machine.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/dds/participant.hpp"
+#include "service/stream/frame_sum.hpp"
 #include "service/stream/stream_run.hpp"
 #include "service/text/printable.hpp"
 
@@ -60,15 +63,10 @@ std::optional<stream::PreflightMachine> preflight_machine(const StreamCommandOpt
     if (!options.tool_file.empty()) machine->tools = config::load_tools(options.tool_file);
     return machine;
   }
-  if (info.machine_file.empty()) return machine;
+  auto model = told_machine(info);
+  if (!model) return machine;
   machine.emplace();
-  machine->model = config::parse_machine(info.machine_file, "machine file of the service");
-  config::Frame frame;
-  for (int i = 0; i < 9; ++i) {
-    frame.rotation(i / 3, i % 3) = info.frame_rotation[static_cast<std::size_t>(i)];
-  }
-  frame.origin_mm = to_vector(info.frame_origin_mm);
-  config::place_workpiece(machine->model, frame);
+  machine->model = std::move(*model);
   if (!info.tool_file.empty()) {
     machine->tools = config::parse_tools(info.tool_file, "tool table of the service");
   }
@@ -104,6 +102,9 @@ int run_stream_command(StreamCommandOptions& options) {
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   const auto judged_for = preflight_machine(options, *machine);
+  options.stream.frame = judged_for
+                             ? stream::frame_sum(judged_for->model)
+                             : stream::frame_sum(machine->frame_rotation, machine->frame_origin_mm);
   cl::ClReaderOptions& reader = options.stream.reader;
   reader.max_feed_mm_per_s = units::per_s_from_per_min(machine->max_feed_mm_per_min);
   if (judged_for && judged_for->model.default_unit_mm) {

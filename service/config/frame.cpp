@@ -48,7 +48,7 @@ Eigen::Matrix3d rotation_from_deg(double a_deg, double b_deg, double c_deg) {
   return z * y * x;
 }
 
-Frame parse_frame(std::string_view text) {
+std::array<double, 6> parse_frame_values(std::string_view text) {
   std::array<double, 6> values{};
   std::size_t count = 0;
   const char* at = text.data();
@@ -64,7 +64,17 @@ Frame parse_frame(std::string_view text) {
     at = next + 1;
   }
   if (count != 3 && count != 6) refuse(text);
+  return values;
+}
+
+Frame parse_frame(std::string_view text) {
+  const std::array<double, 6> values = parse_frame_values(text);
   return {rotation_from_deg(values[3], values[4], values[5]), {values[0], values[1], values[2]}};
+}
+
+Frame frame_of(const WorkFrame& row) {
+  const auto [a, b, c] = row.rotation_deg;
+  return {rotation_from_deg(a, b, c), to_vector(row.origin_mm)};
 }
 
 void place_workpiece(MachineModel& model, const Frame& frame) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
+#include "meridian/kinematics/work_frame.hpp"
 #include "service/config/config_error.hpp"
 
 namespace meridian::config {
@@ -33,6 +35,10 @@ struct Frame {
 /// Reads `x,y,z` or `x,y,z,a,b,c` (mm and deg), the argument of --frame. Throws ConfigError whose
 /// file is `--frame`. Proof: tests/unit/config/frame_test.cpp.
 [[nodiscard]] Frame parse_frame(std::string_view text);
+
+/// The same six numbers as a row of the set-up has them: equal numbers give equal bits.
+[[nodiscard]] std::array<double, 6> parse_frame_values(std::string_view text);
+[[nodiscard]] Frame frame_of(const WorkFrame& row);
 
 /// Puts the workpiece of `model` at `frame`.
 void place_workpiece(MachineModel& model, const Frame& frame);

@@ -50,6 +50,7 @@ void session_request_fields(Way way, Message& message, Wire& wire) {
   way(message.options, wire.options);
   way(message.file_checksum, wire.file_checksum);
   way(message.from_line, wire.from_line);
+  way(message.frame, wire.frame);
 }
 
 template <class Way, class Message, class Wire>

@@ -15,6 +15,11 @@ void command_request_fields(Way way, Message& message, Wire& wire) {
   way(message.status_seen, wire.status_seen);
   way(message.service_id_seen, wire.service_id_seen);
   way(message.argument, wire.argument);
+  way(message.frame.word, wire.frame_word);
+  way(message.frame.frame.number, wire.frame_number);
+  way.name(message.frame.frame.name, wire.frame_name);
+  way(message.frame.frame.origin_mm, wire.frame_origin_mm);
+  way(message.frame.frame.rotation_deg, wire.frame_rotation_deg);
 }
 
 template <class Way, class Message, class Wire>

@@ -11,6 +11,8 @@ namespace meridian::dds {
 namespace {
 
 static_assert(kMaxHistograms == meridian_wire_kHistograms);
+constexpr WorkFrame kNoFrame{};
+static_assert(WorkFrames::kMost == meridian_wire_kWorkFrames);
 
 template <class Way, class Message, class Wire>
 void status_fields(Way way, Message& message, Wire& wire) {
@@ -47,6 +49,8 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.is_single_block, wire.is_single_block);
   way(message.stops_at_optional, wire.stops_at_optional);
   way(message.is_dry_run, wire.is_dry_run);
+  way(message.work_frame, wire.work_frame);
+  way(message.frame, wire.frame);
   way(message.rate, wire.rate);
   way(message.plan_time_s, wire.plan_time_s);
   way(message.joints, wire.joints);
@@ -91,6 +95,14 @@ void joint_info_fields(Way way, Message& message, Wire& wire) {
 }
 
 template <class Way, class Message, class Wire>
+void work_frame_fields(Way way, Message& message, Wire& wire) {
+  way(message.number, wire.number);
+  way.name(message.name, wire.name);
+  way(message.origin_mm, wire.origin_mm);
+  way(message.rotation_deg, wire.rotation_deg);
+}
+
+template <class Way, class Message, class Wire>
 void machine_info_fields(Way way, Message& message, Wire& wire) {
   way(message.service_id, wire.service_id);
   way(message.served_ns, wire.served_ns);
@@ -117,6 +129,7 @@ void machine_info_fields(Way way, Message& message, Wire& wire) {
   way(message.tool_length_mm, wire.tool_length_mm);
   way(message.frame_rotation, wire.frame_rotation);
   way(message.frame_origin_mm, wire.frame_origin_mm);
+  way(message.work_frame, wire.work_frame);
   way.whole(message.machine_file, wire.machine_file);
   way.whole(message.tool_file, wire.tool_file);
 }
@@ -185,12 +198,21 @@ void from_wire(const meridian_wire_Status& wire, Status& message) {
 
 void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   machine_info_fields(ToWire(), message, wire);
+  const std::size_t count = std::min<std::size_t>(message.work_frames.size(), WorkFrames::kMost);
+  wire.work_frame_count = static_cast<std::uint32_t>(count);
+  for (std::size_t i = 0; i < WorkFrames::kMost; ++i) {
+    work_frame_fields(ToWire(), i < count ? message.work_frames[i] : kNoFrame, wire.work_frames[i]);
+  }
 }
 
 void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
   machine_info_fields(FromWire(), message, wire);
   message.joint_count = std::min<std::uint32_t>(message.joint_count, kMaxJoints);
   message.stage_drive_count = std::min<std::uint32_t>(message.stage_drive_count, kStageDrives);
+  message.work_frames.resize(std::min<std::size_t>(wire.work_frame_count, WorkFrames::kMost));
+  for (std::size_t i = 0; i < message.work_frames.size(); ++i) {
+    work_frame_fields(FromWire(), message.work_frames[i], wire.work_frames[i]);
+  }
 }
 
 void to_wire(const Latency& message, meridian_wire_Latency& wire) noexcept {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/work_frame.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/rt/cycle_data.hpp"
 #include "meridian/rt/histogram.hpp"
@@ -60,6 +61,7 @@ struct SessionRequest {
   std::string options{};  ///< of the station's command line, at most kMostOptions characters
   std::uint64_t file_checksum = 0;  ///< FNV-1a, 64 bit, of the file's bytes; 0: not known
   std::uint32_t from_line = 0;      ///< the program begins with this line; 0: with its first
+  std::uint64_t frame = 0;  ///< stream::frame_sum() that it was checked under; 0: under none
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.
@@ -101,6 +103,7 @@ struct CommandRequest {
   std::uint64_t status_seen = 0;
   std::uint64_t service_id_seen = 0;  ///< 0: any
   double argument = 0;
+  FrameOrder frame{};  ///< of Verb::kFrame
 };
 
 /// `reply`
@@ -247,6 +250,8 @@ struct Status {
   bool is_single_block = false;
   bool stops_at_optional = false;
   bool is_dry_run = false;
+  std::uint8_t work_frame = 0;  ///< number of the one in force; 0: the machine file's
+  std::uint64_t frame = 0;      ///< its stream::frame_sum()
   double rate = 1;
   double plan_time_s = 0;
   JointVector joints{};
@@ -307,6 +312,8 @@ struct MachineInfo {
   double tool_length_mm = 0;
   std::array<double, 9> frame_rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row
   Array3 frame_origin_mm{};
+  std::uint8_t work_frame = 0;           ///< number of the one in force; 0: the machine file's
+  std::vector<WorkFrame> work_frames{};  ///< the set-up, at most WorkFrames::kMost rows
   std::string machine_file{};  ///< its text; empty where it is longer than kMachineFileBytes
   std::string tool_file{};     ///< text of the tool table; empty: none, or longer than fits
 };

@@ -41,6 +41,11 @@ struct ToWire {
     std::memcpy(to, from.data(), length);
     std::memset(to + length, 0, N - length);
   }
+  /// A text of fixed length on both sides.
+  template <std::size_t N>
+  void name(const std::array<char, N>& from, char (&to)[N]) const noexcept {
+    std::copy(from.begin(), from.end(), to);
+  }
   template <std::size_t N>
   void whole(const std::string& from, char (&to)[N]) const noexcept {
     (*this)(from, to);
@@ -68,6 +73,12 @@ struct FromWire {
   template <std::size_t N>
   void operator()(std::string& to, const char (&from)[N]) const {
     to = text::printable({from, ::strnlen(from, N)}, N);
+  }
+  template <std::size_t N>
+  void name(std::array<char, N>& to, const char (&from)[N]) const {
+    const std::string text = text::printable({from, ::strnlen(from, N)}, N - 1);
+    to.fill('\0');
+    std::copy(text.begin(), text.end(), to.begin());
   }
   /// The text of a file: its lines stay lines.
   template <std::size_t N>

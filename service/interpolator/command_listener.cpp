@@ -21,7 +21,8 @@ namespace {
   arrival.argument = request.argument;
   arrival.epoch_seen = request.epoch_seen;
   arrival.verb = request.verb;
-  const std::size_t length = std::min(request.operator_name.size(), arrival.operator_name.size() - 1);
+  const std::size_t length =
+      std::min(request.operator_name.size(), arrival.operator_name.size() - 1);
   std::memcpy(arrival.operator_name.data(), request.operator_name.data(), length);
   return arrival;
 }
@@ -44,6 +45,7 @@ void CommandListener::on_data(dds::Reader<dds::CommandRequest>& reader) noexcept
       ports_.stop_status.store(status_clock_.newest(), std::memory_order_release);
       ports_.commands.stage_stop(request_.verb, key);
     }
+    if (request_.verb == Verb::kFrame) (void)ports_.frame.orders.try_push({key, request_.frame});
     if (!ports_.arrivals.try_push(arrival_of(request_, key, info.source))) {
       ports_.commands_dropped.fetch_add(1, std::memory_order_relaxed);
     }

@@ -74,13 +74,21 @@ void CycleThread::hand_over() noexcept {
   show();  // before the events: who hears of one sees at least the cycle that told it
   push_or_count(ports_.records, output_.record, ports_.records_overrun);
   for (std::size_t i = 0; i < output_.event_count; ++i) {
-    push_or_count(ports_.events, output_.events[i], ports_.events_overrun);
+    const Event& event = output_.events[i];
+    const bool is_frame = event.b == static_cast<std::uint64_t>(Verb::kFrame);
+    if (event.code == EventCode::kAccepted && is_frame) take_frame();
+    push_or_count(ports_.events, event, ports_.events_overrun);
   }
   ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
   (void)ports_.timings.try_push({.lateness = output_.record.lateness_ns,
                                  .computation = computation_ns_,
                                  .wake = narrow_ns(times_.handed_ns - times_.computed_ns),
                                  .lost = inputs_.lost_periods});
+}
+
+/// Between two programs: nothing that is planned by the frame before runs any more.
+void CycleThread::take_frame() noexcept {
+  if (ports_.frame.for_cycle.refresh()) place(model_, ports_.frame.for_cycle.latest());
 }
 
 /// Ahead of the wake, so that the publisher passes it on in this very cycle.

@@ -16,10 +16,14 @@ class CycleThread {
  public:
   CycleThread(const MachineModel& model, const CycleOptions& options, Ports& ports) noexcept;
 
+  /// Before run(): where the workpiece lies.
+  void place_workpiece(const FrameInForce& frame) noexcept { place(model_, frame); }
   /// Runs until Ports::is_stopping.
   void run() noexcept;
 
  private:
+  /// Takes over the work frame that an accepted word puts in force, from the next period on.
+  void take_frame() noexcept;
   void gather(const Period& period, std::int64_t now_ns) noexcept;
   void hand_over() noexcept;
   void show() noexcept;
@@ -27,7 +31,7 @@ class CycleThread {
   void watch_enabling(std::int64_t now_ns) noexcept;
   void tell_spans() noexcept;
 
-  const MachineModel& model_;
+  MachineModel model_;
   Ports& ports_;
   CycleState state_;
   MotionReader motion_;

@@ -32,7 +32,8 @@ Intake::Intake(dds::Participant& participant, const MachineModel& model,
     : participant_(participant),
       ports_(ports),
       service_(service),
-      judge_(model, tools, service_id),
+      model_(model),
+      judge_(model_, tools, service_id),
       batches_(participant),
       requests_(participant),
       credits_(participant),
@@ -124,19 +125,45 @@ void Intake::take_requests() {
   dds::SessionRequest request;
   dds::SampleInfo info;
   for (int left = kMaxSamples; left > 0 && requests_.take(request, info); --left) {
-    if (!info.is_valid || !is_within_quota(info.source) || !may_go_on(request)) continue;
-    const std::uint64_t before = judge_.session();
-    publish(judge_.on_request(request, around(),
-                              ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
-    if (judge_.session() == request.session && judge_.is_held()) {
-      if (station_source_ != info.source) {
-        station_identity_ = dds::describe_source(participant_, requests_.handle(), info.source);
-      }
-      station_source_ = info.source;
-      is_station_there_ = true;
-      if (before != request.session) begin_session(request);
-    }
+    if (info.is_valid && is_within_quota(info.source)) take_request(request, info.source);
   }
+}
+
+void Intake::take_request(const dds::SessionRequest& request, std::uint64_t source) {
+  if (!may_open(request) || !may_go_on(request)) return;
+  const std::uint64_t before = judge_.session();
+  publish(
+      judge_.on_request(request, around(), ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
+  if (judge_.session() != request.session || !judge_.is_held()) return;
+  if (station_source_ != source) {
+    station_identity_ = dds::describe_source(participant_, requests_.handle(), source);
+  }
+  station_source_ = source;
+  is_station_there_ = true;
+  if (before != request.session) begin_session(request);
+}
+
+/// The claim is given back in show() where no session comes of it.
+bool Intake::may_open(const dds::SessionRequest& request) {
+  if (request.request != dds::SessionRequestKind::kOpen || judge_.is_held()) return true;
+  if (!ports_.frame.claim.try_take(ProgramClaim::Holder::kSession)) {
+    publish(judge_.refuse_program(request, "the work frame is being changed; stream it again"));
+    return false;
+  }
+  if (ports_.frame.for_intake.refresh()) put_in_force(ports_.frame.for_intake.latest());
+  if (request.frame == 0 || request.frame == frame_.sum) return true;
+  publish(judge_.refuse_program(request,
+                                "stale: the program was checked under another work frame "
+                                "than number " +
+                                    std::to_string(frame_.number) +
+                                    ", which is in force now; stream it again"));
+  return false;
+}
+
+void Intake::put_in_force(const FrameInForce& frame) noexcept {
+  frame_ = frame;
+  place(model_, frame);
+  setup_.frame = frame.sum;
 }
 
 /// Who opens session after session is not answered each time; his blocks and others notice nothing.
@@ -241,6 +268,7 @@ void Intake::publish(const std::optional<dds::Credit>& credit) {
 
 void Intake::show() {
   ports_.session.store(judge_.session(), std::memory_order_relaxed);
+  if (!judge_.is_held()) ports_.frame.claim.give_back(ProgramClaim::Holder::kSession);
   const stream::IntakeCounters& counters = judge_.counters();
   const std::lock_guard lock(view_mutex_);
   view_.session = judge_.session();

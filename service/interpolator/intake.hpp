@@ -9,9 +9,9 @@
 #include "service/config/service_file.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
+#include "service/dds/sources.hpp"
 #include "service/dds/waitset.hpp"
 #include "service/dds/writer.hpp"
-#include "service/dds/sources.hpp"
 #include "service/interpolator/participant_quota.hpp"
 #include "service/interpolator/ports.hpp"
 #include "service/stream/intake_judge.hpp"
@@ -46,6 +46,8 @@ class Intake {
   void wake() noexcept { waitset_.wake(); }
   /// Any thread: whether somebody reads actions.
   void set_action_peer(bool is_there) noexcept { has_action_peer_ = is_there; }
+  /// Before run(): where the workpiece lies.
+  void place_workpiece(const FrameInForce& frame) noexcept { put_in_force(frame); }
   [[nodiscard]] SessionView view() const;
   /// Of credits, see dds::StalledReaders.
   [[nodiscard]] std::int32_t writer() const noexcept { return credits_.handle(); }
@@ -65,6 +67,10 @@ class Intake {
   void free_idle_machine();
   void take_requests();
   [[nodiscard]] bool is_within_quota(std::uint64_t source);
+  void take_request(const dds::SessionRequest& request, std::uint64_t source);
+  /// False, and answered, where the set-up is being changed, or it was checked under another frame.
+  [[nodiscard]] bool may_open(const dds::SessionRequest& request);
+  void put_in_force(const FrameInForce& frame) noexcept;
   /// False, and answered, where it goes on with another program than it says.
   [[nodiscard]] bool may_go_on(const dds::SessionRequest& request);
   void begin_session(const dds::SessionRequest& request);
@@ -87,6 +93,8 @@ class Intake {
   dds::Participant& participant_;
   Ports& ports_;
   const config::ServiceConfig& service_;
+  MachineModel model_;
+  FrameInForce frame_;
   stream::IntakeJudge judge_;
   dds::Reader<dds::Batch> batches_;
   dds::Reader<dds::SessionRequest> requests_;
@@ -94,7 +102,7 @@ class Intake {
   dds::Waitset waitset_;
 
   dds::Senders senders_;
-  ParticipantQuota quota_{50, 200};  ///< of sessions that are opened or closed
+  ParticipantQuota quota_{50, 200};    ///< of sessions that are opened or closed
   std::uint64_t pushed_ = 0;           ///< blocks put into the queue, ever
   QueueMark mark_;                     ///< newest that was shown
   std::uint64_t refused_session_ = 0;  ///< newest session that was refused while it held

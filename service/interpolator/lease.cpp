@@ -25,6 +25,14 @@ void Lease::hold() {
   say();
 }
 
+void Lease::place_workpiece(const WorkFrames& frames, const FrameInForce& in_force, bool is_told) {
+  claim_.frame_rotation = in_force.rotation;
+  claim_.frame_origin_mm = in_force.origin_mm;
+  claim_.work_frame = in_force.number;
+  claim_.work_frames.assign(frames.rows().begin(), frames.rows().end());
+  if (is_told) say();
+}
+
 void Lease::say() {
   const LeaseJudge::Word word = judge_.word(monotonic_ns());
   claim_.is_serving = word.is_serving;

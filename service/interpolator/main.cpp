@@ -128,6 +128,7 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   std::uint32_t looks = 0;
   while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) {
     service->keep_lease();
+    service->tell_set_up();
     service->tell_sources();
     if (++looks % 10 == 0) service->report_stalled_readers();
     dds::report_left_out();

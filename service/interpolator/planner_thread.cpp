@@ -9,7 +9,8 @@ PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, 
     : ports_(ports),
       queue_(ports),
       writer_(ports.motion),
-      planner_(model, tools),
+      model_(model),
+      planner_(model_, tools),
       spans_(ports.spans != nullptr ? &ports.spans->planner : nullptr) {
   if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
 }
@@ -43,6 +44,8 @@ bool PlannerThread::work() noexcept {
   if (!has_begun_) {
     const CycleView& view = queue_.view();
     if (view.record.state != State::kReady) return false;
+    // Set before the session was opened that sent this block.
+    if (ports_.frame.for_planner.refresh()) place(model_, ports_.frame.for_planner.latest());
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view.epoch, look.front->settings);
     writer_.forget_ahead();  // in Ready all that was published has run or is void

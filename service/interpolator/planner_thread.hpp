@@ -20,6 +20,8 @@ class PlannerThread {
  public:
   PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports);
 
+  /// Before run(): where the workpiece lies.
+  void place_workpiece(const FrameInForce& frame) noexcept { place(model_, frame); }
   /// Runs until Ports::is_stopping.
   void run() noexcept;
 
@@ -42,6 +44,7 @@ class PlannerThread {
   Ports& ports_;
   QueueFollower queue_;
   MotionWriter writer_;
+  MachineModel model_;
   SmoothPlanner planner_;
   std::uint64_t session_ = 0;          ///< of the block that was planned last
   std::int64_t last_block_ns_ = 0;     ///< when one was planned last

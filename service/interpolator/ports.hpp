@@ -19,6 +19,7 @@
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/interpolator/command_port.hpp"
 #include "service/interpolator/enabling_watch.hpp"
+#include "service/interpolator/frame_port.hpp"
 #include "service/interpolator/queue_mark.hpp"
 #include "service/interpolator/reply_queue.hpp"
 #include "service/interpolator/sent_times.hpp"
@@ -187,6 +188,7 @@ struct Ports {
   std::atomic<std::uint64_t> commands_dropped{0}, replies_dropped{0};
   std::atomic<double> spindle_tool_mm{0};     ///< gauge line to tip of the tool in the spindle
   std::atomic<bool> is_tool_changing{false};  ///< that may be another one by now
+  FramePorts frame;
   QueueMarkWord queue_mark;                   ///< intake to planner: what of `blocks` is good
   std::atomic<double> planned_s{0};           ///< plan time of the program that was published
   std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};

@@ -15,6 +15,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/interpolator/monotonic.hpp"
+#include "service/stream/frame_sum.hpp"
 #include "service/telemetry/file_name.hpp"
 #include "service/telemetry/log.hpp"
 #include "service/text/checksum.hpp"
@@ -74,9 +75,7 @@ namespace {
   info.tip_tolerance_mm = model.tolerances.tip_mm;
   info.axis_tolerance_rad = model.tolerances.axis_rad;
   info.tool_length_mm = model.tool_length_mm;
-  for (int i = 0; i < 9; ++i) {
-    info.frame_rotation[static_cast<std::size_t>(i)] = model.frame_rotation(i / 3, i % 3);
-  }
+  info.frame_rotation = stream::rows_of(model.frame_rotation);
   info.frame_origin_mm = to_array(model.frame_origin_mm);
   if (parts.machine_file.size() <= dds::kMachineFileBytes) info.machine_file = parts.machine_file;
   if (parts.tool_file.size() <= dds::kToolFileBytes) info.tool_file = parts.tool_file;
@@ -103,16 +102,9 @@ namespace {
   return lengths;
 }
 
-/// What programs are cut with as long as this service lasts; the tool changes.
+/// What programs are cut with as long as this service lasts; tool and work frame change.
 [[nodiscard]] telemetry::CutSetup cut_setup(const ServiceParts& parts) {
-  text::Checksum frame;
-  const auto add = [&frame](double value) {
-    frame.add({reinterpret_cast<const char*>(&value), sizeof value});
-  };
-  for (int i = 0; i < 9; ++i) add(parts.model.frame_rotation(i / 3, i % 3));
-  for (const double value : to_array(parts.model.frame_origin_mm)) add(value);
   telemetry::CutSetup setup;
-  setup.frame = frame.sum();
   setup.machine = text::checksum_of(parts.machine_file);
   setup.tools = text::checksum_of(parts.tool_file);
   return setup;
@@ -167,6 +159,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
                                                                 : dds::OpenNetwork::kRefused}),
       lease_(participant_, machine_info(parts_, service_id_),
              [this](const std::string& text) { log_->warn("{}", text); }),
+      set_up_(parts_.state_folder, parts_.model.name),
       audit_(audit_options(parts_)),
       publisher_(participant_, service_id_, ports_),
       feedback_(participant_, parts_.model, service_id_, ports_),
@@ -226,11 +219,36 @@ void Service::take_lease() {
   constexpr auto kStartWindow = std::chrono::milliseconds(500);
   constexpr auto kPatience = std::chrono::milliseconds(1800);
   const auto holder = lease_.find_holder(kStartWindow, kPatience);
-  if (!holder) {
-    lease_.hold();
-    return;
+  if (holder) throw served_already(*holder);
+  read_set_up();
+  lease_.hold();
+}
+
+/// Behind the lease, for another service may have changed it until then. A machine whose set-up
+/// cannot be read does not start with another one than its operator has set.
+void Service::read_set_up() {
+  const auto frames = set_up_.read();
+  if (!frames) {
+    throw StartError("the set-up " + set_up_.path().string() + " " + frames.error() +
+                     "; put it right, or remove it and set the work frames anew");
   }
-  throw served_already(*holder);
+  const FrameInForce frame = frame_in_force(*frames, parts_.model, 0);
+  intake_.place_workpiece(frame);
+  planner_.place_workpiece(frame);
+  cycle_.place_workpiece(frame);
+  telemetry_.place_workpiece(frame);
+  supervisor_.keep_frames(set_up_, *frames, frame);
+  lease_.place_workpiece(*frames, frame, false);
+  if (frame.number != 0) {
+    log_->info("work frame {} of the set-up is in force, in the place of the machine file's",
+               frame.number);
+  }
+}
+
+void Service::tell_set_up() {
+  if (!supervisor_.has_frames_to_tell()) return;
+  lease_.place_workpiece(supervisor_.frames(), supervisor_.frame(), true);
+  supervisor_.frames_told();
 }
 
 void Service::tell_security() {
@@ -252,7 +270,8 @@ void Service::tell_last_program() {
     log_->info("no journal of the last executed block is kept: no state_directory is named");
     return;
   }
-  const telemetry::CutSetup setup = cut_setup(parts_);
+  telemetry::CutSetup setup = cut_setup(parts_);
+  setup.frame = supervisor_.frame().sum;
   if (const auto last = journal_.read()) {
     last_program_.set(*last);
     const std::string words = telemetry::describe(*last);
@@ -306,7 +325,8 @@ void Service::start() {
   };
   recorder_thread_ = Thread(realtime_, {"recorder", 0, false}, [this] { recorder_.run(); });
   journal_thread_ = Thread(realtime_, {"journal", 0, false}, [this] {
-    journal_.run([this](const std::string& complaint) { log_->error("{}", complaint); });
+    journal_.run([this](const std::string& complaint) { log_->error("{}", complaint); },
+                 [this] { set_up_.work(); });
   });
   flight_thread_ = Thread(realtime_, {"flight", 0, false}, [this] { flight_.run(); });
   audit_thread_ = Thread(realtime_, {"audit", 0, false}, [this] {

@@ -27,6 +27,7 @@
 #include "service/interpolator/supervisor.hpp"
 #include "service/interpolator/telemetry_thread.hpp"
 #include "service/telemetry/audit_log.hpp"
+#include "service/telemetry/set_up_file.hpp"
 #include "service/trace/tracer.hpp"
 
 namespace meridian::interpolator {
@@ -59,6 +60,9 @@ class Service {
   /// machine was heard of only now and keeps it. A machine that is on goes on; drives obey one
   /// service.
   void keep_lease();
+  /// Tells everybody of a set-up that was changed; to be called several times a second, by the
+  /// thread that made the service.
+  void tell_set_up();
   /// Logs who reports drives, and whom of two that report the same one the machine goes by; to be
   /// called several times a second, by the thread that made the service.
   void tell_sources();
@@ -75,6 +79,8 @@ class Service {
  private:
   [[nodiscard]] std::unique_ptr<trace::Tracer> make_tracer();
   void take_lease();
+  /// What the set-up of this machine says, before it is told to anybody. Throws StartError.
+  void read_set_up();
   void tell_security();
   void tell_last_program();
 
@@ -88,6 +94,7 @@ class Service {
   StatusClock status_clock_;
   dds::Participant participant_;
   Lease lease_;
+  telemetry::SetUpFile set_up_;
   telemetry::AuditLog audit_;
   Publisher publisher_;
   FeedbackListener feedback_;

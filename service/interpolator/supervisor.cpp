@@ -55,6 +55,7 @@ void Supervisor::run() noexcept {
     take_actions_done();
     take_events();
     send_delayed_resets();
+    work_on_frame_change();
     work_on_switching_off();
     look_for_action_peer();
     waitset_.wait(kLookAtRings);

@@ -13,10 +13,10 @@
 #include "service/config/service_file.hpp"
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
-#include "service/dds/waitset.hpp"
-#include "service/dds/writer.hpp"
 #include "service/dds/sources.hpp"
 #include "service/dds/stalled_reader.hpp"
+#include "service/dds/waitset.hpp"
+#include "service/dds/writer.hpp"
 #include "service/interpolator/command_listener.hpp"
 #include "service/interpolator/drive_command_thread.hpp"
 #include "service/interpolator/enabling_listener.hpp"
@@ -26,8 +26,13 @@
 #include "service/interpolator/reply_thread.hpp"
 #include "service/interpolator/status_clock.hpp"
 #include "service/telemetry/audit_log.hpp"
+#include "service/telemetry/set_up_file.hpp"
 
 namespace meridian::interpolator {
+
+/// What is in force by the active row of `frames`, or by `machine` itself where none is.
+[[nodiscard]] FrameInForce frame_in_force(const WorkFrames& frames, const MachineModel& machine,
+                                          std::uint32_t change);
 
 /// The commands thread: operators' commands and jogs to the cycle and its answers back, actions out
 /// and in, events on to who wants them, and the orderly end of the service. Stops reach the cycle
@@ -60,6 +65,18 @@ class Supervisor {
   void on_session_event(std::function<void(bool has_action_peer)> tell_intake) {
     tell_intake_ = std::move(tell_intake);
   }
+  /// Before run(): the set-up that `file` holds, and what is in force by it. Without it every word
+  /// about work frames is refused.
+  void keep_frames(telemetry::SetUpFile& file, const WorkFrames& frames,
+                   const FrameInForce& in_force);
+  /// Main thread: whether the set-up is another one than it was told of; then frames() and
+  /// frame() stay as they are until frames_told().
+  [[nodiscard]] bool has_frames_to_tell() const noexcept {
+    return has_frames_to_tell_.load(std::memory_order_acquire);
+  }
+  [[nodiscard]] const WorkFrames& frames() const noexcept { return frames_; }
+  [[nodiscard]] const FrameInForce& frame() const noexcept { return frames_in_force_; }
+  void frames_told() noexcept { has_frames_to_tell_.store(false, std::memory_order_release); }
 
  private:
   struct Pending {
@@ -92,6 +109,16 @@ class Supervisor {
   [[nodiscard]] bool lacks_enabling(Verb verb) const noexcept;
   [[nodiscard]] bool is_within_quota(std::uint64_t participant, std::uint64_t source);
   void delay_reset(const Pending& command);
+  /// What a command of verb `frame` says; an unknown word where that was lost.
+  [[nodiscard]] FrameOrder read_frame_order(std::uint64_t key) noexcept;
+  /// Whether its operator has not seen the work frame yet that is in force.
+  [[nodiscard]] bool is_frame_stale(const dds::CommandRequest& request) const noexcept;
+  void begin_frame_change(const Pending& command);
+  void work_on_frame_change();
+  void ask_cycle_for_frame();
+  void answer_frame(bool is_accepted, Refusal refusal);
+  void take_frame_back(Refusal refusal, const std::string& text);
+  void end_frame_change();
   void send(const Pending& command);
   /// The place for a command that waits for its answer; nullptr: there is none.
   [[nodiscard]] Pending* find_place(Verb verb) noexcept;
@@ -176,6 +203,25 @@ class Supervisor {
   std::array<Pending, 8> delayed_resets_{};  ///< wait until drives left their fault
   std::size_t delayed_count_ = 0;
   std::int64_t delayed_until_ns_ = 0;
+
+  /// How far the one word about the set-up has come that is being done.
+  enum class FramePhase : std::uint8_t {
+    kNone,
+    kOnItsWayToDisk,
+    kAtTheCycle,
+    kOnItsWayBack,  ///< the cycle has refused it: the old set-up is written again
+    kTold           ///< it is in force: status and machine topic are to say so
+  };
+  telemetry::SetUpFile* set_up_ = nullptr;
+  FramePhase frame_phase_ = FramePhase::kNone;
+  WorkFrames frames_, next_frames_;  ///< in force; being set
+  FrameInForce frames_in_force_;
+  Pending frame_command_;
+  Refusal frame_refusal_ = Refusal::kNone;  ///< what it will be answered
+  std::string frame_text_;
+  std::uint32_t frame_change_ = 0;
+  std::uint64_t frame_status_ = 0;  ///< the first status that told of what is in force
+  std::atomic<bool> has_frames_to_tell_{false};
 };
 
 }  // namespace meridian::interpolator

@@ -42,7 +42,9 @@ void Supervisor::take_command(const Arrival& arrival) {
                      .epoch_seen = arrival.epoch_seen,
                      .status_seen = arrival.status_seen,
                      .service_id_seen = arrival.service_id_seen,
-                     .argument = arrival.argument};
+                     .argument = arrival.argument,
+                     .frame = {}};
+  if (arrival.verb == Verb::kFrame) command.request.frame = read_frame_order(arrival.key);
   const dds::CommandRequest& request = command.request;
   if (!is_within_quota(command.participant, arrival.source)) return;
   if (is_stop(request.verb)) return await_stop(command);
@@ -75,6 +77,7 @@ void Supervisor::take_command(const Arrival& arrival) {
           "jog a joint, or wait");
     return;
   }
+  if (request.verb == Verb::kFrame) return begin_frame_change(command);
   const State state = view_.record.state;
   const bool may_reset_drives =
       !view_.is_dry_run && (state == State::kFault || state == State::kOff);
@@ -109,6 +112,7 @@ void Supervisor::await_stop(const Pending& command) {
 Refusal Supervisor::check_turn(const Pending& command) const noexcept {
   const dds::CommandRequest& request = command.request;
   if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) return Refusal::kStale;
+  if (is_frame_stale(request)) return Refusal::kStale;
   if (lacks_enabling(request.verb)) return Refusal::kNoEnablingDevice;
   const std::uint64_t stop_status = ports_.stop_status.load(std::memory_order_acquire);
   const bool is_before_stop = request.status_seen <= stop_status;
@@ -140,7 +144,7 @@ bool Supervisor::is_repetition(const Pending& command) {
     const dds::CommandRequest &a = other.request, &b = command.request;
     return other.participant == command.participant && a.operator_id == b.operator_id &&
            a.request == b.request && a.verb == b.verb && a.argument == b.argument &&
-           a.status_seen == b.status_seen && a.epoch_seen == b.epoch_seen;
+           a.status_seen == b.status_seen && a.epoch_seen == b.epoch_seen && a.frame == b.frame;
   };
   if (command.request.operator_id == 0) return false;
   const auto answered =
@@ -154,7 +158,8 @@ bool Supervisor::is_repetition(const Pending& command) {
     return pending.key != 0 && is_same(pending);
   };
   const auto delayed_end = delayed_resets_.begin() + static_cast<std::ptrdiff_t>(delayed_count_);
-  return std::any_of(pending_.begin(), pending_.end(), waits) ||
+  const bool is_being_set = frame_phase_ != FramePhase::kNone && is_same(frame_command_);
+  return is_being_set || std::any_of(pending_.begin(), pending_.end(), waits) ||
          std::any_of(delayed_resets_.begin(), delayed_end, waits);
 }
 
@@ -184,10 +189,9 @@ void Supervisor::send_delayed_resets() {
 void Supervisor::send(const Pending& command) {
   const dds::CommandRequest& request = command.request;
   Pending* const place = find_place(request.verb);
-  const bool is_sent =
-      place != nullptr &&
-      ports_.commands.stage(
-          {.request = command.key, .verb = request.verb, .argument = request.argument});
+  const bool is_sent = place != nullptr && ports_.commands.stage({.request = command.key,
+                                                                  .verb = request.verb,
+                                                                  .argument = request.argument});
   if (is_sent) {
     *place = command;
   } else {
@@ -226,6 +230,11 @@ void Supervisor::give_up_older(const Event& event) {
   for (Pending& pending : pending_) {
     const bool is_older = pending.key != 0 && pending.key < event.a;
     if (!is_older || is_stop(pending.request.verb)) continue;
+    if (pending.request.verb == Verb::kFrame) {
+      pending.key = 0;
+      ask_cycle_for_frame();  // once more: it makes no difference
+      continue;
+    }
     reply(pending, false, Refusal::kWrongState,
           "the machine's answer was lost: it may have been obeyed; look at the status");
     pending.key = 0;
@@ -237,6 +246,7 @@ void Supervisor::answer(const Event& event, const Pending& pending) {
   const bool is_accepted = event.code == EventCode::kAccepted;
   const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
   const Verb verb = pending.request.verb;
+  if (verb == Verb::kFrame) return answer_frame(is_accepted, refusal);
   if (is_accepted && verb == Verb::kJog) {
     take_jogs();  // what came before is of the hand before
     jog_intake_.begin(pending.request.operator_id, pending.participant, pending.key);
@@ -294,10 +304,9 @@ void Supervisor::audit(const Pending& command, const QueuedReply& queued) {
 }
 
 const std::string& Supervisor::identity_of(const Pending& command) {
-  const auto known = std::find_if(identities_.begin(), identities_.end(),
-                                  [&command](const Identity& identity) {
-                                    return identity.participant == command.participant;
-                                  });
+  const auto known = std::find_if(
+      identities_.begin(), identities_.end(),
+      [&command](const Identity& identity) { return identity.participant == command.participant; });
   if (known != identities_.end() && command.participant != 0) return known->name;
   Identity& identity = identities_[identities_at_++ % identities_.size()];
   identity = {command.participant,

@@ -47,7 +47,7 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
       ports_(ports),
       statuses_(participant),
       latencies_(participant),
-      motion_(model) {
+      motion_(model_) {
   status_.service_id = service_id_;
   status_.realtime_mode = mode;
   status_.is_secured = participant.is_secured();
@@ -61,11 +61,13 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
 void TelemetryThread::run() noexcept {
   const auto status_period_ns = static_cast<std::int64_t>(1e9 / service_.status_rate_hz);
   if (service_.optional_stop) recorder_.take(optional_stop_on());
+  if (frame_.sum != 0) record_frame(0);
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
     // At once: behind actions that are done at once, in a dry run, the way is begun as soon as it
     // is planned.
     if (take_approach()) has_news_ = true;
+    if (take_frame()) has_news_ = true;
     const std::int64_t now_ns = monotonic_ns();
     keep_journal(now_ns);
     const bool is_due = has_news_ || now_ns - status_ns_ >= status_period_ns;
@@ -133,6 +135,10 @@ void TelemetryThread::drain() {
   while (ports_.told.try_pop(event)) {
     recorder_.take(event);
     flight_.take(event);
+    if (event.code == EventCode::kAccepted && static_cast<Verb>(event.b) == Verb::kFrame) {
+      has_news_ = take_frame() || has_news_;
+      record_frame(event.cycle);
+    }
     tell(event);
     keeper_.see(event, alarm_message_);
   }
@@ -180,6 +186,30 @@ void TelemetryThread::drain_records() {
     motion_.see(record, tool_mm);
     program_.see(record, view_.feed_override, view_.rapid_override);
   }
+}
+
+bool TelemetryThread::take_frame() noexcept {
+  if (!ports_.frame.for_telemetry.refresh()) return false;
+  put_in_force(ports_.frame.for_telemetry.latest());
+  return true;
+}
+
+void TelemetryThread::put_in_force(const FrameInForce& frame) noexcept {
+  frame_ = frame;
+  place(model_, frame);
+  setup_.frame = frame.sum;
+  status_.work_frame = frame.number;
+  status_.frame = frame.sum;
+}
+
+void TelemetryThread::record_frame(std::uint64_t cycle) noexcept {
+  recorder_.take(record::RecordedFrame{cycle, frame_.number, frame_.origin_mm, frame_.rotation});
+}
+
+void TelemetryThread::tell_frame_told() noexcept {
+  if (ports_.frame.told.load(std::memory_order_relaxed) == frame_.change) return;
+  ports_.frame.status.store(status_.status_sequence, std::memory_order_relaxed);
+  ports_.frame.told.store(frame_.change, std::memory_order_release);
 }
 
 bool TelemetryThread::tell_program() {
@@ -406,6 +436,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);
   (void)statuses_.write(status);
+  tell_frame_told();
   status_ns_ = now_ns;
   has_news_ = false;
   motion_.reset();

@@ -39,6 +39,8 @@ class TelemetryThread {
                   telemetry::FlightRecorder& flight, std::shared_ptr<spdlog::logger> log,
                   Ports& ports);
 
+  /// Before run(): where the workpiece lies.
+  void place_workpiece(const FrameInForce& frame) noexcept { put_in_force(frame); }
   /// Before run(): what the status says until there is something newer.
   void say_first(const std::string& message) { status_.message = message; }
 
@@ -62,6 +64,12 @@ class TelemetryThread {
  private:
   void drain();
   void drain_records();
+  /// A work frame that was put in force meanwhile; false: none was.
+  bool take_frame() noexcept;
+  void put_in_force(const FrameInForce& frame) noexcept;
+  void record_frame(std::uint64_t cycle) noexcept;
+  /// Lets the commands thread know that the newest status tells of the newest frame.
+  void tell_frame_told() noexcept;
   /// Tells how the program went that is over; false: none is.
   bool tell_program();
   void tell(const Event& event);
@@ -81,7 +89,8 @@ class TelemetryThread {
   void publish_status(std::int64_t now_ns);
   void publish_latency(std::int64_t now_ns);
 
-  const MachineModel& model_;
+  MachineModel model_;
+  FrameInForce frame_;
   const config::ServiceConfig& service_;
   std::uint64_t service_id_;
   Intake& intake_;

@@ -23,7 +23,8 @@ Expected<OperatorEventsWriter, RecordError> OperatorEventsWriter::create(const s
 bool is_replayed(const Event& event) noexcept {
   const auto verb = static_cast<Verb>(event.b);
   // No program is there then.
-  const bool is_outside = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kDryRun;
+  const bool is_outside = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kDryRun ||
+                          verb == Verb::kFrame;  // that has a row of its own
   return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_outside) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
          event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned ||
@@ -51,6 +52,17 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
   } else {
     row.put(name_of(static_cast<Verb>(event.b))).put(',').put_real(event.x);
   }
+  file_.end_row(row.put('\n').end());
+  return file_.flush();
+}
+
+bool OperatorEventsWriter::write(const RecordedFrame& frame) noexcept {
+  char* const at = file_.begin_row();
+  if (at == nullptr) return false;
+  CsvRow row(at);
+  row.put_integer(frame.cycle).put(',').put(kFrameWord).put(',').put_integer(int{frame.number});
+  for (const double value : frame.origin_mm) row.put(',').put_real(value);
+  for (const double value : frame.rotation) row.put(',').put_real(value);
   file_.end_row(row.put('\n').end());
   return file_.flush();
 }

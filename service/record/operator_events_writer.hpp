@@ -9,6 +9,7 @@
 #include "meridian/rt/cycle_data.hpp"
 #include "service/record/csv_file.hpp"
 #include "service/record/record_error.hpp"
+#include "service/record/recorded_frame.hpp"
 
 namespace meridian::record {
 
@@ -44,6 +45,8 @@ class OperatorEventsWriter {
 
   /// Adds the event if it is_replayed(); others are passed over. False once a write failed.
   bool write(const Event& event) noexcept;
+  /// Adds where the workpiece lies from a cycle on. False once a write failed.
+  bool write(const RecordedFrame& frame) noexcept;
   /// Says in the file that events are missing, once: `meridian simulate --events` refuses it then.
   void mark_incomplete() noexcept;
   /// Flushes and closes; false where anything was lost.

@@ -150,6 +150,7 @@ void keep_settings(const std::vector<EventRow>& rows, std::int64_t start,
 Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                            const std::string& name,
                                                            double most_feed) {
+  const std::string_view all = text;
   std::vector<EventRow> rows;
   OperatorEvents events;
   std::optional<std::int64_t> start;
@@ -157,6 +158,10 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
   for (int line = 1; !text.empty(); ++line) {
     const std::string_view part = cut(text, '\n');
     if (part.empty() || part.front() == '#' || part.starts_with("cycle,verb,argument")) continue;
+    if (record::is_frame_row(part)) {
+      if (record::read_frame(part)) continue;
+      return tl::make_unexpected(name + ":" + std::to_string(line) + ": holds no work frame");
+    }
     if (FeedMark mark; read_mark(part, mark)) {
       if (mark.is_begin) is_first_program = !start;
       if (mark.is_begin && is_first_program) events.feed_marks.clear();
@@ -175,6 +180,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
     if (row.word == name_of(Verb::kStart) && !start) start = row.event.cycle;
     rows.push_back(row);
   }
+  events.frame = record::find_recorded_frame(all);
   if (start) keep_settings(rows, *start, events.verbs);
   for (const EventRow& row : rows) keep(row, start.value_or(0), events);
   return events;

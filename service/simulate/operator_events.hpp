@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "meridian/expected.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "meridian/rt/state.hpp"
+#include "service/record/recorded_frame.hpp"
 
 namespace meridian::simulate {
 
@@ -40,6 +42,8 @@ struct OperatorEvents {
   /// What the live planner told of feed overrides above 100 % and of its look at the begin; empty:
   /// it is planned as a service would that waits for no block.
   std::vector<FeedMark> feed_marks;
+  /// Where the workpiece lay; nothing: that is not told.
+  std::optional<record::RecordedFrame> frame;
 };
 
 /// Reads operator events: a row `cycle,verb[,argument]` each, in the order of cycles; the header
@@ -50,7 +54,8 @@ struct OperatorEvents {
 /// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
 /// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun`,
-/// `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. A row `incomplete`, by which
+/// `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. Rows `frame` (RecordedFrame)
+/// stand anywhere. A row `incomplete`, by which
 /// a recorder says that it lost events, is refused. The error is a message with name and line.
 /// Proof: tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,

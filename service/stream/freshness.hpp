@@ -28,6 +28,7 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
     case Verb::kRapidOverride:
     case Verb::kJog:
     case Verb::kHome:
+    case Verb::kFrame:
       return true;
     case Verb::kSingleBlock:
     case Verb::kOptionalStop:

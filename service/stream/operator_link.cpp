@@ -141,11 +141,25 @@ dds::Reply OperatorLink::refuse_as_not_dry(const dds::CommandRequest& request) c
 std::optional<dds::Reply> OperatorLink::ask(Verb verb, double argument, Milliseconds timeout,
                                             const std::optional<Seen>& seen) {
   dds::CommandRequest request;
+  request.verb = verb;
+  request.argument = argument;
+  return ask(std::move(request), timeout, seen);
+}
+
+std::optional<dds::Reply> OperatorLink::ask(const FrameOrder& order, Milliseconds timeout) {
+  dds::CommandRequest request;
+  request.verb = Verb::kFrame;
+  request.frame = order;
+  return ask(std::move(request), timeout, std::nullopt);
+}
+
+std::optional<dds::Reply> OperatorLink::ask(dds::CommandRequest request, Milliseconds timeout,
+                                            const std::optional<Seen>& seen) {
   request.request = ++request_;
   request.operator_id = operator_id_;
   request.operator_name = name_;
-  request.verb = verb;
-  request.argument = argument;
+  const Verb verb = request.verb;
+  const double argument = request.argument;
   for (Service& service : services_) service.reply.reset();
   const bool is_for_dry_run = may_be_dry(verb) && argument != 0;
   const auto begin = Clock::now(), end = begin + timeout;

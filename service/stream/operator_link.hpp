@@ -56,6 +56,8 @@ class OperatorLink {
   /// `seen`: what the operator saw elsewhere, in the place of the newest status that came in here.
   [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout,
                                               const std::optional<Seen>& seen = std::nullopt);
+  /// Asks for a change of the set-up.
+  [[nodiscard]] std::optional<dds::Reply> ask(const FrameOrder& order, Milliseconds timeout);
 
   /// Waits until the machine is in a state that `is_there` likes, after `reply` (the answer to the
   /// verb that is to lead there), and returns that state. `look` sees every status meanwhile.
@@ -65,6 +67,8 @@ class OperatorLink {
       const std::function<void(const dds::Status&)>& look, Milliseconds timeout);
 
  private:
+  [[nodiscard]] std::optional<dds::Reply> ask(dds::CommandRequest request, Milliseconds timeout,
+                                              const std::optional<Seen>& seen);
   /// A service that publishes a status for this machine.
   struct Service {
     std::uint64_t source = 0, participant = 0, service_id = 0;

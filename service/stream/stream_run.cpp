@@ -59,6 +59,7 @@ dds::SessionRequest request_of(const StreamOptions& options) {
   request.policies = options.policies;
   request.options = options.options;
   request.from_line = options.reader.first_line;
+  request.frame = options.frame;
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "service/telemetry/file_name.hpp"
+#include "service/telemetry/sealed_text.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::telemetry {
@@ -24,30 +25,6 @@ namespace {
 constexpr std::size_t kMost_bytes = 4096;
 /// Stations and programs are named in it: it is not everybody's.
 constexpr mode_t kMode = 0640;
-
-/// The journal in `file`, as open() returned it; else what is wrong with it.
-[[nodiscard]] Expected<JournalEntry, std::string> parse_file(int file, const std::string& machine) {
-  const auto why = [](int error) {
-    return tl::make_unexpected(error == ELOOP
-                                   ? std::string("is a symbolic link")
-                                   : fmt::format("cannot be read: {}", std::strerror(error)));
-  };
-  if (file < 0) return why(errno);
-  struct stat facts {};
-  if (::fstat(file, &facts) != 0) return why(errno);
-  if (!S_ISREG(facts.st_mode)) return tl::make_unexpected(std::string("is no regular file"));
-  std::string text(kMost_bytes, '\0');
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t count = ::read(file, text.data() + size, text.size() - size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return why(errno);
-    if (count == 0) break;
-    size += static_cast<std::size_t>(count);
-  }
-  text.resize(size);
-  return parse_journal(text, machine);
-}
 
 [[nodiscard]] std::string position_name(const std::filesystem::path& journal) {
   return std::filesystem::path(journal).replace_extension(".position").string();
@@ -121,11 +98,9 @@ void Journal::write_position() noexcept {
 
 std::optional<JournalEntry> Journal::read() {
   if (path_.empty()) return std::nullopt;
-  // No link is followed, no pipe waited for.
-  const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
-  if (file < 0 && errno == ENOENT) return std::nullopt;
-  auto entry = parse_file(file, machine_);
-  if (file >= 0) (void)::close(file);
+  const auto text = read_small_file(path_, kMost_bytes);
+  if (text && !*text) return std::nullopt;
+  auto entry = text ? parse_journal(**text, machine_) : tl::make_unexpected(text.error());
   if (entry) {
     read_positions(position_name(path_), *entry);
     return *entry;
@@ -142,7 +117,8 @@ void Journal::put_aside(const std::string& why) {
                            failed ? "" : " (put aside as " + aside.filename().string() + ")");
 }
 
-void Journal::run(const std::function<void(const std::string&)>& complain) noexcept {
+void Journal::run(const std::function<void(const std::string&)>& complain,
+                  const std::function<void()>& beside) noexcept {
   if (path_.empty()) return;
   int told = 0;
   for (bool is_last = false; !is_last;) {
@@ -156,6 +132,7 @@ void Journal::run(const std::function<void(const std::string&)>& complain) noexc
       told = error;
     }
     if (position_.refresh()) write_position();
+    if (beside) beside();
     if (!is_last) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }

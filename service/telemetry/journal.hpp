@@ -44,8 +44,10 @@ class Journal {
   void take_position(const JournalEntry& entry) noexcept { position_.store(entry); }
 
   /// Journal's thread: writes until stop() and the newest entry is on disk. `complain` hears once
-  /// that it cannot be written, and again only when it could be meanwhile.
-  void run(const std::function<void(const std::string&)>& complain) noexcept;
+  /// that it cannot be written, and again only when it could be meanwhile. `beside` is called at
+  /// every turn: another file of the same folder is written by this thread too.
+  void run(const std::function<void(const std::string&)>& complain,
+           const std::function<void()>& beside = {}) noexcept;
   void stop() noexcept { is_stopping_ = true; }
 
   [[nodiscard]] bool is_kept() const noexcept { return !path_.empty(); }

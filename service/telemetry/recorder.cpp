@@ -31,6 +31,11 @@ void Recorder::take(const Event& event) noexcept {
   events_lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
+void Recorder::take(const record::RecordedFrame& frame) noexcept {
+  if (!writer_ || frames_.try_push(frame)) return;
+  events_lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void Recorder::run() noexcept {
   if (!writer_) return;
   // What a service that is killed loses at most, and what the next look adds to it.
@@ -38,10 +43,14 @@ void Recorder::run() noexcept {
   auto flushed = std::chrono::steady_clock::now();
   CycleRecord row;
   Event event;
+  record::RecordedFrame frame;
   for (bool is_last = false; !is_last;) {
     is_last = is_stopping_.load();
     while (ring_.try_pop(row)) {
       if (!writer_->write(row)) rows_lost_.fetch_add(1, std::memory_order_relaxed);
+    }
+    while (frames_.try_pop(frame)) {
+      if (!events_writer_->write(frame)) events_lost_.fetch_add(1, std::memory_order_relaxed);
     }
     while (events_.try_pop(event)) {
       if (!events_writer_->write(event)) events_lost_.fetch_add(1, std::memory_order_relaxed);

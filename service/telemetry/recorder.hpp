@@ -27,6 +27,8 @@ class Recorder {
   /// Telemetry thread: accepted verbs and events of the planner go into a file of their own, for a
   /// replay. Where one is lost the file says so, and is not replayed.
   void take(const Event& event) noexcept;
+  /// Telemetry thread: where the workpiece lies from a cycle on goes into the same file.
+  void take(const record::RecordedFrame& frame) noexcept;
   /// Telemetry thread: `count` events, ever, were lost before they came here. What they were nobody
   /// knows, so that the file of verbs counts as incomplete.
   void miss_events(std::uint64_t count) noexcept { events_missed_ = count; }
@@ -44,6 +46,7 @@ class Recorder {
   std::optional<record::RecordingWriter> writer_;
   std::optional<record::OperatorEventsWriter> events_writer_;
   SpscRing<Event, 256> events_;
+  SpscRing<record::RecordedFrame, 16> frames_;
   SpscRing<CycleRecord, 8192> ring_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::uint64_t> rows_lost_{0}, events_lost_{0}, events_missed_{0};

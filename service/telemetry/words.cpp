@@ -37,6 +37,8 @@ namespace {
 [[nodiscard]] std::string remedy_for_wrong_state(Verb verb, State state) {
   const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;
   if (verb == Verb::kDryRun) return "it begins and ends in Off alone; disable first";
+  if (verb == Verb::kFrame)
+    return "work frames are set in Off or Ready alone; end what it does first";
   switch (state) {
     case State::kJogging:
       return is_by_hand ? "somebody jogs; wait until the joints are let go"
@@ -123,6 +125,9 @@ std::string describe(const Event& event, const MachineModel& model) {
       if (static_cast<Verb>(event.b) == Verb::kDryRun) {
         return event.x != 0 ? "dry run on: drives stay off, actions are done at once"
                             : "dry run off: drives may be enabled";
+      }
+      if (static_cast<Verb>(event.b) == Verb::kFrame) {
+        return fmt::format("work frame {:.0f} in force", event.x);
       }
       return fmt::format("{} accepted", name_of(static_cast<Verb>(event.b)));
     case EventCode::kRefused:
@@ -296,6 +301,7 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       break;
     case Refusal::kOutOfRange:
       why = verb == Verb::kJog || verb == Verb::kHome ? "the machine has no such joint"
+            : verb == Verb::kFrame                    ? "that is no work frame"
             : is_switch(verb)                         ? "the value is out of range: on or off"
             : may_be_dry(verb) ? "the value is out of range: 1 for a dry run alone, else 0"
             : verb == Verb::kFeedOverride
@@ -345,6 +351,9 @@ std::string describe(Verb verb, Refusal refusal, State state) {
       break;
     case Refusal::kOvertaken:
       why = "a hold, an abort or disable was said behind it and came first; say it again";
+      break;
+    case Refusal::kNotJournalled:
+      why = "the set-up is kept nowhere; give the service a state_directory, or --state";
       break;
     case Refusal::kNoEnablingDevice:
       why = "an enabling device is required and none is pressed; press it, then repeat";

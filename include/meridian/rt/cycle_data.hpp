@@ -163,6 +163,7 @@ enum class Refusal : std::uint8_t {
   kNoEnablingDevice,  ///< an enabling device is required, and none is pressed
   kDrivesTaken,       ///< the drives obey another service
   kDrivesAstray,      ///< drives are on or move although the machine has them off
+  kNotJournalled,     ///< the set-up could not be written to where it survives the service
 };
 
 /// Leaves the cycle as numbers and becomes words in service/telemetry.

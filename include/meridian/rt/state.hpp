@@ -43,7 +43,8 @@ enum class Verb : std::uint8_t {
   kSingleBlock,    ///< argument: 1 on, 0 off
   kOptionalStop,   ///< argument: 1 on, 0 off
   kDryRun,         ///< argument: 1 on, 0 off
+  kFrame,          ///< argument: number of the work frame that is in force from here on
 };
-inline constexpr int kVerbCount = 14;
+inline constexpr int kVerbCount = 15;
 
 }  // namespace meridian

@@ -47,24 +47,24 @@ inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisab
 /// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
 /// checked after it, in rt/obey.hpp, and can only refuse more.
 inline constexpr std::array<Row, kStateCount> kTable{{
-    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional dry
-    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kValue},
-    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue, kNo},
-    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo},
-    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo},
-    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo},
-    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo},
-    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken},
-    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken},
-    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo},
-    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo},
-    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue, kNo},
+    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional dry     frame
+    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kValue, kValue},
+    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue, kNo, kValue},
+    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken},
+    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken},
+    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken},
+    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo},
+    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken, kBroken},
+    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken, kBroken},
+    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo, kNo},
+    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo, kNo},
+    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue, kNo, kTaken},
 }};
 // clang-format on
 
@@ -87,12 +87,12 @@ inline constexpr std::array<Row, kStateCount> kTable{{
   constexpr std::array<const char*, kVerbCount> kNames{
       "enable", "disable",      "start",         "hold",           "resume",
       "abort",  "reset",        "feed_override", "rapid_override", "jog",
-      "home",   "single_block", "optional_stop", "dry_run"};
+      "home",   "single_block", "optional_stop", "dry_run",        "frame"};
   return kNames[static_cast<std::size_t>(verb)];
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 18> kNames{"none",
+  constexpr std::array<const char*, 19> kNames{"none",
                                                "wrong state",
                                                "not referenced",
                                                "no program",
@@ -109,8 +109,9 @@ inline constexpr std::array<Row, kStateCount> kTable{{
                                                "overtaken",
                                                "no enabling device",
                                                "drives taken",
-                                               "drives astray"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kDrivesAstray) + 1);
+                                               "drives astray",
+                                               "not journalled"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kNotJournalled) + 1);
   const auto i = static_cast<std::size_t>(refusal);
   return i < kNames.size() ? kNames[i] : "unknown";
 }

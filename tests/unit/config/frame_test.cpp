@@ -55,5 +55,13 @@ TEST(Frame, PlacesTheWorkpieceOfAMachine) {
   EXPECT_EQ(model.frame_rotation * Vector3(1, 0, 0), Vector3(-1, 0, 0));
 }
 
+TEST(Frame, OfASetUpRowIsThatOfTheSameNumbersBitForBit) {
+  const auto [x, y, z, a, b, c] = parse_frame_values("10.1,-2.3,120.7,3.3,-7.7,33.1");
+  const Frame given = parse_frame("10.1,-2.3,120.7,3.3,-7.7,33.1");
+  const Frame row = frame_of({.number = 1, .origin_mm = {x, y, z}, .rotation_deg = {a, b, c}});
+  EXPECT_EQ(row.origin_mm, given.origin_mm);
+  EXPECT_EQ(row.rotation, given.rotation);
+}
+
 }  // namespace
 }  // namespace meridian::config

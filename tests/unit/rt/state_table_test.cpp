@@ -63,6 +63,14 @@ TEST(StateTable, SetsTheDryRunInOffAlone) {
   }
 }
 
+TEST(StateTable, SetsWorkFramesInOffAndReadyAlone) {
+  for (int s = 0; s < kStateCount; ++s) {
+    const auto state = static_cast<State>(s);
+    const bool may = state == State::kOff || state == State::kReady;
+    EXPECT_EQ(effect_of(state, Verb::kFrame).effect == Effect::kSet, may) << name_of(state);
+  }
+}
+
 TEST(StateTable, LeavesFaultOnlyByReset) {
   for (int v = 0; v < kVerbCount; ++v) {
     const auto verb = static_cast<Verb>(v);

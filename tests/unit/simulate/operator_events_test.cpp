@@ -20,6 +20,22 @@ TEST(OperatorEvents, CountFromTheStartOfALiveRun) {
   EXPECT_EQ(events->verbs[2].argument, 0.5);
 }
 
+TEST(OperatorEvents, TellWhereTheWorkpieceLayAtTheStart) {
+  const auto events = read_operator_events(
+      "0,frame,0,0,0,0,1,0,0,0,1,0,0,0,1\n1000,start,0\n500,frame,3,1,2,3,0,-1,0,1,0,0,0,0,1\n"
+      "2000,frame,4,9,9,9,1,0,0,0,1,0,0,0,1\n",
+      "e.csv");
+  ASSERT_TRUE(events) << events.error();
+  ASSERT_TRUE(events->frame);
+  EXPECT_EQ(events->frame->number, 3);
+  EXPECT_EQ(events->frame->origin_mm, (Array3{1, 2, 3}));
+  EXPECT_TRUE(events->verbs.empty());
+  EXPECT_FALSE(read_operator_events("1000,start\n", "e.csv")->frame);
+  const auto torn = read_operator_events("0,frame,0,0,0\n", "e.csv");
+  ASSERT_FALSE(torn);
+  EXPECT_EQ(torn.error(), "e.csv:1: holds no work frame");
+}
+
 TEST(OperatorEvents, CountAsTheyAreWithoutAStart) {
   const auto events = read_operator_events("10,hold\n20,abort", "e.csv");
   ASSERT_TRUE(events.has_value());

@@ -106,7 +106,7 @@ TEST(Words, SayEveryAlarmDifferently) {
 }
 
 TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kDrivesAstray);
+  constexpr int kLast = static_cast<int>(Refusal::kNotJournalled);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     EXPECT_STRNE(name_of(static_cast<Refusal>(refusal)), "unknown") << refusal;
     for (int state = 0; state < kStateCount; ++state) {

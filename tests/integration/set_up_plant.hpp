@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integration/plant.hpp"
+#include "service/stream/frame_sum.hpp"
+#include "service/stream/machine_finder.hpp"
+
+namespace meridian::test {
+
+inline constexpr milliseconds kToolPatience{8000};
+
+/// A word about work frames.
+[[nodiscard]] inline FrameOrder order_of(FrameWord word, int number, double x_mm = 0,
+                                         const char* name = "") {
+  FrameOrder order;
+  order.word = word;
+  order.frame.number = static_cast<std::uint8_t>(number);
+  order.frame.origin_mm = {x_mm, 0, 0};
+  std::strncpy(order.frame.name.data(), name, kFrameNameChars);
+  return order;
+}
+
+/// Somebody who says words about work frames, quoting what he is told to have seen.
+class SetUpOperator {
+ public:
+  SetUpOperator(Plant& plant, std::uint64_t id)
+      : plant_(plant), commands_(plant.participant()), replies_(plant.participant()), id_(id) {}
+
+  /// Says it and waits for nothing.
+  void say(const FrameOrder& order, const dds::Status& seen) {
+    (void)eventually(
+        [this] { return commands_.matched_readers() > 0 && replies_.matched_writers() > 0; });
+    request_ = {};
+    request_.request = ++count_;
+    request_.operator_id = id_;
+    request_.operator_name = "anna";
+    request_.verb = Verb::kFrame;
+    request_.epoch_seen = seen.epoch;
+    request_.status_seen = seen.status_sequence;
+    request_.service_id_seen = seen.service_id;
+    request_.frame = order;
+    (void)commands_.write(request_);
+  }
+  /// The same once more, to the letter.
+  void repeat() { (void)commands_.write(request_); }
+  /// The answer to what was said last.
+  [[nodiscard]] std::optional<dds::Reply> answer(milliseconds patience = milliseconds(5000)) {
+    dds::Reply reply;
+    const bool is_there = eventually(
+        [&] {
+          while (replies_.take(reply)) {
+            if (reply.operator_id == id_ && reply.request == count_) return true;
+          }
+          return false;
+        },
+        patience);
+    return is_there ? std::optional(reply) : std::nullopt;
+  }
+  /// Says it until it is not refused as stale.
+  [[nodiscard]] dds::Reply ask(const FrameOrder& order) {
+    std::optional<dds::Reply> reply;
+    (void)eventually([&] {
+      say(order, plant_.status());
+      reply = answer();
+      return reply && reply->refusal != Refusal::kStale;
+    });
+    EXPECT_TRUE(reply) << plant_.standing();
+    return reply.value_or(dds::Reply{});
+  }
+
+ private:
+  Plant& plant_;
+  dds::Writer<dds::CommandRequest> commands_;
+  dds::Reader<dds::Reply> replies_;
+  dds::CommandRequest request_;
+  std::uint64_t id_, count_ = 0;
+};
+
+/// What the machine topic tells now.
+[[nodiscard]] inline dds::MachineInfo told_by(const Plant& plant) {
+  const auto found = stream::find_machines(static_cast<std::uint32_t>(std::stoul(plant.domain())),
+                                           "lai", milliseconds(5000));
+  EXPECT_EQ(found.size(), 1U);
+  return found.empty() ? dds::MachineInfo{} : found.front();
+}
+
+/// `meridian` with `words`, in the domain of the plant.
+[[nodiscard]] inline Process tool(const Plant& plant, std::vector<std::string> words) {
+  static int count = 0;
+  words.insert(words.begin(), "meridian");
+  words.insert(words.end(), {"--domain", plant.domain()});
+  return Process(words, plant.folder() / ("tool" + std::to_string(++count) + ".log"));
+}
+
+}  // namespace meridian::test

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/telemetry/set_up_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "service/telemetry/journal_entry.hpp"
+#include "service/telemetry/sealed_text.hpp"
+
+namespace meridian::telemetry {
+namespace {
+
+/// A table of frames anywhere, with its seed.
+WorkFrames drawn_frames(unsigned seed, int count) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> place(-1e5, 1e5), angle(-360, 360);
+  WorkFrames frames;
+  for (int i = 0; i < count; ++i) {
+    WorkFrame row;
+    row.number = static_cast<std::uint8_t>(1 + engine() % WorkFrames::kMost);
+    for (double& value : row.origin_mm) value = place(engine);
+    for (double& value : row.rotation_deg) value = angle(engine);
+    put_text("vice " + std::to_string(i), row.name);
+    EXPECT_EQ(frames.apply({FrameWord::kSet, row}), FrameFault::kNone);
+    if (engine() % 2 == 0) {
+      EXPECT_EQ(frames.apply({FrameWord::kSelect, row}), FrameFault::kNone);
+    }
+  }
+  return frames;
+}
+
+TEST(SetUpText, ComesBackBitForBit) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const WorkFrames frames = drawn_frames(seed, static_cast<int>(seed % 60));
+    const auto read = parse_set_up(to_text(frames, "lai"), "lai");
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(*read, frames);
+  }
+}
+
+TEST(SetUpText, OfAFullTableFitsIntoItsFile) {
+  WorkFrames frames;
+  WorkFrame row;
+  row.origin_mm = row.rotation_deg = {-1.0 / 3.0 * 1e-300, -1.0 / 7.0 * 1e-300, -2.0 / 3.0};
+  put_text(std::string(100, 'x'), row.name);
+  for (int number = 1; number <= WorkFrames::kMost; ++number) {
+    row.number = static_cast<std::uint8_t>(number);
+    ASSERT_EQ(frames.apply({FrameWord::kSet, row}), FrameFault::kNone);
+  }
+  const std::string text = to_text(frames, std::string(64, 'm'));
+  EXPECT_LT(text.size(), kMostSetUpBytes);
+  EXPECT_TRUE(parse_set_up(text, std::string(64, 'm')));
+}
+
+TEST(SetUpText, ThatIsTornOrChangedIsRefused) {
+  const std::string text = to_text(drawn_frames(1, 5), "lai");
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    EXPECT_FALSE(parse_set_up(text.substr(0, size), "lai")) << size;
+  }
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    std::string changed = text;
+    changed[at] = changed[at] == '1' ? '2' : '1';
+    EXPECT_FALSE(parse_set_up(changed, "lai")) << at;
+  }
+}
+
+TEST(SetUpText, OfAnotherMachineIsRefusedByName) {
+  const auto read = parse_set_up(to_text(WorkFrames(), "lai"), "mill");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error(), "is of machine 'lai', not of 'mill'");
+}
+
+TEST(SetUpText, ThatSelectsWhatItHasNotIsRefused) {
+  const std::string head = "meridian set-up 1\nmachine = lai\n";
+  EXPECT_TRUE(parse_set_up(seal(head + "active = 0\nframes = 0\n"), "lai"));
+  EXPECT_FALSE(parse_set_up(seal(head + "active = 4\nframes = 0\n"), "lai"));
+  EXPECT_FALSE(parse_set_up(seal(head + "active = 0\nframes = 1\n"), "lai"));
+  EXPECT_FALSE(parse_set_up(seal(head + "active = 0\nframes = 99\n"), "lai"));
+  EXPECT_FALSE(
+      parse_set_up(seal(head + "active = 0\nframes = 1\nframe = 1 0 0 0 0 0 nan v\n"), "lai"));
+}
+
+TEST(SetUpText, SaysWhatToDoAboutEveryFault) {
+  EXPECT_EQ(describe(FrameFault::kNotSet, 7), "frame 7 is not set; see meridian ctl frame list");
+  EXPECT_EQ(describe(FrameFault::kIsActive, 7), "frame 7 is in force; select another one first");
+  EXPECT_NE(describe(FrameFault::kNumber, 77).find("1 to 54"), std::string::npos);
+  EXPECT_NE(describe(FrameFault::kValue, 7).find("mm within 100000"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace meridian::telemetry
