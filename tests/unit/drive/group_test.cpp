@@ -85,6 +85,14 @@ TEST_F(PartOfAMachine, CommandsToTheOtherJointsOfTheMachineAreTheMastersToo) {
   EXPECT_EQ(command(2, 0x06, kOther), Drop::kForeignCommand);
 }
 
+TEST_F(PartOfAMachine, ACommandIsForTheAxisOfItsJointAlone) {
+  for (const std::uint8_t drive : std::initializer_list<std::uint8_t>{0, 1, 3, 4}) {
+    EXPECT_EQ(command(drive, 0x06), Drop::kNone);
+  }
+  EXPECT_EQ(group_.axis(0).state(), DriveState::kSwitchOnDisabled) << "joint 2";
+  EXPECT_EQ(group_.axis(1).state(), DriveState::kReadyToSwitchOn) << "joint 4";
+}
+
 TEST_F(PartOfAMachine, TheStopInputIsReported) {
   group_.work(1, motors_);
   EXPECT_FALSE(group_.feedback().is_emergency_stop);
