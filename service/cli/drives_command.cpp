@@ -11,6 +11,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/joint_masks.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/drives_check.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/injection_console.hpp"
 #include "service/cli/machine_name_option.hpp"
@@ -32,7 +33,7 @@ struct DrivesOptions {
   std::string lag = "second";
   double time_constant_ms = 2;
   bool has_no_actions = false, is_refusing_actions = false, is_quiet = false, has_console = false;
-  bool is_beside_others = false, is_open_network = false;
+  bool is_beside_others = false, is_open_network = false, is_check = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
   std::vector<std::string> unreferenced, failing, hanging;  ///< names of drives, or all
@@ -110,13 +111,15 @@ int run_drives(const DrivesOptions& options) {
   simulated.has_priority = drives::prepare_drive_priority();
   std::optional<InjectionConsole> console;
   if (options.has_console) simulated.injections_now = &console.emplace(model).injections();
-  dds::Participant participant(
-      {.domain = options.domain,
-       .machine = options.partition.empty() ? model.name : options.partition,
-       .transport =
-           simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback,
-       .open_network =
-           options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused});
+  const dds::ParticipantOptions place{
+      .domain = options.domain,
+      .machine = options.partition.empty() ? model.name : options.partition,
+      .transport =
+          simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback,
+      .open_network =
+          options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused};
+  if (options.is_check) return check_drives(place, model);
+  dds::Participant participant(place);
   if (participant.is_open_network()) {
     std::fprintf(stderr, "meridian drives: OPEN NETWORK: whoever reaches it may send setpoints\n");
   }
@@ -196,6 +199,10 @@ void add_drives_command(CLI::App& app, int& exit_code) {
                   "Drives (or all) that say that they found no reference");
   add_drive_names("--homing-hangs", options->hanging,
                   "Drives (or all) that search for their reference for ever");
+  command->add_flag("--check", options->is_check,
+                    "Check somebody's drives, which run already, instead: play the service against "
+                    "them and name the rules that they break. The first linear drive moves by some "
+                    "centimetres");
   command->add_flag("-q,--quiet", options->is_quiet, "Say only begin and end");
   command->callback([options, &exit_code] { exit_code = run_drives(*options); });
 }

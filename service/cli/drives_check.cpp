@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/cli/drives_check.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "service/cli/commands.hpp"
+#include "service/dds/reader.hpp"
+#include "service/drives/check_wire.hpp"
+#include "service/drives/drive_check.hpp"
+
+namespace meridian::cli {
+namespace {
+
+/// Whether a service is there: two of them would fight for the drives.
+[[nodiscard]] bool is_served(const dds::ParticipantOptions& options) {
+  dds::Participant participant(options);
+  dds::Reader<dds::MachineInfo> machines(participant);
+  dds::MachineInfo machine;
+  for (int n = 0; n < 100; ++n) {
+    while (machines.take(machine)) {
+      if (machine.is_serving) return true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+}  // namespace
+
+int check_drives(const dds::ParticipantOptions& participant, const MachineModel& model) {
+  if (is_served(participant)) {
+    std::fprintf(stderr,
+                 "meridian drives: a service serves machine %s; end it first: the check plays the "
+                 "service\n",
+                 participant.machine.c_str());
+    return kMachineRefused;
+  }
+  drives::CheckWire wire(participant, model.cycle_ns);
+  const auto report = drives::DriveCheck(model, wire, [](const std::string& text) {
+                        std::printf("checking: %s\n", text.c_str());
+                      }).run();
+  if (!report.has_drives) {
+    std::fprintf(stderr, "meridian drives: nobody reports drives of machine %s\n",
+                 participant.machine.c_str());
+    return kNoPeer;
+  }
+  for (const std::string& step : report.unproven) {
+    std::printf("not checked: %s; this host was busy, try again\n", step.c_str());
+  }
+  for (const drives::Finding& finding : report.findings) {
+    const drives::RuleText& rule = drives::text_of(finding.rule);
+    std::printf("BROKEN %s: %s; seen: %s (%s)\n", rule.name, rule.says, finding.seen.c_str(),
+                rule.page);
+  }
+  const bool is_fine = report.findings.empty() && report.unproven.empty();
+  std::printf("%s: %zu rules, %zu broken\n", is_fine ? "PASS" : "FAIL",
+              drives::check_rules().size(), report.findings.size());
+  return is_fine ? kFine : kVerdictNo;
+}
+
+}  // namespace meridian::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace meridian::drives {
+
+/// What a program of drives has to keep; `meridian drives --check` names the ones that it breaks.
+enum class Rule : std::uint8_t {
+  kAllDrives,
+  kKnownJoints,
+  kInTime,
+  kSampleCounts,
+  kNumbers,
+  kNoJump,
+  kWalksUp,
+  kNamesMaster,
+  kStandsWhenEnabled,
+  kCycleSeen,
+  kNotEnabledSetpoint,
+  kFollows,
+  kOrder,
+  kChecksum,
+  kLate,
+  kDryRun,
+  kForeignSetpoint,
+  kForeignCommand,
+  kBridge,
+  kWatchdog,
+  kRamp,
+  kFaultStays,
+  kFaultReset,
+  kResetEdge,
+  kNoNumber,
+  kTravel,
+  kVelocity,
+  kStep,
+  kBegin,
+  kQuickStop,
+  kDisableVoltage,
+  kShutdown,
+  kModeDisplay,
+  kHomingCycle,
+  kReferenceLost,
+  kReferenceFound,
+  kKeepsMaster,
+  kFreesMaster,
+  kNextMaster
+};
+
+/// A rule as people are told of it.
+struct RuleText {
+  Rule rule;
+  const char* name;  ///< one word, for lists
+  const char* says;  ///< the rule
+  const char* page;  ///< of the docs that states it
+};
+[[nodiscard]] std::span<const RuleText> check_rules() noexcept;
+[[nodiscard]] const RuleText& text_of(Rule rule) noexcept;
+
+/// A rule that was broken, and what was seen.
+struct Finding {
+  Rule rule;
+  std::string seen;
+};
+
+}  // namespace meridian::drives
