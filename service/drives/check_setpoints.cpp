@@ -140,12 +140,14 @@ void DriveCheck::check_watchdog() {
 void DriveCheck::check_refused(Rule rule, std::uint16_t error, const Spoil& spoil) {
   if (!walk_up()) return;
   const double stood = player_.newest.position[mover_];
-  player_.tick([&](CheckedDrives& drives) {
+  player_.is_mute = true;  // a good one that comes in the same period would hide it
+  player_.ticks(3, [&](CheckedDrives& drives) {
     dds::SetpointSample sample = player_.odd_setpoint();
     spoil(sample);
     CheckPlayer::sign(sample);
     drives.say(Speaker::kService, sample);
   });
+  player_.is_mute = false;
   const auto is_refused = [this] {
     const DriveState state = player_.state(static_cast<int>(mover_));
     return state == DriveState::kFault || state == DriveState::kFaultReaction;

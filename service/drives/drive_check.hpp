@@ -46,6 +46,7 @@ class DriveCheck {
   void check_begin();
   void check_homing();
   void check_masters();
+  void check_next_master();
   void speed_up(double to);
   void lead(double velocity);
 

@@ -49,7 +49,7 @@ constexpr Fault kFaults[] = {
     {"jumps", Rule::kNoJump},
     {"never-enables", Rule::kWalksUp},
     {"nobody-named", Rule::kNamesMaster},
-    {"drifts-when-enabled", Rule::kStandsWhenEnabled},
+    {"jerks-when-enabled", Rule::kStandsWhenEnabled},
     {"no-cycle", Rule::kCycleSeen},
     {"follows-all", Rule::kNotEnabledSetpoint},
     {"does-not-follow", Rule::kFollows},

@@ -158,9 +158,6 @@ inline bool FaultyDrives::period(std::vector<dds::DriveFeedback>& reports) {
   const bool is_kept = is("keeps-a-service-that-is-gone");
   group_->see_master(is_service_there_ || is_kept || group_->pin().master().participant == 42);
   group_->work(1, servos_);
-  if (is("drifts-when-enabled") && group_->axis(0).state() == DriveState::kSwitchedOn) {
-    servos_.servo(0).servo.position += 0.2;
-  }
   if (is("rare") && periods_ % 100 != 0) return true;
   reports.push_back(report());
   return true;
@@ -170,6 +167,8 @@ inline dds::DriveFeedback FaultyDrives::report() {
   dds::DriveFeedback report = group_->feedback();
   const bool is_homing = report.mode_display[0] == dds::kHomingMode;
   if (!is_homing) stuck_cycle_ = report.cycle_seen;
+  const bool is_enabled = group_->axis(0).state() == DriveState::kOperationEnabled;
+  if (is("jerks-when-enabled") && is_enabled) report.position[0] += 0.5;
   if (is("joint-missing")) report.joint_mask &= ~4U;
   if (is("joint-too-many")) report.joint_mask |= 32U;
   if (is("sample-stands")) report.sample = 5;
