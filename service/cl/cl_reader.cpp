@@ -116,11 +116,12 @@ class ClReader::Impl {
       return {};
     }
     if (what.foreign.empty()) return {};
-    return final_error(0, "this is " + what.foreign + ", not a CL file",
-                       what.is_nc && options_.nc
-                           ? "--dialect fanuc or siemens reads NC programs of their words; else "
-                             "output APT or CLDATA text from the CAM system"
-                           : "output APT or CLDATA text from the CAM system");
+    return final_error(
+        0, "this is " + what.foreign + ", not a CL file",
+        what.is_nc && options_.nc
+            ? "--dialect fanuc, siemens or heidenhain reads NC programs of their words; else "
+              "output APT or CLDATA text from the CAM system"
+            : "output APT or CLDATA text from the CAM system");
   }
 
   ProgramSource::Result read_statement() {

@@ -25,6 +25,7 @@ constexpr std::array kDialects = std::to_array<DialectTraits>({
     {Dialect::kIso, "iso", "ISO 4343 APT", kAsk, false, false, kNumbersAsk},
     {Dialect::kFanuc, "fanuc", "NC program, Fanuc and ISO words", kStays, false, true, kNumbersAsk},
     {Dialect::kSiemens, "siemens", "NC program, Siemens words", kStays, false, true, kNumbersAsk},
+    {Dialect::kHeidenhain, "heidenhain", "NC program, Klartext", kStays, false, true, kNumbersAsk},
 });
 
 struct Evidence {

@@ -21,13 +21,15 @@ enum class Dialect : std::uint8_t {
   kMakino,
   kHsm,
   kIso,
-  kFanuc,   ///< no CL file: an NC program of ISO and Fanuc words
-  kSiemens  ///< no CL file: an NC program of Siemens words
+  kFanuc,      ///< no CL file: an NC program of ISO and Fanuc words
+  kSiemens,    ///< no CL file: an NC program of Siemens words
+  kHeidenhain  ///< no CL file: an NC program in Klartext
 };
 
 /// Whether it is the language of NC programs.
 [[nodiscard]] constexpr bool is_nc(Dialect dialect) noexcept {
-  return dialect == Dialect::kFanuc || dialect == Dialect::kSiemens;
+  return dialect == Dialect::kFanuc || dialect == Dialect::kSiemens ||
+         dialect == Dialect::kHeidenhain;
 }
 
 /// What a point of three numbers means where the tool axis was tilted before it.

@@ -207,7 +207,7 @@ Recognised recognise_foreign(std::string_view head) {
   const Lines lines(text);
   if (lines.cl > 0) return {{}, true, false, Dialect::kUnknown, {}};
   if (has(text, "BEGIN PGM")) {
-    return {std::string(kHeidenhain), true, true, Dialect::kUnknown, {}};
+    return {std::string(kHeidenhain), true, true, Dialect::kHeidenhain, "BEGIN PGM"};
   }
   if (lines.all == 0 && lines.siemens.empty()) return {};
   const std::string name = name_of(text, lines);

@@ -51,10 +51,10 @@ std::vector<std::string> dialect_names() {
 
 void add_cl_file_options(CLI::App& command, ClFileOptions& options, const char* dialect_name) {
   command
-      .add_option(
-          dialect_name, options.dialect,
-          "CAM system that wrote the file, where the file does not show it; fanuc, siemens: an NC "
-          "program of their words")
+      .add_option(dialect_name, options.dialect,
+                  "CAM system that wrote the file, where the file does not show it; fanuc, "
+                  "siemens, heidenhain: an NC "
+                  "program of their words")
       ->check(CLI::IsMember(dialect_names()));
   command
       .add_option("--units", options.units, "Unit of the file: mm or inch; wins over its unit word")

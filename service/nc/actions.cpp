@@ -141,6 +141,14 @@ void note_tool_offset(State& s, const Line& line) {
   s.modes.control = d->number == 0 ? Control::kNone : Control::kLength;
 }
 
+bool starts_spindle(const Line& line) {
+  return std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
+    return word.is('M') && (word.number == 3 || word.number == 4);
+  });
+}
+
+}  // namespace
+
 cl::Outcome rest(State& s, const Line& line, double time_s) {
   if (!(time_s >= 0 && time_s <= kLongestDwell_s)) {
     return refuse("dwell of " + cl::short_number(time_s) + " s makes no sense");
@@ -149,14 +157,6 @@ cl::Outcome rest(State& s, const Line& line, double time_s) {
   s.cl.path.act(BlockKind::kDwell, ActionKind::kNone, time_s, line.number);
   return {};
 }
-
-bool starts_spindle(const Line& line) {
-  return std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
-    return word.is('M') && (word.number == 3 || word.number == 4);
-  });
-}
-
-}  // namespace
 
 cl::Outcome act_before(State& s, const Line& line) {
   if (s.modes.language == Language::kSiemens) note_tool_offset(s, line);

@@ -9,4 +9,8 @@ namespace meridian::nc {
 /// motion, stops.
 [[nodiscard]] cl::Outcome run_block(State& s, const Line& line);
 
+/// The same for a line of Klartext, which has one statement. Proof:
+/// tests/unit/nc/heidenhain_test.cpp.
+[[nodiscard]] cl::Outcome run_heidenhain(State& s, const Line& line);
+
 }  // namespace meridian::nc

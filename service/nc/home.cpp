@@ -40,7 +40,11 @@ cl::Outcome check_intermediate(const State& s, const Line& line) {
 
 cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place) {
   const bool is_siemens = s.modes.language == Language::kSiemens;
-  const char* const code = !is_machine_place ? "G28" : is_siemens ? "SUPA" : "G53";
+  const bool is_klartext = s.modes.language == Language::kHeidenhain;
+  const char* const code = !is_machine_place ? "G28"
+                           : is_siemens      ? "SUPA"
+                           : is_klartext     ? "M91"
+                                             : "G53";
   std::vector<MachineAxes::Target> targets;
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   for (const Word& word : line.words) {

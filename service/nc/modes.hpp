@@ -25,7 +25,7 @@ enum class Control : std::uint8_t {
   return control == Control::kRotary || control == Control::kVector;
 }
 
-enum class Language : std::uint8_t { kFanuc, kSiemens };
+enum class Language : std::uint8_t { kFanuc, kSiemens, kHeidenhain };
 
 /// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
 struct Modes {
@@ -38,6 +38,8 @@ struct Modes {
   int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;
+  std::array<std::optional<double>, 2> pole;  ///< CC of Klartext
+  bool has_new_speed = false;                 ///< TOOL CALL S of Klartext, for a spindle that turns
   bool is_oriented = false;       ///< TRAORI: vectors or rotary words, as each block has them
   bool turns_evenly = true;       ///< rotary joints between two blocks; else the axis: great circle
   bool has_machine_axes = false;  ///< ORIMKS: directions are the machine's

@@ -140,8 +140,8 @@ const Word* Line::find(std::string_view address) const noexcept {
 bool Word::may_be_rotary() const noexcept {
   const char letter = address.front();
   if (address.size() == 1) return letter >= 'A' && letter <= 'C';
-  return address != "CR" && address != "TURN" && address != "A3" && address != "B3" &&
-         address != "C3";
+  const bool has_number = address[1] >= '0' && address[1] <= '9';
+  return has_number && address != "A3" && address != "B3" && address != "C3";
 }
 
 void Line::begin(std::string_view line, std::uint32_t at) {

@@ -5,6 +5,7 @@
 
 #include "service/cl/letters.hpp"
 #include "service/nc/block.hpp"
+#include "service/nc/heidenhain_line.hpp"
 #include "service/nc/siemens_line.hpp"
 #include "service/nc/siemens_names.hpp"
 
@@ -43,6 +44,10 @@ NcProgram::NcProgram(cl::LineSource& lines, std::string name, const cl::ClReader
     state_.modes.language = Language::kSiemens;
     state_.modes.control = Control::kLength;  // D1 is in force with every tool
     state_.modes.turns_evenly = false;
+  }
+  if (options.dialect == cl::Dialect::kHeidenhain) {
+    state_.modes.language = Language::kHeidenhain;
+    state_.modes.control = Control::kLength;  // of the tool that was called
   }
   state_.cl.path.set_max_feed(options.max_feed_mm_per_s);
   cl::ClSummary& summary = state_.cl.summary;
@@ -89,8 +94,10 @@ cl::ProgramSource::Result NcProgram::read(Blocks& out) {
 
 cl::Outcome NcProgram::take(std::string_view text) {
   const bool is_siemens = state_.modes.language == Language::kSiemens;
-  auto done = is_siemens ? cut_siemens(text, lines_.line_number(), line_)
-                         : cut(text, lines_.line_number(), line_);
+  const bool is_klartext = state_.modes.language == Language::kHeidenhain;
+  auto done = is_siemens    ? cut_siemens(text, lines_.line_number(), line_)
+              : is_klartext ? cut_heidenhain(text, lines_.line_number(), line_)
+                            : cut(text, lines_.line_number(), line_);
   if (is_siemens) {
     if (auto named = check_names(line_); !named) return named;
   }
@@ -104,7 +111,7 @@ cl::Outcome NcProgram::take(std::string_view text) {
       return std::string("blocks behind / are run, as with the switch for them off");
     });
   }
-  return take_block();
+  return is_klartext ? run_heidenhain(state_, line_) : take_block();
 }
 
 void NcProgram::take_comments() {
@@ -145,7 +152,8 @@ cl::Outcome NcProgram::check_whole(std::uint32_t last_line) {
   if (state_.cl.summary.statements == 0) return refuse("the file is empty");
   const bool is_ended = state_.cl.structure.phase == cl::Structure::Phase::kEnded;
   if (!is_ended && !state_.cl.options.allow_no_end) {
-    return cl::refuse_at(last_line, "the program is cut short: there is no M30, M2 or closing %",
+    return cl::refuse_at(last_line,
+                         "the program is cut short: there is no M30, M2, closing % or END PGM",
                          "--allow-no-end takes it as whole");
   }
   if (!state_.cl.path.has_moved() && state_.cl.refusals == 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tool axis as the words of a block tell it.
+#include <algorithm>
 #include <array>
 
 #include "service/nc/state.hpp"
@@ -11,12 +12,17 @@ using cl::refuse;
 
 constexpr std::array<std::string_view, 3> kFanucVector = {"I", "J", "K"};
 constexpr std::array<std::string_view, 3> kSiemensVector = {"A3", "B3", "C3"};
+constexpr std::array<std::string_view, 3> kKlartextVector = {"TX", "TY", "TZ"};
+
+const std::array<std::string_view, 3>& addresses_of(Language language) {
+  if (language == Language::kFanuc) return kFanucVector;
+  return language == Language::kSiemens ? kSiemensVector : kKlartextVector;
+}
 
 }  // namespace
 
 cl::Outcome take_vector(const State& s, const Line& line, Target& to) {
-  const bool is_siemens = s.modes.language == Language::kSiemens;
-  const auto& addresses = is_siemens ? kSiemensVector : kFanucVector;
+  const auto& addresses = addresses_of(s.modes.language);
   Vector3 v = Vector3::Zero();
   std::size_t count = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -26,7 +32,7 @@ cl::Outcome take_vector(const State& s, const Line& line, Target& to) {
     ++count;
   }
   if (count == 0) return {};
-  if (count < 3 && !is_siemens) {
+  if (count < 3 && s.modes.language == Language::kFanuc) {
     return refuse("under G43.5 the tool axis needs all three of I, J and K");
   }
   const double norm = v.norm();
@@ -37,20 +43,31 @@ cl::Outcome take_vector(const State& s, const Line& line, Target& to) {
 }
 
 cl::Outcome choose_orientation(State& s, const Line& line) {
+  if (s.modes.language == Language::kFanuc) return {};
+  const auto& addresses = addresses_of(s.modes.language);
   bool has_rotary = false, has_vector = false;
   for (const Word& word : line.words) {
     has_rotary = has_rotary || word.may_be_rotary();
-    has_vector = has_vector || word.address == "A3" || word.address == "B3" || word.address == "C3";
+    has_vector = has_vector ||
+                 std::find(addresses.begin(), addresses.end(), word.address) != addresses.end();
   }
+  const std::string names = std::string(addresses[0]) + ", " + std::string(addresses[1]) + ", " +
+                            std::string(addresses[2]);
   if (!s.modes.is_oriented) {
-    if (has_vector) return refuse("A3, B3, C3 without TRAORI");
+    if (has_vector) return refuse(names + " without tool-centre control");
     return {};
   }
-  if (has_vector && has_rotary) return refuse("rotary words beside A3, B3, C3 in one block");
+  if (has_vector && has_rotary) return refuse("rotary words beside " + names + " in one block");
   if (has_vector && s.modes.has_machine_axes) {
     return refuse("A3, B3, C3 in the axes of the machine (ORIMKS)", "output ORIWKS");
   }
-  if (has_vector && s.modes.turns_evenly) {
+  if (has_vector && s.modes.turns_evenly && s.modes.language == Language::kHeidenhain) {
+    s.cl.remarks.warn("vectors", line.number, [] {
+      return std::string(
+          "TX TY TZ without PATHCTRL VECTOR: the tool axis turns on a great circle "
+          "here, and on the control as its joints go");
+    });
+  } else if (has_vector && s.modes.turns_evenly) {
     return refuse("A3, B3, C3 under ORIAXES: the way between depends on how the control turns",
                   "output ORIVECT");
   }

@@ -72,6 +72,7 @@ struct PathEnd {
 /// M codes that come behind it: stops, spindle and coolant off, the end.
 [[nodiscard]] cl::Outcome act_behind(State& s, const Line& line);
 [[nodiscard]] cl::Outcome dwell(State& s, const Line& line);
+[[nodiscard]] cl::Outcome rest(State& s, const Line& line, double time_s);
 /// G4 F in seconds, G4 S in revolutions of the spindle.
 [[nodiscard]] cl::Outcome siemens_dwell(State& s, const Line& line);
 

@@ -23,7 +23,8 @@ cl::ClReaderOptions options_of_nc(cl::Dialect dialect) {
 
 void read_nc(Bytes bytes) {
   static const std::array kOptions = {options_of_nc(cl::Dialect::kFanuc),
-                                      options_of_nc(cl::Dialect::kSiemens)};
+                                      options_of_nc(cl::Dialect::kSiemens),
+                                      options_of_nc(cl::Dialect::kHeidenhain)};
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   for (const cl::ClReaderOptions& options : kOptions) {
     cl::ClReader reader(text, "fuzz", options);
@@ -44,7 +45,15 @@ Seeds nc_seeds() {
       "S6000 M3\nG0 C0 A0\nG0 X10 Y20\nD1\nTRAORI(1)\nORIWKS ORIVECT\nG0 X10 Y20 Z=60 A3=0 B3=0 "
       "C3=1\nG1 Z=IC(-5) F600\nG1 X30 B3=-.6 C3=.8\nG4 F0.5\nG4 S3\nORIAXES\nG1 A30 C=90\n"
       "MSG(\"A;(B\")\nG3 X0 Y10 CR=30\nG2 X1 Y1 I=AC(2) J3 TURN=2\nTRAFOOF\nM1=5\nT=\"2\"\nR1=5\n"
-      "IF R1 GOTOF A\nM30\n"};
+      "IF R1 GOTOF A\nM30\n",
+      "0 BEGIN PGM A MM\n1 ; NOTE\n2 FUNCTION RESET TCPM\n3 L Z+0 R0 FMAX M91\n4 TOOL CALL 1 Z "
+      "S500\n"
+      "5 M13\n6 L C+0 A+10 R0 FMAX\n7 L X+1 Y+2 R0 FMAX\n8 FUNCTION TCPM F TCP AXIS POS PATHCTRL "
+      "VECTOR\n9 LN X+1 Y+2 Z+60 TX+0 TY+0 TZ+1 FMAX\n10 LN X+3 Y+2,5 Z+50 TX+0 TY-0.6 TZ+0.8 "
+      "F600\n"
+      "11 CYCL DEF 9.0 DWELL TIME\n12 CYCL DEF 9.1 DWELL 0.500\n13 M128\n14 L IX+10 A+30 C 90\n"
+      "15 CC X+0 Y+0\n16 C X+0 Y+10 DR+\n17 CR X+0 Y-10 R-10 DR-\n18 M129\n19 L X+Q1\n20 STOP M9\n"
+      "21 M30\n22 END PGM A MM\n"};
   Seeds seeds;
   for (const std::string_view program : kPrograms) {
     seeds.emplace_back(program.begin(), program.end());

@@ -31,7 +31,7 @@ constexpr double kTip_mm = 2e-4;    // words have 1e-4 mm
 constexpr double kAxis_rad = 2e-5;  // words have 1e-5 deg; easing onto the pole
 
 /// How the tool axis is written.
-enum class Words : std::uint8_t { kRotary, kVectors, kSiemens };
+enum class Words : std::uint8_t { kRotary, kVectors, kSiemens, kKlartext };
 
 std::string text_of(const std::vector<ClBlock>& blocks) {
   std::ostringstream out;
@@ -60,8 +60,11 @@ std::vector<std::uint32_t> sources_of(const std::string& text) {
   std::vector<std::uint32_t> sources{0};
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    const bool has_number = line.starts_with('N');
-    sources.push_back(has_number ? static_cast<std::uint32_t>(std::stoul(line.substr(1))) : 0);
+    constexpr std::string_view kNote = " ; CL ";
+    const std::size_t note = line.find(kNote);
+    std::string digits = line.starts_with('N') ? line.substr(1) : "0";
+    if (note != std::string::npos) digits = line.substr(note + kNote.size());
+    sources.push_back(static_cast<std::uint32_t>(std::stoul(digits)));
   }
   return sources;
 }
@@ -88,7 +91,9 @@ class PostedProgram : public testing::TestWithParam<std::string> {
 
   [[nodiscard]] std::optional<std::string> posted(const std::string& text, Words words) {
     post::PostOptions options;
-    options.dialect = words == Words::kSiemens ? post::Dialect::kSiemens : post::Dialect::kFanuc;
+    options.dialect = words == Words::kSiemens    ? post::Dialect::kSiemens
+                      : words == Words::kKlartext ? post::Dialect::kHeidenhain
+                                                  : post::Dialect::kFanuc;
     options.has_vectors = words == Words::kVectors;
     options.offset_number = 1;
     options.has_line_words = true;
@@ -201,7 +206,7 @@ TEST_P(PostedProgram, IsReadBackToTheSameBlocks) {
   }
   for (const bool is_askew : {false, true}) {
     if (is_askew) turn_part();
-    for (const Words words : {Words::kRotary, Words::kVectors, Words::kSiemens}) {
+    for (const Words words : {Words::kRotary, Words::kVectors, Words::kSiemens, Words::kKlartext}) {
       for (unsigned n = 0; n < kPrograms && !HasFatalFailure(); ++n) {
         SCOPED_TRACE("seed " + std::to_string(kSeed + n) + ", words " +
                      std::to_string(static_cast<int>(words)));

@@ -53,11 +53,13 @@ TEST_F(NcCommands, RunAPostedProgramOfVectors) {
   expect_run();
 }
 
-TEST_F(NcCommands, RunAPostedProgramOfSiemens) {
-  const CommandOutput posted =
-      run_tool("post " + kPart + kMachine + kTools + "--dialect siemens -o " + program());
-  ASSERT_EQ(posted.exit_code, 0) << posted.output;
-  expect_run();
+TEST_F(NcCommands, RunPostedProgramsOfOtherControls) {
+  for (const char* const dialect : {"siemens", "heidenhain"}) {
+    const CommandOutput posted =
+        run_tool("post " + kPart + kMachine + kTools + "--dialect " + dialect + " -o " + program());
+    ASSERT_EQ(posted.exit_code, 0) << posted.output;
+    expect_run();
+  }
 }
 
 TEST_F(NcCommands, HoldTheRunAgainstTheCamFileToo) {

@@ -39,15 +39,16 @@ TEST(NcPrograms, OfSiemensAreKnownByTheirNames) {
 TEST(NcPrograms, AreNotGuessed) {
   const ReadText read = cl::read_text(kPlain, untold());
   EXPECT_NE(
-      read.error.find("this is an NC program (G code), not a CL file; --dialect fanuc or siemens"),
+      read.error.find(
+          "this is an NC program (G code), not a CL file; --dialect fanuc, siemens or heidenhain"),
       std::string::npos)
       << read.error;
   EXPECT_EQ(cl::read_text(kPlain, without_machine()).error, "");
 }
 
 TEST(NcPrograms, OfOtherControlsAreRefusedAsBefore) {
-  const ReadText read = cl::read_text("0 BEGIN PGM A MM\n1 L X+0 R0 FMAX\n", untold());
-  EXPECT_NE(read.error.find("a Heidenhain NC program"), std::string::npos) << read.error;
+  const ReadText read = cl::read_text("G21 G90\nM428\nG0 X0. Y0. Z9.\nM2\n", untold());
+  EXPECT_NE(read.error.find("a LinuxCNC NC program (M428)"), std::string::npos) << read.error;
 }
 
 TEST(NcPrograms, AreRefusedWhereTheCallerSaysItIsACamFile) {

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Klartext: its statements, tool-centre control, and what is refused.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "unit/nc/read_nc.hpp"
+
+namespace meridian::nc {
+namespace {
+
+ClReaderOptions klartext(ClReaderOptions options = without_machine()) {
+  options.dialect = cl::Dialect::kHeidenhain;
+  return options;
+}
+
+/// `body` begins in line 3.
+ReadText read_klartext(std::string_view body, const ClReaderOptions& options = klartext()) {
+  return cl::read_text(
+      "0 BEGIN PGM PART MM\n1 ; NOTE\n" + std::string(body) + "9 END PGM PART MM\n", options);
+}
+
+TEST(Klartext, TakesTheAxisOfLn) {
+  const ReadText read = read_klartext(
+      "2 FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\n"
+      "3 LN X+0 Y+0 Z+10 TX+0 TY+0 TZ+1 FMAX\n4 LN X+1,5 Y+0 Z+10 NX+1 NY+0 NZ+0 TX+0 TY-6 TZ+8 "
+      "F600\n"
+      "5 L X+2 FMAX\n6 L X+3\n7 FUNCTION RESET TCPM\n8 M30\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 4U);
+  EXPECT_EQ(motion[0].kind, BlockKind::kRapid);
+  EXPECT_EQ(tip(motion[1]), Vector3(1.5, 0, 10));
+  EXPECT_LT((axis(motion[1]) - Vector3(0, -0.6, 0.8)).norm(), kTiny);
+  EXPECT_EQ(motion[2].kind, BlockKind::kRapid);
+  EXPECT_EQ(motion[3].kind, BlockKind::kCut) << "FMAX holds for its block alone";
+  EXPECT_DOUBLE_EQ(motion[3].feed, 10);
+  EXPECT_EQ(read.summary.program, "PART");
+  EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST(Klartext, TurnsByRotaryWordsUnderM128) {
+  const ReadText read = read_klartext(
+      "2 L A+30 C+0 R0 FMAX\n3 M128\n4 L X+0 Y+0 Z+50 FMAX\n5 L X+90 C+90 F600\n6 M129\n",
+      klartext(on(shipped("trunnion-ac"))));
+  ASSERT_EQ(read.error, "");
+  EXPECT_GT(read.motion().size(), 5U) << "the joints turn evenly, so the block is cut";
+}
+
+TEST(Klartext, TurnsArcs) {
+  const ReadText read = read_klartext(
+      "2 L X+10 Y+0 Z+0 R0 FMAX\n3 CC X+0 Y+0\n4 C X+0 Y+10 DR+ F600\n5 CR X-10 Y+0 R+10 DR+\n"
+      "6 C X-10 Y+0 DR-\n7 L IX+5 IZ-1\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 5U);
+  EXPECT_NEAR(motion[1].sweep_rad, std::numbers::pi / 2, kTiny);
+  EXPECT_NEAR(motion[2].sweep_rad, std::numbers::pi / 2, kTiny);
+  EXPECT_NEAR(motion[3].sweep_rad, 2 * std::numbers::pi, kTiny);
+  EXPECT_LT((to_vector(motion[3].normal) + Vector3::UnitZ()).norm(), kTiny);
+  EXPECT_EQ(tip(motion[4]), Vector3(-5, 0, -1));
+}
+
+TEST(Klartext, Acts) {
+  const ReadText read = read_klartext(
+      "2 TOOL CALL 5 Z S6000 F200\n3 L X+0 Y+0 Z+0 R0 FMAX M13\n4 TOOL CALL S300\n"
+      "5 CYCL DEF 9.0 DWELL TIME\n6 CYCL DEF 9.1 DWELL 0.500\n7 STOP\n8 M5\n");
+  ASSERT_EQ(read.error, "");
+  ASSERT_EQ(read.blocks.size(), 9U);
+  EXPECT_EQ(read.blocks[0].value, 5);
+  EXPECT_EQ(read.blocks[1].value, 6000);
+  EXPECT_EQ(read.blocks[2].action, ActionKind::kCoolantFlood);
+  EXPECT_EQ(read.blocks[4].value, 300);
+  EXPECT_DOUBLE_EQ(read.blocks[5].value, 0.5);
+  EXPECT_EQ(read.blocks[6].kind, BlockKind::kStop);
+  EXPECT_EQ(read.blocks[7].action, ActionKind::kSpindleOff);
+}
+
+TEST(Klartext, RefusesByName) {
+  const std::vector<std::pair<const char*, const char*>> cases = {
+      {"L X+Q5", "a Q parameter"},
+      {"Q5 = 3", "Q: this word of Klartext"},
+      {"FN 0: Q1 = 5", "FN: this word of Klartext"},
+      {"LBL 1", "LBL: this word"},
+      {"CALL LBL 1", "CALL LBL: this word"},
+      {"CALL PGM A", "CALL PGM: this word"},
+      {"TCH PROBE 0.0", "TCH PROBE: this word"},
+      {"PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", "PLANE: this word"},
+      {"CYCL DEF 200 DRILLING ~", "CYCL DEF 200: a cycle"},
+      {"CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.0: a cycle"},
+      {"RND R5", "RND: this word"},
+      {"APPR LT X+0", "APPR: this word"},
+      {"L X+5 RL F100", "radius compensation (RL, RR)"},
+      {"TOOL CALL \"MILL\" Z", "TOOL CALL by a name"},
+      {"C X+1 Y+1 DR+", "an arc (C) before any CC"},
+      {"CR X+1 Y+1 R+5", "an arc without DR+ or DR-"},
+      {"LN X+1 TX+0 TY+0 TZ+1 F5", "TX, TY, TZ without tool-centre control"},
+      {"FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", "angles in space"},
+      {"FUNCTION TCPM F TCP AXIS POS REFPNT CENTER-CENTER", "the ball's centre"},
+      {"L X+1 F5 M140", "M140 is not run here"},
+      {"L X+1 X+2", "word X twice"}};
+  for (const auto& [line, says] : cases) {
+    const ReadText read = read_klartext("2 L X+0 Y+0 Z+0 R0 FMAX\n3 " + std::string(line) + "\n");
+    EXPECT_EQ(read.error_line, 4U) << line << ": " << read.error;
+    EXPECT_NE(read.error.find(says), std::string::npos) << line << ": " << read.error;
+  }
+  const ReadText inch =
+      cl::read_text("0 BEGIN PGM A INCH\n1 L X+0 Y+0 Z+0 FMAX\n2 M30\n", klartext());
+  EXPECT_NE(inch.error.find("a program in inch"), std::string::npos);
+}
+
+TEST(Klartext, WarnsOfVectorsWhoseWayIsTheJoints) {
+  EXPECT_TRUE(read_klartext("2 M128\n3 LN X+0 Y+0 Z+9 TX+0 TY+0 TZ+1 FMAX\n")
+                  .warned_of("without PATHCTRL VECTOR"));
+}
+
+TEST(Klartext, IsKnownByItsFirstLine) {
+  ClReaderOptions options = without_machine();
+  options.dialect.reset();
+  const ReadText read =
+      cl::read_text("0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+0 R0 FMAX\n2 END PGM A MM\n", options);
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.dialect_reason, "BEGIN PGM");
+}
+
+}  // namespace
+}  // namespace meridian::nc
