@@ -11,7 +11,7 @@
 namespace meridian::mcap {
 namespace {
 
-/// The fastest: of numbers that are mostly noise no level up to 12 makes less.
+/// The fastest: of numbers that are mostly noise the levels up to 12 save 2 % at most.
 constexpr int kLevel = 1;
 
 struct FreeContext {

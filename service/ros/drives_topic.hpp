@@ -15,7 +15,7 @@ namespace meridian::ros {
 
 /// `/drives`: how far every drive is from the setpoint that it had seen, and what it says of
 /// itself; meridian_msgs/Drives. Every row of the flight recorder, whose files are short; else the
-/// largest error of every 20 ms. Proof: tests/unit/ros/motion_file_test.cpp.
+/// largest error of every 40 ms. Proof: tests/unit/ros/motion_file_test.cpp.
 class DrivesTopic {
  public:
   DrivesTopic(mcap::Writer& writer, const MachineModel& model, const Contents& contents);

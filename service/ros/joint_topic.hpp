@@ -12,7 +12,7 @@
 
 namespace meridian::ros {
 
-/// `/joint_states`: where the joints, then the drives of a stage, are sent, and how fast, 50 times
+/// `/joint_states`: where the joints, then the drives of a stage, are sent, and how fast, 25 times
 /// a second for what knows this type and no other; sensor_msgs/JointState.
 /// Proof: tests/unit/ros/motion_file_test.cpp.
 class JointTopic {

@@ -11,7 +11,7 @@
 
 namespace meridian::ros {
 
-/// `/limit_shares`: the largest share of every limit in the last 20 ms, so that no peak is lost and
+/// `/limit_shares`: the largest share of every limit in the last 40 ms, so that no peak is lost and
 /// a file stays small; meridian_msgs/LimitShares. Proof: tests/unit/ros/motion_file_test.cpp.
 class LimitTopic {
  public:

@@ -20,6 +20,7 @@ struct Definition {
 constexpr Definition kTime{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"};
 constexpr Definition kHeader{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
 constexpr Definition kPoint{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kVector{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
 constexpr Definition kQuaternion{"geometry_msgs/Quaternion",
                                  "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"};
 constexpr Definition kPose{"geometry_msgs/Pose",
@@ -85,6 +86,48 @@ MessageType log_type() {
                "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\n"
                "string file\nstring function\nuint32 line\n",
                {kTime})};
+}
+
+MessageType transforms_type() {
+  return {"tf2_msgs/msg/TFMessage",
+          with("geometry_msgs/TransformStamped[] transforms\n",
+               {{"geometry_msgs/TransformStamped",
+                 "std_msgs/Header header\nstring child_frame_id\n"
+                 "geometry_msgs/Transform transform\n"},
+                kHeader,
+                kTime,
+                {"geometry_msgs/Transform",
+                 "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+                kVector,
+                kQuaternion})};
+}
+
+MessageType markers_type() {
+  return {"visualization_msgs/msg/MarkerArray",
+          with("visualization_msgs/Marker[] markers\n",
+               {{"visualization_msgs/Marker",
+                 "int32 CUBE=1\nint32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 ADD=0\n"
+                 "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
+                 "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\n"
+                 "std_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\n"
+                 "bool frame_locked\ngeometry_msgs/Point[] points\n"
+                 "std_msgs/ColorRGBA[] colors\nstring texture_resource\n"
+                 "sensor_msgs/CompressedImage texture\n"
+                 "visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\n"
+                 "string mesh_resource\nvisualization_msgs/MeshFile mesh_file\n"
+                 "bool mesh_use_embedded_materials\n"},
+                kHeader,
+                kTime,
+                kPose,
+                kPoint,
+                kQuaternion,
+                kVector,
+                {"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
+                {"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+                {"sensor_msgs/CompressedImage",
+                 "std_msgs/Header header\nstring format\nuint8[] data\n"},
+                {"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
+                {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"}})};
 }
 
 MessageType cycle_type(const MachineModel& model, const Contents& contents) {

@@ -31,6 +31,8 @@ struct MessageType {
 [[nodiscard]] MessageType joint_state_type();
 [[nodiscard]] MessageType pose_stamped_type();
 [[nodiscard]] MessageType log_type();
+[[nodiscard]] MessageType transforms_type();
+[[nodiscard]] MessageType markers_type();
 /// With a field for everything that has limits (limited.hpp), and one for every drive.
 [[nodiscard]] MessageType cycle_type(const MachineModel& model, const Contents& contents);
 /// A field for everything that has limits (limited.hpp).

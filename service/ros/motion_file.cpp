@@ -37,6 +37,8 @@ MotionFile::MotionFile(const std::string& path, std::unique_ptr<mcap::Writer> wr
       tip_(*writer_),
       cycles_(*writer_, model, contents),
       limits_(*writer_, model),
+      transforms_(*writer_, model),
+      markers_(*writer_, model, transforms_.frames()),
       events_(*writer_),
       event_rows_(events_, model, contents) {
   if (contents.has_feedback) drives_.emplace(*writer_, model, contents);
@@ -53,6 +55,8 @@ bool MotionFile::write(const record::RecordingRow& row) {
   tip_.write(row.due_ns, derived_.pose());
   cycles_.write(row, derived_);
   limits_.write(row.due_ns, derived_);
+  transforms_.write(row.due_ns, row.joints);
+  markers_.write(row.due_ns, derived_.pose().tip);
   event_rows_.write(row);
   if (drives_) drives_->write(row);
   ++rows_;
@@ -66,7 +70,10 @@ void MotionFile::write_event(std::int64_t time_ns, Level level, const std::strin
 }
 
 std::optional<record::RecordError> MotionFile::close() {
-  if (rows_ > 0) limits_.finish(last_ns_, derived_);
+  if (rows_ > 0) {
+    limits_.finish(last_ns_, derived_);
+    markers_.finish(last_ns_);
+  }
   if (writer_->close()) return std::nullopt;
   return record::RecordError{path_, 0, std::strerror(writer_->error_number()),
                              "make room, or name a file on another disk"};

@@ -16,7 +16,9 @@
 #include "service/ros/event_topic.hpp"
 #include "service/ros/joint_topic.hpp"
 #include "service/ros/limit_topic.hpp"
+#include "service/ros/marker_topic.hpp"
 #include "service/ros/tip_topic.hpp"
+#include "service/ros/transform_topic.hpp"
 
 namespace meridian::ros {
 
@@ -58,6 +60,8 @@ class MotionFile {
   TipTopic tip_;
   CycleTopic cycles_;
   LimitTopic limits_;
+  TransformTopic transforms_;
+  MarkerTopic markers_;
   EventTopic events_;
   EventRows event_rows_;
   std::optional<DrivesTopic> drives_;

@@ -27,7 +27,7 @@ class Pace {
   bool has_begun_ = false;
 };
 
-/// Of what is not of every row: 50 a second, as smooth as a screen shows it.
-inline constexpr std::int64_t kScreenPeriod_ns = 20'000'000;
+/// Of what is not of every row: 25 a second, as a film.
+inline constexpr std::int64_t kScreenPeriod_ns = 40'000'000;
 
 }  // namespace meridian::ros

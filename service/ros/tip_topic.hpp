@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "meridian/geometry/vector3.hpp"
@@ -11,13 +10,7 @@
 
 namespace meridian::ros {
 
-/// A rotation as x, y, z, w.
-using Quaternion = std::array<double, 4>;
-
-/// The least rotation that takes +z to the unit vector `axis`; to -z it turns about x.
-[[nodiscard]] Quaternion from_z_to(const Vec3<double>& axis) noexcept;
-
-/// `/tip`: the tool tip in the frame `workpiece`, 50 times a second; its orientation takes +z along
+/// `/tip`: the tool tip in the frame `workpiece`, 25 times a second; its orientation takes +z along
 /// the tool axis to the shank; geometry_msgs/PoseStamped. Proof:
 /// tests/unit/ros/motion_file_test.cpp.
 class TipTopic {

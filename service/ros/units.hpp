@@ -17,6 +17,7 @@ inline constexpr int kPositionPlaces = 30;  ///< steps of 1e-9 m or rad, of what
 inline constexpr int kFeedbackPlaces = 27;  ///< 7.5e-9 m or rad
 inline constexpr int kVelocityPlaces = 20;  ///< 1e-6 m/s or rad/s
 inline constexpr int kAxisPlaces = 20;      ///< 1e-6, of a unit vector
+inline constexpr int kScreenPlaces = 20;    ///< 1e-6 m, or of a unit quaternion: of pictures
 inline constexpr int kTimePlaces = 20;      ///< 1e-6 s
 inline constexpr int kSharePlaces = 12;     ///< 2.4e-4 of a limit
 

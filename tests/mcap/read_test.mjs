@@ -51,7 +51,7 @@ for (const [id, channel] of reader.channelsById) {
   decoders.set(id, file.decoder(reader.schemasById.get(channel.schemaId)));
 }
 const topics = [...reader.channelsById.values()].map((channel) => channel.topic).sort();
-assert.deepEqual(topics, ["/cycle", "/events", "/joint_states", "/limit_shares", "/tip"]);
+assert.deepEqual(topics, ["/cycle", "/events", "/joint_states", "/limit_shares", "/machine", "/tf", "/tip", "/trail"]);
 const types = Object.fromEntries([...reader.channelsById.values()].map(
   (channel) => [channel.topic, reader.schemasById.get(channel.schemaId).name]));
 assert.equal(types["/joint_states"], "sensor_msgs/msg/JointState");
@@ -91,12 +91,12 @@ for await (const row of rows()) {
     near(fields.feed, way / kCycle_s, 3e-6, `${what} feed`);
   }
   before = fields.tip;
-  if (count === 0 || logTime % 20_000_000n === 0n) sent.set(logTime, fields);
+  if (count === 0 || logTime % 40_000_000n === 0n) sent.set(logTime, fields);
   ++count;
 }
 assert.ok((await cycles.next()).done, "more messages than rows");
 
-// Fifty a second, of rows that are there.
+// Twenty-five a second, of rows that are there.
 let screen = 0;
 for await (const { logTime, fields } of messages("/joint_states")) {
   const row = sent.get(logTime);
@@ -115,13 +115,43 @@ for await (const { logTime, fields } of messages("/tip")) {
 assert.equal(screen, 0);
 assert.ok(count > 1000, `${count} rows`);
 
+// The tree of frames leads from the workpiece to the tip.
+const turned = ({ x, y, z, w }, v) => {
+  const t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])];
+  return [v[0] + w * t[0] + y * t[2] - z * t[1], v[1] + w * t[1] + z * t[0] - x * t[2], v[2] + w * t[2] + x * t[1] - y * t[0]];
+};
+const inMachine = (frames, name, v) => {
+  for (let frame = frames.get(name); frame !== undefined; frame = frames.get(frame.header.frame_id)) {
+    const { rotation, translation: t } = frame.transform;
+    const [x, y, z] = turned(rotation, v);
+    v = [x + t.x, y + t.y, z + t.z];
+  }
+  return v;
+};
+let pictures = 0;
+for await (const { logTime, fields } of messages("/tf")) {
+  const frames = new Map(fields.transforms.map((frame) => [frame.child_frame_id, frame]));
+  const { tip } = sent.get(logTime);
+  const wanted = inMachine(frames, "workpiece", [tip.x, tip.y, tip.z]), is = inMachine(frames, "tool", [0, 0, 0]);
+  for (const i of [0, 1, 2]) near(is[i], wanted[i], 1e-5, `tip in the machine, coordinate ${i}`);
+  ++pictures;
+}
+assert.equal(pictures, sent.size);
+for (const [topic, type, least] of [["/machine", 3, 6], ["/trail", 4, 7]]) {
+  let markers = 0;
+  for await (const { fields } of messages(topic)) {
+    for (const marker of fields.markers) markers += marker.type === type && marker.frame_locked ? 1 : 0;
+  }
+  assert.ok(markers >= least, `${markers} markers in ${topic}`);
+}
+
 let most = 0, shares = 0;
 for await (const { fields } of messages("/limit_shares")) {
   for (const joint of joints) most = Math.max(most, fields[joint].velocity, fields[joint].acceleration, fields[joint].jerk);
   ++shares;
 }
 assert.ok(most > 0.5 && most < 1.01, `the largest share of a limit is ${most}`);
-assert.ok(Math.abs(shares - count / 20) <= 2, `${shares} messages of shares`);
+assert.ok(Math.abs(shares - count / 40) <= 2, `${shares} messages of shares`);
 
 const told = [];
 for await (const { fields } of messages("/events")) if (fields.name === "operator") told.push(fields.msg);

@@ -117,7 +117,7 @@ TEST_F(Conversion, TakesRecordingsOfTheWire) {
   EXPECT_TRUE(writer->close());
   EXPECT_EQ(refusal(), "");
   EXPECT_EQ(count("/cycle"), 50U);
-  EXPECT_EQ(count("/drives"), 3U);
+  EXPECT_EQ(count("/drives"), 2U);
   EXPECT_EQ(count("/events"), 0U) << "the wire tells no state";
 }
 

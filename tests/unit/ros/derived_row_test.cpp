@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "service/ros/tip_topic.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::ros {
@@ -71,16 +70,6 @@ TEST_F(Derived, HoldsAFaultStopAgainstItsOwnLimits) {
   add(4, 1e-6, kSetpointEnabled | kSetpointFaultStop);
   EXPECT_NEAR(share(2), 1e-6 / period_ / period_ / period_ / model_.joints[0].limits.fault_jerk,
               1e-6);
-}
-
-TEST(ToolRotation, TakesZToTheToolAxis) {
-  for (const Vector3& wanted : {Vector3(0, 0, 1), Vector3(0.6, 0, 0.8), Vector3(0, -1, 0),
-                                Vector3(0.48, 0.6, -0.64), Vector3(0, 0, -1)}) {
-    const auto [x, y, z, w] = from_z_to(wanted);
-    EXPECT_NEAR(x * x + y * y + z * z + w * w, 1, 1e-15);
-    const Vector3 turned(2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y));
-    EXPECT_LT((turned - wanted).norm(), 1e-15);
-  }
 }
 
 }  // namespace
