@@ -50,6 +50,13 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
   switch (row.kind) {
     case GKind::kMotion:
       s.modes.motion = static_cast<Motion>(row.value);
+      begin_cycle(s, 0);
+      break;
+    case GKind::kCycle:
+      begin_cycle(s, row.value);
+      break;
+    case GKind::kReturn:
+      s.modes.cycle.returns_to_r = row.value != 0;
       break;
     case GKind::kPlane:
       s.modes.plane = row.value;
@@ -92,7 +99,7 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
 
 /// Two of one kind contradict each other, but for those that say nothing.
 cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
-                        std::array<bool, 16>& seen) {
+                        std::array<bool, 32>& seen) {
   if (row.kind == GKind::kNothing || row.kind == GKind::kSetting) return {};
   bool& is_seen = seen[static_cast<std::size_t>(row.kind)];
   if (is_seen) return refuse("two G codes of one group in a block");
@@ -105,7 +112,7 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
 
 cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
   std::optional<GKind> motion_kind;
-  std::array<bool, 16> seen{};
+  std::array<bool, 32> seen{};
   const bool is_siemens = s.modes.language == Language::kSiemens;
   for (const Word& word : line.words) {
     if (!word.is('G')) continue;
@@ -147,6 +154,7 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
       break;
   }
   if (!moves(line)) return {};
+  if (s.modes.cycle.code != 0) return run_cycle(s, line);
   if (shot.kind == OneShot::Kind::kSetting) {
     s.cl.remarks.warn("setting", line.number, [] {
       return std::string("axis words beside a setting of the control are taken as motion");

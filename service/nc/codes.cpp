@@ -92,7 +92,14 @@ constexpr std::array kG = std::to_array<GRow>({
     {684, kRefused, 0, kTilted},
     {690, kNothing},
     {691, kNothing},
-    {800, kNothing},
+    {730, kCycle, 73},
+    {800, kCycle, 0},
+    {810, kCycle, 81},
+    {820, kCycle, 82},
+    {830, kCycle, 83},
+    {850, kCycle, 85},
+    {860, kCycle, 86},
+    {890, kCycle, 89},
     {900, kDistance, 0},
     {901, kCentre, 1},
     {910, kDistance, 1},
@@ -103,8 +110,8 @@ constexpr std::array kG = std::to_array<GRow>({
     {950, kFeed, of(cl::FeedUnit::kPerRevolution)},
     {960, kRefused, 0, "surface speed needs the radius being cut", "output the speed in rev/min"},
     {970, kNothing},
-    {980, kNothing},
-    {990, kNothing},
+    {980, kReturn, 0},
+    {990, kReturn, 1},
     {1870, kSetting},
 });
 
@@ -132,8 +139,8 @@ constexpr std::array kM = std::to_array<MRow>({
     {430, MKind::kRefused, 0, "the kinematics of a LinuxCNC configuration"},
 });
 
-/// Canned cycles.
-constexpr GRow kCycle{-1, kRefused, 0, "a canned cycle of the control", kByCam};
+/// Canned cycles that turn the spindle back, orient it or wait for somebody.
+constexpr GRow kOtherCycle{-1, kRefused, 0, "a canned cycle of the control", kByCam};
 
 }  // namespace
 
@@ -144,10 +151,10 @@ const GRow* find_g(double code) noexcept {
   if (!(std::abs(tenths - code * 10) < 1e-6 && tenths >= 0 && tenths < 1e4)) return nullptr;
   const int key = static_cast<int>(tenths);
   const bool is_cycle = key == 730 || key == 740 || key == 760 || (key >= 810 && key <= 890);
-  if (is_cycle && key % 10 == 0) return &kCycle;
   const auto at =
       std::find_if(kG.begin(), kG.end(), [key](const GRow& row) { return row.tenths == key; });
-  return at == kG.end() ? nullptr : &*at;
+  if (at != kG.end()) return &*at;
+  return is_cycle && key % 10 == 0 ? &kOtherCycle : nullptr;
 }
 
 const MRow* find_m(double code) noexcept {

@@ -17,6 +17,8 @@ enum class GKind : std::uint8_t {
   kFeed,        ///< `value`: cl::FeedUnit
   kControl,     ///< of the tool centre; `value`: Control
   kWorkOffset,  ///< the place of the part, which the station's frame tells
+  kCycle,       ///< `value`: 81 of G81, 0 ends it
+  kReturn,      ///< of cycles; `value`: 1 to R
   kDwell,
   kHome,          ///< G28
   kMachinePlace,  ///< G53

@@ -74,7 +74,7 @@ cl::Outcome run_function(State& s, const Line& line) {
 }
 
 /// CYCL DEF 9.1 DWELL 0.500, and what of the other cycles says nothing about where.
-cl::Outcome run_cycle(State& s, const Line& line) {
+cl::Outcome run_cycle_definition(State& s, const Line& line) {
   std::string_view text = line.names.front().arguments;
   while (text.starts_with(' ')) text.remove_prefix(1);
   const std::string number(text.substr(0, text.find(' ')));
@@ -233,7 +233,7 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   }
   if (statement == "FUNCTION") return run_function(s, line);
   if (statement == "TOOL CALL") return call_tool(s, line);
-  if (statement == "CYCL DEF") return run_cycle(s, line);
+  if (statement == "CYCL DEF") return run_cycle_definition(s, line);
   if (statement == "CC") return set_pole(s, line);
   const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF" ||
                           (statement == "PLANE" && mentions(line.names.front().arguments, "RESET"));

@@ -27,6 +27,15 @@ enum class Control : std::uint8_t {
 
 enum class Language : std::uint8_t { kFanuc, kSiemens, kHeidenhain };
 
+/// A canned cycle in force. Lengths in the unit of the program.
+struct Cycle {
+  std::uint8_t code = 0;      ///< 81 of G81; 0: none
+  double initial = 0;         ///< where Z stood before it
+  bool returns_to_r = false;  ///< G99; G98: to `initial`
+  std::optional<double> r, z, peck;
+  double dwell_s = 0;
+};
+
 /// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
 struct Modes {
   Motion motion = Motion::kNone;
@@ -35,6 +44,7 @@ struct Modes {
   bool is_incremental = false;
   bool is_centre_absolute = false;
   cl::FeedUnit feed_unit = cl::FeedUnit::kPerMinute;
+  Cycle cycle;
   int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;

@@ -77,7 +77,9 @@ class SiemensCutter {
       (void)take_while(is_digit);
       return {};
     }
-    if (c == '$' || c == '[') return refuse("a variable of the control", kExpand, "variables");
+    if (c == '$' || c == '[' || c == '_') {
+      return refuse("a variable of the control", kExpand, "variables");
+    }
     if (c == '"') return refuse("a text where a word should stand");
     if (!cl::is_letter(c)) {
       return refuse("what begins with " + cl::quoted(std::string_view(&c, 1)) + " is no NC word");
@@ -149,7 +151,8 @@ class SiemensCutter {
   cl::Outcome cut_value(Word& word) {
     skip_blanks();
     if (!rest_.empty() && rest_.front() == '"') return cut_text(word);
-    if (rest_.empty() || !cl::is_letter(rest_.front())) return cut_number(word);
+    const bool has_name = !rest_.empty() && (cl::is_letter(rest_.front()) || rest_.front() == '_');
+    if (!has_name) return cut_number(word);
     const std::string_view how = take_while(is_name_sign);
     if (how == "AC") {
       word.way = Word::Way::kAbsolute;

@@ -57,6 +57,12 @@ struct PathEnd {
 /// lines.cpp: to W with --frame.
 [[nodiscard]] Expected<ToolPose, cl::Refusal> in_path(const State& s, const PathEnd& end);
 
+// cycles.cpp
+/// G81 and its kin; 0: G80, or a motion code.
+void begin_cycle(State& s, int code);
+/// A line under a canned cycle: one hole.
+[[nodiscard]] cl::Outcome run_cycle(State& s, const Line& line);
+
 // home.cpp
 /// G28, and G53 with `is_machine_place`.
 [[nodiscard]] cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place);

@@ -41,6 +41,9 @@ Seeds nc_seeds() {
       "/G94 G1 X2. F10. ; on\nG95 S100 M3\nG1 X3. F.01\nM1\nM2\n",
       "%\nG21\nG0 X10. Y0. Z0.\nG2 X0. Y10. I-10. J0. F100\nG3 X10. Y0. R-10. Z5.\nG18 G2 I-5.\n"
       "G19 G3 Y5. R20.\nG91 G1 X1 Y1\nN10 M88\nG65 P1 A#2\nIF [#1] GOTO 5\n%\n",
+      "%\nO2\nG21 G90 F100.\nG0 X0. Y0. Z10.\nG98 G81 Z-10. R2.\nX5.\nG99 G83 X9. Z-20. R1. Q5.\n"
+      "G91 G82 X1. Z-3. R-1. P200\nG80\nG90 G73 Q1. Z-5. R0. K0\nS9 M3\nG86 Y4.\nG89 Y5. "
+      "P1.\nM30\n%\n",
       "%_N_A_MPF\n;$PATH=/_N_MPF_DIR\nTRAFOOF\nG17 G710 G40 G90 G94\nG54\nSUPA G0 Z0 D0\nT1\nM6\n"
       "S6000 M3\nG0 C0 A0\nG0 X10 Y20\nD1\nTRAORI(1)\nORIWKS ORIVECT\nG0 X10 Y20 Z=60 A3=0 B3=0 "
       "C3=1\nG1 Z=IC(-5) F600\nG1 X30 B3=-.6 C3=.8\nG4 F0.5\nG4 S3\nORIAXES\nG1 A30 C=90\n"

@@ -97,6 +97,8 @@ struct Refused {
 TEST(SiemensProgram, RefusesByName) {
   const std::vector<Refused> cases = {
       {"R1=5", "an R parameter"},
+      {"_HOME=5", "a variable of the control"},
+      {"X=_HOME", "X=_HOME is for the control"},
       {"X=R1", "X=R1 is for the control to work out"},
       {"X=10+5", "an expression"},
       {"DEF REAL A", "DEF: variables, jumps"},
