@@ -62,6 +62,8 @@ if(drive_library)
       message(FATAL_ERROR "it was not my_drives that cut the sample part")
     endif()
     message(STATUS "my_drives cut the sample part")
+    run(sh ${CONSUMER}/../check_c_drives ${WORK}/drives/c_drives ${WORK}/prefix)
+    message(STATUS "c_drives: ${output}")
   endif()
 endif()
 

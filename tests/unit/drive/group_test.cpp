@@ -112,6 +112,36 @@ TEST_F(PartOfAMachine, NothingMovesInADryRun) {
   }
 }
 
+TEST_F(PartOfAMachine, ASetpointIsTakenOnceInOrderInTimeAndFromTheMasterAlone) {
+  enable();
+  (void)send(0);
+  group_.work(1, motors_);
+  const auto sample = [this](std::uint64_t cycle, std::int64_t due_ns) {
+    dds::SetpointSample one;
+    one.setpoint.cycle = cycle;
+    one.setpoint.due_ns = due_ns;
+    one.setpoint.position[2] = 0.1;
+    one.setpoint.flags = kSetpointEnabled;
+    one.crc = dds::setpoint_crc(one.setpoint, kService);
+    return one;
+  };
+  const auto at = [](std::uint64_t cycle) { return static_cast<std::int64_t>(cycle) * 1'000'000; };
+  EXPECT_EQ(group_.take(sample(cycle_, at(cycle_)), kMaster, at(cycle_)), Drop::kOutOfOrder)
+      << "doubled";
+  EXPECT_EQ(group_.take(sample(cycle_ - 5, at(cycle_)), kMaster, at(cycle_)), Drop::kOutOfOrder)
+      << "overtaken";
+  const std::uint64_t next = cycle_ + 1;
+  EXPECT_EQ(group_.take(sample(next, at(next)), kMaster, at(next) + 30'000'000), Drop::kStale)
+      << "late";
+  EXPECT_EQ(group_.take(sample(next, at(next)), kOther, at(next)), Drop::kForeignSetpoint);
+  group_.work(1, motors_);
+  EXPECT_EQ(motors_.outputs[0].position, 0) << "nothing of all that";
+  EXPECT_EQ(group_.periods_bridged(), 1U);
+  EXPECT_EQ(group_.take(sample(next, at(next)), kMaster, at(next)), Drop::kNone);
+  group_.work(1, motors_);
+  EXPECT_EQ(motors_.outputs[0].position, 0.1);
+}
+
 TEST_F(PartOfAMachine, LostPeriodsOfItsOwnAreOneExchange) {
   group_.work(4, motors_);
   EXPECT_DOUBLE_EQ(motors_.exchanged_s, 4e-3);
