@@ -11,7 +11,7 @@ namespace meridian::drives {
 
 std::string in_hex(std::uint16_t value) {
   char text[8];
-  std::snprintf(text, sizeof text, "%04Xh", value);
+  std::snprintf(text, sizeof text, value > 0xFF ? "%04Xh" : "%02Xh", value);
   return text;
 }
 
@@ -147,9 +147,17 @@ DriveState CheckPlayer::state(int drive) const {
 
 bool CheckPlayer::are_all(DriveState wanted) const {
   for (int i = 0; i < count(); ++i) {
-    if (state(i) != wanted) return false;
+    const bool is_reported = (newest.joint_mask >> static_cast<unsigned>(i) & 1U) != 0;
+    if (is_reported && state(i) != wanted) return false;
   }
   return true;
+}
+
+bool CheckPlayer::is_any(DriveState wanted) const {
+  for (int i = 0; i < count(); ++i) {
+    if (state(i) == wanted) return true;
+  }
+  return false;
 }
 
 bool CheckPlayer::is_heard() const {

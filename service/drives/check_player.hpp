@@ -47,7 +47,9 @@ class CheckPlayer {
   void command_all(Speaker who, std::uint64_t service_id, std::uint16_t word);
 
   [[nodiscard]] DriveState state(int drive) const;
+  /// All drives that are reported.
   [[nodiscard]] bool are_all(DriveState state) const;
+  [[nodiscard]] bool is_any(DriveState state) const;
   [[nodiscard]] bool is_any_reported() const noexcept { return newest.joint_mask != 0; }
   /// The newest setpoint is reported as taken, or one of the last few.
   [[nodiscard]] bool is_heard() const;
@@ -79,7 +81,7 @@ class CheckPlayer {
   std::vector<dds::DriveFeedback> reports_;
 };
 
-/// "8700h".
+/// "8700h", "0Fh".
 [[nodiscard]] std::string in_hex(std::uint16_t value);
 
 }  // namespace meridian::drives

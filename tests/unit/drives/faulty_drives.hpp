@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,7 +70,7 @@ inline drive::GroupSpec FaultyDrives::spec() {
     axis.homing = drives::homing_of({});
     axis.position = servos_.servo(static_cast<std::size_t>(i)).servo.position;
     if (is("no-travel")) axis.spec.is_endless = true;
-    if (is("no-velocity")) axis.spec.limits.velocity = 0;
+    if (is("no-step")) axis.spec.limits.velocity = 0;
     if (is("no-ramp")) axis.spec.limits.fault_acceleration = 0;
     if (is("long-ramp")) axis.spec.limits.fault_acceleration /= 4;
     if (is("no-begin")) axis.spec.limits.following_error = 0;
@@ -140,7 +143,11 @@ inline void FaultyDrives::say(drives::Speaker who, const dds::SetpointSample& se
   }
   if (is("takes-no-numbers") && !(s.position[0] == s.position[0])) return;
   if (is("limits-velocity") && s.velocity[0] > 300) s.velocity[0] = 300, sign();
-  if (is("bridges-standing")) s.velocity.fill(0), sign();
+  const bool is_right = sample.crc == dds::setpoint_crc(s, group_->pin().master().service_id);
+  if (is("bridges-standing") && is_right) s.velocity.fill(0), sign();
+  if (is("no-step") && std::abs(s.velocity[0]) > 300) {
+    return group_->axis(0).fail(drive::kErrorSetpointVelocity);
+  }
   newest_ = std::max(newest_, s.cycle);
   last_ = sample;
   mutes_ = 0;
@@ -150,9 +157,14 @@ inline void FaultyDrives::say(drives::Speaker who, const dds::SetpointSample& se
 inline bool FaultyDrives::period(std::vector<dds::DriveFeedback>& reports) {
   now_ns_ += model_.cycle_ns;
   ++periods_;
-  if (is("no-watchdog") && ++mutes_ > 1 && last_ && is_service_there_) {
-    last_->setpoint.cycle += 2;
-    last_->crc = dds::setpoint_crc(last_->setpoint, group_->pin().master().service_id);
+  if (is("no-watchdog") && ++mutes_ > 15 && last_ && is_service_there_) {
+    Setpoint& again = last_->setpoint;
+    again.cycle += 2;
+    for (int i = 0; i < group_->size(); ++i) {
+      again.position[static_cast<std::size_t>(i)] = group_->axis(i).position();
+    }
+    again.velocity.fill(0);
+    last_->crc = dds::setpoint_crc(again, group_->pin().master().service_id);
     (void)group_->take(*last_, 41, 0);
   }
   const bool is_kept = is("keeps-a-service-that-is-gone");
