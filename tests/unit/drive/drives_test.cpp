@@ -31,7 +31,10 @@ class Library : public testing::Test {
       said_.push_back(text);
     };
   }
-  ~Library() override { stop(); }
+  ~Library() override {
+    stop();
+    drives_.reset();  // its threads use what is below
+  }
   void start() {
     drives_.emplace(options_, motors_);
     thread_ = std::thread([this] {
