@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <chrono>
+#include <cstdio>
 #include <string>
+#include <thread>
 
 #include "integration/set_up_plant.hpp"
 #include "service/config/machine_file.hpp"
@@ -10,7 +13,6 @@
 /// Work frames of a machine that runs: set, kept, told, and refused where they must not change.
 namespace meridian::test {
 namespace {
-
 
 class SetUp : public testing::Test {
  protected:
@@ -190,8 +192,9 @@ TEST_F(SetUp, RefusesAProgramThatWasCheckedUnderAnotherFrame) {
   ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 2; }));
   dds::Writer<dds::SessionRequest> requests(plant.participant());
   dds::Reader<dds::Credit> credits(plant.participant());
-  ASSERT_TRUE(eventually(
-      [&] { return requests.matched_readers() > 0 && credits.matched_writers() > 0; }, kToolPatience));
+  ASSERT_TRUE(
+      eventually([&] { return requests.matched_readers() > 0 && credits.matched_writers() > 0; },
+                 kToolPatience));
   const auto open = [&](std::uint64_t session, std::uint64_t frame) {
     dds::SessionRequest request;
     request.session = session;
@@ -208,6 +211,56 @@ TEST_F(SetUp, RefusesAProgramThatWasCheckedUnderAnotherFrame) {
   EXPECT_NE(stale.text.find("stale: "), std::string::npos) << stale.text;
   EXPECT_EQ(plant.status().session, 0U);
   EXPECT_EQ(open(52, plant.status().frame).verdict, dds::Verdict::kGood);
+}
+
+TEST_F(SetUp, LetsAProgramInOrAFrameAndNeverBoth) {
+  start();
+  ASSERT_TRUE(anna.ask(order_of(FrameWord::kSet, 1, 100)).is_accepted);
+  ASSERT_TRUE(anna.ask(order_of(FrameWord::kSelect, 1)).is_accepted);
+  ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 1; }));
+  dds::Writer<dds::SessionRequest> requests(plant.participant());
+  dds::Reader<dds::Credit> credits(plant.participant());
+  ASSERT_TRUE(
+      eventually([&] { return requests.matched_readers() > 0 && credits.matched_writers() > 0; },
+                 kToolPatience));
+  int opened = 0, changed = 0;
+  for (int round = 1; round <= 12; ++round) {
+    SCOPED_TRACE(round);
+    const dds::Status seen = plant.status();
+    dds::SessionRequest request;
+    request.session = 100 + static_cast<std::uint64_t>(round);
+    request.station = "cam";
+    request.program = "part.apt";
+    request.frame = seen.frame;
+    // Who comes first has to wait a little longer each round.
+    const bool is_program_first = round % 2 == 0;
+    if (is_program_first) (void)requests.write(request);
+    anna.say(order_of(FrameWord::kSet, 1, round), seen);
+    if (!is_program_first) {
+      std::this_thread::sleep_for(milliseconds(round));
+      (void)requests.write(request);
+    }
+    dds::Credit credit;
+    ASSERT_TRUE(
+        eventually([&] { return credits.take(credit) && credit.session == request.session; }));
+    const auto reply = anna.answer();
+    ASSERT_TRUE(reply);
+    const bool is_open = credit.verdict == dds::Verdict::kGood;
+    EXPECT_FALSE(is_open && reply->is_accepted) << credit.text << "\n" << reply->text;
+    if (!is_open) {
+      EXPECT_NE(credit.text.find("work frame"), std::string::npos) << credit.text;
+    }
+    ++(is_open ? opened : changed);
+    const bool is_in_force = told_by(plant).frame_origin_mm[0] == round;
+    EXPECT_EQ(is_in_force, reply->is_accepted) << reply->text;
+    request.request = dds::SessionRequestKind::kClose;
+    (void)requests.write(request);
+    ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.session == 0; }));
+    ASSERT_TRUE(plant.runs_until([&](const dds::Status& status) {
+      return status.status_sequence > seen.status_sequence + 1;
+    }));
+  }
+  std::printf("%d programs let in, %d frames\n", opened, changed);
 }
 
 TEST_F(SetUp, IsTheToolsForPosesAndPrograms) {
