@@ -106,11 +106,15 @@ PathFault check_joins(const MachineModel& model, const JointPlace& a, const Join
   for (int i = 0; i < model.joint_count; ++i) {
     const double by = b.q[i] - a.q[i];
     const double off = std::abs(by - 0.5 * h * (a.d1[i] + b.d1[i] + h / 6 * (a.d2[i] - b.d2[i])));
-    // A share of what the derivatives bend the joint by, and rounding.
+    // A share of what the derivatives bend the joint by, and rounding. Closely beside the base axis
+    // the higher ones are as large as one pleases: no bend may exceed the way of the joint itself.
     const double bend =
         std::abs(b.d1[i] - a.d1[i]) + h * (std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
                                            h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i])));
-    if (!(off <= kJointNoise_rad + kMostOff * h * bend)) return {PathFault::Kind::kJump, i, by};
+    const double rate = std::abs(by) / h + std::abs(a.d1[i]) + std::abs(b.d1[i]);
+    if (!(off <= kJointNoise_rad + kMostOff * h * std::min(bend, rate))) {
+      return {PathFault::Kind::kJump, i, by};
+    }
   }
   return {};
 }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
 #include <random>
+#include <vector>
 
 #include "property/planner/random_programs.hpp"
 #include "property/planner/smooth_trace.hpp"
@@ -80,6 +82,14 @@ std::vector<ClBlock> past_the_base_axis(std::uint32_t seed) {
   return blocks;
 }
 
+/// The first seeds, and those that once drew a jump.
+std::vector<std::uint32_t> drawn_seeds() {
+  std::vector<std::uint32_t> seeds(number_of<std::uint32_t>("MERIDIAN_JUMP_PROGRAMS", 60));
+  std::iota(seeds.begin(), seeds.end(), 1U);
+  seeds.insert(seeds.end(), {659, 805, 808, 966, 1233});
+  return seeds;
+}
+
 class RobotJump : public testing::TestWithParam<Transition> {};
 
 TEST_P(RobotJump, IsNowhereOnOrBesideTheBaseAxis) {
@@ -89,9 +99,9 @@ TEST_P(RobotJump, IsNowhereOnOrBesideTheBaseAxis) {
   robot.joints[kYaw].limits.travel_min =
       -(robot.joints[kYaw].limits.travel_max = units::rad_from_deg(200));
   robot.joints[kShoulder].limits.travel_max = units::rad_from_deg(200);
-  const auto programs = number_of<std::uint32_t>("MERIDIAN_JUMP_PROGRAMS", 60);
+  const auto seeds = drawn_seeds();
   int refused = 0;
-  for (std::uint32_t seed = 1; seed <= programs; ++seed) {
+  for (const std::uint32_t seed : seeds) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const auto blocks = past_the_base_axis(seed);
     const JointVector start = joints_of(robot, blocks[0]);
@@ -100,8 +110,8 @@ TEST_P(RobotJump, IsNowhereOnOrBesideTheBaseAxis) {
     ASSERT_LT(fastest.share, 1.01) << "joint " << fastest.joint << ", line " << fastest.line;
     if (trace.last.status == PlanStatus::kRefused) ++refused;
   }
-  std::printf("%d of %u programs refused\n", refused, programs);
-  EXPECT_LT(refused, static_cast<int>(programs)) << "nothing is planned at all";
+  std::printf("%d of %zu programs refused\n", refused, seeds.size());
+  EXPECT_LT(refused, static_cast<int>(seeds.size())) << "nothing is planned at all";
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RobotJump,
