@@ -85,6 +85,7 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
       "kernel, network, traces, who answers. Nothing is changed. Exit code 1 where something is "
       "bad");
   command->add_option("--domain", options->domain, "DDS domain")
+      ->envname("MERIDIAN_DOMAIN")
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
   command

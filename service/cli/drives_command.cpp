@@ -162,6 +162,7 @@ void add_drives_command(CLI::App& app, int& exit_code) {
                    "DDS partition; default: the machine's name")
       ->check(machine_name());
   command->add_option("--domain", options->domain, "DDS domain")
+      ->envname("MERIDIAN_DOMAIN")
       ->capture_default_str()
       ->check(CLI::Range(0, 230));
   command->add_option("--lag", options->lag, "Order of the servo's lag: first or second")

@@ -13,6 +13,7 @@ namespace meridian::cli {
 
 void add_peer_options(CLI::App& command, PeerOptions& options) {
   command.add_option("--domain", options.domain, "DDS domain")
+      ->envname("MERIDIAN_DOMAIN")
       ->capture_default_str()
       ->check(CLI::Range(0, 230));
   command

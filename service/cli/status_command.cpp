@@ -10,16 +10,19 @@
 #include <thread>
 #include <vector>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/cli/stoppable_output.hpp"
+#include "service/config/config_error.hpp"
 #include "service/dds/followed.hpp"
 #include "service/dds/latency_since.hpp"
 #include "service/dds/participant.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/waitset.hpp"
+#include "service/stream/served_model.hpp"
 #include "service/text/percentiles.hpp"
 
 namespace meridian::cli {
@@ -111,6 +114,21 @@ int print_latency(dds::Participant& participant, const StatusOptions& options) {
   return options.histograms.empty() ? kFine : write_histograms(*histograms, options.histograms);
 }
 
+/// Where the tool is; nothing where the service tells no machine file that this version reads.
+[[nodiscard]] std::optional<Pose<double>> tool_of(const dds::Status& status,
+                                                  const std::optional<MachineModel>& model) {
+  if (!model) return std::nullopt;
+  return forward(*model, model->tool_length_mm, status.joints);
+}
+
+[[nodiscard]] std::optional<MachineModel> model_of(const dds::MachineInfo& machine) {
+  try {
+    return stream::served_model(machine);
+  } catch (const config::ConfigError&) {
+    return std::nullopt;
+  }
+}
+
 int run_status(StatusOptions& options) {
   const bool is_latency = options.is_latency || !options.histograms.empty();
   if (options.for_s > 0 && !is_latency) {
@@ -123,6 +141,7 @@ int run_status(StatusOptions& options) {
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   if (is_latency) return print_latency(participant, options);
   TopicLink<dds::Status> link(participant);
+  const std::optional<MachineModel> model = model_of(*machine);
   if (options.is_watching) watch_for_stop();
   StoppableOutput output;
   do {
@@ -132,7 +151,8 @@ int run_status(StatusOptions& options) {
                    options.peer.machine.c_str());
       return kNoPeer;
     }
-    output.print(options.is_json ? to_json(*status, *machine) : describe(*status, *machine));
+    output.print(options.is_json ? to_json(*status, *machine)
+                                 : describe(*status, *machine, tool_of(*status, model)));
   } while (options.is_watching && !stop_flag().load());
   return kFine;
 }

@@ -8,6 +8,7 @@
 
 #include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
+#include "service/cli/progress_text.hpp"
 #include "service/record/words.hpp"
 #include "service/text/printed.hpp"
 
@@ -24,14 +25,47 @@ std::size_t joint_count(const dds::MachineInfo& machine) {
   return std::min<std::size_t>(machine.joint_count, kMaxJoints);
 }
 
-/// The joint, or drive of the stage, of the alarm in force; empty: it is of none.
-std::string alarm_joint(const dds::Status& status, const dds::MachineInfo& machine) {
-  if (!record::is_of_joint(status.alarm)) return "";
-  const std::size_t joints = joint_count(machine), place = status.alarm_joint;
+/// The joint, or behind the joints the drive of the stage; empty: there is none.
+std::string limited_name(const dds::MachineInfo& machine, std::size_t place) {
+  const std::size_t joints = joint_count(machine);
   if (place < joints) return machine.joints[place].name;
   const std::size_t drives =
       std::min<std::size_t>(machine.stage_drive_count, machine.stage_drives.size());
   return place - joints < drives ? machine.stage_drives[place - joints].name : "";
+}
+
+/// The joint, or drive of the stage, of the alarm in force; empty: it is of none.
+std::string alarm_joint(const dds::Status& status, const dds::MachineInfo& machine) {
+  return record::is_of_joint(status.alarm) ? limited_name(machine, status.alarm_joint) : "";
+}
+
+/// What keeps the feed below the programmed one; empty: nothing does.
+std::string held_by(const dds::Status& status, const dds::MachineInfo& machine) {
+  return status.limiting_joint < 0
+             ? ""
+             : limited_name(machine, static_cast<std::size_t>(status.limiting_joint));
+}
+
+/// Where the program is on its way, or waits on it.
+bool is_in_program(State state) {
+  switch (state) {
+    case State::kApproaching:
+    case State::kRunning:
+    case State::kHolding:
+    case State::kHeld:
+    case State::kStarving:
+    case State::kStarved:
+    case State::kStepping:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void append_tool(std::string& text, const Pose<double>& tool, double length_mm) {
+  append(text, "tool      tip %.4f %.4f %.4f mm, axis %.6f %.6f %.6f, length %.3f mm\n",
+         tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2],
+         length_mm);
 }
 
 /// "alarm     following_error of b2, line 840".
@@ -79,7 +113,19 @@ std::string all_states() {
   return names;
 }
 
-std::string describe(const dds::Status& status, const dds::MachineInfo& machine) {
+std::optional<TimeToGo> time_to_go(const dds::Status& status) {
+  if (!is_in_program(status.state) || status.block_count == 0) return {};
+  if (status.blocks_received >= status.block_count && status.blocks_queued == 0) {
+    return TimeToGo{status.planned_s, true};
+  }
+  constexpr double kEnough = 0.005;
+  const double done = static_cast<double>(status.block) / static_cast<double>(status.block_count);
+  if (!(done > kEnough) || done > 1) return {};
+  return TimeToGo{status.plan_time_s * (1 - done) / done, false};
+}
+
+std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
+                     const std::optional<Pose<double>>& tool) {
   std::string text;
   append(text, "machine   %s: %s%s%s\n", machine.name.c_str(), text_of(status.state),
          status.alarm != Alarm::kNone ? " (alarm)" : "",
@@ -96,11 +142,18 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
       append(text, " of %llu", Count{status.block_count});
     append(text, ", line %u\n", status.line);
   }
+  if (const auto left = time_to_go(status)) {
+    append(text, "to go     %s%s at 100 %%\n", left->is_planned ? "" : "about ",
+           time_text(left->seconds).c_str());
+  }
   append(text, "feed      %.1f of %.1f mm/min, override %.0f %%, rapid override %.0f %%%s%s\n",
          status.feed_achieved_mm_per_min, status.feed_programmed_mm_per_min,
          status.feed_override * 100, status.rapid_override * 100,
          status.is_single_block ? ", single block" : "",
          status.stops_at_optional ? ", optional stops" : "");
+  if (const std::string held = held_by(status, machine); !held.empty()) {
+    append(text, "held by   %s\n", held.c_str());
+  }
   append_frame(text, status, machine);
   append(text, "buffer    %u blocks, %u pieces, %.2f s planned; starved %llu times\n",
          status.blocks_queued, status.pieces_queued, status.planned_s, Count{status.starvations});
@@ -111,7 +164,9 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine)
            joint.is_rotary ? units::deg_from_rad(status.joints[i]) : status.joints[i],
            joint.is_rotary ? "deg" : "mm");
   }
-  append(text, "\ncycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
+  text += "\n";
+  if (tool) append_tool(text, *tool, machine.tool_length_mm);
+  append(text, "cycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
          Count{status.periods_lost},
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "real time" : "best effort",
          status.is_secured        ? "secured"

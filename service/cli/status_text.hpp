@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "meridian/geometry/vector3.hpp"
 #include "meridian/rt/state.hpp"
 #include "service/dds/messages.hpp"
 
@@ -16,8 +17,18 @@ namespace meridian::cli {
 /// Every name, separated by commas.
 [[nodiscard]] std::string all_states();
 
-/// A status for a person, several lines.
-[[nodiscard]] std::string describe(const dds::Status& status, const dds::MachineInfo& machine);
+/// How long the program still takes at an override of 100 %, s. Exact where its rest is planned,
+/// else by the share of blocks; nothing where no program runs or its length is not known.
+struct TimeToGo {
+  double seconds = 0;
+  bool is_planned = false;
+};
+[[nodiscard]] std::optional<TimeToGo> time_to_go(const dds::Status& status);
+
+/// A status for a person, several lines. `tool`: where the tool is in the work frame, where that is
+/// known.
+[[nodiscard]] std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
+                                   const std::optional<Pose<double>>& tool = {});
 /// A status for a program: one JSON object on one line; units are in the names.
 [[nodiscard]] std::string to_json(const dds::Status& status, const dds::MachineInfo& machine);
 

@@ -89,6 +89,7 @@ void read_chain(Section& table, Section& joints, MachineModel& model) {
                  "mend the joints' kinds, directions and order");
   }
   model.chain = *described;
+  model.is_measured = table.truth_or("measured", false);
 }
 
 void read_robot(Section& table, Section& joints, bool is_six_axis, MachineModel& model) {

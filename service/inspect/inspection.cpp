@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "meridian/units.hpp"
 
@@ -154,7 +155,9 @@ Inspection inspect(const MachineModel& model) {
     look_at_space(model, out);
   }
   go_round(model, out);
-  out.warnings = find_slips(model, out.skeleton);
+  Slips slips = find_slips(model, out.skeleton);
+  out.warnings = std::move(slips.warnings);
+  out.measured = std::move(slips.measured);
   if (!out.is_origin_in_reach) {
     out.warnings.push_back(
         "the origin of the workpiece is out of reach with the tool along its z: place it with "

@@ -36,6 +36,7 @@ struct Inspection {
   double round_trip_mm = 0;  ///< largest error of joints to pose and back, over draws in travel
   double round_trip_axis = 0;
   std::vector<std::string> warnings;  ///< what its author should look at
+  std::vector<std::string> measured;  ///< what is a little off and, the file says, measured
 };
 
 /// Whether some branch and winding puts the tool there inside every travel. Frame: W.
@@ -50,8 +51,11 @@ struct Inspection {
 
 /// What looks like a slip of the file's author: axes a little off the usual directions, linear
 /// joints that run nearly the same way, limits whose units can hardly be meant.
-[[nodiscard]] std::vector<std::string> find_slips(const MachineModel& model,
-                                                  const Skeleton& skeleton);
+/// Where the file says that its numbers are measured, what is a little off is no slip.
+struct Slips {
+  std::vector<std::string> warnings, measured;
+};
+[[nodiscard]] Slips find_slips(const MachineModel& model, const Skeleton& skeleton);
 
 /// Report: chain, home, trial of every joint, poles, reach, limits, warnings.
 [[nodiscard]] std::string to_text(const Inspection& inspection, const MachineModel& model);

@@ -163,6 +163,7 @@ std::string to_text(const Inspection& in, const MachineModel& model) {
   out += trial_text(in, model) + pole_text(in, model) + reach_text(in) + limits_text(model);
   out += printed("inverse    joints to pose and back: within %.2g mm and %.2g rad\n",
                  in.round_trip_mm, in.round_trip_axis);
+  for (const std::string& fact : in.measured) out += "measured   " + fact + "\n";
   for (const std::string& warning : in.warnings) out += "WARNING    " + warning + "\n";
   if (in.warnings.empty()) out += "no warnings\n";
   return out;

@@ -34,22 +34,32 @@ const char* name_of(const MachineModel& model, const SkeletonJoint& joint) {
   return model.joints[static_cast<std::size_t>(joint.joint)].name.c_str();
 }
 
-void look_at_directions(const MachineModel& model, const Skeleton& skeleton,
-                        std::vector<std::string>& out) {
+/// Something that is a little off what people build: a fact where the file is of measured numbers.
+void add_little_off(const MachineModel& model, const std::string& what, Slips& out) {
+  if (model.is_measured) {
+    out.measured.push_back(what);
+  } else {
+    out.warnings.push_back(what + ": a slip? If it is measured, say measured = true");
+  }
+}
+
+void look_at_directions(const MachineModel& model, const Skeleton& skeleton, Slips& out) {
   std::vector<Vector3> linear;
   for (const SkeletonJoint& joint : skeleton.joints) {
     if (!joint.is_rotary) linear.push_back(joint.direction);
     if (model.family != MachineFamily::kChain) continue;
     const double off = off_usual(joint.direction);
     if (off > kExact && off < units::rad_from_deg(kNearMiss_deg)) {
-      out.push_back(printed("%s runs %.4g deg beside a usual direction: measured, or a slip?",
-                            name_of(model, joint), units::deg_from_rad(off)));
+      add_little_off(model,
+                     printed("%s runs %.4g deg beside a usual direction", name_of(model, joint),
+                             units::deg_from_rad(off)),
+                     out);
     }
   }
   if (linear.size() != 3) return;
   const double volume = std::abs(linear[0].dot(linear[1].cross(linear[2])));
   if (volume < kLeastVolume) {
-    out.push_back(
+    out.warnings.push_back(
         printed("the linear joints run nearly in one plane (volume %.3g of 1): small ways "
                 "of the tip take long ways of the joints",
                 volume));
@@ -57,38 +67,37 @@ void look_at_directions(const MachineModel& model, const Skeleton& skeleton,
 }
 
 /// Rotary axes that miss each other by less than anybody builds.
-void look_at_pivots(const MachineModel& model, const Skeleton& skeleton,
-                    std::vector<std::string>& out) {
+void look_at_pivots(const MachineModel& model, const Skeleton& skeleton, Slips& out) {
   if (model.family != MachineFamily::kChain) return;
   const ChainKinematics& k = model.chain;
   const Vector3 normal = k.a.axis.cross(k.b.axis).normalized();
   const double apart = std::abs(normal.dot(k.b.point_mm - k.a.point_mm));
   if (apart > kExact && apart < kNearMiss_mm) {
-    out.push_back(
-        printed("the rotary axes miss each other by %.4g mm: measured, or a slip?", apart));
+    add_little_off(model, printed("the rotary axes miss each other by %.4g mm", apart), out);
   }
   for (const SkeletonJoint& joint : skeleton.joints) {
     const JointSpec& spec = model.joints[static_cast<std::size_t>(joint.joint)];
     if (!is_inside_travel(spec, 0, 0)) {
-      out.push_back(spec.name +
-                    " cannot stand at zero, where the machine is described: does the file mean "
-                    "another home?");
+      out.warnings.push_back(
+          spec.name +
+          " cannot stand at zero, where the machine is described: does the file mean "
+          "another home?");
     }
   }
 }
 
-void look_at_limits(const MachineModel& model, std::vector<std::string>& out) {
+void look_at_limits(const MachineModel& model, Slips& out) {
   constexpr double kLongest_s = 10;
   for (int i = 0; i < limited_count(model); ++i) {
     const JointSpec& joint = limited_spec(model, i);
     const double to_speed = joint.limits.velocity / joint.limits.acceleration;
     const double to_push = joint.limits.acceleration / joint.limits.jerk;
     if (to_speed > kLongest_s) {
-      out.push_back(printed("%s takes %.3g s to its full velocity: are the units right?",
-                            joint.name.c_str(), to_speed));
+      out.warnings.push_back(printed("%s takes %.3g s to its full velocity: are the units right?",
+                                     joint.name.c_str(), to_speed));
     }
     if (to_push > kLongest_s || to_push < 1e-9 * static_cast<double>(model.cycle_ns)) {
-      out.push_back(
+      out.warnings.push_back(
           printed("%s takes %.3g s to its full acceleration, a cycle being %.3g s: are the "
                   "units right?",
                   joint.name.c_str(), to_push, 1e-9 * static_cast<double>(model.cycle_ns)));
@@ -98,8 +107,8 @@ void look_at_limits(const MachineModel& model, std::vector<std::string>& out) {
 
 }  // namespace
 
-std::vector<std::string> find_slips(const MachineModel& model, const Skeleton& skeleton) {
-  std::vector<std::string> out;
+Slips find_slips(const MachineModel& model, const Skeleton& skeleton) {
+  Slips out;
   look_at_directions(model, skeleton, out);
   look_at_pivots(model, skeleton, out);
   look_at_limits(model, out);

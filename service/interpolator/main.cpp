@@ -159,7 +159,9 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("meridiand ") + kVersion);
   app.add_option("--machine", options.machine, "machine file (TOML)");
   app.add_option("--service", options.service, "service file (TOML)");
-  app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 230));
+  app.add_option("--domain", options.domain, "DDS domain")
+      ->envname("MERIDIAN_DOMAIN")
+      ->check(CLI::Range(0, 230));
   app.add_option("--record", options.recording, "write the recording of record here (CSV)");
   app.add_option("--state", options.state,
                  "folder of the journal of the last executed block and, unless --faults names one, "

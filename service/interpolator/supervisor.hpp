@@ -131,7 +131,7 @@ class Supervisor {
   /// The cycle's answers to what was told it before `event` are lost.
   void give_up_older(const Event& event);
   /// What an accepted verb leads to; a program's start to its approach.
-  [[nodiscard]] std::string what_happens(Verb verb);
+  [[nodiscard]] std::string what_happens(const dds::CommandRequest& request);
   void reply(const Pending& command, bool is_accepted, Refusal refusal, const std::string& text);
   void push_reply(const QueuedReply& queued);
   void audit(const Pending& command, const QueuedReply& queued);

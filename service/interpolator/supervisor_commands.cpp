@@ -6,6 +6,7 @@
 #include "service/interpolator/drive_words.hpp"
 #include "service/interpolator/monotonic.hpp"
 #include "service/interpolator/supervisor.hpp"
+#include "service/telemetry/reply_words.hpp"
 #include "service/telemetry/words.hpp"
 
 /// Operators' commands: checked, passed to the cycle, answered.
@@ -67,7 +68,8 @@ void Supervisor::take_command(const Arrival& arrival) {
     const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
     reply(command, false, why,
           is_switching_off_ ? "the service is shutting down"
-                            : telemetry::describe(request.verb, why, view_.record.state));
+                            : telemetry::describe(request.verb, why, view_.record.state,
+                                                  request.argument, model_));
     return;
   }
   const bool is_tool_jog = request.verb == Verb::kJog && request.argument >= kMaxJoints;
@@ -251,19 +253,20 @@ void Supervisor::answer(const Event& event, const Pending& pending) {
     take_jogs();  // what came before is of the hand before
     jog_intake_.begin(pending.request.operator_id, pending.participant, pending.key);
   }
-  std::string text =
-      is_accepted ? what_happens(verb) : telemetry::describe(verb, refusal, view_.record.state);
+  std::string text = is_accepted ? what_happens(pending.request)
+                                 : telemetry::describe(verb, refusal, view_.record.state,
+                                                       pending.request.argument, model_);
   if (refusal == Refusal::kDriveContested) {
     text += ": " + telemetry::drive_names(ports_.drive_words.latest().contested_mask, model_);
   }
   reply(pending, is_accepted, refusal, text);
 }
 
-std::string Supervisor::what_happens(Verb verb) {
-  const bool is_declared = verb == Verb::kStart && ports_.approach.refresh();
+std::string Supervisor::what_happens(const dds::CommandRequest& request) {
+  const bool is_declared = request.verb == Verb::kStart && ports_.approach.refresh();
   const Approach& approach = ports_.approach.latest();
   if (!is_declared || !approach.is_planned || approach.epoch != view_.epoch) {
-    return telemetry::describe(verb, view_.record.state);
+    return telemetry::describe(request.verb, view_.record.state, request.argument);
   }
   const std::size_t taken = kStarted.size() + (view_.is_dry_run ? kDry.size() : 0);
   return kStarted + telemetry::describe(approach, model_, dds::kMostText - taken);

@@ -5,6 +5,7 @@
 #include "service/config/machine_file.hpp"
 #include "service/interpolator/supervisor.hpp"
 #include "service/stream/frame_sum.hpp"
+#include "service/telemetry/reply_words.hpp"
 #include "service/telemetry/set_up_text.hpp"
 #include "service/telemetry/words.hpp"
 #include "service/text/checksum.hpp"
@@ -65,11 +66,11 @@ void Supervisor::begin_frame_change(const Pending& command) {
   }
   if (effect.effect == Effect::kRefused) {
     return reply(command, false, effect.refusal,
-                 telemetry::describe(Verb::kFrame, effect.refusal, state));
+                 telemetry::describe(Verb::kFrame, effect.refusal, state, 0, model_));
   }
   if (set_up_ == nullptr || !set_up_->is_kept()) {
     return reply(command, false, Refusal::kNotJournalled,
-                 telemetry::describe(Verb::kFrame, Refusal::kNotJournalled, state));
+                 telemetry::describe(Verb::kFrame, Refusal::kNotJournalled, state, 0, model_));
   }
   next_frames_ = frames_;
   const FrameOrder& order = command.request.frame;
@@ -78,7 +79,7 @@ void Supervisor::begin_frame_change(const Pending& command) {
   }
   if (!ports_.frame.claim.try_take(ProgramClaim::Holder::kSetUp)) {
     return reply(command, false, Refusal::kProgramPresent,
-                 telemetry::describe(Verb::kFrame, Refusal::kProgramPresent, state));
+                 telemetry::describe(Verb::kFrame, Refusal::kProgramPresent, state, 0, model_));
   }
   frame_command_ = command;
   set_up_->ask(next_frames_);
@@ -137,7 +138,8 @@ void Supervisor::take_frame_back(Refusal refusal, const std::string& text) {
 void Supervisor::answer_frame(bool is_accepted, Refusal refusal) {
   if (frame_phase_ != FramePhase::kAtTheCycle) return;
   if (!is_accepted) {
-    return take_frame_back(refusal, telemetry::describe(Verb::kFrame, refusal, view_.record.state));
+    return take_frame_back(
+        refusal, telemetry::describe(Verb::kFrame, refusal, view_.record.state, 0, model_));
   }
   frames_ = next_frames_;
   const FrameInForce in_force = frame_in_force(frames_, model_, ++frame_change_);

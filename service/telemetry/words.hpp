@@ -35,9 +35,5 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 /// Whether tool and spindle act nearer to the part than the clearance, for want of travel.
 [[nodiscard]] bool is_short_of_clearance(const Approach& approach,
                                          const MachineModel& model) noexcept;
-/// Answer to an operator whose verb was accepted; `state` is the one it led to.
-[[nodiscard]] std::string describe(Verb verb, State state);
-/// Answer to an operator whose verb was refused in `state`, with the remedy.
-[[nodiscard]] std::string describe(Verb verb, Refusal refusal, State state);
 
 }  // namespace meridian::telemetry

@@ -119,6 +119,8 @@ struct MachineModel {
   double override_ramp_s = 1.0;
   /// Highest feed override, at least 1. Above 1 later motion is planned for a higher feed.
   double most_feed_override = 1.0;
+  /// The chain's directions and points are measured: what is a little off is meant.
+  bool is_measured = false;
 };
 
 /// Deviation of the axis that is allowed within kPoleReach_rad of the pole.

@@ -54,6 +54,39 @@ TEST(StatusText, TellsNoAlarmWhereThereIsNone) {
   EXPECT_EQ(text.find("block     "), std::string::npos) << text;
 }
 
+TEST(StatusText, TellsWhatHoldsTheFeedAndWhereTheToolIs) {
+  const dds::MachineInfo machine = machine_of_a_stage();
+  dds::Status status;
+  status.limiting_joint = -1;
+  EXPECT_EQ(describe(status, machine).find("held by"), std::string::npos);
+  EXPECT_EQ(describe(status, machine).find("tool  "), std::string::npos);
+  status.limiting_joint = 2;
+  const std::string text = describe(status, machine, Pose<double>{{1, -2, 3.5}, {0, 0.6, 0.8}});
+  EXPECT_NE(text.find("\nheld by   u1\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\ntool      tip 1.0000 -2.0000 3.5000 mm, axis 0.000000 0.600000 0.800000,"),
+            std::string::npos)
+      << text;
+}
+
+TEST(StatusText, TellsTheTimeToGo) {
+  const dds::MachineInfo machine = machine_of_a_stage();
+  dds::Status status;
+  status.state = State::kRunning;
+  status.block_count = 200;
+  status.blocks_received = 200;
+  status.planned_s = 41.2;
+  EXPECT_NE(describe(status, machine).find("\nto go     0:42 at 100 %\n"), std::string::npos);
+  status.blocks_queued = 10;  // not all is planned: by the share of blocks
+  status.block = 50;
+  status.plan_time_s = 20;
+  EXPECT_NE(describe(status, machine).find("\nto go     about 1:00 at 100 %\n"), std::string::npos);
+  status.block = 0;
+  EXPECT_FALSE(time_to_go(status)) << "nothing has run to tell by";
+  status.block = 50;
+  status.state = State::kLoaded;
+  EXPECT_FALSE(time_to_go(status)) << "nothing runs";
+}
+
 TEST(StatusText, TellsProgramsTheSame) {
   dds::Status status = faulty_status();
   std::string text = to_json(status, machine_of_a_stage());

@@ -174,6 +174,19 @@ TEST(Slips, AreFoundInDirectionsPivotsTravelLimitsAndFrame) {
   EXPECT_TRUE(is_warned(far, "cannot stand at zero"));
 }
 
+TEST(Slips, AreFactsWhereTheFileSaysThatItsNumbersAreMeasured) {
+  const char* machine = "trunnion-ac";
+  const std::string off = "point_mm = [0, 0.1, -40]";
+  EXPECT_FALSE(inspect(machine_with(machine, "point_mm = [0, 0, -40]", off)).warnings.empty());
+  MachineModel model = machine_with(machine, "point_mm = [0, 0, -40]", off);
+  model.is_measured = true;
+  EXPECT_TRUE(inspect(model).warnings.empty());
+  const std::string text = to_text(inspect(model), model);
+  EXPECT_NE(text.find("measured   the rotary axes miss each other by 0.1 mm\n"), std::string::npos)
+      << text;
+  EXPECT_TRUE(machine_with(machine, "tool_axis =", "measured = true\ntool_axis =").is_measured);
+}
+
 TEST(Slips, AreNotDirectionsThatSomebodyBuilds) {
   EXPECT_TRUE(
       inspect(machine_with("trunnion-ac", "point_mm = [0, 0, -40]", "point_mm = [0, 25, -40]"))

@@ -105,38 +105,12 @@ TEST(Words, SayEveryAlarmDifferently) {
   EXPECT_EQ(describe(static_cast<Alarm>(kLast + 1), 1, 2.5, 0, model), "") << "there are more";
 }
 
-TEST(Words, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kNotJournalled);
-  for (int refusal = 1; refusal <= kLast; ++refusal) {
-    EXPECT_STRNE(name_of(static_cast<Refusal>(refusal)), "unknown") << refusal;
-    for (int state = 0; state < kStateCount; ++state) {
-      const std::string text =
-          describe(Verb::kStart, static_cast<Refusal>(refusal), static_cast<State>(state));
-      EXPECT_EQ(text.rfind("start refused: ", 0), 0U);
-      EXPECT_GT(text.size(), std::string("start refused: ").size() + 10) << text;
-    }
-  }
-  EXPECT_EQ(describe(Verb::kStart, static_cast<Refusal>(kLast + 1), State::kOff), "start refused: ")
-      << "there are more";
-}
-
-TEST(Words, TellWhetherTheDryRunIsOnAndWhereItMayBeSwitched) {
+TEST(Words, TellWhetherTheDryRunIsOn) {
   const MachineModel model = test::lai_machine();
   Event event{.code = EventCode::kAccepted, .b = static_cast<std::uint64_t>(Verb::kDryRun), .x = 1};
   EXPECT_EQ(describe(event, model).rfind("dry run on: ", 0), 0U);
   event.x = 0;
   EXPECT_EQ(describe(event, model).rfind("dry run off: ", 0), 0U);
-  EXPECT_EQ(
-      describe(Verb::kDryRun, Refusal::kWrongState, State::kRunning),
-      "dry_run refused: not in state Running; it begins and ends in Off alone; disable first");
-}
-
-TEST(Words, TellWhoMeansADryRunThatThisIsNone) {
-  EXPECT_EQ(describe(Verb::kStart, Refusal::kNotDryRun, State::kLoaded),
-            "start refused: it was said for a dry run alone, and this is none: drives would move; "
-            "disable, then dry-run on");
-  EXPECT_EQ(describe(Verb::kEnable, Refusal::kOutOfRange, State::kOff),
-            "enable refused: the value is out of range: 1 for a dry run alone, else 0");
 }
 
 TEST(Words, NameBothStatesOfAChange) {
