@@ -135,8 +135,19 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
   return {};
 }
 
+/// A cut of words of Fanuc without G43: its Z may be that of the spindle.
+void warn_of_no_length(State& s, const Line& line) {
+  const bool is_bare = s.modes.control == Control::kNone && s.modes.language == Language::kFanuc;
+  if (!is_bare || s.modes.motion == Motion::kRapid) return;
+  s.cl.remarks.warn("no length", line.number, [] {
+    return "a cut without G43 or G43.4: Z is read as that of the tip; where it means the spindle, "
+           "the tool cuts off by its length";
+  });
+}
+
 /// Without tool-centre control X Y Z are those of the tip only where no rotary axis is turned.
 cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
+  warn_of_no_length(s, line);
   if (holds_tip(s.modes.control) || (!to.turns && !to.place.is_turned())) {
     if (to.place.is_known()) return line_to(s, line, to);
   } else if (s.modes.motion != Motion::kRapid) {

@@ -146,5 +146,13 @@ TEST(NcMotion, BeginsAtALineOfTheMiddle) {
   EXPECT_EQ(tip(motion[1]), Vector3(3, 2, 3));
 }
 
+TEST(NcMotion, FlagsACutWithoutALengthOfTheToolInForce) {
+  const ReadText bare = read_nc("G0 X0. Y0. Z5.\nG1 Z0.\nX10.\n");
+  EXPECT_EQ(bare.error, "");
+  ASSERT_EQ(bare.warnings.size(), 1U);
+  EXPECT_NE(bare.warnings[0].message.find("a cut without G43"), std::string::npos);
+  EXPECT_TRUE(read_nc("G43 H1\nG0 X0. Y0. Z5.\nG1 Z0.\nX10.\n").warnings.empty());
+}
+
 }  // namespace
 }  // namespace meridian::nc
