@@ -14,9 +14,8 @@ void TipTopic::write(std::int64_t due_ns, const Pose<double>& pose) {
   if (!pace_.is_due(due_ns)) return;
   message_.begin().put_header(due_ns, "workpiece");
   for (const double value : pose.tip) message_.put(rounded(m_from_mm(value), kPositionPlaces));
-  for (const double part : scene::from_z_to(pose.axis).coeffs()) {
-    message_.put(rounded(part, kPositionPlaces));
-  }
+  const Eigen::Quaterniond rotation = scene::from_z_to(pose.axis);  // outlives its coefficients
+  for (const double part : rotation.coeffs()) message_.put(rounded(part, kPositionPlaces));
   (void)writer_.write(channel_, static_cast<std::uint64_t>(due_ns), message_.bytes());
 }
 
