@@ -38,7 +38,7 @@ endforeach()
 # Drives of one's own, which need nothing but the package: they cut the sample part where the programs are there.
 file(GLOB drive_library ${WORK}/prefix/lib*/libmeridian-drive.so ${WORK}/prefix/lib*/*/libmeridian-drive.so)
 if(drive_library)
-  foreach(header drive.hpp drive_axis.hpp drive_hardware.hpp drive_action.hpp)
+  foreach(header drive.hpp drive_axis.hpp drive_hardware.hpp drive_action.hpp drive_csp.hpp)
     file(STRINGS ${WORK}/prefix/include/meridian/${header} foreign REGEX "# *include \"")
     list(FILTER foreign EXCLUDE REGEX "meridian/drive_[a-z]+.hpp")
     if(foreign)
