@@ -119,14 +119,24 @@ Outcome Interpreter::check_behind_end(const Statement& s, std::size_t before, Bl
                 "split the file: one program each", "behind end");
 }
 
+/// In exact stop a cut ends in a rest; what the reader subdivides, as a spline, rests at its end
+/// alone.
+void Interpreter::rest_at_end(std::uint32_t line, std::size_t before, const Blocks& out) {
+  const bool has_cut = out.size() > before && out.back().kind == BlockKind::kCut;
+  if (modal_.join != BlockJoin::kExactStop || !has_cut) return;
+  modal_.path.act(BlockKind::kDwell, ActionKind::kNone, 0, line);
+}
+
 Interpreter::Result Interpreter::take(const Statement& s, Blocks& out) {
   const bool is_behind_end = modal_.structure.phase == Structure::Phase::kEnded;
   const std::size_t before = out.size();
   modal_.path.give_to(out);
   auto done = read(s);
   if (done && is_behind_end) done = check_behind_end(s, before, out);
-  if (done) [[likely]]
+  if (done) [[likely]] {
+    rest_at_end(s.line, before, out);
     return {};
+  }
   out.resize(before);
   ++modal_.refusals;
   lose_position(modal_);

@@ -38,6 +38,12 @@ struct ToolAxis {
   Source source = Source::kNone;
 };
 
+/// How a cut joins the motion behind it.
+enum class BlockJoin : std::uint8_t {
+  kByMachine,  ///< as machine file, station or `--transition` say
+  kExactStop   ///< the tool rests where the cut ends
+};
+
 /// What the next motion is told besides its point.
 enum class NextMotion : std::uint8_t { kFeed, kRapid };
 
@@ -105,6 +111,7 @@ struct Modal {
   std::optional<MotionFeed> feed;  ///< nothing: to be resolved at the next cut
   Spindle spindle;
   NextMotion next = NextMotion::kFeed;
+  BlockJoin join = BlockJoin::kByMachine;
   Curve curve;
   std::optional<std::array<double, 3>> forward;  ///< INDIRV
   std::optional<HoleCycle> cycle, last_cycle;

@@ -96,4 +96,17 @@ Outcome read_feed(Modal& m, const Statement& s) {
   return {};
 }
 
+Outcome read_transition(Modal& m, const Statement& s) {
+  const bool is_one_word = s.argument_count == 1 && !s.arguments[0].is_number;
+  if (is_one_word && is_word(s.arguments[0].text, "EXACT_STOP")) {
+    m.join = BlockJoin::kExactStop;
+  } else if (is_one_word && is_word(s.arguments[0].text, "SMOOTH")) {
+    m.join = BlockJoin::kByMachine;
+  } else {
+    return refuse("TRANSITION/" + std::string(s.rest.substr(0, 40)) + " is not understood",
+                  "TRANSITION/EXACT_STOP from there on, TRANSITION/SMOOTH to end it");
+  }
+  return {};
+}
+
 }  // namespace meridian::cl

@@ -38,6 +38,7 @@ Outcome read_cycle_word(Modal& m, const Statement& s);
 // feeds.cpp
 Outcome read_units(Modal& m, const Statement& s);
 Outcome read_feed(Modal& m, const Statement& s);
+Outcome read_transition(Modal& m, const Statement& s);
 
 // frames.cpp
 Outcome read_msys(Modal& m, const Statement& s);

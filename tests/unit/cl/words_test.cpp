@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -110,6 +111,35 @@ TEST(Words, OfTheCoolantBecomeActions) {
   for (std::size_t i = 0; i < std::size(wanted); ++i) {
     EXPECT_EQ(read.blocks.at(i).action, wanted[i]) << i;
     EXPECT_EQ(read.blocks[i].kind, BlockKind::kAuxiliary);
+  }
+}
+
+TEST(Reader, RestsBehindEveryCutBetweenTransitionWords) {
+  const auto read = read_body(
+      "GOTO/0,0,0\nTRANSITION/EXACT_STOP\nGOTO/1,0,0\nRAPID\nGOTO/1,0,5\nGOTO/1,0,0\n"
+      "transition/smooth\nGOTO/2,0,0\n");
+  ASSERT_EQ(read.error, "");
+  std::string kinds;
+  for (const ClBlock& b : read.blocks) {
+    kinds += b.kind == BlockKind::kCut ? 'c' : b.kind == BlockKind::kRapid ? 'r' : '.';
+    EXPECT_TRUE(b.kind != BlockKind::kDwell || b.value == 0);
+  }
+  EXPECT_EQ(kinds, "cc.rc.c.") << "a rest behind each cut, and the end";
+}
+
+TEST(Reader, RestsAtTheEndOfASplineAndNotAtItsChords) {
+  const auto read = read_body(
+      "GOTO/0,0,0\nTRANSITION/EXACT_STOP\nNURBS/\nKNOT/1\nCNTRL/1,1,0\nCNTRL/2,-1,0\n"
+      "CNTRL/3,0,0\n");
+  ASSERT_EQ(read.error, "");
+  const auto is_dwell = [](const ClBlock& b) { return b.kind == BlockKind::kDwell; };
+  EXPECT_EQ(std::count_if(read.blocks.begin(), read.blocks.end(), is_dwell), 1);
+  EXPECT_GT(read.blocks.size(), 10U);
+}
+
+TEST(Reader, RefusesATransitionThatItDoesNotKnow) {
+  for (const char* word : {"TRANSITION/FAST", "TRANSITION/1", "TRANSITION", "TRANSITION/SMOOTH,1"}) {
+    EXPECT_NE(read_body(std::string(word) + "\nGOTO/0,0,0\n").error, "") << word;
   }
 }
 
