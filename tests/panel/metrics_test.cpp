@@ -6,6 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <string>
 
 namespace meridian::panel {
@@ -58,6 +62,45 @@ TEST(Metrics, BucketsOfAHistogramAddUp) {
   EXPECT_TRUE(has(text, "meridian_latency_seconds_bucket" + of + R"(,le="0.005"} 3)"));
   EXPECT_TRUE(has(text, "meridian_latency_seconds_bucket" + of + R"(,le="+Inf"} 3)"));
   EXPECT_TRUE(has(text, "meridian_latency_seconds_count" + of + "} 3"));
+}
+
+/// Names of series that `text` asks for.
+[[nodiscard]] std::set<std::string> series_in(const std::string& text) {
+  std::set<std::string> names;
+  const std::regex name("\\bmeridian_[a-z_]+");
+  for (std::sregex_iterator at(text.begin(), text.end(), name), end; at != end; ++at) {
+    names.insert(at->str());
+  }
+  return names;
+}
+
+[[nodiscard]] std::string file_text(const std::string& file) {
+  std::ostringstream out;
+  out << std::ifstream(file).rdbuf();
+  return out.str();
+}
+
+TEST(Metrics, AreAllThatDashboardAndRulesAskFor) {
+  const std::string folder = MERIDIAN_SOURCE_DIR "/deploy/monitoring/";
+  const auto dashboard = nlohmann::json::parse(file_text(folder + "grafana-dashboard.json"));
+  std::string asked = file_text(folder + "meridian-rules.yml");
+  for (const auto& panel : dashboard["panels"]) {
+    for (const auto& target : panel["targets"]) asked += "\n" + target["expr"].get<std::string>();
+  }
+  const std::string text = metrics_text(machine_info(), dds::Status{}, latency());
+  const auto names = series_in(asked);
+  EXPECT_GT(names.size(), 15U);
+  for (const std::string& name : names) {
+    EXPECT_NE(text.find("\n" + name + "{"), std::string::npos) << name;
+  }
+}
+
+TEST(Metrics, SamplesOfThePackagePassPromtool) {
+  if (std::system("command -v promtool >/dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "promtool is not here (Debian's prometheus)";
+  }
+  const std::string file = MERIDIAN_SOURCE_DIR "/deploy/monitoring/prometheus.yml";
+  EXPECT_EQ(std::system(("promtool check config " + file).c_str()), 0);
 }
 
 TEST(Metrics, PassPromtool) {
