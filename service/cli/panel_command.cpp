@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/peer_options.hpp"
@@ -60,8 +64,14 @@ void add_panel_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 65535));
   command->add_flag("--watch", options->panel.is_watching,
                     "The page shows and asks for nothing: no buttons");
+  command->add_flag("--actions", options->panel.answers_actions,
+                    "The operator does what the path waits for (tool, spindle, coolant, stop) and "
+                    "says so on the page: for machines without a PLC");
   const char* const user = std::getenv("USER");
   options->panel.operator_name = user != nullptr ? user : "operator";
+  std::array<char, 64> host{};
+  static_cast<void>(::gethostname(host.data(), host.size() - 1));
+  options->panel.station_name = std::string("panel at ") + host.data();
   command->add_option("--operator", options->panel.operator_name, "Who asks, for the log")
       ->capture_default_str();
   command->add_flag("--open-network", options->is_open_network,

@@ -47,6 +47,7 @@ using nlohmann::json;
     for (int i = 0; i < count; ++i) {
       row.push_back(rounded(sample.following[static_cast<std::size_t>(i)]));
     }
+    row.push_back(rounded(60 * sample.feed_mm_per_s));
     out.push_back(std::move(row));
   }
   return out;
@@ -172,20 +173,6 @@ std::string machine_text(const dds::MachineInfo& machine, const std::string& sce
                     {"host", machine.host},
                     {"version", machine.service_version}};
   return json_text(out);
-}
-
-std::string latency_text(const dds::Latency& latency) {
-  json stages = json::array();
-  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
-  for (const auto& [name, h] : latency.histograms) {
-    stages.push_back({{"name", name},
-                      {"count", h.count()},
-                      {"p50", us(h.percentile_ns(0.5))},
-                      {"p99", us(h.percentile_ns(0.99))},
-                      {"p999", us(h.percentile_ns(0.999))},
-                      {"max", us(h.max_ns())}});
-  }
-  return json_text({{"t", "latency"}, {"stages", stages}});
 }
 
 std::string silent_text() { return R"({"t":"silent"})"; }

@@ -22,9 +22,6 @@ namespace meridian::panel {
 /// {"t":"machine", "scene": ..., "host": ..., "version": ...}; `scene` is describe_scene().
 [[nodiscard]] std::string machine_text(const dds::MachineInfo& machine, const std::string& scene);
 
-/// {"t":"latency", "stages": [{"name", "count", "p50", "p99", "p999", "max"}]}, in µs.
-[[nodiscard]] std::string latency_text(const dds::Latency& latency);
-
 /// {"t":"silent"}: no service speaks for this machine any more.
 [[nodiscard]] std::string silent_text();
 

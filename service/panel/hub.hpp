@@ -22,6 +22,8 @@ class Hub {
     kMachine,
     kNews,
     kLatency,
+    kProgram,
+    kActions,
     kFrame,
     kPageKinds,
     kMetrics = kPageKinds,

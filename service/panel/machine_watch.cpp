@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "service/config/machine_file.hpp"
+#include "service/panel/latency_text.hpp"
 #include "service/panel/metrics.hpp"
 #include "service/panel/scene.hpp"
 #include "service/stream/served_model.hpp"
@@ -34,7 +35,10 @@ MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub)
       latencies_(participant) {}
 
 void MachineWatch::adopt(const dds::MachineInfo& info) {
-  machine_ = info;
+  {
+    const std::lock_guard lock(machine_mutex_);
+    machine_ = info;
+  }
   motion_.reset();
   model_.reset();
   std::string scene;
@@ -48,6 +52,12 @@ void MachineWatch::adopt(const dds::MachineInfo& info) {
     // Its file does not fit the topic, or another version wrote it: shown without a picture.
   }
   hub_.publish(Hub::kMachine, machine_text(info, scene));
+}
+
+std::optional<dds::MachineInfo> MachineWatch::machine() const {
+  if (newest_status_ == 0) return std::nullopt;
+  const std::lock_guard lock(machine_mutex_);
+  return machine_;
 }
 
 void MachineWatch::take_machine() {
@@ -98,7 +108,7 @@ void MachineWatch::take_latency() {
   dds::Latency latency;
   while (latencies_.take(latency)) {
     if (!status_ || latency.service_id != status_->service_id) continue;
-    hub_.publish(Hub::kLatency, latency_text(latency));
+    hub_.publish(Hub::kLatency, latency_text(latency, machine_ ? machine_->cycle_ns : 0, budgets_));
     latency_ = latency;
   }
 }

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/dds/followed.hpp"
 #include "service/dds/messages.hpp"
@@ -14,6 +16,7 @@
 #include "service/dds/reader.hpp"
 #include "service/panel/frame.hpp"
 #include "service/panel/hub.hpp"
+#include "service/panel/latency_text.hpp"
 #include "service/panel/motion.hpp"
 #include "service/panel/news.hpp"
 
@@ -33,7 +36,8 @@ class MachineWatch {
   [[nodiscard]] std::uint64_t newest_status() const noexcept { return newest_status_; }
   /// The newest status of the followed service; nothing: it is silent.
   [[nodiscard]] const std::optional<dds::Status>& status() const noexcept { return status_; }
-  [[nodiscard]] const std::optional<dds::MachineInfo>& machine() const noexcept { return machine_; }
+  /// The machine as its service reported it last, for any thread; nothing: it is silent.
+  [[nodiscard]] std::optional<dds::MachineInfo> machine() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -54,11 +58,13 @@ class MachineWatch {
   dds::Reader<dds::DriveFeedback> feedbacks_;
   dds::Reader<dds::Latency> latencies_;
   dds::Followed<dds::Status> followed_;
+  mutable std::mutex machine_mutex_;  ///< of machine_ against other threads
   std::optional<dds::MachineInfo> machine_;
   std::optional<dds::Status> status_;
   std::optional<dds::Latency> latency_;
   std::unique_ptr<MachineModel> model_;  ///< motion_ refers to it
   std::unique_ptr<Motion> motion_;
+  std::vector<probe::Budget> budgets_ = known_budgets();
   News news_;
   Clock::time_point heard_{}, metrics_due_{};
   std::atomic<std::uint64_t> newest_status_{0};

@@ -25,9 +25,13 @@ void Motion::add(const Setpoint& setpoint) {
   sent_[cycle_ % kKept] = {cycle_, setpoint.position};
   joints_ = stage::joints_of(model_.stage, setpoint.position);
   differentiate(*joints_, is_next);
-  if (samples_.size() < kMaxSamples) samples_.push_back({cycle_, *joints_, following_});
+  const Pose<double> pose = forward(model_, tool_length_mm_, *joints_);
+  const double rate = 1e9 / static_cast<double>(model_.cycle_ns);
+  const double feed = is_next ? rate * (pose.tip - tip_).norm() : 0;
+  tip_ = pose.tip;
+  if (samples_.size() < kMaxSamples) samples_.push_back({cycle_, *joints_, following_, feed});
   if (cycle_ % static_cast<std::uint64_t>(trail_every_) == 0 && trail_.size() < kMaxTrail) {
-    trail_.push_back({forward(model_, tool_length_mm_, *joints_), setpoint.line});
+    trail_.push_back({pose, setpoint.line});
   }
 }
 

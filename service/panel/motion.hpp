@@ -25,7 +25,8 @@ class Motion {
   struct Sample {
     std::uint64_t cycle = 0;
     JointVector joints{};
-    JointVector following{};  ///< setpoint less feedback, drive coordinates; 0 where not known
+    JointVector following{};   ///< setpoint less feedback, drive coordinates; 0 where not known
+    double feed_mm_per_s = 0;  ///< of the tip; 0 behind a lost cycle
   };
   /// Largest share of the limit of velocity, acceleration and jerk; 1 is the limit.
   using Shares = std::array<std::array<double, 3>, kMaxJoints>;
@@ -65,6 +66,7 @@ class Motion {
   std::array<JointVector, 3> before_{};  ///< position, velocity, acceleration
   std::array<Sent, kKept> sent_{};
   std::optional<JointVector> joints_;
+  Vector3 tip_ = Vector3::Zero();
   JointVector following_{};
   Shares shares_{};
   std::vector<TrailPoint> trail_;

@@ -13,17 +13,11 @@
 #include "meridian/rt/state.hpp"
 #include "service/dds/participant.hpp"
 #include "service/panel/jog_grip.hpp"
+#include "service/panel/outcome.hpp"
 #include "service/stream/jog_hand.hpp"
 #include "service/stream/operator_link.hpp"
 
 namespace meridian::panel {
-
-/// What came of what an operator asked for.
-struct Outcome {
-  bool is_accepted = false;
-  std::string text;
-};
-using OnOutcome = std::function<void(const Outcome&)>;
 
 /// Asks the machine for what pages ask for, as `meridian ctl` does: every command quotes what its
 /// page saw last. Hold, abort and disable have a thread and a link of their own and wait behind

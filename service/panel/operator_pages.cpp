@@ -7,6 +7,8 @@
 
 #include "meridian/rt/state_table.hpp"
 #include "service/panel/json_text.hpp"
+#include "service/stream/operator_link.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -16,12 +18,19 @@ using nlohmann::json;
 constexpr const char* kOtherOperates =
     "another page operates this machine: take over first, if that is meant";
 
+/// 128 bits that nobody guesses.
+[[nodiscard]] std::string new_key() {
+  std::string key;
+  for (int i = 0; i < 2; ++i) text::append(key, "%016llx", text::Count{stream::draw_id()});
+  return key;
+}
+
 }  // namespace
 
 void OperatorPages::open(PageLink& page) {
   {
     const std::lock_guard lock(mutex_);
-    pages_.emplace(++count_, &page);
+    pages_.emplace(++count_, Page{&page, new_key()});
   }
   say_who_operates();
 }
@@ -29,7 +38,7 @@ void OperatorPages::open(PageLink& page) {
 void OperatorPages::close(PageLink& page) {
   {
     const std::lock_guard lock(mutex_);
-    const auto is_it = [&page](const auto& one) { return one.second == &page; };
+    const auto is_it = [&page](const auto& one) { return one.second.link == &page; };
     const auto found = std::find_if(pages_.begin(), pages_.end(), is_it);
     if (found == pages_.end()) return;
     if (grip_ && grip_->page() == found->first) grip_->let_go();
@@ -44,8 +53,8 @@ void OperatorPages::read(PageLink& page, std::string_view text) {
   std::uint64_t number = 0;
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [known, link] : pages_) {
-      if (link == &page) number = known;
+    for (const auto& [known, one] : pages_) {
+      if (one.link == &page) number = known;
     }
   }
   if (message && number != 0) handle(number, *message);
@@ -59,6 +68,11 @@ void OperatorPages::handle(std::uint64_t page, const PageMessage& message) {
       return jog(page, message);
     case PageMessage::Kind::kTakeOver:
       return take_over(page);
+    case PageMessage::Kind::kCheck:
+    case PageMessage::Kind::kLoad:
+    case PageMessage::Kind::kUnload:
+    case PageMessage::Kind::kAnswer:
+      return serve(page, message);
     case PageMessage::Kind::kRelease:
       break;
   }
@@ -84,6 +98,22 @@ void OperatorPages::ask(std::uint64_t page, const PageMessage& message) {
   }
   desk_.ask(message.verb, message.argument, message.seen,
             [this, page, id = message.id](const Outcome& outcome) { answer(page, id, outcome); });
+}
+
+void OperatorPages::serve(std::uint64_t page, const PageMessage& message) {
+  const bool may = may_operate(page);
+  answer(page, message.id, may ? desk_.serve(message) : Outcome{false, kOtherOperates});
+}
+
+bool OperatorPages::may_operate(std::string_view key) {
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [known, page] : pages_) {
+      if (page.key == key) number = known;
+    }
+  }
+  return number != 0 && may_operate(number);
 }
 
 /// A status comes twenty times a second, and on change.
@@ -125,14 +155,14 @@ void OperatorPages::take_over(std::uint64_t page) {
 void OperatorPages::say(std::uint64_t page, const std::string& text) {
   const std::lock_guard lock(mutex_);
   const auto found = pages_.find(page);
-  if (found != pages_.end()) found->second->say(text);
+  if (found != pages_.end()) found->second.link->say(text);
 }
 
 void OperatorPages::say_who_operates() {
   const std::lock_guard lock(mutex_);
-  for (const auto& [number, link] : pages_) {
+  for (const auto& [number, page] : pages_) {
     const char* const who = operator_ == 0 ? "nobody" : operator_ == number ? "you" : "another";
-    link->say(json_text({{"t", "operator"}, {"who", who}}));
+    page.link->say(json_text({{"t", "operator"}, {"who", who}, {"key", page.key}}));
   }
 }
 

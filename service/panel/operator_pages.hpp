@@ -28,6 +28,8 @@ class OperatorPages {
     std::function<void(Verb, double, const stream::Seen&, OnOutcome)> ask;
     std::function<void(const stream::JogPlan&, std::shared_ptr<JogGrip>, OnOutcome)> jog;
     std::function<std::uint64_t()> newest_status;  ///< status_sequence; 0: the machine is silent
+    /// What moves nothing and quotes nothing: kCheck, kLoad, kUnload, kAnswer.
+    std::function<Outcome(const PageMessage&)> serve;
   };
 
   explicit OperatorPages(Desk desk) : desk_(std::move(desk)) {}
@@ -36,12 +38,22 @@ class OperatorPages {
   void read(PageLink& page, std::string_view text);
   void close(PageLink& page);
 
+  /// Whether the page that was given this key is the operator's, or becomes so now: requests beside
+  /// the page's link bring it.
+  [[nodiscard]] bool may_operate(std::string_view key);
+
  private:
+  struct Page {
+    PageLink* link;
+    std::string key;
+  };
+
   /// Whether the page is the operator's; it becomes so where none is.
   [[nodiscard]] bool may_operate(std::uint64_t page);
   void handle(std::uint64_t page, const PageMessage& message);
   void ask(std::uint64_t page, const PageMessage& message);
   void jog(std::uint64_t page, const PageMessage& message);
+  void serve(std::uint64_t page, const PageMessage& message);
   /// Whether a page that saw this sees the machine as it is.
   [[nodiscard]] bool sees_now(const stream::Seen& seen) const;
   void take_over(std::uint64_t page);
@@ -51,7 +63,7 @@ class OperatorPages {
 
   Desk desk_;
   std::mutex mutex_;
-  std::map<std::uint64_t, PageLink*> pages_;
+  std::map<std::uint64_t, Page> pages_;
   std::uint64_t count_ = 0;
   std::uint64_t operator_ = 0;  ///< page that operates; 0: none
   std::shared_ptr<JogGrip> grip_;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/panel/page_message.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "meridian/rt/jog_tool.hpp"
 #include "meridian/rt/state_table.hpp"
@@ -16,6 +18,7 @@ using nlohmann::json;
 
 /// Beyond these a number is no velocity, distance or override of any machine.
 constexpr double kMaxValue = 1e6;
+constexpr std::uint64_t kMaxLine = 1ULL << 31U;
 constexpr std::uint64_t kMaxId = 1ULL << 53U;
 
 [[nodiscard]] std::optional<double> find_number(const json& from, const char* name) {
@@ -41,20 +44,29 @@ constexpr std::uint64_t kMaxId = 1ULL << 53U;
   return std::nullopt;
 }
 
+/// A number of 64 bits, which a page has as text.
+[[nodiscard]] std::optional<std::uint64_t> find_long(const json& from, const char* name) {
+  const auto at = from.find(name);
+  if (at == from.end() || !at->is_string()) return std::nullopt;
+  const auto& text = at->get_ref<const std::string&>();
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return value;
+}
+
 [[nodiscard]] std::optional<stream::Seen> find_seen(const json& from) {
   const auto at = from.find("seen");
   if (at == from.end() || !at->is_object()) return std::nullopt;
   const auto epoch = find_count(*at, "epoch"), sequence = find_count(*at, "sequence");
-  const auto service = at->find("service");
+  const auto service = find_long(*at, "service");
   constexpr std::uint64_t kMaxEpoch = 65535;
   if (!epoch || *epoch > kMaxEpoch || !sequence) return std::nullopt;
-  if (service == at->end() || !service->is_string()) return std::nullopt;
-  const auto& text = service->get_ref<const std::string&>();
-  stream::Seen seen{.epoch = static_cast<std::uint16_t>(*epoch), .status_sequence = *sequence};
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, seen.service_id);
-  if (error != std::errc() || rest != end) return std::nullopt;
-  return seen;
+  if (!service) return std::nullopt;
+  return stream::Seen{.service_id = *service,
+                      .epoch = static_cast<std::uint16_t>(*epoch),
+                      .status_sequence = *sequence};
 }
 
 [[nodiscard]] std::optional<stream::JogPlan> find_plan(const json& from) {
@@ -74,6 +86,37 @@ constexpr std::uint64_t kMaxId = 1ULL << 53U;
   return plan;
 }
 
+/// What moves nothing and therefore quotes nothing.
+[[nodiscard]] std::optional<PageMessage::Kind> find_plain(const std::string& word) {
+  using Kind = PageMessage::Kind;
+  constexpr std::array<std::pair<const char*, Kind>, 6> kPlain{{{"release", Kind::kRelease},
+                                                                {"take_over", Kind::kTakeOver},
+                                                                {"check", Kind::kCheck},
+                                                                {"load", Kind::kLoad},
+                                                                {"unload", Kind::kUnload},
+                                                                {"answer", Kind::kAnswer}}};
+  for (const auto& [name, kind] : kPlain) {
+    if (word == name) return kind;
+  }
+  return std::nullopt;
+}
+
+[[nodiscard]] std::optional<PageMessage> read_plain(const json& from, PageMessage message) {
+  if (message.kind == PageMessage::Kind::kCheck) {
+    const auto line = find_count(from, "line");
+    if (!line || *line > kMaxLine) return std::nullopt;
+    message.line = static_cast<std::uint32_t>(*line);
+  }
+  if (message.kind == PageMessage::Kind::kAnswer) {
+    const auto action = find_long(from, "action");
+    const auto done = from.find("done");
+    if (!action || done == from.end() || !done->is_boolean()) return std::nullopt;
+    message.action = *action;
+    message.is_done = done->get<bool>();
+  }
+  return message;
+}
+
 }  // namespace
 
 std::optional<PageMessage> read_page_message(std::string_view text) {
@@ -85,9 +128,9 @@ std::optional<PageMessage> read_page_message(std::string_view text) {
   if (kind == from.end() || !kind->is_string() || !id) return std::nullopt;
   message.id = *id;
   const auto& word = kind->get_ref<const std::string&>();
-  if (word == "release" || word == "take_over") {
-    message.kind = word == "release" ? PageMessage::Kind::kRelease : PageMessage::Kind::kTakeOver;
-    return message;
+  if (const auto plain = find_plain(word)) {
+    message.kind = *plain;
+    return read_plain(from, message);
   }
   const auto seen = find_seen(from);
   if (!seen) return std::nullopt;

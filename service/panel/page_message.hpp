@@ -18,11 +18,18 @@ struct PageMessage {
     kJog,       ///< a beat of grip `id`; the first one presses it
     kRelease,   ///< of grip `id`
     kTakeOver,  ///< this page is the operator's from now on
+    kCheck,     ///< of the program, from `line` on
+    kLoad,      ///< stream the program
+    kUnload,    ///< end the stream
+    kAnswer,    ///< to `action`: done or not
   };
   Kind kind = Kind::kAsk;
   std::uint64_t id = 0;  ///< of the answer, or of the grip
   Verb verb = Verb::kHold;
   double argument = 0;
+  std::uint32_t line = 0;  ///< of kCheck; 0: the whole program
+  std::uint64_t action = 0;
+  bool is_done = false;
   stream::Seen seen{};
   stream::JogPlan plan{};
 };

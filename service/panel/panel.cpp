@@ -6,22 +6,47 @@
 #include <thread>
 #include <utility>
 
+#include "service/panel/action_desk.hpp"
 #include "service/panel/hub.hpp"
 #include "service/panel/machine_watch.hpp"
 #include "service/panel/operator_desk.hpp"
 #include "service/panel/operator_pages.hpp"
+#include "service/panel/program_desk.hpp"
 #include "service/panel/server.hpp"
 
 namespace meridian::panel {
 namespace {
 
-[[nodiscard]] OperatorPages::Desk desk_of(OperatorDesk& desk, const MachineWatch& watch) {
+/// Who serves what moves nothing; no actions: somebody else answers them.
+struct Desks {
+  ProgramDesk& programs;
+  ActionDesk* actions;
+};
+
+[[nodiscard]] Outcome serve(Desks desks, const PageMessage& message) {
+  ProgramDesk& programs = desks.programs;
+  switch (message.kind) {
+    case PageMessage::Kind::kAnswer:
+      if (desks.actions == nullptr) return {false, "this panel does not answer actions"};
+      return desks.actions->answer(message.action, message.is_done);
+    case PageMessage::Kind::kCheck:
+      return programs.check(message.line);
+    case PageMessage::Kind::kLoad:
+      return programs.load();
+    default:
+      return programs.unload();
+  }
+}
+
+[[nodiscard]] OperatorPages::Desk desk_of(OperatorDesk& desk, const MachineWatch& watch,
+                                          Desks desks) {
   return {[&desk](Verb verb, double argument, const stream::Seen& seen, OnOutcome on_outcome) {
             desk.ask(verb, argument, seen, std::move(on_outcome));
           },
           [&desk](const stream::JogPlan& plan, std::shared_ptr<JogGrip> grip,
                   OnOutcome on_outcome) { desk.jog(plan, std::move(grip), std::move(on_outcome)); },
-          [&watch] { return watch.newest_status(); }};
+          [&watch] { return watch.newest_status(); },
+          [desks](const PageMessage& message) { return serve(desks, message); }};
 }
 
 /// A panel that only watches says so to its pages and passes nothing on.
@@ -31,8 +56,32 @@ namespace {
   return handler;
 }
 
-[[nodiscard]] PageHandler operating(OperatorPages& pages) {
+/// What pages send and get beside their link.
+[[nodiscard]] HttpAnswer receive(OperatorPages& pages, ProgramDesk& programs,
+                                 const HttpUpload& upload) {
+  constexpr int kForbidden = 403, kConflict = 409;
+  if (!pages.may_operate(upload.key)) {
+    return {.status = kForbidden, .text = "another page operates this machine: take over first"};
+  }
+  const Outcome outcome = programs.receive(upload.name, upload.bytes, upload.read);
+  return {.status = outcome.is_accepted ? 200 : kConflict, .text = outcome.text};
+}
+
+[[nodiscard]] std::optional<HttpAnswer> find_part(const ProgramDesk& programs,
+                                                  const HttpQuery& query) {
+  if (query.path == "/program/lines") {
+    return HttpAnswer{.text = programs.read_lines(query.number("first"), query.number("count"))};
+  }
+  if (query.path != "/program/path") return std::nullopt;
+  const Hub::Text path = programs.path();
+  if (!path) return std::nullopt;
+  return HttpAnswer{.type = "application/octet-stream", .text = *path};
+}
+
+[[nodiscard]] PageHandler operating(OperatorPages& pages, ProgramDesk& programs) {
   PageHandler handler;
+  handler.upload = [&](const HttpUpload& upload) { return receive(pages, programs, upload); };
+  handler.get = [&programs](const HttpQuery& query) { return find_part(programs, query); };
   handler.on_open = [&pages](PageLink& page) { pages.open(page); };
   handler.on_text = [&pages](PageLink& page, std::string_view text) { pages.read(page, text); };
   handler.on_close = [&pages](PageLink& page) { pages.close(page); };
@@ -50,13 +99,18 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
   // Outcomes go to pages, so the desk ends first; pages talk to the desk, so the server goes
   // before.
   std::optional<OperatorDesk> desk;
+  std::optional<ProgramDesk> programs;
+  std::optional<ActionDesk> actions;
   std::optional<OperatorPages> pages;
   if (!options.is_watching) {
     desk.emplace(participant, options.operator_name);
-    pages.emplace(desk_of(*desk, watch));
+    programs.emplace(
+        participant, hub, [&watch] { return watch.machine(); }, options.station_name);
+    if (options.answers_actions) actions.emplace(participant, hub);
+    pages.emplace(desk_of(*desk, watch, {*programs, actions ? &*actions : nullptr}));
   }
   {
-    PageHandler handler = pages ? operating(*pages) : watching();
+    PageHandler handler = pages ? operating(*pages, *programs) : watching();
     handler.metrics = [&hub] {
       const Hub::Text text = hub.newest(Hub::kMetrics);
       return text ? *text : std::string();
@@ -65,9 +119,11 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     on_ready(server.port());
     while (!is_ending) {
       watch.poll();
+      if (actions) actions->poll();
       std::this_thread::sleep_for(kBetweenPolls);
     }
   }
+  programs.reset();
   desk.reset();
 }
 

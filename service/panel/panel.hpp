@@ -11,9 +11,11 @@
 namespace meridian::panel {
 
 struct PanelOptions {
-  std::uint16_t port = 8090;  ///< of loopback; 0: any that is free
-  std::string operator_name;  ///< for messages and the log
-  bool is_watching = false;   ///< the page has no buttons, and nothing that it says is passed on
+  std::uint16_t port = 8090;     ///< of loopback; 0: any that is free
+  std::string operator_name;     ///< for messages and the log
+  std::string station_name;      ///< of the panel as a station of programs
+  bool answers_actions = false;  ///< the operator does what the path waits for, in place of a PLC
+  bool is_watching = false;      ///< the page has no buttons, and nothing that it says is passed on
 };
 
 /// Serves the page of one machine until `is_ending`. `on_ready` gets the port. Throws DdsError and

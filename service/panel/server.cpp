@@ -4,6 +4,7 @@
 #include <civetweb.h>
 
 #include <array>
+#include <charconv>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -46,6 +47,29 @@ void refuse(mg_connection* connection, const char* status, std::string_view why)
   answer(connection, status, "text/plain; charset=utf-8", why);
 }
 
+[[nodiscard]] const char* status_line(int status) {
+  switch (status) {
+    case 200:
+      return "200 OK";
+    case 403:
+      return "403 Forbidden";
+    default:
+      return "409 Conflict";
+  }
+}
+
+[[nodiscard]] std::string query_of(const mg_connection* connection) {
+  const char* const query = mg_get_request_info(connection)->query_string;
+  return query != nullptr ? query : "";
+}
+
+/// A variable of a query, decoded; empty where it is not there, or longer than any that is meant.
+[[nodiscard]] std::string find_variable(const std::string& query, const char* name) {
+  std::array<char, 512> value{};
+  const int length = mg_get_var(query.data(), query.size(), name, value.data(), value.size());
+  return length > 0 ? std::string(value.data(), static_cast<std::size_t>(length)) : "";
+}
+
 }  // namespace
 
 struct Server::Impl {
@@ -55,6 +79,9 @@ struct Server::Impl {
     return is_own_host(header_of(connection, "Host"), port);
   }
   int serve(mg_connection* connection);
+  void upload(mg_connection* connection);
+  [[nodiscard]] std::optional<HttpAnswer> get(const mg_connection* connection,
+                                              std::string_view path) const;
   [[nodiscard]] bool admits(const mg_connection* connection);
   void open(mg_connection* connection);
   [[nodiscard]] bool read(mg_connection* connection, int bits, std::string_view text);
@@ -75,16 +102,50 @@ int Server::Impl::serve(mg_connection* connection) {
   const std::string_view path = request->local_uri != nullptr ? request->local_uri : "";
   if (!is_from_here(connection)) {
     refuse(connection, "403 Forbidden", "this is no name of the panel's host\n");
+  } else if (method == "POST" && path == "/program" && handler.upload) {
+    upload(connection);
   } else if (method != "GET" && method != "HEAD") {
     refuse(connection, "405 Method Not Allowed", "GET and HEAD alone\n");
   } else if (path == "/metrics" && handler.metrics) {
     answer(connection, "200 OK", "text/plain; version=0.0.4; charset=utf-8", handler.metrics());
   } else if (const auto file = find_page_file(path)) {
     answer(connection, "200 OK", file->type, file->bytes, file->is_gzip);
+  } else if (const auto found = get(connection, path)) {
+    answer(connection, status_line(found->status), found->type, found->text);
   } else {
     refuse(connection, "404 Not Found", "the panel has no such page\n");
   }
   return 1;
+}
+
+std::optional<HttpAnswer> Server::Impl::get(const mg_connection* connection,
+                                            std::string_view path) const {
+  if (!handler.get) return std::nullopt;
+  const std::string query = query_of(connection);
+  return handler.get({path, [&query](const char* name) -> std::uint64_t {
+                        const std::string value = find_variable(query, name);
+                        std::uint64_t number = 0;
+                        std::from_chars(value.data(), value.data() + value.size(), number);
+                        return number;
+                      }});
+}
+
+/// A browser says where a POST comes from: a page of another site is refused.
+void Server::Impl::upload(mg_connection* connection) {
+  const bool is_own = is_own_origin(header_of(connection, "Origin"), header_of(connection, "Host"));
+  const long long bytes = mg_get_request_info(connection)->content_length;
+  if (!is_own) return refuse(connection, "403 Forbidden", "this is no page of the panel\n");
+  if (bytes < 0) return refuse(connection, "411 Length Required", "how long is the file?\n");
+  const std::string query = query_of(connection);
+  HttpUpload upload;
+  upload.key = find_variable(query, "key");
+  upload.name = find_variable(query, "name");
+  upload.bytes = static_cast<std::uint64_t>(bytes);
+  upload.read = [connection](char* buffer, std::size_t size) -> std::int64_t {
+    return mg_read(connection, buffer, size);
+  };
+  const HttpAnswer done = handler.upload(upload);
+  answer(connection, status_line(done.status), done.type, done.text);
 }
 
 bool Server::Impl::admits(const mg_connection* connection) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,6 +27,26 @@ class PageLink {
   virtual void say(std::string text) = 0;
 };
 
+/// What a request is answered with.
+struct HttpAnswer {
+  int status = 200;  ///< 200, 403, 409
+  const char* type = "text/plain; charset=utf-8";
+  std::string text;
+};
+
+/// A file that a page sends.
+struct HttpUpload {
+  std::string key, name;  ///< of the page, of the file
+  std::uint64_t bytes = 0;
+  std::function<std::int64_t(char* buffer, std::size_t size)> read;  ///< as read(2)
+};
+
+/// A path, and the numbers behind it: ?first=1&count=40.
+struct HttpQuery {
+  std::string_view path;
+  std::function<std::uint64_t(const char* name)> number;  ///< 0: not there
+};
+
 /// What a server does with what pages say. Called on threads of the server, of one page on one
 /// thread at a time.
 struct PageHandler {
@@ -34,6 +55,9 @@ struct PageHandler {
                                                                           std::string_view) {};
   std::function<void(PageLink& page)> on_close = [](PageLink&) {};  ///< `page` ends with the call
   std::function<std::string()> metrics;                             ///< GET /metrics; empty: none
+  std::function<HttpAnswer(const HttpUpload&)> upload;              ///< POST /program; empty: none
+  /// GET of anything but the page's own files; nothing: there is no such thing.
+  std::function<std::optional<HttpAnswer>(const HttpQuery&)> get;
 };
 
 /// HTTP and WebSocket on loopback: the files of the page, and a link to each page that is open.

@@ -67,9 +67,7 @@ const aPartRunsByClicksAlone = ({ page }) => afterStalls(page, () => onePartByCl
 async function onePartByClicks(page) {
   await click(page, "enable");
   await inState(page, "Ready");
-  const part = join(plant.folder, "part.apt");
-  plant.tool("surface", "--sample", "blossom", "-o", part);
-  const station = plant.spawn("meridian", "stream", part, "--domain", plant.domain, "--wait-end");
+  await load(page, part());
   await inState(page, "Loaded");
   await click(page, "start");
   await sleep(300);
@@ -87,12 +85,85 @@ async function onePartByClicks(page) {
     await page.fill("#feed-slider", String(share));
     await until("the override", async () => Math.abs((await page.evaluate(() => meridian.frame.feed_override)) - share / 100) < 1e-9);
   }
-  await sleep(6000);
+  await sleep(5000);
+  await theTextFollowsTheProgram(page);
+  await picture(page, "panel-program");
+  await page.click("#tab-machine");
   await picture(page, "panel-running");
   must((await page.evaluate(() => meridian.view.trail.count)) > 100, "there is no trail");
   await click(page, "abort");
   await inState(page, "Ready");
-  await station.ended;
+}
+
+// The line that is marked in the text is that of the frame, and what is left of the time goes down with the plan.
+async function theTextFollowsTheProgram(page) {
+  const seen = () => page.evaluate(() => ({ marked: Number(document.querySelector("#program-text .now i")?.textContent), line: meridian.frame.line,
+    toGo: meridian.program.toGo(meridian.frame), plan: meridian.frame.plan_time_s, whole: meridian.program.program.program_s, share: meridian.frame.feed_override }));
+  await until("the text is at the line of the machine", async () => {
+    const { marked, line } = await seen();
+    return line > 0 && marked === line;
+  }, 5000);
+  const first = await seen();
+  must(first.toGo > 0 && first.toGo < first.whole + 1, `time to go is ${first.toGo} of ${first.whole} s`);
+  await sleep(1500);
+  const then = await seen();
+  const passed = then.plan - first.plan, gone = (first.toGo - then.toGo) * Math.min(first.share, 1);
+  must(passed > 0.5 && Math.abs(gone - passed) < 0.1, `${passed} s of the plan passed, the time to go fell by ${gone} s`);
+}
+
+const part = () => {
+  const file = join(plant.folder, "part.apt");
+  plant.tool("surface", "--sample", "blossom", "-o", file);
+  return file;
+};
+const phase = (page, name, ms = 30000) =>
+  until(`the program is ${name}`, () => page.evaluate((wanted) => meridian.program.program.phase === wanted && !meridian.program.program.simulating, name), ms);
+
+// By the file button; what is dropped goes the same way.
+async function load(page, file) {
+  await page.click("#tab-program");
+  await page.setInputFiles("#program-file", file);
+  await phase(page, "ready", 60000);
+  await page.click("#program-load:enabled");
+}
+
+const kDoesNotFit = "PARTNO/TOO FAR\nUNITS/MM\nMULTAX/ON\nFEDRAT/900,MMPM\nGOTO/5000,0,50,0,0,1\nGOTO/5010,0,50,0,0,1\nBLESS/YOU\nGOTO/5010,0,50,0,0,0\nFINI\n";
+
+async function aProgramIsCheckedAsAWhole({ page }) {
+  await page.evaluate((text) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], "../../too far.apt"));
+    window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, kDoesNotFit);
+  await phase(page, "refused");
+  const findings = await page.$$eval("#program-findings li.refusal", (rows) => rows.map((row) => row.textContent));
+  const lines = findings.map((text) => Number(/line (\d+)/.exec(text)?.[1]));
+  for (const line of [5, 7, 8]) must(lines.includes(line), `no finding at line ${line}: ${findings.join("; ")}`);
+  must((await page.textContent("#program-name")) === "too_far.apt", "the name leads elsewhere");
+  must(await page.isDisabled("#program-load"), "a program that does not fit can be loaded");
+  await picture(page, "panel-findings");
+  const far = kDoesNotFit.replace("BLESS/YOU\n", "").replace("GOTO/5010,0,50,0,0,0\n", "");
+  await page.setInputFiles("#program-file", { name: "far.apt", mimeType: "text/plain", buffer: Buffer.from(far) });
+  await until("where it would fit", async () => (await page.textContent("#program-placing")).includes("It fits with the workpiece at"), 60000);
+  await picture(page, "panel-placing");
+}
+
+async function aProgramGoesOnAtALine({ page }) {
+  await page.click("#tab-program");
+  await page.setInputFiles("#program-file", part());
+  await phase(page, "ready", 60000);
+  const whole = await page.evaluate(() => meridian.program.program.program_s);
+  await page.fill("#program-line", "120");
+  await page.click("#program-check:enabled");
+  await until("the check from line 120", () => page.evaluate(() => meridian.program.program.first_line === 120), 10000);
+  await phase(page, "ready", 60000);
+  const { rest, first } = await page.evaluate(() => ({ rest: meridian.program.program.program_s, first: meridian.program.path.line.find((line) => line > 0) }));
+  must(rest < 0.9 * whole && first >= 100, `from line ${first} it takes ${rest} of ${whole} s`);
+  await page.click("#program-load:enabled");
+  await inState(page, "Loaded");
+  await click(page, "abort");
+  await inState(page, "Ready");
+  await phase(page, "ready");
 }
 
 async function restAfter(what, end) {
@@ -179,6 +250,8 @@ async function strangersReachNothing() {
   must(!(await exchange(upgrade(host, "http://evil.example"))).includes(" 101 "), "another site is let in");
   must(!(await exchange(upgrade("evil.example", "http://evil.example"))).includes(" 101 "), "a foreign host is let in");
   must((await exchange(`GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n`)).includes(" 403 "), "a foreign name is served");
+  must((await exchange(`POST /program?key=&name=a HTTP/1.1\r\nHost: ${host}\r\nOrigin: http://${host}\r\nContent-Length: 4\r\n\r\nFINI`)).includes(" 403 "), "a program without a key is taken");
+  must((await exchange(`POST /program?key=&name=a HTTP/1.1\r\nHost: ${host}\r\nOrigin: http://evil.example\r\nContent-Length: 4\r\n\r\nFINI`)).includes(" 403 "), "a program of another site is taken");
   must((await exchange(`GET /../../etc/passwd HTTP/1.1\r\nHost: ${host}\r\n\r\n`)).match(/ (404|400) /), "a path leads out");
 }
 
@@ -217,7 +290,9 @@ try {
   await plant.start();
   open = await openBrowser(playwright, plant);
   await run("PageShowsTheStatus", pageShowsTheStatus, open);
+  await run("AProgramIsCheckedAsAWhole", aProgramIsCheckedAsAWhole, open);
   await run("APartRunsByClicksAlone", aPartRunsByClicksAlone, open);
+  await run("AProgramGoesOnAtALine", aProgramGoesOnAtALine, open);
   open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);
   await picture(open.page, "panel-light");
   await run("StrangersReachNothing", strangersReachNothing);

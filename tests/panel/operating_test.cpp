@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,10 @@ TEST(PageMessage, WhatIsNoMessageSaysNothing) {
       R"({"do":"start","id":1,"argument":0})",  // saw nothing
       message(R"("do":"explode","id":1,"argument":0)"),
       message(R"("do":"jog","id":1,"argument":0)"),
+      R"({"do":"check","id":1})",
+      R"({"do":"check","id":1,"line":-4})",
+      R"({"do":"check","id":1,"line":4294967296})",
+      R"({"do":"load"})",
       message(R"("do":"start","id":-1,"argument":0)"),
       message(R"("do":"start","id":1,"argument":1e999)"),
       message(R"("do":"start","id":1,"argument":"0")"),
@@ -77,6 +82,10 @@ TEST(PageMessage, WhatIsNoMessageSaysNothing) {
 class FakePage : public PageLink {
  public:
   void say(std::string text) override { said.push_back(std::move(text)); }
+  /// The key that it was given.
+  [[nodiscard]] std::string key() const {
+    return nlohmann::json::parse(said.back()).value("key", "");
+  }
   [[nodiscard]] bool was_sent(const std::string& part) const {
     for (const std::string& text : said) {
       if (text.find(part) != std::string::npos) return true;
@@ -102,7 +111,11 @@ class OperatorPagesTest : public testing::Test {
        [this](const stream::JogPlan&, std::shared_ptr<JogGrip> grip, const OnOutcome&) {
          grips_.push_back(std::move(grip));
        },
-       [this] { return newest_; }}};
+       [this] { return newest_; },
+       [this](const PageMessage& message) {
+         served_.push_back(message);
+         return Outcome{true, "checked"};
+       }}};
   [[nodiscard]] static std::string jog(int id) {
     return message(R"("do":"jog","id":)" + std::to_string(id) +
                    R"(,"tool":false,"joint":0,"velocity":5,"distance":0)");
@@ -112,6 +125,7 @@ class OperatorPagesTest : public testing::Test {
   }
   std::vector<Asked> asked_;
   std::vector<std::shared_ptr<JogGrip>> grips_;
+  std::vector<PageMessage> served_;
   std::uint64_t newest_ = 100;
   FakePage one_, two_;
 };
@@ -181,6 +195,28 @@ TEST_F(OperatorPagesTest, ABeatOfAPageThatLagsLetsGo) {
   newest_ = 111;
   pages_.read(one_, jog(1));
   EXPECT_TRUE(grips_[0]->is_let_go());
+}
+
+TEST_F(OperatorPagesTest, AProgramIsTheOperatorsAlone) {
+  pages_.open(one_);
+  pages_.open(two_);
+  pages_.read(one_, R"({"do":"check","id":1,"line":120})");
+  ASSERT_EQ(served_.size(), 1U);
+  EXPECT_EQ(served_[0].kind, PageMessage::Kind::kCheck);
+  EXPECT_EQ(served_[0].line, 120U);
+  pages_.read(two_, R"({"do":"load","id":1})");
+  EXPECT_EQ(served_.size(), 1U);
+  EXPECT_TRUE(two_.was_sent("another page operates"));
+}
+
+TEST_F(OperatorPagesTest, ARequestBesideTheLinkNeedsTheKeyOfTheOperatorsPage) {
+  pages_.open(one_);
+  pages_.open(two_);
+  EXPECT_FALSE(pages_.may_operate(std::string_view("")));
+  EXPECT_FALSE(pages_.may_operate(std::string_view("0123456789abcdef0123456789abcdef")));
+  EXPECT_NE(one_.key(), two_.key());
+  EXPECT_TRUE(pages_.may_operate(std::string_view(one_.key())));
+  EXPECT_FALSE(pages_.may_operate(std::string_view(two_.key())));
 }
 
 TEST_F(OperatorPagesTest, APageThatWasNeverOpenedSaysNothing) {

@@ -61,6 +61,12 @@ export class Operate {
     return undefined;
   }
 
+  // What moves nothing: it quotes no frame.
+  request(message) {
+    const said = this.link.say({ ...message, id: ++this.id });
+    if (!said) this.report(false, "no link to the panel: nothing was asked");
+  }
+
   quoted(frame) {
     return { service: frame.service, epoch: frame.epoch, sequence: frame.sequence };
   }

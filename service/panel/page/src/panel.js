@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 import { byId } from "./dom.js";
+import { Actions } from "./actions.js";
 import { Display } from "./display.js";
 import { Jog } from "./jog.js";
 import { Link } from "./link.js";
 import { Operate } from "./operate.js";
+import { Program } from "./program.js";
 import { Report } from "./report.js";
+import { Scope } from "./scope.js";
+import { Tabs } from "./tabs.js";
+import { Timing } from "./timing.js";
 import { View } from "./view.js";
 
 const display = new Display();
 const view = new View(byId("picture"), (hit) => {
-  if (hit?.isPath) return panel.report.show(hit.index);
+  if (hit?.isPath) return (panel.report ?? panel.program).pick(hit.index);
   const line = hit ? view.trail.lines[hit.index] : 0;
   byId("picked").textContent = line > 0 ? `line ${line}` : "";
   return undefined;
@@ -60,6 +65,7 @@ const receive = {
     if (!message.scene) return;
     view.setMachine(message.scene);
     panel.jog.setMachine(message.scene);
+    panel.scope.setMachine(message.scene);
   },
   frame(frame) {
     panel.frame = frame;
@@ -67,6 +73,8 @@ const receive = {
     display.setFrame(frame);
     panel.operate.setFrame(frame);
     panel.jog.setFrame(frame);
+    panel.program.setFrame(frame);
+    panel.scope.setFrame(frame);
     view.setAtPole(frame.at_pole);
     view.setJoints(frame.now ?? frame.joints, frame.tool_length);
     const top = Math.max(frame.feed_programmed, 1);
@@ -74,8 +82,16 @@ const receive = {
   },
   news: (message) => display.setNews(message.items),
   reply: (message) => panel.operate.setReply(message),
-  operator: (message) => panel.operate.setOperator(message.who),
-  latency: (message) => display.setLatency(message.stages),
+  actions: (message) => panel.actions.setOpen(message.open),
+  program: (message) => panel.program.setProgram(message),
+  operator(message) {
+    panel.operate.setOperator(message.who);
+    panel.program.setKey(message.key);
+  },
+  latency(message) {
+    display.setLatency(message.stages);
+    panel.timing.setLatency(message);
+  },
   silent() {
     panel.frame = null;
     display.setSilent("Silent");
@@ -99,6 +115,11 @@ function connect() {
   );
   panel.operate = new Operate(panel.link, () => panel.frame);
   panel.jog = new Jog(panel.link, panel, panel.operate);
+  panel.tabs = new Tabs();
+  panel.actions = new Actions(panel.operate);
+  panel.program = new Program(panel);
+  panel.scope = new Scope(panel);
+  panel.timing = new Timing();
 }
 
 if (embedded) panel.report = new Report(JSON.parse(embedded.textContent), view, display);

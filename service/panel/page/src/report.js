@@ -106,6 +106,10 @@ export class Report {
     }
   }
 
+  pick(i) {
+    this.show(i);
+  }
+
   play(isPlaying) {
     this.playing = isPlaying;
     setText(byId("play"), isPlaying ? "Pause" : "Play");

@@ -9,6 +9,7 @@ export const fixed = (value, digits) => {
   return text.replace("-", "\u2212");
 };
 export const clock = (seconds) => {
+  if (!Number.isFinite(seconds)) return "\u221e";
   const whole = Math.max(0, Math.round(seconds));
   const two = (value) => String(value).padStart(2, "0");
   return whole >= 3600

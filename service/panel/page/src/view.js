@@ -11,6 +11,7 @@ import { Trail } from "./trail.js";
 
 const kViews = {
   iso: [0.85, -1.25, 0.75], front: [0, -1, 0.0001], right: [1, 0, 0.0001], top: [0, -0.0001, 1],
+  part: [0.85, -1.25, 0.75],
 };
 
 export class View {
@@ -32,7 +33,7 @@ export class View {
     this.trail = new Trail();
     this.theme = "dark";
     this.follows = false;
-    this.shown = { machine: true, trail: true, fan: false };
+    this.shown = { machine: true, path: true, trail: true, fan: false };
     this.frames = 0;
     this.onPick = onPick;
     this.watchPicks();
@@ -129,7 +130,7 @@ export class View {
     this.trail.root.visible = this.shown.trail;
     this.trail.fan.visible = this.shown.fan;
     if (this.path) {
-      this.path.root.visible = this.shown.trail;
+      this.path.root.visible = this.shown.path;
       this.path.fan.visible = this.shown.fan;
     }
     if (!this.machine) return;
@@ -142,8 +143,13 @@ export class View {
 
   // ---- the camera
 
-  box() {
+  box(name) {
     const box = new Box3();
+    if (name === "part" && this.path) {
+      this.path.line.geometry.computeBoundingBox();
+      box.copy(this.path.line.geometry.boundingBox).applyMatrix4(this.machine.frames.workpiece.matrixWorld);
+      return box.expandByScalar(0.3 * this.machine.size);
+    }
     const { machine } = this;
     const centre = new Vector3().setFromMatrixPosition(machine.frames.workpiece.matrixWorld);
     const tip = new Vector3().setFromMatrixPosition(machine.frames.tip.matrixWorld);
@@ -155,7 +161,7 @@ export class View {
 
   look(name) {
     if (!this.machine) return;
-    const box = this.box();
+    const box = this.box(name);
     const centre = box.getCenter(new Vector3());
     const radius = box.getSize(new Vector3()).length() / 2;
     const aspect = Math.min(1, this.camera.aspect);

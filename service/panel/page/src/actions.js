@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the path waits for, where the operator does it in place of a PLC.
+import { byId, element } from "./dom.js";
+
+export class Actions {
+  constructor(operate) {
+    this.operate = operate;
+  }
+
+  setOpen(open) {
+    const rows = open.map(({ id, line, text }) => {
+      const button = (done, words) => {
+        const made = element("button", { type: "button", class: done ? "go" : "" }, words);
+        made.addEventListener("click", () => this.operate.request({ do: "answer", action: id, done }));
+        return made;
+      };
+      return element("div", {}, element("b", {}, text), element("span", {}, `line ${line}: the program waits until it is done`),
+        button(true, "Done"), button(false, "Cannot be done"));
+    });
+    byId("actions").replaceChildren(...rows);
+    byId("actions").hidden = rows.length === 0;
+  }
+}

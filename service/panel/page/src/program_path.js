@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The simulated path as the panel's process sends it: points of 11 numbers of 32 bits (service/panel/program_path.hpp).
+const kWords = 11;
+
+export class ProgramPath {
+  constructor(buffer) {
+    const reals = new Float32Array(buffer), counts = new Uint32Array(buffer);
+    this.count = reals.length / kWords;
+    const column = (from, at) => from.constructor.from({ length: this.count }, (_, i) => from[kWords * i + at]);
+    this.time = column(reals, 0);
+    this.planTime = column(reals, 1);
+    this.feed = column(reals, 8);
+    this.line = column(counts, 9);
+    this.limit = column(counts, 10);
+    this.tip = new Float32Array(3 * this.count);
+    this.axis = new Float32Array(3 * this.count);
+    for (let i = 0; i < this.count; ++i) {
+      this.tip.set(reals.subarray(kWords * i + 2, kWords * i + 5), 3 * i);
+      this.axis.set(reals.subarray(kWords * i + 5, kWords * i + 8), 3 * i);
+    }
+  }
+
+  get duration() {
+    return this.count > 0 ? this.time[this.count - 1] : 0;
+  }
+
+  // How long the program still takes at 100 % when its plan has come to `planTime`.
+  toGo(planTime) {
+    let low = 0, high = this.count;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.planTime[middle] < planTime) low = middle + 1;
+      else high = middle;
+    }
+    return low < this.count ? this.duration - this.time[low] : 0;
+  }
+
+  // Seconds at each limit, longest first: [limit, seconds].
+  byLimit() {
+    const held = new Map();
+    for (let i = 1; i < this.count; ++i) {
+      held.set(this.limit[i], (held.get(this.limit[i]) ?? 0) + this.time[i] - this.time[i - 1]);
+    }
+    return [...held].sort((a, b) => b[1] - a[1]);
+  }
+}

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// The joints as on an oscilloscope: two plots over one time, at the rate of the wire, live or of a recording.
+import uPlot from "uplot";
+import { byId, element, setText } from "./dom.js";
+import { limitColour } from "./path.js";
+import { kMaxBytes, readRecording } from "./recording.js";
+import { kQuantities, ScopeBuffer } from "./scope_buffer.js";
+import { Trigger } from "./trigger.js";
+import { fixed, unit } from "./units.js";
+
+const kBetweenDrawings_ms = 100;
+const kPlots = ["scope-plot-1", "scope-plot-2"];
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+export class Scope {
+  constructor(panel) {
+    this.panel = panel;
+    this.trigger = new Trigger();
+    this.cursors = [null, null];
+    this.isPaused = false;
+    this.drawn = 0;
+    for (const id of ["scope-quantity-1", "scope-quantity-2"]) {
+      byId(id).append(...Object.entries(kQuantities).map(([value, { label }]) => element("option", { value }, label)));
+      byId(id).addEventListener("change", () => this.rebuild());
+    }
+    byId("scope-quantity-1").value = "velocity";
+    byId("scope-quantity-2").value = "following";
+    byId("scope-window").addEventListener("change", () => this.draw());
+    byId("scope-pause").addEventListener("click", () => this.pause(!this.isPaused));
+    byId("scope-arm").addEventListener("click", () => this.arm());
+    byId("scope-csv").addEventListener("click", () => this.save());
+    byId("scope-live").addEventListener("click", () => this.goLive());
+    const file = byId("scope-file");
+    byId("scope-open").addEventListener("click", () => file.click());
+    file.addEventListener("change", () => {
+      if (file.files[0]) this.open(file.files[0]);
+      file.value = "";
+    });
+    window.addEventListener("meridian-view", () => this.resize());
+    new ResizeObserver(() => this.resize()).observe(byId("sheet-scope"));
+  }
+
+  setMachine(scene) {
+    this.scene = scene;
+    this.live = this.buffer = new ScopeBuffer(scene.joints, scene.cycle_s);
+    this.chosen = scene.joints.map((_, i) => i);
+    const toggles = scene.joints.map((joint, i) => {
+      const button = element("button", { type: "button", "aria-pressed": "true" }, joint.name);
+      button.style.setProperty("--dot", limitColour(3 + 3 * i));
+      button.addEventListener("click", () => {
+        const isOn = button.getAttribute("aria-pressed") !== "true";
+        button.setAttribute("aria-pressed", String(isOn));
+        this.chosen = scene.joints.map((_, k) => k).filter((k) => toggles[k].getAttribute("aria-pressed") === "true");
+        this.rebuild();
+      });
+      return button;
+    });
+    byId("scope-joints").replaceChildren(...toggles);
+    byId("scope-state").replaceChildren(...["Running", "Holding", "Held", "Starving", "FaultStop", "Fault", "Ready"].map((value) => element("option", { value }, value)));
+    this.rebuild();
+  }
+
+  // ---- what comes in
+
+  setFrame(frame) {
+    if (!this.live) return;
+    const count = this.scene.joints.length;
+    const before = this.live.added;
+    for (const row of frame.samples) {
+      this.live.add(row[0], row.slice(1, 1 + count), row.slice(1 + count, 1 + 2 * count), row[1 + 2 * count]);
+    }
+    const first = Math.max(0, this.live.count - (this.live.added - before));
+    this.trigger.look(frame, this.live, first);
+    this.stopWhereTriggered();
+    const now = performance.now();
+    if (this.isPaused || this.buffer !== this.live || now - this.drawn < kBetweenDrawings_ms) return;
+    this.drawn = now;
+    this.draw();
+  }
+
+  stopWhereTriggered() {
+    const { at } = this.trigger;
+    if (at === null || this.isPaused || this.live.end < at + this.window / 2) return;
+    this.pause(true);
+    this.report(`triggered at ${fixed(at, 3)} s`);
+  }
+
+  get window() {
+    return Number(byId("scope-window").value);
+  }
+
+  // ---- what the operator asks for
+
+  pause(isPaused) {
+    this.isPaused = isPaused;
+    this.frozenEnd = this.buffer?.end ?? 0;
+    byId("scope-pause").setAttribute("aria-pressed", String(isPaused));
+    setText(byId("scope-pause"), isPaused ? "Go on" : "Pause");
+    if (!isPaused) {
+      this.trigger.disarm();
+      this.cursors = [null, null];
+      this.report("");
+    }
+    this.draw();
+  }
+
+  arm() {
+    const kind = byId("scope-trigger").value;
+    if (kind === "none") return this.pause(false);
+    this.pause(false);
+    const quantity = byId("scope-quantity-1").value;
+    this.trigger.arm(kind, kind === "state" ? byId("scope-state").value
+      : { quantity, joint: this.chosen[0] ?? 0, level: Number(byId("scope-level").value) || 0 });
+    return this.report("armed");
+  }
+
+  goLive() {
+    this.buffer = this.live;
+    byId("scope-live").hidden = true;
+    this.pause(false);
+  }
+
+  async open(file) {
+    if (file.size > kMaxBytes) return this.report("the recording has more than 96 MiB: cut it, or use meridian check --html");
+    try {
+      this.buffer = readRecording(await file.text(), this.scene.joints, this.scene.cycle_s);
+    } catch (error) {
+      return this.report(error.message);
+    }
+    byId("scope-live").hidden = false;
+    this.pause(true);
+    return this.report(`${file.name}: ${this.buffer.count} cycles`);
+  }
+
+  save() {
+    const [begin, end] = this.range();
+    const link = element("a", { href: URL.createObjectURL(new Blob([this.buffer.csv(begin, end)], { type: "text/csv" })), download: "meridian-scope.csv" });
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+
+  report(text) {
+    setText(byId("scope-report"), text);
+  }
+
+  // ---- drawing
+
+  // What is shown, s: the newest window; of a recording, or behind a zoom, what the plots show.
+  range() {
+    const { buffer } = this;
+    if (this.zoom && this.isPaused) return this.zoom;
+    if (buffer !== this.live) return [buffer.time(0), buffer.end];
+    const end = this.isPaused ? this.frozenEnd : buffer.end;
+    const centre = this.trigger.at;
+    if (this.isPaused && centre !== null) return [centre - this.window / 2, centre + this.window / 2];
+    return [end - this.window, end];
+  }
+
+  rebuild() {
+    if (!this.buffer) return;
+    for (const plot of this.plots ?? []) plot.destroy();
+    this.plots = kPlots.map((id, i) => this.plot(byId(id), byId(`scope-quantity-${i + 1}`).value));
+    this.draw();
+  }
+
+  plot(box, quantity) {
+    const { perJoint, label } = kQuantities[quantity];
+    const axis = { stroke: () => style("--soft"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, font: "12px sans-serif" };
+    const series = perJoint
+      ? this.chosen.map((k) => ({ label: this.scene.joints[k].name, stroke: limitColour(3 + 3 * k), width: 1.4, value: (_, v) => (v === null ? "" : `${v.toPrecision(5)} ${unit(this.scene.joints[k])}`) }))
+      : [{ label, stroke: style("--accent"), width: 1.4 }];
+    return new uPlot({
+      width: Math.max(box.clientWidth, 100), height: Math.max(box.clientHeight - 34, 80), title: "",
+      cursor: { sync: { key: "scope" }, drag: { x: true, y: false, setScale: false } }, legend: { live: true },
+      scales: { x: { time: false, range: () => this.range() }, y: {} },
+      axes: [axis, { ...axis, size: 66, label, labelSize: 20, labelFont: "13px sans-serif" }],
+      series: [{ label: "s", value: (_, v) => (v === null ? "" : fixed(v, 4)) }, ...series],
+      hooks: {
+        draw: [(plot) => this.drawMarks(plot)],
+        setSelect: [(plot) => this.select(plot)],
+        ready: [(plot) => {
+          plot.over.addEventListener("click", () => plot.select.width < 4 && this.setCursor(plot));
+          plot.over.addEventListener("dblclick", () => this.select(null));
+        }],
+      },
+    }, [[], ...series.map(() => [])], box);
+  }
+
+  draw() {
+    if (!this.plots || byId("sheet-scope").hidden || !this.buffer) return;
+    const [begin, end] = this.range();
+    this.plots.forEach((plot, i) => plot.setData(this.buffer.rows(byId(`scope-quantity-${i + 1}`).value, this.chosen, begin, end)));
+    this.drawReadout();
+  }
+
+  resize() {
+    for (const plot of this.plots ?? []) {
+      const box = plot.root.parentElement;
+      if (box.clientWidth > 0) plot.setSize({ width: box.clientWidth, height: Math.max(box.clientHeight - 34, 80) });
+    }
+    this.draw();
+  }
+
+  // A stretch that was dragged over is shown alone; a double click shows all again.
+  select(plot) {
+    if (plot && plot.select.width < 4) return;
+    this.zoom = plot ? [plot.posToVal(plot.select.left, "x"), plot.posToVal(plot.select.left + plot.select.width, "x")] : null;
+    if (plot) plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    if (!this.isPaused) this.pause(true);
+    this.draw();
+  }
+
+  // Cursor A, then B, then A again.
+  setCursor(plot) {
+    if (plot.cursor.left < 0) return;
+    const at = plot.posToVal(plot.cursor.left, "x");
+    if (!this.isPaused) this.pause(true);
+    this.cursors = this.cursors[0] === null || this.cursors[1] !== null ? [at, null] : [this.cursors[0], at];
+    this.draw();
+  }
+
+  drawMarks(plot) {
+    const { ctx, bbox } = plot;
+    const line = (at, colour, name) => {
+      if (at === null) return;
+      const x = plot.valToPos(at, "x", true);
+      if (x < bbox.left || x > bbox.left + bbox.width) return;
+      ctx.save();
+      ctx.strokeStyle = ctx.fillStyle = colour;
+      ctx.lineWidth = 2;
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + bbox.height);
+      ctx.stroke();
+      ctx.font = "bold 13px sans-serif";
+      ctx.fillText(name, x + 4, bbox.top + 14);
+      ctx.restore();
+    };
+    line(this.trigger.at, style("--bad"), "T");
+    line(this.cursors[0], style("--warn"), "A");
+    line(this.cursors[1], style("--warn"), "B");
+  }
+
+  // Values at the cursors, and what lies between them.
+  drawReadout() {
+    const [a, b] = this.cursors;
+    const box = byId("scope-readout");
+    box.hidden = a === null;
+    if (a === null) return;
+    const cells = (...texts) => texts.map((text) => element("span", {}, text));
+    const rows = cells("", "A", "B", "B \u2212 A");
+    rows.push(...cells("time, s", fixed(a, 4), b === null ? "" : fixed(b, 4), b === null ? "" : fixed(b - a, 4)));
+    for (const i of [1, 2]) {
+      const quantity = byId(`scope-quantity-${i}`).value;
+      const { perJoint, label } = kQuantities[quantity];
+      for (const k of perJoint ? this.chosen : [0]) {
+        const value = (at) => (at === null ? null : this.buffer.value(quantity, k, Math.min(this.buffer.find(at), this.buffer.count - 1)));
+        const [from, to] = [value(a), value(b)];
+        const text = (number) => (number === null ? "" : number.toPrecision(6));
+        rows.push(...cells(perJoint ? `${this.scene.joints[k].name} ${label}` : label, text(from), text(to), from === null || to === null ? "" : text(to - from)));
+      }
+    }
+    box.replaceChildren(...rows);
+  }
+}
