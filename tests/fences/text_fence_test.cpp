@@ -87,6 +87,9 @@ TEST(TextFence, CatchesAMissingLicenceLineAndPragma) {
       find_missing_heads({{"a.hpp", {"// SPDX-License-Identifier: Apache-2.0", "#pragma once"}}})
           .size(),
       0U);
+  const std::vector<std::string> gpl{"// SPDX-License-Identifier: GPL-2.0-or-later"};
+  EXPECT_EQ(find_missing_heads({{"service/hal/component/a.c", gpl}}).size(), 0U);
+  EXPECT_EQ(find_missing_heads({{"service/hal/a.c", gpl}}).size(), 1U);
 }
 
 TEST(TextFence, ProseOfThePagesIsAtMost100CharactersWide) {
