@@ -103,6 +103,7 @@ class CycleArguments {
       return refuse("a feed per tooth needs the number of teeth", "output the feed per minute");
     }
     const std::vector<double> n = numbers();
+    if (n.empty() && !words.positions.empty()) return {};  // numbers by their place
     // Behind the unit its feed; of positions another number: the clearance.
     if (n.empty() || !(n[0] > 0)) return refuse("CYCLE tells a unit of feed without a feed");
     words.feeds.push_back({n[0], unit});

@@ -85,6 +85,10 @@ Outcome Interpreter::read_comment_data(const Statement& s) {
       s.is_catia_matrix ? "$$*CATIA0" : "$$->");
   if (s.is_catia_matrix || s.major == "CSYS") return read_csys(modal_, s);
   if (s.major == "CUTTER") return read_tool_data(modal_, s);
+  if (s.major == "CUTCOM_GEOMETRY_TYPE") {
+    modal_.cutcom_path =
+        s.has_word("OUTPUT_ON_PROFILE") ? CutcomPath::kOfPart : CutcomPath::kOfTool;
+  }
   return {};
 }
 

@@ -12,9 +12,18 @@ constexpr std::size_t kBufferSize = 256 * 1024;
 constexpr std::size_t kHeadSize = 64 * 1024;
 constexpr char kDosEnd = '\x1a';
 
-const char* find_newline(const char* begin, const char* end) {
+const char* find_newline(const char* begin, const char* end, char newline) {
   if (begin == end) return nullptr;
-  return static_cast<const char*>(std::memchr(begin, '\n', static_cast<std::size_t>(end - begin)));
+  return static_cast<const char*>(
+      std::memchr(begin, newline, static_cast<std::size_t>(end - begin)));
+}
+
+/// CR alone ends lines where there is one before other text and no LF anywhere.
+char line_end_of(std::string_view head) {
+  const std::size_t at = head.find('\r');
+  const bool is_alone = at != std::string_view::npos && at + 1 < head.size() &&
+                        head.find('\n') == std::string_view::npos;
+  return is_alone ? '\r' : '\n';
 }
 }  // namespace
 
@@ -61,7 +70,9 @@ std::string_view LineSource::head() {
     }
     started_ = true;
   }
-  return {begin_, std::min(static_cast<std::size_t>(end_ - begin_), kHeadSize)};
+  const std::string_view head(begin_, std::min(static_cast<std::size_t>(end_ - begin_), kHeadSize));
+  if (line_number_ == 0) line_end_ = line_end_of(head);
+  return head;
 }
 
 bool LineSource::read_on() {
@@ -73,11 +84,11 @@ bool LineSource::read_on() {
 
 LineSource::Outcome LineSource::next(std::string_view& line) {
   if (!started_) (void)head();
-  const char* newline = find_newline(begin_, end_);
+  const char* newline = find_newline(begin_, end_, line_end_);
   while (newline == nullptr && !at_end_ &&
          static_cast<std::size_t>(end_ - begin_) <= kLongestLine) {
     refill();
-    newline = find_newline(begin_, end_);
+    newline = find_newline(begin_, end_, line_end_);
   }
   if (newline == nullptr && read_error_) return Outcome::kReadError;
   if (newline == nullptr && begin_ == end_) return Outcome::kEnd;

@@ -11,8 +11,8 @@ namespace meridian::cl {
 /// Physical lines of a stream or of a text in memory, one after the other, in constant memory.
 ///
 /// Lines end at LF; a CR before it is taken off, and so are a UTF-8 byte order mark at the start
-/// and a DOS end-of-file mark (Ctrl-Z) at the end. Bytes are ISO-8859-1 or UTF-8 alike: nothing
-/// beyond ASCII carries meaning.
+/// and a DOS end-of-file mark (Ctrl-Z) at the end. Where the head has CR and no LF, lines end at
+/// CR. Bytes are ISO-8859-1 or UTF-8 alike: nothing beyond ASCII carries meaning.
 class LineSource {
  public:
   enum class Outcome : std::uint8_t { kLine, kEnd, kTooLong, kReadError };
@@ -46,6 +46,7 @@ class LineSource {
   const char* end_ = nullptr;
   std::uint64_t bytes_ = 0;
   std::uint32_t line_number_ = 0;
+  char line_end_ = '\n';
   bool at_end_ = false;  ///< nothing more to read behind end_
   bool read_error_ = false;
   bool open_end_ = false;

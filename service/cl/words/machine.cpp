@@ -211,11 +211,16 @@ Outcome pass_on(Modal& m, const Statement& s) {
 }
 
 Outcome read_cutcom(Modal& m, const Statement& s) {
-  if (!s.has_word("OFF")) {
-    m.remarks.warn("CUTCOM", s.line, [] {
-      return "CUTCOM is not applied: the path is taken as the path of the tool tip, as written";
-    });
+  if (s.has_word("OFF") || m.cutcom_path == CutcomPath::kOfTool) return {};
+  if (m.cutcom_path == CutcomPath::kOfPart) {
+    return refuse(
+        "CUTCOM behind CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_PROFILE: the points are those of "
+        "the part's edge, which the control would leave by the tool's radius",
+        "let Creo output the path of the tool's centre (OUTPUT_ON_CENTER)", "CUTCOM");
   }
+  m.remarks.warn("CUTCOM", s.line, [] {
+    return "CUTCOM is not applied: the path is taken as the path of the tool tip, as written";
+  });
   return {};
 }
 

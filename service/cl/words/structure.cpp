@@ -58,8 +58,11 @@ Outcome read_note(Modal& m, const Statement& s) {
   std::string_view text = s.rest;
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   if (!m.dialect.is_known()) (void)m.dialect.see(shown_by_text(text), s.line, "PPRINT");
-  if (text.starts_with("BEGIN-SECTION")) ++m.structure.open_sections;
-  if (text.starts_with("END-SECTION")) {
+  const auto begins_with = [text](std::string_view word) {
+    return is_word(text.substr(0, word.size()), word);
+  };
+  if (begins_with("BEGIN-SECTION")) ++m.structure.open_sections;
+  if (begins_with("END-SECTION")) {
     if (m.structure.open_sections == 0) {
       return refuse("PPRINT/END-SECTION without BEGIN-SECTION");
     }

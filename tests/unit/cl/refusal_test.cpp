@@ -151,6 +151,7 @@ TEST(Truncation, DoesNotHitFilesThatEndTheirOwnWay) {
   for (const char* text :
        {"TOOL PATH/A,TOOL,B\nFEDRAT/9\nGOTO/1,2,3\nEND-OF-PATH\n",
         "PPRINT/BEGIN-SECTION,P\nFEDRAT/9\nGOTO/1,2,3\nPPRINT/END-SECTION,P\n",
+        "pprint/begin-section,p\nfedrat/9\ngoto/1,2,3\npprint/end-section,p\n",
         "FEDRAT/9\nGOTO/1,2,3\nEND\n", "FEDRAT/9\nGOTO/1,2,3\nFINI\nthis is not looked at",
         "FEDRAT/9\nGOTO/1,2,3\nEND\nFINI\n"}) {
     const auto read = read_text(text, metric());

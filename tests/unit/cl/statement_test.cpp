@@ -201,5 +201,20 @@ TEST(LineSource, GivesTheSameLinesFromAStreamAsFromMemory) {
   EXPECT_EQ(from_stream.bytes(), text.size());
 }
 
+TEST(LineSource, TakesCrAloneForALineEndWhereThereIsNoOther) {
+  const auto lines_of = [](std::string_view text) {
+    LineSource lines(text);
+    std::vector<std::string> out;
+    for (std::string_view line; lines.next(line) == LineSource::Outcome::kLine;) {
+      out.emplace_back(line);
+    }
+    return out;
+  };
+  EXPECT_EQ(lines_of("UNITS/MM\rGOTO/1,2,3\rFINI\r"),
+            (std::vector<std::string>{"UNITS/MM", "GOTO/1,2,3", "FINI"}));
+  EXPECT_EQ(lines_of("UNITS/MM\rGOTO/1,2,3\r\nFINI"),
+            (std::vector<std::string>{"UNITS/MM\rGOTO/1,2,3", "FINI"}));
+}
+
 }  // namespace
 }  // namespace meridian::cl

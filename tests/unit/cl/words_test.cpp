@@ -138,7 +138,8 @@ TEST(Reader, RestsAtTheEndOfASplineAndNotAtItsChords) {
 }
 
 TEST(Reader, RefusesATransitionThatItDoesNotKnow) {
-  for (const char* word : {"TRANSITION/FAST", "TRANSITION/1", "TRANSITION", "TRANSITION/SMOOTH,1"}) {
+  for (const char* word :
+       {"TRANSITION/FAST", "TRANSITION/1", "TRANSITION", "TRANSITION/SMOOTH,1"}) {
     EXPECT_NE(read_body(std::string(word) + "\nGOTO/0,0,0\n").error, "") << word;
   }
 }
@@ -260,6 +261,15 @@ TEST(Documentation, ShowsAnExampleThatIsReadWithoutAWarning) {
   EXPECT_EQ(read.error, "");
   EXPECT_TRUE(read.warnings.empty());
   EXPECT_EQ(read.motion().size(), 5U);
+}
+
+TEST(CutterCompensation, IsAsCreoWritesWhatItsPointsAre) {
+  const std::string body = "UNITS/MM\nFEDRAT/9,MMPM\nGOTO/0,0,0\nCUTCOM/LEFT\nGOTO/1,2,3\nFINI\n";
+  const auto centre = read_text("$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER\n" + body);
+  EXPECT_EQ(centre.error, "");
+  EXPECT_FALSE(centre.warned_of("CUTCOM"));
+  const auto profile = read_text("$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_PROFILE\n" + body);
+  EXPECT_NE(profile.error.find("OUTPUT_ON_CENTER"), std::string::npos) << profile.error;
 }
 
 }  // namespace
