@@ -11,6 +11,7 @@
 #include "service/cli/finite_range.hpp"
 #include "service/config/config_error.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/config/tool_names.hpp"
 #include "service/nc/nc_reader.hpp"
 #include "service/stream/home_pose.hpp"
 #include "service/stream/preflight.hpp"
@@ -63,6 +64,10 @@ ToolTable load_tools(const MachineOptions& options) {
   return options.tools.empty() ? ToolTable() : config::load_tools(options.tools);
 }
 
+nc::NamedTools load_tool_names(const MachineOptions& options) {
+  return options.tools.empty() ? nc::NamedTools() : config::load_tool_names(options.tools);
+}
+
 bool can_be_read_twice(const std::string& file) {
   std::error_code error;
   return std::filesystem::is_regular_file(file, error);
@@ -78,15 +83,17 @@ void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reade
   tools = ToolTable(std::move(all));
 }
 
-void tell_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools) {
-  reader.nc = nc::reader_of_programs(model, tools);
+void tell_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools,
+                  nc::NamedTools named) {
+  reader.nc = nc::reader_of_programs(model, tools, std::move(named));
   reader.home = stream::home_pose(model, tools);
 }
 
 bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,
                const MachineModel& model, ToolTable& tools) {
+  tell_machine(reader, model, tools, load_tool_names(options));
   add_unknown_tools(file, reader, options, tools);
-  tell_machine(reader, model, tools);
+  tell_machine(reader, model, tools, load_tool_names(options));
   if (!can_be_read_twice(file)) return true;
   const stream::PreflightReport report = stream::preflight(
       file, reader,

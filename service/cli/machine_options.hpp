@@ -9,6 +9,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/cl/cl_options.hpp"
 #include "service/cli/cl_options.hpp"
+#include "service/nc/tool_names.hpp"
 
 namespace meridian::cli {
 
@@ -35,7 +36,10 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
 
 /// Tells a reader where GOHOME leads: tip and axis of the machine's home with the tool in the
 /// spindle; and what the axis words of NC programs do.
-void tell_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools);
+void tell_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools,
+                  nc::NamedTools named = {});
+/// The tools of the table that have names. Throws config::ConfigError.
+[[nodiscard]] nc::NamedTools load_tool_names(const MachineOptions& options);
 
 /// Whether the file can be read a second time: no pipe.
 [[nodiscard]] bool can_be_read_twice(const std::string& file);

@@ -17,6 +17,7 @@
 #include "service/cli/progress_text.hpp"
 #include "service/cli/told_machine.hpp"
 #include "service/config/machine_file.hpp"
+#include "service/config/tool_names.hpp"
 #include "service/dds/participant.hpp"
 #include "service/stream/frame_sum.hpp"
 #include "service/stream/stream_run.hpp"
@@ -50,6 +51,17 @@ int exit_code_of(stream::StreamEnd end) {
       return kNoPeer;
   }
   return kVerdictNo;
+}
+
+/// The tools that NC programs may call by name: those of the table that the file is judged for.
+nc::NamedTools named_tools(const StreamCommandOptions& options, const dds::MachineInfo& info) {
+  if (!options.machine_file.empty()) {
+    return options.tool_file.empty() ? nc::NamedTools()
+                                     : config::load_tool_names(options.tool_file);
+  }
+  return info.tool_file.empty()
+             ? nc::NamedTools()
+             : config::parse_tool_names(info.tool_file, "tool table of the service");
 }
 
 /// Returns the machine that the file is judged for: the one that the service tells, unless files
@@ -112,7 +124,10 @@ int run_stream_command(StreamCommandOptions& options) {
   } else if (judged_for && judged_for->model.default_unit_inch) {
     reader.default_unit = cl::LengthUnit::kInch;
   }
-  if (judged_for) tell_machine(reader, judged_for->model, judged_for->tools.value_or(ToolTable()));
+  if (judged_for) {
+    tell_machine(reader, judged_for->model, judged_for->tools.value_or(ToolTable()),
+                 named_tools(options, *machine));
+  }
   const bool is_read_first = !options.has_no_preflight && options.stream.file != "-";
   if (is_read_first && !pass_preflight(options, judged_for)) return kInputRefused;
 

@@ -61,9 +61,27 @@ void stop_spindle(State& s, const Line& line) {
   s.cl.path.act(BlockKind::kAuxiliary, ActionKind::kSpindleOff, 0, line.number);
 }
 
+/// A tool by its name: as the tool table has it, or a number of its own.
+cl::Outcome take_named_tool(State& s, const Line& line, std::string_view name) {
+  const auto known = s.tools.find(name);
+  if (known) {
+    s.modes.next_tool = *known;
+    return {};
+  }
+  const auto number = s.tools.number_of(name);
+  if (!number) return tl::make_unexpected(number.error());
+  s.cl.remarks.warn(name, line.number, [&] {
+    return "tool " + cl::quoted(name) + " is called " + std::to_string(*number) +
+           " here; give its row in the tool table name = " + cl::quoted(name);
+  });
+  s.modes.next_tool = *number;
+  return {};
+}
+
 cl::Outcome take_tool(State& s, const Line& line) {
   const Word* const t = line.find("T");
   if (t == nullptr) return {};
+  if (!t->text.empty()) return take_named_tool(s, line, t->text);
   if (!is_whole(t->number, kMostTool)) {
     return refuse("tool number " + cl::short_number(t->number) + " is not a whole number");
   }
@@ -74,6 +92,10 @@ cl::Outcome take_tool(State& s, const Line& line) {
 cl::Outcome change_tool(State& s, const Line& line) {
   if (!s.modes.next_tool) return refuse("M6, but no T told the tool");
   const std::uint32_t tool = *s.modes.next_tool;
+  if (tool == 0) {  // the spindle is emptied
+    s.cl.summary.skip("T0", line.number);
+    return {};
+  }
   auto& tools = s.cl.summary.tools;
   if (tools.size() < cl::ClSummary::kMostTools &&
       std::find(tools.begin(), tools.end(), tool) == tools.end()) {

@@ -74,7 +74,10 @@ Expected<int, cl::Refusal> turns_of(const Line& line) {
 }  // namespace
 
 cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
-  if (to.turns || (!holds_tip(s.modes.control) && to.place.is_turned())) {
+  const bool is_off_tip = !holds_tip(s.modes.control) &&
+                          (to.place.is_turned() || s.frames.tilt == Tilt::kDefined) &&
+                          !is_across_plane(s, to.place);
+  if (to.turns || is_off_tip) {
     return refuse(
         "an arc in whose block rotary axes turn, or are turned without tool-centre "
         "control, is not run here",
@@ -103,8 +106,7 @@ cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
   }
   const auto end = in_path(s, {arc.end, to.axis});
   if (!end) return tl::make_unexpected(end.error());
-  const Vector3 normal =
-      s.axes ? Vector3(s.axes->to_program().transpose() * arc.normal) : arc.normal;
+  const Vector3 normal = direction_in_w(s, s.frames.now.direction(arc.normal));
   const auto centre = in_path(s, {arc.centre, normal});
   if (!centre) return tl::make_unexpected(centre.error());
   const auto turns = turns_of(line);

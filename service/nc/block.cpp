@@ -18,7 +18,17 @@ constexpr std::string_view kLetters = "GMXYZABCUVWIJKRFSTHDPQLEO";
 
 /// What the G codes of a block say that holds for this block alone.
 struct OneShot {
-  enum class Kind : std::uint8_t { kMove, kDwell, kHome, kMachinePlace, kSetting };
+  enum class Kind : std::uint8_t {
+    kMove,
+    kDwell,
+    kHome,
+    kMachinePlace,
+    kPlaneTilt,
+    kPlaneFollow,
+    kLocalZero,
+    kSetting,
+    kNothing  ///< what its words say was done already
+  };
   Kind kind = Kind::kMove;
 };
 
@@ -87,6 +97,19 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
     case GKind::kMachinePlace:
       shot.kind = OneShot::Kind::kMachinePlace;
       break;
+    case GKind::kPlaneTilt:
+      shot.kind = OneShot::Kind::kPlaneTilt;
+      break;
+    case GKind::kPlaneFollow:
+      shot.kind = OneShot::Kind::kPlaneFollow;
+      break;
+    case GKind::kPlaneOff:
+      if (s.frames.tilt == Tilt::kNone) s.cl.summary.skip("G69", line.number);
+      set_plane(s, line, {}, Tilt::kNone);
+      break;
+    case GKind::kLocalZero:
+      shot.kind = OneShot::Kind::kLocalZero;
+      break;
     case GKind::kSetting:
       shot.kind = OneShot::Kind::kSetting;
       break;
@@ -104,7 +127,9 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
   bool& is_seen = seen[static_cast<std::size_t>(row.kind)];
   if (is_seen) return refuse("two G codes of one group in a block");
   is_seen = true;
-  const bool is_shot = row.kind == GKind::kDwell || row.kind == GKind::kHome;
+  const bool is_shot = row.kind == GKind::kDwell || row.kind == GKind::kHome ||
+                       row.kind == GKind::kPlaneTilt || row.kind == GKind::kPlaneFollow ||
+                       row.kind == GKind::kLocalZero;
   if (is_shot && motion_kind) return refuse("two G codes of one group in a block");
   if (is_shot || row.kind == GKind::kMachinePlace) motion_kind = row.kind;
   return {};
@@ -149,6 +174,15 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
       return move_to_machine_place(s, line, false);
     case OneShot::Kind::kMachinePlace:
       return move_to_machine_place(s, line, true);
+    case OneShot::Kind::kPlaneTilt:
+      return define_plane(s, line);
+    case OneShot::Kind::kPlaneFollow:
+      if (moves(line)) return refuse("G53.1 with axis words", "write it in a block of its own");
+      return follow_plane(s, line);
+    case OneShot::Kind::kLocalZero:
+      return set_local_zero(s, line);
+    case OneShot::Kind::kNothing:
+      return {};
     case OneShot::Kind::kMove:
     case OneShot::Kind::kSetting:
       break;
@@ -172,9 +206,10 @@ cl::Outcome run_block(State& s, const Line& line) {
   }
   OneShot shot;
   if (auto done = take_codes(s, line, shot); !done) return done;
-  bool has_machine_place = false;
-  if (auto done = take_names(s, line, has_machine_place); !done) return done;
-  if (has_machine_place && moves(line)) shot.kind = OneShot::Kind::kMachinePlace;
+  const auto names = take_names(s, line);
+  if (!names) return tl::make_unexpected(names.error());
+  if (names->has_frame) shot.kind = OneShot::Kind::kNothing;
+  if (names->has_machine_place && moves(line)) shot.kind = OneShot::Kind::kMachinePlace;
   const bool is_dwell = shot.kind == OneShot::Kind::kDwell;
   if (is_dwell && s.modes.language == Language::kSiemens) return siemens_dwell(s, line);
   if (auto done = act_before(s, line); !done) return done;

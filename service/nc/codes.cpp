@@ -19,8 +19,8 @@ constexpr std::uint8_t of(E value) {
 }
 
 constexpr std::string_view kByCam = "let the CAM system write the moves themselves";
-constexpr std::string_view kTilted =
-    "a tilted plane of the control; output tool-centre control (G43.4, G43.5) instead";
+constexpr std::string_view kTilted = "a tilted plane that is not told by its angles";
+constexpr std::string_view kByAngles = "output G68.2 with X Y Z I J K, and G53.1";
 constexpr std::string_view kOffsets = "changes offsets, which are the station's frame here";
 constexpr std::string_view kCompensation =
     "radius compensation is the control's; output the path of the tool's centre (G40)";
@@ -62,10 +62,10 @@ constexpr std::array kG = std::to_array<GRow>({
     {501, kNothing},
     {510, kRefused, 0, "scaling", kByCam},
     {511, kRefused, 0, "mirroring", kByCam},
-    {520, kRefused, 0, kOffsets},
+    {520, kLocalZero},
     {530, kMachinePlace},
-    {531, kRefused, 0, kTilted},
-    {536, kRefused, 0, kTilted},
+    {531, kPlaneFollow},
+    {536, kPlaneFollow},
     {540, kWorkOffset},
     {541, kWorkOffset},
     {542, kRefused, 0, kOffsets},
@@ -87,10 +87,10 @@ constexpr std::array kG = std::to_array<GRow>({
     {661, kRefused, 0, "a macro call", kByCam},
     {670, kNothing},
     {680, kRefused, 0, "a rotation of the control's", kByCam},
-    {682, kRefused, 0, kTilted},
-    {683, kRefused, 0, kTilted},
-    {684, kRefused, 0, kTilted},
-    {690, kNothing},
+    {682, kPlaneTilt},
+    {683, kRefused, 0, kTilted, kByAngles},
+    {684, kRefused, 0, kTilted, kByAngles},
+    {690, kPlaneOff},
     {691, kNothing},
     {730, kCycle, 73},
     {800, kCycle, 0},
@@ -113,6 +113,7 @@ constexpr std::array kG = std::to_array<GRow>({
     {980, kReturn, 0},
     {990, kReturn, 1},
     {1870, kSetting},
+    {2340, kControl, of(Control::kRotary)},  // Haas
 });
 
 constexpr std::string_view kSubprogram = "a subprogram, which is not run here";

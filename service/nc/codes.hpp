@@ -22,6 +22,10 @@ enum class GKind : std::uint8_t {
   kDwell,
   kHome,          ///< G28
   kMachinePlace,  ///< G53
+  kPlaneTilt,     ///< G68.2
+  kPlaneFollow,   ///< G53.1: the rotary axes follow it
+  kPlaneOff,      ///< G69
+  kLocalZero,     ///< G52
   kNothing,       ///< says what holds anyway, or how the control smooths
   kSetting,       ///< the same, with words of its own (G5.1 Q1)
   kRefused

@@ -77,8 +77,16 @@ cl::Outcome take_place(State& s, const Line& line) {
   return {};
 }
 
+/// The tool axis of a hole, along the axes of the program's zero.
+Vector3 tool_axis(const State& s) {
+  return is_across_plane(s, s.place) ? tool_of_plane(s) : Vector3(Vector3::UnitZ());
+}
+
 cl::Outcome check_state(const State& s, const Line& line) {
-  if (holds_tip(s.modes.control) || s.place.is_turned() || s.modes.plane != 2) {
+  constexpr double kSameAxis = 1e-6;
+  const bool is_turned = s.place.is_turned() && !is_across_plane(s, s.place);
+  const bool is_along = (s.frames.now.rotation.col(2) - tool_axis(s)).norm() < kSameAxis;
+  if (holds_tip(s.modes.control) || is_turned || !is_along || s.modes.plane != 2) {
     return refuse("a canned cycle with tool-centre control, turned axes or outside G17",
                   "let the CAM system write the moves themselves", "cycle");
   }
@@ -127,8 +135,7 @@ cl::Outcome run_cycle(State& s, const Line& line) {
   if (const auto feed = feed_of_motion(s, line); !feed) return tl::make_unexpected(feed.error());
   const auto hole = hole_of(cycle);
   if (!hole) return tl::make_unexpected(hole.error());
-  const Vector3 up = s.axes ? Vector3(s.axes->to_program().transpose() * Vector3::UnitZ())
-                            : Vector3(Vector3::UnitZ());
+  const Vector3 up = direction_in_w(s, tool_axis(s));
   const Vector3 top{*s.place.tip[0], *s.place.tip[1], *cycle.r};
   const auto pose = in_path(s, {top, up});
   if (!pose) return tl::make_unexpected(pose.error());

@@ -6,6 +6,7 @@
 #include "service/cl/number.hpp"
 #include "service/cl/written_text.hpp"
 #include "service/nc/block.hpp"
+#include "service/nc/heidenhain_frames.hpp"
 
 namespace meridian::nc {
 namespace {
@@ -78,7 +79,10 @@ cl::Outcome run_cycle_definition(State& s, const Line& line) {
   std::string_view text = line.names.front().arguments;
   while (text.starts_with(' ')) text.remove_prefix(1);
   const std::string number(text.substr(0, text.find(' ')));
-  if (number.starts_with("32.") || number == "9.0") {
+  if (number.size() == 3 && number.starts_with("7.") && number != "7.0") {
+    return shift_datum(s, line, text.substr(number.size()));
+  }
+  if (number.starts_with("32.") || number == "9.0" || number == "7.0") {
     s.cl.summary.skip("CYCL DEF " + number, line.number);
     return {};
   }
@@ -170,6 +174,29 @@ cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
   return {};
 }
 
+bool is_of_motion(const Word& word) {
+  return !word.is('F') && !word.is('S') && !word.is('T') && !word.is('M');
+}
+
+/// L B+Q121 C+Q122 behind PLANE .. STAY: the rotary axes go to where the plane wants them.
+cl::Outcome take_plane_angles(State& s, Line& iso) {
+  const auto is_of_plane = [](const Word& word) { return word.way == Word::Way::kOfPlane; };
+  if (std::none_of(iso.words.begin(), iso.words.end(), is_of_plane)) return {};
+  if (s.frames.tilt == Tilt::kNone || s.modes.motion != Motion::kRapid) {
+    return refuse("a Q parameter", kPlainMoves, "Q");
+  }
+  const bool has_others = std::any_of(iso.words.begin(), iso.words.end(), [&](const Word& word) {
+    return is_of_motion(word) && !is_of_plane(word);
+  });
+  if (has_others) {
+    return refuse("other coordinates beside Q120, Q121 or Q122",
+                  "turn the tool in a block of its own");
+  }
+  std::erase_if(iso.words, is_of_plane);
+  turn_to_plane(s, iso);
+  return {};
+}
+
 /// L, LN, C, CR: what moves, with the actions of its line.
 cl::Outcome run_words(State& s, const Line& line) {
   Line iso;
@@ -178,12 +205,13 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (auto done = translate(s, line, iso, is_machine_place); !done) return done;
   if (auto done = prepare_motion(s, line, iso); !done) return done;
   if (auto done = act_before(s, iso); !done) return done;
-  const bool moves = std::any_of(iso.words.begin(), iso.words.end(), [](const Word& word) {
-    return !word.is('F') && !word.is('S') && !word.is('T') && !word.is('M');
-  });
+  const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
   const bool is_motion = statement != "STOP" && statement != "M" && statement != "TOOL CALL";
   if (moves && !is_motion) return refuse(std::string(statement) + " with coordinates");
   if (moves) {
+    if (auto taken = take_plane_angles(s, iso); !taken) return taken;
+    const bool goes_on = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
+    if (!goes_on) return act_behind(s, iso);
     auto done = is_machine_place ? move_to_machine_place(s, iso, true) : move(s, iso);
     if (!done) return done;
   }
@@ -235,8 +263,8 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   if (statement == "TOOL CALL") return call_tool(s, line);
   if (statement == "CYCL DEF") return run_cycle_definition(s, line);
   if (statement == "CC") return set_pole(s, line);
-  const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF" ||
-                          (statement == "PLANE" && mentions(line.names.front().arguments, "RESET"));
+  if (statement == "PLANE") return set_klartext_plane(s, line, line.names.front().arguments);
+  const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF";
   if (is_nothing) {
     s.cl.summary.skip(statement, line.number);
     return {};

@@ -84,8 +84,16 @@ class KlartextCutter {
   /// The number, or the name, of the tool stands first.
   cl::Outcome cut_tool_call() {
     skip_blanks();
-    if (!rest_.empty() && (rest_.front() == '"' || rest_.front() == 'Q')) {
-      return refuse("TOOL CALL by a name or a parameter", "output tool numbers", "names");
+    if (!rest_.empty() && rest_.front() == 'Q') {
+      return refuse("TOOL CALL by a parameter", "output tool numbers", "names");
+    }
+    const std::size_t stop = rest_.starts_with('"') ? rest_.find('"', 1) : std::string_view::npos;
+    if (stop != std::string_view::npos) {
+      Word word;
+      word.address = "T";
+      word.text = rest_.substr(1, stop - 1);
+      line_.words.push_back(word);
+      rest_.remove_prefix(stop + 1);
     }
     if (!rest_.empty() && is_numeral(rest_.front())) {
       Word word;
@@ -121,7 +129,7 @@ class KlartextCutter {
     }
     skip_blanks();
     const std::size_t at = rest_.starts_with('+') || rest_.starts_with('-') ? 1 : 0;
-    if (rest_.size() > at && rest_[at] == 'Q') return refuse("a Q parameter", kMovesByCam, "Q");
+    if (rest_.size() > at && rest_[at] == 'Q') return cut_parameter(word);
     const bool is_sense = word.address == "DR" && !rest_.empty() &&
                           (rest_.size() == 1 || !is_numeral(rest_[1])) &&
                           (rest_.front() == '+' || rest_.front() == '-');
@@ -136,6 +144,23 @@ class KlartextCutter {
       word.way = Word::Way::kIncremental;
     }
     return cut_number(word);
+  }
+
+  /// A+Q120, B+Q121, C+Q122: the control puts there what a tilted plane asks of these axes.
+  cl::Outcome cut_parameter(Word& word) {
+    constexpr std::array<std::string_view, 3> kOfAxis = {"+Q120", "+Q121", "+Q122"};
+    const std::size_t axis = word.address.size() == 1
+                                 ? static_cast<std::size_t>(word.address.front() - 'A')
+                                 : kOfAxis.size();
+    const std::size_t size = std::min(rest_.find_first_of(" \t"), rest_.size());
+    if (axis >= kOfAxis.size() || rest_.substr(0, size) != kOfAxis[axis]) {
+      return refuse("a Q parameter", kMovesByCam, "Q");
+    }
+    rest_.remove_prefix(size);
+    word.way = Word::Way::kOfPlane;
+    word.has_point = true;
+    line_.words.push_back(word);
+    return {};
   }
 
   /// The decimal point may be a comma.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // G28 and G53: single axes go to places of the machine itself.
+#include <algorithm>
 #include <array>
 
 #include "meridian/units.hpp"
@@ -78,13 +79,17 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_pl
            ": a straight rapid to where the machine file has that place; see that nothing is in "
            "the way";
   });
-  const Vector3 written = s.axes->to_program() * reached->pose.tip / s.cl.units.to_mm;
+  const Vector3 written = as_written(s, reached->pose.tip);
   const auto pose = in_path(s, {written, reached->pose.axis.normalized()});
   if (!pose) return tl::make_unexpected(pose.error());
   s.in_w = reached->pose;
+  const bool turns = std::any_of(line.words.begin(), line.words.end(),
+                                 [](const Word& word) { return word.may_be_rotary(); });
   s.place.rotary = reached->rotary;
+  s.place.is_by_control = false;
+  if (turns) note_rotary_words(s, s.place);
   s.place.forget();
-  if (!s.place.is_turned() || holds_tip(s.modes.control)) {
+  if (!s.place.is_turned() || holds_tip(s.modes.control) || is_across_plane(s, s.place)) {
     for (std::size_t k = 0; k < 3; ++k) s.place.tip[k] = written[static_cast<Eigen::Index>(k)];
   }
   return s.cl.path.line_to(pose->tip, pose->axis, {BlockKind::kRapid, FeedMeaning::kNone, 0},

@@ -32,8 +32,8 @@ Expected<int, cl::Refusal> pieces_of(State& s, const Target& to) {
 }  // namespace
 
 Expected<ToolPose, cl::Refusal> in_path(const State& s, const PathEnd& end) {
-  const Vector3 written = s.axes ? Vector3(s.axes->to_program().transpose() * end.tip) : end.tip;
-  const auto tip = cl::point_in_w(s.cl, written.data());
+  const Vector3 from_zero = direction_in_w(s, in_program(s, end.tip));
+  const auto tip = cl::point_in_w(s.cl, from_zero.data());
   if (!tip) return tl::make_unexpected(tip.error());
   return ToolPose{*tip, s.cl.frames.direction(end.axis)};
 }

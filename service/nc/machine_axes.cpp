@@ -32,6 +32,12 @@ bool MachineAxes::is_rotary(std::string_view address) const noexcept {
   return i >= 0 && words_->is_rotary(i);
 }
 
+std::size_t MachineAxes::rotary_count() const noexcept {
+  std::size_t count = 0;
+  for (int i = 0; words_ && i < words_->count(); ++i) count += words_->is_rotary(i) ? 1 : 0;
+  return count;
+}
+
 JointVector MachineAxes::joints(const std::vector<RotaryAt>& rotary) const {
   JointVector q{};
   if (!words_) return q;

@@ -26,6 +26,9 @@ class MachineAxes {
   /// Whether `address` is that of a rotary axis.
   [[nodiscard]] bool is_rotary(std::string_view address) const noexcept;
 
+  /// How many rotary axes the machine has.
+  [[nodiscard]] std::size_t rotary_count() const noexcept;
+
   /// Tool axis in W with the rotary axes there; those of which nothing is told stand at zero.
   [[nodiscard]] Vector3 axis(const std::vector<RotaryAt>& rotary) const;
   /// How far the tool axis of a block may lie from where evenly turning joints put it.

@@ -67,6 +67,7 @@ struct Place {
   std::vector<RotaryAt> rotary;              ///< of every axis that was told
   std::array<double, 3> vector{0, 0, 1};     ///< of G43.5, unit
   bool has_vector = false;
+  bool is_by_control = false;  ///< the control has turned rotary axes, to where is not told
 
   [[nodiscard]] bool is_known() const noexcept { return tip[0] && tip[1] && tip[2]; }
   void forget() noexcept { tip = {}; }

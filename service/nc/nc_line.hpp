@@ -12,10 +12,16 @@ namespace meridian::nc {
 
 /// An address with its number, G43.4, C1=90.
 struct Word {
-  enum class Way : std::uint8_t { kModal, kAbsolute, kIncremental };  ///< AC and IC of Siemens
+  enum class Way : std::uint8_t {
+    kModal,
+    kAbsolute,     ///< AC of Siemens
+    kIncremental,  ///< IC of Siemens, IX of Klartext
+    kOfPlane       ///< Q120 to Q122 of Klartext: what the tilted plane asks of a rotary axis
+  };
 
   std::string_view address;  ///< in capitals; more than one sign only before a `=`
   std::string_view digits;   ///< the number as written
+  std::string_view text;     ///< T="MILL": a name where a number stands elsewhere, in capitals
   double number = 0;
   bool has_point = false;
   std::uint8_t decimals = 0;

@@ -38,8 +38,11 @@ std::string trimmed(std::string_view text) {
 }  // namespace
 
 NcProgram::NcProgram(cl::LineSource& lines, std::string name, const cl::ClReaderOptions& options,
-                     std::string_view reason, std::shared_ptr<const MachineAxes> machine)
-    : lines_(lines), name_(std::move(name)), state_(in_capitals(options), std::move(machine)) {
+                     std::string_view reason, std::shared_ptr<const MachineAxes> machine,
+                     NamedTools named_tools)
+    : lines_(lines),
+      name_(std::move(name)),
+      state_(in_capitals(options), std::move(machine), std::move(named_tools)) {
   if (options.dialect == cl::Dialect::kSiemens) {
     state_.modes.language = Language::kSiemens;
     state_.modes.control = Control::kLength;  // D1 is in force with every tool
@@ -95,7 +98,7 @@ cl::ProgramSource::Result NcProgram::read(Blocks& out) {
 cl::Outcome NcProgram::take(std::string_view text) {
   const bool is_siemens = state_.modes.language == Language::kSiemens;
   const bool is_klartext = state_.modes.language == Language::kHeidenhain;
-  auto done = is_siemens    ? cut_siemens(text, lines_.line_number(), line_)
+  auto done = is_siemens    ? cut_siemens(text, lines_.line_number(), line_, state_.variables)
               : is_klartext ? cut_heidenhain(text, lines_.line_number(), line_)
                             : cut(text, lines_.line_number(), line_);
   if (is_siemens) {

@@ -18,7 +18,8 @@ class NcProgram final : public cl::ProgramSource {
  public:
   /// `lines` must live as long as the program. `reason`: why the text is taken for one.
   NcProgram(cl::LineSource& lines, std::string name, const cl::ClReaderOptions& options,
-            std::string_view reason, std::shared_ptr<const MachineAxes> machine);
+            std::string_view reason, std::shared_ptr<const MachineAxes> machine,
+            NamedTools named_tools);
 
   [[nodiscard]] Result read(Blocks& out) override;
   [[nodiscard]] bool is_done() const noexcept override { return is_done_; }

@@ -6,6 +6,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/cl/cl_options.hpp"
+#include "service/nc/tool_names.hpp"
 
 namespace meridian::nc {
 
@@ -13,8 +14,9 @@ namespace meridian::nc {
 /// rotary words under G43.4 are refused then.
 [[nodiscard]] decltype(cl::ClReaderOptions::nc) reader_of_programs();
 
-/// The same for programs of this machine.
+/// The same for programs of this machine, whose tools may be called by the names in `named`.
 [[nodiscard]] decltype(cl::ClReaderOptions::nc) reader_of_programs(const MachineModel& model,
-                                                                   const ToolTable& tools);
+                                                                   const ToolTable& tools,
+                                                                   NamedTools named = {});
 
 }  // namespace meridian::nc

@@ -65,6 +65,7 @@ cl::Outcome take_tip(State& s, const Line& line, Target& to) {
 }
 
 cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
+  bool has_any = false;
   for (const Word& word : line.words) {
     if (!word.may_be_rotary()) continue;
     const std::string address(word.address);
@@ -85,7 +86,9 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
     if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg");
     to.turns = to.turns || before.value_or(0) != deg;
     set_rotary(to.place, address, deg);
+    has_any = true;
   }
+  if (has_any) note_rotary_words(s, to.place);
   return {};
 }
 
@@ -99,18 +102,30 @@ cl::Outcome find_axis(const State& s, Target& to) {
           "--machine FILE", "machine");
     }
     if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
+    if (to.place.is_by_control) {
+      return refuse(
+          "the control turned the rotary axes (G53.1 and its kin), and no word tells to "
+          "where",
+          "write all rotary words into the first block with tool-centre control", "not told");
+    }
     to.axis = s.axes->axis(to.place.rotary);
     return {};
   }
   Vector3 axis = Vector3::UnitZ();  // along the machine's Z
+  const bool is_bare = !holds_tip(s.modes.control);
+  if (is_bare && is_across_plane(s, to.place)) axis = tool_of_plane(s);
   if (s.modes.control == Control::kVector) {
     if (!to.place.has_vector && to.place.is_turned()) {
       return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not told",
                     "write the tool axis into the first block with tool-centre control");
     }
-    if (to.place.has_vector) axis = to_vector(to.place.vector);
+    const bool is_tilted = !s.frames.now.rotation.isIdentity();
+    if (is_tilted && s.modes.language == Language::kFanuc) {
+      return refuse("G43.5 in a tilted plane", "output G43.5 without G68.2, in one frame", "G43.5");
+    }
+    if (to.place.has_vector) axis = s.frames.now.direction(to_vector(to.place.vector));
   }
-  to.axis = s.axes ? Vector3(s.axes->to_program().transpose() * axis) : axis;
+  to.axis = direction_in_w(s, axis);
   return {};
 }
 
@@ -145,12 +160,31 @@ void warn_of_no_length(State& s, const Line& line) {
   });
 }
 
-/// Without tool-centre control X Y Z are those of the tip only where no rotary axis is turned.
+/// Without tool-centre control X Y Z are those of the tip only where no rotary axis is turned, or
+/// where the tool stands across a tilted plane.
+bool is_of_tip(const State& s, const Target& to) {
+  if (holds_tip(s.modes.control)) return true;
+  return !to.turns && (!to.place.is_turned() || is_across_plane(s, to.place));
+}
+
+/// A cut in a tilted plane waits for the rotary axes.
+cl::Outcome check_plane(const State& s, const Target& to) {
+  const bool waits = s.modes.motion != Motion::kRapid && s.frames.tilt == Tilt::kDefined &&
+                     !holds_tip(s.modes.control);
+  if (!waits || is_across_plane(s, to.place)) return {};
+  return refuse("a cut in a tilted plane that the tool does not stand across",
+                s.axes ? "turn the tool first: G53.1, or PLANE .. TURN"
+                       : "turn the tool first (G53.1, PLANE .. TURN); by rotary words: "
+                         "--machine FILE",
+                "no G53.1");
+}
+
 cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
   warn_of_no_length(s, line);
-  if (holds_tip(s.modes.control) || (!to.turns && !to.place.is_turned())) {
+  const bool is_cut = s.modes.motion != Motion::kRapid;
+  if (is_of_tip(s, to)) {
     if (to.place.is_known()) return line_to(s, line, to);
-  } else if (s.modes.motion != Motion::kRapid) {
+  } else if (is_cut) {
     return refuse("a cut without tool-centre control while a rotary axis is not at zero",
                   "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
   }
@@ -161,20 +195,20 @@ cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
              "straight from the point before them; see that nothing is in the way";
     });
   s.place = to.place;
-  if (!holds_tip(s.modes.control) && (s.place.is_turned() || to.turns)) s.place.forget();
+  if (!is_of_tip(s, to)) s.place.forget();
   return {};
 }
 
 }  // namespace
 
 bool Place::is_turned() const noexcept {
-  return std::any_of(rotary.begin(), rotary.end(),
-                     [](const RotaryAt& at) { return !at.deg || std::fmod(*at.deg, 360.0) != 0; });
+  return is_by_control || std::any_of(rotary.begin(), rotary.end(), [](const RotaryAt& at) {
+           return !at.deg || std::fmod(*at.deg, 360.0) != 0;
+         });
 }
 
 Vector3 in_w(const State& s, const Vector3& written) {
-  const Vector3 mm = s.cl.units.to_mm * written;
-  return s.axes ? Vector3(s.axes->to_program().transpose() * mm) : mm;
+  return direction_in_w(s, s.cl.units.to_mm * in_program(s, written));
 }
 
 cl::Outcome move(State& s, const Line& line) {
@@ -193,6 +227,7 @@ cl::Outcome move(State& s, const Line& line) {
     if (auto done = take_vector(s, line, to); !done) return done;
   }
   if (auto done = find_axis(s, to); !done) return done;
+  if (auto done = check_plane(s, to); !done) return done;
   const bool is_cut = s.modes.motion != Motion::kRapid;
   const bool has_begun = s.cl.path.has_moved() || is_arc;
   if (is_cut && (!to.place.is_known() || (has_begun && !s.place.is_known()))) {

@@ -20,7 +20,8 @@ constexpr bool is_name_sign(char c) { return cl::is_letter(c) || is_digit(c) || 
 
 class SiemensCutter {
  public:
-  SiemensCutter(std::string_view text, Line& line) : rest_(text), line_(line) {}
+  SiemensCutter(std::string_view text, Line& line, Variables& variables)
+      : rest_(text), line_(line), variables_(variables) {}
 
   cl::Outcome cut() {
     for (skip_blanks(); !rest_.empty(); skip_blanks()) {
@@ -77,25 +78,30 @@ class SiemensCutter {
       (void)take_while(is_digit);
       return {};
     }
-    if (c == '$' || c == '[' || c == '_') {
-      return refuse("a variable of the control", kExpand, "variables");
-    }
+    if (c == '$' || c == '[') return refuse("a variable of the control", kExpand, "variables");
     if (c == '"') return refuse("a text where a word should stand");
-    if (!cl::is_letter(c)) {
+    if (!cl::is_letter(c) && c != '_') {
       return refuse("what begins with " + cl::quoted(std::string_view(&c, 1)) + " is no NC word");
     }
-    const bool is_name = rest_.size() > 1 && (cl::is_letter(rest_[1]) || rest_[1] == '_');
+    const bool is_name =
+        c == '_' || (rest_.size() > 1 && (cl::is_letter(rest_[1]) || rest_[1] == '_'));
     return is_name ? cut_name() : cut_address();
   }
 
-  /// CR=10, TRAORI, TRAORI(1), MSG("...").
+  /// CR=10, _X_HOME=10, TRAORI, TRAORI(1), MSG("...").
   cl::Outcome cut_name() {
     Line::Name name;
     name.name = take_while(is_name_sign);
+    if (name.name == "DEF" && is_at_begin()) {
+      const std::string_view text = rest_.substr(0, rest_.find(';'));
+      rest_.remove_prefix(text.size());
+      return variables_.declare(text);
+    }
     if (take('=')) {
+      if (variables_.has(name.name)) return cut_assignment(name.name);
       Word word;
       word.address = name.name;
-      if (name.name != "CR" && name.name != "TURN") {
+      if (name.name != "CR" && name.name != "TURN" && name.name != "RPL") {
         return refuse("a value for " + std::string(name.name.substr(0, 16)) +
                           ", which the control alone knows",
                       kExpand, "assignment");
@@ -112,6 +118,40 @@ class SiemensCutter {
     }
     line_.names.push_back(name);
     return {};
+  }
+
+  /// A number for a name: R1=5, _X=-_Y.
+  cl::Outcome cut_assignment(std::string_view name) {
+    const auto number = take_number_or_name(name);
+    if (!number) return tl::make_unexpected(number.error());
+    return variables_.set(name, *number);
+  }
+
+  /// 10.5, _X_HOME, -R1.
+  Expected<double, cl::Refusal> take_number_or_name(std::string_view address) {
+    skip_blanks();
+    const bool is_negative = take('-');
+    skip_blanks();
+    double number = 0;
+    const bool has_name = !rest_.empty() && (cl::is_letter(rest_.front()) || rest_.front() == '_');
+    if (has_name) {
+      const std::string_view name = take_while(is_name_sign);
+      const auto value = variables_.find(name);
+      if (!value) {
+        return refuse(std::string(address.substr(0, 32)) + "=" + std::string(name.substr(0, 32)) +
+                          ": no line above gives it a number",
+                      kExpand, "variables");
+      }
+      number = *value;
+    } else if (!cl::parse_number(take_while([](char c) { return is_digit(c) || c == '.'; }),
+                                 number)) {
+      return refuse(std::string(address.substr(0, 32)) + "= without a number behind it");
+    }
+    skip_blanks();
+    if (!rest_.empty() && std::string_view("+-*/").find(rest_.front()) != std::string_view::npos) {
+      return refuse("an expression", kExpand, "variables");
+    }
+    return is_negative ? -number : number;
   }
 
   [[nodiscard]] std::size_t end_of_arguments() const {
@@ -139,7 +179,7 @@ class SiemensCutter {
     if (digits > 1 && at < from.size() && from[at] == '=') {
       word.address = from.substr(0, digits);
       rest_.remove_prefix(at + 1);
-      if (word.address.front() == 'R') return refuse("an R parameter", kExpand, "variables");
+      if (word.address.front() == 'R') return cut_assignment(word.address);
       return cut_value(word);
     }
     word.address = from.substr(0, 1);
@@ -151,17 +191,16 @@ class SiemensCutter {
   cl::Outcome cut_value(Word& word) {
     skip_blanks();
     if (!rest_.empty() && rest_.front() == '"') return cut_text(word);
-    const bool has_name = !rest_.empty() && (cl::is_letter(rest_.front()) || rest_.front() == '_');
-    if (!has_name) return cut_number(word);
-    const std::string_view how = take_while(is_name_sign);
+    const bool has_sign = rest_.size() > 1 && rest_.front() == '-';
+    const char first = rest_.empty() ? ' ' : rest_[has_sign ? 1 : 0];
+    if (!cl::is_letter(first) && first != '_') return cut_number(word);
+    const std::string_view how = name_ahead();
+    if (how != "AC" && how != "IC") return cut_named_number(word);
+    (void)take_while(is_name_sign);
     if (how == "AC") {
       word.way = Word::Way::kAbsolute;
-    } else if (how == "IC") {
-      word.way = Word::Way::kIncremental;
     } else {
-      return refuse(std::string(word.address) + "=" + std::string(how.substr(0, 16)) +
-                        " is for the control to work out",
-                    kExpand, "variables");
+      word.way = Word::Way::kIncremental;
     }
     if (!take('(')) return refuse(std::string(how) + " without its bracket");
     skip_blanks();
@@ -170,19 +209,40 @@ class SiemensCutter {
     return {};
   }
 
-  /// T="12": a tool whose name is a number.
+  [[nodiscard]] std::string_view name_ahead() const {
+    std::size_t size = 0;
+    while (size < rest_.size() && is_name_sign(rest_[size])) ++size;
+    return rest_.substr(0, size);
+  }
+
+  /// X=_X_HOME, Z=-R1.
+  cl::Outcome cut_named_number(Word& word) {
+    const std::string_view from = rest_;
+    const auto number = take_number_or_name(word.address);
+    if (!number) return tl::make_unexpected(number.error());
+    word.number = *number;
+    word.digits = from.substr(0, from.size() - rest_.size());
+    word.has_point = true;
+    return add(word);
+  }
+
+  /// T="MILL", T="12": a tool by its name, or by a name that is a number.
   cl::Outcome cut_text(Word& word) {
     const std::size_t stop = rest_.find('"', 1);
     const std::string_view text =
         stop == std::string_view::npos ? std::string_view() : rest_.substr(1, stop - 1);
-    if (!word.is('T') || text.empty() || !std::all_of(text.begin(), text.end(), is_digit)) {
+    if (!word.is('T') || text.empty()) {
       return refuse(
           std::string(word.address) + "=" + cl::quoted(rest_) + ": a name where a number is needed",
-          "output tool numbers", "names");
+          {}, "names");
     }
     rest_.remove_prefix(stop + 1);
-    word.digits = text;
-    (void)cl::parse_number(text, word.number, word.decimals);
+    if (std::all_of(text.begin(), text.end(), is_digit)) {
+      word.digits = text;
+      (void)cl::parse_number(text, word.number, word.decimals);
+    } else {
+      word.text = text;
+    }
     return add(word);
   }
 
@@ -218,13 +278,15 @@ class SiemensCutter {
 
   std::string_view rest_;
   Line& line_;
+  Variables& variables_;
 };
 
 }  // namespace
 
-cl::Outcome cut_siemens(std::string_view text, std::uint32_t number, Line& line) {
+cl::Outcome cut_siemens(std::string_view text, std::uint32_t number, Line& line,
+                        Variables& variables) {
   line.begin(text, number);
-  return SiemensCutter(line.text, line).cut();
+  return SiemensCutter(line.text, line, variables).cut();
 }
 
 }  // namespace meridian::nc

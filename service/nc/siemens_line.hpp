@@ -6,12 +6,15 @@
 
 #include "service/cl/refusal.hpp"
 #include "service/nc/nc_line.hpp"
+#include "service/nc/variables.hpp"
 
 namespace meridian::nc {
 
 /// Cuts a line of a Siemens program into `line`: addresses with `=` or without, `X=IC(2.)`, names
-/// with their arguments (TRAORI(1)). Refused by name: R parameters, variables, expressions.
-/// Proof: tests/unit/nc/siemens_test.cpp.
-[[nodiscard]] cl::Outcome cut_siemens(std::string_view text, std::uint32_t number, Line& line);
+/// with their arguments (TRAORI(1)). DEF and assignments go to `variables`, and names that stand
+/// for a number are read as that number. Refused by name: expressions, and variables of the
+/// control. Proof: tests/unit/nc/siemens_test.cpp, siemens_variable_test.cpp.
+[[nodiscard]] cl::Outcome cut_siemens(std::string_view text, std::uint32_t number, Line& line,
+                                      Variables& variables);
 
 }  // namespace meridian::nc

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "service/nc/siemens_frames.hpp"
+
 namespace meridian::nc {
 namespace {
 
@@ -18,7 +20,7 @@ enum class What : std::uint8_t {
   kMachine,      ///< ORIMKS
   kMachinePlace,
   kNothing,
-  kFrame,  ///< refused unless it clears
+  kFrame,
   kRefused
 };
 
@@ -92,7 +94,6 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"MEAW", What::kRefused, "probing: where it ends only the machine knows"},
     {"CALL", What::kRefused, kMacro},
     {"CASE", What::kRefused, kMacro},
-    {"DEF", What::kRefused, kMacro},
     {"ELSE", What::kRefused, kMacro},
     {"ENDFOR", What::kRefused, kMacro},
     {"ENDIF", What::kRefused, kMacro},
@@ -128,14 +129,6 @@ cl::Outcome take_unknown(State& s, const Line& line, const Line::Name& name) {
       "unknown " + printed(name.name));
 }
 
-/// TRANS without axes, CYCLE800(): no frame any more.
-cl::Outcome take_frame(const Line& line, const Line::Name& name) {
-  const bool has_blanks_alone = name.arguments.find_first_not_of(" \t") == std::string_view::npos;
-  if (has_blanks_alone && line.words.empty()) return {};
-  return refuse(printed(name.name) + ": a frame of the control",
-                "output tool-centre control (TRAORI) in one frame", printed(name.name));
-}
-
 const NameRow* find_name(std::string_view name) {
   const auto at = std::find_if(kNames.begin(), kNames.end(),
                                [name](const NameRow& row) { return row.name == name; });
@@ -147,7 +140,7 @@ cl::Outcome refuse_row(const NameRow& row) {
                 "let the CAM system write the moves themselves", std::string(row.name));
 }
 
-cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, bool& is_machine_place) {
+cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOutcome& out) {
   const NameRow* const row = find_name(name.name);
   if (row == nullptr) return take_unknown(s, line, name);
   switch (row->what) {
@@ -166,13 +159,14 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, bool& 
       s.modes.has_machine_axes = row->what == What::kMachine;
       return {};
     case What::kMachinePlace:
-      is_machine_place = true;
+      out.has_machine_place = true;
       return {};
     case What::kNothing:
       s.cl.summary.skip(name.name, line.number);
       return {};
     case What::kFrame:
-      return take_frame(line, name);
+      out.has_frame = true;
+      return take_siemens_frame(s, line, name);
     case What::kRefused:
       break;
   }
@@ -189,11 +183,12 @@ cl::Outcome check_names(const Line& line) {
   return {};
 }
 
-cl::Outcome take_names(State& s, const Line& line, bool& has_machine_place) {
+Expected<NameOutcome, cl::Refusal> take_names(State& s, const Line& line) {
+  NameOutcome out;
   for (const Line::Name& name : line.names) {
-    if (auto done = take_name(s, line, name, has_machine_place); !done) return done;
+    if (auto done = take_name(s, line, name, out); !done) return tl::make_unexpected(done.error());
   }
-  return {};
+  return out;
 }
 
 cl::Outcome check_siemens_addresses(const State& s, const Line& line) {

@@ -5,13 +5,15 @@
 
 namespace meridian::nc {
 
-/// Puts the names of a Siemens line in force: TRAORI, ORIVECT and their kin. `has_machine_place`
-/// becomes true for SUPA. Frames, jumps, variables and cycles are refused by name.
-/// Proof: tests/unit/nc/siemens_test.cpp.
-[[nodiscard]] cl::Outcome take_names(State& s, const Line& line, bool& has_machine_place);
+/// What the names of a line say about its other words.
+struct NameOutcome {
+  bool has_machine_place = false;  ///< SUPA: they are places of the machine
+  bool has_frame = false;          ///< they are those of a frame, which is in force now
+};
 
-/// Refuses what only a control can run by its name, however the rest of the line reads.
-[[nodiscard]] cl::Outcome check_names(const Line& line);
+/// Puts the names of a Siemens line in force: TRAORI, ORIVECT, TRANS and their kin. Jumps,
+/// subprograms and cycles are refused by name. Proof: tests/unit/nc/siemens_test.cpp.
+[[nodiscard]] Expected<NameOutcome, cl::Refusal> take_names(State& s, const Line& line);
 
 /// Refuses what only a control can run by its name, however the rest of the line reads.
 [[nodiscard]] cl::Outcome check_names(const Line& line);

@@ -5,24 +5,53 @@
 #include <string>
 
 #include "service/cl/modal.hpp"
+#include "service/nc/frames.hpp"
 #include "service/nc/machine_axes.hpp"
 #include "service/nc/modes.hpp"
 #include "service/nc/nc_line.hpp"
+#include "service/nc/tool_names.hpp"
+#include "service/nc/variables.hpp"
 
 /// What the words of an NC program do. Each takes the line, changes what holds for later ones, and
 /// gives blocks to the path, the same as the words of a CL file do.
 namespace meridian::nc {
 
 struct State {
-  State(cl::ClReaderOptions options, std::shared_ptr<const MachineAxes> machine)
-      : cl(std::move(options)), axes(std::move(machine)) {}
+  State(cl::ClReaderOptions options, std::shared_ptr<const MachineAxes> machine,
+        NamedTools named_tools)
+      : cl(std::move(options)), axes(std::move(machine)), tools(std::move(named_tools)) {}
 
   cl::Modal cl;
   std::shared_ptr<const MachineAxes> axes;  ///< null: the machine is not known
   Modes modes;
+  ProgramFrames frames;
+  Variables variables;
+  ToolNames tools;
   Place place;
   ToolPose in_w{Vector3::Zero(), Vector3::UnitZ()};  ///< where the path ended, without --frame
 };
+
+// frames.cpp
+/// Puts another frame between points and zero; the place of the tool is told in it from here on.
+void set_shift(State& s, const Line& line, const cl::Frame& shift);
+void set_plane(State& s, const Line& line, const cl::Frame& plane, Tilt tilt);
+/// The control turns the tool across the plane in force: where the tip is then is not known.
+void turn_to_plane(State& s, const Line& line);
+/// Whether the tool stands across the tilted plane in force, with the rotary axes as at `place`.
+[[nodiscard]] bool is_across_plane(const State& s, const Place& place);
+/// z of the plane in force, along the axes of the program's zero.
+[[nodiscard]] Vector3 tool_of_plane(const State& s);
+/// A block with rotary words turns the tool off the plane that the control turned it to.
+void note_rotary_words(State& s, Place& to);
+/// A point as written, from the program's zero and in its unit; and back, from W without --frame.
+[[nodiscard]] Vector3 in_program(const State& s, const Vector3& written);
+[[nodiscard]] Vector3 as_written(const State& s, const Vector3& p_w);
+/// A direction along the axes of the program's zero, in W without --frame.
+[[nodiscard]] Vector3 direction_in_w(const State& s, const Vector3& program);
+/// G68.2, G53.1 and G52.
+[[nodiscard]] cl::Outcome define_plane(State& s, const Line& line);
+[[nodiscard]] cl::Outcome follow_plane(State& s, const Line& line);
+[[nodiscard]] cl::Outcome set_local_zero(State& s, const Line& line);
 
 // points.cpp
 /// The words of a line that move: its points by the motion in force.

@@ -56,7 +56,16 @@ Seeds nc_seeds() {
       "F600\n"
       "11 CYCL DEF 9.0 DWELL TIME\n12 CYCL DEF 9.1 DWELL 0.500\n13 M128\n14 L IX+10 A+30 C 90\n"
       "15 CC X+0 Y+0\n16 C X+0 Y+10 DR+\n17 CR X+0 Y-10 R-10 DR-\n18 M129\n19 L X+Q1\n20 STOP M9\n"
-      "21 M30\n22 END PGM A MM\n"};
+      "21 M30\n22 END PGM A MM\n",
+      "%\nO3\nG21 G90 F100.\nG43 H1\nG52 X1.\nG68.2 X10. Y20. Z30. I90. J45. K-5.\nG53.1\nG0 X1. "
+      "Y0. Z5.\nG1 Z0.\nG3 X0. Y10. R10.\nG81 X3. Y4. Z-2. R1.\nG69\nG91 G28 Z0.\nG90 G0 A0. "
+      "C0.\nG234 H1\nG1 X1. A5.\nM30\n%\n",
+      "%_N_B_MPF\nDEF REAL _X=-2.5, _Y\n_Y=5 R1=-_X\nT=\"MILL\" M6\nG0 X=_X Y=_Y Z=R1\nTRANS X10\n"
+      "AROT Z90\nROT RPL=30\nATRANS Y-1\nG1 X1 F=R1\nTRANS\nCYCLE800(0,\"A\",1,57,1,2,3,0,45,0,0,0,"
+      "1,-1)\nG0 X0 Y0 Z5\nG1 Z-1\nMIRROR\nCYCLE800()\nT0 M6\nM30\n",
+      "0 BEGIN PGM B MM\n1 TOOL CALL \"MILL\" Z S500\n2 CYCL DEF 7.0 DATUM SHIFT\n3 CYCL DEF 7.1 "
+      "X+10\n4 CYCL DEF 7.2 IY 2,5\n5 PLANE SPATIAL SPA+0 SPB+45,5 SPC-10 STAY\n6 L B+Q121 C+Q122 "
+      "R0 FMAX\n7 L X+0 Y+0 Z+5 FMAX\n8 L Z+0 F600\n9 PLANE RESET TURN FMAX\n10 M30\n"};
   Seeds seeds;
   for (const std::string_view program : kPrograms) {
     seeds.emplace_back(program.begin(), program.end());

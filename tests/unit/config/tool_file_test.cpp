@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "service/config/machine_file.hpp"
+#include "service/config/tool_names.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::config {
@@ -65,6 +66,16 @@ TEST(ToolFile, ThatIsWrongIsRefusedWithLineAndKey) {
       EXPECT_FALSE(error.fault().remedy.empty()) << error.what();
     }
   }
+}
+
+TEST(ToolFile, GivesNumbersByName) {
+  const std::string text =
+      "[[tool]]\nnumber = 7\nlength_mm = 100\nradius_mm = 5\nname = \"Mill_d10\"\n"
+      "[[tool]]\nnumber = 8\nlength_mm = 90\nradius_mm = 3\n";
+  EXPECT_EQ(parse_tool_names(text, "tools.toml"),
+            (std::map<std::string, std::uint32_t>{{"MILL_D10", 7}}));
+  EXPECT_EQ(parse_tools(text, "tools.toml").tools().size(), 2U);
+  EXPECT_THROW((void)parse_tool_names(text + "name = \"MILL_D10\"\n", "tools.toml"), ConfigError);
 }
 
 }  // namespace

@@ -9,17 +9,6 @@
 namespace meridian::nc {
 namespace {
 
-ClReaderOptions klartext(ClReaderOptions options = without_machine()) {
-  options.dialect = cl::Dialect::kHeidenhain;
-  return options;
-}
-
-/// `body` begins in line 3.
-ReadText read_klartext(std::string_view body, const ClReaderOptions& options = klartext()) {
-  return cl::read_text(
-      "0 BEGIN PGM PART MM\n1 ; NOTE\n" + std::string(body) + "9 END PGM PART MM\n", options);
-}
-
 TEST(Klartext, TakesTheAxisOfLn) {
   const ReadText read = read_klartext(
       "2 FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\n"
@@ -85,13 +74,15 @@ TEST(Klartext, RefusesByName) {
       {"CALL LBL 1", "CALL LBL: this word"},
       {"CALL PGM A", "CALL PGM: this word"},
       {"TCH PROBE 0.0", "TCH PROBE: this word"},
-      {"PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", "PLANE: this word"},
+      {"PLANE VECTOR BX1 BY0 BZ0 NX0 NY0 NZ1 TURN", "PLANE VECTOR: a plane"},
+      {"PLANE SPATIAL SPA+Q1 SPB+0 SPC+0 TURN", "'SPA+Q1' is no angle"},
+      {"L C+Q122 FMAX", "a Q parameter"},
       {"CYCL DEF 200 DRILLING ~", "CYCL DEF 200: a cycle"},
-      {"CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.0: a cycle"},
+      {"CYCL DEF 7.1 #5", "CYCL DEF 7 by '#5'"},
       {"RND R5", "RND: this word"},
       {"APPR LT X+0", "APPR: this word"},
       {"L X+5 RL F100", "radius compensation (RL, RR)"},
-      {"TOOL CALL \"MILL\" Z", "TOOL CALL by a name"},
+      {"TOOL CALL Q5 Z", "TOOL CALL by a parameter"},
       {"C X+1 Y+1 DR+", "an arc (C) before any CC"},
       {"CR X+1 Y+1 R+5", "an arc without DR+ or DR-"},
       {"LN X+1 TX+0 TY+0 TZ+1 F5", "TX, TY, TZ without tool-centre control"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,32 @@ inline constexpr double kTiny = 1e-9;  ///< mm, or of a unit vector
                                       const ClReaderOptions& options = without_machine()) {
   return cl::read_text("%\nG21 G90 G94 G17\nF600\n" + std::string(body) + "M30\n%\n", options);
 }
+
+/// The same options for a program of Siemens words, and for Klartext.
+[[nodiscard]] inline ClReaderOptions siemens(ClReaderOptions options = without_machine()) {
+  options.dialect = cl::Dialect::kSiemens;
+  return options;
+}
+[[nodiscard]] inline ClReaderOptions klartext(ClReaderOptions options = without_machine()) {
+  options.dialect = cl::Dialect::kHeidenhain;
+  return options;
+}
+
+/// `body` begins in line 4.
+[[nodiscard]] inline ReadText read_siemens(std::string_view body,
+                                           const ClReaderOptions& options = siemens()) {
+  return cl::read_text("; PART\nG17 G710 G40 G90 G94\nF600\n" + std::string(body) + "M30\n",
+                       options);
+}
+
+/// `body` begins in line 3.
+[[nodiscard]] inline ReadText read_klartext(std::string_view body,
+                                            const ClReaderOptions& options = klartext()) {
+  return cl::read_text(
+      "0 BEGIN PGM PART MM\n1 ; NOTE\n" + std::string(body) + "9 END PGM PART MM\n", options);
+}
+
+const double kHalfRoot = std::sqrt(0.5);
 
 [[nodiscard]] inline Vector3 tip(const ClBlock& block) { return to_vector(block.tip_mm); }
 [[nodiscard]] inline Vector3 axis(const ClBlock& block) { return to_vector(block.axis); }

@@ -40,12 +40,12 @@ TEST(NcRefusal, NamesWhatOnlyAControlCanRun) {
 
 TEST(NcRefusal, NamesWhatTheControlKeepsForItself) {
   for (const Case& c :
-       std::vector<Case>{{"G68.2 X0. Y0. Z0. I0. J0. K0.", "G68.2: a tilted plane"},
-                         {"G53.1", "G53.1: a tilted plane"},
+       std::vector<Case>{{"G68.2 P1 X0. Y0. Z0. I0. J0. K0.", "not told by angles"},
+                         {"G68.3", "G68.3: a tilted plane"},
+                         {"G53.1", "G53.1, but no G68.2"},
                          {"G68 R30.", "G68: a rotation"},
                          {"G41 D1", "G41: radius compensation"},
                          {"G42 D1", "G42: radius compensation"},
-                         {"G52 X1.", "G52: changes offsets"},
                          {"G92 X1.", "G92: changes offsets"},
                          {"G10 L2 P1 X0.", "G10: changes offsets"},
                          {"G30 Z0.", "G30: a reference place"},

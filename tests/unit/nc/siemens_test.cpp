@@ -10,16 +10,6 @@
 namespace meridian::nc {
 namespace {
 
-ClReaderOptions siemens(ClReaderOptions options = without_machine()) {
-  options.dialect = cl::Dialect::kSiemens;
-  return options;
-}
-
-ReadText read_siemens(std::string_view body, const ClReaderOptions& options = siemens()) {
-  return cl::read_text("; PART\nG17 G710 G40 G90 G94\nF600\n" + std::string(body) + "M30\n",
-                       options);
-}
-
 TEST(SiemensProgram, TakesTheAxisFromItsVector) {
   const ReadText read = read_siemens(
       "TRAFOOF\nG54\nT1\nM6\nD1\nTRAORI\nG54\nORIWKS ORIVECT\nG0 X0 Y0 Z10 A3=0 B3=0 C3=1\n"
@@ -96,22 +86,24 @@ struct Refused {
 
 TEST(SiemensProgram, RefusesByName) {
   const std::vector<Refused> cases = {
-      {"R1=5", "an R parameter"},
-      {"_HOME=5", "a variable of the control"},
-      {"X=_HOME", "X=_HOME is for the control"},
-      {"X=R1", "X=R1 is for the control to work out"},
+      {"_HOME=5", "a value for _HOME, which the control alone knows"},
+      {"X=_HOME", "X=_HOME: no line above gives it a number"},
+      {"X=R1", "X=R1: no line above gives it a number"},
       {"X=10+5", "an expression"},
-      {"DEF REAL A", "DEF: variables, jumps"},
+      {"R1=5*2", "an expression"},
+      {"DEF STRING[10] TEXT", "DEF STRING[10]: only numbers"},
+      {"DEF REAL PLACE[3]", "is not understood"},
       {"IF X1", "IF: variables, jumps"},
       {"GOTOF END1", "GOTOF: variables, jumps"},
-      {"CYCLE800(1,\"A\",0)", "CYCLE800: a frame"},
-      {"TRANS X10", "TRANS: a frame"},
-      {"AROT Z30", "AROT: a frame"},
+      {"ROTS X10 Y20", "ROTS: angles in space"},
+      {"MIRROR X0", "MIRROR: mirroring"},
+      {"SCALE X2", "SCALE: scaling"},
+      {"TRANS A10", "TRANS with the word A"},
       {"BSPLINE", "BSPLINE: a spline"},
       {"TRANSMIT", "TRANSMIT: a transformation"},
       {"MCALL CYCLE81(1)", "MCALL: a cycle"},
       {"CYCLE81(1,2,3)", "the word CYCLE81 is not known here"},
-      {"T=\"MILL\"", "a name where a number is needed"},
+      {"D=\"MILL\"", "a name where a number is needed"},
       {"A3=0 B3=0 C3=1 G1 X1", "A3, B3, C3 without tool-centre control"},
       {"A2=10 X1", "address A2= is not understood"},
       {"G43.4", "G43.4 is not known here"},

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// PLANE SPATIAL and datum shifts of Klartext, worked out by hand.
+#include <gtest/gtest.h>
+
+#include "unit/nc/read_nc.hpp"
+
+namespace meridian::nc {
+namespace {
+
+TEST(KlartextPlane, TurnsAboutTheFixedAxesXThenYThenZ) {
+  const ReadText read = read_klartext(
+      "1 CYCL DEF 7.0 DATUM SHIFT\n2 CYCL DEF 7.1 X+10\n3 CYCL DEF 7.2 Y 20,5\n"
+      "4 PLANE SPATIAL SPA+0 SPB+45 SPC+90 TURN FMAX SEQ- TABLE ROT\n"
+      "5 L X+0 Y+0 Z+5 R0 FMAX\n6 L Z+0 F600\n7 L X+1\n8 PLANE RESET TURN FMAX\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  // About y by 45 the tool leans towards +x, about z by 90 that is +y.
+  EXPECT_LT((axis(motion[1]) - Vector3(0, kHalfRoot, kHalfRoot)).norm(), kTiny);
+  EXPECT_LT((tip(motion[1]) - Vector3(10, 20.5, 0)).norm(), kTiny);
+  EXPECT_LT((tip(motion[2]) - Vector3(10, 20.5 + kHalfRoot, -kHalfRoot)).norm(), kTiny);
+}
+
+TEST(KlartextPlane, WaitsForTheRotaryAxesUnderStay) {
+  const std::string plane = "1 PLANE SPATIAL SPA+0 SPB+45 SPC+0 STAY\n";
+  const std::string cut = "3 L X+0 Y+0 Z+5 FMAX\n4 L Z+0 F600\n";
+  EXPECT_NE(read_klartext(plane + cut).error.find("does not stand across"), std::string::npos);
+  const ReadText read = read_klartext(plane + "2 L B+Q121 C+Q122 R0 FMAX\n" + cut);
+  ASSERT_EQ(read.error, "");
+  EXPECT_LT((axis(read.motion()[1]) - Vector3(kHalfRoot, 0, kHalfRoot)).norm(), kTiny);
+  EXPECT_NE(read_klartext(plane + "2 L X+1 B+Q121 C+Q122 FMAX\n").error.find("beside Q120"),
+            std::string::npos);
+}
+
+TEST(KlartextDatum, ShiftsByTheAxisAndOnTop) {
+  const ReadText read = read_klartext(
+      "1 L X+1 Y+1 Z+1 R0 FMAX\n2 CYCL DEF 7.0 DATUM SHIFT\n3 CYCL DEF 7.1 X+10\n"
+      "4 CYCL DEF 7.2 IX+5\n5 L X+1 Y+2 F600\n6 CYCL DEF 7.1 X+0\n7 L X+1\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  EXPECT_EQ(tip(motion[1]), Vector3(16, 2, 1));
+  EXPECT_EQ(tip(motion[2]), Vector3(1, 2, 1));
+}
+
+TEST(KlartextTools, MayBeCalledByName) {
+  const ReadText read =
+      read_klartext("1 TOOL CALL \"MILL D10\" Z S5000\n2 L X+1 Y+1 Z+1 R0 FMAX\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.tools, (std::vector<std::uint32_t>{900'000'001}));
+}
+
+}  // namespace
+}  // namespace meridian::nc

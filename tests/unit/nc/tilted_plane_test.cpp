@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// G68.2, G53.1, G69 and G52: points in tilted planes, worked out by hand.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "meridian/units.hpp"
+#include "unit/nc/read_nc.hpp"
+
+namespace meridian::nc {
+namespace {
+
+TEST(TiltedPlane, PutsPointsAndAxisThroughItsFrame) {
+  // About z by 90: x is +y. About that x by 45: z leans from +z towards +x.
+  const ReadText read = read_nc(
+      "G43 H1\nG68.2 X10. Y20. Z30. I90. J45. K0.\nG53.1\nG0 X1. Y0. Z5.\nG1 Z0.\nX2. Y3.\n"
+      "G69\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  const Vector3 z(kHalfRoot, 0, kHalfRoot), x(0, 1, 0), y(-kHalfRoot, 0, kHalfRoot);
+  const Vector3 zero(10, 20, 30);
+  EXPECT_LT((tip(motion[0]) - (zero + x + 5 * z)).norm(), kTiny);
+  EXPECT_LT((tip(motion[1]) - (zero + x)).norm(), kTiny);
+  EXPECT_LT((tip(motion[2]) - (zero + 2 * x + 3 * y)).norm(), kTiny);
+  for (const ClBlock& block : motion) EXPECT_LT((axis(block) - z).norm(), kTiny);
+}
+
+TEST(TiltedPlane, TurnsArcsAndHolesWithIt) {
+  const ReadText read = read_nc(
+      "G43 H1\nG68.2 X0. Y0. Z0. I0. J90. K0.\nG53.1\nG0 X10. Y0. Z5.\nG1 Z0.\nG3 X0. Y10. R10.\n"
+      "G0 Z5.\nG99 G81 X3. Y4. Z-2. R1. F100.\nG80\nG69\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 8U);
+  // y of the plane is z of the zero, z of it is -y.
+  EXPECT_LT((tip(motion[2]) - Vector3(0, 0, 10)).norm(), kTiny);
+  EXPECT_LT((to_vector(motion[2].normal) - Vector3(0, -1, 0)).norm(), kTiny);
+  EXPECT_LT((tip(motion[6]) - Vector3(3, 2, 4)).norm(), kTiny) << "bottom of the hole";
+  EXPECT_LT((axis(motion[6]) - Vector3(0, -1, 0)).norm(), kTiny);
+}
+
+TEST(TiltedPlane, IsNotCutInBeforeTheToolStandsAcrossIt) {
+  const ReadText read = read_nc("G43 H1\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG0 X0. Y0. Z5.\nG1 Z0.\n");
+  EXPECT_EQ(read.error_line, 7U) << read.error;
+  EXPECT_NE(read.error.find("does not stand across"), std::string::npos) << read.error;
+}
+
+TEST(TiltedPlane, KnowsByTheMachineThatRotaryWordsStandAcrossIt) {
+  const std::string body =
+      "G43 H1\nG0 A-30. C0.\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG0 X0. Y0. Z5.\nG1 Z0.\n";
+  const ReadText there = read_nc(body, on(shipped("trunnion-ac")));
+  ASSERT_EQ(there.error, "");
+  EXPECT_EQ(there.motion().size(), 2U);
+  EXPECT_NE(read_nc(body).error.find("--machine FILE"), std::string::npos) << "no machine";
+  std::string wrong = body;
+  wrong.replace(wrong.find("A-30."), 5, "A-31.");
+  EXPECT_NE(read_nc(wrong, on(shipped("trunnion-ac"))).error.find("does not stand across"),
+            std::string::npos);
+}
+
+TEST(TiltedPlane, LeavesTheRotaryAxesWhereNoWordTells) {
+  const std::string head = "G43 H1\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nG0 X0. Y0. Z5.\nG69\n";
+  EXPECT_NE(read_nc(head + "G0 X1. Y1. Z9.\nG1 Z0.\n").error.find("is not known here"),
+            std::string::npos);
+  EXPECT_NE(read_nc(head + "G43.4 H1\nG1 X1. Y1. Z9.\n", on(shipped("trunnion-ac")))
+                .error.find("no word tells to where"),
+            std::string::npos);
+  EXPECT_EQ(read_nc(head + "G0 A0. C0.\nG0 X1. Y1. Z9.\nG1 Z0.\n").error, "");
+}
+
+TEST(TiltedPlane, HoldsUnderToolCentreControlToo) {
+  const ReadText read =
+      read_nc("G68.2 X1. Y2. Z3. I90. J0. K0.\nG0 A0. C0.\nG43.4 H1\nG0 X5. Y0. Z0.\nG1 X6. A30.\n",
+              on(shipped("trunnion-ac")));
+  ASSERT_EQ(read.error, "");
+  EXPECT_LT((tip(read.motion()[0]) - Vector3(1, 7, 3)).norm(), kTiny);
+  EXPECT_LT((tip(read.motion().back()) - Vector3(1, 8, 3)).norm(), kTiny);
+  EXPECT_NEAR(axis(read.motion().back())[2], std::cos(units::rad_from_deg(30)), kTiny)
+      << "the axis is that of the rotary words";
+}
+
+TEST(TiltedPlane, RefusesWhatItCannotRead) {
+  for (const auto& [body, says] : std::vector<std::pair<const char*, const char*>>{
+           {"G91 G68.2 X0. Y0. Z0. I0. J0. K0.\n", "under G91"},
+           {"G43.5 H1\nG68.2 X0. Y0. Z0. I0. J0. K0.\n", "tool-centre control is on"},
+           {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG43.5 H1\nG0 X0. Y0. Z0. I0. J0. K1.\n",
+            "G43.5 in a tilted plane"},
+           {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG53.1 X5.\n", "G53.1 with axis words"},
+           {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG52 X5.\n", "G52 in a tilted plane"}}) {
+    EXPECT_NE(read_nc(body).error.find(says), std::string::npos) << body << read_nc(body).error;
+  }
+}
+
+TEST(LocalZero, MovesThePointsBehindIt) {
+  const ReadText read =
+      read_nc("G43 H1\nG0 X1. Y1. Z1.\nG52 X10. Z5.\nG1 X1.\nG91 Z1.\nG90 G52 X0. Z0.\nX1. Z1.\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 4U);
+  EXPECT_EQ(tip(motion[1]), Vector3(11, 1, 1));
+  EXPECT_EQ(tip(motion[2]), Vector3(11, 1, 2));
+  EXPECT_EQ(tip(motion[3]), Vector3(1, 1, 1));
+  EXPECT_TRUE(read.warned_of("changes its frame"));
+}
+
+}  // namespace
+}  // namespace meridian::nc
