@@ -9,11 +9,13 @@
 
 #include "meridian/units.hpp"
 #include "service/cl/cl_reader.hpp"
+#include "service/cl/foreign.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/cli/view_option.hpp"
 #include "service/proof/program_check.hpp"
+#include "service/proof/tip_program.hpp"
 #include "service/record/check.hpp"
 #include "service/record/compare.hpp"
 #include "service/record/operator_events_writer.hpp"
@@ -26,7 +28,7 @@ namespace meridian::cli {
 namespace {
 
 struct Options {
-  std::string recording, file, picture, html;
+  std::string recording, file, picture, html, program_dialect;
   std::vector<std::string> same;
   double tip_tolerance_mm = 0, axis_tolerance_deg = 0;
   bool is_json = false, is_feed_factor_given = false;
@@ -100,7 +102,7 @@ int check(Options& options, const MachineModel& model) {
   if (!options.file.empty()) {
     cl::ClReaderOptions reading = reader_options(options.cl, model);
     add_unknown_tools(options.file, reading, options.machine, tools);
-    tell_machine(reading, model, tools);
+    tell_machine(reading, model, tools, load_tool_names(options.machine));
     std::vector<cl::ClWarning> warnings;
     const std::string refusal = record::read_path(options.file, reading, tools, path, &warnings);
     print_warnings(options.file, warnings);
@@ -125,12 +127,65 @@ int check(Options& options, const MachineModel& model) {
   return report->passed() ? kFine : kVerdictNo;
 }
 
-[[nodiscard]] bool is_program(const std::string& file) {
+[[nodiscard]] std::string head_of(const std::string& file) {
+  constexpr std::size_t kHead = 64 * 1024;
   std::ifstream in(file, std::ios::binary);
-  std::string head(256, '\0');
+  std::string head(kHead, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));
-  return proof::is_nc_program(head);
+  return head;
+}
+
+using Blocks = Expected<std::vector<ClBlock>, std::string>;
+
+/// Every block of a file that pass_file() let through.
+[[nodiscard]] Blocks blocks_of(const std::string& name, const cl::ClReaderOptions& reading) {
+  std::ifstream file(name, std::ios::binary);
+  cl::ClReader reader(file, name, reading);
+  std::vector<ClBlock> blocks;
+  for (;;) {
+    const auto block = reader.next();
+    if (!block) {
+      return tl::make_unexpected(name + ":" + std::to_string(block.error().line) + ": " +
+                                 block.error().message);
+    }
+    if (!*block) return blocks;
+    blocks.push_back(**block);
+  }
+}
+
+using Steps = Expected<std::vector<proof::ProgramStep>, std::string>;
+
+[[nodiscard]] Steps steps_of_joint_words(const std::string& name, const MachineModel& model) {
+  std::ifstream program(name, std::ios::binary);
+  auto steps = proof::read_joint_program(program, model);
+  if (steps) return std::move(*steps);
+  return tl::make_unexpected(name + ":" + std::to_string(steps.error().line) + ": " +
+                             steps.error().message);
+}
+
+/// The words of a control that keeps the tip: which they are, or nothing.
+[[nodiscard]] std::optional<cl::Dialect> tip_dialect(const Options& options) {
+  if (options.program_dialect == "joints") return std::nullopt;
+  if (!options.program_dialect.empty()) return cl::find_dialect(options.program_dialect);
+  const cl::Recognised what = cl::recognise_foreign(head_of(options.recording));
+  if (what.program == cl::Dialect::kUnknown) return std::nullopt;
+  return what.program;
+}
+
+/// An empty message: pass_file() has said on standard error why.
+[[nodiscard]] Steps steps_of_tip_words(const Options& options, cl::Dialect dialect,
+                                       const MachineModel& model, ToolTable& tools) {
+  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  reading.dialect = dialect;
+  MachineModel fine = model;
+  fine.tolerances.axis_rad *= proof::kFinerTurns;
+  if (!pass_file(options.recording, reading, options.machine, fine, tools)) {
+    return tl::make_unexpected(std::string());
+  }
+  const Blocks blocks = blocks_of(options.recording, reading);
+  if (!blocks) return tl::make_unexpected(blocks.error());
+  return proof::steps_of_tip(*blocks);
 }
 
 /// A posted program in place of a recording.
@@ -139,26 +194,14 @@ int check_program(const Options& options, const MachineModel& model) {
   ToolTable tools = load_tools(options.machine);
   cl::ClReaderOptions reading = reader_options(options.cl, model);
   if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
-  std::ifstream cl_file(options.file, std::ios::binary);
-  cl::ClReader reader(cl_file, options.file, reading);
-  std::vector<ClBlock> blocks;
-  for (;;) {
-    const auto block = reader.next();
-    if (!block) {
-      return refuse(options.file + ":" + std::to_string(block.error().line) + ": " +
-                    block.error().message);
-    }
-    if (!*block) break;
-    blocks.push_back(**block);
-  }
-  std::ifstream program(options.recording, std::ios::binary);
-  const auto steps = proof::read_joint_program(program, model);
-  if (!steps) {
-    return refuse(options.recording + ":" + std::to_string(steps.error().line) + ": " +
-                  steps.error().message);
-  }
+  const Blocks blocks = blocks_of(options.file, reading);
+  if (!blocks) return refuse(blocks.error());
+  const auto dialect = tip_dialect(options);
+  const Steps steps = dialect ? steps_of_tip_words(options, *dialect, model, tools)
+                              : steps_of_joint_words(options.recording, model);
+  if (!steps) return steps.error().empty() ? kInputRefused : refuse(steps.error());
   proof::ProgramReport report = proof::check_program(
-      *steps, blocks, model, tools,
+      *steps, *blocks, model, tools,
       {options.tip_tolerance_mm, units::rad_from_deg(options.axis_tolerance_deg)});
   report.program = options.recording;
   report.path_name = options.file;
@@ -184,7 +227,10 @@ int run(Options& options) {
     std::cerr << "meridian check: name a recording, or two behind --same\n";
     return kUsage;
   }
-  if (is_program(options.recording)) return check_program(options, model);
+  const std::string head = head_of(options.recording);
+  const bool is_program = !options.program_dialect.empty() || proof::is_nc_program(head) ||
+                          cl::recognise_foreign(head).is_nc;
+  if (is_program) return check_program(options, model);
   return check(options, model);
 }
 
@@ -195,10 +241,9 @@ void add_check_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "check",
       "A recording judged against its CL file by forward kinematics, and against the limits of the "
-      "machine; a posted NC program of joint words, run as its control would, against its CL file; "
+      "machine; an NC program, run as its control would, against its CL file; "
       "or two recordings compared bit for bit. Exit code 1 where anything is wrong");
-  command->add_option("recording", options->recording,
-                      "Recording (CSV), or NC program of joint words");
+  command->add_option("recording", options->recording, "Recording (CSV), or NC program");
   command->add_option("file", options->file,
                       "CL file that it cut; without one only joints and cycles are judged");
   add_machine_options(*command, options->machine, true);
@@ -229,6 +274,11 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_option("--picture", options->picture,
                       "Draw tip path, joints, speeds and rates to this .png or .svg");
   add_view_option(*command, options->html);
+  command
+      ->add_option("--program-dialect", options->program_dialect,
+                   "Words of the NC program, where it does not show them: joints, or those of a "
+                   "control that keeps the tip")
+      ->check(CLI::IsMember({"joints", "fanuc", "siemens", "heidenhain"}));
   command->add_flag("--json", options->is_json, "The report as JSON");
   add_cl_file_options(*command, options->cl);
   command->callback([options, factor, &exit_code] {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <istream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct ProgramStep {
   int tool = 0;            ///< kTool
   JointVector drives{};    ///< where the line ends, mm or rad, in drive order
   bool is_placed = false;  ///< every drive's place is known
+  /// Of a program with tool-centre control: tip and axis where the line ends, in place of drives.
+  std::optional<ToolPose> tool_pose = std::nullopt;
 };
 
 /// A program of joint words: RS-274 with the axis letters of `model`.

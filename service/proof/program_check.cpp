@@ -10,6 +10,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/cl/cl_points.hpp"
 #include "service/record/check_report.hpp"
 #include "service/record/path_matching.hpp"
 
@@ -83,6 +84,20 @@ class SectionCheck {
     return forward(model_, length, joints_of(model_, drives));
   }
 
+  /// Where a tool of this length is, `share` of the way from where the line before ended. A program
+  /// of the tool's tip knows the tip of the tool in the spindle.
+  [[nodiscard]] ToolPose pose(const ProgramStep& from, const ProgramStep& to, double share,
+                              double length) const {
+    if (to.tool_pose && from.tool_pose) {
+      const Vector3 axis = cl::turn_towards(from.tool_pose->axis, to.tool_pose->axis, share);
+      const Vector3 tip = from.tool_pose->tip + share * (to.tool_pose->tip - from.tool_pose->tip);
+      return {tip + (section_.path.begin_tool_length_mm() - length) * axis, axis};
+    }
+    JointVector at = from.drives;
+    for (int i = 0; i < model_.joint_count; ++i) at[i] += share * (to.drives[i] - from.drives[i]);
+    return pose(at, length);
+  }
+
   /// The first or last line of [from, to) that ends within tolerance of `want`; `to` where none.
   [[nodiscard]] std::size_t find(const ToolPose& want, double length, std::size_t from,
                                  std::size_t to, bool is_last) const {
@@ -90,7 +105,7 @@ class SectionCheck {
     for (std::size_t n = from; n < to; ++n) {
       const ProgramStep& step = section_.steps[n];
       if (!is_motion_step(step) || !step.is_placed) continue;
-      const ToolPose at = pose(step.drives, length);
+      const ToolPose at = pose(step, step, 1, length);
       if ((at.tip - want.tip).norm() > tolerance_.tip_mm) continue;
       if (angle_between(at.axis, want.axis) > tolerance_.axis_rad) continue;
       found = n;
@@ -116,8 +131,8 @@ class SectionCheck {
   /// From the line that ends on the begin to `end`.
   void match(std::size_t begin, std::size_t end) {
     PathMatching matching(section_.path.elements());
-    JointVector from = section_.steps[begin].drives;
-    move(matching, from, section_.steps[begin].line);
+    const ProgramStep* from = &section_.steps[begin];
+    move(matching, pose(*from, *from, 1, 0), from->line);
     for (std::size_t n = begin + 1; n <= end; ++n) {
       const ProgramStep& step = section_.steps[n];
       if (!is_motion_step(step)) {
@@ -125,8 +140,8 @@ class SectionCheck {
           return add("leaves the path for an unknown place", step.line, 0);
         continue;
       }
-      run_line(matching, from, step);
-      from = step.drives;
+      run_line(matching, *from, step);
+      from = &step;
       ++report_.moves;
     }
     const bool is_at_end = matching.finish();
@@ -148,22 +163,16 @@ class SectionCheck {
     }
   }
 
-  void run_line(PathMatching& matching, const JointVector& from, const ProgramStep& step) {
+  void run_line(PathMatching& matching, const ProgramStep& from, const ProgramStep& step) {
     const double length = section_.path.elements().front().tool_length_mm;
-    const auto between = [&](double share) {
-      JointVector at = from;
-      for (int i = 0; i < model_.joint_count; ++i) at[i] += share * (step.drives[i] - from[i]);
-      return at;
-    };
-    const int parts =
-        samples_between(pose(from, length), pose(between(0.5), length), pose(step.drives, length));
+    const int parts = samples_between(pose(from, step, 0, length), pose(from, step, 0.5, length),
+                                      pose(from, step, 1, length));
     for (int k = 1; k <= parts; ++k) {
-      move(matching, between(static_cast<double>(k) / parts), step.line);
+      move(matching, pose(from, step, static_cast<double>(k) / parts, 0), step.line);
     }
   }
 
-  void move(PathMatching& matching, const JointVector& drives, std::uint32_t line) {
-    const ToolPose gauge = pose(drives, 0);
+  void move(PathMatching& matching, const ToolPose& gauge, std::uint32_t line) {
     const auto step = matching.move(GaugePose{gauge.tip, gauge.axis}, tolerance_);
     if (step != PathMatching::Step::kWithin && broken_line_ == 0) broken_line_ = line;
     note_vertices(matching.passed());

@@ -45,7 +45,8 @@ struct ProgramReport {
 };
 
 /// Runs `steps` as their control would, every drive evenly from line to line, through forward
-/// kinematics, and holds tip and axis against `blocks`, a whole CL file.
+/// kinematics, or the tip as its program of tool-centre words tells it, and holds tip and axis
+/// against `blocks`, a whole CL file.
 ///
 /// Tool by tool: from the first line that ends on the first CL point to the last that ends on the
 /// last one there has to be a monotone matching of tool and path within both tolerances, in which
