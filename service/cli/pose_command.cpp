@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "service/cli/told_machine.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/inspect/pose_solutions.hpp"
+#include "service/inspect/pose_table.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -23,8 +25,11 @@ struct Options {
   MachineOptions machine;
   PeerOptions peer;
   std::vector<double> pose, joints;
+  std::string pose_table, joint_table;
   bool is_json = false;
 };
+
+constexpr double kLeastAxis = 1e-9;  // of the length of a tool axis as it is given
 
 int refuse(const std::string& message) {
   std::cerr << "meridian pose: " << message << "\n";
@@ -53,7 +58,6 @@ int show_joints(const MachineModel& model, const std::vector<double>& at_edge, b
 }
 
 int show_pose(const MachineModel& model, const std::vector<double>& values, bool is_json) {
-  constexpr double kLeastAxis = 1e-9;
   const Vector3 axis(values[3], values[4], values[5]);
   const double length = axis.norm();
   if (!std::isfinite(length) || !(length > kLeastAxis)) {
@@ -73,6 +77,37 @@ int show_pose(const MachineModel& model, const std::vector<double>& values, bool
   return is_possible ? kFine : kVerdictNo;
 }
 
+/// Rows of `name`, or standard input, to the other side.
+int show_table(const MachineModel& model, const Options& options) {
+  const bool are_poses = !options.pose_table.empty();
+  const std::string& name = are_poses ? options.pose_table : options.joint_table;
+  std::ifstream file;
+  if (name != "-") file.open(name);
+  if (!file) return refuse(name + " cannot be opened");
+  const auto columns = are_poses ? inspect::pose_columns() : inspect::joint_columns(model);
+  const auto rows = inspect::read_table(name == "-" ? std::cin : file, name, columns);
+  if (!rows) {
+    std::cerr << rows.error();
+    return kInputRefused;
+  }
+  if (are_poses) {
+    for (const inspect::TableRow& row : *rows) {
+      if (Vector3(row.values[3], row.values[4], row.values[5]).norm() > kLeastAxis) continue;
+      return refuse(name + ":" + std::to_string(row.line) +
+                    ": the tool axis i j k is no direction");
+    }
+  }
+  const auto result = are_poses ? (options.is_json ? inspect::solve_table_json(model, *rows)
+                                                   : inspect::solve_table(model, *rows))
+                                : (options.is_json ? inspect::pose_table_json(model, *rows)
+                                                   : inspect::pose_table(model, *rows));
+  std::cout << result.text;
+  if (result.unreached == 0) return kFine;
+  std::cerr << "OUTSIDE TRAVEL OR REACH: " << result.unreached << " of " << rows->size()
+            << " rows\n";
+  return kVerdictNo;
+}
+
 /// The machine of the file, or the one that answers, as it is set up now; nothing and an exit code
 /// where there is none.
 std::optional<MachineModel> find_model(Options& options, int& exit_code) {
@@ -89,8 +124,11 @@ std::optional<MachineModel> find_model(Options& options, int& exit_code) {
 }
 
 int run(Options& options) {
-  if (options.pose.empty() == options.joints.empty()) {
-    std::cerr << "meridian pose: give a pose x y z i j k, or --joints\n";
+  const int given = (options.pose.empty() ? 0 : 1) + (options.joints.empty() ? 0 : 1) +
+                    (options.pose_table.empty() ? 0 : 1) + (options.joint_table.empty() ? 0 : 1);
+  if (given != 1) {
+    std::cerr << "meridian pose: give a pose x y z i j k, --joints, --pose-table or "
+                 "--joint-table\n";
     return kUsage;
   }
   if (!are_finite(options.pose) || !are_finite(options.joints)) {
@@ -99,6 +137,7 @@ int run(Options& options) {
   int exit_code = kFine;
   const auto model = find_model(options, exit_code);
   if (!model) return exit_code;
+  if (options.pose.empty() && options.joints.empty()) return show_table(*model, options);
   return options.joints.empty() ? show_pose(*model, options.pose, options.is_json)
                                 : show_joints(*model, options.joints, options.is_json);
 }
@@ -121,6 +160,10 @@ void add_pose_command(CLI::App& app, int& exit_code) {
                    "Joints in machine order, separated by commas, mm and deg")
       ->delimiter(',')
       ->expected(1, kMaxJoints);
+  command->add_option("--pose-table", options->pose_table,
+                      "Table of poses x y z i j k, one a row, to joints; - is standard input");
+  command->add_option("--joint-table", options->joint_table,
+                      "Table of joints in machine order, or under their names, to poses");
   command->add_flag("--json", options->is_json, "As JSON");
   command->add_option("-m,--machine", options->machine.machine,
                       "Machine file (TOML); default: the machine that answers, with the work frame "
