@@ -159,6 +159,7 @@ async function aProgramGoesOnAtALine({ page }) {
   await page.click("#program-check:enabled");
   await until("the check from line 120", () => page.evaluate(() => meridian.program.program.first_line === 120), 10000);
   await phase(page, "ready", 60000);
+  await until("the path of the rest", () => page.evaluate(() => meridian.program.path !== null));
   const { rest, first } = await page.evaluate(() => ({ rest: meridian.program.program.program_s, first: meridian.program.path.line.find((line) => line > 0) }));
   must(rest < 0.9 * whole && first >= 100, `from line ${first} it takes ${rest} of ${whole} s`);
   await page.click("#program-load:enabled");
