@@ -15,7 +15,7 @@ namespace meridian::panel {
 
 /// The operator in the place of a PLC: shows what the path waits for (tool, spindle, coolant, stop,
 /// vendor word) and answers when a person has done it, or could not. For machines where nobody else
-/// answers actions. Proof: tests/panel/browser_test.mjs.
+/// answers actions.
 class ActionDesk {
  public:
   /// `participant` and `hub` must live on. Throws DdsError.
