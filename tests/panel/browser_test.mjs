@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // browser_test.mjs BIN SOURCE FETCHED PICTURES: the panel in a real browser, in front of a service with simulated drives.
 import { connect } from "node:net";
-import { mkdirSync } from "node:fs";
+import { mkdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { familyOf, findPlaywright, kLarge, kSmall, memoryOf, openBrowser, Plant, sleep, until } from "./plant.mjs";
 
@@ -247,6 +247,84 @@ const upgrade = (host, origin) =>
   `GET /live HTTP/1.1\r\nHost: ${host}\r\nOrigin: ${origin}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
   "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
 
+// Tab until the focus is there.
+async function focus(page, selector) {
+  for (let i = 0; i < 90; ++i) {
+    if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) ?? false, selector)) return;
+    await page.keyboard.press("Tab");
+  }
+  throw new Error(`the keyboard does not come to ${selector}`);
+}
+async function push(page, selector) {
+  await until(`${selector} is there`, () => page.isEnabled(selector));
+  await focus(page, selector);
+  await page.keyboard.press("Enter");
+}
+
+const theKeyboardAloneRunsThePart = ({ page }) => afterStalls(page, () => onePartByKeys(page));
+
+async function onePartByKeys(page) {
+  if ((await stateOf(page)) === "Off") await push(page, '[data-verb="enable"]');
+  await inState(page, "Ready");
+  await focus(page, "[role=tab][aria-selected=true]");
+  while (!(await page.evaluate(() => document.activeElement.id === "tab-program"))) await page.keyboard.press("ArrowRight");
+  const chooser = page.waitForEvent("filechooser");
+  await push(page, "#program-choose");
+  await (await chooser).setFiles(part());
+  await phase(page, "ready", 60000);
+  await push(page, "#program-load");
+  await inState(page, "Loaded");
+  await push(page, '[data-verb="start"]');
+  await push(page, "#confirm-yes");
+  await inState(page, "Running");
+  await page.keyboard.press("Escape");
+  await inState(page, "Held");
+  await push(page, '[data-verb="abort"]');
+  await inState(page, "Ready");
+}
+
+const rowsOf = (text) => text.trim().split("\n").slice(1).map((line) => line.split(",").map(Number));
+
+// The scope has every cycle that the wire had; what it saves can be opened again; a trigger stops it.
+async function theScopeShowsEveryCycle({ page }) {
+  await page.click("#tab-scope");
+  await page.selectOption("#scope-window", "5");
+  const count = () => page.evaluate(() => meridian.scope.live.count);
+  await until("samples", async () => (await count()) > 3000);
+  await page.click("#scope-pause");
+  const download = page.waitForEvent("download");
+  await page.click("#scope-csv");
+  const file = join(plant.folder, "scope.csv");
+  await (await download).saveAs(file);
+  const rows = rowsOf(readFileSync(file, "utf8"));
+  const gaps = rows.filter((row, i) => i > 0 && row[0] - rows[i - 1][0] > 1).reduce((sum, row) => sum + 1, 0);
+  must(rows.length > 2000 && gaps < 0.05 * rows.length, `${rows.length} rows with ${gaps} gaps`);
+  await page.setInputFiles("#scope-file", file);
+  await until("the recording", async () => (await page.textContent("#scope-report")).includes(`${rows.length} cycles`));
+  must((await page.evaluate(() => meridian.scope.buffer.cycle[0])) === rows[0][0], "the recording begins elsewhere");
+  await page.setInputFiles("#scope-file", { name: "wrong.csv", mimeType: "text/csv", buffer: Buffer.from("a,b\n1,2\n") });
+  await until("a refusal", async () => (await page.textContent("#scope-report")).includes("no recording of this machine"));
+  await page.click("#scope-live");
+  await page.selectOption("#scope-window", "1");
+  await page.selectOption("#scope-trigger", "state");
+  await page.selectOption("#scope-state", "Ready");
+  await page.click("#scope-arm");
+  await click(page, "disable");
+  await inState(page, "Off");
+  await click(page, "enable");
+  await inState(page, "Ready");
+  await until("the trigger", () => page.evaluate(() => meridian.scope.trigger.at !== null && meridian.scope.isPaused), 10000);
+  const box = await page.locator("#scope-plot-1 .u-over").boundingBox();
+  for (const share of [0.3, 0.6]) await page.mouse.click(box.x + share * box.width, box.y + box.height / 2);
+  must((await page.textContent("#scope-readout")).includes("B \u2212 A"), "no cursors");
+  await picture(page, "panel-scope");
+  await page.click("#tab-timing");
+  await until("stages", async () => (await page.locator(".stage-card").count()) >= 6);
+  must((await page.textContent("#timing-stages")).includes("bare thread"), "no budgets");
+  await picture(page, "panel-timing");
+  await page.click("#tab-machine");
+}
+
 async function strangersReachNothing() {
   const { host } = new URL(plant.url);
   must((await exchange(upgrade(host, `http://${host}`))).includes(" 101 "), "the page itself is refused");
@@ -296,6 +374,8 @@ try {
   await run("AProgramIsCheckedAsAWhole", aProgramIsCheckedAsAWhole, open);
   await run("APartRunsByClicksAlone", aPartRunsByClicksAlone, open);
   await run("AProgramGoesOnAtALine", aProgramGoesOnAtALine, open);
+  await run("TheKeyboardAloneRunsThePart", theKeyboardAloneRunsThePart, open);
+  await run("TheScopeShowsEveryCycle", theScopeShowsEveryCycle, open);
   open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);
   await picture(open.page, "panel-light");
   await run("StrangersReachNothing", strangersReachNothing);
