@@ -16,9 +16,8 @@ constexpr double kChordShare = 0.02;
 /// Share of the tolerances that is kept for points dropped (kLeastStep_mm), for the chord of the
 /// axis instead of its arc and for the parameter of the two (docs/motion.md, 1.1).
 constexpr double kReserve = 0.002;
-/// Within this angle of the pole the band leaves half of the axis tolerance.
+/// Within this angle of the pole the band has kPoleShare of the axis tolerance.
 constexpr double kPoleReach_rad = 0.02;
-constexpr double kPoleShare = 0.5;
 constexpr double kLargestTurn_rad = 0.052;  // 3 deg
 
 Vector6 join(const ToolPose& pose) noexcept {

@@ -29,6 +29,10 @@ inline constexpr double kLeastStep_mm = 1e-6;
 /// be there: as far as a corner is felt at the widest gaps (docs/motion.md, 1.5).
 inline constexpr double kSpeedReach_mm = 5;
 
+/// Of the axis tolerance beside the pole of a machine that eases the axis; the rest is left to the
+/// ease.
+inline constexpr double kPoleShare = 0.7;
+
 /// One corner of the CL polyline with the segment that ends in it.
 struct BandVertex {
   Vector6 x{};            ///< tip, axis

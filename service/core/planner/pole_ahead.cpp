@@ -21,38 +21,38 @@ constexpr double kMargin = 1e-9;
 
 }  // namespace
 
-bool PoleCorridor::foresee(PolePlace& around) noexcept {
-  around.ahead = {};
-  if (foresight_ == nullptr || around.is_end) return true;
-  if (asked_u_ != around.known_end) {
-    if (returns_to_pole(around)) return true;
-    ask(around);
-    asked_u_ = around.known_end;
+bool PoleCorridor::foresee(PolePlace& place) noexcept {
+  place.ahead = {};
+  if (foresight_ == nullptr || place.at_end != PoleJoin::kExact) return true;
+  if (asked_u_ != place.known_end) {
+    if (returns_to_pole(place)) return true;
+    ask(place);
+    asked_u_ = place.known_end;
   }
   if (!foresight_->look()) return false;
   const auto ways = foresight_->ways();
   const auto carries_as_first = [&](const AheadWay& way) {
     return way.carries == ways.front().carries;
   };
-  if (!std::all_of(ways.begin(), ways.end(), carries_as_first)) around.ahead = ways;
+  if (!std::all_of(ways.begin(), ways.end(), carries_as_first)) place.ahead = ways;
   return true;
 }
 
 /// Whether another zone decides before the ways start.
-bool PoleCorridor::returns_to_pole(const PolePlace& around) const noexcept {
-  const double begin = around.core_end + around.reach;
+bool PoleCorridor::returns_to_pole(const PolePlace& place) const noexcept {
+  const double begin = place.end;
   for (PoleProbes::Place n = probes_.end_place() - 1; n >= probes_.begin_place(); --n) {
     const double u = probes_.u_of(n);
     if (u <= begin) return false;
-    if (u <= around.known_end && probes_.distance_of(n) < kOtherTolerances * tolerance_rad_)
+    if (u <= place.known_end && probes_.distance_of(n) < kOtherTolerances * tolerance_rad_)
       return true;
   }
   return false;
 }
 
-void PoleCorridor::ask(const PolePlace& around) noexcept {
-  const BandSpan& span = probes_.span_at(around.known_end);
-  const ToolPose pose = pose_on(span.c, std::clamp(around.known_end - span.u0, 0.0, span.length));
+void PoleCorridor::ask(const PolePlace& place) noexcept {
+  const BandSpan& span = probes_.span_at(place.known_end);
+  const ToolPose pose = pose_on(span.c, std::clamp(place.known_end - span.u0, 0.0, span.length));
   const int free = free_joint(model_);
   const JointLimits& limits = model_.joints[free].limits;
   std::array<AheadWay, kMostWays> ways;

@@ -18,13 +18,18 @@ constexpr double kLeastPart_mm = 1e-6;
 /// of axis, so a zone beside them still has half of its reach.
 constexpr double kOutOfReach_rad = 0.5 * kPoleReach_mm / kAxisLength_mm_per_rad;
 
+/// By which the free joint goes at the end of a piece.
+double held_rate_of(const PoleZone& piece) noexcept {
+  return 5 * (piece.free[5] - piece.free[4]) / (piece.end - piece.begin);
+}
+
 }  // namespace
 
 PoleCorridor::PoleCorridor(const MachineModel& model, PoleForesight* foresight)
     : model_(model),
       foresight_(foresight),
       probes_(model),
-      cores_(model, probes_, programmed_),
+      stretches_(probes_),
       pending_(kPending) {}
 
 void PoleCorridor::begin(const Start& start) noexcept {
@@ -34,13 +39,14 @@ void PoleCorridor::begin(const Start& start) noexcept {
   tolerance_rad_ = is_exact_ ? kPoleEase_rad : std::max(start.tolerance_rad, kPoleEase_rad);
   programmed_.begin(start.axis);
   probes_.begin(has_pole_);
-  cores_.begin(tolerance_rad_, is_exact_);
+  stretches_.begin(tolerance_rad_);
   emitted_x_ = known_u_ = 0;
   known_ = start.joints;
   branch_ = out_branch_ = start.branch;
   pending_.clear();
   cut_count_ = 0;
   is_finished_ = is_held_ = is_out_held_ = has_failed_ = needs_ahead_ = false;
+  held_rate_ = out_held_rate_ = 0;
   asked_u_ = -1;
 }
 
@@ -106,78 +112,126 @@ SettledPath PoleCorridor::settled() const noexcept {
 void PoleCorridor::scan() noexcept {
   needs_ahead_ = false;
   if (probes_.is_empty()) return;
-  while (!has_failed_ && cores_.find_next(settled())) {
+  while (!has_failed_ && stretches_.find_next(settled())) {
     // Not before a span waits for it: searches are dear, and so no two come at once.
     if (may_emit() && !probes_.is_full()) return;
-    PoleCore core;
-    const PoleCores::State before = cores_.state();
-    const PoleCores::Answer answer = cores_.decide(core);
-    if (answer == PoleCores::Answer::kNeedsSpans) return;
-    if (answer != PoleCores::Answer::kFound) continue;
-    if (core.has_room && !foresee(core.around)) {
-      cores_.go_back(before);
+    PoleStretch stretch;
+    const PoleProbes::Place before = stretches_.place();
+    const PoleStretches::Answer answer = stretches_.decide(stretch);
+    if (answer == PoleStretches::Answer::kNeedsSpans) return;
+    if (answer != PoleStretches::Answer::kFound) continue;
+    if (stretch.has_room && !foresee(stretch.place)) {
+      stretches_.go_back_to(before);
       needs_ahead_ = true;
       return;
     }
-    settle(core);
+    settle(stretch);
   }
 }
 
-void PoleCorridor::take(const PoleZone& zone) noexcept {
-  pending_.push(zone);
-  branch_ = zone.branch_after;
-  known_u_ = zone.end;
-  is_held_ = zone.is_held;
+void PoleCorridor::settle(PoleStretch& stretch) noexcept {
+  PolePlace& place = stretch.place;
+  const bool begins_exact = place.at_begin == PoleJoin::kExact;
+  place.joints = begins_exact ? follow_to(place.begin) : known_;
+  place.rate = held_rate_;
+  place.is_on_pole = is_on_pole(stretch);
+  const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
+  bool is_exact_best = false;
+  if (stretch.has_room && waiting + FreeSpline::kPieces <= kPending) {
+    const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
+    const auto pieces = string_.find(task, place);
+    for (const PoleZone& piece : pieces) pending_.push(piece);
+    if (!pieces.empty()) return know_behind(pieces.back());
+    is_exact_best = string_.is_exact_best();
+  }
+  if (!begins_exact && !is_exact_best && is_off_exact(place)) {
+    has_failed_ = true;
+    return;
+  }
+  for (PoleProbes::Place n = stretch.first; n <= stretch.last; ++n) {
+    if (stretches_.is_minimum(n)) add_cuts(probes_.find_nearest(n));
+  }
+}
+
+/// Whether the free joint is not where the exact way has it at the begin.
+bool PoleCorridor::is_off_exact(const PolePlace& place) const noexcept {
+  return place.at_begin == PoleJoin::kHeld || probes_.distance_at(place.begin) < tolerance_rad_;
+}
+
+/// Whether the path meets the pole on the stretch.
+bool PoleCorridor::is_on_pole(const PoleStretch& stretch) const noexcept {
+  if (probes_.distance_at(stretch.nearest) < kPoleEase_rad) return true;
+  for (PoleProbes::Place n = stretch.first; n <= stretch.last; ++n) {
+    if (probes_.distance_of(n) < kPoleEase_rad) return true;
+    const bool is_passed =
+        stretches_.is_minimum(n) && probes_.distance_at(probes_.find_nearest(n)) < kPoleEase_rad;
+    if (is_passed) return true;
+  }
+  return false;
+}
+
+void PoleCorridor::know_behind(const PoleZone& piece) noexcept {
+  branch_ = piece.branch_after;
+  known_u_ = piece.end;
+  is_held_ = piece.is_held;
+  held_rate_ = held_rate_of(piece);
   JointVector reference{};
-  if (const int free = free_joint(model_); free >= 0) reference[free] = zone.free.back();
-  const BandSpan& span = probes_.span_at(zone.end);
-  const auto pose = pose_on(span.c, std::clamp(zone.end - span.u0, 0.0, span.length));
-  known_ = is_held_ ? solve_held(model_, tool_length_mm_, pose, zone.free.back()).q
+  if (const int free = free_joint(model_); free >= 0) reference[free] = piece.free.back();
+  const BandSpan& span = probes_.span_at(piece.end);
+  const auto pose = pose_on(span.c, std::clamp(piece.end - span.u0, 0.0, span.length));
+  known_ = is_held_ ? solve_held(model_, tool_length_mm_, pose, piece.free.back()).q
                     : solve(model_, tool_length_mm_, pose, branch_, reference).q;
 }
 
 bool PoleCorridor::is_in_zone() const noexcept {
-  return pending_.begin_index() != pending_.end_index() &&
-         pending_[pending_.begin_index()].begin < emitted_u() - kLeastPart_mm;
+  if (pending_.begin_index() == pending_.end_index()) return false;
+  const PoleZone& piece = pending_[pending_.begin_index()];
+  return !piece.is_first || piece.begin < emitted_u() - kLeastPart_mm;
 }
 
 bool PoleCorridor::fits_zone(double by) const noexcept {
-  constexpr int kSamples = 64;
+  constexpr int kSamples = 8;
   if (!is_in_zone()) return true;
-  const PoleZone& zone = pending_[pending_.begin_index()];
-  for (int n = 0; n <= kSamples; ++n) {
-    const double u = emitted_u() + n * (zone.end - emitted_u()) / kSamples;
-    const BandSpan& span = probes_.span_at(u);
-    const double free = quintic_at(zone.free, (u - zone.begin) / (zone.end - zone.begin)) + by;
-    const ToolPose pose = pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length));
-    const auto at = solve_held(model_, tool_length_mm_, pose, free);
-    if (first_joint_outside_travel(model_, at.q, kTravelMargin) >= 0) return false;
+  for (std::int64_t i = pending_.begin_index(); i < pending_.end_index(); ++i) {
+    const PoleZone& piece = pending_[i];
+    const double begin = std::max(piece.begin, emitted_u());
+    for (int n = 0; n <= kSamples; ++n) {
+      const double u = begin + n * (piece.end - begin) / kSamples;
+      const BandSpan& span = probes_.span_at(u);
+      const double free =
+          quintic_at(piece.free, (u - piece.begin) / (piece.end - piece.begin)) + by;
+      const ToolPose pose = pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length));
+      const auto at = solve_held(model_, tool_length_mm_, pose, free);
+      if (first_joint_outside_travel(model_, at.q, kTravelMargin) >= 0) return false;
+    }
+    if (piece.is_last) return true;
   }
   return true;
 }
 
 void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   if (free_joint(model_) < 0) return;
-  const bool keeps_zone = is_in_zone();
-  PoleZone zone = keeps_zone ? pending_[pending_.begin_index()] : PoleZone{};
-  pending_.drop_before(pending_.end_index());
+  std::int64_t kept = pending_.begin_index();  // the rest of the stretch that it lies in
+  for (bool is_in = is_in_zone(); is_in && kept < pending_.end_index(); ++kept) {
+    PoleZone& piece = pending_[kept];
+    for (double& value : piece.free) value += by;
+    is_in = !piece.is_last;
+  }
+  while (pending_.end_index() > kept) pending_.drop_last();
   cut_count_ = 0;
   asked_u_ = -1;
-  cores_.begin_again();
-  if (keeps_zone) {
-    for (double& value : zone.free) value += by;
-    take(zone);
-    return;
-  }
+  stretches_.begin_again();
+  if (kept > pending_.begin_index()) return know_behind(pending_.back());
   branch_ = out_branch_;
   is_held_ = is_out_held_;
+  held_rate_ = out_held_rate_;
   known_ = joints;
   if (!probes_.is_empty()) known_u_ = emitted_u();
 }
 
 bool PoleCorridor::may_emit() const noexcept {
   if (!has_pole_) return true;
-  const PoleProbes::Place last = probes_.end_place() - 1, place = cores_.place();
+  const PoleProbes::Place last = probes_.end_place() - 1, place = stretches_.place();
   if (is_finished_ && place > last) return true;
   const BandSpan& front = probes_.front();
   const double end = front.u0 + front.length, judged = probes_.u_of(std::min(place, last));
@@ -220,13 +274,14 @@ void PoleCorridor::emit() noexcept {
     out_.free = part_of(zone.free, begin <= zone.begin ? 0 : (begin - zone.begin) / h,
                         end >= zone.end ? 1 : (end - zone.begin) / h);
     out_.axis_deviation_rad = zone.deviation_rad;
-    out_.reason = zone.branch_after != zone.branch_before ? EaseReason::kThrough
-                  : zone.deviation_rad < kPoleEase_rad    ? EaseReason::kOnPole
-                                                          : EaseReason::kBeside;
+    out_.reason = zone.is_through                      ? EaseReason::kThrough
+                  : zone.deviation_rad < kPoleEase_rad ? EaseReason::kOnPole
+                                                       : EaseReason::kBeside;
   }
   if (has_zone && end >= zone.end) {
     out_branch_ = zone.branch_after;
     is_out_held_ = zone.is_held;
+    out_held_rate_ = held_rate_of(zone);
     pending_.drop_before(pending_.begin_index() + 1);
   }
   if (has_pole_ && end > known_u_) {

@@ -6,9 +6,10 @@
 
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/joint_span.hpp"
-#include "service/core/planner/pole_cores.hpp"
 #include "service/core/planner/pole_foresight.hpp"
 #include "service/core/planner/pole_probes.hpp"
+#include "service/core/planner/pole_stretches.hpp"
+#include "service/core/planner/pole_string.hpp"
 #include "service/core/planner/pole_zone.hpp"
 
 namespace meridian {
@@ -75,66 +76,29 @@ class PoleCorridor {
   [[nodiscard]] bool fits_zone(double by) const noexcept;
 
  private:
-  static constexpr std::size_t kCuts = 128;
-  static constexpr std::size_t kPending = 64;
-  static constexpr std::size_t kMostZones = 2;  ///< about one core
-  static constexpr int kMostTried = 6;          ///< cores in place of one with its excursions
-
-  /// About one core: where the free joint is held first, that and the turn off it.
-  struct Zones {
-    std::array<PoleZone, kMostZones> of;
-    std::size_t count = 0;
-  };
-  /// All that taking zones changes.
-  struct Settled {
-    PoleCores::State cores;
-    std::array<PoleZone, kMostZones * kMostTried> zones;  ///< that were taken behind some place
-    std::size_t zone_count = 0;
-    std::int64_t pending_end = 0;
-    double known_u = 0;
-    JointVector known{};
-    int branch = 0;
-    bool is_held = false;
-  };
+  static constexpr std::size_t kCuts = 1024;
+  static constexpr std::size_t kPending = 8192;
 
   [[nodiscard]] double emitted_u() const noexcept { return probes_.front().u0 + emitted_x_; }
   [[nodiscard]] SettledPath settled() const noexcept;
-  [[nodiscard]] PoleTask pole_task() const noexcept;
 
-  /// Looks for cores as far as enough of what follows is there.
+  /// Looks for stretches as far as enough of what follows is there.
   void scan() noexcept;
-  /// Finds out how far ways behind the core carry; false: blocks are missing.
-  [[nodiscard]] bool foresee(PolePlace& around) noexcept;
-  [[nodiscard]] bool returns_to_pole(const PolePlace& around) const noexcept;
-  void ask(const PolePlace& around) noexcept;
-  /// Takes a zone about `core`, or cuts the spans there, or leaves it to be decided once more
-  /// without its excursions.
-  void settle(PoleCore& core) noexcept;
-  [[nodiscard]] bool take_zone(PoleCore& core) noexcept;
-  /// What is settled now, with the zones from index `from` on.
-  [[nodiscard]] Settled settled_state(std::int64_t from) const noexcept;
-  [[nodiscard]] Settled settled_state() const noexcept {
-    return settled_state(pending_.end_index());
-  }
-  /// All is as it was in `to`, which has the zones from index `from` on.
-  void go_back(const Settled& to, std::int64_t from) noexcept;
-  /// Takes zones about the cores that there are in place of the one decided last where that ends
-  /// ahead of its excursions, as far as `end`. False: there is no such way, or not yet.
-  [[nodiscard]] bool try_shorter(double end) noexcept;
-  /// Whether they take less time than the zone about `core` that was taken. Nothing is changed.
-  [[nodiscard]] bool is_shorter_faster(const PoleCore& core, const Settled& before) noexcept;
-  /// Takes the best zone about `around`; false: there is none.
-  [[nodiscard]] bool find_zone(const PolePlace& around, bool is_held) noexcept;
-  /// From where the free joint rests: holds it farther into the core, where that takes less time
-  /// than `zones` or there are none.
-  void hold_on(const PolePlace& around, Zones& zones) const noexcept;
+  /// Finds out how far ways behind the stretch carry; false: blocks are missing.
+  [[nodiscard]] bool foresee(PolePlace& place) noexcept;
+  [[nodiscard]] bool returns_to_pole(const PolePlace& place) const noexcept;
+  void ask(const PolePlace& place) noexcept;
+  /// Drives the free joint along the stretch, or cuts the spans there.
+  void settle(PoleStretch& stretch) noexcept;
+  [[nodiscard]] bool is_off_exact(const PolePlace& place) const noexcept;
+  [[nodiscard]] bool is_on_pole(const PoleStretch& stretch) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;
   /// Joints of the exact way at `u`, the windings followed from where they are known.
   [[nodiscard]] JointVector follow_to(double u) const noexcept;
-  /// `zone` is the last one: branch and winding behind it are known.
-  void take(const PoleZone& zone) noexcept;
-  /// Whether a zone is partly out.
+  /// `piece` is the last one of a stretch: branch and winding behind it are known.
+  void know_behind(const PoleZone& piece) noexcept;
+  /// Whether a stretch is partly out.
   [[nodiscard]] bool is_in_zone() const noexcept;
   [[nodiscard]] bool may_emit() const noexcept;
   void emit() noexcept;
@@ -146,7 +110,8 @@ class PoleCorridor {
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
   ProgrammedAxis programmed_;
   PoleProbes probes_;  ///< spans that are held back
-  PoleCores cores_;
+  PoleStretches stretches_;
+  PoleString string_;
   double emitted_x_ = 0;  ///< of the first span held, what is out already
   double known_u_ = 0;    ///< winding and branch behind all zones are known there
   JointVector known_{};
@@ -156,8 +121,10 @@ class PoleCorridor {
   std::array<double, kCuts> cuts_{};  ///< ascending
   std::size_t cut_count_ = 0;
   bool is_finished_ = false;
-  bool is_held_ = false;      ///< behind all zones the free joint rests, close to the pole
+  bool is_held_ = false;      ///< behind all stretches the free joint is not exact, and goes by
+  double held_rate_ = 0;      ///< this by u
   bool is_out_held_ = false;  ///< the same where spans are handed out
+  double out_held_rate_ = 0;
   bool has_failed_ = false;
   double asked_u_ = -1;  ///< from where the foresight was asked
   bool needs_ahead_ = false;

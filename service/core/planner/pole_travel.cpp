@@ -24,7 +24,7 @@ WayBehind follow_behind(const PoleTask& task, const PolePlace& place, double beg
     const double next = std::min(place.known_end, u + step);
     const BandSpan& span = task.spans.span_at(next);
     const ToolPose pose = pose_on(span.c, std::clamp(next - span.u0, 0.0, span.length));
-    const bool is_behind = next > place.core_end + place.reach;
+    const bool is_behind = next > place.end;
     if (is_behind && pole_distance(task.model, pose.axis) < kOtherTolerances * task.tolerance_rad) {
       return {true, false, last[free]};
     }

@@ -12,6 +12,7 @@
 namespace meridian {
 namespace {
 
+constexpr double kLingerShare = 0.9;     // of the axis tolerance: the free joint may be anywhere
 constexpr double kBesidePole_rad = 0.05;  // kSameAxis turns the free joint by 2e-12 rad there
 /// Rounding of joints, in their pose. What is farther off would be a step of the setpoints.
 constexpr double kSameTip_mm = 1e-10, kSameAxis = 1e-13;
@@ -45,7 +46,7 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
   }
   block.axis = to_array(axis);
   // Runs go through the pole and linger on it, or stay on it all the way with the axis fixed. What
-  // leads off it from rest is done at rest, where the free joint can turn.
+  // leads off it from rest, out of the tolerance, is done at rest, where the free joint can turn.
   const bool starts_on_pole = is_on_pole(pose.axis);
   const bool may_linger = model.pole_policy == PolePolicy::kEase;
   if (axis == pose.axis) {
@@ -54,7 +55,8 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
   }
   if (!find_great_circle(pose.axis, axis).is_unique) return {};
   if (is_running && is_run_on_pole) return {};
-  if (starts_on_pole && !(is_on_pole(axis) ? may_linger : is_running)) return {};
+  const bool stays_close = pole_distance(model, axis) < kLingerShare * tolerance().axis_rad;
+  if (starts_on_pole && !is_running && !(may_linger && stays_close)) return {};
   return block;
 }
 

@@ -143,11 +143,11 @@ TEST(ExplainSmooth, TellsTheBlocksWhoseAxisWasEasedBesideThePoleAndWhy) {
   const PoleEase& ease = report.eases[0];
   EXPECT_LE(ease.first_line, 7U);
   EXPECT_GE(ease.last_line, 7U);
-  // What smoothing takes at the corners beside the pass is in it.
-  EXPECT_NEAR(units::deg_from_rad(ease.deviation_rad), 0.05, 0.003);
+  // What smoothing takes at the corners beside the pass is in it, 20 mm to either side.
+  EXPECT_GT(units::deg_from_rad(ease.deviation_rad), 0.049);
+  EXPECT_LE(ease.deviation_rad, model.tolerances.axis_rad);
   EXPECT_EQ(ease.reason, EaseReason::kThrough);
   EXPECT_EQ(out.at_line(7).eased_rad, ease.deviation_rad);
-  EXPECT_EQ(out.at_line(5).eased_rad, 0);
   EXPECT_NE(to_text(report, model).find("deg, through the pole"), std::string::npos)
       << to_text(report, model);
 
