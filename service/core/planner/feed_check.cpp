@@ -14,6 +14,18 @@ constexpr int kSteps = FeedCell::kSteps;
 constexpr double kNoBound = 1e9;
 using Samples = std::array<double, kSteps + 1>;
 
+/// A cubic leaves the parabola through three of its samples by no more than that of its third
+/// difference: 1 / (9 √3), about.
+constexpr double kOfThird = 0.0642;
+
+/// By how much a function may rise above the parabola about sample `k`, by its third differences.
+double rise_above(const Samples& f, int k) noexcept {
+  const auto third = [&f](int n) {
+    return std::abs(f[n + 3] - 3 * f[n + 2] + 3 * f[n + 1] - f[n]);
+  };
+  return kOfThird * std::min(third(std::max(k - 2, 0)), third(std::min(k - 1, kSteps - 3)));
+}
+
 /// Largest |f| of a smooth function from its samples: between them a peak rises to about the top of
 /// the parabola through the three samples around it; beside the first or the last one, through the
 /// three there.
@@ -26,7 +38,7 @@ double peak_of(const Samples& f) noexcept {
     const double before = k == 1 ? 2 : 1, behind = k == kSteps - 1 ? 2 : 1;  // half samples
     const bool has_top = about.bend > 0 && !(-about.slope > before * about.bend) &&
                          !(about.slope > behind * about.bend);
-    if (has_top) most = std::max(most, about.top());
+    if (has_top) most = std::max(most, about.top() + rise_above(f, k));
   }
   return most;
 }
