@@ -81,6 +81,11 @@ class RestToRestPlanner {
   /// inside `rad` (PlanResult::axis_deviation_rad). 0, which begin() sets: never.
   void set_free_cone(double rad) noexcept;
 
+  /// Axes of blocks nearer to the pole than nearly all of `tolerance_rad` are taken for the pole,
+  /// and blocks that pass it so near run through it. begin() sets kPoleEase_rad. Proof:
+  /// tests/property/planner/pole_rest_test.cpp.
+  void set_ease(double tolerance_rad) noexcept;
+
   /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's
   /// highest feed bounds it.
   void set_feed_factor(double factor) noexcept;

@@ -248,6 +248,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.is_refused = w.needs_ahead = false;
   w.router.set_feed_factor(1);
   w.router.set_free_cone(0);
+  w.router.set_ease(kPoleEase_rad);
 }
 
 void RestToRestPlanner::ask(PoleForesight* foresight) noexcept {
@@ -258,6 +259,11 @@ bool RestToRestPlanner::needs_ahead() const noexcept { return workspace_->needs_
 
 void RestToRestPlanner::set_free_cone(double rad) noexcept {
   workspace_->router.set_free_cone(rad);
+}
+
+void RestToRestPlanner::set_ease(double tolerance_rad) noexcept {
+  constexpr double kShare = 0.95;  // of the tolerance
+  workspace_->router.set_ease(std::max(kPoleEase_rad, kShare * tolerance_rad));
 }
 
 void RestToRestPlanner::set_feed_factor(double factor) noexcept {

@@ -25,7 +25,7 @@ constexpr int kMostTurns = 4;          // windings tried either way
 
 Vector3 Router::eased(const Vector3& axis) noexcept {
   const double distance = pole_distance(model_, axis);
-  if (!(distance < kPoleEase_rad)) return axis;
+  if (!(distance < ease_rad_)) return axis;
   deviation_rad_ = std::max(deviation_rad_, distance);
   return find_nearest_pole(model_, axis);
 }
@@ -185,7 +185,7 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   } else {
     const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
     const double share = passage.nearest_turn / path.axis_turn;
-    const bool passes = passage.offset < kPoleEase_rad && share > 0 && share < 1;
+    const bool passes = passage.offset < ease_rad_ && share > 0 && share < 1;
     const PlanCursor rest = cursor;
     const Staging::Mark mark = out.mark();
     fault = passes ? pass_pole(path, end, share, job, cursor, out)

@@ -10,8 +10,9 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/approach.hpp"
-#include "service/core/planner/leg_planner.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
 #include "service/core/planner/ahead_way.hpp"
+#include "service/core/planner/leg_planner.hpp"
 #include "service/core/planner/pole_foresight.hpp"
 #include "service/core/planner/staging.hpp"
 
@@ -53,6 +54,10 @@ class Router {
   /// not know yet leaves needs_ahead() true: route() is to be called again then.
   void ask(PoleForesight* foresight) noexcept { foresight_ = foresight; }
   [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
+
+  /// Axes nearer to the pole than `rad` count as on it, and ways that pass it nearer run through
+  /// it.
+  void set_ease(double rad) noexcept { ease_rad_ = rad; }
 
   /// Nearer to the pole than `rad` the free joint may be turned at rest, the axis inside that of
   /// where it was programmed.
@@ -160,8 +165,10 @@ class Router {
   [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,
                                           const Job& job, const PathFault& fault,
                                           PlanCursor& cursor, Staging& out) noexcept;
+  /// Whether the axis stays within `most_rad` of `path` where the free joint turns evenly to
+  /// `free_end`.
   [[nodiscard]] bool is_straight_passage(const PathPiece& path, double free_end,
-                                         const PlanCursor& cursor) noexcept;
+                                         const PlanCursor& cursor, double most_rad) noexcept;
   [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
                                       PlanCursor& cursor, Staging& out) noexcept;
   /// Lifts a tool that is longer than the one that retract() led off the part as far as that was.
@@ -187,6 +194,7 @@ class Router {
   ToolPose left_{Vector3::Zero(), Vector3::UnitZ()};  ///< where the last retract() began
   double feed_factor_ = 1;
   double free_cone_rad_ = 0;
+  double ease_rad_ = kPoleEase_rad;
   double deviation_rad_ = 0;
 };
 

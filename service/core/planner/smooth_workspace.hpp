@@ -49,6 +49,13 @@ struct SmoothPlanner::Workspace {
                                            : std::max(axis_rad, model.tolerances.pole_axis_rad);
   }
 
+  /// By how much the way may differ from the blocks.
+  [[nodiscard]] AheadSlack slack() const noexcept {
+    if (is_smooth()) return {tolerance().tip_mm, pole_tolerance_rad()};
+    const bool eases = model.pole_policy == PolePolicy::kEase && has_branches(model);
+    return {0, eases ? pole_tolerance_rad() : 0};
+  }
+
   [[nodiscard]] bool is_smooth() const noexcept {
     return settings.transition.value_or(model.transition) == Transition::kSmooth;
   }
