@@ -224,6 +224,14 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
     }
   }
   if (x - begin <= kNoCell_mm) return;
+  // On a sliver of a cell the path would end from all but a rest, and a plan swings back there.
+  if (last_ > kept) {
+    const FeedCell& before = (*this)[last_ - 1];
+    if (before.span == number && x - begin < before.h / kRatio) {
+      begin = before.x;
+      --last_;
+    }
+  }
   waiting_[0] = span;
   waiting_count_ = 1;
   next_span_ = number;

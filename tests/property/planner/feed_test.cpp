@@ -194,6 +194,35 @@ double bound_s(const FeedPath& path, const FeedSettings& settings) {
   return time;
 }
 
+TEST(CellGrid, EndsAPathOnNoSliverOfACell) {
+  std::vector<ToolPose> poses;
+  const Vector3 axis = Vector3(0.1, 0.5, 1).normalized();
+  for (int n = 0; n <= 60; ++n) poses.push_back({Vector3(n - 30, 60, 10), axis});
+  FeedPath path{bench_machine(), make_spans(poses, 4.0, 80), {}, 0};
+  path.start = solve(path.model, path.model.tool_length_mm, poses[0], 0, {}).q;
+  const FeedSettings settings;
+  const FeedLimits limits = make_feed_limits(path.model, settings.reserve);
+  int ends = 0;
+  for (std::size_t number = 2; number + 2 < path.spans.size(); ++number) {
+    CellGrid grid(path.model, limits, settings.cells);
+    grid.begin(path.start, path.model.tool_length_mm);
+    for (const BandSpan& span : path.spans) {
+      ASSERT_EQ(grid.push({span, path.branch, false, {}, 0}).kind, PathFault::Kind::kNone);
+    }
+    ASSERT_EQ(grid.finish().kind, PathFault::Kind::kNone);
+    std::int64_t second = 0;  // cell of the span
+    while (grid[second].span != number) ++second;
+    if (grid[++second].span != number) continue;
+    const double x = grid[second].x + 0.01 * grid[second].h;
+    grid.end_at({path.spans[number], path.branch, false, {}, 0}, number, x, 0);
+    const FeedCell& last = grid[grid.last() - 1];
+    EXPECT_NEAR(last.x + last.h, x, 1e-12) << "of span " << number;
+    EXPECT_GE(last.h, grid[grid.last() - 2].h / 2.5) << "of span " << number;
+    ++ends;
+  }
+  EXPECT_GT(ends, 3);
+}
+
 TEST(RollingFeed, IsHardlySlowerThanTheBoundWithoutJerk) {
   // A sine of 40 mm, axis swaying along: long enough for the jerk at its ends to weigh little.
   std::vector<ToolPose> poses;
