@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/bridge/diagnostics.hpp"
 
-#include <cstdio>
-
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/rt/state.hpp"
 #include "service/record/words.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::bridge {
 namespace {
 
 [[nodiscard]] std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  std::string out;
+  text::append(out, "%.6g", value);
+  return out;
 }
 
 [[nodiscard]] Diagnosis program_of(const dds::Status& status) {
@@ -39,18 +38,14 @@ namespace {
   for (int i = 0; i < model.joint_count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::uint16_t statusword = drives.statusword(at);
-    std::string text(record::drive_state_word(statusword));
+    std::string shown(record::drive_state_word(statusword));
     const bool is_silent = statusword == 0, is_fault = drives.error(at) != 0;
-    if (is_fault) {
-      char error[16];
-      std::snprintf(error, sizeof error, ", %04Xh", static_cast<unsigned>(drives.error(at)));
-      text += error;
-    }
+    if (is_fault) text::append(shown, ", %04Xh", static_cast<unsigned>(drives.error(at)));
     const std::string name = drive_spec(model, i).name;
-    if (is_fault || (is_silent && out.level == Level::kOk)) out.message = name + ": " + text;
+    if (is_fault || (is_silent && out.level == Level::kOk)) out.message = name + ": " + shown;
     if (is_silent && out.level == Level::kOk) out.level = Level::kWarning;
     if (is_fault) out.level = Level::kError;
-    out.values.emplace_back(name, text);
+    out.values.emplace_back(name, shown);
   }
   return out;
 }

@@ -11,10 +11,11 @@ namespace {
 constexpr std::int64_t kDiagnosticsPeriod_ns = 1'000'000'000, kStale_ns = 2'000'000'000;
 constexpr int kWaitingReports = 64;  ///< of several groups of drives, between two steps
 
-/// Whether what ROS 2 was told of the machine is not so any more.
-[[nodiscard]] bool is_other(const MachineModel& told, const MachineModel& now) {
-  return told.tool_length_mm != now.tool_length_mm || told.frame_origin_mm != now.frame_origin_mm ||
-         told.frame_rotation != now.frame_rotation;
+/// Whether ROS 2 has a description of the machine that does not hold any more.
+[[nodiscard]] bool is_outdated(const MachineModel& published, const MachineModel& now) {
+  return published.tool_length_mm != now.tool_length_mm ||
+         published.frame_origin_mm != now.frame_origin_mm ||
+         published.frame_rotation != now.frame_rotation;
 }
 
 }  // namespace
@@ -65,7 +66,7 @@ void RosBridge::work(BridgeTime now) {
   if (followed_machine_.take(machines_, info) && !info.machine_file.empty()) {
     try {
       const MachineModel model = stream::served_model(info);
-      if (is_other(publisher_.model(), model)) publisher_.describe(model, now.system_ns);
+      if (is_outdated(publisher_.model(), model)) publisher_.describe(model, now.system_ns);
     } catch (const config::ConfigError&) {
       // Another version wrote it: what was described first stays.
     }
