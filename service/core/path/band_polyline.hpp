@@ -31,7 +31,7 @@ inline constexpr double kSpeedReach_mm = 5;
 
 /// Of the axis tolerance beside the pole of a machine that eases the axis; the rest is left to the
 /// ease.
-inline constexpr double kPoleShare = 0.7;
+inline constexpr double kPoleShare = 0.5;
 
 /// One corner of the CL polyline with the segment that ends in it.
 struct BandVertex {
