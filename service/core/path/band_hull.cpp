@@ -20,7 +20,8 @@ struct Scale {
 
 /// One over the squares of the tolerances on the segment that ends in `b`.
 Scale scale_of(const BandPolyline& line, const BandVertex& b) noexcept {
-  const double tip = b.share * line.tolerance().tip_mm, axis = b.share * b.axis_tolerance;
+  const double share = line.share_of(b);
+  const double tip = share * line.tolerance().tip_mm, axis = share * line.axis_tolerance_of(b);
   return {1 / (tip * tip), 1 / (axis * axis)};
 }
 
@@ -137,7 +138,8 @@ double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, dou
     const bool is_inner = i + 1 < line.last() && b.u < end;
     const double to = is_inner ? b.u : end;
     const Squares after = difference_at(powers, to - begin, is_inner ? b.x : line.at(to, i));
-    if (known == nullptr || b.share != known->share || b.axis_tolerance != known->axis_tolerance) {
+    if (known == nullptr || b.is_of_arc != known->is_of_arc ||
+        b.is_near_pole != known->is_near_pole) {
       scale = scale_of(line, b);
       most = {std::max(most.tip, scale.tip), std::max(most.axis, scale.axis)};
       known = &b;

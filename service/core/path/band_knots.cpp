@@ -34,7 +34,7 @@ double gap_by_density(const BandPolyline& line, std::int64_t i) noexcept {
 double mean_deviation(const BandPolyline& line, std::int64_t before, std::int64_t from,
                       std::int64_t to, double gap) noexcept {
   const BandVertex &low = line[from], &high = line[to];
-  const bool is_near_pole = high.near_pole > line[before].near_pole;
+  const bool is_near_pole = high.near_pole != line[before].near_pole;
   const double axis_tolerance = (is_near_pole ? kPoleShare : 1.0) * line.tolerance().axis_rad;
   const double tip = (high.tip_turns - low.tip_turns) / line.tolerance().tip_mm;
   const double axis = (high.axis_turns - low.axis_turns) / axis_tolerance;

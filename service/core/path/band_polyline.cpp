@@ -77,17 +77,20 @@ void BandPolyline::begin(const ToolPose& pose, const BandTolerance& tolerance) n
   ring_.push(first);
 }
 
+double BandPolyline::share_of(const BandVertex& vertex) noexcept {
+  return vertex.is_of_arc ? 1 - kReserve - kChordShare : 1 - kReserve;
+}
+
 void BandPolyline::take(const ClBlock& block) noexcept {
   end_ = {to_vector(block.tip_mm), to_vector(block.axis)};
   piece_ = block.is_arc ? make_arc(pose_, end_, block) : make_line(pose_, end_);
   double steps = std::ceil(piece_->axis_turn / largest_turn_);
-  pattern_.share = 1 - kReserve;
+  pattern_.is_of_arc = block.is_arc;
   if (block.is_arc) {
     const double radius = to_vector(piece_->arc_x).norm();
     const double sagitta = kChordShare * tolerance_.tip_mm;
     const double sweep = 4 * std::asin(std::sqrt(std::min(0.5, 0.5 * sagitta / radius)));
     steps = std::max(steps, std::ceil(piece_->arc_sweep / sweep));
-    pattern_.share -= kChordShare;
   }
   steps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
   step_ = 0;
@@ -140,13 +143,10 @@ void BandPolyline::add(const ToolPose& pose, bool ends_block) noexcept {
   }
   next.u = before.u + std::sqrt(square);
   next.ends_block = ends_block;
-  next.axis_tolerance = tolerance_.axis_rad;
+  next.is_near_pole = tolerance_.pole &&
+                      comes_near(to_vector(*tolerance_.pole), axis_of(before.x), axis_of(next.x));
   next.near_pole = before.near_pole;
-  if (tolerance_.pole &&
-      comes_near(to_vector(*tolerance_.pole), axis_of(before.x), axis_of(next.x))) {
-    next.axis_tolerance *= kPoleShare;
-    ++next.near_pole;
-  }
+  if (next.is_near_pole) ++next.near_pole;
   next.tip_turns = before.tip_turns;
   next.axis_turns = before.axis_turns;
   if (last() > 0) {

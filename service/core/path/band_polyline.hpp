@@ -33,16 +33,14 @@ inline constexpr double kSpeedReach_mm = 5;
 /// ease.
 inline constexpr double kPoleShare = 0.5;
 
-/// One corner of the CL polyline with the segment that ends in it.
+/// One corner of the CL polyline with the segment that ends in it. The store is most of a planner's
+/// memory: what follows from little is not kept.
 struct BandVertex {
   Vector6 x{};            ///< tip, axis
   double u = 0;           ///< chord length from the begin
   double tip_turns = 0;   ///< sum of the jumps of dP/du at the vertices before this one
   double axis_turns = 0;  ///< the same of dK/du
   double gap = 0;         ///< largest gap between knots here; final only behind BandKnots' front
-  std::int64_t near_pole = 0;  ///< segments near the pole up to the one that ends here
-  double axis_tolerance = 0;   ///< of the segment, rad
-  double share = 1;            ///< of the tolerances that the spline may use on the segment
   double feed_mm_per_s = std::numeric_limits<double>::infinity();
   double u_speed_mm_per_s = std::numeric_limits<double>::infinity();
   double block_feed_mm_per_s = 0;
@@ -50,7 +48,10 @@ struct BandVertex {
   double asked_rad_per_s = 0;  ///< the same of the axis
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
-  bool ends_block = false;
+  std::uint32_t near_pole : 29 = 0;  ///< segments near the pole up to the one that ends here
+  bool is_near_pole : 1 = false;     ///< the segment is
+  bool is_of_arc : 1 = false;        ///< the segment is a chord
+  bool ends_block : 1 = false;
 };
 
 /// The CL polyline in u, du² = |dP|² + (50 mm/rad · |dK|)²: blocks cut into segments that are
@@ -73,6 +74,12 @@ class BandPolyline {
   [[nodiscard]] bool is_complete() const noexcept { return is_finished_ && is_ready(); }
 
   [[nodiscard]] const BandTolerance& tolerance() const noexcept { return tolerance_; }
+  /// Of the tolerances, what the spline may use on the segment that ends in `vertex`.
+  [[nodiscard]] static double share_of(const BandVertex& vertex) noexcept;
+  /// Of the axis on that segment, rad.
+  [[nodiscard]] double axis_tolerance_of(const BandVertex& vertex) const noexcept {
+    return vertex.is_near_pole ? kPoleShare * tolerance_.axis_rad : tolerance_.axis_rad;
+  }
   [[nodiscard]] const BandVertex& operator[](std::int64_t i) const noexcept { return ring_[i]; }
   [[nodiscard]] BandVertex& operator[](std::int64_t i) noexcept { return ring_[i]; }
   [[nodiscard]] std::int64_t first() const noexcept { return ring_.begin_index(); }

@@ -114,8 +114,8 @@ void BandSmoother::add_sample(const BandPolyline& line, const SpanKnots& t, std:
   const Vector6 y = line.at(u, segment);
   for (std::size_t d = 0; d < 6; ++d) sample.y[d] = y[d] * scale_[d];
   const BandVertex& end = line[segment + 1];
-  sample.tip = tuning_.radius * end.share;
-  sample.axis = sample.tip * end.axis_tolerance * scale_[5];
+  sample.tip = tuning_.radius * line.share_of(end);
+  sample.axis = sample.tip * line.axis_tolerance_of(end) * scale_[5];
   samples_.push_back(sample);
 }
 

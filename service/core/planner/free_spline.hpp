@@ -27,7 +27,7 @@ struct FreeEnd {
 /// Two continuous derivatives. Fixed store. Units: mm, rad. Source: docs/motion.md, section 10.
 class FreeSpline {
  public:
-  static constexpr std::size_t kPieces = 2048;
+  static constexpr std::size_t kPieces = 512;
 
   FreeSpline();
 

@@ -77,7 +77,7 @@ class PoleCorridor {
 
  private:
   static constexpr std::size_t kCuts = 1024;
-  static constexpr std::size_t kPending = 8192;
+  static constexpr std::size_t kPending = 1024;
 
   [[nodiscard]] double emitted_u() const noexcept { return probes_.front().u0 + emitted_x_; }
   [[nodiscard]] SettledPath settled() const noexcept;

@@ -25,7 +25,7 @@ namespace meridian {
 /// section 10.
 class PoleWalls {
  public:
-  static constexpr std::size_t kNodes = 8192;
+  static constexpr std::size_t kNodes = 4096;
 
   /// One place of the corridor.
   struct Node {
@@ -67,7 +67,7 @@ class PoleWalls {
   [[nodiscard]] static double middle_of(const Node& node, int side) noexcept;
 
  private:
-  static constexpr std::size_t kRuns = 2048;
+  static constexpr std::size_t kRuns = 512;
   static constexpr std::size_t kCourses = 8 * kRuns;
 
   /// Nodes [first, last) of one wall, and the ways that lead past it.

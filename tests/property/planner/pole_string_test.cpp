@@ -213,7 +213,7 @@ void judge(const MachineModel& model, const std::vector<ClBlock>& blocks,
 /// The least time knows nothing of smoothing: where that closes a gate which the programmed axes
 /// leave open by a hair the way round is far longer, hence a share of the paths beside a mean.
 TEST(PoleString, TakesLittleMoreThanTheLeastTimeOfTheCorridor) {
-  const auto paths = number_of("MERIDIAN_STRING_PATHS", static_cast<unsigned>(draws(48)));
+  const auto paths = number_of("MERIDIAN_STRING_PATHS", static_cast<unsigned>(draws(100)));
   const auto first = number_of("MERIDIAN_STRING_SEED", 1U);
   const MachineModel model = lai_machine();
   double worst = 0, sum = 0;

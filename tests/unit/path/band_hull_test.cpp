@@ -23,8 +23,9 @@ double deviation_at(const BandPolyline& line, const PoseQuartic& c, double x) {
     (d < 3 ? tip : axis) += (value - place[d]) * (value - place[d]);
   }
   const BandVertex& end = line[i + 1];
-  return std::max(std::sqrt(tip) / (end.share * line.tolerance().tip_mm),
-                  std::sqrt(axis) / (end.share * end.axis_tolerance));
+  const double share = line.share_of(end);
+  return std::max(std::sqrt(tip) / (share * line.tolerance().tip_mm),
+                  std::sqrt(axis) / (share * line.axis_tolerance_of(end)));
 }
 
 /// Random polylines, few vertices or many, and quartics that stay near them or bulge away between.
