@@ -21,7 +21,7 @@ constexpr double kRounding_mm = 1e-9;
 constexpr double kTiny = 1e-12;
 constexpr int kSteps = 24;          // of a stop
 constexpr double kBetween = 1.002;  // on ṡ² between the steps
-constexpr double kFast = 1.0025;    // on ṡ² that feed and velocity allow, kBetween included
+constexpr double kFast = 1.0002;    // on ṡ² that feed and velocity allow: what a plan may use
 constexpr double kSlow = 0.6;       // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
 constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
@@ -139,6 +139,20 @@ StopAuthority FeedAuthority::lessen(const Caps& caps, std::int64_t cell, const E
   return {};
 }
 
+bool FeedAuthority::rises_too_far(const FeedCell& cell, const PathState& begin,
+                                  double jerk) noexcept {
+  if (!(begin.dds > 0)) return false;
+  const double peak = square(begin.ds + 0.5 * begin.dds * begin.dds / jerk);
+  for (int k = 0; k <= FeedCell::kSteps; ++k) {
+    const double ahead = cell.h * k / FeedCell::kSteps - begin.s;
+    if (ahead < 0) continue;
+    const double v2 = std::min(peak, square(begin.ds) + 2 * begin.dds * ahead);
+    if (v2 > kFast * cell.at[static_cast<std::size_t>(k)].most_b) return true;
+    if (v2 == peak) break;
+  }
+  return false;
+}
+
 bool FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                             const StopAuthority& authority, Use& use) const noexcept {
   const StopLaw law(begin, authority);
@@ -160,9 +174,11 @@ bool FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const PathState
     const double by_rate = k == cell ? slope_ * from.ds : 0;  // of slower states
     const double rising = std::max(from.dds, 0.0) + by_rate;
     if (from.dds > 0) {
-      v2 = std::max(v2, square(from.ds + 0.5 * from.dds * from.dds / authority.jerk));
+      v2 = std::max(v2, kBetween * square(from.ds + 0.5 * from.dds * from.dds / authority.jerk));
     }
-    if (k > cell && v2 > kFast * here.most_b) {
+    const bool is_too_fast =
+        k > cell ? v2 > kBetween * kFast * here.most_b : rises_too_far(here, begin, authority.jerk);
+    if (is_too_fast) {
       use.is_too_fast = true;
       return true;
     }
@@ -186,7 +202,8 @@ void FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const StopAutho
   const Values bend_up = at.d2.down * m.sinking_v + at.d2.up * m.rising_v + at.d3.up * m.v3;
   const Values bend_down = at.d2.up * m.sinking_v + at.d2.down * m.rising_v + at.d3.down * m.v3;
   const Values jerk = (at.rate * authority.jerk + bend_up.max(bend_down)) * caps.jerk;
-  const double most = jerk.maxCoeff();
+  // Beside the pole rounding shows in third differences of a stop as in those of the plan.
+  const double most = jerk.maxCoeff() / (*grid_)[cell].made_tight;
   if (most <= use.jerk) return;
   use.jerk = most;
   use.cell = cell;
@@ -194,7 +211,8 @@ void FeedAuthority::add_use(const Caps& caps, std::int64_t cell, const StopAutho
 }
 
 FeedAuthority::Cause FeedAuthority::cause_of(const Caps& caps, const Use& use) const noexcept {
-  const CellBound& at = (*grid_)[use.cell].bound;
+  const FeedCell& here = (*grid_)[use.cell];
+  const CellBound& at = here.bound;
   const Motion& m = use.motion;
   Cause cause;
   double most = 0;
@@ -204,9 +222,10 @@ FeedAuthority::Cause FeedAuthority::cause_of(const Caps& caps, const Use& use) c
     const double speed_up = at.d3.up[i] * m.v3, speed_down = at.d3.down[i] * m.v3;
     const bool is_up = depth_up + speed_up > depth_down + speed_down;
     const double depth = is_up ? depth_up : depth_down, speed = is_up ? speed_up : speed_down;
-    if ((depth + speed) * caps.jerk[i] <= most) continue;
-    most = (depth + speed) * caps.jerk[i];
-    cause = {depth * caps.jerk[i], speed * caps.jerk[i]};
+    const double per_jerk = caps.jerk[i] / here.made_tight;
+    if ((depth + speed) * per_jerk <= most) continue;
+    most = (depth + speed) * per_jerk;
+    cause = {depth * per_jerk, speed * per_jerk};
   }
   return cause;
 }

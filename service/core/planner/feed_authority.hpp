@@ -81,6 +81,9 @@ class FeedAuthority {
   /// `now` or less of it, that all stops from `from` may use; 0: there is none.
   [[nodiscard]] StopAuthority lessen(const Caps& caps, std::int64_t cell, const Ends& from,
                                      StopAuthority now, const StopAuthority& most) const noexcept;
+  /// Whether a stop from `begin` passes the speed that `cell` allows before its s̈ is down to zero.
+  [[nodiscard]] static bool rises_too_far(const FeedCell& cell, const PathState& begin,
+                                          double jerk) noexcept;
   /// Adds the use of all stops under the one from `begin`. False: it ends behind the plan.
   [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                              const StopAuthority& authority, Use& use) const noexcept;

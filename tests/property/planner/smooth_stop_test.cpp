@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <type_traits>
 #include <vector>
 
 #include "meridian/rt/rate_filter.hpp"
@@ -18,6 +19,7 @@
 #include "property/rt/stop_oracle.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
+#include "support/program_end.hpp"
 
 namespace meridian::test::smooth_stop {
 namespace {
@@ -71,30 +73,58 @@ double wait_for_authority(const Trace& trace, StopKind kind, OnPlan& at, StopAut
   return waited;
 }
 
+/// The paths of a trace from one time piece on, in one path length that counts from the begin of the
+/// first.
+class PathsAhead {
+ public:
+  PathsAhead(const Trace& trace, std::size_t piece)
+      : trace_(trace), piece_(piece), reference_(trace.paths[piece].joints_begin) {}
+
+  /// The joints at `s`, no less than the last. False: the plan ends before.
+  template <class Scalar>
+  bool try_joints(const MachineModel& model, double s, Joints<Scalar>& q) {
+    bool is_on_path = true;
+    while (s - passed_ > path().length + 1e-12) {
+      std::size_t next = piece_;
+      while (is_move(trace_, next) && trace_.paths[next].index == path().index) ++next;
+      if (!is_move(trace_, next)) {
+        is_on_path = s - passed_ <= path().length + 1e-6;
+        break;
+      }
+      passed_ += path().length;
+      piece_ = next;
+    }
+    const double x = std::clamp(s - passed_, 0.0, path().length);
+    if constexpr (std::is_same_v<Scalar, double>) {
+      q = joints_at(model, path(), x, reference_).q;
+    } else {
+      q = joints_at(model, path(), Scalar::variable(x), reference_).q;
+    }
+    for (int i = 0; i < model.joint_count; ++i) reference_[i] = value_of(q[i]);
+    return is_on_path;
+  }
+
+ private:
+  [[nodiscard]] const PathPiece& path() const { return trace_.paths[piece_]; }
+
+  const Trace& trace_;
+  std::size_t piece_;
+  double passed_ = 0;
+  JointVector reference_;
+};
+
 /// Largest share of the limits that a stop along `law` from time piece `piece` uses, by derivatives
 /// of the joints on the path; 99 where it passes the end of the plan.
 double use_of(const MachineModel& model, const Trace& trace, std::size_t piece, const StopLaw& law,
               StopKind kind) {
-  double use = 0, passed = 0;
-  const PathPiece* path = &trace.paths[piece];
-  JointVector reference = path->joints_begin;
+  double use = 0;
+  PathsAhead ahead(trace, piece);
   const int steps = std::max(8, static_cast<int>(law.duration() / 4e-4));
   for (int n = 0; n <= steps; ++n) {
     const PathState p = law.at(law.duration() * n / steps * (1 - 1e-12));
-    while (p.s - passed > path->length + 1e-12) {
-      std::size_t next = piece;
-      while (is_move(trace, next) && trace.paths[next].index == path->index) ++next;
-      if (!is_move(trace, next)) {
-        if (p.s - passed > path->length + 1e-6) return 99;
-        break;
-      }
-      passed += path->length;
-      path = &trace.paths[piece = next];
-    }
-    const double s = std::clamp(p.s - passed, 0.0, path->length);
-    const auto q = joints_at(model, *path, Jet<3>::variable(s), reference).q;
+    Joints<Jet<3>> q;
+    if (!ahead.try_joints(model, p.s, q)) return 99;
     for (int i = 0; i < model.joint_count; ++i) {
-      reference[i] = value_of(q[i]);
       const double d1 = q[i].derivative(1), d2 = q[i].derivative(2), d3 = q[i].derivative(3);
       const JointLimits& limits = model.joints[i].limits;
       const bool is_fault = kind == StopKind::kFault;
@@ -107,6 +137,19 @@ double use_of(const MachineModel& model, const Trace& trace, std::size_t piece, 
     }
   }
   return use;
+}
+
+/// Setpoints of a hold that begins with `law` in time piece `piece`.
+std::vector<PlanSample> hold_setpoints(const MachineModel& model, const Trace& trace,
+                                       std::size_t piece, const StopLaw& law, double cycle_s) {
+  std::vector<PlanSample> out;
+  PathsAhead ahead(trace, piece);
+  for (int n = 0; n * cycle_s < law.duration(); ++n) {
+    PlanSample setpoint{{}, static_cast<int>(piece), law.at(n * cycle_s).s};
+    EXPECT_TRUE(ahead.try_joints(model, setpoint.s, setpoint.q));
+    out.push_back(setpoint);
+  }
+  return out;
 }
 
 /// The machine with its FaultStop limits for limits.
@@ -195,6 +238,87 @@ TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
   EXPECT_LT(holds.longest_wait, 0.5);
   EXPECT_LT(holds.ratios[holds.ratios.size() / 2], 1.05);
   EXPECT_LT(faults.ratios[faults.ratios.size() * 3 / 4], 1.1);
+}
+
+ClBlock cut_to(const Vector3& tip, const Vector3& axis, double feed_mm_per_s) {
+  ClBlock block;
+  block.kind = BlockKind::kCut;
+  block.tip_mm = to_array(tip);
+  block.axis = to_array(axis);
+  block.feed = feed_mm_per_s;
+  block.feed_meaning = FeedMeaning::kTip;
+  return block;
+}
+
+TEST(SmoothStop, KeepsTheVelocityLimitWhereItBeginsWhileTheSpeedGrows) {
+  MachineModel model = bench_machine();
+  model.override_ramp_s = 1000;  // so the plan rises to the limit with all the jerk that there is
+  const Vector3 up(0, 0, 1);
+  std::vector<ClBlock> blocks;
+  for (const double x : {0.0, 200.0}) blocks.push_back(cut_to({x, 0, 20}, up, 1000));
+  number_and_end(blocks);
+  const auto trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+  ASSERT_EQ(trace.last.status, PlanStatus::kOk);
+  Stops holds;
+  for (std::size_t n = 0; n < trace.times.size(); ++n) {
+    if (!is_move(trace, n) || trace.paths[n].kind != PathKind::kSpline) continue;
+    for (const double share : {0.0, 0.25, 0.5, 0.75}) {
+      const OnPlan at{n, share * trace.times[n].duration, 1, 0};
+      if (at.state(trace).dds > 0) stop_from(model, trace, at, StopKind::kHold, holds);
+    }
+  }
+  holds.print("holds");
+  EXPECT_GT(holds.count, 100);
+  EXPECT_EQ(holds.over, 0);
+}
+
+TEST(SmoothStop, LeavesRoomForRoundingBesideThePole) {
+  // 8 µrad to 0.006° beside it, where C is made of the last digits of the axis.
+  constexpr std::uint64_t kSeed = 4711;
+  constexpr double kCycle_s = 125e-6;
+  constexpr int kPaths = 16;
+  RandomPrograms draw(kSeed);
+  double largest = 0;
+  int holds = 0;
+  for (int n = 0; n < kPaths; ++n) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed << " path " << n);
+    MachineModel model = lai_machine();
+    model.cycle_ns = 125'000;
+    model.override_ramp_s = 1000;
+    model.pole_policy = PolePolicy::kExact;
+    model.frame_rotation = draw.rotation(1.0);
+    const double distance = draw.log_uniform(8.2e-6, 1e-4), azimuth = draw.uniform(-3, 3);
+    const auto beside = [&](double along) {
+      const Vector3 axis = Vector3(std::sin(along), distance, std::cos(along)).normalized();
+      const double c = std::cos(azimuth), s = std::sin(azimuth);
+      const Vector3 turned(c * axis[0] - s * axis[1], s * axis[0] + c * axis[1], axis[2]);
+      return Vector3(model.frame_rotation.transpose() * turned);
+    };
+    const Vector3 at(draw.uniform(-150, 150), draw.uniform(-150, 150), 20);
+    std::vector<ClBlock> blocks;
+    for (int k = 0; k <= 8; ++k) {
+      blocks.push_back(cut_to(at + Vector3(3, 1, 0) * k, beside(0.01 * (k - 4)), 50));
+    }
+    number_and_end(blocks);
+    const SmoothSettings settings{Transition::kSmooth, 1e-3, 1e-6};
+    const auto trace = plan_smooth(model, blocks, joints_of(model, blocks[0]), settings);
+    ASSERT_EQ(trace.last.status, PlanStatus::kOk);
+    for (std::size_t k = 0; k < trace.times.size(); ++k) {
+      if (!is_move(trace, k) || trace.paths[k].kind != PathKind::kSpline) continue;
+      const OnPlan from{k, draw.uniform(0, trace.times[k].duration), 1, 0};
+      const StopAuthority authority =
+          authority_of(trace.times[k], StopKind::kHold, from.state(trace));
+      if (!(authority.jerk > 0)) continue;
+      const StopLaw law(from.state(trace), authority);
+      const auto setpoints = hold_setpoints(model, trace, k, law, kCycle_s);
+      const LimitUse use = measure_limits(model, setpoints, kCycle_s);
+      largest = std::max({largest, use.v, use.a, use.j});
+      ++holds;
+    }
+  }
+  std::printf("%d holds, largest use of a limit %.5f\n", holds, largest);
+  EXPECT_GT(holds, 1000);
+  EXPECT_LE(largest, kLimit);
 }
 
 }  // namespace
