@@ -15,7 +15,7 @@
 #include "service/cli/machine_options.hpp"
 #include "service/process/programs.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::bench_command {
 namespace {
 
 struct Options {
@@ -66,7 +66,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "bench",
@@ -97,4 +97,4 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::bench_command

@@ -13,7 +13,7 @@
 #include "service/config/config_error.hpp"
 #include "service/stream/served_model.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::bridge_command {
 namespace {
 
 struct BridgeOptions {
@@ -71,7 +71,7 @@ int run_ros2(BridgeOptions& options) {
 
 }  // namespace
 
-void add_bridge_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<BridgeOptions>();
   CLI::App* const bridge = app.add_subcommand(
       "bridge", "The machine for other systems that watch it; they can change nothing");
@@ -96,4 +96,4 @@ void add_bridge_command(CLI::App& app, int& exit_code) {
   ros2->callback([options, &exit_code] { exit_code = run_ros2(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::bridge_command

@@ -24,7 +24,7 @@
 #include "service/record/recorded_frame.hpp"
 #include "service/stream/frame_sum.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::check_command {
 namespace {
 
 struct Options {
@@ -236,7 +236,7 @@ int run(Options& options) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "check",
@@ -287,4 +287,4 @@ void add_check_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::check_command

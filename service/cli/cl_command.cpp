@@ -9,7 +9,7 @@
 #include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::cl_command {
 namespace {
 
 /// What the reader is told; poses come out in the frame around the workpiece.
@@ -31,7 +31,7 @@ cl::ClReaderOptions reading(const ClFileOptions& file, MachineOptions machine) {
 
 }  // namespace
 
-void add_cl_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   struct Options {
     cl::RunOptions run;
     ClFileOptions file;
@@ -80,4 +80,4 @@ void add_cl_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::cl_command

@@ -3,9 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
-/// One subcommand of `meridian` is one file X_command.cpp with one function
+/// One subcommand of `meridian` is one file X_command.cpp, a namespace of its own with one function
 ///
-///     void add_X_command(CLI::App& app, int& exit_code);
+///     void meridian::cli::X_command::add(CLI::App& app, int& exit_code);
 ///
 /// which adds the subcommand X with its options to `app` and leaves its verdict in `exit_code` when
 /// it has run. It reads options, calls its room and prints; the logic is the room's. A line

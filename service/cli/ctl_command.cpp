@@ -19,7 +19,7 @@
 #include "service/dds/participant.hpp"
 #include "service/stream/operator_link.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::ctl_command {
 
 namespace {
 
@@ -176,7 +176,7 @@ int run_ctl(CtlOptions& options) {
 
 }  // namespace
 
-void add_ctl_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CtlOptions>();
   CLI::App* command = app.add_subcommand(
       "ctl", "Ask the machine for something, print `accepted` or `refused` and why");
@@ -238,4 +238,4 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_ctl(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::ctl_command

@@ -17,7 +17,7 @@
 #include "service/process/processors.hpp"
 #include "service/stream/machine_finder.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::doctor_command {
 namespace {
 
 struct Options {
@@ -77,7 +77,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_doctor_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "doctor",
@@ -108,4 +108,4 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::doctor_command

@@ -23,7 +23,7 @@
 #include "service/drive/other_source.hpp"
 #include "service/drives/simulated_drives.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::drives_command {
 
 namespace {
 
@@ -149,7 +149,7 @@ int run_drives(const DrivesOptions& options) {
 
 }  // namespace
 
-void add_drives_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DrivesOptions>();
   CLI::App* command = app.add_subcommand(
       "drives",
@@ -208,4 +208,4 @@ void add_drives_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_drives(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::drives_command

@@ -13,7 +13,7 @@
 #include "service/dds/writer.hpp"
 #include "service/stream/operator_link.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::enabling_command {
 namespace {
 
 struct EnablingOptions {
@@ -51,7 +51,7 @@ int run_enabling(EnablingOptions& options) {
 
 }  // namespace
 
-void add_enabling_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EnablingOptions>();
   CLI::App* command = app.add_subcommand(
       "enabling",
@@ -68,4 +68,4 @@ void add_enabling_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_enabling(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::enabling_command

@@ -17,7 +17,7 @@
 #include "service/inspect/program_poses.hpp"
 #include "service/text/whole_file.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::machine_command {
 namespace {
 
 struct Options {
@@ -92,7 +92,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_machine_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "machine",
@@ -130,4 +130,4 @@ void add_machine_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::machine_command

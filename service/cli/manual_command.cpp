@@ -8,7 +8,7 @@
 #include "service/cli/commands.hpp"
 #include "service/manual/manual.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::manual_command {
 namespace {
 
 [[nodiscard]] bool write(const std::filesystem::path& path, const std::string& text) {
@@ -40,7 +40,7 @@ int write_all(const CLI::App& app, const std::filesystem::path& folder) {
 
 }  // namespace
 
-void add_manual_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto folder = std::make_shared<std::string>();
   CLI::App* const command = app.add_subcommand(
       "manual", "Manual pages and bash completion of this tool, written into a folder");
@@ -48,4 +48,4 @@ void add_manual_command(CLI::App& app, int& exit_code) {
   command->callback([folder, &app, &exit_code] { exit_code = write_all(app, *folder); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::manual_command

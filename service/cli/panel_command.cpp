@@ -13,7 +13,7 @@
 #include "service/panel/panel.hpp"
 #include "service/panel/server.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::panel_command {
 namespace {
 
 struct Options {
@@ -55,7 +55,7 @@ int run(Options& options) {
 
 }  // namespace
 
-void add_panel_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "panel", "The operator's page: serves it to browsers on this host until interrupted");
@@ -80,4 +80,4 @@ void add_panel_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::panel_command

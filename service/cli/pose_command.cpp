@@ -18,7 +18,7 @@
 #include "service/inspect/pose_solutions.hpp"
 #include "service/inspect/pose_table.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::pose_command {
 namespace {
 
 struct Options {
@@ -144,7 +144,7 @@ int run(Options& options) {
 
 }  // namespace
 
-void add_pose_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "pose",
@@ -175,4 +175,4 @@ void add_pose_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::pose_command

@@ -16,7 +16,7 @@
 #include "service/post/post.hpp"
 #include "service/text/whole_file.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::post_command {
 namespace {
 
 struct Options {
@@ -110,7 +110,7 @@ CLI::Validator matches(const char* pattern, const char* description) {
 
 }  // namespace
 
-void add_post_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "post",
@@ -179,4 +179,4 @@ void add_post_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::post_command

@@ -16,7 +16,7 @@
 #include "service/process/claimed_domain.hpp"
 #include "service/process/programs.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::probe_command {
 namespace {
 
 struct Options {
@@ -93,7 +93,7 @@ int run(Options& options) {
 
 }  // namespace
 
-void add_probe_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "probe",
@@ -138,4 +138,4 @@ void add_probe_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::probe_command

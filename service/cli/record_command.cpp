@@ -10,7 +10,7 @@
 #include "service/record/flight_report.hpp"
 #include "service/ros/conversion.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::record_command {
 namespace {
 
 struct Options {
@@ -59,7 +59,7 @@ int run(Options& options) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "record",
@@ -105,4 +105,4 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::record_command

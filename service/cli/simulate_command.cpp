@@ -22,7 +22,7 @@
 #include "service/stream/smooth_tolerances.hpp"
 #include "service/text/whole_file.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::simulate_command {
 namespace {
 
 struct Options {
@@ -205,7 +205,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_simulate_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "simulate",
@@ -252,4 +252,4 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::simulate_command

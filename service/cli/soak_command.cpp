@@ -17,7 +17,7 @@
 #include "service/soak/report_files.hpp"
 #include "service/soak/soak.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::soak_command {
 namespace {
 
 struct Options {
@@ -69,7 +69,7 @@ int run(Options& options) {
 
 }  // namespace
 
-void add_soak_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command =
       app.add_subcommand("soak",
@@ -111,4 +111,4 @@ void add_soak_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::soak_command

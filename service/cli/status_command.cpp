@@ -25,7 +25,7 @@
 #include "service/stream/served_model.hpp"
 #include "service/text/percentiles.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::status_command {
 
 namespace {
 
@@ -159,7 +159,7 @@ int run_status(StatusOptions& options) {
 
 }  // namespace
 
-void add_status_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StatusOptions>();
   CLI::App* command = app.add_subcommand(
       "status", "What the machine does now: state, program, block, feed, buffer, counters");
@@ -178,4 +178,4 @@ void add_status_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_status(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::status_command

@@ -23,7 +23,7 @@
 #include "service/stream/stream_run.hpp"
 #include "service/text/printable.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::stream_command {
 
 namespace {
 
@@ -144,7 +144,7 @@ int run_stream_command(StreamCommandOptions& options) {
 
 }  // namespace
 
-void add_stream_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StreamCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "stream",
@@ -181,4 +181,4 @@ void add_stream_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run_stream_command(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::stream_command

@@ -16,7 +16,7 @@
 #include "service/surface/surface_report.hpp"
 #include "service/text/whole_file.hpp"
 
-namespace meridian::cli {
+namespace meridian::cli::surface_command {
 namespace {
 
 struct Options {
@@ -88,7 +88,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_surface_command(CLI::App& app, int& exit_code) {
+void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "surface",
@@ -126,4 +126,4 @@ void add_surface_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
-}  // namespace meridian::cli
+}  // namespace meridian::cli::surface_command
