@@ -32,18 +32,21 @@ double gap_of(double wanted_mm, double from_mm, double to_mm) {
 std::vector<HoleMove> moves_of(const HoleCycle& cycle, const HoleLevels& levels) {
   const double rapid = cycle.rapid_level * levels.to_mm;
   const bool dwells = cycle.dwell_s > 0 || cycle.dwell_revolutions > 0;
+  const bool feeds_out = cycle.kind == HoleKind::kFeedOut || cycle.feed_out.unit != FeedUnit::kNone;
+  const Kind out = feeds_out ? Kind::kFeedOut : Kind::kRapid;
   std::vector<HoleMove> moves{{Kind::kRapid, rapid}};
   double from = 0;
   int broken = 0;
   const std::vector<double> ends = ends_of_pecks(cycle, levels.to_mm);
   for (const double end : ends) {
     moves.push_back({Kind::kFeed, end});
-    if (dwells) moves.push_back({Kind::kDwell, end});
-    if (end == ends.back()) break;
+    const bool is_bottom = end == ends.back();
+    if (dwells && (is_bottom || cycle.dwells_at_pecks)) moves.push_back({Kind::kDwell, end});
+    if (is_bottom) break;
     const bool is_out = cycle.kind == HoleKind::kDeep ||
                         (cycle.pecks_to_retract > 0 && ++broken % cycle.pecks_to_retract == 0);
     if (is_out) {
-      moves.push_back({Kind::kRapid, rapid});
+      moves.push_back({out, rapid});
       moves.push_back({Kind::kRapid, end + gap_of(kPeckGap_mm, from, end)});
     } else {
       const double back = cycle.back > 0 ? cycle.back * levels.to_mm : kChipBack_mm;
@@ -52,7 +55,7 @@ std::vector<HoleMove> moves_of(const HoleCycle& cycle, const HoleLevels& levels)
     from = end;
   }
   if (cycle.ends_behind_one) return moves;
-  if (cycle.kind == HoleKind::kFeedOut) moves.push_back({Kind::kFeed, rapid});
+  if (feeds_out) moves.push_back({Kind::kFeedOut, rapid});
   if (cycle.kind == HoleKind::kStopOut) moves.push_back({Kind::kSpindleStop, ends.back()});
   const double retract = std::max(levels.retract_mm, rapid);
   moves.push_back({Kind::kRapid, retract});

@@ -11,7 +11,7 @@ namespace meridian::cl {
 /// One step of a hole: to a level above its top along the tool axis (below zero: in the hole), or
 /// what happens at rest.
 struct HoleMove {
-  enum class Kind : std::uint8_t { kRapid, kFeed, kDwell, kSpindleStop, kSpindleStart };
+  enum class Kind : std::uint8_t { kRapid, kFeed, kFeedOut, kDwell, kSpindleStop, kSpindleStart };
   Kind kind = Kind::kRapid;
   double level_mm = 0;
 };

@@ -43,7 +43,9 @@ struct HoleCycle {
   int pecks_to_retract = 0;   ///< chip breaking: out of the hole behind so many; 0: never
   double dwell_s = 0;
   double dwell_revolutions = 0;
-  WrittenFeed feed;  ///< kNone: the one in force
+  bool dwells_at_pecks = true;  ///< behind each peck; else at the bottom alone
+  WrittenFeed feed;             ///< kNone: the one in force
+  WrittenFeed feed_out;         ///< kNone: as `kind` says, at rapid or at `feed`
 };
 
 /// What a CYCLE statement says.

@@ -197,6 +197,26 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
   return move(s, line);
 }
 
+/// MCALL and what it calls: behind a line that moves, or where the tool stands.
+cl::Outcome run_holes(State& s, const Line& line, const NameOutcome& names, OneShot shot) {
+  using Holes = NameOutcome::Holes;
+  switch (names.holes) {
+    case Holes::kNoMore:
+      s.modes.at_every_point.reset();
+      return {};
+    case Holes::kAtEveryPoint:
+      s.modes.at_every_point = names.drilling;
+      return {};
+    case Holes::kHere:
+      return drill(s, line, names.drilling);
+    case Holes::kAsBefore:
+      break;
+  }
+  const bool is_motion = shot.kind == OneShot::Kind::kMove && moves(line);
+  if (!s.modes.at_every_point || !is_motion) return {};
+  return drill(s, line, *s.modes.at_every_point);
+}
+
 }  // namespace
 
 cl::Outcome run_block(State& s, const Line& line) {
@@ -214,6 +234,7 @@ cl::Outcome run_block(State& s, const Line& line) {
   if (is_dwell && s.modes.language == Language::kSiemens) return siemens_dwell(s, line);
   if (auto done = act_before(s, line); !done) return done;
   if (auto done = run_motion(s, line, shot); !done) return done;
+  if (auto done = run_holes(s, line, *names, shot); !done) return done;
   return act_behind(s, line);
 }
 

@@ -7,13 +7,28 @@ namespace {
 
 using cl::refuse;
 
-/// "G54", "G59.3", "G54.1 P12".
+constexpr int kPerRow = 10000, kPreset = 2470;
+
+/// "G54", "G59.3", "G54.1 P12", "CYCL DEF 247 Q339=2".
 std::string name_of(int offset) {
-  const int code = offset % 10000;
+  const int code = offset % kPerRow;
+  if (code == kPreset) return "CYCL DEF 247 Q339=" + std::to_string(offset / kPerRow);
   std::string name = "G" + std::to_string(code / 10);
   if (code % 10 != 0) name += "." + std::to_string(code % 10);
-  if (offset >= 10000) name += " P" + std::to_string(offset / 10000);
+  if (offset >= kPerRow) name += " P" + std::to_string(offset / kPerRow);
   return name;
+}
+
+cl::Outcome take_offset(State& s, int offset) {
+  if (s.modes.work_offset != 0 && s.modes.work_offset != offset && s.cl.path.has_moved()) {
+    return refuse("a second work offset (" + name_of(offset) + " behind " +
+                      name_of(s.modes.work_offset) +
+                      "): how far the two are apart only the control knows",
+                  "split the program: one for each", "second offset");
+  }
+  s.modes.work_offset = offset;
+  s.cl.summary.nc.work_offset = name_of(offset);
+  return {};
 }
 
 }  // namespace
@@ -43,18 +58,12 @@ cl::Outcome set_work_offset(State& s, const Line& line, int tenths) {
     const bool is_whole = p != nullptr && p->number >= 1 && p->number <= 999 &&
                           p->number == static_cast<int>(p->number);
     if (!is_whole) return refuse("G54.1 needs its number, such as P1");
-    offset += 10000 * static_cast<int>(p->number);
+    offset += kPerRow * static_cast<int>(p->number);
   }
-  if (s.modes.work_offset != 0 && s.modes.work_offset != offset && s.cl.path.has_moved()) {
-    return refuse("a second work offset (" + name_of(offset) + " behind " +
-                      name_of(s.modes.work_offset) +
-                      "): how far the two are apart only the control knows",
-                  "split the program: one for each", "second offset");
-  }
-  s.modes.work_offset = offset;
-  s.cl.summary.nc.work_offset = name_of(offset);
-  return {};
+  return take_offset(s, offset);
 }
+
+cl::Outcome set_preset(State& s, int row) { return take_offset(s, kPreset + kPerRow * row); }
 
 cl::Outcome set_unit(State& s, cl::LengthUnit unit) {
   if (s.cl.units.in_force && *s.cl.units.in_force != unit && !s.cl.options.unit) {

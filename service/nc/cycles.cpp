@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "service/cl/words/motion.hpp"
-#include "service/cl/written_text.hpp"
 #include "service/nc/state.hpp"
 
 namespace meridian::nc {
@@ -77,34 +75,6 @@ cl::Outcome take_place(State& s, const Line& line) {
   return {};
 }
 
-/// The tool axis of a hole, along the axes of the program's zero.
-Vector3 tool_axis(const State& s) {
-  return is_across_plane(s, s.place) ? tool_of_plane(s) : Vector3(Vector3::UnitZ());
-}
-
-cl::Outcome check_state(const State& s, const Line& line) {
-  constexpr double kSameAxis = 1e-6;
-  const bool is_turned = s.place.is_turned() && !is_across_plane(s, s.place);
-  const bool is_along = (s.frames.now.rotation.col(2) - tool_axis(s)).norm() < kSameAxis;
-  if (holds_tip(s.modes.control) || is_turned || !is_along || s.modes.plane != 2) {
-    return refuse("a canned cycle with tool-centre control, turned axes or outside G17",
-                  "let the CAM system write the moves themselves", "cycle");
-  }
-  if (!s.place.is_known() || !s.cl.path.has_moved()) {
-    return refuse("a canned cycle, but where the tool stands is not known here",
-                  "write a G0 with X, Y and Z before it", "not known");
-  }
-  if (s.modes.feed_unit == cl::FeedUnit::kInverseTime) {
-    return refuse("a canned cycle under G93", "write G94");
-  }
-  for (const char* const address : {"A", "B", "C", "I", "J"}) {
-    if (line.find(address) != nullptr) {
-      return refuse(std::string("word ") + address + " in a canned cycle is not understood");
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 void begin_cycle(State& s, int code) {
@@ -119,7 +89,12 @@ void begin_cycle(State& s, int code) {
 }
 
 cl::Outcome run_cycle(State& s, const Line& line) {
-  if (auto done = check_state(s, line); !done) return done;
+  if (auto done = check_hole(s); !done) return done;
+  for (const char* const address : {"A", "B", "C", "I", "J"}) {
+    if (line.find(address) != nullptr) {
+      return refuse(std::string("word ") + address + " in a canned cycle is not understood");
+    }
+  }
   Cycle& cycle = s.modes.cycle;
   if (auto done = take_words(cycle, line, s.modes.is_incremental); !done) return done;
   for (const char* const address : {"K", "L"}) {
@@ -129,30 +104,11 @@ cl::Outcome run_cycle(State& s, const Line& line) {
     return refuse(std::string(address) + std::string(repeats->digits) + " repeats of a cycle",
                   "write every hole as a block");
   }
-  if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   if (auto done = take_place(s, line); !done) return done;
   s.modes.motion = Motion::kLine;
-  if (const auto feed = feed_of_motion(s, line); !feed) return tl::make_unexpected(feed.error());
   const auto hole = hole_of(cycle);
   if (!hole) return tl::make_unexpected(hole.error());
-  const Vector3 up = direction_in_w(s, tool_axis(s));
-  const Vector3 top{*s.place.tip[0], *s.place.tip[1], *cycle.r};
-  const auto pose = in_path(s, {top, up});
-  if (!pose) return tl::make_unexpected(pose.error());
-  for (const double level : {*cycle.z, cycle.initial}) {
-    const auto end = in_path(s, {Vector3(top[0], top[1], level), up});
-    if (!end) return tl::make_unexpected(end.error());
-  }
-  s.cl.axis.written = to_array(up);
-  s.cl.axis.in_w = pose->axis;
-  s.cl.cycle = *hole;
-  auto done = cl::run_hole(s.cl, pose->tip, line.number);
-  s.cl.cycle.reset();
-  if (!done) return done;
-  const Vector3 end = top + Vector3(0, 0, hole->retract_level);
-  s.place.tip[2] = end[2];
-  s.in_w = {in_w(s, end), up};
-  return {};
+  return drill(s, line, {*hole, *cycle.r});
 }
 
 }  // namespace meridian::nc

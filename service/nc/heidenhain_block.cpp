@@ -6,14 +6,14 @@
 #include "service/cl/number.hpp"
 #include "service/cl/written_text.hpp"
 #include "service/nc/block.hpp"
+#include "service/nc/heidenhain_cycles.hpp"
 #include "service/nc/heidenhain_frames.hpp"
+#include "service/nc/remedy.hpp"
 
 namespace meridian::nc {
 namespace {
 
 using cl::refuse;
-
-constexpr const char* kPlainMoves = "let the CAM system write the moves themselves";
 
 /// M codes of the control that say how it moves and nothing about where.
 constexpr std::array kSilent = {107, 108, 116, 117, 120, 124, 126, 127, 138, 141};
@@ -55,7 +55,7 @@ cl::Outcome run_function(State& s, const Line& line) {
   const std::string_view text = line.names.front().arguments;
   if (mentions(text, "RESET TCPM")) return switch_off(s, line);
   if (!mentions(text, "TCPM")) {
-    return refuse("FUNCTION" + std::string(text.substr(0, 24)) + " is not run here", kPlainMoves,
+    return refuse("FUNCTION" + std::string(text.substr(0, 24)) + " is not run here", kMovesByCam,
                   "FUNCTION");
   }
   if (mentions(text, "AXIS SPAT")) {
@@ -90,8 +90,19 @@ cl::Outcome run_cycle_definition(State& s, const Line& line) {
   if (number == "9.1" && cl::parse_number(text.substr(text.rfind(' ') + 1), seconds)) {
     return rest(s, line, seconds);
   }
-  return refuse("CYCL DEF " + number.substr(0, 16) + ": a cycle of the control", kPlainMoves,
-                "CYCL DEF");
+  return define_cycle(s, number, text.substr(number.size()));
+}
+
+/// CYCL CALL, with FMAX at most.
+cl::Outcome run_cycle_call(State& s, const Line& line) {
+  std::string_view text = line.names.front().arguments;
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  if (!text.empty() && text != "FMAX") {
+    return refuse("CYCL CALL " + std::string(text.substr(0, 16)) + " is not run here", kMovesByCam,
+                  "CYCL CALL");
+  }
+  return call_cycle(s, line);
 }
 
 void move_word(Line& to, const Word& word, std::string_view address) {
@@ -100,8 +111,16 @@ void move_word(Line& to, const Word& word, std::string_view address) {
   to.words.push_back(copy);
 }
 
+/// A line of Klartext as ISO says it.
+struct Translated {
+  Line iso;
+  bool is_machine_place = false;
+  bool calls_cycle = false;  ///< M99, M89
+};
+
 /// The words of a line under their addresses in ISO. M13 and M14 start spindle and coolant.
-cl::Outcome translate(State& s, const Line& line, Line& iso, bool& is_machine_place) {
+cl::Outcome translate(State& s, const Line& line, Translated& out) {
+  Line& iso = out.iso;
   iso.number = line.number;
   const bool is_radius_arc = line.names.front().name == "CR";
   for (const Word& word : line.words) {
@@ -111,12 +130,15 @@ cl::Outcome translate(State& s, const Line& line, Line& iso, bool& is_machine_pl
     if (std::find(kSilent.begin(), kSilent.end(), code) != kSilent.end()) {
       s.cl.summary.skip("M" + std::string(word.digits), line.number);
     } else if (code == 91) {
-      is_machine_place = true;
+      out.is_machine_place = true;
     } else if (code == 128 || code == 129) {
       auto done = code == 128 ? switch_on(s, line, true) : switch_off(s, line);
       if (!done) return done;
-    } else if (code == 92 || code == 136 || code == 140 || code == 89 || code == 99) {
-      return refuse("M" + std::string(word.digits) + " is not run here", kPlainMoves,
+    } else if (code == 89 || code == 99) {
+      out.calls_cycle = true;
+      if (s.modes.definition) s.modes.definition->runs_at_every_point = code == 89;
+    } else if (code == 92 || code == 136 || code == 140) {
+      return refuse("M" + std::string(word.digits) + " is not run here", kMovesByCam,
                     "M" + std::string(word.digits));
     } else if (code == 13 || code == 14) {
       Word start = word;
@@ -125,7 +147,7 @@ cl::Outcome translate(State& s, const Line& line, Line& iso, bool& is_machine_pl
       start.number = 8;
       move_word(iso, start, "M");
     } else if (word.is('R') && !is_radius_arc) {
-      if (word.number != 0) return refuse("R beside a straight line", kPlainMoves);
+      if (word.number != 0) return refuse("R beside a straight line", kMovesByCam);
     } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ") {
       s.cl.summary.skip(word.address, line.number);
     } else if (word.address == "DL" || word.address == "DR") {
@@ -183,7 +205,7 @@ cl::Outcome take_plane_angles(State& s, Line& iso) {
   const auto is_of_plane = [](const Word& word) { return word.way == Word::Way::kOfPlane; };
   if (std::none_of(iso.words.begin(), iso.words.end(), is_of_plane)) return {};
   if (s.frames.tilt == Tilt::kNone || s.modes.motion != Motion::kRapid) {
-    return refuse("a Q parameter", kPlainMoves, "Q");
+    return refuse("a Q parameter", kMovesByCam, "Q");
   }
   const bool has_others = std::any_of(iso.words.begin(), iso.words.end(), [&](const Word& word) {
     return is_of_motion(word) && !is_of_plane(word);
@@ -199,10 +221,10 @@ cl::Outcome take_plane_angles(State& s, Line& iso) {
 
 /// L, LN, C, CR: what moves, with the actions of its line.
 cl::Outcome run_words(State& s, const Line& line) {
-  Line iso;
-  bool is_machine_place = false;
+  Translated translated;
   const std::string_view statement = line.names.front().name;
-  if (auto done = translate(s, line, iso, is_machine_place); !done) return done;
+  if (auto done = translate(s, line, translated); !done) return done;
+  Line& iso = translated.iso;
   if (auto done = prepare_motion(s, line, iso); !done) return done;
   if (auto done = act_before(s, iso); !done) return done;
   const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
@@ -212,8 +234,12 @@ cl::Outcome run_words(State& s, const Line& line) {
     if (auto taken = take_plane_angles(s, iso); !taken) return taken;
     const bool goes_on = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
     if (!goes_on) return act_behind(s, iso);
-    auto done = is_machine_place ? move_to_machine_place(s, iso, true) : move(s, iso);
+    auto done = translated.is_machine_place ? move_to_machine_place(s, iso, true) : move(s, iso);
     if (!done) return done;
+  }
+  const bool is_modal = s.modes.definition && s.modes.definition->runs_at_every_point;
+  if (translated.calls_cycle || (is_modal && moves)) {
+    if (auto done = call_cycle(s, iso); !done) return done;
   }
   return act_behind(s, iso);
 }
@@ -232,9 +258,9 @@ void tell_speed(State& s, const Line& line) {
 
 /// TOOL CALL 5 Z S6000: the tool, and a speed for it. F is that of FAUTO.
 cl::Outcome call_tool(State& s, const Line& line) {
-  Line iso;
-  bool is_machine_place = false;
-  if (auto done = translate(s, line, iso, is_machine_place); !done) return done;
+  Translated translated;
+  if (auto done = translate(s, line, translated); !done) return done;
+  Line& iso = translated.iso;
   std::erase_if(iso.words, [](const Word& word) { return word.is('F'); });
   const Word* const speed = iso.find("S");
   if (speed != nullptr && s.cl.spindle.state != ActionKind::kSpindleOff && speed->number > 0 &&
@@ -254,6 +280,8 @@ cl::Outcome call_tool(State& s, const Line& line) {
 cl::Outcome run_heidenhain(State& s, const Line& line) {
   const std::string_view statement = line.names.front().name;
   tell_speed(s, line);
+  if (statement == "Q") return take_cycle_parameters(s, line.names.front().arguments);
+  s.modes.open = OpenDefinition::kNone;
   if (statement == "BEGIN PGM") return begin_program(s, line);
   if (statement == "END PGM") {
     s.cl.structure.phase = cl::Structure::Phase::kEnded;
@@ -262,6 +290,7 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   if (statement == "FUNCTION") return run_function(s, line);
   if (statement == "TOOL CALL") return call_tool(s, line);
   if (statement == "CYCL DEF") return run_cycle_definition(s, line);
+  if (statement == "CYCL CALL") return run_cycle_call(s, line);
   if (statement == "CC") return set_pole(s, line);
   if (statement == "PLANE") return set_klartext_plane(s, line, line.names.front().arguments);
   const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF";
@@ -272,7 +301,7 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   const bool has_words = statement == "L" || statement == "LN" || statement == "C" ||
                          statement == "CR" || statement == "M" || statement == "STOP";
   if (!has_words) {
-    return refuse(std::string(statement) + ": this word of Klartext is not run here", kPlainMoves,
+    return refuse(std::string(statement) + ": this word of Klartext is not run here", kMovesByCam,
                   std::string(statement));
   }
   if (auto done = run_words(s, line); !done) return done;

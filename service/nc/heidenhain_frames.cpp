@@ -6,6 +6,7 @@
 
 #include "service/cl/number.hpp"
 #include "service/cl/written_text.hpp"
+#include "service/nc/remedy.hpp"
 
 namespace meridian::nc {
 namespace {
@@ -46,8 +47,8 @@ Expected<PlaneWords, cl::Refusal> plane_words(std::string_view text) {
     for (std::size_t k = 0; k < kAngles.size(); ++k) {
       if (!word.starts_with(kAngles[k])) continue;
       if (!is_number(word.substr(kAngles[k].size()), out.deg[k])) {
-        return refuse("PLANE SPATIAL: " + cl::quoted(word) + " is no angle",
-                      "let the CAM system write numbers", "PLANE");
+        return refuse("PLANE SPATIAL: " + cl::quoted(word) + " is no angle", kNumbersByCam,
+                      "PLANE");
       }
     }
   }
@@ -96,8 +97,8 @@ cl::Outcome shift_datum(State& s, const Line& line, std::string_view text) {
   double number = 0;
   const std::string_view behind = word.size() > 1 ? word.substr(1) : take_word(text);
   if (!is_number(behind, number)) {
-    return refuse("CYCL DEF 7: " + cl::quoted(behind) + " is no number",
-                  "let the CAM system write numbers", "CYCL DEF 7");
+    return refuse("CYCL DEF 7: " + cl::quoted(behind) + " is no number", kNumbersByCam,
+                  "CYCL DEF 7");
   }
   cl::Frame shift = s.frames.shift;
   double& at = shift.origin[static_cast<Eigen::Index>(k)];

@@ -7,13 +7,12 @@
 #include "service/cl/letters.hpp"
 #include "service/cl/number.hpp"
 #include "service/cl/written_text.hpp"
+#include "service/nc/remedy.hpp"
 
 namespace meridian::nc {
 namespace {
 
 using cl::refuse;
-
-constexpr const char* kMovesByCam = "let the CAM system write the moves themselves";
 
 constexpr bool is_space(char c) { return c == ' ' || c == '\t'; }
 constexpr bool is_numeral(char c) { return c >= '0' && c <= '9'; }
@@ -67,6 +66,10 @@ class KlartextCutter {
       line_.names.push_back({statement, rest_.substr(statement.size())});
       rest_.remove_prefix(statement.size());
       return statement == "TOOL CALL" ? cut_tool_call() : cl::Outcome();
+    }
+    if (rest_.size() > 1 && rest_.front() == 'Q' && is_numeral(rest_[1])) {
+      line_.names.push_back({rest_.substr(0, 1), rest_});
+      return {};
     }
     std::size_t size = 0;
     while (size < rest_.size() && cl::is_letter(rest_[size])) ++size;

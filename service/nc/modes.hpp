@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,26 @@ struct Cycle {
   double dwell_s = 0;
 };
 
+/// Holes along Z of the program as their cycle tells them. Lengths in the unit of the program.
+struct Drilling {
+  cl::HoleCycle hole;
+  double top = 0;  ///< Z of what the levels of `hole` count from
+};
+
+/// CYCL DEF of Klartext: a cycle with the Q parameters that the lines behind it give.
+struct CycleDefinition {
+  int number = 0;
+  std::map<int, double> parameters;
+  bool runs_at_every_point = false;  ///< M89
+};
+
+/// What lines of Q parameters alone belong to, in Klartext.
+enum class OpenDefinition : std::uint8_t {
+  kNone,
+  kCycle,  ///< the cycle in force
+  kPreset  ///< CYCL DEF 247
+};
+
 /// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
 struct Modes {
   Motion motion = Motion::kNone;
@@ -45,6 +66,9 @@ struct Modes {
   bool is_centre_absolute = false;
   cl::FeedUnit feed_unit = cl::FeedUnit::kPerMinute;
   Cycle cycle;
+  std::optional<Drilling> at_every_point;     ///< MCALL of Siemens
+  std::optional<CycleDefinition> definition;  ///< CYCL DEF of Klartext
+  OpenDefinition open = OpenDefinition::kNone;
   int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;

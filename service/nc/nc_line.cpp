@@ -6,13 +6,12 @@
 #include "service/cl/letters.hpp"
 #include "service/cl/number.hpp"
 #include "service/cl/written_text.hpp"
+#include "service/nc/remedy.hpp"
 
 namespace meridian::nc {
 namespace {
 
 using cl::refuse;
-
-constexpr const char* kExpand = "let the CAM system write the moves themselves";
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -70,9 +69,10 @@ class Cutter {
   [[nodiscard]] bool has_letter_behind() const { return rest_.size() < 2 || !is_digit(rest_[1]); }
 
   [[nodiscard]] static cl::Outcome refuse_sign(char c) {
-    if (c == '#') return refuse("a variable (#)", kExpand, "variables");
-    if (c == '[') return refuse("an expression ([ ])", kExpand, "variables");
-    if (c == ',') return refuse("a word behind a comma (chamfer or rounding)", kExpand, "comma");
+    if (c == '#') return refuse("a variable (#)", kMovesByCam, "variables");
+    if (c == '[') return refuse("an expression ([ ])", kMovesByCam, "variables");
+    if (c == ',')
+      return refuse("a word behind a comma (chamfer or rounding)", kMovesByCam, "comma");
     return refuse("what begins with " + cl::quoted(std::string_view(&c, 1)) +
                   " is no NC word with a number");
   }
@@ -82,7 +82,7 @@ class Cutter {
     std::size_t size = 0;
     while (size < rest_.size() && cl::is_letter(rest_[size])) ++size;
     const std::string name(rest_.substr(0, std::min<std::size_t>(size, 16)));
-    return refuse("the word " + name + " of macros and jumps is not run here", kExpand, name);
+    return refuse("the word " + name + " of macros and jumps is not run here", kMovesByCam, name);
   }
 
   cl::Outcome cut_word() {
@@ -94,7 +94,7 @@ class Cutter {
     if (at < from.size() && cl::is_letter(from[at])) return refuse_name();
     if (at < from.size() && (from[at] == '#' || from[at] == '[')) return refuse_sign(from[at]);
     if (at < from.size() && from[at] == '<') {
-      return refuse("a name in < >: a subprogram or a variable of LinuxCNC", kExpand, "O<");
+      return refuse("a name in < >: a subprogram or a variable of LinuxCNC", kMovesByCam, "O<");
     }
     std::size_t stop = at;
     while (stop < from.size() && (is_digit(from[stop]) || from[stop] == '.' ||

@@ -6,13 +6,12 @@
 #include "service/cl/letters.hpp"
 #include "service/cl/number.hpp"
 #include "service/cl/written_text.hpp"
+#include "service/nc/remedy.hpp"
 
 namespace meridian::nc {
 namespace {
 
 using cl::refuse;
-
-constexpr const char* kExpand = "let the CAM system write the moves themselves";
 
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -78,7 +77,7 @@ class SiemensCutter {
       (void)take_while(is_digit);
       return {};
     }
-    if (c == '$' || c == '[') return refuse("a variable of the control", kExpand, "variables");
+    if (c == '$' || c == '[') return refuse("a variable of the control", kMovesByCam, "variables");
     if (c == '"') return refuse("a text where a word should stand");
     if (!cl::is_letter(c) && c != '_') {
       return refuse("what begins with " + cl::quoted(std::string_view(&c, 1)) + " is no NC word");
@@ -104,7 +103,7 @@ class SiemensCutter {
       if (name.name != "CR" && name.name != "TURN" && name.name != "RPL") {
         return refuse("a value for " + std::string(name.name.substr(0, 16)) +
                           ", which the control alone knows",
-                      kExpand, "assignment");
+                      kMovesByCam, "assignment");
       }
       return cut_value(word);
     }
@@ -140,7 +139,7 @@ class SiemensCutter {
       if (!value) {
         return refuse(std::string(address.substr(0, 32)) + "=" + std::string(name.substr(0, 32)) +
                           ": no line above gives it a number",
-                      kExpand, "variables");
+                      kMovesByCam, "variables");
       }
       number = *value;
     } else if (!cl::parse_number(take_while([](char c) { return is_digit(c) || c == '.'; }),
@@ -149,7 +148,7 @@ class SiemensCutter {
     }
     skip_blanks();
     if (!rest_.empty() && std::string_view("+-*/").find(rest_.front()) != std::string_view::npos) {
-      return refuse("an expression", kExpand, "variables");
+      return refuse("an expression", kMovesByCam, "variables");
     }
     return is_negative ? -number : number;
   }
@@ -260,7 +259,7 @@ class SiemensCutter {
     }
     rest_.remove_prefix(stop);
     if (!rest_.empty() && std::string_view("+-*/").find(rest_.front()) != std::string_view::npos) {
-      return refuse("an expression", kExpand, "variables");
+      return refuse("an expression", kMovesByCam, "variables");
     }
     return add(word);
   }

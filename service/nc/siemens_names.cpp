@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "service/nc/remedy.hpp"
+#include "service/nc/siemens_cycles.hpp"
 #include "service/nc/siemens_frames.hpp"
 
 namespace meridian::nc {
@@ -21,6 +23,7 @@ enum class What : std::uint8_t {
   kMachinePlace,
   kNothing,
   kFrame,
+  kModalCall,  ///< MCALL
   kRefused
 };
 
@@ -106,7 +109,7 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"GOTOF", What::kRefused, kMacro},
     {"IF", What::kRefused, kMacro},
     {"LOOP", What::kRefused, kMacro},
-    {"MCALL", What::kRefused, "a cycle of the control at every point"},
+    {"MCALL", What::kModalCall},
     {"PROC", What::kRefused, kMacro},
     {"REPEAT", What::kRefused, kMacro},
     {"RET", What::kRefused, kMacro},
@@ -136,11 +139,21 @@ const NameRow* find_name(std::string_view name) {
 }
 
 cl::Outcome refuse_row(const NameRow& row) {
-  return refuse(std::string(row.name) + ": " + std::string(row.note),
-                "let the CAM system write the moves themselves", std::string(row.name));
+  return refuse(std::string(row.name) + ": " + std::string(row.note), kMovesByCam,
+                std::string(row.name));
+}
+
+cl::Outcome take_drilling(State& s, const Line::Name& name, NameOutcome& out) {
+  const auto drilling = siemens_drilling(s, name);
+  if (!drilling) return tl::make_unexpected(drilling.error());
+  out.drilling = *drilling;
+  using Holes = NameOutcome::Holes;
+  out.holes = out.holes == Holes::kNoMore ? Holes::kAtEveryPoint : Holes::kHere;
+  return {};
 }
 
 cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOutcome& out) {
+  if (is_siemens_drilling(name.name)) return take_drilling(s, name, out);
   const NameRow* const row = find_name(name.name);
   if (row == nullptr) return take_unknown(s, line, name);
   switch (row->what) {
@@ -167,6 +180,9 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOu
     case What::kFrame:
       out.has_frame = true;
       return take_siemens_frame(s, line, name);
+    case What::kModalCall:
+      out.holes = NameOutcome::Holes::kNoMore;
+      return {};
     case What::kRefused:
       break;
   }
@@ -179,6 +195,11 @@ cl::Outcome check_names(const Line& line) {
   for (const Line::Name& name : line.names) {
     const NameRow* const row = find_name(name.name);
     if (row != nullptr && row->what == What::kRefused) return refuse_row(*row);
+    const bool is_cycle = name.name.starts_with("CYCLE") && row == nullptr;
+    if (is_cycle && !is_siemens_drilling(name.name)) {
+      return refuse(printed(name.name) + ": a cycle that only the control knows", kMovesByCam,
+                    printed(name.name));
+    }
   }
   return {};
 }

@@ -86,6 +86,12 @@ struct PathEnd {
 /// lines.cpp: to W with --frame.
 [[nodiscard]] Expected<ToolPose, cl::Refusal> in_path(const State& s, const PathEnd& end);
 
+// drill.cpp
+/// Whether the tool may drill where it stands: along its axis, from a place that is known.
+[[nodiscard]] cl::Outcome check_hole(const State& s);
+/// One hole under the tool. It ends at the retract level.
+[[nodiscard]] cl::Outcome drill(State& s, const Line& line, const Drilling& drilling);
+
 // cycles.cpp
 /// G81 and its kin; 0: G80, or a motion code.
 void begin_cycle(State& s, int code);
@@ -99,6 +105,8 @@ void begin_cycle(State& s, int code);
 // control.cpp
 [[nodiscard]] cl::Outcome set_control(State& s, const Line& line, Control control);
 [[nodiscard]] cl::Outcome set_work_offset(State& s, const Line& line, int tenths);
+/// CYCL DEF 247 of Klartext: a row of the preset table.
+[[nodiscard]] cl::Outcome set_preset(State& s, int row);
 [[nodiscard]] cl::Outcome set_unit(State& s, cl::LengthUnit unit);
 
 // actions.cpp

@@ -70,7 +70,12 @@ double dwell_of(const Modal& m) {
   return cycle.dwell_revolutions * units::kMinute_s / m.spindle.speed_rpm;
 }
 
-Outcome run_move(Modal& m, const HoleMove& move, const Vector3& top, const MotionFeed& feed,
+/// Down into the hole, and out where the cycle does not go out at rapid.
+struct HoleFeeds {
+  MotionFeed in, out;
+};
+
+Outcome run_move(Modal& m, const HoleMove& move, const Vector3& top, const HoleFeeds& feeds,
                  std::uint32_t line) {
   const Vector3& axis = m.axis.in_w;
   const Vector3 tip = top + move.level_mm * axis;
@@ -78,7 +83,9 @@ Outcome run_move(Modal& m, const HoleMove& move, const Vector3& top, const Motio
     case HoleMove::Kind::kRapid:
       return rapid_to(m, tip, axis, line);
     case HoleMove::Kind::kFeed:
-      return m.path.line_to(tip, axis, feed, line);
+      return m.path.line_to(tip, axis, feeds.in, line);
+    case HoleMove::Kind::kFeedOut:
+      return m.path.line_to(tip, axis, feeds.out, line);
     case HoleMove::Kind::kDwell:
       m.summary.dwell_time_s += dwell_of(m);
       m.path.act(BlockKind::kDwell, ActionKind::kNone, dwell_of(m), line);
@@ -93,16 +100,26 @@ Outcome run_move(Modal& m, const HoleMove& move, const Vector3& top, const Motio
   return {};
 }
 
-Expected<MotionFeed, Refusal> feed_of_cycle(Modal& m, std::uint32_t line) {
-  if (m.cycle->feed.unit == FeedUnit::kNone) return cutting_feed(m, line);
-  auto feed = feed_of(m.cycle->feed, {*m.units.in_force, m.spindle});
+Expected<MotionFeed, Refusal> feed_of_cycle(Modal& m, const WrittenFeed& written,
+                                            std::uint32_t line) {
+  auto feed = feed_of(written, {*m.units.in_force, m.spindle});
   if (!feed) return feed;
-  remark_on_feed(m.cycle->feed, *feed, *m.units.in_force, m.options.max_feed_mm_per_s, line,
-                 m.remarks);
+  remark_on_feed(written, *feed, *m.units.in_force, m.options.max_feed_mm_per_s, line, m.remarks);
   if (feed->meaning != FeedMeaning::kTip) return refuse("a cycle with a feed in inverse time");
   m.summary.feed_min_mm_per_s = std::min(m.summary.feed_min_mm_per_s, feed->feed);
   m.summary.feed_max_mm_per_s = std::max(m.summary.feed_max_mm_per_s, feed->feed);
   return feed;
+}
+
+Expected<HoleFeeds, Refusal> feeds_of_cycle(Modal& m, std::uint32_t line) {
+  const HoleCycle& cycle = *m.cycle;
+  const auto in = cycle.feed.unit == FeedUnit::kNone ? cutting_feed(m, line)
+                                                     : feed_of_cycle(m, cycle.feed, line);
+  if (!in) return tl::make_unexpected(in.error());
+  if (cycle.feed_out.unit == FeedUnit::kNone) return HoleFeeds{*in, *in};
+  const auto out = feed_of_cycle(m, cycle.feed_out, line);
+  if (!out) return tl::make_unexpected(out.error());
+  return HoleFeeds{*in, *out};
 }
 
 void end_cycle(Modal& m) {
@@ -158,8 +175,8 @@ Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
     m.path.lose_position();
     return {};
   }
-  const auto feed = feed_of_cycle(m, line);
-  if (!feed) return tl::make_unexpected(feed.error());
+  const auto feeds = feeds_of_cycle(m, line);
+  if (!feeds) return tl::make_unexpected(feeds.error());
   if (m.cycle->dwell_revolutions > 0 && !m.spindle.turns()) {
     return refuse("dwell in revolutions, but no spindle speed is in force");
   }
@@ -170,7 +187,7 @@ Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
   check_first_level(m, top, retract_mm, line);
   if (auto done = go_over(m, top, retract_mm, line); !done) return done;
   for (const HoleMove& move : moves_of(*m.cycle, {retract_mm, m.units.to_mm})) {
-    if (auto done = run_move(m, move, top, *feed, line); !done) return done;
+    if (auto done = run_move(m, move, top, *feeds, line); !done) return done;
   }
   ++m.summary.holes;
   ++m.holes_of_cycle;

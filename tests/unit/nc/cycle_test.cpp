@@ -7,18 +7,6 @@
 namespace meridian::nc {
 namespace {
 
-/// "z:kind" of every motion block behind the first.
-std::string levels_of(const ReadText& read) {
-  std::string out;
-  const auto motion = read.motion();
-  for (std::size_t n = 1; n < motion.size(); ++n) {
-    const int z = static_cast<int>(motion[n].tip_mm[2]);
-    out += (out.empty() ? "" : " ") + std::to_string(z) +
-           (motion[n].kind == BlockKind::kRapid ? "r" : "f");
-  }
-  return out;
-}
-
 std::string holes(const std::string& body) {
   const ReadText read = read_nc("G0 X0. Y0. Z20.\n" + body);
   return read.error.empty() ? levels_of(read) : read.error;

@@ -68,7 +68,7 @@ TEST(Klartext, Acts) {
 TEST(Klartext, RefusesByName) {
   const std::vector<std::pair<const char*, const char*>> cases = {
       {"L X+Q5", "a Q parameter"},
-      {"Q5 = 3", "Q: this word of Klartext"},
+      {"Q5 = 3", "a Q parameter"},
       {"FN 0: Q1 = 5", "FN: this word of Klartext"},
       {"LBL 1", "LBL: this word"},
       {"CALL LBL 1", "CALL LBL: this word"},
@@ -77,7 +77,7 @@ TEST(Klartext, RefusesByName) {
       {"PLANE VECTOR BX1 BY0 BZ0 NX0 NY0 NZ1 TURN", "PLANE VECTOR: a plane"},
       {"PLANE SPATIAL SPA+Q1 SPB+0 SPC+0 TURN", "'SPA+Q1' is no angle"},
       {"L C+Q122 FMAX", "a Q parameter"},
-      {"CYCL DEF 200 DRILLING ~", "CYCL DEF 200: a cycle"},
+      {"CYCL DEF 207 RIGID TAPPING ~", "CYCL DEF 207: a cycle"},
       {"CYCL DEF 7.1 #5", "CYCL DEF 7 by '#5'"},
       {"RND R5", "RND: this word"},
       {"APPR LT X+0", "APPR: this word"},

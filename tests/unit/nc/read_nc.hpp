@@ -65,6 +65,18 @@ inline constexpr double kTiny = 1e-9;  ///< mm, or of a unit vector
       "0 BEGIN PGM PART MM\n1 ; NOTE\n" + std::string(body) + "9 END PGM PART MM\n", options);
 }
 
+/// Z and kind, "r" rapid or "f" feed, of every motion block behind the first.
+[[nodiscard]] inline std::string levels_of(const ReadText& read) {
+  std::string out;
+  const auto motion = read.motion();
+  for (std::size_t n = 1; n < motion.size(); ++n) {
+    const int z = static_cast<int>(motion[n].tip_mm[2]);
+    out += (out.empty() ? "" : " ") + std::to_string(z) +
+           (motion[n].kind == BlockKind::kRapid ? "r" : "f");
+  }
+  return out;
+}
+
 const double kHalfRoot = std::sqrt(0.5);
 
 [[nodiscard]] inline Vector3 tip(const ClBlock& block) { return to_vector(block.tip_mm); }
