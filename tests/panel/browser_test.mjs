@@ -2,6 +2,7 @@
 // browser_test.mjs BIN SOURCE FETCHED PICTURES: the panel in a real browser, in front of a service with simulated drives.
 import { connect } from "node:net";
 import { mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { familyOf, findPlaywright, kLarge, kSmall, memoryOf, openBrowser, Plant, sleep, until } from "./plant.mjs";
 
@@ -247,6 +248,27 @@ const upgrade = (host, origin) =>
   `GET /live HTTP/1.1\r\nHost: ${host}\r\nOrigin: ${origin}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
   "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
 
+// Every view in both themes, by the rules that axe-core calls serious or critical.
+async function everyViewIsAccessible({ page }) {
+  const draw = (ratio) => page.evaluate((value) => (meridian.view.renderer.setPixelRatio(value), meridian.view.resize()), ratio);
+  await draw(0.1);  // the picture is not looked at
+  await page.evaluate(createRequire(join(fetched, "package.json"))("axe-core").source);
+  const faults = [];
+  for (const theme of ["dark", "light"]) {
+    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+    for (const view of ["machine", "program", "scope", "timing"]) {
+      await page.click(`#tab-${view}`);
+      await sleep(300);
+      const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+      for (const { id, impact, nodes } of violations.filter(({ impact }) => impact === "serious" || impact === "critical"))
+        faults.push(`${theme}, ${view}: ${impact} ${id} at ${nodes.slice(0, 3).map((node) => node.target.join(" ")).join(", ")}`);
+    }
+  }
+  await page.click("#tab-machine");
+  await draw(1);
+  must(faults.length === 0, faults.join("\n"));
+}
+
 async function strangersReachNothing() {
   const { host } = new URL(plant.url);
   must((await exchange(upgrade(host, `http://${host}`))).includes(" 101 "), "the page itself is refused");
@@ -296,6 +318,7 @@ try {
   await run("AProgramIsCheckedAsAWhole", aProgramIsCheckedAsAWhole, open);
   await run("APartRunsByClicksAlone", aPartRunsByClicksAlone, open);
   await run("AProgramGoesOnAtALine", aProgramGoesOnAtALine, open);
+  await run("EveryViewIsAccessible", everyViewIsAccessible, open);
   open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);
   await picture(open.page, "panel-light");
   await run("StrangersReachNothing", strangersReachNothing);

@@ -99,7 +99,8 @@ export const kChromium = "/usr/bin/chromium";
 
 // Playwright from where npm fetched it; nothing where it or the browser is not there.
 export function findPlaywright(fetched) {
-  if (!existsSync(kChromium) || !existsSync(join(fetched, "node_modules/playwright-core"))) return null;
+  const parts = ["playwright-core", "axe-core"].map((name) => join(fetched, "node_modules", name));
+  if (!existsSync(kChromium) || !parts.every((path) => existsSync(path))) return null;
   return createRequire(join(fetched, "package.json"))("playwright-core");
 }
 
