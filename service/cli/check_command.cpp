@@ -4,6 +4,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "service/record/picture.hpp"
 #include "service/record/read_path.hpp"
 #include "service/record/recorded_frame.hpp"
+#include "service/record/recorded_tools.hpp"
 #include "service/stream/frame_sum.hpp"
 
 namespace meridian::cli::check_command {
@@ -34,6 +36,7 @@ struct Options {
   bool is_json = false, is_feed_factor_given = false;
   record::CheckOptions check;
   MachineOptions machine;
+  std::optional<ToolTable> tools;  ///< that the recording tells of
   ClFileOptions cl;
 };
 
@@ -97,7 +100,7 @@ void find_overrides(Options& options, const MachineModel& model) {
 }
 
 int check(Options& options, const MachineModel& model) {
-  ToolTable tools = load_tools(options.machine);
+  ToolTable tools = options.tools ? *options.tools : load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
   if (!options.file.empty()) {
     cl::ClReaderOptions reading = reader_options(options.cl, model);
@@ -209,19 +212,26 @@ int check_program(const Options& options, const MachineModel& model) {
   return report.passed() ? kFine : kVerdictNo;
 }
 
-/// Where the workpiece lay, as the recorder wrote it beside the recording; --frame goes first.
-void find_frame(const Options& options, MachineModel& model) {
-  if (!options.machine.frame.empty() || options.recording.empty()) return;
+/// Where the workpiece lay and with which tools it was cut, as the recorder wrote it beside the
+/// recording; --frame and --tools go first.
+void find_set_up(Options& options, MachineModel& model) {
+  if (options.recording.empty()) return;
   std::ifstream file(record::operator_events_path(options.recording), std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (const auto frame = record::find_recorded_frame(text)) {
+  if (const auto frame = record::find_recorded_frame(text);
+      frame && options.machine.frame.empty()) {
     stream::place_frame(model, frame->rotation, frame->origin_mm);
+  }
+  if (!options.machine.tools.empty()) return;
+  options.tools = record::find_recorded_tools(text);
+  if (const auto length_mm = record::find_recorded_tool_length(text)) {
+    model.tool_length_mm = *length_mm;
   }
 }
 
 int run(Options& options) {
   MachineModel model = load_machine(options.machine);
-  find_frame(options, model);
+  find_set_up(options, model);
   if (!options.same.empty()) return compare(options, model);
   if (options.recording.empty()) {
     std::cerr << "meridian check: name a recording, or two behind --same\n";

@@ -16,6 +16,7 @@
 #include "service/cli/hand_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
+#include "service/cli/tool_options.hpp"
 #include "service/dds/participant.hpp"
 #include "service/stream/operator_link.hpp"
 
@@ -31,6 +32,8 @@ struct CtlOptions {
   std::vector<const CLI::Option*> of_jog;  ///< what is said of a jog alone
   FrameOptions frame;
   std::vector<const CLI::Option*> of_frame;
+  ToolOptions tool;
+  std::vector<const CLI::Option*> of_tool;
   double wait_s = 60;
   bool is_for_dry_run = false;
 };
@@ -50,7 +53,8 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"single-block", Verb::kSingleBlock},
                                                   {"optional-stop", Verb::kOptionalStop},
                                                   {"dry-run", Verb::kDryRun},
-                                                  {"frame", Verb::kFrame}};
+                                                  {"frame", Verb::kFrame},
+                                                  {"tool", Verb::kTool}};
   return kVerbs;
 }
 
@@ -85,6 +89,9 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   };
   if (verb != Verb::kFrame && has_any(options.of_frame))
     return "--at and --name are for frame alone";
+  if (verb != Verb::kTool && has_any(options.of_tool)) {
+    return "--length, --radius and their kin are for tool alone";
+  }
   const bool has_jog = has_any(options.of_jog);
   return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
 }
@@ -102,7 +109,8 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
       verb == Verb::kSingleBlock || verb == Verb::kOptionalStop || verb == Verb::kDryRun;
   if (is_switch) return switch_of(options);
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
-  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kFrame;
+  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kFrame ||
+                          verb == Verb::kTool;
   double percent = 0;
   bool is_right = has_joints || options.values.size() == (is_override ? 1U : 0U);
   if (is_right && is_override) {
@@ -157,11 +165,21 @@ int run_ctl(CtlOptions& options) {
   }
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   stream::OperatorLink link(participant, options.operator_name);
+  if (verb == Verb::kTool && is_tool_question(options.values)) {
+    (void)link.wait_for_status(options.peer.timeout());
+    return answer_tool_question(options.values, *machine, link.status() ? link.status()->tool : 0);
+  }
+  std::optional<ToolOrder> tools;
+  if (verb == Verb::kTool && !(tools = tool_order(options.values, options.tool, *machine))) {
+    return kUsage;
+  }
   if (verb == Verb::kJog) {
     return run_jog(participant, link, *machine, options.values, options.jog, options.peer);
   }
-  const auto reply = order ? link.ask(*order, options.peer.timeout())
-                           : link.ask(verb, *argument, options.peer.timeout());
+  const auto timeout = options.peer.timeout();
+  const auto reply = order   ? link.ask(*order, timeout)
+                     : tools ? link.ask_for_tools(tools->file, tools->tools_seen, timeout)
+                             : link.ask(verb, *argument, timeout);
   warn_of_others(link, options.peer.machine);
   if (!reply) {
     std::fprintf(stderr, "meridian: machine %s does not answer\n", options.peer.machine.c_str());
@@ -193,7 +211,8 @@ void add(CLI::App& app, int& exit_code) {
           "rapid-override: 0 to 100 %; jog: JOINT (or tool-x, -y, -z, -a, -b) and its "
           "velocity in mm/s or deg/s; home: "
           "joints, default all; single-block, optional-stop, dry-run: on or off; frame: set, "
-          "select or clear and a number, or list")
+          "select or clear and a number, or list; tool: set or clear and a number, load or save "
+          "and a file, or list")
       ->type_name("VALUE");
   CLI::Option* const time =
       command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
@@ -218,6 +237,7 @@ void add(CLI::App& app, int& exit_code) {
   CLI::Option* const name =
       command->add_option("--name", options->frame.name, "frame set: what it is called");
   options->of_frame = {at, name};
+  options->of_tool = add_tool_options(*command, options->tool);
   CLI::Option* const wait =
       command
           ->add_option(

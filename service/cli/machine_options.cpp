@@ -55,7 +55,7 @@ MachineModel load_machine(const MachineOptions& options) {
                                  .value = "tool " + std::to_string(options.tool) + " is not there",
                                  .remedy = "name one of the table's behind --tool"});
     }
-    model.tool_length_mm = tool->length_mm;
+    model.tool_length_mm = tool->tip_length_mm();
   }
   return model;
 }

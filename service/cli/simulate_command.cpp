@@ -130,6 +130,16 @@ int exit_code_of(simulate::Outcome outcome) {
   }
 }
 
+/// What the run that is replayed was cut with; --tools goes first.
+void take_recorded_tools(const Options& options, const simulate::OperatorEvents& events,
+                         MachineModel& model, ToolTable& tools) {
+  if (!options.machine.tools.empty()) return;
+  if (events.tools) tools = *events.tools;
+  const bool is_told = !events.feed_marks.empty() && events.feed_marks.front().is_begin;
+  const double length_mm = is_told ? events.feed_marks.front().tool_length_mm : 0;
+  if (length_mm > 0) model.tool_length_mm = length_mm;
+}
+
 int run(const Options& options) {
   MachineModel model = load_machine(options.machine);
   if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
@@ -157,6 +167,7 @@ int run(const Options& options) {
     if (frame && options.machine.frame.empty()) {
       stream::place_frame(model, frame->rotation, frame->origin_mm);
     }
+    take_recorded_tools(options, simulation.events, model, tools);
   }
   if (!options.start_from.empty()) {
     const auto drives = first_drives(options.start_from, model);

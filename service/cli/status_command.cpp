@@ -118,7 +118,7 @@ int print_latency(dds::Participant& participant, const StatusOptions& options) {
 [[nodiscard]] std::optional<Pose<double>> tool_of(const dds::Status& status,
                                                   const std::optional<MachineModel>& model) {
   if (!model) return std::nullopt;
-  return forward(*model, model->tool_length_mm, status.joints);
+  return forward(*model, status.tool_length_mm, status.joints);
 }
 
 [[nodiscard]] std::optional<MachineModel> model_of(const dds::MachineInfo& machine) {

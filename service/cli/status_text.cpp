@@ -62,10 +62,12 @@ bool is_in_program(State state) {
   }
 }
 
-void append_tool(std::string& text, const Pose<double>& tool, double length_mm) {
-  append(text, "tool      tip %.4f %.4f %.4f mm, axis %.6f %.6f %.6f, length %.3f mm\n",
-         tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1], tool.axis[2],
-         length_mm);
+/// The number of the tool in the spindle stands in front where it is known.
+void append_tool(std::string& text, const Pose<double>& tool, const dds::Status& status) {
+  const std::string number = status.tool > 0 ? std::to_string(status.tool) + ", " : "";
+  append(text, "tool      %stip %.4f %.4f %.4f mm, axis %.6f %.6f %.6f, length %.3f mm\n",
+         number.c_str(), tool.tip[0], tool.tip[1], tool.tip[2], tool.axis[0], tool.axis[1],
+         tool.axis[2], status.tool_length_mm);
 }
 
 /// "alarm     following_error of b2, line 840".
@@ -165,7 +167,7 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
            joint.is_rotary ? "deg" : "mm");
   }
   text += "\n";
-  if (tool) append_tool(text, *tool, machine.tool_length_mm);
+  if (tool) append_tool(text, *tool, status);
   append(text, "cycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
          Count{status.periods_lost},
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "real time" : "best effort",
@@ -199,7 +201,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          std::string(record::word(status.alarm)).c_str(),
          json_quoted(alarm_joint(status, machine)).c_str(),
          status.alarm != Alarm::kNone ? status.alarm_line : 0);
-  append(text, "\"work_frame\":%u,", status.work_frame);
+  append(text, "\"work_frame\":%u,\"tool\":%u,", status.work_frame, status.tool);
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,
@@ -210,6 +212,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   const auto add = [&text](const std::string& name, const char* format, double value) {
     text += json_quoted(name) + ":" + json_number(format, value) + ",";
   };
+  add("tool_length_mm", "%.6f", status.tool_length_mm);
   add("planned_s", "%.3f", status.planned_s);
   add("feed_programmed_mm_per_min", "%.6g", status.feed_programmed_mm_per_min);
   add("feed_achieved_mm_per_min", "%.6g", status.feed_achieved_mm_per_min);

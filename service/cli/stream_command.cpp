@@ -21,6 +21,7 @@
 #include "service/dds/participant.hpp"
 #include "service/stream/frame_sum.hpp"
 #include "service/stream/stream_run.hpp"
+#include "service/stream/tools_sum.hpp"
 #include "service/text/printable.hpp"
 
 namespace meridian::cli::stream_command {
@@ -117,6 +118,7 @@ int run_stream_command(StreamCommandOptions& options) {
   options.stream.frame = judged_for
                              ? stream::frame_sum(judged_for->model)
                              : stream::frame_sum(machine->frame_rotation, machine->frame_origin_mm);
+  if (judged_for && judged_for->tools) options.stream.tools = stream::tools_sum(*judged_for->tools);
   cl::ClReaderOptions& reader = options.stream.reader;
   reader.max_feed_mm_per_s = units::per_s_from_per_min(machine->max_feed_mm_per_min);
   if (judged_for && judged_for->model.default_unit_mm) {

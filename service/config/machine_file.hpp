@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -21,10 +23,15 @@ namespace meridian::config {
 /// The same for the text of a machine file, as a service tells it; `name` is what messages call it.
 [[nodiscard]] MachineModel parse_machine(std::string_view text, const std::string& name);
 
-/// Reads a tool table: [[tool]] with number, length_mm and radius_mm. Throws ConfigError.
+/// Reads a tool table: [[tool]] with number, length_mm, radius_mm, and where it has them
+/// corner_radius_mm, length_wear_mm, radius_wear_mm, holder_mm. Throws ConfigError.
 /// Proof: tests/unit/config/tool_file_test.cpp.
 [[nodiscard]] ToolTable load_tools(const std::filesystem::path& path);
 [[nodiscard]] ToolTable parse_tools(std::string_view text, const std::string& name);
+/// The table as the text of a file, with what its tools are called (tool_names.hpp); parse_tools()
+/// gives it back bit for bit.
+[[nodiscard]] std::string to_text(const ToolTable& tools,
+                                  const std::map<std::string, std::uint32_t>& names = {});
 
 /// Where the workpiece lies in the frame of the kinematics. rotation = Rz(c) Ry(b) Rx(a).
 struct Frame {

@@ -51,6 +51,7 @@ void session_request_fields(Way way, Message& message, Wire& wire) {
   way(message.file_checksum, wire.file_checksum);
   way(message.from_line, wire.from_line);
   way(message.frame, wire.frame);
+  way(message.tools, wire.tools);
 }
 
 template <class Way, class Message, class Wire>

@@ -20,6 +20,8 @@ void command_request_fields(Way way, Message& message, Wire& wire) {
   way.name(message.frame.frame.name, wire.frame_name);
   way(message.frame.frame.origin_mm, wire.frame_origin_mm);
   way(message.frame.frame.rotation_deg, wire.frame_rotation_deg);
+  way(message.tools_seen, wire.tools_seen);
+  way.whole(message.tool_file, wire.tool_file);
 }
 
 template <class Way, class Message, class Wire>

@@ -51,6 +51,9 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.is_dry_run, wire.is_dry_run);
   way(message.work_frame, wire.work_frame);
   way(message.frame, wire.frame);
+  way(message.tools, wire.tools);
+  way(message.tool, wire.tool);
+  way(message.tool_length_mm, wire.tool_length_mm);
   way(message.rate, wire.rate);
   way(message.plan_time_s, wire.plan_time_s);
   way(message.joints, wire.joints);

@@ -62,6 +62,7 @@ struct SessionRequest {
   std::uint64_t file_checksum = 0;  ///< FNV-1a, 64 bit, of the file's bytes; 0: not known
   std::uint32_t from_line = 0;      ///< the program begins with this line; 0: with its first
   std::uint64_t frame = 0;  ///< stream::frame_sum() that it was checked under; 0: under none
+  std::uint64_t tools = 0;  ///< stream::tools_sum() that it was checked with; 0: with none
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.
@@ -103,7 +104,9 @@ struct CommandRequest {
   std::uint64_t status_seen = 0;
   std::uint64_t service_id_seen = 0;  ///< 0: any
   double argument = 0;
-  FrameOrder frame{};  ///< of Verb::kFrame
+  FrameOrder frame{};            ///< of Verb::kFrame
+  std::uint64_t tools_seen = 0;  ///< of Verb::kTool: stream::tools_sum() of the table before
+  std::string tool_file{};       ///< of Verb::kTool, at most kToolFileBytes; empty: the service's own
 };
 
 /// `reply`
@@ -252,6 +255,9 @@ struct Status {
   bool is_dry_run = false;
   std::uint8_t work_frame = 0;  ///< number of the one in force; 0: the machine file's
   std::uint64_t frame = 0;      ///< its stream::frame_sum()
+  std::uint64_t tools = 0;      ///< stream::tools_sum() of the tool table in force
+  std::uint32_t tool = 0;       ///< number of the tool in the spindle; 0: that of the machine file
+  double tool_length_mm = 0;    ///< gauge line to its tip
   double rate = 1;
   double plan_time_s = 0;
   JointVector joints{};
@@ -318,7 +324,7 @@ struct MachineInfo {
   std::string tool_file{};     ///< text of the tool table; empty: none, or longer than fits
 };
 
-inline constexpr std::size_t kMachineFileBytes = 12287, kToolFileBytes = 4095;
+inline constexpr std::size_t kMachineFileBytes = 12287, kToolFileBytes = 8191;
 
 inline constexpr std::size_t kMaxHistograms = 8;
 

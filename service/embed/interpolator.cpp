@@ -27,14 +27,6 @@ constexpr std::uint64_t kMaxEnableCycles = 100;
   return drives;
 }
 
-[[nodiscard]] stream::ToolLengths lengths_of(const ToolTable& tools) {
-  stream::ToolLengths lengths;
-  for (const Tool& tool : tools.tools()) {
-    lengths.emplace(static_cast<std::uint32_t>(tool.number), tool.length_mm);
-  }
-  return lengths;
-}
-
 [[nodiscard]] Result refused(std::string reason) {
   return tl::unexpected<std::string>(std::move(reason));
 }
@@ -48,7 +40,7 @@ class Interpolator::Machine {
   Machine(const MachineModel& model, const ToolTable& tools, const JointVector& drives)
       : model_(model),
         tools_(tools),
-        check_(model_, lengths_of(tools)),
+        check_(model_, stream::lengths_of(tools)),
         planner_(model_, tools_),
         writer_(port_),
         reader_(port_),

@@ -41,7 +41,7 @@ Expected<std::vector<ProgramPose>, cl::ClError> read_poses(cl::ClReader& reader,
     const ClBlock& block = **read;
     if (block.kind == BlockKind::kTool) {
       const Tool* const tool = tools.find(static_cast<int>(block.value));
-      if (tool != nullptr) tool_length_mm = tool->length_mm;
+      if (tool != nullptr) tool_length_mm = tool->tip_length_mm();
     }
     if (!is_motion(block.kind)) continue;
     const ToolPose to = end_of(block);

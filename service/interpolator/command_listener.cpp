@@ -45,11 +45,22 @@ void CommandListener::on_data(dds::Reader<dds::CommandRequest>& reader) noexcept
       ports_.stop_status.store(status_clock_.newest(), std::memory_order_release);
       ports_.commands.stage_stop(request_.verb, key);
     }
-    if (request_.verb == Verb::kFrame) (void)ports_.frame.orders.try_push({key, request_.frame});
+    if (request_.verb == Verb::kFrame) (void)ports_.set_up.orders.try_push({key, request_.frame});
+    if (request_.verb == Verb::kTool) pass_tools(key);
     if (!ports_.arrivals.try_push(arrival_of(request_, key, info.source))) {
       ports_.commands_dropped.fetch_add(1, std::memory_order_relaxed);
     }
   }
+}
+
+/// Where there is no room its command is refused: what it says was lost.
+void CommandListener::pass_tools(std::uint64_t key) noexcept {
+  tools_.key = key;
+  tools_.tools_seen = request_.tools_seen;
+  tools_.file.fill('\0');
+  const std::size_t length = std::min(request_.tool_file.size(), tools_.file.size() - 1);
+  std::memcpy(tools_.file.data(), request_.tool_file.data(), length);
+  (void)ports_.set_up.tool_files.try_push(tools_);
 }
 
 }  // namespace meridian::interpolator

@@ -24,10 +24,12 @@ class CommandListener {
 
  private:
   void on_data(dds::Reader<dds::CommandRequest>& reader) noexcept;
+  void pass_tools(std::uint64_t key) noexcept;
 
   const StatusClock& status_clock_;
   Ports& ports_;
   dds::CommandRequest request_;
+  ToolArrival tools_;
   dds::Reader<dds::CommandRequest> reader_;
 };
 

@@ -75,8 +75,9 @@ void CycleThread::hand_over() noexcept {
   push_or_count(ports_.records, output_.record, ports_.records_overrun);
   for (std::size_t i = 0; i < output_.event_count; ++i) {
     const Event& event = output_.events[i];
-    const bool is_frame = event.b == static_cast<std::uint64_t>(Verb::kFrame);
-    if (event.code == EventCode::kAccepted && is_frame) take_frame();
+    const bool is_set_up = event.b == static_cast<std::uint64_t>(Verb::kFrame) ||
+                           event.b == static_cast<std::uint64_t>(Verb::kTool);
+    if (event.code == EventCode::kAccepted && is_set_up) take_frame();
     push_or_count(ports_.events, event, ports_.events_overrun);
   }
   ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
@@ -88,7 +89,7 @@ void CycleThread::hand_over() noexcept {
 
 /// Between two programs: nothing that is planned by the frame before runs any more.
 void CycleThread::take_frame() noexcept {
-  if (ports_.frame.for_cycle.refresh()) place(model_, ports_.frame.for_cycle.latest());
+  if (ports_.set_up.for_cycle.refresh()) place(model_, ports_.set_up.for_cycle.latest());
 }
 
 /// Ahead of the wake, so that the publisher passes it on in this very cycle.

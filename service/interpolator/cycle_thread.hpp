@@ -17,7 +17,7 @@ class CycleThread {
   CycleThread(const MachineModel& model, const CycleOptions& options, Ports& ports) noexcept;
 
   /// Before run(): where the workpiece lies.
-  void place_workpiece(const FrameInForce& frame) noexcept { place(model_, frame); }
+  void set_up(const SetUpInForce& in_force) noexcept { place(model_, in_force); }
   /// Runs until Ports::is_stopping.
   void run() noexcept;
 

@@ -146,24 +146,29 @@ void Intake::take_request(const dds::SessionRequest& request, std::uint64_t sour
 /// The claim is given back in show() where no session comes of it.
 bool Intake::may_open(const dds::SessionRequest& request) {
   if (request.request != dds::SessionRequestKind::kOpen || judge_.is_held()) return true;
-  if (!ports_.frame.claim.try_take(ProgramClaim::Holder::kSession)) {
-    publish(judge_.refuse_program(request, "the work frame is being changed; stream it again"));
+  if (!ports_.set_up.claim.try_take(ProgramClaim::Holder::kSession)) {
+    publish(judge_.refuse_program(request, "the set-up is being changed; stream it again"));
     return false;
   }
-  if (ports_.frame.for_intake.refresh()) put_in_force(ports_.frame.for_intake.latest());
-  if (request.frame == 0 || request.frame == frame_.sum) return true;
-  publish(judge_.refuse_program(request,
-                                "stale: the program was checked under another work frame "
-                                "than number " +
-                                    std::to_string(frame_.number) +
-                                    ", which is in force now; stream it again"));
-  return false;
+  if (ports_.set_up.for_intake.refresh()) put_in_force(ports_.set_up.for_intake.latest());
+  if (ToolTable tools; ports_.set_up.intake_tools.try_take(tools)) judge_.set_tools(tools);
+  std::string stale;
+  if (request.frame != 0 && request.frame != in_force_.sum) {
+    stale = "stale: the program was checked under another work frame than number " +
+            std::to_string(in_force_.number) + ", which is in force now; stream it again";
+  } else if (request.tools != 0 && request.tools != in_force_.tools) {
+    stale = "stale: the program was checked with another tool table than the one that is in force "
+            "now; stream it again";
+  }
+  if (!stale.empty()) publish(judge_.refuse_program(request, stale));
+  return stale.empty();
 }
 
-void Intake::put_in_force(const FrameInForce& frame) noexcept {
-  frame_ = frame;
-  place(model_, frame);
-  setup_.frame = frame.sum;
+void Intake::put_in_force(const SetUpInForce& in_force) noexcept {
+  in_force_ = in_force;
+  place(model_, in_force);
+  setup_.frame = in_force.sum;
+  setup_.tools = in_force.tools;
 }
 
 /// Who opens session after session is not answered each time; his blocks and others notice nothing.
@@ -268,7 +273,7 @@ void Intake::publish(const std::optional<dds::Credit>& credit) {
 
 void Intake::show() {
   ports_.session.store(judge_.session(), std::memory_order_relaxed);
-  if (!judge_.is_held()) ports_.frame.claim.give_back(ProgramClaim::Holder::kSession);
+  if (!judge_.is_held()) ports_.set_up.claim.give_back(ProgramClaim::Holder::kSession);
   const stream::IntakeCounters& counters = judge_.counters();
   const std::lock_guard lock(view_mutex_);
   view_.session = judge_.session();

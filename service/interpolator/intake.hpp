@@ -46,8 +46,11 @@ class Intake {
   void wake() noexcept { waitset_.wake(); }
   /// Any thread: whether somebody reads actions.
   void set_action_peer(bool is_there) noexcept { has_action_peer_ = is_there; }
-  /// Before run(): where the workpiece lies.
-  void place_workpiece(const FrameInForce& frame) noexcept { put_in_force(frame); }
+  /// Before run(): where the workpiece lies, and with which tools it is cut.
+  void set_up(const SetUpInForce& in_force, const ToolTable& tools) {
+    put_in_force(in_force);
+    judge_.set_tools(tools);
+  }
   [[nodiscard]] SessionView view() const;
   /// Of credits, see dds::StalledReaders.
   [[nodiscard]] std::int32_t writer() const noexcept { return credits_.handle(); }
@@ -68,9 +71,9 @@ class Intake {
   void take_requests();
   [[nodiscard]] bool is_within_quota(std::uint64_t source);
   void take_request(const dds::SessionRequest& request, std::uint64_t source);
-  /// False, and answered, where the set-up is being changed, or it was checked under another frame.
+  /// False, and answered, where the set-up is being changed, or it was checked under another one.
   [[nodiscard]] bool may_open(const dds::SessionRequest& request);
-  void put_in_force(const FrameInForce& frame) noexcept;
+  void put_in_force(const SetUpInForce& in_force) noexcept;
   /// False, and answered, where it goes on with another program than it says.
   [[nodiscard]] bool may_go_on(const dds::SessionRequest& request);
   void begin_session(const dds::SessionRequest& request);
@@ -94,7 +97,7 @@ class Intake {
   Ports& ports_;
   const config::ServiceConfig& service_;
   MachineModel model_;
-  FrameInForce frame_;
+  SetUpInForce in_force_;
   stream::IntakeJudge judge_;
   dds::Reader<dds::Batch> batches_;
   dds::Reader<dds::SessionRequest> requests_;

@@ -25,11 +25,13 @@ void Lease::hold() {
   say();
 }
 
-void Lease::place_workpiece(const WorkFrames& frames, const FrameInForce& in_force, bool is_told) {
+void Lease::set_up(const WorkFrames& frames, const SetUpInForce& in_force,
+                   const std::string& tool_file, bool is_told) {
   claim_.frame_rotation = in_force.rotation;
   claim_.frame_origin_mm = in_force.origin_mm;
   claim_.work_frame = in_force.number;
   claim_.work_frames.assign(frames.rows().begin(), frames.rows().end());
+  claim_.tool_file = tool_file;
   if (is_told) say();
 }
 

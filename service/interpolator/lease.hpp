@@ -12,7 +12,7 @@
 #include "service/dds/messages.hpp"
 #include "service/dds/reader.hpp"
 #include "service/dds/writer.hpp"
-#include "service/interpolator/frame_port.hpp"
+#include "service/interpolator/set_up_port.hpp"
 #include "service/interpolator/lease_judge.hpp"
 
 namespace meridian::interpolator {
@@ -35,8 +35,9 @@ class Lease {
                                                             std::chrono::milliseconds patience);
   /// The machine is ours: others hear it.
   void hold();
-  /// Where the workpiece lies, and the set-up, from here on; heard at once where `is_told`.
-  void place_workpiece(const WorkFrames& frames, const FrameInForce& in_force, bool is_told);
+  /// The set-up from here on, with the text of the tool table; heard at once where `is_told`.
+  void set_up(const WorkFrames& frames, const SetUpInForce& in_force, const std::string& tool_file,
+              bool is_told);
   /// Another service that serves the machine and keeps it, where we heard of it only after hold():
   /// we are to end. To be called several times a second. `may_leave` is false while drives are on:
   /// then there is none. In a dry run none is, so that it gives way as a machine in Off does.

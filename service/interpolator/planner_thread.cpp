@@ -45,7 +45,8 @@ bool PlannerThread::work() noexcept {
     const CycleView& view = queue_.view();
     if (view.record.state != State::kReady) return false;
     // Set before the session was opened that sent this block.
-    if (ports_.frame.for_planner.refresh()) place(model_, ports_.frame.for_planner.latest());
+    if (ports_.set_up.for_planner.refresh()) place(model_, ports_.set_up.for_planner.latest());
+    if (ports_.set_up.planner_tools.try_take(spare_tools_)) planner_.swap_tools(spare_tools_);
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view.epoch, look.front->settings);
     writer_.forget_ahead();  // in Ready all that was published has run or is void

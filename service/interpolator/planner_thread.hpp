@@ -20,8 +20,11 @@ class PlannerThread {
  public:
   PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports);
 
-  /// Before run(): where the workpiece lies.
-  void place_workpiece(const FrameInForce& frame) noexcept { place(model_, frame); }
+  /// Before run(): where the workpiece lies, and with which tools it is cut.
+  void set_up(const SetUpInForce& in_force, ToolTable tools) noexcept {
+    place(model_, in_force);
+    planner_.swap_tools(tools);
+  }
   /// Runs until Ports::is_stopping.
   void run() noexcept;
 
@@ -46,6 +49,7 @@ class PlannerThread {
   MotionWriter writer_;
   MachineModel model_;
   SmoothPlanner planner_;
+  ToolTable spare_tools_;  ///< what the planner had before; the commands thread frees it
   std::uint64_t session_ = 0;          ///< of the block that was planned last
   std::int64_t last_block_ns_ = 0;     ///< when one was planned last
   std::uint64_t look_ = 0;             ///< SmoothPlanner::look() when last asked

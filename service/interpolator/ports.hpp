@@ -19,7 +19,7 @@
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/interpolator/command_port.hpp"
 #include "service/interpolator/enabling_watch.hpp"
-#include "service/interpolator/frame_port.hpp"
+#include "service/interpolator/set_up_port.hpp"
 #include "service/interpolator/queue_mark.hpp"
 #include "service/interpolator/reply_queue.hpp"
 #include "service/interpolator/sent_times.hpp"
@@ -187,8 +187,9 @@ struct Ports {
   std::atomic<std::uint64_t> stop_status{0};  ///< newest status when a stop came last
   std::atomic<std::uint64_t> commands_dropped{0}, replies_dropped{0};
   std::atomic<double> spindle_tool_mm{0};     ///< gauge line to tip of the tool in the spindle
+  std::atomic<std::uint32_t> spindle_tool{0};  ///< its number; 0: the one of the machine file
   std::atomic<bool> is_tool_changing{false};  ///< that may be another one by now
-  FramePorts frame;
+  SetUpPorts set_up;
   QueueMarkWord queue_mark;                   ///< intake to planner: what of `blocks` is good
   std::atomic<double> planned_s{0};           ///< plan time of the program that was published
   std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};

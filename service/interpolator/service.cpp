@@ -14,6 +14,7 @@
 #include "interpolator_version.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/config/machine_file.hpp"
 #include "service/interpolator/monotonic.hpp"
 #include "service/stream/frame_sum.hpp"
 #include "service/telemetry/file_name.hpp"
@@ -94,19 +95,10 @@ namespace {
   return options;
 }
 
-[[nodiscard]] stream::ToolLengths lengths_of(const ToolTable& tools) {
-  stream::ToolLengths lengths;
-  for (const Tool& tool : tools.tools()) {
-    lengths[static_cast<std::uint32_t>(tool.number)] = tool.length_mm;
-  }
-  return lengths;
-}
-
-/// What programs are cut with as long as this service lasts; tool and work frame change.
+/// What programs are cut with as long as this service lasts; the set-up changes.
 [[nodiscard]] telemetry::CutSetup cut_setup(const ServiceParts& parts) {
   telemetry::CutSetup setup;
   setup.machine = text::checksum_of(parts.machine_file);
-  setup.tools = text::checksum_of(parts.tool_file);
   return setup;
 }
 
@@ -133,6 +125,11 @@ namespace {
   return entry;
 }
 
+StartError unreadable(const std::filesystem::path& set_up, const std::string& why) {
+  return StartError("the set-up " + set_up.string() + " " + why +
+                    "; put it right, or remove it and set work frames and tools anew");
+}
+
 StartError served_already(const dds::MachineInfo& holder) {
   return StartError("machine '" + holder.name + "' is served already by meridiand on host " +
                     holder.host + ", process " + std::to_string(holder.pid) +
@@ -147,7 +144,7 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
       realtime_(realtime),
       log_(std::move(log)),
       service_id_(draw_id()),
-      tool_lengths_(lengths_of(parts_.tools)),
+      tool_lengths_(stream::lengths_of(parts_.tools)),
       rings_(parts_.service.trace.folder.empty() ? nullptr : std::make_unique<trace::Rings>()),
       ports_(rings_.get()),
       status_clock_(static_cast<std::int64_t>(1e9 / parts_.service.status_rate_hz)),
@@ -227,28 +224,43 @@ void Service::take_lease() {
 /// Behind the lease, for another service may have changed it until then. A machine whose set-up
 /// cannot be read does not start with another one than its operator has set.
 void Service::read_set_up() {
-  const auto frames = set_up_.read();
-  if (!frames) {
-    throw StartError("the set-up " + set_up_.path().string() + " " + frames.error() +
-                     "; put it right, or remove it and set the work frames anew");
+  const auto set_up = set_up_.read();
+  if (!set_up) throw unreadable(set_up_.path(), set_up.error());
+  ToolTable tools = parts_.tools;
+  if (set_up->tools) {
+    try {
+      tools = config::parse_tools(*set_up->tools, "its tool table");
+    } catch (const config::ConfigError& error) {
+      throw unreadable(set_up_.path(), error.what());
+    }
   }
-  const FrameInForce frame = frame_in_force(*frames, parts_.model, 0);
-  intake_.place_workpiece(frame);
-  planner_.place_workpiece(frame);
-  cycle_.place_workpiece(frame);
-  telemetry_.place_workpiece(frame);
-  supervisor_.keep_frames(set_up_, *frames, frame);
-  lease_.place_workpiece(*frames, frame, false);
-  if (frame.number != 0) {
+  const SetUpInForce in_force = in_force_by(*set_up, parts_.model, tools, 0);
+  intake_.set_up(in_force, tools);
+  planner_.set_up(in_force, tools);
+  cycle_.set_up(in_force);
+  telemetry_.set_up(in_force, tools);
+  supervisor_.keep_set_up(set_up_, *set_up, tools, in_force);
+  lease_.set_up(set_up->frames, in_force, told_tools(*set_up), false);
+  if (in_force.number != 0) {
     log_->info("work frame {} of the set-up is in force, in the place of the machine file's",
-               frame.number);
+               in_force.number);
+  }
+  if (set_up->tools) {
+    log_->info("the tool table of the set-up is in force, in the place of the service's own file; "
+               "meridian ctl tool load without a file takes that again");
   }
 }
 
+std::string Service::told_tools(const telemetry::SetUp& set_up) const {
+  const std::string& text = set_up.tools ? *set_up.tools : parts_.tool_file;
+  return text.size() <= dds::kToolFileBytes ? text : "";
+}
+
 void Service::tell_set_up() {
-  if (!supervisor_.has_frames_to_tell()) return;
-  lease_.place_workpiece(supervisor_.frames(), supervisor_.frame(), true);
-  supervisor_.frames_told();
+  if (!supervisor_.has_set_up_to_tell()) return;
+  const telemetry::SetUp& set_up = supervisor_.set_up();
+  lease_.set_up(set_up.frames, supervisor_.in_force(), told_tools(set_up), true);
+  supervisor_.set_up_told();
 }
 
 void Service::tell_security() {
@@ -271,7 +283,8 @@ void Service::tell_last_program() {
     return;
   }
   telemetry::CutSetup setup = cut_setup(parts_);
-  setup.frame = supervisor_.frame().sum;
+  setup.frame = supervisor_.in_force().sum;
+  setup.tools = supervisor_.in_force().tools;
   if (const auto last = journal_.read()) {
     last_program_.set(*last);
     const std::string words = telemetry::describe(*last);

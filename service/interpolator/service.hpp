@@ -81,6 +81,8 @@ class Service {
   void take_lease();
   /// What the set-up of this machine says, before it is told to anybody. Throws StartError.
   void read_set_up();
+  /// The text of the tool table in force; empty where it is longer than can be told.
+  [[nodiscard]] std::string told_tools(const telemetry::SetUp& set_up) const;
   void tell_security();
   void tell_last_program();
 

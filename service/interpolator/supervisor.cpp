@@ -22,6 +22,7 @@ Supervisor::Supervisor(dds::Participant& participant, const MachineModel& model,
                        std::uint64_t service_id, const StatusClock& status_clock, Ports& ports,
                        telemetry::AuditLog* audit)
     : model_(model),
+      own_tools_(tools),
       tools_(tools),
       service_(service),
       service_id_(service_id),
@@ -55,7 +56,7 @@ void Supervisor::run() noexcept {
     take_actions_done();
     take_events();
     send_delayed_resets();
-    work_on_frame_change();
+    work_on_set_up_change();
     work_on_switching_off();
     look_for_action_peer();
     waitset_.wait(kLookAtRings);
@@ -67,9 +68,9 @@ void Supervisor::refresh_view() {
   view_ = ports_.commands_view.latest();
   if (std::exchange(is_dry_run_, view_.is_dry_run) == view_.is_dry_run) return;
   if (is_dry_run_) {
-    tool_before_mm_ = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
+    tool_before_ = in_spindle();
   } else {
-    ports_.spindle_tool_mm.store(tool_before_mm_, std::memory_order_relaxed);
+    put_in_spindle(tool_before_);
   }
   looked_ns_ = 0;
   look_for_action_peer();
@@ -146,7 +147,9 @@ void Supervisor::publish_action(const Event& event) {
   if (service_.auxiliary == config::AuxiliaryPolicy::kIgnore || view_.is_dry_run) {
     if (action_.block.kind == BlockKind::kTool) {
       const Tool* tool = tools_.find(static_cast<int>(action_.block.value));
-      if (tool != nullptr) ports_.spindle_tool_mm.store(tool->length_mm, std::memory_order_relaxed);
+      if (tool != nullptr) {
+        put_in_spindle({static_cast<std::uint32_t>(tool->number), tool->tip_length_mm()});
+      }
     }
     settle_action(true);
     return;
@@ -182,9 +185,13 @@ void Supervisor::take_actions_done() {
 /// spindle. Of a dry run that began meanwhile it is what the spindle holds behind it.
 void Supervisor::end_tool_change(bool is_done) {
   const Tool* tool = tools_.find(static_cast<int>(tool_change_.tool));
-  if (is_done && tool != nullptr && is_dry_run_) tool_before_mm_ = tool->length_mm;
-  if (is_done && tool != nullptr && !is_dry_run_) {
-    ports_.spindle_tool_mm.store(tool->length_mm, std::memory_order_relaxed);
+  if (is_done && tool != nullptr) {
+    const SpindleTool changed{static_cast<std::uint32_t>(tool->number), tool->tip_length_mm()};
+    if (is_dry_run_) {
+      tool_before_ = changed;
+    } else {
+      put_in_spindle(changed);
+    }
   }
   tool_change_ = {};
   ports_.is_tool_changing.store(false, std::memory_order_relaxed);

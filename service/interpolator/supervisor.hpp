@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,9 +31,15 @@
 
 namespace meridian::interpolator {
 
-/// What is in force by the active row of `frames`, or by `machine` itself where none is.
-[[nodiscard]] FrameInForce frame_in_force(const WorkFrames& frames, const MachineModel& machine,
-                                          std::uint32_t change);
+/// What is in force by the active row of the frames of `set_up`, or by `machine` itself where none
+/// is, and by `tools`.
+[[nodiscard]] SetUpInForce in_force_by(const telemetry::SetUp& set_up, const MachineModel& machine,
+                                       const ToolTable& tools, std::uint32_t change);
+
+/// Whether `verb` changes the set-up.
+[[nodiscard]] constexpr bool is_set_up(Verb verb) noexcept {
+  return verb == Verb::kFrame || verb == Verb::kTool;
+}
 
 /// The commands thread: operators' commands and jogs to the cycle and its answers back, actions out
 /// and in, events on to who wants them, and the orderly end of the service. Stops reach the cycle
@@ -65,18 +72,18 @@ class Supervisor {
   void on_session_event(std::function<void(bool has_action_peer)> tell_intake) {
     tell_intake_ = std::move(tell_intake);
   }
-  /// Before run(): the set-up that `file` holds, and what is in force by it. Without it every word
-  /// about work frames is refused.
-  void keep_frames(telemetry::SetUpFile& file, const WorkFrames& frames,
-                   const FrameInForce& in_force);
-  /// Main thread: whether the set-up is another one than it was told of; then frames() and
-  /// frame() stay as they are until frames_told().
-  [[nodiscard]] bool has_frames_to_tell() const noexcept {
-    return has_frames_to_tell_.load(std::memory_order_acquire);
+  /// Before run(): the set-up that `file` holds, and what is in force by it. Without it every
+  /// change of work frames and tools is refused.
+  void keep_set_up(telemetry::SetUpFile& file, const telemetry::SetUp& set_up,
+                   const ToolTable& tools, const SetUpInForce& in_force);
+  /// Main thread: whether the set-up is another one than it was told of; then set_up() and
+  /// in_force() stay as they are until set_up_told().
+  [[nodiscard]] bool has_set_up_to_tell() const noexcept {
+    return has_set_up_to_tell_.load(std::memory_order_acquire);
   }
-  [[nodiscard]] const WorkFrames& frames() const noexcept { return frames_; }
-  [[nodiscard]] const FrameInForce& frame() const noexcept { return frames_in_force_; }
-  void frames_told() noexcept { has_frames_to_tell_.store(false, std::memory_order_release); }
+  [[nodiscard]] const telemetry::SetUp& set_up() const noexcept { return set_up_; }
+  [[nodiscard]] const SetUpInForce& in_force() const noexcept { return in_force_; }
+  void set_up_told() noexcept { has_set_up_to_tell_.store(false, std::memory_order_release); }
 
  private:
   struct Pending {
@@ -84,6 +91,11 @@ class Supervisor {
     std::uint64_t participant = 0;  ///< who asks, see dds::participant_of(); 0: gone
     std::uint64_t source = 0;       ///< by which writer, see dds::SampleInfo
     dds::CommandRequest request;
+    std::uint64_t tools = 0;  ///< of verb `tool`: checksum of its text, which is not kept
+  };
+  struct SpindleTool {
+    std::uint32_t number = 0;  ///< 0: that of the machine file
+    double length_mm = 0;      ///< gauge line to tip
   };
   /// A tool change that the action peer was asked for, and has not answered.
   struct ToolChange {
@@ -111,14 +123,27 @@ class Supervisor {
   void delay_reset(const Pending& command);
   /// What a command of verb `frame` says; an unknown word where that was lost.
   [[nodiscard]] FrameOrder read_frame_order(std::uint64_t key) noexcept;
-  /// Whether its operator has not seen the work frame yet that is in force.
-  [[nodiscard]] bool is_frame_stale(const dds::CommandRequest& request) const noexcept;
-  void begin_frame_change(const Pending& command);
-  void work_on_frame_change();
-  void ask_cycle_for_frame();
-  void answer_frame(bool is_accepted, Refusal refusal);
-  void take_frame_back(Refusal refusal, const std::string& text);
-  void end_frame_change();
+  /// The text of a command of verb `tool`, and which table it was made from; nothing where that was
+  /// lost.
+  [[nodiscard]] std::optional<std::string> read_tool_file(std::uint64_t key, std::uint64_t& seen);
+  /// Whether its operator has not seen the set-up yet that is in force.
+  [[nodiscard]] bool is_set_up_stale(const dds::CommandRequest& request) const noexcept;
+  void begin_set_up_change(const Pending& command);
+  /// Makes the next set-up of the one in force; false, and answered, where that cannot be.
+  [[nodiscard]] bool change_frames(const Pending& command);
+  [[nodiscard]] bool change_tools(const Pending& command);
+  void work_on_set_up_change();
+  void ask_cycle_for_set_up();
+  void answer_set_up(bool is_accepted, Refusal refusal);
+  void pass_set_up_on();
+  void take_set_up_back(Refusal refusal, const std::string& text);
+  void end_set_up_change();
+  [[nodiscard]] std::string words_of_frames() const;
+  [[nodiscard]] std::string words_of_tools() const;
+  [[nodiscard]] SpindleTool in_spindle() const noexcept;
+  void put_in_spindle(const SpindleTool& tool) noexcept;
+  /// The same tool, as long as the table in force says.
+  [[nodiscard]] SpindleTool measured(SpindleTool tool) const noexcept;
   void send(const Pending& command);
   /// The place for a command that waits for its answer; nullptr: there is none.
   [[nodiscard]] Pending* find_place(Verb verb) noexcept;
@@ -153,7 +178,8 @@ class Supervisor {
   void refresh_view();
 
   const MachineModel& model_;
-  const ToolTable& tools_;
+  const ToolTable& own_tools_;  ///< of the service's own file
+  ToolTable tools_;             ///< in force
   const config::ServiceConfig& service_;
   std::uint64_t service_id_;
   const StatusClock& status_clock_;
@@ -184,7 +210,7 @@ class Supervisor {
   ToolChange tool_change_;
   bool has_action_peer_ = false;  ///< or a dry run, which needs none
   bool is_dry_run_ = false;
-  double tool_before_mm_ = 0;  ///< in the spindle when the dry run began
+  SpindleTool tool_before_;  ///< in the spindle when the dry run began
   std::atomic<bool> is_switching_off_{false}, is_off_{false};
   std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
   std::uint32_t enabling_losses_ = 0;  ///< that were reported
@@ -204,24 +230,26 @@ class Supervisor {
   std::size_t delayed_count_ = 0;
   std::int64_t delayed_until_ns_ = 0;
 
-  /// How far the one word about the set-up has come that is being done.
-  enum class FramePhase : std::uint8_t {
+  /// How far the one change of the set-up has come that is being done.
+  enum class SetUpPhase : std::uint8_t {
     kNone,
     kOnItsWayToDisk,
     kAtTheCycle,
     kOnItsWayBack,  ///< the cycle has refused it: the old set-up is written again
+    kAccepted,      ///< it is in force at the cycle, and passed on to the other threads
     kTold           ///< it is in force: status and machine topic are to say so
   };
-  telemetry::SetUpFile* set_up_ = nullptr;
-  FramePhase frame_phase_ = FramePhase::kNone;
-  WorkFrames frames_, next_frames_;  ///< in force; being set
-  FrameInForce frames_in_force_;
-  Pending frame_command_;
-  Refusal frame_refusal_ = Refusal::kNone;  ///< what it will be answered
-  std::string frame_text_;
-  std::uint32_t frame_change_ = 0;
-  std::uint64_t frame_status_ = 0;  ///< the first status that told of what is in force
-  std::atomic<bool> has_frames_to_tell_{false};
+  telemetry::SetUpFile* set_up_file_ = nullptr;
+  SetUpPhase set_up_phase_ = SetUpPhase::kNone;
+  telemetry::SetUp set_up_, next_set_up_;  ///< in force; being set
+  ToolTable next_tools_;                   ///< being set
+  SetUpInForce in_force_;
+  Pending set_up_command_;
+  std::optional<std::string> tool_file_;     ///< of the newest command of verb `tool`
+  Refusal set_up_refusal_ = Refusal::kNone;  ///< what it will be answered
+  std::string set_up_text_;
+  std::uint64_t set_up_status_ = 0;  ///< the first status that told of what is in force
+  std::atomic<bool> has_set_up_to_tell_{false};
 };
 
 }  // namespace meridian::interpolator

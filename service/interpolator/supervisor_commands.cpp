@@ -8,6 +8,7 @@
 #include "service/interpolator/supervisor.hpp"
 #include "service/telemetry/reply_words.hpp"
 #include "service/telemetry/words.hpp"
+#include "service/text/checksum.hpp"
 
 /// Operators' commands: checked, passed to the cycle, answered.
 namespace meridian::interpolator {
@@ -44,8 +45,14 @@ void Supervisor::take_command(const Arrival& arrival) {
                      .status_seen = arrival.status_seen,
                      .service_id_seen = arrival.service_id_seen,
                      .argument = arrival.argument,
-                     .frame = {}};
+                     .frame = {},
+                     .tools_seen = 0,
+                     .tool_file = {}};
   if (arrival.verb == Verb::kFrame) command.request.frame = read_frame_order(arrival.key);
+  if (arrival.verb == Verb::kTool) {
+    tool_file_ = read_tool_file(arrival.key, command.request.tools_seen);
+    command.tools = text::checksum_of(tool_file_.value_or(""));
+  }
   const dds::CommandRequest& request = command.request;
   if (!is_within_quota(command.participant, arrival.source)) return;
   if (is_stop(request.verb)) return await_stop(command);
@@ -79,7 +86,7 @@ void Supervisor::take_command(const Arrival& arrival) {
           "jog a joint, or wait");
     return;
   }
-  if (request.verb == Verb::kFrame) return begin_frame_change(command);
+  if (is_set_up(request.verb)) return begin_set_up_change(command);
   const State state = view_.record.state;
   const bool may_reset_drives =
       !view_.is_dry_run && (state == State::kFault || state == State::kOff);
@@ -114,7 +121,7 @@ void Supervisor::await_stop(const Pending& command) {
 Refusal Supervisor::check_turn(const Pending& command) const noexcept {
   const dds::CommandRequest& request = command.request;
   if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) return Refusal::kStale;
-  if (is_frame_stale(request)) return Refusal::kStale;
+  if (is_set_up_stale(request)) return Refusal::kStale;
   if (lacks_enabling(request.verb)) return Refusal::kNoEnablingDevice;
   const std::uint64_t stop_status = ports_.stop_status.load(std::memory_order_acquire);
   const bool is_before_stop = request.status_seen <= stop_status;
@@ -146,7 +153,8 @@ bool Supervisor::is_repetition(const Pending& command) {
     const dds::CommandRequest &a = other.request, &b = command.request;
     return other.participant == command.participant && a.operator_id == b.operator_id &&
            a.request == b.request && a.verb == b.verb && a.argument == b.argument &&
-           a.status_seen == b.status_seen && a.epoch_seen == b.epoch_seen && a.frame == b.frame;
+           a.status_seen == b.status_seen && a.epoch_seen == b.epoch_seen && a.frame == b.frame &&
+           a.tools_seen == b.tools_seen && other.tools == command.tools;
   };
   if (command.request.operator_id == 0) return false;
   const auto answered =
@@ -160,7 +168,7 @@ bool Supervisor::is_repetition(const Pending& command) {
     return pending.key != 0 && is_same(pending);
   };
   const auto delayed_end = delayed_resets_.begin() + static_cast<std::ptrdiff_t>(delayed_count_);
-  const bool is_being_set = frame_phase_ != FramePhase::kNone && is_same(frame_command_);
+  const bool is_being_set = set_up_phase_ != SetUpPhase::kNone && is_same(set_up_command_);
   return is_being_set || std::any_of(pending_.begin(), pending_.end(), waits) ||
          std::any_of(delayed_resets_.begin(), delayed_end, waits);
 }
@@ -232,9 +240,9 @@ void Supervisor::give_up_older(const Event& event) {
   for (Pending& pending : pending_) {
     const bool is_older = pending.key != 0 && pending.key < event.a;
     if (!is_older || is_stop(pending.request.verb)) continue;
-    if (pending.request.verb == Verb::kFrame) {
+    if (is_set_up(pending.request.verb)) {
       pending.key = 0;
-      ask_cycle_for_frame();  // once more: it makes no difference
+      ask_cycle_for_set_up();  // once more: it makes no difference
       continue;
     }
     reply(pending, false, Refusal::kWrongState,
@@ -248,7 +256,7 @@ void Supervisor::answer(const Event& event, const Pending& pending) {
   const bool is_accepted = event.code == EventCode::kAccepted;
   const auto refusal = is_accepted ? Refusal::kNone : static_cast<Refusal>(event.x);
   const Verb verb = pending.request.verb;
-  if (verb == Verb::kFrame) return answer_frame(is_accepted, refusal);
+  if (is_set_up(verb)) return answer_set_up(is_accepted, refusal);
   if (is_accepted && verb == Verb::kJog) {
     take_jogs();  // what came before is of the hand before
     jog_intake_.begin(pending.request.operator_id, pending.participant, pending.key);

@@ -61,13 +61,14 @@ TelemetryThread::TelemetryThread(dds::Participant& participant, const MachineMod
 void TelemetryThread::run() noexcept {
   const auto status_period_ns = static_cast<std::int64_t>(1e9 / service_.status_rate_hz);
   if (service_.optional_stop) recorder_.take(optional_stop_on());
-  if (frame_.sum != 0) record_frame(0);
+  if (in_force_.sum != 0) record_frame(0);
+  if (!tools_.tools().empty()) record_tools(0);
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
     // At once: behind actions that are done at once, in a dry run, the way is begun as soon as it
     // is planned.
     if (take_approach()) has_news_ = true;
-    if (take_frame()) has_news_ = true;
+    if (take_set_up()) has_news_ = true;
     const std::int64_t now_ns = monotonic_ns();
     keep_journal(now_ns);
     const bool is_due = has_news_ || now_ns - status_ns_ >= status_period_ns;
@@ -112,7 +113,7 @@ void TelemetryThread::drain() {
     planned.cycle = view_.record.setpoint.cycle;
     planned.a = mark.sequence;
     planned.b = mark.span;
-    planned.x = mark.factor;
+    planned.x = mark.is_begin ? mark.tool_length_mm : mark.factor;
     if (mark.looked_at > 0) {
       planned.code = EventCode::kPlanLooked;
       planned.a = mark.looked_at;
@@ -135,9 +136,13 @@ void TelemetryThread::drain() {
   while (ports_.told.try_pop(event)) {
     recorder_.take(event);
     flight_.take(event);
-    if (event.code == EventCode::kAccepted && static_cast<Verb>(event.b) == Verb::kFrame) {
-      has_news_ = take_frame() || has_news_;
-      record_frame(event.cycle);
+    const bool is_set_up = event.code == EventCode::kAccepted &&
+                           (static_cast<Verb>(event.b) == Verb::kFrame ||
+                            static_cast<Verb>(event.b) == Verb::kTool);
+    if (is_set_up) {
+      has_news_ = take_set_up() || has_news_;
+      const bool is_frame = static_cast<Verb>(event.b) == Verb::kFrame;
+      is_frame ? record_frame(event.cycle) : record_tools(event.cycle);
     }
     tell(event);
     keeper_.see(event, alarm_message_);
@@ -188,28 +193,43 @@ void TelemetryThread::drain_records() {
   }
 }
 
-bool TelemetryThread::take_frame() noexcept {
-  if (!ports_.frame.for_telemetry.refresh()) return false;
-  put_in_force(ports_.frame.for_telemetry.latest());
+bool TelemetryThread::take_set_up() noexcept {
+  if (!ports_.set_up.for_telemetry.refresh()) return false;
+  (void)ports_.set_up.telemetry_tools.try_take(tools_);
+  put_in_force(ports_.set_up.for_telemetry.latest());
   return true;
 }
 
-void TelemetryThread::put_in_force(const FrameInForce& frame) noexcept {
-  frame_ = frame;
-  place(model_, frame);
-  setup_.frame = frame.sum;
-  status_.work_frame = frame.number;
-  status_.frame = frame.sum;
+void TelemetryThread::put_in_force(const SetUpInForce& in_force) noexcept {
+  in_force_ = in_force;
+  place(model_, in_force);
+  setup_.frame = in_force.sum;
+  setup_.tools = in_force.tools;
+  status_.work_frame = in_force.number;
+  status_.frame = in_force.sum;
+  status_.tools = in_force.tools;
 }
 
 void TelemetryThread::record_frame(std::uint64_t cycle) noexcept {
-  recorder_.take(record::RecordedFrame{cycle, frame_.number, frame_.origin_mm, frame_.rotation});
+  recorder_.take(record::RecordedFrame{cycle, in_force_.number, in_force_.origin_mm,
+                                       in_force_.rotation});
 }
 
-void TelemetryThread::tell_frame_told() noexcept {
-  if (ports_.frame.told.load(std::memory_order_relaxed) == frame_.change) return;
-  ports_.frame.status.store(status_.status_sequence, std::memory_order_relaxed);
-  ports_.frame.told.store(frame_.change, std::memory_order_release);
+/// A table that is longer comes from the service's own file alone: it was too long to be told.
+void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
+  constexpr std::size_t kMaxRecorded = 256;
+  if (tools_.tools().size() > kMaxRecorded) return;
+  if (tools_.tools().empty()) recorder_.take(record::RecordedTool{cycle, 0, 0, 0});
+  for (const Tool& tool : tools_.tools()) {
+    recorder_.take(record::RecordedTool{cycle, tool.number, tool.tip_length_mm(),
+                                        tool.cutting_radius_mm()});
+  }
+}
+
+void TelemetryThread::tell_set_up_told() noexcept {
+  if (ports_.set_up.told.load(std::memory_order_relaxed) == in_force_.change) return;
+  ports_.set_up.status.store(status_.status_sequence, std::memory_order_relaxed);
+  ports_.set_up.told.store(in_force_.change, std::memory_order_release);
 }
 
 bool TelemetryThread::tell_program() {
@@ -411,6 +431,8 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.rate = record.rate;
   status.plan_time_s = record.plan_time_s;
   status.joints = record.joints;
+  status.tool = ports_.spindle_tool.load(std::memory_order_relaxed);
+  status.tool_length_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
   if (ports_.drive_words_for_status.refresh()) words_ = ports_.drive_words_for_status.latest();
   status.drives_enabled_mask = words_.enabled_mask;
   status.drives_fault_mask = words_.fault_mask;
@@ -436,7 +458,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);
   (void)statuses_.write(status);
-  tell_frame_told();
+  tell_set_up_told();
   status_ns_ = now_ns;
   has_news_ = false;
   motion_.reset();

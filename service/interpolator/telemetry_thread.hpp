@@ -39,8 +39,11 @@ class TelemetryThread {
                   telemetry::FlightRecorder& flight, std::shared_ptr<spdlog::logger> log,
                   Ports& ports);
 
-  /// Before run(): where the workpiece lies.
-  void place_workpiece(const FrameInForce& frame) noexcept { put_in_force(frame); }
+  /// Before run(): where the workpiece lies, and with which tools it is cut.
+  void set_up(const SetUpInForce& in_force, const ToolTable& tools) {
+    put_in_force(in_force);
+    tools_ = tools;
+  }
   /// Before run(): what the status says until there is something newer.
   void say_first(const std::string& message) { status_.message = message; }
 
@@ -64,12 +67,13 @@ class TelemetryThread {
  private:
   void drain();
   void drain_records();
-  /// A work frame that was put in force meanwhile; false: none was.
-  bool take_frame() noexcept;
-  void put_in_force(const FrameInForce& frame) noexcept;
+  /// A set-up that was put in force meanwhile; false: none was.
+  bool take_set_up() noexcept;
+  void put_in_force(const SetUpInForce& in_force) noexcept;
   void record_frame(std::uint64_t cycle) noexcept;
-  /// Lets the commands thread know that the newest status tells of the newest frame.
-  void tell_frame_told() noexcept;
+  void record_tools(std::uint64_t cycle) noexcept;
+  /// Lets the commands thread know that the newest status tells of the newest set-up.
+  void tell_set_up_told() noexcept;
   /// Tells how the program went that is over; false: none is.
   bool tell_program();
   void tell(const Event& event);
@@ -90,7 +94,8 @@ class TelemetryThread {
   void publish_latency(std::int64_t now_ns);
 
   MachineModel model_;
-  FrameInForce frame_;
+  SetUpInForce in_force_;
+  ToolTable tools_;
   const config::ServiceConfig& service_;
   std::uint64_t service_id_;
   Intake& intake_;

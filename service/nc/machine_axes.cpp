@@ -85,7 +85,7 @@ Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
                         std::to_string(*tool) + ", which is not in the tool table",
                     "give --tools FILE or --unknown-tool-length MM");
     }
-    length_mm = row->length_mm;
+    length_mm = row->tip_length_mm();
   }
   auto q = solve_near(from, length_mm, joints(rotary));
   if (!q) return refuse("the machine does not reach the place where this move begins");

@@ -100,7 +100,7 @@ void MachineWatch::take_status() {
   if (news_.add(*status_, *model_, std::chrono::system_clock::now())) {
     hub_.publish(Hub::kNews, news_text(news_));
   }
-  hub_.publish(Hub::kFrame, frame_text(*status_, *model_, machine_->tool_length_mm, *motion_));
+  hub_.publish(Hub::kFrame, frame_text(*status_, *model_, status_->tool_length_mm, *motion_));
   motion_->clear();
 }
 

@@ -84,7 +84,8 @@ std::string describe_scene(const MachineModel& model, const ToolTable& tools) {
   }
   for (const Tool& tool : tools.tools()) {
     table.push_back(
-        {{"number", tool.number}, {"length", tool.length_mm}, {"radius", tool.radius_mm}});
+        {{"number", tool.number}, {"length", tool.tip_length_mm()},
+         {"radius", tool.cutting_radius_mm()}});
   }
   const json picture = {{"name", model.name},
                         {"family", family_name(model.family)},

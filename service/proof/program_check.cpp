@@ -222,7 +222,7 @@ class SectionCheck {
   for (const ClBlock& block : blocks) {
     if (block.kind == BlockKind::kTool) {
       const Tool* const tool = tools.find(static_cast<int>(block.value));
-      length = tool != nullptr ? tool->length_mm : length;
+      length = tool != nullptr ? tool->tip_length_mm() : length;
       sections.push_back({{}, CheckedPath(length, 0), static_cast<int>(block.value)});
       continue;
     }

@@ -24,7 +24,7 @@ bool is_replayed(const Event& event) noexcept {
   const auto verb = static_cast<Verb>(event.b);
   // No program is there then.
   const bool is_outside = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kDryRun ||
-                          verb == Verb::kFrame;  // that has a row of its own
+                          verb == Verb::kFrame || verb == Verb::kTool;  // have rows of their own
   return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_outside) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
          event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned ||
@@ -42,7 +42,7 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
   } else if (event.code == EventCode::kActionAnswered) {
     row.put(kActionAnsweredWord).put(',').put_real(event.x);
   } else if (event.code == EventCode::kPlanBegun) {
-    row.put(kPlanBegunWord).put(',').put_real(event.x);
+    row.put(kPlanBegunWord).put(",1,").put_real(event.x);
   } else if (event.code == EventCode::kPlanLooked) {
     row.put(kPlanLookedWord).put(',').put_integer(event.a);
     if (event.b > 0) row.put(',').put_integer(event.b);
@@ -63,6 +63,16 @@ bool OperatorEventsWriter::write(const RecordedFrame& frame) noexcept {
   row.put_integer(frame.cycle).put(',').put(kFrameWord).put(',').put_integer(int{frame.number});
   for (const double value : frame.origin_mm) row.put(',').put_real(value);
   for (const double value : frame.rotation) row.put(',').put_real(value);
+  file_.end_row(row.put('\n').end());
+  return file_.flush();
+}
+
+bool OperatorEventsWriter::write(const RecordedTool& tool) noexcept {
+  char* const at = file_.begin_row();
+  if (at == nullptr) return false;
+  CsvRow row(at);
+  row.put_integer(tool.cycle).put(',').put(kToolWord).put(',').put_integer(tool.number);
+  row.put(',').put_real(tool.length_mm).put(',').put_real(tool.radius_mm);
   file_.end_row(row.put('\n').end());
   return file_.flush();
 }

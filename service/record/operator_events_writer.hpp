@@ -10,6 +10,7 @@
 #include "service/record/csv_file.hpp"
 #include "service/record/record_error.hpp"
 #include "service/record/recorded_frame.hpp"
+#include "service/record/recorded_tools.hpp"
 
 namespace meridian::record {
 
@@ -22,7 +23,8 @@ namespace meridian::record {
 inline constexpr std::string_view kPeriodsBridgedWord = "periods_bridged";
 inline constexpr std::string_view kPeriodsLostWord = "periods_lost";
 inline constexpr std::string_view kActionAnsweredWord = "action_answered";
-/// Of the planner: it begins a program; it plans for a feed override above 100 %, the argument,
+/// Of the planner: it begins a program (at a factor of 1, with a tool so long in the spindle as the
+/// next column says); it plans for a feed override above 100 %, the argument,
 /// from the block and span of it on that two more columns tell (FeedMark).
 inline constexpr std::string_view kPlanBegunWord = "plan_begun";
 inline constexpr std::string_view kFeedPlannedWord = "feed_planned";
@@ -47,6 +49,8 @@ class OperatorEventsWriter {
   bool write(const Event& event) noexcept;
   /// Adds where the workpiece lies from a cycle on. False once a write failed.
   bool write(const RecordedFrame& frame) noexcept;
+  /// Adds a tool of the table that is in force from a cycle on. False once a write failed.
+  bool write(const RecordedTool& tool) noexcept;
   /// Says in the file that events are missing, once: `meridian simulate --events` refuses it then.
   void mark_incomplete() noexcept;
   /// Flushes and closes; false where anything was lost.

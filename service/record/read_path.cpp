@@ -39,7 +39,7 @@ std::string read_path(const std::string& file, const cl::ClReaderOptions& option
       findings.add(unknown_tool(file, **block));
       continue;
     }
-    if (!findings.is_refused()) path.add(**block, tool != nullptr ? tool->length_mm : 0);
+    if (!findings.is_refused()) path.add(**block, tool != nullptr ? tool->tip_length_mm() : 0);
   }
   if (warnings != nullptr) *warnings = reader.warnings();
   std::string text = to_text(findings.sorted(), file);

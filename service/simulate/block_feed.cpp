@@ -6,23 +6,11 @@
 #include "meridian/path/build_piece.hpp"
 
 namespace meridian::simulate {
-namespace {
-
-[[nodiscard]] stream::ToolLengths lengths_of(const ToolTable& tools) {
-  stream::ToolLengths lengths;
-  for (const Tool& tool : tools.tools()) {
-    lengths.emplace(static_cast<std::uint32_t>(tool.number), tool.length_mm);
-  }
-  return lengths;
-}
-
-}  // namespace
-
 BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
                      MotionPort& port, bool has_action_peer, Explainer* explainer)
     : reader_(reader),
       model_(model),
-      judge_(model, lengths_of(tools)),
+      judge_(model, stream::lengths_of(tools)),
       actions_{.is_there = has_action_peer, .is_ignored = false},
       planner_(model, tools),
       writer_(port),

@@ -119,7 +119,11 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   (void)cut(row, ',');
   const std::string_view word = cut(row, ','), factor = cut(row, ',');
   mark.is_begin = word == record::kPlanBegunWord;
-  if (mark.is_begin) return row.empty();
+  if (mark.is_begin && row.empty()) return true;  // of before, which did not tell the tool
+  if (mark.is_begin) {
+    const std::string_view length = cut(row, ',');
+    return row.empty() && parse(length, mark.tool_length_mm) && mark.tool_length_mm >= 0;
+  }
   if (word == record::kPlanLookedWord) {
     const bool is_begin = row.empty();
     const std::string_view from = cut(row, ',');
@@ -162,6 +166,10 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
       if (record::read_frame(part)) continue;
       return tl::make_unexpected(name + ":" + std::to_string(line) + ": holds no work frame");
     }
+    if (record::is_tool_row(part)) {
+      if (record::read_tool(part)) continue;
+      return tl::make_unexpected(name + ":" + std::to_string(line) + ": holds no tool");
+    }
     if (FeedMark mark; read_mark(part, mark)) {
       if (mark.is_begin) is_first_program = !start;
       if (mark.is_begin && is_first_program) events.feed_marks.clear();
@@ -181,6 +189,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
     rows.push_back(row);
   }
   events.frame = record::find_recorded_frame(all);
+  events.tools = record::find_recorded_tools(all);
   if (start) keep_settings(rows, *start, events.verbs);
   for (const EventRow& row : rows) keep(row, start.value_or(0), events);
   return events;

@@ -11,6 +11,7 @@
 #include "meridian/planner/feed_mark.hpp"
 #include "meridian/rt/state.hpp"
 #include "service/record/recorded_frame.hpp"
+#include "service/record/recorded_tools.hpp"
 
 namespace meridian::simulate {
 
@@ -44,6 +45,8 @@ struct OperatorEvents {
   std::vector<FeedMark> feed_marks;
   /// Where the workpiece lay; nothing: that is not told.
   std::optional<record::RecordedFrame> frame;
+  /// With which tools; nothing: that is not told.
+  std::optional<ToolTable> tools;
 };
 
 /// Reads operator events: a row `cycle,verb[,argument]` each, in the order of cycles; the header
@@ -53,9 +56,9 @@ struct OperatorEvents {
 /// one they count from the start as they are. Of what was before the start the overrides in force
 /// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
-/// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun`,
-/// `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. Rows `frame` (RecordedFrame)
-/// stand anywhere. A row `incomplete`, by which
+/// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun,1[,length of the tool]`,
+/// `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. Rows `frame`
+/// (RecordedFrame) and `tool` (RecordedTool) stand anywhere. A row `incomplete`, by which
 /// a recorder says that it lost events, is refused. The error is a message with name and line.
 /// Proof: tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,

@@ -62,6 +62,14 @@ double tip_length(const ClBlock& block, const Array3& begin) {
 
 }  // namespace
 
+ToolLengths lengths_of(const ToolTable& tools) {
+  ToolLengths lengths;
+  for (const Tool& tool : tools.tools()) {
+    lengths.emplace(static_cast<std::uint32_t>(tool.number), tool.tip_length_mm());
+  }
+  return lengths;
+}
+
 BlockJudge::BlockJudge(const MachineModel& model, ToolLengths tools)
     : model_(model), tools_(std::move(tools)), tool_length_mm_(model.tool_length_mm) {
   begin(model.tool_length_mm);

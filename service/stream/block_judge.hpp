@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tool_table.hpp"
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
 
@@ -13,6 +15,8 @@ namespace meridian::stream {
 
 /// Gauge line to tip, mm, of every tool that the machine has.
 using ToolLengths = std::map<std::uint32_t, double>;
+
+[[nodiscard]] ToolLengths lengths_of(const ToolTable& tools);
 
 /// What the machine can do about action words at this moment.
 struct ActionPeer {
@@ -34,6 +38,9 @@ inline constexpr double kTravelTolerance = 1e-9;  ///< mm or rad
 class BlockJudge {
  public:
   BlockJudge(const MachineModel& model, ToolLengths tools);
+
+  /// Between two programs: the tools that the machine has from here on.
+  void set_tools(ToolLengths tools) noexcept { tools_ = std::move(tools); }
 
   /// Forgets the program before; the next one starts with this tool in the spindle.
   void begin(double tool_length_mm);

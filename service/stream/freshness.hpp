@@ -29,6 +29,7 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
     case Verb::kJog:
     case Verb::kHome:
     case Verb::kFrame:
+    case Verb::kTool:
       return true;
     case Verb::kSingleBlock:
     case Verb::kOptionalStop:

@@ -19,7 +19,7 @@ namespace meridian::stream {
     if (number) {
       const Tool* const tool = tools.find(static_cast<int>(*number));
       if (tool == nullptr) return std::nullopt;
-      length_mm = tool->length_mm;
+      length_mm = tool->tip_length_mm();
     }
     JointVector home{};
     for (int i = 0; i < model.joint_count; ++i) home[i] = model.joints[i].home;

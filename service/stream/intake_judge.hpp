@@ -55,6 +55,9 @@ class IntakeJudge {
  public:
   IntakeJudge(const MachineModel& model, const ToolLengths& tools, std::uint64_t service_id);
 
+  /// Between two programs: the tools that the machine has from here on.
+  void set_tools(const ToolTable& tools) { judge_.set_tools(lengths_of(tools)); }
+
   /// A station asks for the machine or gives it back. Returns the answer, to be published at once.
   /// `tool_length_mm` is that of the tool in the spindle when the program will start.
   [[nodiscard]] dds::Credit on_request(const dds::SessionRequest& request,

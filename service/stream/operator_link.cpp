@@ -153,6 +153,15 @@ std::optional<dds::Reply> OperatorLink::ask(const FrameOrder& order, Millisecond
   return ask(std::move(request), timeout, std::nullopt);
 }
 
+std::optional<dds::Reply> OperatorLink::ask_for_tools(std::string text, std::uint64_t tools_seen,
+                                                      Milliseconds timeout) {
+  dds::CommandRequest request;
+  request.verb = Verb::kTool;
+  request.tools_seen = tools_seen;
+  request.tool_file = std::move(text);
+  return ask(std::move(request), timeout, std::nullopt);
+}
+
 std::optional<dds::Reply> OperatorLink::ask(dds::CommandRequest request, Milliseconds timeout,
                                             const std::optional<Seen>& seen) {
   request.request = ++request_;

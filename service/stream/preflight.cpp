@@ -20,15 +20,6 @@ bool is_action(BlockKind kind) {
   return kind == BlockKind::kAuxiliary || kind == BlockKind::kTool || kind == BlockKind::kStop;
 }
 
-ToolLengths lengths_of(const PreflightMachine& machine) {
-  ToolLengths lengths;
-  if (!machine.tools) return lengths;
-  for (const Tool& tool : machine.tools->tools()) {
-    lengths[static_cast<std::uint32_t>(tool.number)] = tool.length_mm;
-  }
-  return lengths;
-}
-
 /// Time that a block takes at its programmed feed.
 class IdealTime {
  public:
@@ -57,7 +48,7 @@ class IdealTime {
 class BlockFindings {
  public:
   BlockFindings(const PreflightMachine& machine, std::string file)
-      : machine_(machine), file_(std::move(file)), judge_(machine.model, lengths_of(machine)) {}
+      : machine_(machine), file_(std::move(file)), judge_(machine.model, machine.tools ? lengths_of(*machine.tools) : ToolLengths()) {}
 
   void judge(ClBlock block, cl::Findings& findings) {
     const bool is_tool = block.kind == BlockKind::kTool;

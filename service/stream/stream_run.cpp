@@ -60,6 +60,7 @@ dds::SessionRequest request_of(const StreamOptions& options) {
   request.options = options.options;
   request.from_line = options.reader.first_line;
   request.frame = options.frame;
+  request.tools = options.tools;
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;

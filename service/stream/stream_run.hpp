@@ -24,6 +24,7 @@ struct StreamOptions {
   double axis_tolerance_rad = 0;             ///< 0: the machine's
   std::uint32_t policies = 0;                ///< dds::SessionPolicy, beside what the file says
   std::uint64_t frame = 0;                   ///< frame_sum() that it was checked under; 0: none
+  std::uint64_t tools = 0;                   ///< tools_sum() that it was checked with; 0: none
   std::string options;                       ///< what asked for this, for who goes on with it
 };
 

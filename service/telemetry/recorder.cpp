@@ -36,6 +36,11 @@ void Recorder::take(const record::RecordedFrame& frame) noexcept {
   events_lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
+void Recorder::take(const record::RecordedTool& tool) noexcept {
+  if (!writer_ || tools_.try_push(tool)) return;
+  events_lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void Recorder::run() noexcept {
   if (!writer_) return;
   // What a service that is killed loses at most, and what the next look adds to it.
@@ -44,6 +49,7 @@ void Recorder::run() noexcept {
   CycleRecord row;
   Event event;
   record::RecordedFrame frame;
+  record::RecordedTool tool;
   for (bool is_last = false; !is_last;) {
     is_last = is_stopping_.load();
     while (ring_.try_pop(row)) {
@@ -51,6 +57,9 @@ void Recorder::run() noexcept {
     }
     while (frames_.try_pop(frame)) {
       if (!events_writer_->write(frame)) events_lost_.fetch_add(1, std::memory_order_relaxed);
+    }
+    while (tools_.try_pop(tool)) {
+      if (!events_writer_->write(tool)) events_lost_.fetch_add(1, std::memory_order_relaxed);
     }
     while (events_.try_pop(event)) {
       if (!events_writer_->write(event)) events_lost_.fetch_add(1, std::memory_order_relaxed);

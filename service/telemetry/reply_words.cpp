@@ -21,6 +21,7 @@ namespace {
 [[nodiscard]] std::string out_of_range(Verb verb, double argument, const MachineModel& model) {
   if (verb == Verb::kJog || verb == Verb::kHome) return "the machine has no such joint";
   if (verb == Verb::kFrame) return "that is no work frame";
+  if (verb == Verb::kTool) return "that is no tool table";
   if (is_override(verb)) {
     const bool is_feed = verb == Verb::kFeedOverride;
     return fmt::format("{:.6g} % is out of range: from 0 to {:.6g} %{}", 100 * argument,
@@ -36,8 +37,9 @@ namespace {
 [[nodiscard]] std::string remedy_for_wrong_state(Verb verb, State state) {
   const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;
   if (verb == Verb::kDryRun) return "it begins and ends in Off alone; disable first";
-  if (verb == Verb::kFrame)
-    return "work frames are set in Off or Ready alone; end what it does first";
+  if (verb == Verb::kFrame || verb == Verb::kTool) {
+    return "the set-up is changed in Off or Ready alone; end what it does first";
+  }
   switch (state) {
     case State::kJogging:
       return is_by_hand ? "somebody jogs; wait until the joints are let go"

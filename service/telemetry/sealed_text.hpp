@@ -67,6 +67,8 @@ class Lines {
     has_failed_ = true;
     return 0;
   }
+  /// All that is behind the lines that were taken.
+  [[nodiscard]] std::string_view rest() const noexcept { return text_; }
   [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
 
  private:

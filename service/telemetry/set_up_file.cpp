@@ -5,7 +5,6 @@
 
 #include "service/telemetry/file_name.hpp"
 #include "service/telemetry/sealed_text.hpp"
-#include "service/telemetry/set_up_text.hpp"
 
 namespace meridian::telemetry {
 
@@ -14,18 +13,18 @@ SetUpFile::SetUpFile(const std::filesystem::path& folder, std::string machine, J
   if (!folder.empty()) path_ = folder / (plain_name(machine_) + ".setup");
 }
 
-Expected<WorkFrames, std::string> SetUpFile::read() {
-  if (path_.empty()) return WorkFrames();
+Expected<SetUp, std::string> SetUpFile::read() {
+  if (path_.empty()) return SetUp();
   const auto text = read_small_file(path_, kMostSetUpBytes);
   if (!text) return tl::make_unexpected(text.error());
-  if (!*text) return WorkFrames();
-  auto frames = parse_set_up(**text, machine_);
-  if (frames) written_ = *frames;
-  return frames;
+  if (!*text) return SetUp();
+  auto set_up = parse_set_up(**text, machine_);
+  if (set_up) written_ = *set_up;
+  return set_up;
 }
 
-void SetUpFile::ask(const WorkFrames& frames) noexcept {
-  asked_ = frames;
+void SetUpFile::ask(const SetUp& set_up) {
+  asked_ = set_up;
   progress_.store(Progress::kAsked, std::memory_order_release);
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "meridian/expected.hpp"
-#include "meridian/kinematics/work_frame.hpp"
 #include "service/telemetry/journal.hpp"
+#include "service/telemetry/set_up_text.hpp"
 
 namespace meridian::telemetry {
 
@@ -33,12 +33,12 @@ class SetUpFile {
   [[nodiscard]] bool is_kept() const noexcept { return !path_.empty(); }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Before all else: what the service before left, an empty table where it left none. The error
+  /// Before all else: what the service before left, an empty one where it left none. The error
   /// says why the file is no set-up of this machine.
-  [[nodiscard]] Expected<WorkFrames, std::string> read();
+  [[nodiscard]] Expected<SetUp, std::string> read();
 
   /// Asking thread, not while the one before is kAsked.
-  void ask(const WorkFrames& frames) noexcept;
+  void ask(const SetUp& set_up);
   /// Asking thread: how far it is; an end of it is told once.
   [[nodiscard]] Progress look() noexcept;
   /// Asking thread, behind kFailed: errno.
@@ -51,8 +51,8 @@ class SetUpFile {
   std::string machine_;
   std::filesystem::path path_;
   Journal::Write write_;
-  WorkFrames asked_;    ///< whose it is says progress_: kAsked, the writing thread's
-  WorkFrames written_;  ///< what the file holds; the writing thread's
+  SetUp asked_;    ///< whose it is says progress_: kAsked, the writing thread's
+  SetUp written_;  ///< what the file holds; the writing thread's
   int error_ = 0;
   std::atomic<Progress> progress_{Progress::kNone};
   static_assert(std::atomic<Progress>::is_always_lock_free);

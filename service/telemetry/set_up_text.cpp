@@ -5,13 +5,14 @@
 
 #include <charconv>
 
+#include "service/dds/messages.hpp"
 #include "service/telemetry/journal_entry.hpp"
 #include "service/telemetry/sealed_text.hpp"
 
 namespace meridian::telemetry {
 namespace {
 
-constexpr std::string_view kSetUpHead = "meridian set-up 1";
+constexpr std::string_view kSetUpHead = "meridian set-up 2", kHeadBefore = "meridian set-up 1";
 
 /// Takes the number at the begin of `text` and the space behind it; false where there is none.
 template <class Number>
@@ -34,7 +35,8 @@ template <class Number>
 
 }  // namespace
 
-std::string to_text(const WorkFrames& frames, std::string_view machine) {
+std::string to_text(const SetUp& set_up, std::string_view machine) {
+  const WorkFrames& frames = set_up.frames;
   std::string text = fmt::format("{}\nmachine = {}\nactive = {}\nframes = {}\n", kSetUpHead,
                                  machine, frames.active(), frames.rows().size());
   for (const WorkFrame& row : frames.rows()) {
@@ -42,11 +44,13 @@ std::string to_text(const WorkFrames& frames, std::string_view machine) {
                         row.origin_mm[1], row.origin_mm[2], row.rotation_deg[0],
                         row.rotation_deg[1], row.rotation_deg[2], row.name.data());
   }
+  if (set_up.tools) text += fmt::format("tools = {}\n{}\n", set_up.tools->size(), *set_up.tools);
   return seal(text);
 }
 
-Expected<WorkFrames, std::string> parse_set_up(std::string_view text, std::string_view machine) {
-  if (const auto damage = find_damage(text, kSetUpHead, "set-up")) {
+Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_view machine) {
+  const bool is_before = text.starts_with(fmt::format("{}\n", kHeadBefore));
+  if (const auto damage = find_damage(text, is_before ? kHeadBefore : kSetUpHead, "set-up")) {
     return tl::make_unexpected(*damage);
   }
   Lines lines(text);
@@ -59,7 +63,8 @@ Expected<WorkFrames, std::string> parse_set_up(std::string_view text, std::strin
   std::size_t count = 0;
   lines.read("active", select.frame.number);
   lines.read("frames", count);
-  WorkFrames frames;
+  SetUp out;
+  WorkFrames& frames = out.frames;
   bool is_right = count <= std::size_t{WorkFrames::kMost};
   for (std::size_t i = 0; is_right && i < count; ++i) {
     FrameOrder set;
@@ -67,13 +72,24 @@ Expected<WorkFrames, std::string> parse_set_up(std::string_view text, std::strin
   }
   is_right = is_right && !lines.has_failed() && frames.rows().size() == count &&
              frames.apply(select) == FrameFault::kNone;
+  if (is_right && lines.rest().starts_with("tools = ")) {
+    std::size_t size = 0;
+    lines.read("tools", size);
+    out.tools = lines.rest().substr(0, size);
+    is_right = !lines.has_failed() && size <= dds::kToolFileBytes && lines.rest().size() > size;
+  }
   if (!is_right) return tl::make_unexpected(std::string("holds something else"));
-  return frames;
+  return out;
 }
 
 std::string frame_name(int number, const char* name) {
   if (number == 0) return "0 (machine file)";
   return *name == '\0' ? std::to_string(number) : fmt::format("{} ({})", number, name);
+}
+
+std::string tool_name(std::uint32_t number, double length_mm) {
+  return number == 0 ? fmt::format("the machine file's tool, {:.10g} mm long", length_mm)
+                     : fmt::format("tool {}, {:.10g} mm long", number, length_mm);
 }
 
 std::string describe(FrameFault fault, int number) {

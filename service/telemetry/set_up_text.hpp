@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,20 +11,33 @@
 
 namespace meridian::telemetry {
 
+/// What is set at a machine beside its files.
+struct SetUp {
+  WorkFrames frames{};
+  /// Text of the tool table, at most dds::kToolFileBytes; nothing: the service's own file counts.
+  std::optional<std::string> tools{};
+  [[nodiscard]] bool operator==(const SetUp&) const = default;
+};
+
 /// No set-up is longer.
-inline constexpr std::size_t kMostSetUpBytes = 16'384;
+inline constexpr std::size_t kMostSetUpBytes = 24'576;
 
 /// The set-up of `machine` as the text of its file: a line for each frame with its number, x, y, z
-/// in mm, a, b, c in degrees and its name; every value comes back bit for bit.
-[[nodiscard]] std::string to_text(const WorkFrames& frames, std::string_view machine);
+/// in mm, a, b, c in degrees and its name, then the tool table as it is; every value comes back bit
+/// for bit.
+[[nodiscard]] std::string to_text(const SetUp& set_up, std::string_view machine);
 
-/// Reads what to_text() wrote for `machine`. The error says in what the text is none.
+/// Reads what to_text() wrote for `machine`, this version's or that of before, which knew no tools.
+/// The error says in what the text is none.
 /// Proof: tests/unit/telemetry/set_up_text_test.cpp.
-[[nodiscard]] Expected<WorkFrames, std::string> parse_set_up(std::string_view text,
-                                                             std::string_view machine);
+[[nodiscard]] Expected<SetUp, std::string> parse_set_up(std::string_view text,
+                                                        std::string_view machine);
 
 /// "3 (vice)", "3", or "0 (machine file)".
 [[nodiscard]] std::string frame_name(int number, const char* name);
+
+/// "tool 5, 110.05 mm long", or "the machine file's tool, 110 mm long".
+[[nodiscard]] std::string tool_name(std::uint32_t number, double length_mm);
 
 /// Why a word about frame `number` is refused, and what to do.
 [[nodiscard]] std::string describe(FrameFault fault, int number);

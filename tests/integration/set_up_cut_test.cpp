@@ -13,23 +13,6 @@ namespace {
 
 const std::string kAt = "4,-3,2.5,0.3,-0.2,7";
 
-/// The part, enabled, streamed, cut to its end.
-void cut(Plant& plant, const std::string& part) {
-  ASSERT_TRUE(plant.enable()) << plant.service().said();
-  Process station({"meridian", "stream", part, "--domain", plant.domain(), "--wait-end"},
-                  plant.folder() / "station.log");
-  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << station.said() << plant.service().said();
-  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
-  ASSERT_EQ(station.wait(milliseconds(60'000)), 0) << station.said() << plant.service().said();
-  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kDisable));
-  ASSERT_TRUE(plant.wait_for(State::kOff)) << plant.standing();
-}
-
-void end_service(Plant& plant) {
-  plant.service().send_signal(SIGTERM);
-  ASSERT_EQ(plant.service().wait(kToolPatience), 0) << plant.service().said();
-}
-
 [[nodiscard]] std::string events_of(const Plant& plant) {
   return (plant.folder() / "recording.events.csv").string();
 }

@@ -17,10 +17,19 @@
 namespace meridian::test {
 namespace {
 
-[[nodiscard]] WorkFrames on_disk(const Plant& plant) {
-  const auto frames = telemetry::SetUpFile(plant.state(), "lai").read();
-  EXPECT_TRUE(frames) << frames.error();
-  return frames ? *frames : WorkFrames();
+[[nodiscard]] telemetry::SetUp on_disk(const Plant& plant) {
+  const auto set_up = telemetry::SetUpFile(plant.state(), "lai").read();
+  EXPECT_TRUE(set_up) << set_up.error();
+  return set_up ? *set_up : telemetry::SetUp();
+}
+
+/// What the machine tells is `acknowledged`.
+void expect_told(const dds::MachineInfo& told, const telemetry::SetUp& acknowledged) {
+  const WorkFrames& frames = acknowledged.frames;
+  EXPECT_TRUE(std::equal(told.work_frames.begin(), told.work_frames.end(), frames.rows().begin(),
+                         frames.rows().end()));
+  EXPECT_EQ(told.work_frame, frames.active());
+  EXPECT_EQ(told.tool_file, acknowledged.tools.value_or(""));
 }
 
 TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
@@ -29,30 +38,32 @@ TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
   std::printf("seed %u\n", seed);
   std::mt19937 engine(seed);
   Plant plant;
-  WorkFrames acknowledged;
+  telemetry::SetUp acknowledged;
   int kept = 0, changed = 0;
   for (int n = 1; n <= kills; ++n) {
     SCOPED_TRACE(testing::Message() << "kill " << n);
     plant.start_service();
     ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.cycles_run > 0; }))
         << plant.service().said();
-    const dds::MachineInfo told = told_by(plant);
-    EXPECT_TRUE(std::equal(told.work_frames.begin(), told.work_frames.end(),
-                           acknowledged.rows().begin(), acknowledged.rows().end()));
-    EXPECT_EQ(told.work_frame, acknowledged.active());
-    // A word for the table and one for the row in force, in turns.
-    const int number = 1 + n / 2 % 3;
-    const bool is_select = n % 2 == 1 && acknowledged.find(number) != nullptr;
+    expect_told(told_by(plant), acknowledged);
+    // A word for the table, one for the row in force, one for the tools, in turns.
+    const int number = 1 + n / 3 % 3;
+    const bool is_select = n % 3 == 1 && acknowledged.frames.find(number) != nullptr;
     const FrameOrder order = order_of(is_select ? FrameWord::kSelect : FrameWord::kSet, number, n);
-    WorkFrames asked = acknowledged;
-    ASSERT_EQ(asked.apply(order), FrameFault::kNone);
     SetUpOperator anna(plant, 100 + static_cast<std::uint64_t>(n));
-    anna.say(order, plant.status());
+    telemetry::SetUp asked = acknowledged;
+    if (n % 3 == 2) {
+      asked.tools = tools_of(n);
+      anna.say(*asked.tools, plant.status());
+    } else {
+      ASSERT_EQ(asked.frames.apply(order), FrameFault::kNone);
+      anna.say(order, plant.status());
+    }
     const int wait_us = std::uniform_int_distribution<int>(0, 150'000)(engine);
     std::this_thread::sleep_for(std::chrono::microseconds(wait_us));
     plant.service().send_signal(SIGKILL);
     ASSERT_TRUE(plant.service().wait(milliseconds(2000)));
-    const WorkFrames left = on_disk(plant);
+    const telemetry::SetUp left = on_disk(plant);
     EXPECT_TRUE(left == acknowledged || left == asked) << "a mixture";
     const auto reply = anna.answer(milliseconds(100));
     if (reply && reply->is_accepted) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <cstring>
 #include <optional>
@@ -27,7 +28,7 @@ inline constexpr milliseconds kToolPatience{8000};
   return order;
 }
 
-/// Somebody who says words about work frames, quoting what he is told to have seen.
+/// Somebody who changes the set-up, quoting what he is told to have seen.
 class SetUpOperator {
  public:
   SetUpOperator(Plant& plant, std::uint64_t id)
@@ -35,18 +36,18 @@ class SetUpOperator {
 
   /// Says it and waits for nothing.
   void say(const FrameOrder& order, const dds::Status& seen) {
-    (void)eventually(
-        [this] { return commands_.matched_readers() > 0 && replies_.matched_writers() > 0; });
     request_ = {};
-    request_.request = ++count_;
-    request_.operator_id = id_;
-    request_.operator_name = "anna";
     request_.verb = Verb::kFrame;
-    request_.epoch_seen = seen.epoch;
-    request_.status_seen = seen.status_sequence;
-    request_.service_id_seen = seen.service_id;
     request_.frame = order;
-    (void)commands_.write(request_);
+    send(seen);
+  }
+  /// The same of a tool table, made from the one that `seen` tells of.
+  void say(const std::string& tools, const dds::Status& seen) {
+    request_ = {};
+    request_.verb = Verb::kTool;
+    request_.tool_file = tools;
+    request_.tools_seen = seen.tools;
+    send(seen);
   }
   /// The same once more, to the letter.
   void repeat() { (void)commands_.write(request_); }
@@ -64,7 +65,8 @@ class SetUpOperator {
     return is_there ? std::optional(reply) : std::nullopt;
   }
   /// Says it until it is not refused as stale.
-  [[nodiscard]] dds::Reply ask(const FrameOrder& order) {
+  template <class Order>
+  [[nodiscard]] dds::Reply ask(const Order& order) {
     std::optional<dds::Reply> reply;
     (void)eventually([&] {
       say(order, plant_.status());
@@ -76,12 +78,29 @@ class SetUpOperator {
   }
 
  private:
+  void send(const dds::Status& seen) {
+    (void)eventually(
+        [this] { return commands_.matched_readers() > 0 && replies_.matched_writers() > 0; });
+    request_.request = ++count_;
+    request_.operator_id = id_;
+    request_.operator_name = "anna";
+    request_.epoch_seen = seen.epoch;
+    request_.status_seen = seen.status_sequence;
+    request_.service_id_seen = seen.service_id;
+    (void)commands_.write(request_);
+  }
+
   Plant& plant_;
   dds::Writer<dds::CommandRequest> commands_;
   dds::Reader<dds::Reply> replies_;
   dds::CommandRequest request_;
   std::uint64_t id_, count_ = 0;
 };
+
+/// A tool table with tool 2 so long.
+[[nodiscard]] inline std::string tools_of(double length_mm) {
+  return "[[tool]]\nnumber = 2\nlength_mm = " + std::to_string(length_mm) + "\nradius_mm = 3\n";
+}
 
 /// What the machine topic tells now.
 [[nodiscard]] inline dds::MachineInfo told_by(const Plant& plant) {
@@ -97,6 +116,23 @@ class SetUpOperator {
   words.insert(words.begin(), "meridian");
   words.insert(words.end(), {"--domain", plant.domain()});
   return Process(words, plant.folder() / ("tool" + std::to_string(++count) + ".log"));
+}
+
+/// The part, enabled, streamed, cut to its end.
+inline void cut(Plant& plant, const std::string& part) {
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  Process station({"meridian", "stream", part, "--domain", plant.domain(), "--wait-end"},
+                  plant.folder() / "station.log");
+  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << station.said() << plant.service().said();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
+  ASSERT_EQ(station.wait(milliseconds(60'000)), 0) << station.said() << plant.service().said();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kDisable));
+  ASSERT_TRUE(plant.wait_for(State::kOff)) << plant.standing();
+}
+
+inline void end_service(Plant& plant) {
+  plant.service().send_signal(SIGTERM);
+  ASSERT_EQ(plant.service().wait(kToolPatience), 0) << plant.service().said();
 }
 
 }  // namespace meridian::test

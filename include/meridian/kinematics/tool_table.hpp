@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -11,12 +12,23 @@ namespace meridian {
 /// mean. Unit: mm.
 struct Tool {
   int number = 0;
-  double length_mm = 0;
-  double radius_mm = 0;
+  double length_mm = 0;  ///< as it was measured
+  double radius_mm = 0;  ///< as it was measured
+  double corner_radius_mm = 0;
+  double length_wear_mm = 0;  ///< added to the length; negative: it has become shorter
+  double radius_wear_mm = 0;  ///< added to the radius
+  /// Outline of the holder: how far below the gauge line, and the radius there, downwards.
+  std::vector<std::array<double, 2>> holder_mm{};
+
+  /// Gauge line to tip as the machine uses it: wear included.
+  [[nodiscard]] double tip_length_mm() const noexcept { return length_mm + length_wear_mm; }
+  /// The radius that cuts: wear included.
+  [[nodiscard]] double cutting_radius_mm() const noexcept { return radius_mm + radius_wear_mm; }
+  [[nodiscard]] bool operator==(const Tool&) const = default;
 };
 
-/// The tools that a program may call. Built at start-up, immutable after; find() may be called from
-/// any thread.
+/// The tools that a program may call. Immutable once it is built; find() may be called from any
+/// thread.
 class ToolTable {
  public:
   ToolTable() = default;
@@ -35,6 +47,7 @@ class ToolTable {
   }
 
   [[nodiscard]] const std::vector<Tool>& tools() const noexcept { return tools_; }
+  [[nodiscard]] bool operator==(const ToolTable&) const = default;
 
  private:
   std::vector<Tool> tools_;

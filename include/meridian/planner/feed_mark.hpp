@@ -17,6 +17,7 @@ struct FeedMark {
   /// `sequence` is not 0, that block and those behind it, past the pole.
   std::uint64_t looked_at = 0;
   bool is_late = false;  ///< of looked_at: no more were waited for
+  double tool_length_mm = 0;  ///< of is_begin: of the tool in the spindle; 0: not known
 };
 
 /// How far ahead of the cycle a planner keeps, that is to obey an override above 100 %, s: soon

@@ -54,6 +54,10 @@ class RestToRestPlanner {
   RestToRestPlanner(const RestToRestPlanner&) = delete;
   RestToRestPlanner& operator=(const RestToRestPlanner&) = delete;
 
+  /// Between two programs: takes `tools` into use, and leaves there those that were, so that
+  /// nothing is allocated or freed here.
+  void swap_tools(ToolTable& tools) noexcept;
+
   /// Starts a program from joints at rest. Its first motion block is approached: retract along the
   /// tool axis by the clearance as far as travel allows, joint move, down at approach feed. In an
   /// epoch that saw a program before, pieces and windows go on being counted. `retracts_first`: the

@@ -66,6 +66,9 @@ class SmoothPlanner {
   SmoothPlanner(const SmoothPlanner&) = delete;
   SmoothPlanner& operator=(const SmoothPlanner&) = delete;
 
+  /// As RestToRestPlanner::swap_tools().
+  void swap_tools(ToolTable& tools) noexcept;
+
   /// As RestToRestPlanner::begin().
   void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
              const SmoothSettings& settings = {}) noexcept;

@@ -44,7 +44,8 @@ enum class Verb : std::uint8_t {
   kOptionalStop,   ///< argument: 1 on, 0 off
   kDryRun,         ///< argument: 1 on, 0 off
   kFrame,          ///< argument: number of the work frame that is in force from here on
+  kTool,           ///< another tool table is in force from here on
 };
-inline constexpr int kVerbCount = 15;
+inline constexpr int kVerbCount = 16;
 
 }  // namespace meridian

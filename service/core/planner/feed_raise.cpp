@@ -12,7 +12,7 @@ constexpr double kSettle_s = 0.3;
 
 }  // namespace
 
-void FeedRaise::begin() noexcept {
+void FeedRaise::begin(double tool_length_mm) noexcept {
   now_ = {};
   lead_s_ = 0;
   is_at_rest_ = true;
@@ -20,7 +20,9 @@ void FeedRaise::begin() noexcept {
   span_ = 0;
   next_mark_ = 0;
   replayed_ = 1;
-  if (!is_replay_) told_.push_over_oldest({true, 0, 0, 1});
+  if (!is_replay_) {
+    told_.push_over_oldest({.is_begin = true, .tool_length_mm = tool_length_mm});
+  }
 }
 
 double FeedRaise::find_wanted(double asked) noexcept {

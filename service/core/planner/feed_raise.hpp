@@ -38,8 +38,8 @@ class FeedRaise {
     is_replay_ = true;
   }
 
-  /// A program begins.
-  void begin() noexcept;
+  /// A program begins, with a tool so long in the spindle.
+  void begin(double tool_length_mm) noexcept;
 
   /// What a look ahead went over (FeedMark::looked_at).
   void note_look(const FeedMark& look) noexcept {

@@ -214,7 +214,7 @@ void RestToRestPlanner::Workspace::stage_barrier(const ClBlock& block) noexcept 
   if (block.kind == BlockKind::kTool) {
     const Tool* tool = tools.find(static_cast<int>(std::lround(block.value)));
     if (tool == nullptr) return refuse(block, RejectCode::kUnknownTool, -1, block.value);
-    next.tool_length_mm = tool->length_mm;
+    next.tool_length_mm = tool->tip_length_mm();
     next.pose.tip = forward(model, next.tool_length_mm, next.joints).tip;
   }
   (void)staging.add(piece);
@@ -226,6 +226,10 @@ RestToRestPlanner::RestToRestPlanner(const MachineModel& model, ToolTable tools)
 }
 
 RestToRestPlanner::~RestToRestPlanner() = default;
+
+void RestToRestPlanner::swap_tools(ToolTable& tools) noexcept {
+  std::swap(workspace_->tools, tools);
+}
 
 void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
                               std::uint16_t epoch, bool retracts_first) noexcept {

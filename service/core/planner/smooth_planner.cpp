@@ -14,6 +14,8 @@ SmoothPlanner::SmoothPlanner(const MachineModel& model, ToolTable tools)
 
 SmoothPlanner::~SmoothPlanner() = default;
 
+void SmoothPlanner::swap_tools(ToolTable& tools) noexcept { workspace_->plain.swap_tools(tools); }
+
 void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
                           const SmoothSettings& settings) noexcept {
   Workspace& w = *workspace_;
@@ -22,7 +24,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   w.settings = settings;
   const bool may_ease = w.is_smooth() && w.model.pole_policy == PolePolicy::kEase;
   if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
-  w.raise.begin();
+  w.raise.begin(tool_length_mm);
   w.is_refused = w.is_for_plain = w.has_factor = w.is_ending = false;
   w.window.begin(w.is_smooth() ? AheadSlack{w.tolerance().tip_mm, w.pole_tolerance_rad()}
                                : AheadSlack{});

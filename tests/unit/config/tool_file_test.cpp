@@ -32,6 +32,30 @@ TEST(ToolFile, ThatIsShippedHasTheToolOfTheLaiMachine) {
   EXPECT_EQ(tools.find(1)->length_mm, lai.tool_length_mm);
 }
 
+TEST(ToolFile, GivesWearCornerAndHolder) {
+  const test::TextFile file(
+      "[[tool]]\nnumber = 7\nlength_mm = 90.5\nradius_mm = 3\ncorner_radius_mm = 0.5\n"
+      "length_wear_mm = -0.25\nradius_wear_mm = 0.5\nholder_mm = [0, 31.5, 60, 20]\n");
+  const ToolTable tools = load_tools(file.path());
+  ASSERT_NE(tools.find(7), nullptr);
+  const Tool& tool = *tools.find(7);
+  EXPECT_EQ(tool.tip_length_mm(), 90.25);
+  EXPECT_EQ(tool.cutting_radius_mm(), 3.5);
+  EXPECT_EQ(tool.corner_radius_mm, 0.5);
+  EXPECT_EQ(tool.holder_mm, (std::vector<std::array<double, 2>>{{0, 31.5}, {60, 20}}));
+}
+
+TEST(ToolFile, ComesBackBitForBitFromItsText) {
+  Tool whole{999'999'999, 100.0 / 3.0, 1.0 / 7.0};
+  whole.corner_radius_mm = 1e-17;
+  whole.length_wear_mm = -2.0 / 3.0;
+  whole.radius_wear_mm = 1e-3;
+  whole.holder_mm = {{0, 31.5}, {1.0 / 3.0, 20}};
+  const ToolTable tools({whole, {1, 0, 0}});
+  EXPECT_EQ(parse_tools(to_text(tools), "test"), tools);
+  EXPECT_EQ(parse_tools(to_text(ToolTable()), "test"), ToolTable());
+}
+
 struct ToolMistake {
   const char* text;
   int line;
@@ -51,6 +75,16 @@ TEST(ToolFile, ThatIsWrongIsRefusedWithLineAndKey) {
       {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\n"
        "[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\n",
        6, "tool[1].number", "once"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\ncorner_radius_mm = 2\n", 5,
+       "tool[0].corner_radius_mm", "0 to 1"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\nlength_wear_mm = -2\n", 5,
+       "tool[0].length_wear_mm", "tool that is left"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\nradius_wear_mm = -2\n", 5,
+       "tool[0].radius_wear_mm", "tool that is left"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\nholder_mm = [1, 2, 3]\n", 5,
+       "tool[0].holder_mm", "pairs"},
+      {"[[tool]]\nnumber = 1\nlength_mm = 1\nradius_mm = 1\nholder_mm = [5, 2, 3, 2]\n", 5,
+       "tool[0].holder_mm", "goes down"},
       {"[tool]\nnumber = 1\n", 1, "tool", "array of tables"},
       {"[[tools]]\nnumber = 1\n", 1, "tools", "tool"},
   };

@@ -63,11 +63,13 @@ TEST(StateTable, SetsTheDryRunInOffAlone) {
   }
 }
 
-TEST(StateTable, SetsWorkFramesInOffAndReadyAlone) {
+TEST(StateTable, ChangesTheSetUpInOffAndReadyAlone) {
   for (int s = 0; s < kStateCount; ++s) {
     const auto state = static_cast<State>(s);
     const bool may = state == State::kOff || state == State::kReady;
-    EXPECT_EQ(effect_of(state, Verb::kFrame).effect == Effect::kSet, may) << name_of(state);
+    for (const Verb verb : {Verb::kFrame, Verb::kTool}) {
+      EXPECT_EQ(effect_of(state, verb).effect == Effect::kSet, may) << name_of(state);
+    }
   }
 }
 

@@ -28,16 +28,16 @@ class SetUpFileOfAFolder : public ::testing::Test {
   }
   ~SetUpFileOfAFolder() override { fs::remove_all(folder_); }
 
-  static WorkFrames frames_with(int number, double x_mm) {
+  static telemetry::SetUp frames_with(int number, double x_mm) {
     FrameOrder order;
     order.frame.number = static_cast<std::uint8_t>(number);
     order.frame.origin_mm = {x_mm, 2, 3};
     WorkFrames frames;
     EXPECT_EQ(frames.apply(order), FrameFault::kNone);
-    return frames;
+    return {frames, "# " + std::to_string(x_mm)};
   }
 
-  [[nodiscard]] Expected<WorkFrames, std::string> read_again() const {
+  [[nodiscard]] Expected<telemetry::SetUp, std::string> read_again() const {
     return SetUpFile(folder_, "lai").read();
   }
 
@@ -47,7 +47,7 @@ class SetUpFileOfAFolder : public ::testing::Test {
 TEST_F(SetUpFileOfAFolder, HoldsNothingBeforeTheFirstWord) {
   const auto frames = read_again();
   ASSERT_TRUE(frames) << frames.error();
-  EXPECT_EQ(*frames, WorkFrames());
+  EXPECT_EQ(*frames, telemetry::SetUp());
 }
 
 TEST_F(SetUpFileOfAFolder, IsNotKeptWithoutAFolder) {
@@ -60,7 +60,7 @@ TEST_F(SetUpFileOfAFolder, IsWrittenBeforeItIsToldAsWritten) {
   EXPECT_EQ(file.look(), Progress::kNone);
   file.ask(frames_with(3, 1.5));
   EXPECT_EQ(file.look(), Progress::kAsked);
-  EXPECT_EQ(*read_again(), WorkFrames());
+  EXPECT_EQ(*read_again(), telemetry::SetUp());
   file.work();
   EXPECT_EQ(*read_again(), frames_with(3, 1.5));
   EXPECT_EQ(file.look(), Progress::kWritten);
@@ -110,7 +110,7 @@ TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
     (void)::close(told[0]);
     const auto frames = read_again();
     ASSERT_TRUE(frames) << frames.error();
-    const double left = frames->rows().empty() ? 0 : frames->rows().front().origin_mm[0];
+    const double left = frames->frames.rows().empty() ? 0 : frames->frames.rows().front().origin_mm[0];
     if (left > 0) {
       EXPECT_EQ(*frames, frames_with(1 + static_cast<int>(left) % 9, left));
     }

@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "service/dds/messages.hpp"
 #include "service/telemetry/journal_entry.hpp"
 #include "service/telemetry/sealed_text.hpp"
 
@@ -34,10 +35,12 @@ WorkFrames drawn_frames(unsigned seed, int count) {
 TEST(SetUpText, ComesBackBitForBit) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const WorkFrames frames = drawn_frames(seed, static_cast<int>(seed % 60));
-    const auto read = parse_set_up(to_text(frames, "lai"), "lai");
+    telemetry::SetUp set_up{drawn_frames(seed, static_cast<int>(seed % 60)), {}};
+    if (seed % 3 == 1) set_up.tools = std::string(seed * 40, 'x') + "\n# crc32c = 12345678\n";
+    if (seed % 3 == 2) set_up.tools = "";
+    const auto read = parse_set_up(to_text(set_up, "lai"), "lai");
     ASSERT_TRUE(read) << read.error();
-    EXPECT_EQ(*read, frames);
+    EXPECT_EQ(*read, set_up);
   }
 }
 
@@ -50,13 +53,14 @@ TEST(SetUpText, OfAFullTableFitsIntoItsFile) {
     row.number = static_cast<std::uint8_t>(number);
     ASSERT_EQ(frames.apply({FrameWord::kSet, row}), FrameFault::kNone);
   }
-  const std::string text = to_text(frames, std::string(64, 'm'));
+  const std::string text =
+      to_text({frames, std::string(dds::kToolFileBytes, 't')}, std::string(64, 'm'));
   EXPECT_LT(text.size(), kMostSetUpBytes);
   EXPECT_TRUE(parse_set_up(text, std::string(64, 'm')));
 }
 
 TEST(SetUpText, ThatIsTornOrChangedIsRefused) {
-  const std::string text = to_text(drawn_frames(1, 5), "lai");
+  const std::string text = to_text({drawn_frames(1, 5), "[[tool]]\nnumber = 4\n"}, "lai");
   for (std::size_t size = 0; size < text.size(); ++size) {
     EXPECT_FALSE(parse_set_up(text.substr(0, size), "lai")) << size;
   }
@@ -68,9 +72,16 @@ TEST(SetUpText, ThatIsTornOrChangedIsRefused) {
 }
 
 TEST(SetUpText, OfAnotherMachineIsRefusedByName) {
-  const auto read = parse_set_up(to_text(WorkFrames(), "lai"), "mill");
+  const auto read = parse_set_up(to_text(telemetry::SetUp(), "lai"), "mill");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error(), "is of machine 'lai', not of 'mill'");
+}
+
+TEST(SetUpText, OfToolsThatAreCutShortIsRefused) {
+  const std::string head = "meridian set-up 2\nmachine = lai\nactive = 0\nframes = 0\n";
+  EXPECT_TRUE(parse_set_up(seal(head + "tools = 3\nabc\n"), "lai"));
+  EXPECT_FALSE(parse_set_up(seal(head + "tools = 300\nabc\n"), "lai"));
+  EXPECT_FALSE(parse_set_up(seal(head + "tools = abc\n"), "lai"));
 }
 
 TEST(SetUpText, ThatSelectsWhatItHasNotIsRefused) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <utility>
+
+namespace meridian::interpolator {
+
+/// Passes a value that has memory of its own from one thread to another: both swap, so that the
+/// reading thread allocates and frees nothing. Of several that were put the reader gets the newest.
+///
+/// Memory order. Whoever has set kBusy has the value alone; putting and taking release it with what
+/// was written, and acquire what the other one wrote.
+/// Proof: tests/unit/interpolator/mailbox_test.cpp.
+template <class T>
+class Mailbox {
+ public:
+  /// Writing thread: leaves `value` there, and gets what lay there before. False where the reader
+  /// is at it at this moment: nothing is changed.
+  [[nodiscard]] bool try_put(T& value) noexcept {
+    return try_swap(State::kFull, value) || try_swap(State::kEmpty, value);
+  }
+  /// Reading thread: takes what was put since the last time, and leaves `value` there for the
+  /// writing thread to free. False where there is nothing.
+  [[nodiscard]] bool try_take(T& value) noexcept {
+    State full = State::kFull;
+    if (!state_.compare_exchange_strong(full, State::kBusy, std::memory_order_acq_rel,
+                                        std::memory_order_relaxed)) {
+      return false;
+    }
+    std::swap(value_, value);
+    state_.store(State::kEmpty, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  enum class State : std::uint8_t { kEmpty, kFull, kBusy };
+
+  [[nodiscard]] bool try_swap(State from, T& value) noexcept {
+    if (!state_.compare_exchange_strong(from, State::kBusy, std::memory_order_acq_rel,
+                                        std::memory_order_relaxed)) {
+      return false;
+    }
+    std::swap(value_, value);
+    state_.store(State::kFull, std::memory_order_release);
+    return true;
+  }
+
+  std::atomic<State> state_{State::kEmpty};
+  static_assert(std::atomic<State>::is_always_lock_free);
+  T value_{};
+};
+
+}  // namespace meridian::interpolator
