@@ -17,6 +17,7 @@
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/cli/tool_options.hpp"
+#include "service/cli/touch_off_options.hpp"
 #include "service/dds/participant.hpp"
 #include "service/stream/operator_link.hpp"
 
@@ -34,9 +35,13 @@ struct CtlOptions {
   std::vector<const CLI::Option*> of_frame;
   ToolOptions tool;
   std::vector<const CLI::Option*> of_tool;
+  TouchOffOptions touch_off;
+  std::vector<const CLI::Option*> of_touch_off;
   double wait_s = 60;
   bool is_for_dry_run = false;
 };
+
+constexpr const char* kTouchOff = "touch-off";
 
 const std::map<std::string, Verb>& verbs() {
   static const std::map<std::string, Verb> kVerbs{{"enable", Verb::kEnable},
@@ -90,7 +95,10 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   if (verb != Verb::kFrame && has_any(options.of_frame))
     return "--at and --name are for frame alone";
   if (verb != Verb::kTool && has_any(options.of_tool)) {
-    return "--length, --radius and their kin are for tool alone";
+    return "--length, --radius and their kin are for tool and touch-off alone";
+  }
+  if (has_any(options.of_touch_off)) {
+    return "--touches, --toward, --as, --height and --confirm are for touch-off alone";
   }
   const bool has_jog = has_any(options.of_jog);
   return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
@@ -133,7 +141,19 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
   for (const std::string& service : services) std::fprintf(stderr, "  %s\n", service.c_str());
 }
 
+/// No verb of the machine: what is found becomes one of `frame` or `tool`.
+int run_touch_off(CtlOptions& options) {
+  int exit_code = kFine;
+  const auto machine = find_machine(options.peer, exit_code);
+  if (!machine) return exit_code;
+  dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
+  stream::OperatorLink link(participant, options.operator_name);
+  return run_touch_off(options.values, options.touch_off, options.tool, *machine, link,
+                       options.peer.timeout());
+}
+
 int run_ctl(CtlOptions& options) {
+  if (options.verb == kTouchOff) return run_touch_off(options);
   const Verb verb = verbs().at(options.verb);
   std::optional<double> argument = argument_of(verb, options);
   if (!argument) return kUsage;
@@ -200,6 +220,7 @@ void add(CLI::App& app, int& exit_code) {
       "ctl", "Ask the machine for something, print `accepted` or `refused` and why");
   std::vector<std::string> names;
   for (const auto& [name, verb] : verbs()) names.push_back(name);
+  names.emplace_back(kTouchOff);
   command->add_option("verb", options->verb, CLI::detail::join(names, ", "))
       ->required()
       ->check(CLI::IsMember(names))
@@ -212,7 +233,7 @@ void add(CLI::App& app, int& exit_code) {
           "velocity in mm/s or deg/s; home: "
           "joints, default all; single-block, optional-stop, dry-run: on or off; frame: set, "
           "select or clear and a number, or list; tool: set or clear and a number, load or save "
-          "and a file, or list")
+          "and a file, or list; touch-off: touch, frame and a number, or tool and a number")
       ->type_name("VALUE");
   CLI::Option* const time =
       command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
@@ -238,6 +259,7 @@ void add(CLI::App& app, int& exit_code) {
       command->add_option("--name", options->frame.name, "frame set: what it is called");
   options->of_frame = {at, name};
   options->of_tool = add_tool_options(*command, options->tool);
+  options->of_touch_off = add_touch_off_options(*command, options->touch_off);
   CLI::Option* const wait =
       command
           ->add_option(
