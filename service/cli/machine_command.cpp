@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -10,11 +12,13 @@
 #include "service/cli/finite_range.hpp"
 #include "service/cli/machine_options.hpp"
 #include "service/config/config_error.hpp"
+#include "service/config/machine_file.hpp"
 #include "service/inspect/inspection.hpp"
 #include "service/inspect/joint_pattern.hpp"
 #include "service/inspect/machine_picture.hpp"
 #include "service/inspect/placing.hpp"
 #include "service/inspect/program_poses.hpp"
+#include "service/inspect/rotary_centres.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::machine_command {
@@ -23,7 +27,8 @@ namespace {
 struct Options {
   MachineOptions machine;
   ClFileOptions cl;
-  std::string picture, pattern, program, box;
+  std::string picture, pattern, program, box, touches, written;
+  std::optional<double> sphere_radius_mm;
   bool may_turn = false;
 };
 
@@ -70,12 +75,40 @@ int place(const Options& options, const MachineModel& model) {
   return found.fit.margin >= 0 ? kFine : kVerdictNo;
 }
 
+[[nodiscard]] std::optional<std::string> text_of(const std::string& name) {
+  std::ifstream file(name, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Where the rotary axes lie by touches of a sphere; into a new machine file where all is known.
+int calibrate(const Options& options, const MachineModel& model) {
+  const auto text = text_of(options.touches);
+  if (!text) return refuse(options.touches + ": cannot be opened");
+  const auto touches = inspect::read_touches(*text, options.touches);
+  if (!touches) return refuse(touches.error());
+  const auto found = inspect::find_rotary_centres(model, *touches, options.sphere_radius_mm);
+  if (!found) return refuse(options.touches + ": " + found.error());
+  std::cout << to_text(*found);
+  if (options.written.empty()) return found->is_determined() ? kFine : kVerdictNo;
+  const std::string machine_file = text_of(options.machine.machine).value_or("");
+  const auto written = inspect::with_centres(machine_file, *found);
+  if (!written) return refuse(options.machine.machine + ": " + written.error());
+  (void)config::parse_machine(*written, options.written);
+  if (!text::write_whole(options.written, *written)) {
+    return refuse(options.written + " cannot be written");
+  }
+  return found->is_determined() ? kFine : kVerdictNo;
+}
+
 int run(const Options& options) {
   const std::string lost =
-      text::refusal_to_write({options.machine.machine}, {options.picture, options.pattern});
+      text::refusal_to_write({options.machine.machine, options.touches},
+                             {options.picture, options.pattern, options.written});
   if (!lost.empty()) return refuse(lost);
   const MachineModel model = load_machine(options.machine);
   if (!options.program.empty()) return place(options, model);
+  if (!options.touches.empty()) return calibrate(options, model);
   const inspect::Inspection inspection = inspect::inspect(model);
   std::cout << to_text(inspection, model);
   if (!options.picture.empty()) {
@@ -126,6 +159,20 @@ void add(CLI::App& app, int& exit_code) {
                    "With --place: length of tools that the table has not, mm")
       ->needs(program)
       ->check(finite_range(0.0, 1e4));
+  CLI::Option* const touches = command->add_option(
+      "--calibrate", options->touches,
+      "Touches of a sphere on the table (ctl touch-off touch): find where the rotary axes lie. Exit "
+      "code 1 where the touches do not determine all of it");
+  touches->excludes(program);
+  command
+      ->add_option("--write", options->written,
+                   "With --calibrate: a new machine file with what was found")
+      ->needs(touches);
+  command
+      ->add_option("--sphere-radius", options->sphere_radius_mm,
+                   "With --calibrate: radius of the sphere, mm; default: found as well")
+      ->needs(touches)
+      ->check(finite_range(1e-3, 1e4));
   add_cl_file_options(*command, options->cl);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
