@@ -269,32 +269,48 @@ template <class S>
   return out;
 }
 
-/// Whether solve_driven() has a joint to drive: the roll of a 6R robot, or free_joint().
+/// Whether the machine is a robot whose roll solve_driven() can drive.
 [[nodiscard]] inline bool has_wrist_roll(const MachineModel& model) noexcept {
   return model.family == MachineFamily::kRobot && model.robot.has_spherical_wrist;
 }
 
-/// As solve_held(), and for a 6R robot with its roll at `free`: the tip is that of `pose`, the axis
-/// the nearest that it has with that roll, on the front and the elbow of `branch`, rotary joints in
-/// the windings nearest to `reference`. Frame: W. RT: cycle. Proof: tests/property/kinematics.
+/// Which joint solve_driven() drives: the free joint, the yaw of a robot or the roll of a 6R one;
+/// -1: none.
+[[nodiscard]] inline int driven_joint(const MachineModel& model, int branch) noexcept {
+  if (model.family != MachineFamily::kRobot) return free_joint(model);
+  if ((branch & robot::kYawDriven) != 0) return robot::kYaw;
+  return model.robot.has_spherical_wrist ? static_cast<int>(robot::kRoll) : -1;
+}
+
+/// As solve_held(), and for robots, with the rotary joints that are not driven in the windings
+/// nearest to `reference`: with the roll of a 6R robot at `free` the tip is that of `pose`, the
+/// axis the nearest that it has with that roll, on the front and the elbow of `branch`; with
+/// robot::kYawDriven in `branch` and the yaw at `free` the axis is that of `pose`, the tip the
+/// nearest in the arm plane. Frame: W. RT: cycle. Proof: tests/property/kinematics.
 template <class S>
 [[nodiscard]] inline Solution<S> solve_driven(const MachineModel& model, double tool_length_mm,
                                               const Pose<S>& pose, const S& free, int branch,
                                               const JointVector& reference) noexcept {
-  if (!has_wrist_roll(model)) return solve_held(model, tool_length_mm, pose, free);
+  if (model.family != MachineFamily::kRobot) {
+    return solve_held(model, tool_length_mm, pose, free);
+  }
   const Pose<S> any = pose_in_machine(model, pose);
   const Pose<S> in_machine{any.tip, detail::made_unit(any.axis)};
-  Solution<S> out{{}, SolveStatus::kOk};
-  if (!robot::solve_with_roll(model.robot, tool_length_mm, in_machine, branch, free, reference,
-                              out.q) ||
-      !detail::all_finite(out.q)) {
-    out.status = SolveStatus::kUnreachable;
-    return out;
+  const int driven = driven_joint(model, branch);
+  Solution<S> out{{}, SolveStatus::kUnreachable};
+  bool is_solved = false;
+  if (driven == robot::kYaw) {
+    is_solved = robot::solve_with_yaw(model.robot, tool_length_mm, in_machine, branch, free,
+                                      reference, out.q);
+  } else if (driven >= 0) {
+    is_solved = robot::solve_with_roll(model.robot, tool_length_mm, in_machine, branch, free,
+                                       reference, out.q);
   }
-  for (const int joint : {robot::kYaw, robot::kShoulder, robot::kElbow}) {
-    detail::wind(out.q, joint, reference);
+  if (!is_solved || !detail::all_finite(out.q)) return out;
+  for (int joint = 0; joint < model.joint_count; ++joint) {
+    if (joint != driven) detail::wind(out.q, joint, reference);
   }
-  detail::wind(out.q, static_cast<int>(robot::kBend), reference);
+  out.status = SolveStatus::kOk;
   return out;
 }
 

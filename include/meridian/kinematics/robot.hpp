@@ -32,6 +32,10 @@ enum Joint6 { kRoll = 3, kBend, kSpin };
 
 /// Eight branches: bit 0 front or back, bit 1 elbow up or down, bit 2 wrist plain or flipped.
 inline constexpr int kBranchCount = 8;
+inline constexpr int kBack = 1, kFlip = 4;  ///< bits of a branch
+
+/// Bit of a branch with a driven joint: it is the yaw, and not the roll.
+inline constexpr int kYawDriven = 8;
 
 /// Nearer to a wrist singularity than this the joint without a direction of its own is held. The
 /// wrist point follows the axis asked for, so the tip is off by up to this angle times the tool.
@@ -96,17 +100,45 @@ struct ArmSolution {
   bool is_reachable;
 };
 
+/// The wrist point of `pose`, seen from the shoulder. The axis must be unit.
+template <class S>
+[[nodiscard]] inline Vec3<S> wrist_point(const RobotKinematics& k, double tool_length_mm,
+                                         const Pose<S>& pose) noexcept {
+  const double d = k.wrist_mm + tool_length_mm;
+  return {pose.tip[0] + d * pose.axis[0], pose.tip[1] + d * pose.axis[1],
+          pose.tip[2] + d * pose.axis[2] - k.shoulder_height_mm};
+}
+
+/// Shoulder and elbow, eq. 5.4 and 5.5, in the arm plane of the yaw in `out.frame`: for the wrist
+/// point `rho` from the base axis and `height` over the shoulder.
+template <class S>
+inline void solve_in_plane(const RobotKinematics& k, const S& rho, const S& height,
+                           double elbow_sign, ArmSolution<S>& out, Joints<S>& q) noexcept {
+  using std::sqrt;
+  const double b = k.upper_arm_mm, c = k.forearm_mm, span = b + c;
+  const S length = hypot(rho, height);
+  S out_of = (span - length) * (span + length);
+  S into = (length - b + c) * (length + b - c);
+  const double margin = 1e-12 * span * span;
+  out.is_reachable = value_of(out_of) >= -margin && value_of(into) >= -margin;
+  if (value_of(out_of) < 0) out_of = S(0.0);
+  if (value_of(into) < 0) into = S(0.0);
+  const S y = sqrt(out_of), x = sqrt(into);
+  const S eta = 2.0 * atan2(y, x);
+  const S per_square = 1.0 / (out_of + into);
+  const S elbow_sin = -elbow_sign * (2.0 * x * y) * per_square;
+  const S elbow_cos = (into - out_of) * per_square;
+  q[kElbow] = -elbow_sign * eta;
+  q[kShoulder] = atan2(height, rho) - atan2(S(c * elbow_sin), S(b + c * elbow_cos));
+}
+
 /// Yaw, shoulder and elbow, eq. 5.3 to 5.5. The axis must be unit. Over the base axis (wrist point
 /// on it) the yaw of `reference` is held.
 template <class S>
 [[nodiscard]] inline ArmSolution<S> solve_arm(const RobotKinematics& k, double tool_length_mm,
                                               const Pose<S>& pose, const BranchSigns& sign,
                                               const JointVector& reference, Joints<S>& q) noexcept {
-  using std::sqrt;
-  const double d = k.wrist_mm + tool_length_mm;
-  const double b = k.upper_arm_mm, c = k.forearm_mm, span = b + c;
-  const Vec3<S> w{pose.tip[0] + d * pose.axis[0], pose.tip[1] + d * pose.axis[1],
-                  pose.tip[2] + d * pose.axis[2] - k.shoulder_height_mm};
+  const Vec3<S> w = wrist_point(k, tool_length_mm, pose);
   ArmSolution<S> out;
   const double radius2 = value_of(w[0]) * value_of(w[0]) + value_of(w[1]) * value_of(w[1]);
   S rho;
@@ -121,23 +153,43 @@ template <class S>
     out.frame.yaw = {w[1] * per_rho, w[0] * per_rho};
     rho = sign.front * radius;
   }
-  const S length = hypot(rho, w[2]);
-  S out_of = (span - length) * (span + length);
-  S into = (length - b + c) * (length + b - c);
-  const double margin = 1e-12 * span * span;
-  out.is_reachable = value_of(out_of) >= -margin && value_of(into) >= -margin;
-  if (value_of(out_of) < 0) out_of = S(0.0);
-  if (value_of(into) < 0) into = S(0.0);
-  const S y = sqrt(out_of), x = sqrt(into);
-  const S eta = 2.0 * atan2(y, x);
-  const S per_square = 1.0 / (out_of + into);
-  const S elbow_sin = -sign.elbow * (2.0 * x * y) * per_square;
-  const S elbow_cos = (into - out_of) * per_square;
-  q[kElbow] = -sign.elbow * eta;
-  q[kShoulder] = atan2(w[2], rho) - atan2(S(c * elbow_sin), S(b + c * elbow_cos));
+  solve_in_plane(k, rho, w[2], sign.elbow, out, q);
   const Vec3<S> axis = out.frame.to_arm(pose.axis);
   out.tool = {-axis[0], -axis[1], -axis[2]};
   return out;
+}
+
+/// The joints of the wrist, eq. 5.6 to 5.9, behind the arm in `q`. Returns whether it is singular:
+/// the joint that has no direction of its own then keeps its value of `reference`.
+template <class S>
+[[nodiscard]] inline bool solve_wrist(const RobotKinematics& k, const Vec3<S>& t, double flip,
+                                      const JointVector& reference, Joints<S>& q) noexcept {
+  if (!k.has_spherical_wrist) {
+    const double in_plane = hypot(value_of(t[0]), value_of(t[2]));
+    if (in_plane < kWristHold_rad) {
+      q[kPitch] = S(reference[kPitch]);
+      const SinCos<S> held = sin_cos(S(q[kShoulder] + q[kElbow] + q[kPitch]));
+      q[kTilt] = atan2(t[1], S(held.cos * t[0] + held.sin * t[2]));
+      return true;
+    }
+    q[kTilt] = atan2(t[1], S(flip * hypot(t[0], t[2])));
+    const S psi = atan2(S(flip * t[2]), S(flip * t[0]));
+    q[kPitch] = psi - q[kShoulder] - q[kElbow];
+    return false;
+  }
+  const SinCos<S> e = sin_cos(S(q[kShoulder] + q[kElbow]));
+  const S x = e.cos * t[0] + e.sin * t[2], z = e.cos * t[2] - e.sin * t[0];
+  const S& y = t[1];
+  q[kSpin] = S(reference[kSpin]);
+  if (hypot(value_of(y), value_of(z)) < kWristHold_rad) {
+    q[kRoll] = S(reference[kRoll]);
+    const SinCos<S> roll = sin_cos(q[kRoll]);
+    q[kBend] = atan2(S(z * roll.cos - y * roll.sin), x);
+    return true;
+  }
+  q[kBend] = atan2(S(flip * hypot(y, z)), x);
+  q[kRoll] = atan2(S(-flip * y), S(flip * z));
+  return false;
 }
 
 /// Inverse kinematics, eq. 5.3 to 5.9. Returns whether the pose is in reach. Where the wrist is
@@ -151,36 +203,36 @@ template <class S>
   const BranchSigns sign = signs_of(branch);
   const ArmSolution<S> arm = solve_arm(k, tool_length_mm, pose, sign, reference, q);
   if (!arm.is_reachable) return false;
-  const Vec3<S>& t = arm.tool;
-  is_held = false;
-  if (!k.has_spherical_wrist) {
-    const double in_plane = hypot(value_of(t[0]), value_of(t[2]));
-    if (in_plane < kWristHold_rad) {
-      is_held = true;
-      q[kPitch] = S(reference[kPitch]);
-      const SinCos<S> held = sin_cos(S(q[kShoulder] + q[kElbow] + q[kPitch]));
-      q[kTilt] = atan2(t[1], S(held.cos * t[0] + held.sin * t[2]));
-      return true;
-    }
-    q[kTilt] = atan2(t[1], S(sign.flip * hypot(t[0], t[2])));
-    const S psi = atan2(S(sign.flip * t[2]), S(sign.flip * t[0]));
-    q[kPitch] = psi - q[kShoulder] - q[kElbow];
-    return true;
-  }
-  const SinCos<S> e = sin_cos(S(q[kShoulder] + q[kElbow]));
-  const S x = e.cos * t[0] + e.sin * t[2], z = e.cos * t[2] - e.sin * t[0];
-  const S& y = t[1];
-  q[kSpin] = S(reference[kSpin]);
-  if (hypot(value_of(y), value_of(z)) < kWristHold_rad) {
-    is_held = true;
-    q[kRoll] = S(reference[kRoll]);
-    const SinCos<S> roll = sin_cos(q[kRoll]);
-    q[kBend] = atan2(S(z * roll.cos - y * roll.sin), x);
-    return true;
-  }
-  q[kBend] = atan2(S(sign.flip * hypot(y, z)), x);
-  q[kRoll] = atan2(S(-sign.flip * y), S(sign.flip * z));
+  is_held = solve_wrist(k, arm.tool, sign.flip, reference, q);
   return true;
+}
+
+/// The joints with the yaw at `yaw`, the elbow and the wrist of `branch`: the axis is that of
+/// `pose`, the tip the nearest in the arm plane. The shoulder leads to the front or to the back,
+/// whichever the wrist point asks for. Returns whether the pose is in reach. Windings are the
+/// caller's. RT: cycle. Proof: tests/property/kinematics.
+template <class S>
+[[nodiscard]] inline bool solve_with_yaw(const RobotKinematics& k, double tool_length_mm,
+                                         const Pose<S>& pose, int branch, const S& yaw,
+                                         const JointVector& reference, Joints<S>& q) noexcept {
+  q = {};
+  const BranchSigns sign = signs_of(branch);
+  ArmSolution<S> out;
+  q[kYaw] = yaw;
+  out.frame.yaw = sin_cos(yaw);
+  const Vec3<S> w = out.frame.to_arm(wrist_point(k, tool_length_mm, pose));
+  solve_in_plane(k, w[0], w[2], sign.elbow, out, q);
+  if (!out.is_reachable) return false;
+  const Vec3<S> axis = out.frame.to_arm(pose.axis);
+  (void)solve_wrist(k, Vec3<S>{-axis[0], -axis[1], -axis[2]}, sign.flip, reference, q);
+  return true;
+}
+
+/// How far the wrist point of `pose` is from the base axis, mm. The axis must be unit.
+[[nodiscard]] inline double shoulder_distance(const RobotKinematics& k, double tool_length_mm,
+                                              const Pose<double>& pose) noexcept {
+  const Vec3<double> w = wrist_point(k, tool_length_mm, pose);
+  return hypot(w[0], w[1]);
 }
 
 /// Rounds of solve_with_roll(). Each leaves d times what the arm turns per mm of the one before, a
