@@ -19,7 +19,8 @@ constexpr double kLargestJump = 1.0;     // rad between two samples: another bra
 /// slides that make up for it so much of their way to its axis.
 constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
 constexpr double kNoCell_mm = 1e-6;      // of u: an end that is not worth a cell
-constexpr double kLeastSplit_mm = 0.02;  // of u: below, motion would creep
+constexpr double kLeastSplit_mm = 5e-4;  // of u: below, motion would creep
+constexpr double kMostCells = 2;         // of time, that one takes where it is slowest
 constexpr int kRounds = 16;              // of halving: lengths of a ratio of 60 000
 constexpr double kNone = 1e-12;          // derivative that counts as none
 
@@ -153,7 +154,25 @@ void CellGrid::draft_cells(const JointSpan& span) noexcept {
   const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
   const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMostPerSpan));
   const double h = span.band.length / cells;
-  for (int k = 0; k < cells; ++k) drafts_.push_back({waiting_count_ - 1, k * h, h});
+  for (int k = 0; k < cells; ++k) {
+    if (model_.family == MachineFamily::kRobot) {
+      draft_graded(span, k * h, h);
+    } else {
+      drafts_.push_back({waiting_count_ - 1, k * h, h});
+    }
+  }
+}
+
+void CellGrid::draft_graded(const JointSpan& span, double x, double h) noexcept {
+  const double slowest =
+      std::max({time_per_u(span, x), time_per_u(span, x + 0.5 * h), time_per_u(span, x + h)});
+  const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMostPerSpan;
+  if (slowest * h > kMostCells * settings_.cell_s && h > kLeastSplit_mm && has_room) {
+    draft_graded(span, x, 0.5 * h);
+    draft_graded(span, x + 0.5 * h, 0.5 * h);
+  } else {
+    drafts_.push_back({waiting_count_ - 1, x, h});
+  }
 }
 
 void CellGrid::halve(double left, double ratio, int rounds) noexcept {

@@ -139,6 +139,9 @@ class CellGrid {
                                       CellSample& out) const noexcept;
   [[nodiscard]] double time_per_u(const JointSpan& span, double x) const noexcept;
   void draft_cells(const JointSpan& span) noexcept;
+  /// Beside a singular place of a robot the time per u changes manifold inside of a span: halves
+  /// the cell at `x` as long as it takes too long where it is slowest.
+  void draft_graded(const JointSpan& span, double x, double h) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] bool split(std::size_t draft) noexcept;
