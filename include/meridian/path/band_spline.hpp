@@ -33,9 +33,11 @@ struct BandTuning {
   bool bounds_mean = false;
 };
 
-/// The programmed tool axis at a place: between two of them it lies on their great circle.
+/// The programmed pose at a place: between two of them the tip is on the straight line, the axis on
+/// their great circle.
 struct AxisMark {
   double u = 0;
+  Array3 tip{};
   Array3 axis{};  ///< unit
 };
 

@@ -223,7 +223,9 @@ std::optional<AxisMark> BandSpline::next_axis() noexcept {
   w.axis_mark = std::max(w.axis_mark, w.line.first());
   if (w.axis_mark > w.line.last()) return std::nullopt;
   const BandVertex& vertex = w.line[w.axis_mark++];
-  return AxisMark{vertex.u, {vertex.x[3], vertex.x[4], vertex.x[5]}};
+  return AxisMark{vertex.u,
+                  {vertex.x[0], vertex.x[1], vertex.x[2]},
+                  {vertex.x[3], vertex.x[4], vertex.x[5]}};
 }
 
 bool BandSpline::is_done() const noexcept {

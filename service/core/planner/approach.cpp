@@ -6,6 +6,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/ahead_look.hpp"
+#include "service/core/planner/robot_look_ahead.hpp"
 #include "service/core/planner/router.hpp"
 
 /// The approach: retract along the tool axis, joint move, down. Part of Router.
@@ -172,17 +173,34 @@ void Router::take_looked(std::span<const AheadWay> found, Ways& ways) noexcept {
 
 void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                         Ways& ways) const noexcept {
-  const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
-    return one.sequence == block.sequence;
-  });
-  if (first == ahead_.end()) return;
+  const std::span<const ClBlock> blocks = behind(block);
+  if (blocks.empty()) return;
   const AheadWays found = ahead_of(ways);
   AheadLook look(model_);
   look.begin(tool_length_mm, start, slack_, {found.data(), static_cast<std::size_t>(ways.count)});
-  for (auto next = block.is_arc ? first : first + 1; next != ahead_.end(); ++next) {
-    look.follow(*next);
-  }
+  for (const ClBlock& next : blocks) look.follow(next);
   take_looked(look.ways(), ways);
+}
+
+void Router::look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                            Ways& ways) const noexcept {
+  const AheadSlack slack{std::max(slack_.tip_mm, model_.tolerances.tip_mm),
+                         std::max(slack_.axis_rad, model_.tolerances.axis_rad)};
+  for (int n = 0; n < ways.count; ++n) {
+    Way& way = ways.way[n];
+    way.carries =
+        follow_ahead(model_, slack, {tool_length_mm, start, way.branch, way.joints}, behind(block));
+  }
+  ways.sort();
+}
+
+/// The blocks behind where `block` begins to be cut, of those that are known.
+std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
+  const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
+    return one.sequence == block.sequence;
+  });
+  if (first == ahead_.end()) return {};
+  return {block.is_arc ? first : first + 1, ahead_.end()};
 }
 
 void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
@@ -220,7 +238,11 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
     }
     ways.sort();
   }
-  if (free >= 0) look_along(block, target, cursor.tool_length_mm, ways);
+  if (free >= 0) {
+    look_along(block, target, cursor.tool_length_mm, ways);
+  } else if (model_.family == MachineFamily::kRobot) {
+    look_along_arm(block, target, cursor.tool_length_mm, ways);
+  }
   const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
   if (ways.count == 0) {

@@ -13,6 +13,7 @@
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/robot_pass.hpp"
 
 namespace meridian {
 namespace {
@@ -71,11 +72,13 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
     ways.way[ways.count++] = {q, cost, branch, 0, {}};
   };
   for (int branch = 0; branch < branch_count(model_); ++branch) {
-    const auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);
+    auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);
     if (at.status == SolveStatus::kUnreachable) continue;
+    if (free < 0) wind_into_travel(model_, cursor.joints, at.q);
     add(at.q, branch);
+    if (free < 0) continue;
     if (at.status == SolveStatus::kAtPole) break;
-    if (free < 0 || model_.joints[free].is_endless) continue;
+    if (model_.joints[free].is_endless) continue;
     for (int turns = 1; turns <= kMostTurns; ++turns) {
       for (const int sign : {-1, 1}) {
         JointVector q = at.q;
@@ -120,8 +123,27 @@ PathFault Router::run_held(PathPiece path, double free_end, const Job& job, doub
 PathFault Router::run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
                            Staging& out) noexcept {
   const int free = free_joint(model_);
-  return free >= 0 ? run_held(path, cursor.joints[free], job, 1.0, cursor, out)
-                   : run_solved(path, job, 1.0, cursor, out);
+  if (free >= 0) return run_held(path, cursor.joints[free], job, 1.0, cursor, out);
+  if (job.motion != MotionKind::kApproach || model_.family != MachineFamily::kRobot) {
+    return run_solved(path, job, 1.0, cursor, out);
+  }
+  // A robot may lift off beside a singular place: slowly at first, and with rests faster and
+  // faster.
+  constexpr std::array kParts{0.0, 1.0 / 64, 1.0 / 16, 1.0 / 4, 1.0};
+  const int branch = branch_of(pose_at(path, 0.0), cursor.joints, cursor.tool_length_mm);
+  const auto is_near = [&](double s) {
+    return is_near_singularity({model_, cursor.tool_length_mm, branch, cursor.joints},
+                               pose_at(path, s));
+  };
+  const bool begins_near = is_near(0), ends_near = is_near(path.length);
+  if (!begins_near && !ends_near) return run_solved(path, job, 1.0, cursor, out);
+  for (std::size_t n = 1; n < kParts.size(); ++n) {
+    const double from = begins_near ? kParts[n - 1] : 1 - kParts[kParts.size() - n];
+    const double to = begins_near ? kParts[n] : 1 - kParts[kParts.size() - 1 - n];
+    const PathFault fault = run_solved(cut_piece(path, from, to), job, to - from, cursor, out);
+    if (is_fault(fault)) return fault;
+  }
+  return {};
 }
 
 /// The branch that gives `joints` back at `pose`.

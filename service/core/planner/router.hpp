@@ -119,6 +119,10 @@ class Router {
   /// program's begin.
   void look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                   Ways& ways) const noexcept;
+  /// The same for a robot.
+  void look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                      Ways& ways) const noexcept;
+  [[nodiscard]] std::span<const ClBlock> behind(const ClBlock& block) const noexcept;
   using AheadWays = std::array<AheadWay, kMaxWays>;
   [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
   static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;

@@ -101,12 +101,13 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   auto cut = w.is_for_plain ? std::nullopt : w.smoothable(block);
   w.is_for_plain = !cut;
   if (w.is_running) {
-    if (!cut) w.run.finish();
+    const bool ends = !cut || !w.is_smooth();
+    if (ends) w.run.finish();
     const Status status = w.publish(writer);
     if (w.is_refused) return w.refusal;
-    if (status == Status::kNoRoom || (!cut && status != Status::kDone) || w.awaits_ahead())
+    if (status == Status::kNoRoom || (ends && status != Status::kDone) || w.awaits_ahead())
       return {PlanStatus::kNoRoom, {}, 0, {}};
-    if (!cut) {
+    if (ends) {
       w.end_run();
       cut = w.smoothable(block);  // it may start a run of its own
       w.is_for_plain = !cut;
@@ -135,6 +136,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   }
   if (!w.is_running) w.begin_run(*cut);
   w.run.take(*cut);
+  if (!w.is_smooth()) w.run.finish();
   w.pose = {to_vector(cut->tip_mm), to_vector(cut->axis)};
   (void)w.publish(writer);
   return w.is_refused ? w.refusal : PlanResult{};

@@ -36,7 +36,7 @@ SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight*
     : model_(model),
       raise_(raise),
       corridor_(model, foresight),
-      wrist_(model),
+      passes_(model),
       feed_(model, feed_settings(model)),
       authority_(model),
       travel_(model),
@@ -50,8 +50,8 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   band_.begin(start.pose, tolerance);
   corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
                    pole_tolerance_rad, start.is_on_pole});
-  wrist_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
-                tolerance.axis_rad});
+  passes_.begin({start.joints, start.branch, start.tool_length_mm, start.pose, pole_tolerance_rad,
+                 tolerance.tip_mm});
   begin_feed(start.branch);
   ends_.clear();
   const int free = free_joint(model_);
@@ -237,7 +237,7 @@ void SmoothRun::note_ease(const JointSpan* span) noexcept {
     ease_.last_sequence = span->band.sequence;
     ease_.last_line = span->band.line;
   }
-  if (span != nullptr && span->is_free_driven) {
+  if (span != nullptr && span->axis_deviation_rad > 0) {
     if (!is_easing_) {
       ease_ = {span->band.sequence, span->band.sequence, span->band.line, span->band.line, 0,
                span->reason};
@@ -252,9 +252,9 @@ void SmoothRun::note_ease(const JointSpan* span) noexcept {
 
 const JointSpan* SmoothRun::next_span() noexcept {
   for (;;) {
-    if (const JointSpan* span = wrist_.next()) return span;
+    if (const JointSpan* span = passes_.next()) return span;
     if (const JointSpan* span = corridor_.next()) {
-      wrist_.push(*span);
+      passes_.push(*span);
       continue;
     }
     if (is_band_finished_ || corridor_.needs_ahead()) return nullptr;
@@ -263,7 +263,7 @@ const JointSpan* SmoothRun::next_span() noexcept {
     while (const auto mark = band_.next_axis()) {
       if (!(mark->u > 0)) continue;
       corridor_.mark(mark->u, to_vector(mark->axis));
-      wrist_.mark(mark->u, to_vector(mark->axis));
+      passes_.mark(*mark);
     }
     if (band != nullptr) {
       BandSpan limited = *band;
@@ -272,7 +272,7 @@ const JointSpan* SmoothRun::next_span() noexcept {
     } else if (band_.is_done()) {
       is_band_finished_ = true;
       corridor_.finish();
-      wrist_.finish();
+      passes_.finish();
     } else {
       return nullptr;
     }

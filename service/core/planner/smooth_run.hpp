@@ -15,8 +15,8 @@
 #include "service/core/planner/feed_raise.hpp"
 #include "service/core/planner/free_travel.hpp"
 #include "service/core/planner/pole_corridor.hpp"
+#include "service/core/planner/robot_passes.hpp"
 #include "service/core/planner/rolling_feed.hpp"
-#include "service/core/planner/wrist_corridor.hpp"
 
 namespace meridian {
 
@@ -138,7 +138,7 @@ class SmoothRun : public WindingTrial {
   FeedRaise& raise_;
   BandSpline band_;
   PoleCorridor corridor_;
-  WristCorridor wrist_;
+  RobotPasses passes_;
   RollingFeed feed_;
   FeedAuthority authority_;
   FreeTravel travel_;

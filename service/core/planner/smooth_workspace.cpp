@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/geometry/unit_vector.hpp"
@@ -32,7 +33,7 @@ BandTolerance SmoothPlanner::Workspace::tolerance() const noexcept {
 }
 
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
-  if (!is_smooth()) return {};
+  if (!is_smooth() && model.family != MachineFamily::kRobot) return {};
   if (block.kind != BlockKind::kCut || plain.junction().is_first) return {};
   if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return {};
   const auto unit = UnitVector3::near_unit(to_vector(block.axis));
@@ -45,6 +46,11 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
     axis = find_nearest_pole(model, axis);
   }
   block.axis = to_array(axis);
+  if (!is_smooth()) {
+    const RestToRestPlanner::Junction at = plain.junction();
+    const PassCourse course{model, at.tool_length_mm, find_branch(at), at.joints};
+    if (!comes_near_singularity(course, pose, block)) return {};
+  }
   // Runs go through the pole and linger on it, or stay on it all the way with the axis fixed. What
   // leads off it from rest, out of the tolerance, is done at rest, where the free joint can turn.
   const bool starts_on_pole = is_on_pole(pose.axis);
@@ -65,16 +71,9 @@ bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
          pole_distance(model, axis) < kOnPoleTolerances * tolerance().axis_rad;
 }
 
-void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
-  const RestToRestPlanner::Junction at = plain.junction();
-  RunStart start;
-  start.pose = at.pose;
-  start.joints = at.joints;
-  start.tool_length_mm = at.tool_length_mm;
-  start.epoch = at.epoch;
-  start.path_index = at.path_index;
-  start.window = at.window;
-  double nearest = 1e300;
+int SmoothPlanner::Workspace::find_branch(const RestToRestPlanner::Junction& at) const noexcept {
+  double nearest = std::numeric_limits<double>::infinity();
+  int best = 0;
   for (int branch = 0; branch < branch_count(model); ++branch) {
     const auto found = solve(model, at.tool_length_mm, at.pose, branch, at.joints);
     if (found.status == SolveStatus::kUnreachable) continue;
@@ -84,11 +83,26 @@ void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
     }
     if (off < nearest) {
       nearest = off;
-      start.branch = branch;
+      best = branch;
     }
   }
+  return best;
+}
+
+void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
+  const RestToRestPlanner::Junction at = plain.junction();
+  RunStart start;
+  start.pose = at.pose;
+  start.joints = at.joints;
+  start.tool_length_mm = at.tool_length_mm;
+  start.epoch = at.epoch;
+  start.path_index = at.path_index;
+  start.window = at.window;
+  start.branch = find_branch(at);
   start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis) && to_vector(cut.axis) == pose.axis;
-  run.begin(start, tolerance(), pole_tolerance_rad());
+  BandTolerance path = tolerance();
+  if (!is_smooth()) path.axis_rad = kLeastAxisTolerance_rad;  // of long turns; the tip is exact
+  run.begin(start, path, pole_tolerance_rad());
   is_running = true;
 }
 

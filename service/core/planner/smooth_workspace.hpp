@@ -20,7 +20,7 @@ namespace meridian {
 
 /// Whether there is a branch to choose.
 [[nodiscard]] inline bool has_branches(const MachineModel& model) noexcept {
-  return free_joint(model) >= 0;
+  return free_joint(model) >= 0 || model.family == MachineFamily::kRobot;
 }
 
 /// What a smooth planner is made of, and how runs through blocks and motion from rest to rest take
@@ -52,8 +52,11 @@ struct SmoothPlanner::Workspace {
   [[nodiscard]] bool is_smooth() const noexcept {
     return settings.transition.value_or(model.transition) == Transition::kSmooth;
   }
-  /// `block` as it can be run on through, or nothing where it is done at rest.
+  /// `block` as it can be run on through, or nothing where it is done at rest. In exact stop it is
+  /// a run of its own where a robot comes near a singular place.
   [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
+  /// The solution that the joints at the last rest are nearest to.
+  [[nodiscard]] int find_branch(const RestToRestPlanner::Junction& at) const noexcept;
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
   void begin_run(const ClBlock& cut) noexcept;
   void end_run() noexcept;

@@ -3,6 +3,7 @@
 // points over, beside and far from the base axis, in front of it and behind.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 #include <string>

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "property/planner/singular_passes.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "service/config/machine_file.hpp"
+#include "support/draws.hpp"
+#include "support/shipped_machines.hpp"
+
+/// Robots pass their singular places, smooth and in exact stop: every joint inside its limits, the
+/// tool inside its tolerance, no creeping; refused is what leaves travel.
+namespace meridian::test {
+namespace {
+
+constexpr double kShare = 1 + 1e-6;  // of a limit or a tolerance, with what rounding adds
+constexpr double kLongest_s = 60;    // the longest program takes 3 s at its feed, and 61 rests
+
+struct Sweep {
+  const char* name;
+  const char* machine;
+  bool is_wrist;
+  Transition transition;
+
+  [[nodiscard]] std::unique_ptr<SingularPass> draw(const MachineModel& robot,
+                                                   std::uint32_t seed) const {
+    if (is_wrist) return std::make_unique<WristPass>(robot, seed);
+    return std::make_unique<ShoulderPass>(robot, seed);
+  }
+  /// Distances to pass at: degrees or mm; the last is what times are compared with.
+  [[nodiscard]] std::vector<double> beside() const {
+    if (is_wrist) return {0, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 5};
+    return {0, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 9e-3, 0.012, 0.03, 0.1, 1, 5};
+  }
+};
+
+class SingularSweep : public testing::TestWithParam<Sweep> {};
+
+/// Without the approach.
+double cutting_time_s(const Trace& trace) {
+  double sum = 0;
+  for (std::size_t n = 0; n < trace.times.size(); ++n) {
+    if (trace.paths[n].motion != MotionKind::kApproach) sum += trace.times[n].duration;
+  }
+  return sum;
+}
+
+/// In tolerances.
+double farthest_off(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                    const Trace& trace, const std::vector<PlanSample>& setpoints) {
+  const auto ways = programmed_ways(blocks);
+  double farthest = 0;
+  for (std::size_t n = 3; n + 3 < setpoints.size(); n += 7) {
+    const auto piece = static_cast<std::size_t>(setpoints[n].piece);
+    if (trace.paths[piece].motion == MotionKind::kApproach) continue;
+    const ToolPose pose = forward(model, model.tool_length_mm, setpoints[n].q);
+    farthest =
+        std::max(farthest, distance_from(ways, trace.times[piece].sequence, pose,
+                                         model.tolerances.tip_mm, model.tolerances.axis_rad, 1.0));
+  }
+  return farthest;
+}
+
+TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
+  const Sweep& sweep = GetParam();
+  const auto first = number_of<std::uint32_t>("MERIDIAN_SINGULAR_SEED", 1);
+  const auto draws = number_of<std::uint32_t>("MERIDIAN_SINGULAR_PASSES", 1);
+  MachineModel robot = config::load_machine(shipped_file(sweep.machine));
+  config::place_workpiece(robot, config::parse_frame("0,0,0"));
+  const std::vector<double> beside = sweep.beside();
+  const bool is_verbose = number_of<int>("MERIDIAN_SINGULAR_VERBOSE", 0) != 0;
+  int planned = 0;
+  std::map<std::string, int> refused;
+  double slowest = 0;
+  for (std::uint32_t seed = first; seed < first + draws; ++seed) {
+    const auto singular = sweep.draw(robot, seed);
+    for (const Pass pass : kPasses) {
+      double time_beside = 0;
+      for (std::size_t k = beside.size(); k-- > 0;) {
+        SCOPED_TRACE(testing::Message()
+                     << "seed " << seed << " " << kPassNames[static_cast<int>(pass)] << " beside "
+                     << beside[k]);
+        const double by = sweep.is_wrist ? units::rad_from_deg(beside[k]) : beside[k];
+        const auto blocks = singular->program(pass, by);
+        const JointVector start = joints_of(robot, blocks[0]);
+        SmoothTrace trace = plan_smooth(robot, blocks, start, {sweep.transition, 0, 0}, true);
+        trace.joints = end_of(robot, trace, start);
+        const auto setpoints = sample(robot, trace, 1e-3, 0.5, start);
+        const LimitUse use = measure_limits(robot, setpoints, 1e-3);
+        EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
+        EXPECT_LT(farthest_off(robot, blocks, trace, setpoints), kShare);
+        const double time_s = cutting_time_s(trace);
+        EXPECT_LT(time_s, kLongest_s);
+        ++planned;
+        if (is_verbose) {
+          std::printf("  seed %u %s beside %g: %.3f s\n", seed, kPassNames[static_cast<int>(pass)],
+                      beside[k], time_s);
+        }
+        if (trace.last.status == PlanStatus::kRefused) {
+          const BlockReject& reject = trace.last.reject;
+          const bool leaves_travel =
+              reject.code == RejectCode::kTravelBetween || reject.code == RejectCode::kTravel;
+          // A start beside the very place: no pass is inside travel, and the exact way jumps.
+          const bool starts_there = pass == Pass::kOff && k + 6 < beside.size();
+          EXPECT_TRUE(leaves_travel || (starts_there && reject.code == RejectCode::kDiscontinuous))
+              << "code " << static_cast<int>(reject.code) << " line " << reject.line;
+          ++refused[std::string(kPassNames[static_cast<int>(pass)]) + ", " +
+                    (reject.joint >= 0 ? "joint " + std::to_string(reject.joint) : "no joint") +
+                    ", code " + std::to_string(static_cast<int>(reject.code))];
+          if (is_verbose) {
+            std::printf("  seed %u %s beside %g: joint %d at %.3f, code %d, line %u\n", seed,
+                        kPassNames[static_cast<int>(pass)], beside[k], reject.joint, reject.value,
+                        static_cast<int>(reject.code), reject.line);
+          }
+          continue;
+        }
+        if (k + 1 == beside.size()) time_beside = time_s;
+        if (time_beside > 0) slowest = std::max(slowest, time_s / time_beside);
+      }
+    }
+  }
+  std::printf("%d passes, the slowest takes %.2f of the time at the farthest\n", planned, slowest);
+  for (const auto& [reason, count] : refused)
+    std::printf("  %d refused: %s\n", count, reason.c_str());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, SingularSweep,
+    testing::Values(Sweep{"WristSmooth", "robot-6r", true, Transition::kSmooth},
+                    Sweep{"WristExactStop", "robot-6r", true, Transition::kExactStop},
+                    Sweep{"ShoulderSmooth", "robot-6r", false, Transition::kSmooth},
+                    Sweep{"ShoulderExactStop", "robot-6r", false, Transition::kExactStop},
+                    Sweep{"ShoulderOf5RSmooth", "robot-5r", false, Transition::kSmooth},
+                    Sweep{"ShoulderOf5RExactStop", "robot-5r", false, Transition::kExactStop}),
+    [](const testing::TestParamInfo<Sweep>& sweep) { return sweep.param.name; });
+
+}  // namespace
+}  // namespace meridian::test
