@@ -236,6 +236,14 @@ class Search {
   JointVector reference_{};  // at the begin of the pass that was fitted last
 };
 
+/// How much farther the arm may stretch until its elbow is straight, mm.
+double reach_left(const PassCourse& course, const ToolPose& pose) noexcept {
+  const RobotKinematics& robot = course.model.robot;
+  const auto wrist =
+      robot::wrist_point<double>(robot, course.tool_length_mm, pose_in_machine(course.model, pose));
+  return robot.upper_arm_mm + robot.forearm_mm - std::hypot(wrist[0], wrist[1], wrist[2]);
+}
+
 }  // namespace
 
 double singular_distance(const MachineModel& model, double tool_length_mm, Singularity at,
@@ -250,12 +258,13 @@ double singular_distance(const MachineModel& model, double tool_length_mm, Singu
 }
 
 bool is_near_singularity(const PassCourse& course, const ToolPose& pose) noexcept {
-  constexpr double kNear_rad = 0.35, kNear_mm = 100;
+  constexpr double kNear_rad = 0.35, kNear_mm = 100, kNearStraight_mm = 10;
   const auto distance = [&](Singularity at) {
     return singular_distance(course.model, course.tool_length_mm, at, pose, course.branch,
                              course.joints);
   };
-  return distance(Singularity::kWrist) < kNear_rad || distance(Singularity::kShoulder) < kNear_mm;
+  return distance(Singularity::kWrist) < kNear_rad || distance(Singularity::kShoulder) < kNear_mm ||
+         reach_left(course, pose) < kNearStraight_mm;
 }
 
 bool comes_near_singularity(const PassCourse& course, const ToolPose& from,
