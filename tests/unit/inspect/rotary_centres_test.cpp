@@ -15,7 +15,7 @@
 namespace meridian::inspect {
 namespace {
 
-constexpr double kSphere_mm = 12.5, kBall_mm = 3, kLength_mm = 120;
+constexpr double kSphere_mm = 12.5, kProbeBall_mm = 3, kProbeLength_mm = 120;
 
 const char* const kMachines[] = {"trunnion-ac", "head-table-bc", "fork-ca"};
 
@@ -46,8 +46,8 @@ std::vector<Touch> touches_of(const MachineModel& real, std::mt19937_64& engine,
   for (const auto& [first, second] : angles) {
     for (int side = 0; side < 6; ++side) {
       Touch touch;
-      touch.tool_length_mm = kLength_mm;
-      touch.radius_mm = kBall_mm;
+      touch.tool_length_mm = kProbeLength_mm;
+      touch.radius_mm = kProbeBall_mm;
       touch.is_ball = true;
       std::size_t at = 0;
       for (const ChainJoint& joint : real.chain.chain) {
@@ -56,11 +56,10 @@ std::vector<Touch> touches_of(const MachineModel& real, std::mt19937_64& engine,
         }
       }
       const Vector3 out = Vector3(draw(engine), draw(engine), draw(engine)).normalized();
-      const Vector3 ball =
-          sphere + (kSphere_mm + kBall_mm + noise_mm * draw(engine)) * out;
+      const Vector3 ball = sphere + (kSphere_mm + kProbeBall_mm + noise_mm * draw(engine)) * out;
       // With the angles as they are the ball is linear in the linear joints.
       const ToolPose zero = pose_of(touch, real);
-      const Vector3 from = zero.tip + kBall_mm * zero.axis;
+      const Vector3 from = zero.tip + kProbeBall_mm * zero.axis;
       Eigen::Matrix3d slopes;
       std::array<std::size_t, 3> linear{};
       Eigen::Index column = 0;
@@ -73,7 +72,8 @@ std::vector<Touch> touches_of(const MachineModel& real, std::mt19937_64& engine,
         linear[static_cast<std::size_t>(column++)] = i;
       }
       const Vector3 by = slopes.colPivHouseholderQr().solve(ball - from);
-      for (std::size_t i = 0; i < 3; ++i) touch.joints[linear[i]] = by[static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < 3; ++i)
+        touch.joints[linear[i]] = by[static_cast<Eigen::Index>(i)];
       touch.toward = -out;
       touches.push_back(touch);
     }
@@ -81,9 +81,8 @@ std::vector<Touch> touches_of(const MachineModel& real, std::mt19937_64& engine,
   return touches;
 }
 
-const std::vector<std::array<double, 2>> kManyAngles{{0, 0},      {1.5, 0},    {3, 0},
-                                                     {-1.5, 0},   {0.4, 0.6},  {2, -0.6},
-                                                     {-1, 0.5},   {-2.4, -0.5}};
+const std::vector<std::array<double, 2>> kManyAngles{
+    {0, 0}, {1.5, 0}, {3, 0}, {-1.5, 0}, {0.4, 0.6}, {2, -0.6}, {-1, 0.5}, {-2.4, -0.5}};
 
 /// How far the axis that was found is beside the one that is.
 double error_of(const RotaryCentre& found, const MachineModel& real) {
