@@ -9,20 +9,14 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/core/planner/feed_limits.hpp"
+#include "service/core/planner/feed_sample.hpp"
+#include "service/core/planner/feed_span.hpp"
 #include "service/core/planner/joint_cells.hpp"
-#include "service/core/planner/joint_span.hpp"
 
 /// The grid of the feed planner: short cells of the path with the joints' derivatives by the path
 /// parameter u. Cell boundaries lie on every end of a span, so that derivatives are smooth inside a
 /// cell. Units: mm, rad, s. Source: docs/motion.md, section 8.
 namespace meridian {
-
-/// Derivatives of joints and drives by u at one place, and the largest u̇² that feed, velocity, and
-/// the curvature terms of acceleration and jerk allow there.
-struct CellSample {
-  LimitedVector d1{}, d2{}, d3{};
-  double most_b = 0;
-};
 
 /// Bounds of the derivatives in a cell: that much above zero (`up`) and below (`down`), both >= 0.
 struct CellBound {
@@ -37,10 +31,9 @@ static_assert(CellBound::Values::SizeAtCompileTime >= kMaxLimited);
 
 struct FeedCell {
   static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included
-  static constexpr double kLeastTight = 0.2;
 
   std::uint64_t span = 0;  ///< counts spans from 0 since begin()
-  double x = 0;            ///< where it begins in its span
+  double x = 0;            ///< where it begins on the path of its span
   double h = 0;            ///< length
   double most_b = 0;       ///< least of the samples', lowered where a plan overshot the feed
   double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot,
@@ -60,7 +53,7 @@ struct CellSettings {
 /// kAhead behind its own and on nothing else. Cells are named by their number since begin().
 class CellGrid {
  public:
-  static constexpr int kCells = 1024;  ///< kept at a time
+  static constexpr int kCells = 512;  ///< kept at a time
   static constexpr int kAhead = 4;     ///< spans that bound the cells of the one before them
   static constexpr int kLeast = 40;    ///< cells of a path, however short
 
@@ -75,7 +68,10 @@ class CellGrid {
   }
 
   /// Takes the next span; a fault ends the path, cells before it stay valid.
-  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const FeedSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept {
+    return push(make_feed_span(span, tool_length_mm_));
+  }
 
   /// No more spans: makes the last cells, as far as there is room for them.
   [[nodiscard]] PathFault finish() noexcept;
@@ -135,10 +131,13 @@ class CellGrid {
     double x = 0, h = 0;
   };
 
-  [[nodiscard]] PathFault take_sample(const JointSpan& span, double x, JointVector& reference,
-                                      CellSample& out) const noexcept;
-  [[nodiscard]] double time_per_u(const JointSpan& span, double x) const noexcept;
-  void draft_cells(const JointSpan& span) noexcept;
+  [[nodiscard]] PathFault sample(const FeedSpan& span, double x, JointVector& reference,
+                                 CellSample& out) const noexcept {
+    return take_sample(model_, limits_, settings_.feed_share, span, x, reference, out);
+  }
+  /// How many cells `span` is worth.
+  [[nodiscard]] int cells_of(const FeedSpan& span) const noexcept;
+  void draft_cells(const FeedSpan& span) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] bool split(std::size_t draft) noexcept;
@@ -148,7 +147,7 @@ class CellGrid {
   FeedLimits limits_;
   CellSettings settings_;
   std::vector<FeedCell> cells_;
-  std::array<JointSpan, kWaiting> waiting_;
+  std::array<FeedSpan, kWaiting> waiting_;
   int waiting_count_ = 0;
   std::vector<Draft> drafts_, finer_;
   std::uint64_t next_span_ = 0;  ///< number of waiting_[0]

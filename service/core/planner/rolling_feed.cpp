@@ -33,6 +33,13 @@ struct RollingFeed::Attempt {
   int shorter;         ///< cells that the window is shortened by
 };
 
+FeedSettings feed_settings(const MachineModel& model) noexcept {
+  const RateLimits rates = rate_limits(model.override_ramp_s);
+  FeedSettings settings;
+  settings.reserve = {rates.slope_per_s, rates.curvature_per_s2};
+  return settings;
+}
+
 RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings)
     : settings_(settings),
       limits_(make_feed_limits(model, settings.reserve)),
@@ -55,8 +62,6 @@ void RollingFeed::begin(const JointVector& joints, int branch, double tool_lengt
   old_.first = old_.end = 0;
   window_ = {};
 }
-
-PathFault RollingFeed::push(const JointSpan& span) noexcept { return grid_.push(span); }
 
 PathFault RollingFeed::finish() noexcept { return grid_.finish(); }
 
@@ -218,7 +223,7 @@ bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
       for (int n = std::max(0, k - 1); n <= std::min(cells - 1, k + 1); ++n) {
         FeedCell& near = grid_[new_.first + n];
         const double by = n == k ? std::min(worst, 1.5) + 0.004 : 1.002;
-        near.tight = std::max(FeedCell::kLeastTight, near.tight / by);
+        near.tight = std::max(kLeastTight, near.tight / by);
       }
     } else if (use.b > kFeedSlack) {
       is_good = false;

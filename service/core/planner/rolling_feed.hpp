@@ -29,6 +29,9 @@ struct FeedSettings {
   double failing_share = 0;
 };
 
+/// The settings that leave to the rate filter what the cycle of `model` may take.
+[[nodiscard]] FeedSettings feed_settings(const MachineModel& model) noexcept;
+
 /// A planned window: pieces that stand, then the rest of its plan up to rest, which a later window
 /// may replace. The last window of a path and every crawl have no tail.
 struct FeedWindow {
@@ -64,7 +67,8 @@ class RollingFeed {
   /// Whether push() would take another span.
   [[nodiscard]] bool has_room() const noexcept { return grid_.has_room(); }
   /// Takes the next span. A fault (travel, reach) ends the path: nothing of the span is planned.
-  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept { return grid_.push(span); }
+  [[nodiscard]] PathFault push(const FeedSpan& span) noexcept { return grid_.push(span); }
   /// A span on the branch of begin().
   [[nodiscard]] PathFault push(const BandSpan& span) noexcept {
     JointSpan on_branch;

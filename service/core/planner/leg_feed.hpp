@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/core/planner/feed_authority.hpp"
+#include "service/core/planner/joint_cells.hpp"
+#include "service/core/planner/leg.hpp"
+#include "service/core/planner/path_choice.hpp"
+#include "service/core/planner/rolling_feed.hpp"
+#include "service/core/planner/staging.hpp"
+
+namespace meridian {
+
+/// Plans a leg by the feed planner: as one motion from rest to rest over the true derivatives of
+/// the joints along it.
+///
+/// The cells of the feed are of equal time at full speed, and shorter towards both ends, where the
+/// motion is slower. However long a leg takes, there are no more of them than kMost and those.
+///
+/// Fixed store; a pure function of the leg. Units: mm, rad, s. Context: planner thread. Source:
+/// docs/motion.md, section 4. Proof: tests/property/planner/leg_time_test.cpp.
+class LegFeed {
+ public:
+  explicit LegFeed(const MachineModel& model);
+
+  /// Plans `leg` from `joints`, which become those at its end, stages it and returns its duration;
+  /// 0: there is no plan that takes less than `less_than_s`, and nothing is staged. `cells` are
+  /// those of the leg by path length.
+  [[nodiscard]] double plan(const Leg& leg, std::span<const JointCell> cells, double less_than_s,
+                            Staging& out, JointVector& joints) noexcept;
+
+ private:
+  /// Places the ends of cells on the leg; there is at least one cell.
+  void place_cells(const Leg& leg, std::span<const JointCell> cells) noexcept;
+  [[nodiscard]] double time_over(const Leg& leg, const JointCell& cell) const noexcept;
+  [[nodiscard]] bool push_cells(const Leg& leg) noexcept;
+  /// Stages the motion of all windows. False: it takes `less_than_s` or longer, or has no room.
+  [[nodiscard]] bool stage_times(const TimePiece& names, double less_than_s, Staging& out,
+                                 double& duration) noexcept;
+
+  const MachineModel& model_;
+  RollingFeed feed_;
+  FeedAuthority authority_;
+  std::vector<double> ends_;  ///< of the cells, by path length
+};
+
+/// A time that no motion on a leg with such `cells` falls much below: `limits` where they are
+/// easiest, and everywhere the velocity that there is.
+[[nodiscard]] double least_leg_time(const Leg& leg, std::span<const JointCell> cells,
+                                    const JointCaps& caps) noexcept;
+
+}  // namespace meridian
