@@ -266,6 +266,10 @@ async function everyViewIsAccessible({ page }) {
   }
   await page.click("#tab-machine");
   await draw(1);
+  await afterStalls(page, async () => {
+    if ((await stateOf(page)) === "Off") await click(page, "enable");
+    await inState(page, "Ready");
+  });
   must(faults.length === 0, faults.join("\n"));
 }
 
