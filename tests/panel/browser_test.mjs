@@ -154,8 +154,11 @@ async function aProgramIsCheckedAsAWhole({ page }) {
 async function aProgramGoesOnAtALine({ page }) {
   await page.click("#tab-program");
   await page.setInputFiles("#program-file", part());
-  await phase(page, "ready", 60000);
-  const whole = await page.evaluate(() => meridian.program.program.program_s);
+  // The program before this one may still be the one that is ready.
+  const whole = await until("the time of the program", () => page.evaluate(() => {
+    const { phase, program_s } = meridian.program.program;
+    return phase === "ready" && !meridian.program.program.simulating && program_s;
+  }), 60000);
   await page.fill("#program-line", "120");
   await page.click("#program-check:enabled");
   await until("the check from line 120", () => page.evaluate(() => meridian.program.program.first_line === 120), 10000);
