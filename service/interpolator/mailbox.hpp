@@ -19,31 +19,26 @@ class Mailbox {
   /// Writing thread: leaves `value` there, and gets what lay there before. False where the reader
   /// is at it at this moment: nothing is changed.
   [[nodiscard]] bool try_put(T& value) noexcept {
-    return try_swap(State::kFull, value) || try_swap(State::kEmpty, value);
+    return try_swap(State::kFull, State::kFull, value) ||
+           try_swap(State::kEmpty, State::kFull, value);
   }
   /// Reading thread: takes what was put since the last time, and leaves `value` there for the
   /// writing thread to free. False where there is nothing.
   [[nodiscard]] bool try_take(T& value) noexcept {
-    State full = State::kFull;
-    if (!state_.compare_exchange_strong(full, State::kBusy, std::memory_order_acq_rel,
-                                        std::memory_order_relaxed)) {
-      return false;
-    }
-    std::swap(value_, value);
-    state_.store(State::kEmpty, std::memory_order_release);
-    return true;
+    return try_swap(State::kFull, State::kEmpty, value);
   }
 
  private:
   enum class State : std::uint8_t { kEmpty, kFull, kBusy };
 
-  [[nodiscard]] bool try_swap(State from, T& value) noexcept {
+  /// Swaps where the state is `from`, which becomes `to`.
+  [[nodiscard]] bool try_swap(State from, State to, T& value) noexcept {
     if (!state_.compare_exchange_strong(from, State::kBusy, std::memory_order_acq_rel,
                                         std::memory_order_relaxed)) {
       return false;
     }
     std::swap(value_, value);
-    state_.store(State::kFull, std::memory_order_release);
+    state_.store(to, std::memory_order_release);
     return true;
   }
 
