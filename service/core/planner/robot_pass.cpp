@@ -65,10 +65,13 @@ class Search {
   }
 
   [[nodiscard]] double begin_at(double width) const noexcept {
-    return range_.is_start ? range_.from : snapped(std::max(range_.from, range_.nearest - width));
+    return range_.at_from == PassEnd::kAtRest
+               ? range_.from
+               : snapped(std::max(range_.from, range_.nearest - width));
   }
   [[nodiscard]] double end_at(double width) const noexcept {
-    return range_.is_end ? range_.to : snapped(std::min(range_.to, range_.nearest + width));
+    return range_.at_to == PassEnd::kAtRest ? range_.to
+                                            : snapped(std::min(range_.to, range_.nearest + width));
   }
   [[nodiscard]] RobotPass pass_over(double width) const noexcept {
     RobotPass pass;
@@ -109,7 +112,7 @@ class Search {
     if (!(h > 2 * kLeastPart_mm)) return false;
     JointVector reference = range_.joints;
     double from = reference[joint_], a1 = 0, a2 = 0;  // a start: at rest where it is
-    if (!range_.is_start) {
+    if (range_.at_from == PassEnd::kOnPath) {
       if (!follow({range_.from, pass.begin, range_.branch, false}, reference)) return false;
       const auto in = solve(task_.model, task_.tool_length_mm,
                             pose_of<Jet<2>>(task_.spans.span_at(pass.begin), pass.begin),
@@ -121,7 +124,7 @@ class Search {
       for (std::size_t i = 0; i < reference.size(); ++i) reference[i] = value_of(in.q[i]);
     }
     double to = from + 0.5 * a1, b1 = 0, b2 = 0;  // an end: comes to rest
-    if (range_.is_end) {
+    if (range_.at_to == PassEnd::kAtRest) {
       pass.branch_after = pass.branch_before;
     } else {
       const auto out = solve(task_.model, task_.tool_length_mm,
@@ -162,7 +165,7 @@ class Search {
 
   /// Whether the exact way behind the pass keeps travel, as far as the place goes.
   [[nodiscard]] bool leads_on(const RobotPass& pass) const noexcept {
-    if (range_.is_end) return true;
+    if (range_.at_to == PassEnd::kAtRest) return true;
     JointVector joints = reference_;
     joints[joint_] = pass.joint.back();
     return follow({pass.end, range_.to, pass.branch_after, true}, joints);

@@ -26,14 +26,20 @@ struct RobotPass {
   double deviation = 0;  ///< largest from the programmed path: of the axis, rad, or the tip, mm
 };
 
+/// How a pass meets an end of its range.
+enum class PassEnd : std::uint8_t {
+  kOnPath,  ///< anywhere inside it, on the exact way
+  kAtRest   ///< at that end, which is singular and where the machine rests: any joint value
+};
+
 /// Where a pass may lie: about `nearest`, between `from` and `to`.
 struct PassRange {
   Singularity at = Singularity::kWrist;
   double nearest = 0, from = 0, to = 0;
-  bool is_start = false;  ///< the path begins at `from`, singular: the joint rests there as it is
-  bool is_end = false;    ///< the path ends at `to`, singular: the joint comes to rest anywhere
-  int branch = 0;         ///< on the way in
-  JointVector joints{};   ///< at `from`
+  PassEnd at_from = PassEnd::kOnPath;  ///< kAtRest: the redundant joint begins as it stands
+  PassEnd at_to = PassEnd::kOnPath;
+  int branch = 0;        ///< on the way in
+  JointVector joints{};  ///< at `from`
 };
 
 /// What stays the same along a path.

@@ -165,8 +165,10 @@ bool RobotPasses::settle(Singularity at, double nearest) noexcept {
   range.to = std::min(wanted, end);
   const double singular = kOnPoleTolerances * tolerance(at);
   const bool is_path_begin = range.from <= 0;
-  range.is_start = is_held_ || (is_path_begin && distance_at(at, range.from) < singular);
-  range.is_end = distance_at(at, range.to) < singular;
+  const auto is_singular = [&](double u) { return distance_at(at, u) < singular; };
+  const bool begins_at_rest = is_held_ || (is_path_begin && is_singular(range.from));
+  range.at_from = begins_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath;
+  range.at_to = is_singular(range.to) ? PassEnd::kAtRest : PassEnd::kOnPath;
   range.branch = branch_;
   range.joints = follow_to(range.from);
   const PassTask task{
@@ -175,7 +177,7 @@ bool RobotPasses::settle(Singularity at, double nearest) noexcept {
   pass_ = find_robot_pass(task, range);
   at_ = at;
   has_pass_ = pass_.end > pass_.begin;
-  is_held_ = has_pass_ && range.is_end;
+  is_held_ = has_pass_ && range.at_to == PassEnd::kAtRest;
   while (has_pass_ && probe_ < end_probe() && u_of(probe_) <= pass_.end) ++probe_;
   return true;
 }
