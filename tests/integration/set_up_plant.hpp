@@ -135,4 +135,34 @@ inline void end_service(Plant& plant) {
   ASSERT_EQ(plant.service().wait(kToolPatience), 0) << plant.service().said();
 }
 
+/// A station that names the set-up which its program was checked with.
+class SetUpStation {
+ public:
+  explicit SetUpStation(Plant& plant)
+      : requests_(plant.participant()), credits_(plant.participant()) {}
+
+  [[nodiscard]] bool is_connected() {
+    return eventually(
+        [&] { return requests_.matched_readers() > 0 && credits_.matched_writers() > 0; },
+        kToolPatience);
+  }
+  /// What the service answers to a session with this `frame` and `tools` (sums; 0: not named).
+  [[nodiscard]] dds::Credit open(std::uint64_t session, std::uint64_t frame, std::uint64_t tools) {
+    dds::SessionRequest request;
+    request.session = session;
+    request.station = "cam";
+    request.program = "part.apt";
+    request.frame = frame;
+    request.tools = tools;
+    (void)requests_.write(request);
+    dds::Credit credit;
+    EXPECT_TRUE(eventually([&] { return credits_.take(credit) && credit.session == session; }));
+    return credit;
+  }
+
+ private:
+  dds::Writer<dds::SessionRequest> requests_;
+  dds::Reader<dds::Credit> credits_;
+};
+
 }  // namespace meridian::test

@@ -190,27 +190,13 @@ TEST_F(SetUp, RefusesAProgramThatWasCheckedUnderAnotherFrame) {
   ASSERT_TRUE(anna.ask(order_of(FrameWord::kSet, 2, 1)).is_accepted);
   ASSERT_TRUE(anna.ask(order_of(FrameWord::kSelect, 2)).is_accepted);
   ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 2; }));
-  dds::Writer<dds::SessionRequest> requests(plant.participant());
-  dds::Reader<dds::Credit> credits(plant.participant());
-  ASSERT_TRUE(
-      eventually([&] { return requests.matched_readers() > 0 && credits.matched_writers() > 0; },
-                 kToolPatience));
-  const auto open = [&](std::uint64_t session, std::uint64_t frame) {
-    dds::SessionRequest request;
-    request.session = session;
-    request.station = "cam";
-    request.program = "part.apt";
-    request.frame = frame;
-    (void)requests.write(request);
-    dds::Credit credit;
-    EXPECT_TRUE(eventually([&] { return credits.take(credit) && credit.session == session; }));
-    return credit;
-  };
-  const dds::Credit stale = open(51, old_sum);
+  SetUpStation station(plant);
+  ASSERT_TRUE(station.is_connected());
+  const dds::Credit stale = station.open(51, old_sum, 0);
   EXPECT_EQ(stale.verdict, dds::Verdict::kRefusedProgram);
   EXPECT_NE(stale.text.find("stale: "), std::string::npos) << stale.text;
   EXPECT_EQ(plant.status().session, 0U);
-  EXPECT_EQ(open(52, plant.status().frame).verdict, dds::Verdict::kGood);
+  EXPECT_EQ(station.open(52, plant.status().frame, 0).verdict, dds::Verdict::kGood);
 }
 
 TEST_F(SetUp, LetsAProgramInOrAFrameAndNeverBoth) {

@@ -144,28 +144,13 @@ TEST(SetUpTools, RefuseAProgramThatWasCheckedWithOthers) {
   plant.start_service();
   const std::uint64_t old_sum = plant.status().tools;
   ASSERT_TRUE(anna.ask(tools_of(101)).is_accepted);
-  ASSERT_TRUE(
-      plant.runs_until([&](const dds::Status& status) { return status.tools != old_sum; }));
-  dds::Writer<dds::SessionRequest> requests(plant.participant());
-  dds::Reader<dds::Credit> credits(plant.participant());
-  ASSERT_TRUE(
-      eventually([&] { return requests.matched_readers() > 0 && credits.matched_writers() > 0; },
-                 kToolPatience));
-  const auto open = [&](std::uint64_t session, std::uint64_t tools) {
-    dds::SessionRequest request;
-    request.session = session;
-    request.station = "cam";
-    request.program = "part.apt";
-    request.tools = tools;
-    (void)requests.write(request);
-    dds::Credit credit;
-    EXPECT_TRUE(eventually([&] { return credits.take(credit) && credit.session == session; }));
-    return credit;
-  };
-  const dds::Credit stale = open(51, old_sum);
+  ASSERT_TRUE(plant.runs_until([&](const dds::Status& status) { return status.tools != old_sum; }));
+  SetUpStation station(plant);
+  ASSERT_TRUE(station.is_connected());
+  const dds::Credit stale = station.open(51, 0, old_sum);
   EXPECT_EQ(stale.verdict, dds::Verdict::kRefusedProgram);
   EXPECT_NE(stale.text.find("stale: "), std::string::npos) << stale.text;
-  EXPECT_EQ(open(52, plant.status().tools).verdict, dds::Verdict::kGood);
+  EXPECT_EQ(station.open(52, 0, plant.status().tools).verdict, dds::Verdict::kGood);
 }
 
 }  // namespace

@@ -4,9 +4,23 @@
 #include <cstdint>
 #include <vector>
 
+#include "meridian/geometry/vector3.hpp"
 #include "meridian/path/cl_block.hpp"
 
 namespace meridian::test {
+
+/// Block `n` of a program, in line n + 1: a cut to `pose` at 50 mm/s of the tip.
+[[nodiscard]] inline ClBlock cut_block(int n, const ToolPose& pose) {
+  ClBlock block;
+  block.kind = BlockKind::kCut;
+  block.tip_mm = to_array(pose.tip);
+  block.axis = to_array(pose.axis);
+  block.feed = 50;
+  block.feed_meaning = FeedMeaning::kTip;
+  block.sequence = static_cast<std::uint64_t>(n);
+  block.line = static_cast<std::uint32_t>(n + 1);
+  return block;
+}
 
 /// Puts the block behind the last that ends a program.
 inline void end_program(std::vector<ClBlock>& blocks) {

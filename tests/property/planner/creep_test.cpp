@@ -10,6 +10,7 @@
 #include "property/planner/smooth_trace.hpp"
 #include "service/config/machine_file.hpp"
 #include "support/draws.hpp"
+#include "support/program_end.hpp"
 #include "support/shipped_machines.hpp"
 
 /// No plan creeps: one that does keeps a machine Running for hours without a word.
@@ -69,15 +70,8 @@ std::vector<ClBlock> past_the_wrist(const MachineModel& robot, double beside_rad
   const Vector3 across = pose(-0.17).axis.cross(pose(0.17).axis).normalized();
   for (int n = 0; n <= kBlocks; ++n) {
     const ToolPose at = pose(0.17 * (2.0 * n / kBlocks - 1));
-    ClBlock block;
-    block.kind = BlockKind::kCut;
-    block.tip_mm = to_array(at.tip);
-    block.axis = to_array((at.axis + std::tan(beside_rad) * across).normalized());
-    block.feed = 50;
-    block.feed_meaning = FeedMeaning::kTip;
-    block.sequence = static_cast<std::uint64_t>(n);
-    block.line = static_cast<std::uint32_t>(n + 1);
-    blocks.push_back(block);
+    blocks.push_back(
+        cut_block(n, {at.tip, (at.axis + std::tan(beside_rad) * across).normalized()}));
   }
   end_program(blocks);
   return blocks;

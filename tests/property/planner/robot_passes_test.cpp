@@ -25,15 +25,8 @@ std::vector<ClBlock> over_the_base(double beside_mm) {
   constexpr int kBlocks = 30;
   std::vector<ClBlock> blocks;
   for (int n = 0; n <= kBlocks; ++n) {
-    ClBlock block;
-    block.kind = BlockKind::kCut;
-    block.tip_mm = {4.0 * (kBlocks / 2 - n), beside_mm, 700};
-    block.axis = {0, 0, 1};
-    block.feed = 50;
-    block.feed_meaning = FeedMeaning::kTip;
-    block.sequence = static_cast<std::uint64_t>(n);
-    block.line = static_cast<std::uint32_t>(n + 1);
-    blocks.push_back(block);
+    blocks.push_back(
+        cut_block(n, {Vector3(4.0 * (kBlocks / 2 - n), beside_mm, 700), Vector3(0, 0, 1)}));
   }
   end_program(blocks);
   return blocks;

@@ -8,6 +8,7 @@
 #include "property/planner/smooth_trace.hpp"
 #include "service/config/machine_file.hpp"
 #include "service/core/planner/robot_look_ahead.hpp"
+#include "support/program_end.hpp"
 #include "support/shipped_machines.hpp"
 
 /// A robot begins a program on the solution that carries farthest through it.
@@ -31,15 +32,7 @@ class RobotStarts : public testing::Test {
       const double along = kSweep_mm * (1 - 2.0 * n / kBlocks);
       const Vector3 wrist =
           along * way + kBeside_mm * beside + (robot_.robot.shoulder_height_mm + kHeight_mm) * up;
-      ClBlock block;
-      block.kind = BlockKind::kCut;
-      block.tip_mm = to_array(Vector3(wrist - d * up));
-      block.axis = to_array(up);
-      block.feed = 50;
-      block.feed_meaning = FeedMeaning::kTip;
-      block.sequence = static_cast<std::uint64_t>(n);
-      block.line = static_cast<std::uint32_t>(n + 1);
-      blocks.push_back(block);
+      blocks.push_back(cut_block(n, {Vector3(wrist - d * up), up}));
     }
     end_program(blocks);
     return blocks;
