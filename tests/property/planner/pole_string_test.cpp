@@ -27,6 +27,7 @@ constexpr double kTolerance_rad = 0.1 * units::kDegree_rad;
 
 constexpr double kFar_rad = 0.3;
 constexpr double kMore = 0.08;  // of the least time
+constexpr unsigned kPathsOfAShare = 50;  // fewer, as under sanitizers, have no share to speak of
 
 /// The axis seen along the pole.
 struct Lean {
@@ -243,6 +244,7 @@ TEST(PoleString, TakesLittleMoreThanTheLeastTimeOfTheCorridor) {
   }
   std::printf("%u paths: %.2f %% above on average, %u more than 8 %%, at most %.0f %%\n", paths,
               100 * sum / paths, far, 100 * worst);
+  if (paths < kPathsOfAShare) return;
   EXPECT_LT(sum / paths, 0.1);
   EXPECT_LE(far, paths / 5);
 }
