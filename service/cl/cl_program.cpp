@@ -10,6 +10,12 @@ ClSummary& ClProgram::summary() {
 }
 
 ProgramSource::Result ClProgram::read(Blocks& out) {
+  if (interpreter_.is_repeating()) {
+    statements_.read_again(interpreter_.next_repeated(), statement_);
+    auto taken = interpreter_.take(statement_, out);
+    interpreter_.go_on_repeating();
+    return taken;
+  }
   switch (statements_.next(statement_)) {
     case StatementReader::Outcome::kStatement: {
       if (const Dialect shown = statements_.take_shown(); shown != Dialect::kUnknown) {

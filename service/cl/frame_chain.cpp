@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cl/frame_chain.hpp"
 
+#include <utility>
+
 namespace meridian::cl {
 namespace {
 
@@ -45,6 +47,12 @@ void FrameChain::set_transformation(const std::optional<Frame>& cut) {
   is_resolved_ = false;
 }
 
+void FrameChain::set_copy(const std::optional<Frame>& copy) {
+  copy_ = copy;
+  is_copy_new_ = true;
+  is_resolved_ = false;
+}
+
 void FrameChain::set_origin(const Vector3& origin) {
   origin_ = origin;
   is_resolved_ = false;
@@ -57,19 +65,21 @@ Frame FrameChain::in_force(double to_mm) const {
 
 bool FrameChain::resolve(double to_mm) {
   is_resolved_ = true;
+  const bool is_of_copy = std::exchange(is_copy_new_, false);
   const Frame frame = in_force(to_mm);
   const bool is_first = !reference_;
   if (is_first) reference_ = frame;
   Frame moved = relative(*reference_, frame);
   if (is_identity(moved)) moved = Frame{};
   if (shift_) moved = compose(moved, in_mm(*shift_, to_mm));
+  if (copy_) moved = compose(moved, in_mm(*copy_, to_mm));
   if (cut_) moved = compose(moved, in_mm(*cut_, to_mm));
   moved.origin -= to_mm * origin_;
   if (caller_) moved = compose(*caller_, moved);
   if (is_identity(relative(now_, moved))) return false;
   now_ = moved;
   is_plain_ = is_identity(now_);
-  return !is_first;
+  return !is_first && !is_of_copy;
 }
 
 }  // namespace meridian::cl

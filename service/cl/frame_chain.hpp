@@ -9,9 +9,10 @@
 namespace meridian::cl {
 
 /// From the points of a file to W, through everything that the file and its caller put between:
-/// the transformation of TRACUT, the shift of TRANS, the frame of MSYS or CSYS as seen from the one
-/// in force at the first motion, the ORIGIN that a post-processor takes off, the caller's frame.
-/// What the words give is in the unit of the file, W in mm. Proof: tests/unit/cl/frame_test.cpp.
+/// the transformation of TRACUT, that of COPY, the shift of TRANS, the frame of MSYS or CSYS as
+/// seen from the one in force at the first motion, the ORIGIN that a post-processor takes off, the
+/// caller's frame. What the words give is in the unit of the file, W in mm. Proof:
+/// tests/unit/cl/frame_test.cpp.
 class FrameChain {
  public:
   explicit FrameChain(const std::optional<Frame>& caller);
@@ -22,7 +23,8 @@ class FrameChain {
   void set_world(bool is_world);
   void set_shift(const std::optional<Frame>& shift);         ///< TRANS
   void set_transformation(const std::optional<Frame>& cut);  ///< TRACUT
-  void set_origin(const Vector3& origin);                    ///< ORIGIN
+  void set_copy(const std::optional<Frame>& copy);  ///< COPY; no change that resolve() says
+  void set_origin(const Vector3& origin);           ///< ORIGIN
 
   /// Whether nothing came since the last resolve().
   [[nodiscard]] bool is_resolved() const noexcept { return is_resolved_; }
@@ -42,13 +44,14 @@ class FrameChain {
   void tell_csys_axis();
   [[nodiscard]] Frame in_force(double to_mm) const;
 
-  std::optional<Frame> caller_, written_, shift_, cut_;
+  std::optional<Frame> caller_, written_, shift_, copy_, cut_;
   std::optional<Frame> reference_;  ///< in force at the first motion, mm
   Kind kind_ = Kind::kMsys;
   bool is_world_ = false;
   Vector3 origin_ = Vector3::Zero();
   std::optional<Vector3> csys_axis_;
   bool is_resolved_ = false;
+  bool is_copy_new_ = false;
   Frame now_;
   bool is_plain_ = true;
 };

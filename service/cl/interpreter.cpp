@@ -135,6 +135,7 @@ Interpreter::Result Interpreter::take(const Statement& s, Blocks& out) {
   const bool is_behind_end = modal_.structure.phase == Structure::Phase::kEnded;
   const std::size_t before = out.size();
   modal_.path.give_to(out);
+  modal_.copies.record(s);
   auto done = read(s);
   if (done && is_behind_end) done = check_behind_end(s, before, out);
   if (done) [[likely]] {
@@ -145,6 +146,11 @@ Interpreter::Result Interpreter::take(const Statement& s, Blocks& out) {
   ++modal_.refusals;
   lose_position(modal_);
   return tl::make_unexpected(error(s.line, done.error()));
+}
+
+void Interpreter::go_on_repeating() {
+  const Frame before = modal_.copies.transformation();
+  if (modal_.copies.go_on()) put_copy_in_force(modal_, before);
 }
 
 Outcome Interpreter::check_whole(std::uint32_t last_line, bool open_end) {

@@ -27,6 +27,12 @@ class Interpreter {
   /// Appends the blocks of `statement` to `out`; none of one that is refused.
   [[nodiscard]] Result take(const Statement& statement, Blocks& out);
 
+  /// A pattern that COPY repeats gives the next statement, not the file: take() it, and then say
+  /// so by go_on_repeating().
+  [[nodiscard]] bool is_repeating() const noexcept { return modal_.copies.is_repeating(); }
+  [[nodiscard]] RecordedStatement next_repeated() { return modal_.copies.next(); }
+  void go_on_repeating();
+
   /// The text is at its end: checks whether the program is whole and appends its end block.
   [[nodiscard]] Result finish(std::uint32_t last_line, bool open_end, Blocks& out);
 

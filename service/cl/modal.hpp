@@ -10,6 +10,7 @@
 #include "service/cl/block_path.hpp"
 #include "service/cl/cl_options.hpp"
 #include "service/cl/cl_summary.hpp"
+#include "service/cl/copies.hpp"
 #include "service/cl/dialect.hpp"
 #include "service/cl/feed.hpp"
 #include "service/cl/frame_chain.hpp"
@@ -29,9 +30,10 @@ struct Units {
 /// The tool axis, which points of three numbers leave out.
 struct ToolAxis {
   enum class Source : std::uint8_t {
-    kNone,   ///< +z, as nothing told any
-    kPoint,  ///< a point of six numbers
-    kWord    ///< TLAXIS, MULTAX/OFF: holds for points without axis in every dialect
+    kNone,    ///< +z, as nothing told any
+    kPoint,   ///< a point of six numbers
+    kCopied,  ///< what a copied pattern left: no point without axis may rely on it
+    kWord     ///< TLAXIS, MULTAX/OFF: holds for points without axis in every dialect
   };
   std::array<double, 3> written{0, 0, 1};
   Vector3 in_w = Vector3::UnitZ();
@@ -108,6 +110,7 @@ struct Modal {
   Remarks remarks;
   DialectFinder dialect;
   FrameChain frames;
+  Copies copies;
   Units units;
   ToolAxis axis;
   WrittenFeed written_feed;

@@ -207,6 +207,12 @@ void StatementReader::cut(std::string_view text, Statement& out) {
   out.has_empty_argument |= after_comma;
 }
 
+void StatementReader::read_again(const RecordedStatement& before, Statement& statement) {
+  statement.line = before.line;
+  cut(before.text, statement);
+  statement.is_comment_data = before.is_comment_data;
+}
+
 StatementReader::Outcome StatementReader::next(Statement& statement) {
   std::string_view line;
   while (true) {

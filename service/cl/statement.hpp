@@ -46,6 +46,13 @@ struct Statement {
   [[nodiscard]] bool has_word(std::string_view word) const noexcept;
 };
 
+/// A statement that was read before, without its line end and comment.
+struct RecordedStatement {
+  std::string_view text;
+  std::uint32_t line = 0;
+  bool is_comment_data = false;
+};
+
 /// Joins physical lines into statements and cuts them into words and numbers.
 ///
 /// `$` continues a statement on the next line, with or without a comma before it; what stands
@@ -67,6 +74,8 @@ class StatementReader {
   explicit StatementReader(LineSource& lines) : lines_(lines) {}
 
   [[nodiscard]] Outcome next(Statement& statement);
+  /// The same statement once more; its text must live as long as `statement` is used.
+  void read_again(const RecordedStatement& before, Statement& statement);
   /// Line at which kCutOff, kBinary or kTooLong was met.
   [[nodiscard]] std::uint32_t line() const noexcept { return lines_.line_number(); }
   [[nodiscard]] std::uint64_t comments() const noexcept { return comments_; }

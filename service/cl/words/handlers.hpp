@@ -32,6 +32,10 @@ Outcome read_spline(Modal& m, const Statement& s);
 Outcome read_knots(Modal& m, const Statement& s);
 Outcome read_control_point(Modal& m, const Statement& s);
 
+// copying.cpp
+Outcome read_index(Modal& m, const Statement& s);
+Outcome read_copy(Modal& m, const Statement& s);
+
 // cycles.cpp
 Outcome read_cycle_word(Modal& m, const Statement& s);
 

@@ -101,6 +101,10 @@ Outcome axis_left_out(Modal& m, std::uint32_t line) {
     const std::array<double, 3> z = to_array(*m.frames.csys_axis());
     return set_axis(m, z.data(), ToolAxis::Source::kNone);
   }
+  if (m.axis.source == ToolAxis::Source::kCopied) {
+    return refuse("a point without a tool axis where COPY has changed the axis",
+                  "output the tool axis with every GOTO (MULTAX)");
+  }
   if (m.axis.source != ToolAxis::Source::kPoint || meaning == MissingAxis::kStays) return {};
   if (m.axis.written == kPlusZ) return {};
   if (meaning == MissingAxis::kPlusZ) {

@@ -16,6 +16,10 @@ inline constexpr double kAxisNormTolerance = 1e-3;  ///< a rounded or sloppy axi
 /// Puts unit and frames in force that were told since the motion before.
 [[nodiscard]] Outcome begin_motion(Modal& m, std::uint32_t line);
 
+/// copying.cpp: the transformation of the pattern that is repeated, for the points behind; `before`
+/// was in force so far.
+void put_copy_in_force(Modal& m, const Frame& before);
+
 /// A point as written, in W; refused beyond 1e6 mm.
 [[nodiscard]] Expected<Vector3, Refusal> point_in_w(const Modal& m, const double* xyz);
 
