@@ -14,6 +14,7 @@
 #include "service/cli/finite_range.hpp"
 #include "service/cli/frame_options.hpp"
 #include "service/cli/hand_options.hpp"
+#include "service/cli/move_options.hpp"
 #include "service/cli/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/cli/tool_options.hpp"
@@ -37,11 +38,15 @@ struct CtlOptions {
   std::vector<const CLI::Option*> of_tool;
   TouchOffOptions touch_off;
   std::vector<const CLI::Option*> of_touch_off;
+  MoveOptions move;
+  std::vector<const CLI::Option*> of_move;
   double wait_s = 60;
   bool is_for_dry_run = false;
 };
 
+/// No verbs of the machine: they become others of its verbs.
 constexpr const char* kTouchOff = "touch-off";
+constexpr const char* kMove = "move";
 
 const std::map<std::string, Verb>& verbs() {
   static const std::map<std::string, Verb> kVerbs{{"enable", Verb::kEnable},
@@ -100,6 +105,7 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   if (has_any(options.of_touch_off)) {
     return "--touches, --toward, --as, --height and --confirm are for touch-off alone";
   }
+  if (has_any(options.of_move)) return "--tip, --joints, --to and --feed are for move alone";
   const bool has_jog = has_any(options.of_jog);
   return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
 }
@@ -117,8 +123,8 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
       verb == Verb::kSingleBlock || verb == Verb::kOptionalStop || verb == Verb::kDryRun;
   if (is_switch) return switch_of(options);
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
-  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kFrame ||
-                          verb == Verb::kTool;
+  const bool has_joints =
+      verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kFrame || verb == Verb::kTool;
   double percent = 0;
   bool is_right = has_joints || options.values.size() == (is_override ? 1U : 0U);
   if (is_right && is_override) {
@@ -141,19 +147,26 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
   for (const std::string& service : services) std::fprintf(stderr, "  %s\n", service.c_str());
 }
 
-/// No verb of the machine: what is found becomes one of `frame` or `tool`.
-int run_touch_off(CtlOptions& options) {
+/// What is found becomes a word of `frame` or `tool`, a move a program and its `start`.
+int run_composed(CtlOptions& options) {
+  if (options.verb == kMove && (!options.values.empty() || !options.wait.empty())) {
+    std::fprintf(stderr, "meridian: move takes --tip, --joints or --to, and --feed alone\n");
+    return kUsage;
+  }
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   stream::OperatorLink link(participant, options.operator_name);
+  if (options.verb == kMove) {
+    return run_move(options.move, *machine, participant, link, options.operator_name, options.peer);
+  }
   return run_touch_off(options.values, options.touch_off, options.tool, *machine, link,
                        options.peer.timeout());
 }
 
 int run_ctl(CtlOptions& options) {
-  if (options.verb == kTouchOff) return run_touch_off(options);
+  if (options.verb == kTouchOff || options.verb == kMove) return run_composed(options);
   const Verb verb = verbs().at(options.verb);
   std::optional<double> argument = argument_of(verb, options);
   if (!argument) return kUsage;
@@ -221,6 +234,7 @@ void add(CLI::App& app, int& exit_code) {
   std::vector<std::string> names;
   for (const auto& [name, verb] : verbs()) names.push_back(name);
   names.emplace_back(kTouchOff);
+  names.emplace_back(kMove);
   command->add_option("verb", options->verb, CLI::detail::join(names, ", "))
       ->required()
       ->check(CLI::IsMember(names))
@@ -233,7 +247,8 @@ void add(CLI::App& app, int& exit_code) {
           "velocity in mm/s or deg/s; home: "
           "joints, default all; single-block, optional-stop, dry-run: on or off; frame: set, "
           "select or clear and a number, or list; tool: set or clear and a number, load or save "
-          "and a file, or list; touch-off: touch, frame and a number, or tool and a number")
+          "and a file, or list; touch-off: touch, frame and a number, or tool and a number; move: "
+          "none")
       ->type_name("VALUE");
   CLI::Option* const time =
       command->add_option("--for", options->jog.for_s, "jog: how long the joint is held, s")
@@ -260,6 +275,7 @@ void add(CLI::App& app, int& exit_code) {
   options->of_frame = {at, name};
   options->of_tool = add_tool_options(*command, options->tool);
   options->of_touch_off = add_touch_off_options(*command, options->touch_off);
+  options->of_move = add_move_options(*command, options->move);
   CLI::Option* const wait =
       command
           ->add_option(

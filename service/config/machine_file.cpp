@@ -10,6 +10,7 @@
 #include "service/config/homing_file.hpp"
 #include "service/config/kinematics_file.hpp"
 #include "service/config/machine_name.hpp"
+#include "service/config/positions_file.hpp"
 #include "service/config/section.hpp"
 #include "service/config/stage_file.hpp"
 
@@ -189,6 +190,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   read_unwind(file.section_or("unwind"), model);
   read_frame(file.section_or("frame"), model);
   (void)read_homing(file.section_or("homing"), model.joint_count);
+  (void)read_positions(file, model);
   file.finish();
   return model;
 }

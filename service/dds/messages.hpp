@@ -46,6 +46,8 @@ enum SessionPolicy : std::uint32_t {
   kPolicySmooth = 4,           ///< on through blocks, whatever it says; not with kPolicyExactStop
   kPolicyRetractFirst = 8,     ///< it begins in the middle: off the part ahead of its first actions
   kPolicyChanged = 16,         ///< it goes on with a program although its file is another one now
+  kPolicyMove = 32,            ///< an operator's move between programs: the journal stays as it is
+  kPolicyFirstJoints = 64,     ///< the program begins where SessionRequest::first_joints say
 };
 
 /// `cl_session`: a station asks for the machine, or gives it back.
@@ -63,6 +65,7 @@ struct SessionRequest {
   std::uint32_t from_line = 0;      ///< the program begins with this line; 0: with its first
   std::uint64_t frame = 0;  ///< stream::frame_sum() that it was checked under; 0: under none
   std::uint64_t tools = 0;  ///< stream::tools_sum() that it was checked with; 0: with none
+  JointVector first_joints{};  ///< with kPolicyFirstJoints
 };
 
 /// What the service thinks of a session. Everything from kRefusedStation on ends it.

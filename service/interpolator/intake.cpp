@@ -21,6 +21,9 @@ SmoothSettings settings_of(const dds::SessionRequest& request) {
   settings.tip_tolerance_mm = request.tip_tolerance_mm;
   settings.axis_tolerance_rad = request.axis_tolerance_rad;
   settings.retracts_first = (request.policies & dds::kPolicyRetractFirst) != 0;
+  if ((request.policies & dds::kPolicyFirstJoints) != 0) {
+    settings.first_joints = request.first_joints;
+  }
   return settings;
 }
 
@@ -284,6 +287,7 @@ void Intake::show() {
     view_.identity = station_identity_;
     view_.file_checksum = judge_.request().file_checksum;
     view_.from_line = judge_.request().from_line;
+    view_.is_move = (judge_.request().policies & dds::kPolicyMove) != 0;
     view_.block_count = judge_.request().block_count;
     view_.blocks_received = judge_.next_sequence();
   }

@@ -27,6 +27,7 @@ struct SessionView {
   std::string identity;  ///< where the station runs
   std::uint64_t file_checksum = 0;
   std::uint32_t from_line = 0;
+  bool is_move = false;  ///< dds::kPolicyMove; of the newest session, also once it is over
   std::uint64_t block_count = 0;
   std::uint64_t blocks_received = 0;
   std::uint64_t batches_dropped = 0, batches_lost = 0;

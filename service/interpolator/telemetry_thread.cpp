@@ -106,6 +106,7 @@ void TelemetryThread::keep_journal(std::int64_t now_ns) {
 }
 
 void TelemetryThread::drain() {
+  keeper_.set_move(intake_.view().is_move);  // ahead of its events
   // The planner first: a plan is begun before its program is started.
   for (FeedMark mark; ports_.feed_marks.try_pop(mark);) {
     Event planned;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "service/stream/smooth_tolerances.hpp"
 
 namespace meridian::stream {
@@ -24,6 +25,19 @@ std::string in_hex(std::uint64_t value) {
 bool contradicts_itself(const dds::SessionRequest& request) {
   constexpr std::uint32_t kBoth = dds::kPolicyExactStop | dds::kPolicySmooth;
   return (request.policies & kBoth) == kBoth;
+}
+
+/// Why no program may begin at the joints that the request names; empty where it may.
+std::string refusal_of_first_joints(const dds::SessionRequest& request, const MachineModel& model) {
+  if ((request.policies & dds::kPolicyFirstJoints) == 0) return "";
+  const JointVector& joints = request.first_joints;
+  const int outside = first_joint_outside_travel(model, joints, 0);
+  if (outside >= 0) {
+    return "the program begins outside of the travel of " + limited_spec(model, outside).name;
+  }
+  const auto unused = joints.begin() + model.joint_count;
+  const bool names_more = std::any_of(unused, joints.end(), [](double at) { return at != 0; });
+  return names_more ? "the program begins at joints that machine " + model.name + " has not" : "";
 }
 
 }  // namespace
@@ -75,6 +89,7 @@ dds::Credit IntakeJudge::open(const dds::SessionRequest& request, const Surround
   std::string refusal =
       refusal_of_tolerances(model_, transition_asked(request).value_or(model_.transition),
                             request.tip_tolerance_mm, request.axis_tolerance_rad);
+  if (refusal.empty()) refusal = refusal_of_first_joints(request, model_);
   if (!refusal.empty()) return refused(Verdict::kRefusedProgram, std::move(refusal));
   if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
       !around.actions.is_ignored) {

@@ -18,7 +18,7 @@ void JournalKeeper::see(const Event& event, const std::string& alarm_words) {
   // In FaultStop the commanded path runs on, whether or not the drives follow: what it passes was
   // commanded, not cut.
   const bool is_run_out = state_ == State::kFaultStop;
-  if (is_dry_run_) return;
+  if (is_dry_run_ || is_move_) return;
   switch (event.code) {
     case EventCode::kStateChanged:
       return enter(event);

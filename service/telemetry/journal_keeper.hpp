@@ -17,8 +17,8 @@ namespace meridian::telemetry {
 /// program begins, comes to rest or ends, and once a second while its blocks go on; the position
 /// alone whenever there is a newer one. What the drives have not taken is not cut: an event counts
 /// once they say that they took the setpoint of its cycle. Behind a fault it names the block in
-/// which the alarm came, not where the commanded path ran out to. A dry run cuts nothing: what was
-/// noted before stays. One thread.
+/// which the alarm came, not where the commanded path ran out to. A dry run cuts nothing, nor
+/// does a move between programs: what was noted before stays. One thread.
 ///
 /// What a program is cut up to (JournalEntry::next_line) never goes back, whatever goes on with it
 /// and is killed again; blocks in front of the line that a session begins with restore the machine
@@ -45,6 +45,9 @@ class JournalKeeper {
   /// Whether the events to come are of a dry run. It changes in Off alone, where nothing is noted:
   /// the newest view of the cycle is good enough, and is there where events were lost.
   void set_dry_run(bool is_dry_run) noexcept { is_dry_run_ = is_dry_run; }
+  /// Whether the events to come are of an operator's move between programs, which is not noted
+  /// either. It is known before the move can be started, and stays until another session opens.
+  void set_move(bool is_move) noexcept { is_move_ = is_move; }
 
   /// Every event, in order; alarms with their words.
   void see(const Event& event, const std::string& alarm_words);
@@ -91,7 +94,7 @@ class JournalKeeper {
   bool is_urgent_ = false;     ///< begun, at rest or over
   bool has_news_ = false;      ///< a block began or ended since due() gave an entry
   bool has_position_ = false;  ///< the same, since due_position() did
-  bool is_dry_run_ = false;
+  bool is_dry_run_ = false, is_move_ = false;
   std::int64_t noted_ns_ = 0;
 };
 

@@ -48,7 +48,8 @@ std::string refusal_to_go_on(const JournalEntry& last, const dds::SessionRequest
 
 std::string remark_on(const JournalEntry& last, const dds::SessionRequest& request,
                       const CutSetup& setup) {
-  if (!is_unfinished(last)) return "";
+  const bool is_move = (request.policies & dds::kPolicyMove) != 0;
+  if (is_move || !is_unfinished(last)) return "";
   const char* const name = last.program.data();
   const bool is_same = is_same_program(last, request.program, request.file_checksum);
   if (!is_same || request.from_line == 0) {

@@ -26,7 +26,7 @@ namespace meridian::telemetry {
 
 /// What an operator should know ahead of the start: which unfinished program the session's drops
 /// from the journal, which lines it passes over, that the machine's file or its tools are others
-/// than before. Empty: nothing.
+/// than before. Empty: nothing, as of a move, which leaves the journal as it is.
 [[nodiscard]] std::string remark_on(const JournalEntry& last, const dds::SessionRequest& request,
                                     const CutSetup& setup);
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "meridian/geometry/vector3.hpp"
@@ -63,8 +64,12 @@ class RestToRestPlanner {
   /// epoch that saw a program before, pieces and windows go on being counted. `retracts_first`: the
   /// tool may stand in the part, so that where actions (auxiliary, tool) come before any motion,
   /// the tool is retracted before the first of them, and the approach goes on from there.
+  /// `first_joints`: where the program begins, be it another branch or winding than the nearest;
+  /// the approach is all joints straight there, at the feed of the first motion block (1 rad counts
+  /// as 50 mm of path), with no retraction.
   void begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
-             bool retracts_first = false) noexcept;
+             bool retracts_first = false,
+             const std::optional<JointVector>& first_joints = std::nullopt) noexcept;
 
   /// Blocks that are going to be planned, the first motion block of the program first: the approach
   /// and the ways off the pole among them take the branch and winding that carry farthest. They

@@ -25,9 +25,10 @@ namespace meridian {
 /// smooth run, counts as these.
 struct SmoothSettings {
   std::optional<Transition> transition;
-  double tip_tolerance_mm = 0;    ///< 0: the machine's
-  double axis_tolerance_rad = 0;  ///< 0: the machine's
-  bool retracts_first = false;    ///< as RestToRestPlanner::begin() says
+  double tip_tolerance_mm = 0;                ///< 0: the machine's
+  double axis_tolerance_rad = 0;              ///< 0: the machine's
+  bool retracts_first = false;                ///< as RestToRestPlanner::begin() says
+  std::optional<JointVector> first_joints{};  ///< the same
 };
 
 /// The planner that runs on through blocks: cuts become a band spline, the rolling feed moves along

@@ -222,6 +222,32 @@ Router::AheadWays Router::ahead_of(const Ways& ways) const noexcept {
   return found;
 }
 
+PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, PlanCursor& cursor,
+                                  Staging& out) noexcept {
+  deviation_rad_ = 0;
+  lost_.reset();
+  way_in_ = {};
+  const int outside = first_joint_outside_travel(model_, to, 1e-9);
+  if (outside >= 0) {
+    return {PathFault::Kind::kTravel, outside, limited_value(model_, to, outside)};
+  }
+  const PlanCursor from = cursor;
+  const Staging::Mark mark = out.mark();
+  const PathPiece path = make_joint_move(cursor.joints, to, rotary_mask(model_));
+  const Job job{block, MotionKind::kApproach, 0,
+                path.length > 0 ? job_of(block).feed_mm_per_s / path.length : 0};
+  if (largest_difference(to, cursor.joints) > kThere) {
+    const PathFault fault = run(path, job, 1, cursor, out);
+    if (is_fault(fault)) return fault;
+  }
+  cursor.pose = forward(model_, cursor.tool_length_mm, cursor.joints);
+  Way way;
+  way.joints = cursor.joints;
+  way.branch = branch_of(cursor.pose, cursor.joints, cursor.tool_length_mm);
+  describe_way_in(way, job, from, mark, out);
+  return {};
+}
+
 PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),

@@ -59,6 +59,7 @@ struct RestToRestPlanner::Workspace {
   PlanResult result;                                  ///< of what is staged
   std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
   bool retracts_first = false;
+  std::optional<JointVector> first_joints;
   bool is_staged = false;
   bool is_refused = false;
   bool needs_ahead = false;  ///< nothing is staged: the foresight waits for blocks
@@ -151,7 +152,8 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   };
   PathFault fault;
   if (next.is_first) {
-    fault = router.approach(block, next, staging);
+    fault = first_joints ? router.approach_joints(block, *first_joints, next, staging)
+                         : router.approach(block, next, staging);
     if (router.lost_block()) return refuse(*router.lost_block());
     staged_approach = router.way_in();
     result.axis_deviation_rad = router.axis_deviation_rad();
@@ -232,9 +234,11 @@ void RestToRestPlanner::swap_tools(ToolTable& tools) noexcept {
 }
 
 void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
-                              std::uint16_t epoch, bool retracts_first) noexcept {
+                              std::uint16_t epoch, bool retracts_first,
+                              const std::optional<JointVector>& first_joints) noexcept {
   Workspace& w = *workspace_;
   w.retracts_first = retracts_first;
+  w.first_joints = first_joints;
   PlanCursor cursor;
   if (epoch == w.cursor.epoch) {
     // What the epoch published before may still lie in the port: no index comes twice.

@@ -65,6 +65,11 @@ class Router {
   /// Brings the first block's begin under the tool. Ways that are lost (AheadWay) are none: where
   /// no other is left, lost_block() says why, else it is nothing.
   [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+  /// The same to joints that are known: all of them straight there, at the feed of the block (1 rad
+  /// counts as 50 mm of path) and the limits of the joints, with no retraction. There the block
+  /// begins.
+  [[nodiscard]] PathFault approach_joints(const ClBlock& block, const JointVector& to,
+                                          PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] const std::optional<BlockReject>& lost_block() const noexcept { return lost_; }
   /// The way that the last approach() found.
   [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }

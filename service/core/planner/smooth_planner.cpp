@@ -20,7 +20,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
                           const SmoothSettings& settings) noexcept {
   Workspace& w = *workspace_;
   if (w.is_running) w.end_run();  // no index comes twice
-  w.plain.begin(at_rest, tool_length_mm, epoch, settings.retracts_first);
+  w.plain.begin(at_rest, tool_length_mm, epoch, settings.retracts_first, settings.first_joints);
   w.settings = settings;
   const bool may_ease = w.is_smooth() && w.model.pole_policy == PolePolicy::kEase;
   if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);

@@ -98,6 +98,21 @@ TEST_F(Intake, AProgramThatWantsBothTransitionsIsRefused) {
   EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kGood);
 }
 
+TEST_F(Intake, AProgramThatBeginsAtJointsOutsideOfTravelIsRefusedByName) {
+  const auto ask = [this](std::size_t joint, double at) {
+    dds::SessionRequest request = open_request(++session_);
+    request.policies = dds::kPolicyFirstJoints;
+    request.first_joints[joint] = at;
+    return judge_.on_request(request, around_, 100);
+  };
+  const Credit beyond = ask(0, 1e4);
+  EXPECT_EQ(beyond.verdict, Verdict::kRefusedProgram);
+  EXPECT_NE(beyond.text.find("outside of the travel of b3"), std::string::npos) << beyond.text;
+  EXPECT_EQ(ask(1, std::nan("")).verdict, Verdict::kRefusedProgram);
+  EXPECT_EQ(ask(5, 1).verdict, Verdict::kRefusedProgram) << "the machine has five";
+  EXPECT_EQ(ask(0, 10).verdict, Verdict::kGood);
+}
+
 TEST_F(Intake, AToleranceBelowWhatIsPlannedForIsRefusedByNameAndLeast) {
   const auto ask = [this](double tip_mm, double axis_rad) {
     dds::SessionRequest request = open_request(++session_);

@@ -16,6 +16,7 @@ class Kept {
                 code == EventCode::kAlarm ? "a fault" : "");
   }
   void set_dry_run(bool is_dry_run) { keeper_.set_dry_run(is_dry_run); }
+  void set_move(bool is_move) { keeper_.set_move(is_move); }
   void enter(State state) { tell(EventCode::kStateChanged, static_cast<std::uint64_t>(state)); }
   void begin(std::uint64_t block) { tell(EventCode::kBlockStarted, block, block + 10); }
   void end(std::uint64_t block) { tell(EventCode::kBlockDone, block, block + 10); }
@@ -84,6 +85,37 @@ TEST(JournalKeeper, NotesNothingOfADryRun) {
   kept.set_dry_run(false);
   cut();
   EXPECT_FALSE(kept.entries.empty());
+}
+
+TEST(JournalKeeper, NotesNothingOfAMoveBetweenPrograms) {
+  Kept kept;
+  kept.begin(3);
+  kept.enter(State::kApproaching);
+  kept.enter(State::kRunning);
+  kept.run_for(20);
+  kept.enter(State::kReady);  // aborted
+  kept.run_for(1500);
+  const auto noted = kept.entries.size();
+  kept.set_move(true);
+  kept.owner = {8, "anna", "move", ""};
+  kept.begin(0);
+  kept.enter(State::kRunning);
+  kept.run_for(1500);
+  kept.end(1);
+  kept.tell(EventCode::kProgramEnd, 2);
+  kept.owner.session = 0;
+  kept.enter(State::kReady);
+  kept.run_for(1500);
+  EXPECT_EQ(kept.entries.size(), noted);
+  EXPECT_EQ(kept.position.line, 13U);
+  EXPECT_STREQ(kept.position.program.data(), "part.apt");
+  kept.set_move(false);
+  kept.owner = {9, "cam", "part.apt", "", 0, 13};
+  kept.begin(0);
+  kept.enter(State::kApproaching);
+  kept.run_for(20);
+  EXPECT_GT(kept.entries.size(), noted);
+  EXPECT_EQ(kept.entries.back().next_line, 13U) << "gone on with as if nothing had been";
 }
 
 TEST(JournalKeeper, NotesRestsAtOnceAndWhoseProgramItWas) {

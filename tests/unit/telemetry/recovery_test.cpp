@@ -76,6 +76,9 @@ TEST_F(Recovery, SaysWhatItDropsOrPassesOverAndWhatElseIsOther) {
   EXPECT_EQ(remark(),
             "part.apt is not finished: its start drops that from the journal (it is gone "
             "on with by --from-line 201)");
+  request.policies = dds::kPolicyMove;
+  EXPECT_EQ(remark(), "") << "a move drops nothing";
+  request.policies = 0;
   request.program = "part.apt";
   request.file_checksum = 0;  // a pipe
   request.from_line = 300;
