@@ -160,8 +160,9 @@ bool Intake::may_open(const dds::SessionRequest& request) {
     stale = "stale: the program was checked under another work frame than number " +
             std::to_string(in_force_.number) + ", which is in force now; stream it again";
   } else if (request.tools != 0 && request.tools != in_force_.tools) {
-    stale = "stale: the program was checked with another tool table than the one that is in force "
-            "now; stream it again";
+    stale =
+        "stale: the program was checked with another tool table than the one that is in force "
+        "now; stream it again";
   }
   if (!stale.empty()) publish(judge_.refuse_program(request, stale));
   return stale.empty();
@@ -192,6 +193,7 @@ bool Intake::may_go_on(const dds::SessionRequest& request) {
 }
 
 void Intake::begin_session(const dds::SessionRequest& request) {
+  ports_.session_settings.store({request.session, settings_of(request)});
   opened_ = judge_.message();
   remark_ = last_ == nullptr ? "" : telemetry::remark_on(last_->get(), request, setup_);
   const std::lock_guard lock(view_mutex_);
@@ -220,10 +222,9 @@ void Intake::take_batches() {
 /// session ends, with a message, at the block before the first that was lost.
 bool Intake::push(const stream::Accepted& accepted) {
   if (accepted.count == 0) return true;
-  const SmoothSettings settings = settings_of(judge_.request());
   std::size_t count = 0;
   while (count < accepted.count &&
-         ports_.blocks.stage({judge_.session(), accepted.blocks[count], settings})) {
+         ports_.blocks.stage({judge_.session(), accepted.blocks[count]})) {
     ++count;
   }
   pushed_ += count;

@@ -44,11 +44,14 @@ bool PlannerThread::work() noexcept {
   if (!has_begun_) {
     const CycleView& view = queue_.view();
     if (view.record.state != State::kReady) return false;
+    (void)ports_.session_settings.refresh();
+    const SessionSettings& asked = ports_.session_settings.latest();
+    if (asked.session != look.front->session) return false;  // the block is void by now
     // Set before the session was opened that sent this block.
     if (ports_.set_up.for_planner.refresh()) place(model_, ports_.set_up.for_planner.latest());
     if (ports_.set_up.planner_tools.try_take(spare_tools_)) planner_.swap_tools(spare_tools_);
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
-                   view.epoch, look.front->settings);
+                   view.epoch, asked.settings);
     writer_.forget_ahead();  // in Ready all that was published has run or is void
     published_before_s_ = writer_.published_s();
     tell(Approach{});

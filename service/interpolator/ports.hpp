@@ -19,10 +19,10 @@
 #include "meridian/rt/spsc_ring.hpp"
 #include "service/interpolator/command_port.hpp"
 #include "service/interpolator/enabling_watch.hpp"
-#include "service/interpolator/set_up_port.hpp"
 #include "service/interpolator/queue_mark.hpp"
 #include "service/interpolator/reply_queue.hpp"
 #include "service/interpolator/sent_times.hpp"
+#include "service/interpolator/set_up_port.hpp"
 #include "service/interpolator/wake.hpp"
 #include "service/record/flight_row.hpp"
 #include "service/trace/spans.hpp"
@@ -36,12 +36,17 @@
 ///       └──────────session_events── commands ──┘        └─views─▶ planner, commands, telemetry
 namespace meridian::interpolator {
 
-/// A block with the session that it belongs to, and how that session wants its cuts joined.
+/// A block with the session that it belongs to.
 struct QueuedBlock {
   std::uint64_t session = 0;
   ClBlock block;
-  SmoothSettings settings{};
   bool is_cut_off = false;  ///< no block: none comes any more, nor an end
+};
+
+/// How a session wants its program planned; stored before its first block is queued.
+struct SessionSettings {
+  std::uint64_t session = 0;
+  SmoothSettings settings{};
 };
 
 /// An action block that was planned: what to publish when the cycle comes to it.
@@ -102,7 +107,7 @@ struct StalledReader {
 
 /// What the machine asks of its drives.
 struct DrivesAsked {
-  bool is_enabled = false;       ///< to be in operation
+  bool is_enabled = false;  ///< to be in operation
   std::uint16_t epoch = 0;
   std::uint32_t homing_mask = 0;  ///< to be in homing mode
   std::uint32_t search_mask = 0;  ///< to search for their reference
@@ -139,7 +144,8 @@ struct Ports {
 
   trace::Rings* const spans;  ///< every thread to the tracer; nullptr: nothing is traced
 
-  SpscRing<QueuedBlock, 8192> blocks;  ///< look-ahead of at least 5000 blocks
+  SpscRing<QueuedBlock, 8192> blocks;             ///< look-ahead of at least 5000 blocks
+  LatestValue<SessionSettings> session_settings;  ///< intake to planner
   Wake planner_wake;
   SpscRing<SessionReject, 64> rejects;
   SpscRing<PlannedAction, 4096> actions;  ///< more than a planner takes before it publishes
@@ -186,12 +192,12 @@ struct Ports {
   std::atomic<std::uint64_t> session{0};      ///< that holds the machine
   std::atomic<std::uint64_t> stop_status{0};  ///< newest status when a stop came last
   std::atomic<std::uint64_t> commands_dropped{0}, replies_dropped{0};
-  std::atomic<double> spindle_tool_mm{0};     ///< gauge line to tip of the tool in the spindle
+  std::atomic<double> spindle_tool_mm{0};      ///< gauge line to tip of the tool in the spindle
   std::atomic<std::uint32_t> spindle_tool{0};  ///< its number; 0: the one of the machine file
-  std::atomic<bool> is_tool_changing{false};  ///< that may be another one by now
+  std::atomic<bool> is_tool_changing{false};   ///< that may be another one by now
   SetUpPorts set_up;
-  QueueMarkWord queue_mark;                   ///< intake to planner: what of `blocks` is good
-  std::atomic<double> planned_s{0};           ///< plan time of the program that was published
+  QueueMarkWord queue_mark;          ///< intake to planner: what of `blocks` is good
+  std::atomic<double> planned_s{0};  ///< plan time of the program that was published
   std::atomic<std::uint64_t> setpoints_overrun{0}, records_overrun{0}, events_overrun{0};
   std::atomic<std::uint64_t> writes_failed{0};
 

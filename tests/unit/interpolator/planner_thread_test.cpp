@@ -48,6 +48,7 @@ class PlannerThreadTest : public testing::Test {
     const ToolPose home = forward(machine_, machine_.tool_length_mm, JointVector{});
     SmoothSettings settings;
     settings.transition = Transition::kExactStop;
+    ports_->session_settings.store({1, settings});
     ClBlock block;
     block.axis = to_array(home.axis);
     block.feed_meaning = FeedMeaning::kTip;
@@ -56,7 +57,7 @@ class PlannerThreadTest : public testing::Test {
       block.kind = i < 20 ? BlockKind::kCut : BlockKind::kEnd;
       block.tip_mm = to_array(home.tip + Vector3(i % 2 == 0 ? 12 : 0, 0, 0));
       block.sequence = static_cast<std::uint64_t>(i);
-      ASSERT_TRUE(ports_->blocks.stage({1, block, settings}));
+      ASSERT_TRUE(ports_->blocks.stage({1, block}));
     }
     pushed_ += 21;
     ports_->blocks.publish();
@@ -104,8 +105,10 @@ TEST_F(PlannerThreadTest, PlansAProgramBehindOneThatWasAbortedWithSecondsOfPlanA
 TEST_F(PlannerThreadTest, PlansWhatItHasToItsEndWhereASessionIsCutOff) {
   const ToolPose home = forward(machine_, machine_.tool_length_mm, JointVector{});
   constexpr int kCuts = 30;
-  QueuedBlock queued{1, {}, {}};
-  queued.settings.transition = Transition::kSmooth;
+  SmoothSettings settings;
+  settings.transition = Transition::kSmooth;
+  ports_->session_settings.store({1, settings});
+  QueuedBlock queued{1, {}};
   queued.block.axis = to_array(home.axis);
   queued.block.feed_meaning = FeedMeaning::kTip;
   queued.block.feed = 100;
