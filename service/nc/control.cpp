@@ -45,7 +45,8 @@ cl::Outcome set_control(State& s, const Line& line, Control control) {
   if (control == Control::kVector) s.place.has_vector = false;
   if (control == Control::kRotary && s.place.rotary.empty()) {
     s.cl.remarks.warn("rotary zero", line.number, [] {
-      return "G43.4 before any rotary word: the rotary axes are taken to stand at zero";
+      return "tool-centre control before any rotary word: the rotary axes are taken to stand at "
+             "zero";
     });
   }
   return {};

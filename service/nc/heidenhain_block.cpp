@@ -219,6 +219,15 @@ cl::Outcome take_plane_angles(State& s, Line& iso) {
   return {};
 }
 
+/// FAUTO: the feed of the last TOOL CALL that told one.
+cl::Outcome take_auto_feed(State& s, const Line& line) {
+  if (!has_name(line, "FAUTO")) return {};
+  if (!(s.modes.auto_feed > 0)) return refuse("FAUTO, but no TOOL CALL before it tells F");
+  s.cl.written_feed = {s.modes.auto_feed, s.modes.feed_unit};
+  s.cl.feed.reset();
+  return {};
+}
+
 /// L, LN, C, CR: what moves, with the actions of its line.
 cl::Outcome run_words(State& s, const Line& line) {
   Translated translated;
@@ -226,6 +235,7 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (auto done = translate(s, line, translated); !done) return done;
   Line& iso = translated.iso;
   if (auto done = prepare_motion(s, line, iso); !done) return done;
+  if (auto done = take_auto_feed(s, line); !done) return done;
   if (auto done = act_before(s, iso); !done) return done;
   const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
   const bool is_motion = statement != "STOP" && statement != "M" && statement != "TOOL CALL";
@@ -261,6 +271,7 @@ cl::Outcome call_tool(State& s, const Line& line) {
   Translated translated;
   if (auto done = translate(s, line, translated); !done) return done;
   Line& iso = translated.iso;
+  if (const Word* const feed = iso.find("F")) s.modes.auto_feed = feed->number;
   std::erase_if(iso.words, [](const Word& word) { return word.is('F'); });
   const Word* const speed = iso.find("S");
   if (speed != nullptr && s.cl.spindle.state != ActionKind::kSpindleOff && speed->number > 0 &&

@@ -131,6 +131,7 @@ class KlartextCutter {
       return {};
     }
     skip_blanks();
+    if (take_spaced_name(word)) return {};
     const std::size_t at = rest_.starts_with('+') || rest_.starts_with('-') ? 1 : 0;
     if (rest_.size() > at && rest_[at] == 'Q') return cut_parameter(word);
     const bool is_sense = word.address == "DR" && !rest_.empty() &&
@@ -147,6 +148,20 @@ class KlartextCutter {
       word.way = Word::Way::kIncremental;
     }
     return cut_number(word);
+  }
+
+  /// F MAX and F AUTO of older controls, and MB MAX: a word instead of a number.
+  bool take_spaced_name(const Word& word) {
+    constexpr std::array<std::array<std::string_view, 3>, 3> kSpaced = {
+        {{"F", "MAX", "FMAX"}, {"F", "AUTO", "FAUTO"}, {"MB", "MAX", "MB MAX"}}};
+    for (const auto& [address, text, name] : kSpaced) {
+      const bool is_whole = rest_.size() <= text.size() || is_space(rest_[text.size()]);
+      if (word.address != address || !rest_.starts_with(text) || !is_whole) continue;
+      rest_.remove_prefix(text.size());
+      line_.names.push_back({name, {}});
+      return true;
+    }
+    return false;
   }
 
   /// A+Q120, B+Q121, C+Q122: the control puts there what a tilted plane asks of these axes.

@@ -73,6 +73,7 @@ struct Modes {
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;
   std::array<std::optional<double>, 2> pole;  ///< CC of Klartext
+  double auto_feed = 0;       ///< F of TOOL CALL in Klartext, which FAUTO means; 0: none
   bool has_new_speed = false;                 ///< TOOL CALL S of Klartext, for a spindle that turns
   bool is_oriented = false;       ///< TRAORI: vectors or rotary words, as each block has them
   bool turns_evenly = true;       ///< rotary joints between two blocks; else the axis: great circle

@@ -61,15 +61,13 @@ cl::Outcome choose_orientation(State& s, const Line& line) {
   if (has_vector && s.modes.has_machine_axes) {
     return refuse("A3, B3, C3 in the axes of the machine (ORIMKS)", "output ORIWKS");
   }
-  if (has_vector && s.modes.turns_evenly && s.modes.language == Language::kHeidenhain) {
-    s.cl.remarks.warn("vectors", line.number, [] {
-      return std::string(
-          "TX TY TZ without PATHCTRL VECTOR: the tool axis turns on a great circle "
-          "here, and on the control as its joints go");
+  if (has_vector && s.modes.turns_evenly) {
+    const bool is_klartext = s.modes.language == Language::kHeidenhain;
+    s.cl.remarks.warn("vectors", line.number, [&names, is_klartext] {
+      return names + (is_klartext ? " without PATHCTRL VECTOR" : " under ORIAXES") +
+             ": between two points the tool axis turns on a great circle here, and on the control "
+             "as its joints go";
     });
-  } else if (has_vector && s.modes.turns_evenly) {
-    return refuse("A3, B3, C3 under ORIAXES: the way between depends on how the control turns",
-                  "output ORIVECT");
   }
   if (has_vector) s.modes.control = Control::kVector;
   if (has_rotary) s.modes.control = Control::kRotary;

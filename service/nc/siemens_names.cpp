@@ -213,6 +213,10 @@ Expected<NameOutcome, cl::Refusal> take_names(State& s, const Line& line) {
 }
 
 cl::Outcome check_siemens_addresses(const State& s, const Line& line) {
+  if (const Word* const call = line.find("L")) {
+    return refuse("L" + std::string(call->digits) + ": a subprogram, which is not run here",
+                  "let the CAM system write one program without it", "L");
+  }
   for (const Word& word : line.words) {
     const bool is_known = word.address.size() == 1 || !word.may_be_rotary() ||
                           (s.axes && s.axes->is_rotary(word.address));

@@ -74,6 +74,8 @@ Expected<SpindleWords, Refusal> spindle_words(const Statement& s) {
     } else if (is_word(a.text, "MAXRPM") && next != nullptr && next->is_number) {
       words.left = "MAXRPM";
       ++i;
+    } else if (is_gear(a)) {
+      words.left = "the gear";
     } else if (words.other.empty()) {
       words.other = a.text;
     }

@@ -60,8 +60,9 @@ TEST(Words, OfTheSpindleComeInAnyOrder) {
 }
 
 TEST(Words, OfGearsAndLimitsLeaveTheSpindleItsSpeed) {
-  for (const char* words : {"3000,RPM,CLW,RANGE,HIGH", "RANGE,2,3000,CLW", "3000,RANGE,CLW",
-                            "3000,RPM,CLW,MAXRPM,5000", "MAXRPM,5000,CLW,3000"}) {
+  for (const char* words :
+       {"3000,RPM,CLW,RANGE,HIGH", "RANGE,2,3000,CLW", "3000,RANGE,CLW", "3000,RPM,CLW,MAXRPM,5000",
+        "MAXRPM,5000,CLW,3000", "3000,CLW,HIGH", "RPM,3000,LOW,CLW"}) {
     const auto read = read_text("UNITS/MM\nSPINDL/1000\nFEDRAT/0.2,MMPR\nSPINDL/" +
                                 std::string(words) + "\nGOTO/0,0,0\nDELAY/100,REV\nFINI\n");
     ASSERT_EQ(read.error, "") << words;

@@ -89,6 +89,7 @@ TEST(Klartext, RefusesByName) {
       {"FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", "angles in space"},
       {"FUNCTION TCPM F TCP AXIS POS REFPNT CENTER-CENTER", "the ball's centre"},
       {"L X+1 F5 M140", "M140 is not run here"},
+      {"M140 MB MAX", "M140 is not run here"},
       {"L X+1 X+2", "word X twice"}};
   for (const auto& [line, says] : cases) {
     const ReadText read = read_klartext("2 L X+0 Y+0 Z+0 R0 FMAX\n3 " + std::string(line) + "\n");
@@ -98,6 +99,21 @@ TEST(Klartext, RefusesByName) {
   const ReadText inch =
       cl::read_text("0 BEGIN PGM A INCH\n1 L X+0 Y+0 Z+0 FMAX\n2 M30\n", klartext());
   EXPECT_NE(inch.error.find("a program in inch"), std::string::npos);
+}
+
+TEST(Klartext, KnowsTheFeedsOfOlderControlsWithABlank) {
+  const ReadText read = read_klartext(
+      "1 TOOL CALL 1 Z S100 F300\n2 L X+0 Y+0 Z+0 R0 F MAX M3\n3 L X+9 F AUTO\n4 L X+8 F600\n5 L "
+      "X+9 FAUTO\n6 L Z+9 F MAX\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 5U);
+  EXPECT_EQ(motion[0].kind, BlockKind::kRapid);
+  EXPECT_DOUBLE_EQ(motion[1].feed, 5);
+  EXPECT_DOUBLE_EQ(motion[2].feed, 10);
+  EXPECT_DOUBLE_EQ(motion[3].feed, 5);
+  EXPECT_EQ(motion[4].kind, BlockKind::kRapid);
+  EXPECT_NE(read_klartext("1 L X+0 Y+0 Z+0 FMAX\n2 L X+1 FAUTO\n").error, "");
 }
 
 TEST(Klartext, WarnsOfVectorsWhoseWayIsTheJoints) {

@@ -57,6 +57,16 @@ TEST(SiemensProgram, TurnsTheAxisByRotaryWordsOnTheGreatCircleUnlessTold) {
   EXPECT_GT(joints.motion().size(), 5U);
 }
 
+TEST(SiemensProgram, WarnsOfVectorsWhoseWayIsTheJoints) {
+  const ReadText read =
+      read_siemens("TRAORI\nORIAXES\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\nG1 X5 A3=.6 B3=0 C3=.8\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_NEAR(axis(read.motion()[1])[0], .6, kTiny);
+  EXPECT_TRUE(read.warned_of("A3, B3, C3 under ORIAXES"));
+  EXPECT_FALSE(
+      read_siemens("TRAORI\nORIVECT\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\n").warned_of("great circle"));
+}
+
 TEST(SiemensProgram, DwellsAndActs) {
   const ReadText read = read_siemens(
       "G0 X0 Y0 Z0\nS600 M3\nG4 F0.5\nG4 S5\nM1=5\nT=\"12\" M6\nMSG(\"ON; (AND ON)\")\nG1 X1\n");
@@ -113,7 +123,7 @@ TEST(SiemensProgram, RefusesByName) {
       {"START:", "what begins with ':'"},
       {"$AC_TIMER", "a variable of the control"},
       {"MSG(\"open", "without its closing bracket"},
-      {"TRAORI(1) G1 X1 A3=0 ORIAXES", "under ORIAXES"},
+      {"L10 P2", "L10: a subprogram"},
       {"TRAORI ORIMKS G1 X1 A3=1", "in the axes of the machine"}};
   for (const Refused& c : cases) {
     const ReadText read = read_siemens("G54 G0 X0 Y0 Z0\n" + std::string(c.line) + "\n");
