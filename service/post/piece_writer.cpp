@@ -73,8 +73,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
   const double feed = is_rapid ? parts_.options.rapid_feed_mm_per_s : way_piece.feed_mm_per_s;
   const double tip_mm = tip_length(piece);
   double piece_s = feed > 0 ? tip_mm / feed : 0;
-  if (block.feed_meaning == FeedMeaning::kInverseTime && way > 0 &&
-      piece.motion != MotionKind::kApproach) {
+  if (block.feed_meaning == FeedMeaning::kInverseTime && way > 0 && is_of_block(piece)) {
     piece_s = std::max(piece_s, way_length(piece) / way / block.feed);
   }
   const auto duration = [&](const BlockEnd& from, const BlockEnd& to) {

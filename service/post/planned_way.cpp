@@ -32,6 +32,13 @@ namespace {
          (joint.is_rotary ? " deg" : " mm");
 }
 
+/// What lets the free joint be turned back; empty where that is not what is missing.
+[[nodiscard]] std::string rewind_remedy(const BlockReject& reject, const MachineModel& model) {
+  const bool is_refused = model.unwind_policy == UnwindPolicy::kRefuse;
+  if (!is_refused || reject.joint < 0 || reject.joint != free_joint(model)) return {};
+  return "; [unwind] policy = \"retract\" in the machine file turns it back off the part";
+}
+
 [[nodiscard]] std::string reason(const BlockReject& reject, const MachineModel& model) {
   switch (reject.code) {
     case RejectCode::kUnreachable:
@@ -39,7 +46,8 @@ namespace {
     case RejectCode::kTravel:
       return travel_text(reject, model) + " at this pose on every branch and winding";
     case RejectCode::kTravelBetween:
-      return travel_text(reject, model) + " on the way from the block before";
+      return travel_text(reject, model) + " on the way from the block before" +
+             rewind_remedy(reject, model);
     case RejectCode::kBranch:
       return "no branch or winding leads here from the block before";
     case RejectCode::kApproach:
@@ -60,8 +68,9 @@ namespace {
 
 }  // namespace
 
-PlannedWay::PlannedWay(const MachineModel& model, ToolTable tools)
+PlannedWay::PlannedWay(const MachineModel& model, ToolTable tools, BlockMotion motion)
     : model_(model),
+      motion_(motion),
       port_(std::make_unique<MotionPort>()),
       writer_(*port_),
       planner_(model, std::move(tools)) {
@@ -87,12 +96,13 @@ Expected<std::vector<WayPiece>, PostError> PlannedWay::plan(const ClBlock& told)
   if (result.status != PlanStatus::kOk) {
     return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});
   }
-  if (result.unwinding.turns != 0) {
+  if (result.unwinding.turns != 0 && motion_ != BlockMotion::kDrives) {
     return tl::make_unexpected(PostError{
         block.line,
         model_.joints[free_joint(model_)].name +
-            " runs out of its travel here and has to be turned back off the part, "
-            "which NC programs are not written for; split the program ahead of this line"});
+            " runs out of its travel here and has to be turned back off the part: under "
+            "tool-centre control the tip would follow the turn; --dialect joints writes the "
+            "rewind, or split the program ahead of this line"});
   }
   std::vector<WayPiece> pieces;
   for (PathPiece piece; port_->paths.try_pop(piece);) {

@@ -13,6 +13,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "service/post/post_options.hpp"
+#include "service/post/subdivide.hpp"
 
 namespace meridian::post {
 
@@ -27,7 +28,8 @@ struct WayPiece {
 /// the geometry alone is kept. Context: I/O.
 class PlannedWay {
  public:
-  PlannedWay(const MachineModel& model, ToolTable tools);
+  /// A rewind is pieces of MotionKind::kUnwind, for blocks that say the drives; else it is refused.
+  PlannedWay(const MachineModel& model, ToolTable tools, BlockMotion motion);
 
   /// The pieces of `block` in order; empty where it does not move.
   [[nodiscard]] Expected<std::vector<WayPiece>, PostError> plan(const ClBlock& told);
@@ -42,6 +44,7 @@ class PlannedWay {
   [[nodiscard]] ClBlock inside_travel(ClBlock block) const;
 
   const MachineModel& model_;
+  const BlockMotion motion_;
   std::unique_ptr<MotionPort> port_;
   MotionWriter writer_;
   RestToRestPlanner planner_;
@@ -51,5 +54,10 @@ class PlannedWay {
 /// Length of the way that `piece` stands for, whichever way its s runs: what shares of a block's
 /// time are measured by. 0 for turns on the pole and joint moves. Unit: mm.
 [[nodiscard]] double way_length(const PathPiece& piece) noexcept;
+
+/// False for the ways to the first point and for rewinds, which no block of the CL file times.
+[[nodiscard]] constexpr bool is_of_block(const PathPiece& piece) noexcept {
+  return piece.motion != MotionKind::kApproach && piece.motion != MotionKind::kUnwind;
+}
 
 }  // namespace meridian::post

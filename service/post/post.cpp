@@ -73,7 +73,7 @@ class Post {
         program_(make_program(parts)),
         can_retract_(options_.retract || program_->motion() != BlockMotion::kDrives ||
                      parts.retract_sense != 0),
-        way_(model_, tools),
+        way_(model_, tools, program_->motion()),
         writer_(parts, tolerance_of(model_, options_), *program_),
         name_(parts.name) {}
 
@@ -154,7 +154,7 @@ class Post {
     double way = 0;
     for (std::size_t n = first; n < pieces->size(); ++n) {
       const PathPiece& piece = (*pieces)[n].piece;
-      if (piece.motion != MotionKind::kApproach) way += way_length(piece);
+      if (is_of_block(piece)) way += way_length(piece);
     }
     const bool is_whole = program_->motion() == BlockMotion::kTipAndAxis && !block.is_arc;
     for (std::size_t n = first; n < pieces->size(); ++n) {
@@ -188,7 +188,8 @@ class Post {
     std::size_t first = 0;
     JointVector over = before;
     for (std::size_t n = 0; n < pieces.size(); ++n) {
-      if (pieces[n].piece.kind != PathKind::kJoint) continue;
+      const PathPiece& piece = pieces[n].piece;
+      if (piece.kind != PathKind::kJoint || piece.motion != MotionKind::kApproach) continue;
       over = pieces[n].piece.joints_end;
       first = n + 1;
     }

@@ -11,6 +11,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/cl/cl_points.hpp"
+#include "service/proof/rewind.hpp"
 #include "service/record/check_report.hpp"
 #include "service/record/path_matching.hpp"
 
@@ -25,7 +26,8 @@ using Kind = ProgramStep::Kind;
 
 constexpr double kChord_mm = 2e-5;  // what a straight sample may cut off the tool's path
 constexpr double kChord_rad = 1e-7;
-constexpr int kMostSamples = 4096;  // of one line
+constexpr int kMostSamples = 4096;     // of one line
+constexpr double kRewindClear_mm = 1;  // the least that [unwind] retract_mm takes
 
 /// Lines of a program between two tool changes, and the part of the CL file that they cut.
 struct Section {
@@ -138,6 +140,13 @@ class SectionCheck {
       if (!is_motion_step(step)) {
         if (step.kind == Kind::kAway)
           return add("leaves the path for an unknown place", step.line, 0);
+        continue;
+      }
+      const auto lines = section_.steps.subspan(n, end + 1 - n);
+      if (const auto back = find_rewind(*from, lines, model_, kRewindClear_mm)) {
+        n += *back;
+        from = &section_.steps[n];
+        ++report_.rewinds;
         continue;
       }
       run_line(matching, *from, step);

@@ -37,6 +37,7 @@ struct ProgramReport {
   std::uint64_t moves = 0;     ///< of the program, on the path
   std::uint64_t motions = 0;   ///< of the CL file
   std::uint64_t sections = 0;  ///< from one tool change to the next
+  std::uint64_t rewinds = 0;  ///< off the part and back to the same place, one turn or more farther
   double tip_length_mm = 0;
   ProgramPeak tip_mm, axis_rad;
   std::vector<ProgramFinding> findings;
@@ -51,7 +52,8 @@ struct ProgramReport {
 /// Tool by tool: from the first line that ends on the first CL point to the last that ends on the
 /// last one there has to be a monotone matching of tool and path within both tolerances, in which
 /// every CL point is passed in its order (record::PathMatching). Before and behind there may be
-/// rapids, and before the first point cuts too: the approach. Feeds are not looked at; a rapid is
+/// rapids, and before the first point cuts too: the approach. A rewind of the free joint off the
+/// part (find_rewind) is no part of the path. Feeds are not looked at; a rapid is
 /// taken as straight in the drives. Context: I/O. Proof: tests/unit/proof.
 [[nodiscard]] ProgramReport check_program(const std::vector<ProgramStep>& steps,
                                           const std::vector<ClBlock>& blocks,

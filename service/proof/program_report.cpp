@@ -30,6 +30,9 @@ std::string to_text(const ProgramReport& report) {
   append(text, "path       %llu CL motions, %.3f mm of tip, %llu moves of the program on it\n",
          static_cast<Count>(report.motions), report.tip_length_mm,
          static_cast<Count>(report.moves));
+  if (report.rewinds > 0) {
+    append(text, "rewound    %llu times, off the part\n", static_cast<Count>(report.rewinds));
+  }
   append_peak(text, "tip", report.tip_mm, 1, report.tip_tolerance_mm, "mm");
   append_peak(text, "tool axis", report.axis_rad, deg, report.axis_tolerance_rad, "deg");
   for (const ProgramFinding& finding : report.findings) {
@@ -50,6 +53,7 @@ std::string to_json(const ProgramReport& report) {
   append(text, "  \"path\": %s,\n", json_quoted(report.path_name).c_str());
   append(text, "  \"cl_motions\": %llu,\n", static_cast<Count>(report.motions));
   append(text, "  \"moves\": %llu,\n", static_cast<Count>(report.moves));
+  append(text, "  \"rewinds\": %llu,\n", static_cast<Count>(report.rewinds));
   append(text, "  \"tip_length_mm\": %.9g,\n", report.tip_length_mm);
   append(text, "  \"tip_tolerance_mm\": %.9g,\n", report.tip_tolerance_mm);
   append(text, "  \"axis_tolerance_deg\": %.9g,\n", report.axis_tolerance_rad * deg);
