@@ -67,7 +67,7 @@ struct Counts {
 ///
 /// After the constructor, work() makes no heap call, takes no lock, waits for nobody and writes no
 /// log: sending and reporting is done by a thread of the library.
-/// Proof: tests/unit/drive/drives_test.cpp.
+/// Proof: tests/unit/drive_kit/drives_test.cpp.
 class Drives {
  public:
   /// `hardware` outlives this; it is read once. Throws DriveError.

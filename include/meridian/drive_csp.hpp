@@ -62,7 +62,8 @@ struct CspSpec {
 /// by itself is reported without power: it does not start again until it was switched off.
 ///
 /// In each period write(), the frame, read(). After the constructor nothing allocates. RT.
-/// Source: CiA 402-2 and -3 (IEC 61800-7-201), CiA 303-2. Proof: tests/unit/drive/csp_*_test.cpp.
+/// Source: CiA 402-2 and -3 (IEC 61800-7-201), CiA 303-2. Proof:
+/// tests/unit/drive_kit/csp_*_test.cpp.
 class CspDrive {
  public:
   /// Throws DriveError: a mapping without a word that CSP needs, of wrong length or twice, an

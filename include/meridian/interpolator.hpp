@@ -5,11 +5,11 @@
 #include <memory>
 #include <string>
 
+#include "meridian/cycle/cycle_data.hpp"
 #include "meridian/expected.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/path/cl_block.hpp"
-#include "meridian/rt/cycle_data.hpp"
 
 /// The library for another control: blocks in, setpoints out. docs/embed.md is the tutorial.
 namespace meridian {
@@ -62,8 +62,8 @@ class Interpolator {
   bool hold() noexcept;
   bool resume() noexcept;
   bool abort() noexcept;
-  /// 1 is 100 %; at most MachineModel::most_feed_override. Above 100 % it raises the feed of what is
-  /// not planned yet.
+  /// 1 is 100 %; at most MachineModel::most_feed_override. Above 100 % it raises the feed of what
+  /// is not planned yet.
   bool set_feed_override(double factor) noexcept;
 
   /// Computes the setpoint of the next period. `feedback`: what the drives reported since the last

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "meridian/units.hpp"
-#include "service/bench/bench_paths.hpp"
-#include "service/bench/bench_run.hpp"
+#include "service/analysis/bench/bench_paths.hpp"
+#include "service/analysis/bench/bench_run.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/process/programs.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::cli::bench_command {
 namespace {

@@ -5,13 +5,13 @@
 #include <memory>
 #include <thread>
 
-#include "service/bridge/ros_bridge.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/cli/peer_options.hpp"
-#include "service/config/config_error.hpp"
-#include "service/stream/served_model.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/neighbours/bridge/ros_bridge.hpp"
+#include "service/protocol/served_model.hpp"
 
 namespace meridian::cli::bridge_command {
 namespace {

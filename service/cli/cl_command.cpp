@@ -2,12 +2,12 @@
 #include <iostream>
 #include <memory>
 
-#include "service/cl/run_cl.hpp"
-#include "service/cl/words/word_table.hpp"
-#include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
+#include "service/cli/options/cl_options.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/programs/cl/run_cl.hpp"
+#include "service/programs/cl/words/word_table.hpp"
 
 namespace meridian::cli::cl_command {
 namespace {

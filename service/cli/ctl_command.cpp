@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "meridian/rt/state_table.hpp"
+#include "meridian/cycle/state_table.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/frame_options.hpp"
-#include "service/cli/hand_options.hpp"
-#include "service/cli/move_options.hpp"
-#include "service/cli/peer_options.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/frame_options.hpp"
+#include "service/cli/options/hand_options.hpp"
+#include "service/cli/options/move_options.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/cli/options/tool_options.hpp"
+#include "service/cli/options/touch_off_options.hpp"
 #include "service/cli/status_text.hpp"
-#include "service/cli/tool_options.hpp"
-#include "service/cli/touch_off_options.hpp"
-#include "service/dds/participant.hpp"
-#include "service/stream/operator_link.hpp"
+#include "service/protocol/operator_link.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::cli::ctl_command {
 

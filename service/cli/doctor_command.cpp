@@ -9,13 +9,13 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/machine_name_option.hpp"
-#include "service/config/service_file.hpp"
-#include "service/dds/participant.hpp"
-#include "service/probe/dds_network.hpp"
-#include "service/probe/doctor.hpp"
-#include "service/process/processors.hpp"
-#include "service/stream/machine_finder.hpp"
+#include "service/cli/options/machine_name_option.hpp"
+#include "service/host/probe/dds_network.hpp"
+#include "service/host/probe/doctor.hpp"
+#include "service/host/process/processors.hpp"
+#include "service/machine/file/service_file.hpp"
+#include "service/protocol/machine_finder.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::cli::doctor_command {
 namespace {

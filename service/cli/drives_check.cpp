@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "service/cli/commands.hpp"
-#include "service/dds/reader.hpp"
-#include "service/drives/check_wire.hpp"
-#include "service/drives/drive_check.hpp"
+#include "service/drives/simulated/check_wire.hpp"
+#include "service/drives/simulated/drive_check.hpp"
+#include "service/transport/reader.hpp"
 
 namespace meridian::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/dds/participant.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::cli {
 

@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "meridian/cycle/joint_masks.hpp"
 #include "meridian/kinematics/limited.hpp"
-#include "meridian/rt/joint_masks.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/drives_check.hpp"
-#include "service/cli/finite_range.hpp"
 #include "service/cli/injection_console.hpp"
-#include "service/cli/machine_name_option.hpp"
-#include "service/cli/peer_options.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_name_option.hpp"
+#include "service/cli/options/peer_options.hpp"
 #include "service/cli/stoppable_output.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/dds/participant.hpp"
-#include "service/drive/line_teller.hpp"
-#include "service/drive/other_source.hpp"
-#include "service/drives/simulated_drives.hpp"
+#include "service/drives/kit/line_teller.hpp"
+#include "service/drives/kit/other_source.hpp"
+#include "service/drives/simulated/simulated_drives.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::cli::drives_command {
 

@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/peer_options.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/writer.hpp"
-#include "service/stream/operator_link.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/protocol/operator_link.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/writer.hpp"
 
 namespace meridian::cli::enabling_command {
 namespace {

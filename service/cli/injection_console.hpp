@@ -5,9 +5,9 @@
 #include <string>
 #include <thread>
 
+#include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/kinematics/machine_model.hpp"
-#include "meridian/rt/spsc_ring.hpp"
-#include "service/drives/injection.hpp"
+#include "service/drives/simulated/injection.hpp"
 
 namespace meridian::cli {
 

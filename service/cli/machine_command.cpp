@@ -7,18 +7,18 @@
 #include <sstream>
 #include <string>
 
-#include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/config/config_error.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/inspect/inspection.hpp"
-#include "service/inspect/joint_pattern.hpp"
-#include "service/inspect/machine_picture.hpp"
-#include "service/inspect/placing.hpp"
-#include "service/inspect/program_poses.hpp"
-#include "service/inspect/rotary_centres.hpp"
+#include "service/cli/options/cl_options.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/inspection.hpp"
+#include "service/machine/inspect/joint_pattern.hpp"
+#include "service/machine/inspect/machine_picture.hpp"
+#include "service/machine/inspect/placing.hpp"
+#include "service/machine/inspect/program_poses.hpp"
+#include "service/machine/inspect/rotary_centres.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::machine_command {
@@ -159,10 +159,11 @@ void add(CLI::App& app, int& exit_code) {
                    "With --place: length of tools that the table has not, mm")
       ->needs(program)
       ->check(finite_range(0.0, 1e4));
-  CLI::Option* const touches = command->add_option(
-      "--calibrate", options->touches,
-      "Touches of a sphere on the table (ctl touch-off touch): find where the rotary axes lie. Exit "
-      "code 1 where the touches do not determine all of it");
+  CLI::Option* const touches =
+      command->add_option("--calibrate", options->touches,
+                          "Touches of a sphere on the table (ctl touch-off touch): find where the "
+                          "rotary axes lie. Exit "
+                          "code 1 where the touches do not determine all of it");
   touches->excludes(program);
   command
       ->add_option("--write", options->written,

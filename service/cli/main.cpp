@@ -4,8 +4,8 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
-#include "service/dds/dds_log.hpp"
 #include "service/text/printable.hpp"
+#include "service/transport/dds_log.hpp"
 
 namespace {
 

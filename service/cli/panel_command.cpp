@@ -8,10 +8,10 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/peer_options.hpp"
-#include "service/dds/participant.hpp"
+#include "service/cli/options/peer_options.hpp"
 #include "service/panel/panel.hpp"
-#include "service/panel/server.hpp"
+#include "service/panel/serve/server.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::cli::panel_command {
 namespace {

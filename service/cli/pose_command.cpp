@@ -11,12 +11,12 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/cli/peer_options.hpp"
-#include "service/cli/told_machine.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/inspect/pose_solutions.hpp"
-#include "service/inspect/pose_table.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/cli/options/told_machine.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/pose_solutions.hpp"
+#include "service/machine/inspect/pose_table.hpp"
 
 namespace meridian::cli::pose_command {
 namespace {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "meridian/units.hpp"
-#include "service/cl/cl_reader.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/post/post.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/programs/post/post.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::post_command {

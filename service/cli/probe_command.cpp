@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/peer_options.hpp"
-#include "service/config/service_file.hpp"
-#include "service/probe/bare_peer.hpp"
-#include "service/probe/load.hpp"
-#include "service/probe/probe_report.hpp"
-#include "service/process/claimed_domain.hpp"
-#include "service/process/programs.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/host/probe/bare_peer.hpp"
+#include "service/host/probe/load.hpp"
+#include "service/host/probe/probe_report.hpp"
+#include "service/host/process/claimed_domain.hpp"
+#include "service/host/process/programs.hpp"
+#include "service/machine/file/service_file.hpp"
 
 namespace meridian::cli::probe_command {
 namespace {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "service/stream/progress.hpp"
+#include "service/protocol/progress.hpp"
 
 namespace meridian::cli {
 

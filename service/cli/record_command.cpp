@@ -3,12 +3,12 @@
 #include <memory>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
 #include "service/cli/record_live.hpp"
-#include "service/record/flight_picture.hpp"
-#include "service/record/flight_report.hpp"
-#include "service/ros/conversion.hpp"
+#include "service/neighbours/ros/conversion.hpp"
+#include "service/recording/record/flight/flight_picture.hpp"
+#include "service/recording/record/flight/flight_report.hpp"
 
 namespace meridian::cli::record_command {
 namespace {

@@ -9,17 +9,17 @@
 #include <optional>
 #include <thread>
 
+#include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/kinematics/limited.hpp"
-#include "meridian/rt/spsc_ring.hpp"
 #include "service/cli/commands.hpp"
-#include "service/config/config_error.hpp"
-#include "service/dds/followed.hpp"
-#include "service/dds/reader.hpp"
-#include "service/record/wire_recording.hpp"
-#include "service/ros/wire_file.hpp"
-#include "service/stream/end_watch.hpp"
-#include "service/stream/served_model.hpp"
-#include "service/stream/steady_ns.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/neighbours/ros/wire_file.hpp"
+#include "service/protocol/end_watch.hpp"
+#include "service/protocol/served_model.hpp"
+#include "service/protocol/steady_ns.hpp"
+#include "service/recording/record/file/wire_recording.hpp"
+#include "service/transport/followed.hpp"
+#include "service/transport/reader.hpp"
 
 namespace meridian::cli {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "service/cli/machine_options.hpp"
-#include "service/cli/peer_options.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/cli/options/peer_options.hpp"
 
 namespace meridian::cli {
 

@@ -8,18 +8,18 @@
 #include <memory>
 #include <optional>
 
-#include "service/certify/certifier.hpp"
-#include "service/cl/cl_reader.hpp"
+#include "service/analysis/certify/certifier.hpp"
+#include "service/analysis/simulate/feed_picture.hpp"
+#include "service/analysis/simulate/simulate.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/cli/view_option.hpp"
-#include "service/record/recording_reader.hpp"
-#include "service/record/recording_writer.hpp"
-#include "service/simulate/feed_picture.hpp"
-#include "service/simulate/simulate.hpp"
-#include "service/stream/frame_sum.hpp"
-#include "service/stream/smooth_tolerances.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/cli/options/view_option.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/protocol/frame_sum.hpp"
+#include "service/protocol/smooth_tolerances.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
+#include "service/recording/record/file/recording_writer.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::simulate_command {

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/peer_options.hpp"
-#include "service/config/service_file.hpp"
-#include "service/process/claimed_domain.hpp"
-#include "service/process/programs.hpp"
-#include "service/soak/report_files.hpp"
-#include "service/soak/soak.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/host/process/claimed_domain.hpp"
+#include "service/host/process/programs.hpp"
+#include "service/host/soak/report_files.hpp"
+#include "service/host/soak/soak.hpp"
+#include "service/machine/file/service_file.hpp"
 
 namespace meridian::cli::soak_command {
 namespace {

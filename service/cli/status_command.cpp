@@ -12,18 +12,18 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/cli/peer_options.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/peer_options.hpp"
 #include "service/cli/status_text.hpp"
 #include "service/cli/stoppable_output.hpp"
-#include "service/config/config_error.hpp"
-#include "service/dds/followed.hpp"
-#include "service/dds/latency_since.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/reader.hpp"
-#include "service/dds/waitset.hpp"
-#include "service/stream/served_model.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/protocol/served_model.hpp"
 #include "service/text/percentiles.hpp"
+#include "service/transport/followed.hpp"
+#include "service/transport/latency_since.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/reader.hpp"
+#include "service/transport/waitset.hpp"
 
 namespace meridian::cli::status_command {
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meridian/rt/state_table.hpp"
+#include "meridian/cycle/state_table.hpp"
 #include "meridian/units.hpp"
 #include "service/cli/progress_text.hpp"
-#include "service/record/words.hpp"
+#include "service/recording/record/words.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::cli {

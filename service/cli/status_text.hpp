@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "meridian/cycle/state.hpp"
 #include "meridian/geometry/vector3.hpp"
-#include "meridian/rt/state.hpp"
-#include "service/dds/messages.hpp"
+#include "service/transport/messages.hpp"
 
 namespace meridian::cli {
 

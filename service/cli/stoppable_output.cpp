@@ -6,7 +6,7 @@
 #include <chrono>
 #include <string>
 
-#include "service/cli/peer_options.hpp"
+#include "service/cli/options/peer_options.hpp"
 
 namespace meridian::cli {
 

@@ -10,19 +10,19 @@
 #include <utility>
 
 #include "meridian/units.hpp"
-#include "service/cli/cl_options.hpp"
 #include "service/cli/commands.hpp"
-#include "service/cli/machine_options.hpp"
-#include "service/cli/peer_options.hpp"
+#include "service/cli/options/cl_options.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/cli/options/peer_options.hpp"
+#include "service/cli/options/told_machine.hpp"
 #include "service/cli/progress_text.hpp"
-#include "service/cli/told_machine.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/config/tool_names.hpp"
-#include "service/dds/participant.hpp"
-#include "service/stream/frame_sum.hpp"
-#include "service/stream/stream_run.hpp"
-#include "service/stream/tools_sum.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/file/tool_names.hpp"
+#include "service/protocol/frame_sum.hpp"
+#include "service/protocol/stream_run.hpp"
+#include "service/protocol/tools_sum.hpp"
 #include "service/text/printable.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::cli::stream_command {
 

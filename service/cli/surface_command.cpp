@@ -7,13 +7,13 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
-#include "service/cli/finite_range.hpp"
-#include "service/surface/patch_file.hpp"
-#include "service/surface/sample_part.hpp"
-#include "service/surface/surface_path.hpp"
-#include "service/surface/surface_picture.hpp"
-#include "service/surface/surface_program.hpp"
-#include "service/surface/surface_report.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/programs/surface/patch_file.hpp"
+#include "service/programs/surface/sample_part.hpp"
+#include "service/programs/surface/surface_path.hpp"
+#include "service/programs/surface/surface_picture.hpp"
+#include "service/programs/surface/surface_program.hpp"
+#include "service/programs/surface/surface_report.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::surface_command {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "service/dds/messages.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/transport/messages.hpp"
 
 namespace meridian::panel {
 

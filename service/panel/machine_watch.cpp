@@ -3,11 +3,11 @@
 
 #include <utility>
 
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "service/panel/latency_text.hpp"
 #include "service/panel/metrics.hpp"
 #include "service/panel/scene.hpp"
-#include "service/stream/served_model.hpp"
+#include "service/protocol/served_model.hpp"
 
 namespace meridian::panel {
 namespace {

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "service/dds/followed.hpp"
-#include "service/dds/messages.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/reader.hpp"
-#include "service/panel/frame.hpp"
-#include "service/panel/hub.hpp"
 #include "service/panel/latency_text.hpp"
 #include "service/panel/motion.hpp"
-#include "service/panel/news.hpp"
+#include "service/panel/serve/frame.hpp"
+#include "service/panel/serve/hub.hpp"
+#include "service/panel/serve/news.hpp"
+#include "service/transport/followed.hpp"
+#include "service/transport/messages.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/reader.hpp"
 
 namespace meridian::panel {
 

@@ -5,8 +5,8 @@
 #include <bit>
 #include <utility>
 
-#include "meridian/rt/state_table.hpp"
-#include "service/record/words.hpp"
+#include "meridian/cycle/state_table.hpp"
+#include "service/recording/record/words.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::panel {

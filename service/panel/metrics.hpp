@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "service/dds/messages.hpp"
+#include "service/transport/messages.hpp"
 
 namespace meridian::panel {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "meridian/cycle/cycle_data.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "meridian/rt/cycle_data.hpp"
 
 namespace meridian::panel {
 

@@ -6,13 +6,13 @@
 #include <thread>
 #include <utility>
 
-#include "service/panel/action_desk.hpp"
-#include "service/panel/hub.hpp"
+#include "service/panel/desks/action_desk.hpp"
+#include "service/panel/desks/operator_desk.hpp"
+#include "service/panel/desks/program_desk.hpp"
 #include "service/panel/machine_watch.hpp"
-#include "service/panel/operator_desk.hpp"
-#include "service/panel/operator_pages.hpp"
-#include "service/panel/program_desk.hpp"
-#include "service/panel/server.hpp"
+#include "service/panel/serve/hub.hpp"
+#include "service/panel/serve/operator_pages.hpp"
+#include "service/panel/serve/server.hpp"
 
 namespace meridian::panel {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "service/dds/participant.hpp"
+#include "service/transport/participant.hpp"
 
 namespace meridian::panel {
 

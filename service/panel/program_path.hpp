@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "meridian/cycle/cycle_data.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "meridian/rt/cycle_data.hpp"
 
 namespace meridian::panel {
 

@@ -3,14 +3,14 @@
 
 #include <fstream>
 
-#include "service/cl/cl_reader.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/inspect/placing.hpp"
-#include "service/nc/nc_reader.hpp"
+#include "service/analysis/simulate/simulate.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/placing.hpp"
 #include "service/panel/program_path.hpp"
-#include "service/simulate/simulate.hpp"
-#include "service/stream/home_pose.hpp"
-#include "service/stream/served_model.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/programs/nc/nc_reader.hpp"
+#include "service/protocol/home_pose.hpp"
+#include "service/protocol/served_model.hpp"
 
 namespace meridian::panel {
 namespace {

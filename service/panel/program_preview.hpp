@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "service/cl/cl_options.hpp"
-#include "service/dds/messages.hpp"
-#include "service/stream/preflight.hpp"
+#include "service/programs/cl/cl_options.hpp"
+#include "service/protocol/preflight.hpp"
+#include "service/transport/messages.hpp"
 
 /// What a program will do on the machine that its service reports, before anything moves.
 namespace meridian::panel {

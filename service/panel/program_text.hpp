@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "service/panel/program_desk.hpp"
+#include "service/panel/desks/program_desk.hpp"
 
 namespace meridian::panel {
 

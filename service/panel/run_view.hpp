@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "meridian/cycle/cycle_data.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
-#include "meridian/rt/cycle_data.hpp"
 #include "service/panel/motion.hpp"
 
 namespace meridian::panel {

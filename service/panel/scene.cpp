@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "service/machine/scene/link_tree.hpp"
 #include "service/panel/json_text.hpp"
-#include "service/scene/link_tree.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -83,9 +83,9 @@ std::string describe_scene(const MachineModel& model, const ToolTable& tools) {
     joints.push_back(to_json(model.joints[static_cast<std::size_t>(i)]));
   }
   for (const Tool& tool : tools.tools()) {
-    table.push_back(
-        {{"number", tool.number}, {"length", tool.tip_length_mm()},
-         {"radius", tool.cutting_radius_mm()}});
+    table.push_back({{"number", tool.number},
+                     {"length", tool.tip_length_mm()},
+                     {"radius", tool.cutting_radius_mm()}});
   }
   const json picture = {{"name", model.name},
                         {"family", family_name(model.family)},

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "meridian/rt/histogram.hpp"
+#include "meridian/cycle/histogram.hpp"
 
 namespace meridian::text {
 

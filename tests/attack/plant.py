@@ -21,7 +21,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
 
 class Domain:
-    """A DDS domain that no other test of this host uses (service/process/claimed_domain.hpp)."""
+    """A DDS domain that no other test of this host uses (service/host/process/claimed_domain.hpp)."""
 
     def __init__(self):
         for i in range(121):

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <string>
 
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 #include "support/cpu_time.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 
 #include "bench/cycle_workload.hpp"
 #include "bench/setpoint_workload.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 
 namespace meridian {
 namespace {

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/ik_workload.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 
 namespace meridian {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "bench/planner_workload.hpp"
 #include "bench/smooth_workload.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 
 namespace meridian {
 namespace {

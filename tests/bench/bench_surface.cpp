@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/surface/patch_file.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/surface/patch_file.hpp"
 
 namespace meridian::surface {
 namespace {

@@ -19,9 +19,9 @@
 #include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/inspect/skeleton.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/skeleton.hpp"
 #include "support/cpu_time.hpp"
 
 namespace meridian {

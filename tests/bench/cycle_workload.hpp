@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "bench/planned_path.hpp"
+#include "meridian/cycle/step.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "meridian/planner/smooth_planner.hpp"
-#include "meridian/rt/step.hpp"
 #include "support/dense_block.hpp"
 #include "support/machines.hpp"
 

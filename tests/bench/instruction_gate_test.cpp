@@ -17,8 +17,8 @@
 #include <string_view>
 #include <vector>
 
-#include "service/probe/budgets.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian {
 namespace {

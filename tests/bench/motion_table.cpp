@@ -25,13 +25,13 @@
 #include <vector>
 
 #include "bench/smooth_workload.hpp"
-#include "service/cl/cl_reader.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/probe/budgets.hpp"
-#include "service/record/check.hpp"
-#include "service/record/recording_reader.hpp"
-#include "service/record/recording_writer.hpp"
-#include "service/simulate/simulate.hpp"
+#include "service/analysis/simulate/simulate.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/recording/record/check/check.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
+#include "service/recording/record/file/recording_writer.hpp"
 
 namespace meridian {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "service/trace/spans.hpp"
+#include "service/recording/trace/spans.hpp"
 
 namespace meridian::bench {
 

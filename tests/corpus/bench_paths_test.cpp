@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/bench/bench_paths.hpp"
+#include "service/analysis/bench/bench_paths.hpp"
 
 #include <cstdio>
 #include <cstdlib>
 
 #include "corpus/simulated_file.hpp"
-#include "service/probe/budgets.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/host/process/programs.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"
 

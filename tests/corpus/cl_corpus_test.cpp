@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
-#include "service/cl/cl_points.hpp"
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_points.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 #include "support/shared_folder.hpp"
 
 namespace meridian::cl {

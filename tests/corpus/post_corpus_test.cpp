@@ -8,8 +8,8 @@
 
 #include "corpus/simulated_file.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/post/axis_words.hpp"
-#include "service/post/post.hpp"
+#include "service/programs/post/axis_words.hpp"
+#include "service/programs/post/post.hpp"
 #include "support/nc_program.hpp"
 
 namespace meridian {

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "meridian/units.hpp"
-#include "service/cl/cl_reader.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/record/check.hpp"
-#include "service/record/recording_reader.hpp"
-#include "service/record/recording_writer.hpp"
-#include "service/simulate/simulate.hpp"
+#include "service/analysis/simulate/simulate.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/recording/record/check/check.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
+#include "service/recording/record/file/recording_writer.hpp"
 #include "support/shared_folder.hpp"
 
 /// Real CL files, in shared_folder(), simulated and judged.
@@ -26,7 +26,8 @@ namespace meridian::test {
 inline constexpr double kTipTolerance_mm = 1e-3;  // what the rest-to-rest planner owes
 inline constexpr double kAxisTolerance_deg = 1e-3;
 
-/// The machine of deploy/machines/lai.toml with the workpiece at `frame` and its own cycle time, in exact stop.
+/// The machine of deploy/machines/lai.toml with the workpiece at `frame` and its own cycle time, in
+/// exact stop.
 [[nodiscard]] inline MachineModel lai_at(const char* frame, std::int64_t cycle_ns) {
   MachineModel model =
       config::load_machine(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/machines/lai.toml");

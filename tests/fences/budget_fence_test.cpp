@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 
 namespace meridian::fences {
 namespace {

@@ -26,6 +26,17 @@ std::string core_room(const std::string& path_in_core) {
   return room.empty() ? "base" : room;
 }
 
+/// "service/NAME", or "service/FLOOR/NAME" where NAME lies on a floor of several rooms.
+std::string service_room(const std::string& path_in_service) {
+  static const std::set<std::string> kFloors{"analysis",   "drives",   "host",     "machine",
+                                             "neighbours", "programs", "recording"};
+  const std::string name = first_folder(path_in_service);
+  if (!kFloors.contains(name)) {
+    return "service/" + name;
+  }
+  return "service/" + name + "/" + first_folder(path_in_service.substr(name.size() + 1));
+}
+
 using Library = std::pair<std::string_view, std::string_view>;
 constexpr std::array kLibraries{
     Library{"Eigen/", "eigen"},       Library{"unsupported/Eigen/", "eigen"},
@@ -80,7 +91,7 @@ std::string room_of_file(const std::string& path) {
     }
   }
   if (path.starts_with("service/")) {
-    return "service/" + first_folder(without_prefix(path, "service/"));
+    return service_room(without_prefix(path, "service/"));
   }
   return first_folder(path);
 }

@@ -19,7 +19,7 @@ using AllowedIncludes = std::map<std::string, std::set<std::string>>;
 [[nodiscard]] AllowedIncludes read_allowed_includes(const SourceFile& file);
 
 /// The room of a file: "planner" for include/meridian/planner and service/core/planner, "base" for
-/// files right in include/meridian, "service/NAME" for the rest.
+/// files right in include/meridian, "service/NAME" or "service/FLOOR/NAME" for the rest.
 [[nodiscard]] std::string room_of_file(const std::string& path);
 
 /// Where an include line leads, `written` with its quotes or brackets: a room as above, "idl" for

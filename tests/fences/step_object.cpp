@@ -2,7 +2,7 @@
 
 /// The object file that holds all of step(): the symbol fence looks at what it leaves undefined.
 
-#include "meridian/rt/step.hpp"
+#include "meridian/cycle/step.hpp"
 
 extern "C" void meridian_fence_root(const meridian::MachineModel& model,
                                     meridian::CycleState& state, meridian::MotionReader& motion,

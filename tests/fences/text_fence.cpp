@@ -72,8 +72,8 @@ std::vector<Finding> find_missing_heads(const std::vector<SourceFile>& files) {
   std::vector<Finding> findings;
   for (const SourceFile& file : files) {
     // What is loaded into LinuxCNC's HAL is under its licence too, and lies in the folder of that.
-    const bool is_of_hal =
-        file.path.starts_with("service/hal/component/") || file.path == "service/hal/shared.h";
+    const bool is_of_hal = file.path.starts_with("service/drives/hal/component/") ||
+                           file.path == "service/drives/hal/shared.h";
     const bool has_line =
         !file.lines.empty() &&
         (file.lines.front() == "// SPDX-License-Identifier: Apache-2.0" ||

@@ -71,13 +71,13 @@ TEST_P(TextFenceCatches, TheBadLine) {
 INSTANTIATE_TEST_SUITE_P(
     Samples, TextFenceCatches,
     testing::Values(BadLine{"docs/a.md", "see /home/somebody/meridian"},
-                    BadLine{"service/cl/a.cpp", "// TODO later"},
-                    BadLine{"include/meridian/rt/a.hpp", "/// Source: MOTION 9.4."},
-                    BadLine{"include/meridian/rt/a.hpp", "auto t = steady_clock::now();"},
+                    BadLine{"service/programs/cl/a.cpp", "// TODO later"},
+                    BadLine{"include/meridian/cycle/a.hpp", "/// Source: MOTION 9.4."},
+                    BadLine{"include/meridian/cycle/a.hpp", "auto t = steady_clock::now();"},
                     BadLine{"service/core/planner/a.cpp", "throw 1;"},
-                    BadLine{"include/meridian/rt/a.hpp", "std::vector<double> v;"},
-                    BadLine{"service/cl/a.cpp", "return parsed.value();"},
-                    BadLine{"service/cl/a.cpp", "double r = d * std::numbers::pi / 180;"},
+                    BadLine{"include/meridian/cycle/a.hpp", "std::vector<double> v;"},
+                    BadLine{"service/programs/cl/a.cpp", "return parsed.value();"},
+                    BadLine{"service/programs/cl/a.cpp", "double r = d * std::numbers::pi / 180;"},
                     BadLine{"service/core/CMakeLists.txt", "add_compile_options(-march=native)"},
                     BadLine{"CMakeLists.txt", "include(FetchContent)"}));
 
@@ -88,8 +88,8 @@ TEST(TextFence, CatchesAMissingLicenceLineAndPragma) {
           .size(),
       0U);
   const std::vector<std::string> gpl{"// SPDX-License-Identifier: GPL-2.0-or-later"};
-  EXPECT_EQ(find_missing_heads({{"service/hal/component/a.c", gpl}}).size(), 0U);
-  EXPECT_EQ(find_missing_heads({{"service/hal/a.c", gpl}}).size(), 1U);
+  EXPECT_EQ(find_missing_heads({{"service/drives/hal/component/a.c", gpl}}).size(), 0U);
+  EXPECT_EQ(find_missing_heads({{"service/drives/hal/a.c", gpl}}).size(), 1U);
 }
 
 TEST(TextFence, ProseOfThePagesIsAtMost100CharactersWide) {

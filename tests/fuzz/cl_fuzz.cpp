@@ -6,8 +6,8 @@
 
 #include "fuzz/fuzz_targets.hpp"
 #include "fuzz/read_all.hpp"
-#include "service/cl/cl_points.hpp"
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_points.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::fuzz {
 namespace {

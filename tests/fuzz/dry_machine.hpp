@@ -7,10 +7,10 @@
 #include <cstdint>
 
 #include "fuzz/fuzz_targets.hpp"
+#include "meridian/cycle/state_table.hpp"
+#include "meridian/cycle/step.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/motion_port.hpp"
-#include "meridian/rt/state_table.hpp"
-#include "meridian/rt/step.hpp"
 
 namespace meridian::fuzz {
 

@@ -7,7 +7,7 @@
 
 #include "fuzz/fuzz_targets.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::fuzz {
 namespace {

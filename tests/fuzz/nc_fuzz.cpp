@@ -4,8 +4,8 @@
 
 #include "fuzz/fuzz_targets.hpp"
 #include "fuzz/read_all.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/nc/nc_reader.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/nc/nc_reader.hpp"
 
 namespace meridian::fuzz {
 namespace {

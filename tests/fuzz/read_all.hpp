@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::fuzz {
 

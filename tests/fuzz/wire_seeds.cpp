@@ -3,8 +3,8 @@
 
 #include "fuzz/fuzz_targets.hpp"
 #include "fuzz/wire_samples.hpp"
-#include "meridian/rt/state_table.hpp"
-#include "service/dds/convert.hpp"
+#include "meridian/cycle/state_table.hpp"
+#include "service/transport/convert.hpp"
 #include "support/programs.hpp"
 
 namespace meridian::fuzz {

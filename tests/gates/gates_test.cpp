@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "service/probe/budgets.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/host/process/programs.hpp"
 #include "support/command_output.hpp"
 #include "support/text_file.hpp"
 

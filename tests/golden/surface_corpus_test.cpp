@@ -7,7 +7,7 @@
 
 #include "golden/golden_table.hpp"
 #include "meridian/kinematics/robot.hpp"
-#include "service/surface/patch_file.hpp"
+#include "service/programs/surface/patch_file.hpp"
 #include "support/shared_folder.hpp"
 
 namespace meridian::surface {

@@ -14,8 +14,8 @@
 #include "integration/raw_station.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/record/recording_reader.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
 
 namespace meridian::test {
 namespace {

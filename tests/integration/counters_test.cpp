@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "integration/plant.hpp"
-#include "service/probe/budgets.hpp"
-#include "service/process/child_process.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/host/process/child_process.hpp"
 #include "support/heap_watch.hpp"
 #include "support/watch_report.hpp"
 

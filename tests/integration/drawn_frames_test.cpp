@@ -6,9 +6,9 @@
 #include <random>
 #include <string>
 
-#include "service/config/machine_file.hpp"
-#include "service/inspect/pose_solutions.hpp"
-#include "service/stream/preflight.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/pose_solutions.hpp"
+#include "service/protocol/preflight.hpp"
 #include "support/draws.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"

@@ -7,7 +7,7 @@
 
 #include "integration/plant.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::test {
 

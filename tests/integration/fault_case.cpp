@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "integration/live_run.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/alarm_letter.hpp"
 
 namespace meridian::test {

@@ -11,7 +11,7 @@
 #include "integration/judged_part.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
-#include "service/soak/host_watch.hpp"
+#include "service/host/soak/host_watch.hpp"
 
 namespace meridian::test {
 

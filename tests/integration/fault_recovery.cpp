@@ -11,8 +11,8 @@
 
 #include "integration/fault_case.hpp"
 #include "meridian/kinematics/limited.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/dds/writer.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/transport/writer.hpp"
 
 namespace meridian::test {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "integration/plant.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/record/flight_report.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/flight/flight_report.hpp"
 
 namespace meridian::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "integration/plant.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/record/recording_reader.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
 
 namespace meridian::test {
 namespace {

@@ -11,7 +11,7 @@
 #include "meridian/expected.hpp"
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/record/read_path.hpp"
+#include "service/recording/record/file/read_path.hpp"
 
 namespace meridian::test {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "meridian/kinematics/tool_table.hpp"
-#include "service/cl/cl_options.hpp"
-#include "service/dds/messages.hpp"
-#include "service/record/check.hpp"
+#include "service/programs/cl/cl_options.hpp"
+#include "service/recording/record/check/check.hpp"
+#include "service/transport/messages.hpp"
 
 namespace meridian::test {
 

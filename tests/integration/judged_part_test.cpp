@@ -11,7 +11,7 @@
 #include "integration/fault_part.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 /// The judge of the tests beside this one finds what it is there for.
 namespace meridian::test {

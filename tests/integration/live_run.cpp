@@ -9,8 +9,8 @@
 #include <fstream>
 #include <memory>
 
-#include "service/config/machine_file.hpp"
-#include "service/record/compare.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/check/compare.hpp"
 #include "support/mcap_reading.hpp"
 #include "support/text_file.hpp"
 

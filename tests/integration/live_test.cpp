@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "integration/live_run.hpp"
+#include "meridian/cycle/drive_state.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "meridian/rt/drive_state.hpp"
 #include "meridian/units.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/record/recording_reader.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::test {

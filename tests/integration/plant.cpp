@@ -13,10 +13,10 @@
 #include <thread>
 #include <utility>
 
+#include "meridian/cycle/state_table.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "meridian/rt/state_table.hpp"
 #include "meridian/units.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::test {
 namespace {
@@ -98,8 +98,8 @@ void Plant::change_machine(const std::vector<std::pair<std::string, std::string>
 }
 
 Process& Plant::start_service(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"meridiand", "--machine",    machine_file_, "--domain",
-                                        domain(),    "--record",     recording(),   "--state",
+  std::vector<std::string> arguments = {"meridiand", "--machine",     machine_file_,   "--domain",
+                                        domain(),    "--record",      recording(),     "--state",
                                         state(),     "--best-effort", "--open-network"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   status_.reset();
@@ -108,8 +108,8 @@ Process& Plant::start_service(const std::vector<std::string>& more) {
 }
 
 Process& Plant::start_drives(const std::vector<std::string>& more, const InputPipe* console) {
-  std::vector<std::string> arguments = {"meridian",    "drives",   "--machine",
-                                        machine_file_, "--domain", domain(), "--open-network"};
+  std::vector<std::string> arguments = {"meridian", "drives", "--machine",     machine_file_,
+                                        "--domain", domain(), "--open-network"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   if (console != nullptr) arguments.emplace_back("--console");
   drives_ = std::make_unique<Process>(arguments, folder_ / "drives.log", console);
@@ -117,10 +117,10 @@ Process& Plant::start_drives(const std::vector<std::string>& more, const InputPi
 }
 
 std::unique_ptr<Process> Plant::another_service() {
-  return std::make_unique<Process>(std::vector<std::string>{"meridiand", "--machine", machine_file_,
-                                                            "--domain", domain(), "--best-effort",
-                                                            "--open-network"},
-                                   folder_ / "second.log");
+  return std::make_unique<Process>(
+      std::vector<std::string>{"meridiand", "--machine", machine_file_, "--domain", domain(),
+                               "--best-effort", "--open-network"},
+      folder_ / "second.log");
 }
 
 void Plant::look() {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "integration/process.hpp"
-#include "service/dds/followed.hpp"
-#include "service/dds/messages.hpp"
-#include "service/dds/reader.hpp"
-#include "service/dds/writer.hpp"
-#include "service/stream/station.hpp"
+#include "service/protocol/station.hpp"
+#include "service/transport/followed.hpp"
+#include "service/transport/messages.hpp"
+#include "service/transport/reader.hpp"
+#include "service/transport/writer.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::test {

@@ -9,10 +9,10 @@
 
 #include "integration/process.hpp"
 #include "meridian/path/cl_block.hpp"
-#include "service/dds/messages.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/reader.hpp"
-#include "service/dds/writer.hpp"
+#include "service/transport/messages.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/reader.hpp"
+#include "service/transport/writer.hpp"
 
 namespace meridian::test {
 

@@ -18,10 +18,10 @@
 #include "integration/endless_station.hpp"
 #include "integration/plant.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/interpolator/drive_words.hpp"
-#include "service/probe/budgets.hpp"
-#include "service/record/recording_reader.hpp"
+#include "service/daemon/ports/drive_words.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
 #include "support/draws.hpp"
 
 /// How long processes take to react, from the recording and the wire. MERIDIAN_REACTIONS=100 in the

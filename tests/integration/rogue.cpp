@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "service/dds/messages.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/reader.hpp"
-#include "service/dds/writer.hpp"
+#include "service/transport/messages.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/reader.hpp"
+#include "service/transport/writer.hpp"
 
 /// rogue DOMAIN MACHINE HOW: somebody in a machine's domain who tries every topic for 2.5 s. In HOW
 /// `w` makes writers, `s` sends on them what would do harm, `r` makes readers. At the end it prints

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "integration/set_up_plant.hpp"
-#include "service/telemetry/set_up_file.hpp"
+#include "service/recording/telemetry/set_up_file.hpp"
 #include "support/draws.hpp"
 
 /// A service that is killed while it changes its set-up. MERIDIAN_SETUP_KILLS=100 in the

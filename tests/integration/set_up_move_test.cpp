@@ -10,7 +10,7 @@
 #include "integration/set_up_plant.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/text_file.hpp"
 
 /// `meridian ctl move` on a machine that runs.

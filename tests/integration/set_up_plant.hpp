@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "integration/plant.hpp"
-#include "service/stream/frame_sum.hpp"
-#include "service/stream/machine_finder.hpp"
+#include "service/protocol/frame_sum.hpp"
+#include "service/protocol/machine_finder.hpp"
 
 namespace meridian::test {
 

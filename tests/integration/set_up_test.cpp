@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "integration/set_up_plant.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 /// Work frames of a machine that runs: set, kept, told, and refused where they must not change.
 namespace meridian::test {

@@ -8,8 +8,8 @@
 #include "integration/live_run.hpp"
 #include "integration/set_up_plant.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/stream/tools_sum.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/protocol/tools_sum.hpp"
 
 /// Tool tables of a machine that runs.
 namespace meridian::test {

@@ -7,8 +7,8 @@
 
 #include "integration/live_run.hpp"
 #include "meridian/kinematics/limited.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/record/recording_reader.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
 
 /// A machine whose stage stands between joints and drives, live: the wire carries other numbers
 /// than the joints, and the run is the simulated one all the same.

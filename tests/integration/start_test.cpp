@@ -8,7 +8,7 @@
 #include <string>
 
 #include "integration/plant.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 
 namespace meridian::test {
 namespace {

@@ -13,7 +13,7 @@
 #include "integration/live_run.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 /// A station that dies in the middle of a program with arcs, and what another one makes of the
 /// rest.

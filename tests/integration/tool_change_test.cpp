@@ -11,7 +11,7 @@
 #include "integration/live_run.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::test {
 namespace {

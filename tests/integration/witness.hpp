@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/dds/messages.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/reader.hpp"
-#include "service/record/wire_recording.hpp"
+#include "service/recording/record/file/wire_recording.hpp"
+#include "service/transport/messages.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/reader.hpp"
 
 namespace meridian::test {
 

@@ -3,14 +3,14 @@
 /// The reference by itself: what this host can do without Meridian. Judged loosely, it only has to
 /// be a measurement at all; its figures are the other half of every latency gate.
 
-#include "service/probe/bare_reference.hpp"
+#include "service/host/probe/bare_reference.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "service/probe/figures.hpp"
-#include "service/process/processors.hpp"
+#include "service/host/probe/figures.hpp"
+#include "service/host/process/processors.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::probe {

@@ -16,11 +16,11 @@
 #include <cstdio>
 #include <string>
 
-#include "service/probe/figures.hpp"
-#include "service/probe/measure.hpp"
-#include "service/probe/probe_report.hpp"
-#include "service/process/processors.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/probe/figures.hpp"
+#include "service/host/probe/measure.hpp"
+#include "service/host/probe/probe_report.hpp"
+#include "service/host/process/processors.hpp"
+#include "service/host/process/programs.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::probe {

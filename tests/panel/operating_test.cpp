@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "service/panel/jog_grip.hpp"
-#include "service/panel/operator_pages.hpp"
-#include "service/panel/page_message.hpp"
+#include "service/panel/serve/operator_pages.hpp"
+#include "service/panel/serve/page_message.hpp"
 
 namespace meridian::panel {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <chrono>
 
-#include "service/config/machine_file.hpp"
-#include "service/panel/hub.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/panel/desks/request_guard.hpp"
 #include "service/panel/motion.hpp"
-#include "service/panel/news.hpp"
 #include "service/panel/page.hpp"
-#include "service/panel/request_guard.hpp"
+#include "service/panel/serve/hub.hpp"
+#include "service/panel/serve/news.hpp"
 
 namespace meridian::panel {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/program_folder.hpp"
+#include "service/panel/desks/program_folder.hpp"
 
 #include <gtest/gtest.h>
 

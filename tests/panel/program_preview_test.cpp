@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "service/panel/program_path.hpp"
 #include "service/text/whole_file.hpp"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::panel {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "service/panel/scene.hpp"
 
 namespace meridian::panel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/bridge/ros_bridge.hpp"
+#include "service/neighbours/bridge/ros_bridge.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <sstream>
 #include <thread>
 
-#include "service/config/machine_file.hpp"
-#include "service/dds/participant.hpp"
-#include "service/dds/writer.hpp"
-#include "service/process/child_process.hpp"
+#include "service/host/process/child_process.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/transport/participant.hpp"
+#include "service/transport/writer.hpp"
 #include "support/private_domain.hpp"
 #include "support/shipped_machines.hpp"
 
@@ -39,7 +39,8 @@ class RosBridgeOnTheWire : public testing::Test {
         std::vector<std::string>{kReader, std::to_string(domain_.id()), std::to_string(kStates)});
     // What the bridge keeps for late readers may come before the word that the reader stands.
     std::optional<std::string> line = reader_->read_line(seconds(20));
-    for (; line && *line != "ready"; line = reader_->read_line(seconds(20))) early_.push_back(*line);
+    for (; line && *line != "ready"; line = reader_->read_line(seconds(20)))
+      early_.push_back(*line);
     ASSERT_TRUE(line) << "the reader of Fast DDS did not start";
   }
   [[nodiscard]] JointVector position_of(int step) const {

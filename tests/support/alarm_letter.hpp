@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "meridian/rt/cycle_data.hpp"
+#include "meridian/cycle/cycle_data.hpp"
 
 namespace meridian::test {
 

@@ -7,7 +7,7 @@
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/path/cl_block.hpp"
-#include "service/cl/cl_points.hpp"
+#include "service/programs/cl/cl_points.hpp"
 
 /// The path that CL blocks mean, computed from the blocks alone: a judge of what was made of them.
 namespace meridian::test {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "meridian/cycle/step.hpp"
 #include "meridian/planner/motion_port.hpp"
-#include "meridian/rt/step.hpp"
 
 namespace meridian::test {
 

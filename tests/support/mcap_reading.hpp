@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "service/mcap/crc32.hpp"
+#include "service/recording/mcap/crc32.hpp"
 
 /// An MCAP file read from its begin to its end, or to where it was cut off, as readers do that find
 /// no summary. Of its own: it shares the checksum with the writer and nothing else.

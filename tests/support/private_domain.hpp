@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "service/process/claimed_domain.hpp"
+#include "service/host/process/claimed_domain.hpp"
 
 namespace meridian::support {
 

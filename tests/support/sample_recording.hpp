@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "meridian/cycle/cycle_data.hpp"
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/cl_block.hpp"
-#include "meridian/rt/cycle_data.hpp"
 
 /// Recordings for tests, made without planner and cycle: every block from rest to rest by one
 /// polynomial of degree seven.

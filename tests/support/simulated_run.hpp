@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "service/cl/cl_reader.hpp"
-#include "service/record/check.hpp"
-#include "service/record/recording_reader.hpp"
-#include "service/record/recording_writer.hpp"
-#include "service/simulate/simulate.hpp"
+#include "service/analysis/simulate/simulate.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/recording/record/check/check.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
+#include "service/recording/record/file/recording_writer.hpp"
 
 /// A CL text simulated, and its recording judged.
 namespace meridian::test {

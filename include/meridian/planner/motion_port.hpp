@@ -9,9 +9,9 @@
 #include <limits>
 #include <optional>
 
+#include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/path/path_piece.hpp"
 #include "meridian/planner/time_piece.hpp"
-#include "meridian/rt/spsc_ring.hpp"
 
 /// The motion port: how planned motion gets from the planner thread to the cycle.
 ///

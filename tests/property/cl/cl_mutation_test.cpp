@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "service/cl/cl_points.hpp"
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_points.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::cl {
 namespace {

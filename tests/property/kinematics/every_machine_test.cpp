@@ -6,7 +6,7 @@
 #include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"
 
 namespace meridian {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian {
 namespace {

@@ -13,11 +13,11 @@
 
 #include "meridian/units.hpp"
 #include "property/planner/random_programs.hpp"
-#include "service/cl/cl_reader.hpp"
-#include "service/cl/cl_writer.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/nc/nc_reader.hpp"
-#include "service/post/post.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_writer.hpp"
+#include "service/programs/nc/nc_reader.hpp"
+#include "service/programs/post/post.hpp"
 #include "support/cl_way.hpp"
 #include "support/shipped_machines.hpp"
 

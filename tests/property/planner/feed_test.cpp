@@ -6,9 +6,9 @@
 #include <bit>
 #include <cstdio>
 
-#include "meridian/rt/rate_filter.hpp"
+#include "meridian/cycle/rate_filter.hpp"
 #include "property/planner/feed_paths.hpp"
-#include "service/core/planner/two_pass.hpp"
+#include "service/core/planner/feed/two_pass.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 

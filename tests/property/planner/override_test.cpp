@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "meridian/cycle/rate_filter.hpp"
 #include "meridian/planner/rate_limits.hpp"
-#include "meridian/rt/rate_filter.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
 #include "support/draws.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "property/planner/smooth_trace.hpp"
-#include "service/core/planner/taut_string.hpp"
+#include "service/core/planner/singular/taut_string.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
@@ -26,7 +26,7 @@ constexpr double kFeed_mm_per_s = 50;
 constexpr double kTolerance_rad = 0.1 * units::kDegree_rad;
 
 constexpr double kFar_rad = 0.3;
-constexpr double kMore = 0.08;  // of the least time
+constexpr double kMore = 0.08;           // of the least time
 constexpr unsigned kPathsOfAShare = 50;  // fewer, as under sanitizers, have no share to speak of
 
 /// The axis seen along the pole.

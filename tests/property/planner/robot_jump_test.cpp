@@ -11,7 +11,7 @@
 
 #include "property/planner/random_programs.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/draws.hpp"
 #include "support/program_end.hpp"
 #include "support/shipped_machines.hpp"

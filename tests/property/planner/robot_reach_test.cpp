@@ -7,7 +7,7 @@
 
 #include "property/planner/singular_passes.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"
 
 /// A robot with its arm all but stretched: the elbow turns ever faster towards the edge of reach.

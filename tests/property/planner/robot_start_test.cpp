@@ -6,8 +6,8 @@
 
 #include "property/planner/singular_passes.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/core/planner/robot_look_ahead.hpp"
+#include "service/core/planner/look_ahead/robot_look_ahead.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/program_end.hpp"
 #include "support/shipped_machines.hpp"
 

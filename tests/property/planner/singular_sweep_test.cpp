@@ -9,7 +9,7 @@
 
 #include "property/planner/singular_passes.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/draws.hpp"
 #include "support/shipped_machines.hpp"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "property/cycle/program_run.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "property/rt/program_run.hpp"
 
 namespace meridian::test::smooth_refusal {
 namespace {

@@ -11,12 +11,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "meridian/rt/rate_filter.hpp"
-#include "meridian/rt/stop_authority.hpp"
+#include "meridian/cycle/rate_filter.hpp"
+#include "meridian/cycle/stop_authority.hpp"
+#include "property/cycle/stop_oracle.hpp"
 #include "property/path/hostile_path.hpp"
 #include "property/planner/random_programs.hpp"
 #include "property/planner/smooth_trace.hpp"
-#include "property/rt/stop_oracle.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
@@ -73,8 +73,8 @@ double wait_for_authority(const Trace& trace, StopKind kind, OnPlan& at, StopAut
   return waited;
 }
 
-/// The paths of a trace from one time piece on, in one path length that counts from the begin of the
-/// first.
+/// The paths of a trace from one time piece on, in one path length that counts from the begin of
+/// the first.
 class PathsAhead {
  public:
   PathsAhead(const Trace& trace, std::size_t piece)

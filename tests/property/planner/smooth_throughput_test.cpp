@@ -14,7 +14,7 @@
 #include <fstream>
 
 #include "property/planner/smooth_trace.hpp"
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 #include "support/cpu_time.hpp"
 #include "support/dense_block.hpp"
 #include "support/draws.hpp"

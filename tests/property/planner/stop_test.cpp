@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "meridian/rt/stop_law.hpp"
+#include "meridian/cycle/stop_law.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
 #include "support/draws.hpp"

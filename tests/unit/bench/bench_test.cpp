@@ -7,11 +7,11 @@
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/units.hpp"
-#include "service/bench/bench_paths.hpp"
-#include "service/bench/bench_run.hpp"
-#include "service/cl/cl_reader.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/process/programs.hpp"
+#include "service/analysis/bench/bench_paths.hpp"
+#include "service/analysis/bench/bench_run.hpp"
+#include "service/host/process/programs.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::bench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/bridge/diagnostics.hpp"
+#include "service/neighbours/bridge/diagnostics.hpp"
 
 #include <gtest/gtest.h>
 

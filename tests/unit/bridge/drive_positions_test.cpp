@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/bridge/drive_positions.hpp"
+#include "service/neighbours/bridge/drive_positions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/certify/certifier.hpp"
+#include "service/analysis/certify/certifier.hpp"
 
 #include <gtest/gtest.h>
 

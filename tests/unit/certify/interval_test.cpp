@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/certify/interval.hpp"
+#include "service/analysis/certify/interval.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/certify/join_judge.hpp"
+#include "service/analysis/certify/join_judge.hpp"
 
 #include <gtest/gtest.h>
 

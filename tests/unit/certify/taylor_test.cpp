@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/certify/taylor.hpp"
+#include "service/analysis/certify/taylor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "meridian/planner/time_law.hpp"
-#include "service/certify/enclosed_law.hpp"
+#include "service/analysis/certify/enclosed_law.hpp"
 
 namespace meridian::certify {
 namespace {

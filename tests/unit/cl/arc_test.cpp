@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/arc.hpp"
+#include "service/programs/cl/shapes/arc.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "read_text.hpp"
-#include "service/cl/copies.hpp"
+#include "service/programs/cl/copies.hpp"
 
 namespace meridian::cl {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/dialect.hpp"
+#include "service/programs/cl/dialect.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/findings.hpp"
+#include "service/programs/cl/findings.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "read_text.hpp"
-#include "service/cl/run_cl.hpp"
+#include "service/programs/cl/run_cl.hpp"
 
 namespace meridian::cl {
 namespace {

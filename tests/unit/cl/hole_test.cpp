@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/hole.hpp"
+#include "service/programs/cl/shapes/hole.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <istream>
 #include <streambuf>
 
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 #include "support/heap_watch.hpp"
 
 namespace meridian::cl {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/number.hpp"
+#include "service/programs/cl/text/number.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "read_text.hpp"
-#include "service/cl/cl_points.hpp"
-#include "service/cl/run_cl.hpp"
+#include "service/programs/cl/cl_points.hpp"
+#include "service/programs/cl/run_cl.hpp"
 
 namespace meridian::cl {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::cl {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "read_text.hpp"
-#include "service/cl/foreign.hpp"
+#include "service/programs/cl/foreign.hpp"
 
 namespace meridian::cl {
 namespace {

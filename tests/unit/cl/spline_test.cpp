@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/spline.hpp"
+#include "service/programs/cl/shapes/spline.hpp"
 
 #include <gtest/gtest.h>
 

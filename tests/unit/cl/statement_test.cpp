@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cl/statement.hpp"
+#include "service/programs/cl/text/statement.hpp"
 
 #include <gtest/gtest.h>
 

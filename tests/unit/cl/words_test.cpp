@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "read_text.hpp"
-#include "service/cl/words/word_table.hpp"
+#include "service/programs/cl/words/word_table.hpp"
 
 namespace meridian::cl {
 namespace {

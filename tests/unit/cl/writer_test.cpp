@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "read_text.hpp"
-#include "service/cl/cl_writer.hpp"
+#include "service/programs/cl/cl_writer.hpp"
 
 namespace meridian::cl {
 namespace {

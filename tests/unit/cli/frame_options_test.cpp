@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/frame_options.hpp"
+#include "service/cli/options/frame_options.hpp"
 
 #include <gtest/gtest.h>
 

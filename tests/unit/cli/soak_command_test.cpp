@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "service/process/child_process.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/process/child_process.hpp"
+#include "service/host/process/programs.hpp"
 #include "support/command_output.hpp"
 
 namespace meridian::test {

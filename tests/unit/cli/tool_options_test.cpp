@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/tool_options.hpp"
+#include "service/cli/options/tool_options.hpp"
 
 #include <gtest/gtest.h>
 
-#include "service/config/config_error.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/stream/tools_sum.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/protocol/tools_sum.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::cli {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/touch_off_options.hpp"
+#include "service/cli/options/touch_off_options.hpp"
 
 #include <gtest/gtest.h>
 
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::cli {
 namespace {

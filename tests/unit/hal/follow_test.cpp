@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/hal/component/follow.h"
+#include "service/drives/hal/component/follow.h"
 
 #include <gtest/gtest.h>
 

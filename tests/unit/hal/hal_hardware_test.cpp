@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/hal/hal_hardware.hpp"
+#include "service/drives/hal/hal_hardware.hpp"
 
 #include <gtest/gtest.h>
 #include <time.h>
 
 #include <thread>
 
-#include "service/hal/hal_memory.hpp"
+#include "service/drives/hal/hal_memory.hpp"
 
 namespace meridian::hal {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/hal/homing_option.hpp"
+#include "service/drives/hal/homing_option.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/hal/period_grid.hpp"
+#include "service/drives/hal/period_grid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/hal/shared.h"
+#include "service/drives/hal/shared.h"
 
 #include <gtest/gtest.h>
 

@@ -7,11 +7,11 @@
 #include <random>
 #include <sstream>
 
-#include "service/cl/cl_reader.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/inspect/inspection.hpp"
-#include "service/inspect/joint_pattern.hpp"
-#include "service/inspect/skeleton.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/inspection.hpp"
+#include "service/machine/inspect/joint_pattern.hpp"
+#include "service/machine/inspect/skeleton.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 #include "support/shipped_machines.hpp"
 #include "support/text_file.hpp"
 

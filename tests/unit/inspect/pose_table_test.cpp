@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/inspect/pose_table.hpp"
+#include "service/machine/inspect/pose_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>
 
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::inspect {
 namespace {

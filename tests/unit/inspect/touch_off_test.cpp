@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/inspect/touch_off.hpp"
+#include "service/machine/inspect/touch_off.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::inspect {
 namespace {
@@ -63,10 +63,12 @@ TEST(TouchOff, OfACornerTouchedThreeTwoOnceFindsAnyTiltOfIt) {
     Part part;
     part.rotation = turned(tilt(engine), tilt(engine), tilt(engine));
     part.origin = Vector3(place(engine), place(engine), place(engine));
-    const std::vector<Touch> touches{
-        part.ball({5, 5, 0}, 2),          part.ball({5 + on(engine), 6, 0}, 2),
-        part.ball({7, 5 + on(engine), 0}, 2), part.ball({5, 0, -10}, 1, -1),
-        part.ball({15 + on(engine), 0, -12}, 1, -1), part.ball({0, on(engine), -11}, 0, -1)};
+    const std::vector<Touch> touches{part.ball({5, 5, 0}, 2),
+                                     part.ball({5 + on(engine), 6, 0}, 2),
+                                     part.ball({7, 5 + on(engine), 0}, 2),
+                                     part.ball({5, 0, -10}, 1, -1),
+                                     part.ball({15 + on(engine), 0, -12}, 1, -1),
+                                     part.ball({0, on(engine), -11}, 0, -1)};
     part.expect_found(find_frame(TouchedShape::kCorner, touches, part.machine));
   }
 }
@@ -134,13 +136,13 @@ TEST(TouchOff, OfABoreFindsItsMiddleFromThreeTouchesAndItsErrorFromFour) {
     t.toward = out;
     return t;
   };
-  const auto three = find_frame(TouchedShape::kBore, {touch(0.1), touch(2), touch(4)}, part.machine);
+  const auto three =
+      find_frame(TouchedShape::kBore, {touch(0.1), touch(2), touch(4)}, part.machine);
   ASSERT_TRUE(three) << three.error();
   EXPECT_LT((three->origin_mm - Vector3(30, 40, 3)).norm(), kExact_mm);
   EXPECT_NE(three->arithmetic.find("bore of 40.0000 mm"), std::string::npos) << three->arithmetic;
-  const auto four = find_frame(TouchedShape::kBore,
-                               {touch(0), touch(1.57, 0.02), touch(3.14), touch(4.71)},
-                               part.machine);
+  const auto four = find_frame(
+      TouchedShape::kBore, {touch(0), touch(1.57, 0.02), touch(3.14), touch(4.71)}, part.machine);
   ASSERT_TRUE(four) << four.error();
   EXPECT_GT(four->residual_mm, 0.004);
   EXPECT_LT(four->residual_mm, 0.006);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/mcap/crc32.hpp"
+#include "service/recording/mcap/crc32.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/mcap/writer.hpp"
+#include "service/recording/mcap/writer.hpp"
 
 #include <gtest/gtest.h>
 

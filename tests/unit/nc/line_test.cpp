@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "service/nc/nc_line.hpp"
+#include "service/programs/nc/nc_line.hpp"
 
 namespace meridian::nc {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/post/axis_words.hpp"
+#include "service/programs/post/axis_words.hpp"
 #include "unit/nc/read_nc.hpp"
 
 namespace meridian::nc {

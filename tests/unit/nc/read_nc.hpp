@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "service/config/machine_file.hpp"
-#include "service/nc/nc_reader.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/nc/nc_reader.hpp"
 #include "unit/cl/read_text.hpp"
 
 namespace meridian::nc {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rotary words: the tool axis that they give, and blocks that are cut to follow it.
-#include "service/nc/turn.hpp"
+#include "service/programs/nc/turn.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "meridian/units.hpp"
-#include "service/cl/cl_points.hpp"
+#include "service/programs/cl/cl_points.hpp"
 #include "unit/nc/read_nc.hpp"
 
 namespace meridian::nc {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed_check.hpp"
+#include "service/core/planner/feed/feed_check.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "service/core/planner/feed_rest.hpp"
+#include "service/core/planner/feed/feed_rest.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::test::feed_check {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/programmed_tip.hpp"
+#include "service/core/planner/singular/programmed_tip.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/post/axis_words.hpp"
-#include "service/post/drive_line.hpp"
+#include "service/programs/post/axis_words.hpp"
+#include "service/programs/post/drive_line.hpp"
 #include "support/machines.hpp"
 #include "support/nc_program.hpp"
 #include "unit/post/written.hpp"

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "service/cl/cl_reader.hpp"
-#include "service/config/machine_file.hpp"
-#include "service/post/post.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/programs/post/post.hpp"
 
 namespace meridian::test {
 

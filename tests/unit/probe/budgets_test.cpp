@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/budgets.hpp"
+#include "service/host/probe/budgets.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/dds_network.hpp"
+#include "service/host/probe/dds_network.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "service/process/programs.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::probe {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/doctor.hpp"
+#include "service/host/probe/doctor.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 #include <fstream>
 #include <string>
 
-#include "service/probe/budgets.hpp"
-#include "service/probe/dds_network.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/host/probe/dds_network.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::probe {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/figures.hpp"
+#include "service/host/probe/figures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/load.hpp"
+#include "service/host/probe/load.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <vector>
 
-#include "service/process/processors.hpp"
+#include "service/host/process/processors.hpp"
 
 namespace meridian::probe {
 namespace {

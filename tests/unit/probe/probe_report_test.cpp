@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/probe_report.hpp"
+#include "service/host/probe/probe_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "service/probe/cyclictest.hpp"
+#include "service/host/probe/cyclictest.hpp"
 
 namespace meridian::probe {
 namespace {

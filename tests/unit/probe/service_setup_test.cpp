@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/service_setup.hpp"
+#include "service/host/probe/service_setup.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "service/process/processors.hpp"
-#include "service/process/programs.hpp"
+#include "service/host/process/processors.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::probe {
 namespace {

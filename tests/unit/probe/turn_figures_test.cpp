@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/probe/turn_figures.hpp"
+#include "service/host/probe/turn_figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "service/process/programs.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::probe {
 namespace {

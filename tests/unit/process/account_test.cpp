@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/process/account.hpp"
+#include "service/host/process/account.hpp"
 
 #include <gtest/gtest.h>
 #include <pthread.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/process/child_process.hpp"
+#include "service/host/process/child_process.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/process/programs.hpp"
+#include "service/host/process/programs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "service/proof/joint_program.hpp"
+#include "service/programs/proof/joint_program.hpp"
 #include "unit/post/written.hpp"
 
 namespace meridian {

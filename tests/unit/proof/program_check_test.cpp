@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A posted program passes on every shipped machine; spoilt ones fail, whatever was spoilt.
-#include "service/proof/program_check.hpp"
+#include "service/programs/proof/program_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where C runs out of its travel a posted program turns it back off the part, and cuts the part.
-#include "service/proof/rewind.hpp"
+#include "service/programs/proof/rewind.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
-#include "service/proof/program_check.hpp"
+#include "service/programs/proof/program_check.hpp"
 #include "support/nc_program.hpp"
 #include "unit/post/written.hpp"
 

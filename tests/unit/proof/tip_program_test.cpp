@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A posted program of tool-centre words passes in every dialect; spoilt ones fail.
-#include "service/proof/tip_program.hpp"
+#include "service/programs/proof/tip_program.hpp"
 
 #include <gtest/gtest.h>
 
-#include "service/nc/nc_reader.hpp"
-#include "service/proof/program_check.hpp"
+#include "service/programs/nc/nc_reader.hpp"
+#include "service/programs/proof/program_check.hpp"
 #include "unit/post/written.hpp"
 
 namespace meridian {

@@ -10,7 +10,7 @@
 
 #include "meridian/units.hpp"
 #include "scratch.hpp"
-#include "service/record/check.hpp"
+#include "service/recording/record/check/check.hpp"
 #include "support/machines.hpp"
 #include "support/sample_recording.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/record/check.hpp"
+#include "service/recording/record/check/check.hpp"
 
 #include <gtest/gtest.h>
 

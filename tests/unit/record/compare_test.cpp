@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/record/compare.hpp"
+#include "service/recording/record/check/compare.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 
 #include "meridian/units.hpp"
 #include "scratch.hpp"
-#include "service/record/flight_picture.hpp"
-#include "service/record/flight_report.hpp"
-#include "service/record/flight_writer.hpp"
+#include "service/recording/record/flight/flight_picture.hpp"
+#include "service/recording/record/flight/flight_report.hpp"
+#include "service/recording/record/flight/flight_writer.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::record {

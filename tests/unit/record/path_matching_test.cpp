@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/record/path_matching.hpp"
+#include "service/recording/record/check/path_matching.hpp"
 
 #include <gtest/gtest.h>
 

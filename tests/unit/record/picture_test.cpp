@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/record/picture.hpp"
+#include "service/recording/record/picture/picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "scratch.hpp"
-#include "service/record/picture_data.hpp"
+#include "service/recording/record/picture/picture_data.hpp"
 #include "support/family_machines.hpp"
 #include "support/machines.hpp"
 #include "support/sample_recording.hpp"

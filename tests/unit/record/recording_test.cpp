@@ -7,7 +7,7 @@
 #include <random>
 
 #include "scratch.hpp"
-#include "service/record/words.hpp"
+#include "service/recording/record/words.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::record {

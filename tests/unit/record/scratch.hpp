@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "service/record/recording_reader.hpp"
-#include "service/record/recording_writer.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
+#include "service/recording/record/file/recording_writer.hpp"
 
 namespace meridian::test {
 

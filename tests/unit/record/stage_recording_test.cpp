@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "scratch.hpp"
-#include "service/record/check.hpp"
-#include "service/record/compare.hpp"
+#include "service/recording/record/check/check.hpp"
+#include "service/recording/record/check/compare.hpp"
 #include "support/machines.hpp"
 #include "support/sample_recording.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/record/time_judge.hpp"
+#include "service/recording/record/check/time_judge.hpp"
 
 #include <gtest/gtest.h>
 

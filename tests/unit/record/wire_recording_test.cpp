@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/record/wire_recording.hpp"
+#include "service/recording/record/file/wire_recording.hpp"
 
 #include <gtest/gtest.h>
 

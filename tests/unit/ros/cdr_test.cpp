@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/ros/cdr.hpp"
+#include "service/neighbours/ros/cdr.hpp"
 
 #include <gtest/gtest.h>
 
-#include "service/ros/units.hpp"
+#include "service/neighbours/ros/units.hpp"
 
 namespace meridian::ros {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/ros/conversion.hpp"
+#include "service/neighbours/ros/conversion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <fstream>
 #include <vector>
 
-#include "service/record/flight_writer.hpp"
-#include "service/record/recording_writer.hpp"
-#include "service/record/wire_recording.hpp"
+#include "service/recording/record/file/recording_writer.hpp"
+#include "service/recording/record/file/wire_recording.hpp"
+#include "service/recording/record/flight/flight_writer.hpp"
 #include "support/machines.hpp"
 #include "support/mcap_reading.hpp"
 #include "support/text_file.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/ros/derived_row.hpp"
+#include "service/neighbours/ros/derived_row.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "service/ros/event_rows.hpp"
-#include "service/ros/events_file.hpp"
+#include "service/neighbours/ros/event_rows.hpp"
+#include "service/neighbours/ros/events_file.hpp"
 #include "support/machines.hpp"
 #include "support/mcap_reading.hpp"
 #include "support/text_file.hpp"

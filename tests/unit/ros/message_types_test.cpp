@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/ros/message_types.hpp"
+#include "service/neighbours/ros/message_types.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/ros/motion_file.hpp"
+#include "service/neighbours/ros/motion_file.hpp"
 
 #include <gtest/gtest.h>
 

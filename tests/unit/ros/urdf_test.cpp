@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/ros/urdf.hpp"
+#include "service/neighbours/ros/urdf.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"
 #include "support/text_file.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/scene/bodies.hpp"
+#include "service/machine/scene/bodies.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "service/config/machine_file.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"
 
 namespace meridian::scene {

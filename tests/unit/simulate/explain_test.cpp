@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "service/simulate/feed_picture.hpp"
+#include "service/analysis/simulate/feed_picture.hpp"
 #include "support/machines.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"

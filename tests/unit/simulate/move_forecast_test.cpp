@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/simulate/move_forecast.hpp"
+#include "service/analysis/simulate/move_forecast.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 #include "support/machines.hpp"
 #include "support/simulated_run.hpp"
 

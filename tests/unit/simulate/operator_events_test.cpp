@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/simulate/operator_events.hpp"
+#include "service/analysis/simulate/operator_events.hpp"
 
 #include <gtest/gtest.h>
 

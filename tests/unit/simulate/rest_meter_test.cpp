@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/simulate/rest_meter.hpp"
+#include "service/analysis/simulate/rest_meter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <string>
 
-#include "service/simulate/explainer.hpp"
+#include "service/analysis/simulate/explainer.hpp"
 #include "support/machines.hpp"
 #include "support/simulated_run.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/soak/evidence.hpp"
+#include "service/host/soak/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <iterator>
 #include <string>
 
-#include "service/process/programs.hpp"
-#include "service/soak/plant.hpp"
+#include "service/host/process/programs.hpp"
+#include "service/host/soak/plant.hpp"
 
 namespace meridian::soak {
 namespace {

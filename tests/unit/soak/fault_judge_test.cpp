@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/soak/fault_judge.hpp"
+#include "service/host/soak/fault_judge.hpp"
 
 #include <gtest/gtest.h>
 

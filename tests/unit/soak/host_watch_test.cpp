@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/soak/host_watch.hpp"
+#include "service/host/soak/host_watch.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "service/process/processors.hpp"
-#include "service/stream/steady_ns.hpp"
+#include "service/host/process/processors.hpp"
+#include "service/protocol/steady_ns.hpp"
 
 namespace meridian::soak {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/soak/report_files.hpp"
+#include "service/host/soak/report_files.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "service/process/programs.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::soak {
 namespace {

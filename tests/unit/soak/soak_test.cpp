@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "service/drives/injection.hpp"
-#include "service/process/programs.hpp"
-#include "service/soak/chaos.hpp"
-#include "service/soak/plant.hpp"
-#include "service/soak/segments.hpp"
-#include "service/soak/soak_report.hpp"
-#include "service/soak/timeline.hpp"
+#include "service/drives/simulated/injection.hpp"
+#include "service/host/process/programs.hpp"
+#include "service/host/soak/chaos.hpp"
+#include "service/host/soak/plant.hpp"
+#include "service/host/soak/segments.hpp"
+#include "service/host/soak/soak_report.hpp"
+#include "service/host/soak/timeline.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::soak {

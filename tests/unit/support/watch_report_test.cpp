@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "service/process/child_process.hpp"
+#include "service/host/process/child_process.hpp"
 #include "support/heap_watch.hpp"
 
 namespace meridian::watch {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/surface/cutter.hpp"
+#include "service/programs/surface/cutter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <random>
 
-#include "service/surface/surface_report.hpp"
+#include "service/programs/surface/surface_report.hpp"
 #include "support/surfaces.hpp"
 
 namespace meridian::surface {

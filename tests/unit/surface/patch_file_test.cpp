@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/surface/patch_file.hpp"
+#include "service/programs/surface/patch_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "service/cl/cl_reader.hpp"
-#include "service/config/config_error.hpp"
-#include "service/surface/surface_program.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/programs/cl/cl_reader.hpp"
+#include "service/programs/surface/surface_program.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::surface {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "service/surface/surface_path.hpp"
+#include "service/programs/surface/surface_path.hpp"
 #include "support/surfaces.hpp"
 
 /// Jobs for tests of paths over surfaces.

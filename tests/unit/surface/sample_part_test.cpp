@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/surface/sample_part.hpp"
+#include "service/programs/surface/sample_part.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "service/cl/cl_reader.hpp"
+#include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::surface {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/surface/surface_path.hpp"
+#include "service/programs/surface/surface_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "service/surface/surface_report.hpp"
+#include "service/programs/surface/surface_report.hpp"
 #include "unit/surface/path_jobs.hpp"
 
 namespace meridian::surface {

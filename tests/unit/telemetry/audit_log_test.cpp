@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/audit_log.hpp"
+#include "service/recording/telemetry/audit_log.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>

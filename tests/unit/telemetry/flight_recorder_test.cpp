@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/flight_recorder.hpp"
+#include "service/recording/telemetry/flight_recorder.hpp"
 
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ostream_sink.h>
@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "flown.hpp"
-#include "service/probe/budgets.hpp"
-#include "service/record/flight_writer.hpp"
-#include "service/record/recording_reader.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "service/recording/record/file/recording_reader.hpp"
+#include "service/recording/record/flight/flight_writer.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::telemetry {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/flight_store.hpp"
+#include "service/recording/telemetry/flight_store.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "meridian/rt/cycle_data.hpp"
-#include "service/record/flight_row.hpp"
+#include "meridian/cycle/cycle_data.hpp"
+#include "service/recording/record/flight/flight_row.hpp"
 
 namespace meridian::telemetry {
 

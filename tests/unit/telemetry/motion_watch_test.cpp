@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/motion_watch.hpp"
+#include "service/recording/telemetry/motion_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/program_summary.hpp"
+#include "service/recording/telemetry/program_summary.hpp"
 
 #include <gtest/gtest.h>
 

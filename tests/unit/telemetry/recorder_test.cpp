@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/recorder.hpp"
+#include "service/recording/telemetry/recorder.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/recovery.hpp"
+#include "service/recording/telemetry/recovery.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/reply_words.hpp"
+#include "service/recording/telemetry/reply_words.hpp"
 
 #include <gtest/gtest.h>
 
-#include "meridian/rt/state_table.hpp"
+#include "meridian/cycle/state_table.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::telemetry {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/set_up_file.hpp"
+#include "service/recording/telemetry/set_up_file.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -110,7 +110,8 @@ TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
     (void)::close(told[0]);
     const auto frames = read_again();
     ASSERT_TRUE(frames) << frames.error();
-    const double left = frames->frames.rows().empty() ? 0 : frames->frames.rows().front().origin_mm[0];
+    const double left =
+        frames->frames.rows().empty() ? 0 : frames->frames.rows().front().origin_mm[0];
     if (left > 0) {
       EXPECT_EQ(*frames, frames_with(1 + static_cast<int>(left) % 9, left));
     }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/set_up_text.hpp"
+#include "service/recording/telemetry/set_up_text.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 
-#include "service/dds/messages.hpp"
-#include "service/telemetry/journal_entry.hpp"
-#include "service/telemetry/sealed_text.hpp"
+#include "service/recording/telemetry/journal_entry.hpp"
+#include "service/recording/telemetry/sealed_text.hpp"
+#include "service/transport/messages.hpp"
 
 namespace meridian::telemetry {
 namespace {

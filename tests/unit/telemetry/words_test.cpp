@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/telemetry/words.hpp"
+#include "service/recording/telemetry/words.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "meridian/rt/state_table.hpp"
+#include "meridian/cycle/state_table.hpp"
 #include "meridian/units.hpp"
 #include "support/machines.hpp"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "service/process/programs.hpp"
+#include "service/host/process/programs.hpp"
 
 namespace meridian::text {
 namespace {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "meridian/cycle/cycle_data.hpp"
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+
+namespace meridian {
+
+/// What is wrong with a setpoint; kNone: it may be sent.
+struct GuardVerdict {
+  Alarm alarm = Alarm::kNone;
+  int joint = 0;     ///< place in limited.hpp
+  double value = 0;  ///< the offending position or step
+};
+
+inline constexpr double kGuardTravel =
+    1e-9;  ///< mm or rad; rounding of a pose on the travel's edge
+inline constexpr double kGuardOutside =
+    1e-11;  ///< mm or rad; rounding of a joint that comes to rest, 100 ulp of a metre
+inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solve, 1000x margin
+
+/// Whether `q` is in travel, or no farther out of it than `previous`: whoever stands outside may
+/// come back, and stand.
+[[nodiscard]] inline bool is_in_travel(const JointLimits& limits, double q,
+                                       double previous) noexcept {
+  return q >= std::min(limits.travel_min - kGuardTravel, previous - kGuardOutside) &&
+         q <= std::max(limits.travel_max + kGuardTravel, previous + kGuardOutside);
+}
+
+/// The drives of a stage, judged like joints; without `has_travel` not for their travel.
+[[nodiscard, gnu::noinline]] inline GuardVerdict judge_stage(const MachineModel& machine,
+                                                             const JointVector& next,
+                                                             const JointVector& previous,
+                                                             double elapsed,
+                                                             bool has_travel) noexcept {
+  const LimitedVector now = limited_of(machine, next), before = limited_of(machine, previous);
+  for (int i = machine.joint_count; i < limited_count(machine); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const JointLimits& limits = limited_spec(machine, i).limits;
+    const double u = now[n], step = u - before[n];
+    if (!std::isfinite(u)) return {Alarm::kNotFinite, i, u};
+    if (has_travel && !is_in_travel(limits, u, before[n])) return {Alarm::kTravel, i, u};
+    if (!(std::abs(step) <= limits.velocity * elapsed + kGuardStep)) return {Alarm::kStep, i, step};
+  }
+  return {};
+}
+
+/// Judges the next joint setpoint, the last thing before it is sent: finite, inside travel (for the
+/// joints of `has_travel`; where there are none, the drives of a stage have none either), and no
+/// farther from `previous` (sent `elapsed` seconds ago) than the velocity limits of joints and
+/// drives reach. RT: cycle. Proof: tests/unit/cycle/guard_test.cpp, stage_cycle_test.cpp.
+[[nodiscard]] inline GuardVerdict judge(const MachineModel& machine, const JointVector& next,
+                                        const JointVector& velocity, const JointVector& previous,
+                                        double elapsed, std::uint32_t has_travel = ~0U) noexcept {
+  for (int i = 0; i < machine.joint_count; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const JointSpec& joint = machine.joints[n];
+    const double q = next[n], step = q - previous[n];
+    if (!std::isfinite(q) || !std::isfinite(velocity[n])) return {Alarm::kNotFinite, i, q};
+    const bool is_judged = !joint.is_endless && (has_travel >> n & 1U) != 0;
+    if (is_judged && !is_in_travel(joint.limits, q, previous[n])) return {Alarm::kTravel, i, q};
+    if (!(std::abs(step) <= joint.limits.velocity * elapsed + kGuardStep)) {
+      return {Alarm::kStep, i, step};
+    }
+  }
+  return has_stage(machine) ? judge_stage(machine, next, previous, elapsed, has_travel != 0)
+                            : GuardVerdict{};
+}
+
+}  // namespace meridian

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/cycle/cycle_state.hpp"
+#include "meridian/cycle/jog_room.hpp"
+#include "meridian/cycle/on_path.hpp"
+
+/// Jogging: one joint, or the tool, follows the velocity that an operator holds, for as long as
+/// orders keep coming. Its larger parts stay out of line: inlined they made a cycle that cuts 40
+/// instructions longer. RT: cycle. Proof: tests/unit/cycle/jogging_test.cpp,
+/// tests/property/cycle/jog_motion_test.cpp.
+namespace meridian {
+
+/// The first order must come in so long after the verb.
+inline constexpr double kFirstOrder_s = 0.5;
+/// No operator may ask for a longer dead man's time.
+inline constexpr double kLongestDeadMan_s = 0.5;
+
+/// Orders of before this, and of another hand than `request`, are none of this hand's.
+inline void begin_jogging(Cycle& c, std::uint64_t request) noexcept {
+  Jogging& jogging = c.state.jogging;
+  jogging = {};
+  jogging.is_active = true;
+  jogging.hand = request;
+  jogging.order.sample = c.in.jog.sample;
+  jogging.order.dead_man_s = kFirstOrder_s;
+  c.state.motion = MotionKind::kApproach;
+}
+
+/// A hand that was silent for longer than its dead man's time let go.
+inline void judge_silence(Jogging& jogging) noexcept {
+  if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.is_let_go = true;
+}
+
+/// Counts the silence, also that of periods which nobody saw, and takes a newer order of this epoch
+/// where the hand is still there: one that let go is not taken again. The silence is counted from
+/// when the order was said: what a wire delays moves nothing for longer than the dead man's time,
+/// and an order that is older when it comes in is passed over, where it does not let go.
+inline void take_order(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  const JogOrder& order = c.in.jog;
+  jogging.silence += c.dt * (1.0 + c.in.lost_periods);  // c.periods is 1 where nothing moved
+  judge_silence(jogging);
+  const bool is_late = order.age_s > order.dead_man_s && order.velocity != 0;
+  const bool is_mine = order.hand == jogging.hand && order.epoch == c.state.epoch && !is_late;
+  if (is_mine && order.sample > jogging.order.sample && !jogging.is_let_go) {
+    jogging.has_order = true;
+    jogging.order = order;
+    jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
+    jogging.silence = order.age_s;
+    judge_silence(jogging);
+  }
+}
+
+/// Narrows the room to the distance that was asked for.
+inline void keep_distance(Jogging& jogging) noexcept {
+  jogging.distance = jogging.order.distance;
+  if (!(jogging.order.distance > 0)) return;
+  const double from = jogging.axis.at.q;
+  jogging.axis.low = std::max(jogging.axis.low, from - jogging.order.distance);
+  jogging.axis.high = std::min(jogging.axis.high, from + jogging.order.distance);
+}
+
+inline void take_room(Jogging& jogging, const JogRoom& room) noexcept {
+  jogging.axis = room.axis;
+  jogging.fault = room.fault;
+  jogging.is_ready = true;
+  keep_distance(jogging);
+}
+
+/// Goes on with the survey of the tool's way, after which it may move.
+[[gnu::noinline]] inline void survey_way(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  if (jogging.is_ready || jogging.joint < kMaxJoints) return;
+  jogging.survey.go_on(c.machine, jogging.way);
+  if (jogging.survey.is_over()) take_room(jogging, jogging.survey.room(c.machine, jogging.way));
+}
+
+/// What the order in force is for, as Jogging::joint says it.
+[[nodiscard]] inline int joint_of(const JogOrder& order) noexcept {
+  return order.joint + (order.is_tool ? kMaxJoints : 0);
+}
+
+/// Whether the hand is on what the order in force is for, and as far as it says.
+[[nodiscard]] inline bool is_in_hand(const Jogging& jogging) noexcept {
+  return joint_of(jogging.order) == jogging.joint && jogging.order.distance == jogging.distance;
+}
+
+/// Puts the hand on what is asked for, where nothing moves and it may be jogged.
+inline void choose_axis(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  const JogOrder& order = jogging.order;
+  const int joint = joint_of(order);
+  const std::uint32_t referenced = c.drives.referenced_mask;
+  if (is_in_hand(jogging)) return survey_way(c);
+  if (!jogging.axis.is_at_rest()) return;
+  jogging.joint = -1;
+  jogging.is_ready = false;
+  if (!jogging.has_order || jogging.is_let_go || !may_jog(c.machine, joint, referenced)) return;
+  if (!order.is_tool) {
+    const bool is_referenced = (referenced >> static_cast<unsigned>(joint) & 1U) != 0;
+    jogging.joint = joint;
+    return take_room(jogging, jog_room(c.machine, c.state.joints, joint, is_referenced));
+  }
+  const bool has_way = lay_way(c.machine, c.state.joints, order.tool_length_mm,
+                               static_cast<ToolAxis>(order.joint), jogging.way);
+  if (!has_way) return;
+  jogging.joint = joint;
+  jogging.distance = order.distance;
+  jogging.axis = {};
+  jogging.survey = ToolSurvey(c.machine, jogging.way, c.state.joints, order.distance);
+}
+
+/// Takes the hand off; the joints stay where they are.
+inline void end_jogging(Cycle& c) noexcept {
+  c.state.jogging = {};
+  rest(c);
+}
+
+/// The joints are where the axis is. False where there are none.
+[[nodiscard, gnu::noinline]] inline bool put_jogged(Cycle& c) noexcept {
+  const Jogging& jogging = c.state.jogging;
+  c.state.velocity = {};
+  if (!jogging.is_ready) return true;
+  if (jogging.joint < kMaxJoints) {
+    c.state.joints[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.q;
+    c.state.velocity[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.v;
+    return true;
+  }
+  const auto at =
+      joints_on(c.machine, jogging.way, Jet<1>::variable(jogging.axis.at.q), c.state.joints);
+  if (at.status != SolveStatus::kOk) return false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    c.state.joints[i] = value_of(at.q[i]);
+    c.state.velocity[i] = at.q[i].derivative(1) * jogging.axis.at.v;
+  }
+  return true;
+}
+
+enum class JogStep : std::uint8_t {
+  kGoesOn,
+  kOver,     ///< the hand is gone, and the joints rest
+  kNoJoints  ///< the way gave no joints: what the survey saw was not so
+};
+
+/// One cycle of Jogging.
+[[nodiscard, gnu::noinline]] inline JogStep follow_jogging(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  take_order(c);
+  choose_axis(c);
+  const bool is_held = !jogging.is_let_go && is_in_hand(jogging);
+  for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
+    follow(jogging.axis, is_held ? jogging.order.velocity : 0, c.dt);
+  }
+  if (!put_jogged(c)) return JogStep::kNoJoints;
+  if (!jogging.is_let_go || !jogging.axis.is_at_rest()) return JogStep::kGoesOn;
+  end_jogging(c);
+  return JogStep::kOver;
+}
+
+/// Takes the hand off by the operator's word or a fault: the joint brakes, with the limits of a
+/// FaultStop or its own.
+[[gnu::noinline]] inline void brake_jogging(Cycle& c, bool is_fault) noexcept {
+  Jogging& jogging = c.state.jogging;
+  jogging.is_let_go = true;
+  if (jogging.is_ready) brake(jogging.axis, is_fault ? jogging.fault : jogging.axis.rates);
+}
+
+/// One cycle of braking.
+[[nodiscard, gnu::noinline]] inline JogStep follow_braking(Cycle& c) noexcept {
+  Jogging& jogging = c.state.jogging;
+  for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
+    jogging.axis.ramp.advance(jogging.axis.at, c.dt);
+  }
+  if (!put_jogged(c)) return JogStep::kNoJoints;
+  if (!jogging.axis.is_at_rest()) return JogStep::kGoesOn;
+  end_jogging(c);
+  return JogStep::kOver;
+}
+
+}  // namespace meridian

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/cli/options/cl_options.hpp"
+
+#include <iostream>
+
+#include "meridian/units.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/file/range.hpp"
+#include "service/programs/nc/nc_reader.hpp"
+#include "service/text/printable.hpp"
+#include "service/text/printed.hpp"
+#include "service/transport/messages.hpp"
+
+namespace meridian::cli {
+
+void add_cl_file(CLI::App& command, std::string& name) {
+  command
+      .add_option("file", name,
+                  "CL file (APT or CLDATA text) or NC program with tool-centre control; - is "
+                  "standard input")
+      ->required();
+}
+
+std::istream* open_cl_file(const std::string& name, std::ifstream& file) {
+  if (name == "-") return &std::cin;
+  file.open(name, std::ios::binary);
+  return file ? &file : nullptr;
+}
+
+void print_warnings(const std::string& name, const std::vector<cl::ClWarning>& warnings) {
+  for (const cl::ClWarning& warning : warnings) {
+    std::cerr << text::printable(name) << ":" << warning.line
+              << ": warning: " << text::printable(warning.message);
+    if (warning.count > 1) std::cerr << " (" << warning.count << " places, first here)";
+    std::cerr << "\n";
+  }
+}
+
+namespace {
+
+std::vector<std::string> dialect_names() {
+  std::vector<std::string> names;
+  for (const cl::DialectTraits& row : cl::dialects()) {
+    if (!row.name.empty()) names.emplace_back(row.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_cl_file_options(CLI::App& command, ClFileOptions& options, const char* dialect_name) {
+  command
+      .add_option(dialect_name, options.dialect,
+                  "CAM system that wrote the file, where the file does not show it; fanuc, "
+                  "siemens, heidenhain: an NC "
+                  "program of their words")
+      ->check(CLI::IsMember(dialect_names()));
+  command
+      .add_option("--units", options.units, "Unit of the file: mm or inch; wins over its unit word")
+      ->check(CLI::IsMember({"mm", "inch"}));
+  command
+      .add_option("--feed", options.feed_mm_per_min,
+                  "Feed before the first FEDRAT, mm/min, for files that have none")
+      ->check(finite_range(1e-6, 1e6));
+  command
+      .add_option("--allow-unknown", options.allow_unknown,
+                  "Pass this unknown word to the machine as a vendor word; may be repeated")
+      ->type_name("WORD")
+      ->allow_extra_args(false);
+  command.add_flag("--allow-no-end", options.allow_no_end,
+                   "Take a file without FINI, END or END-OF-PATH as whole");
+  command
+      .add_option("--arc-sense", options.arc_sense,
+                  "Which way CIRCLE turns about its vector: form (by the number of its arguments), "
+                  "right, left")
+      ->check(CLI::IsMember({"form", "right", "left"}))
+      ->capture_default_str();
+  command
+      .add_option("--from-line", options.first_line,
+                  "Begin with the first block from this line on; tool, spindle and coolant are set "
+                  "and the place before it is approached first")
+      ->check(finite_positive());
+}
+
+void add_join_options(CLI::App& command, JoinOptions& options) {
+  command
+      .add_option("--transition", options.transition,
+                  "Instead of the machine file's: smooth (on through blocks) or exact_stop")
+      ->check(CLI::IsMember({"smooth", "exact_stop"}));
+  command
+      .add_option("--tip-tolerance-mm", options.tip_tolerance_mm,
+                  "Of smoothing, instead of the machine file's")
+      ->check(finite_range(config::kTipTolerance_mm.low, config::kTipTolerance_mm.high));
+  command
+      .add_option("--axis-tolerance-deg", options.axis_tolerance_deg,
+                  "Of smoothing, instead of the machine file's")
+      ->check(finite_range(config::kAxisTolerance_deg.low, config::kAxisTolerance_deg.high));
+}
+
+SmoothSettings settings_of(const JoinOptions& join) {
+  SmoothSettings settings;
+  if (join.transition == "smooth") settings.transition = Transition::kSmooth;
+  if (join.transition == "exact_stop") settings.transition = Transition::kExactStop;
+  settings.tip_tolerance_mm = join.tip_tolerance_mm;
+  settings.axis_tolerance_rad = units::rad_from_deg(join.axis_tolerance_deg);
+  return settings;
+}
+
+std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
+  std::string text;
+  const auto add = [&text](const char* name, const std::string& value) {
+    if (!value.empty()) text::append(text, "%s%s %s", text.empty() ? "" : " ", name, value.c_str());
+  };
+  const auto number = [](double value) {
+    std::string digits;
+    if (value > 0) text::append(digits, "%.9g", value);
+    return digits;
+  };
+  add("--dialect", file.dialect);
+  add("--units", file.units);
+  add("--feed", number(file.feed_mm_per_min.value_or(0)));
+  for (const std::string& word : file.allow_unknown) add("--allow-unknown", word);
+  if (file.allow_no_end) text += text.empty() ? "--allow-no-end" : " --allow-no-end";
+  add("--arc-sense", file.arc_sense == "form" ? "" : file.arc_sense);
+  add("--transition", join.transition);
+  add("--tip-tolerance-mm", number(join.tip_tolerance_mm));
+  add("--axis-tolerance-deg", number(join.axis_tolerance_deg));
+  return text.size() <= dds::kMostOptions ? text : "(more than a session takes)";
+}
+
+void add_frame_option(CLI::App& command, ClFileOptions& options) {
+  command.add_option("--frame", options.frame,
+                     "Workpiece frame x,y,z[,a,b,c] in mm and deg (Rz(c) Ry(b) Rx(a)): poses are "
+                     "put out in the frame around it");
+}
+
+cl::ClReaderOptions reader_options(const ClFileOptions& options) {
+  cl::ClReaderOptions out;
+  out.nc = nc::reader_of_programs();
+  if (!options.dialect.empty()) out.dialect = cl::find_dialect(options.dialect);
+  if (options.units == "mm") out.unit = cl::LengthUnit::kMillimetre;
+  if (options.units == "inch") out.unit = cl::LengthUnit::kInch;
+  if (options.arc_sense == "right") out.arc_sense = cl::ArcSense::kRight;
+  if (options.arc_sense == "left") out.arc_sense = cl::ArcSense::kLeft;
+  if (options.feed_mm_per_min) {
+    out.default_feed_mm_per_s = units::per_s_from_per_min(*options.feed_mm_per_min);
+  }
+  out.allowed_words = options.allow_unknown;
+  out.allow_no_end = options.allow_no_end;
+  out.first_line = options.first_line;
+  if (!options.frame.empty()) {
+    const config::Frame frame = config::parse_frame(options.frame);
+    out.frame = cl::Frame{frame.rotation, frame.origin_mm};
+  }
+  return out;
+}
+
+}  // namespace meridian::cli

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/cli/options/move_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "meridian/cycle/state_table.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/units.hpp"
+#include "service/analysis/simulate/move_forecast.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/told_machine.hpp"
+#include "service/machine/file/positions_file.hpp"
+#include "service/protocol/frame_sum.hpp"
+#include "service/protocol/move_run.hpp"
+
+namespace meridian::cli {
+namespace {
+
+[[nodiscard]] int fail_move(const std::string& what, int exit_code) {
+  std::fprintf(stderr, "meridian: %s\n", what.c_str());
+  return exit_code;
+}
+
+[[nodiscard]] int refuse_move(const std::string& why) {
+  std::fprintf(stderr, "refused: %s\n", why.c_str());
+  return kMachineRefused;
+}
+
+void print_pose(const char* what, const ToolPose& pose) {
+  std::printf("%s %.4f %.4f %.4f mm, axis %.6f %.6f %.6f\n", what, pose.tip.x(), pose.tip.y(),
+              pose.tip.z(), pose.axis.x(), pose.axis.y(), pose.axis.z());
+}
+
+void print_joints(const MachineModel& model, const JointVector& joints) {
+  for (int i = 0; i < model.joint_count; ++i) {
+    const JointSpec& joint = model.joints[i];
+    std::printf("    %s %.4f %s\n", joint.name.c_str(),
+                joint.is_rotary ? units::deg_from_rad(joints[i]) : joints[i],
+                joint.is_rotary ? "deg" : "mm");
+  }
+}
+
+/// The joints of the position called `name`.
+[[nodiscard]] Expected<JointVector, std::string> position_of(const std::string& name,
+                                                             const dds::MachineInfo& machine,
+                                                             const MachineModel& model) {
+  std::string names;
+  for (const config::NamedPosition& position :
+       config::parse_positions(machine.machine_file, "machine file of the service", model)) {
+    if (position.name == name) return position.joints;
+    names += " " + position.name;
+  }
+  return tl::make_unexpected("machine " + machine.name + " has no position " + name +
+                             "; there are" + names);
+}
+
+/// What the options ask for of a machine that stands at `now`, or what is wrong with them.
+[[nodiscard]] Expected<stream::StraightMove, std::string> move_of(const MoveOptions& options,
+                                                                  const dds::MachineInfo& machine,
+                                                                  const MachineModel& model,
+                                                                  const JointVector& now) {
+  const ToolPose from = forward(model, model.tool_length_mm, now);
+  if (!options.tip.empty()) {
+    const auto to = pose_of(options.tip, from);
+    if (to) return stream::StraightMove{from, *to, *options.feed, {}};
+    return tl::make_unexpected("--tip '" + options.tip + "': say x,y,z or x,y,z,i,j,k");
+  }
+  const auto joints = options.joints.empty() ? position_of(options.position, machine, model)
+                                             : joints_of(options.joints, model, now);
+  if (!joints) return tl::make_unexpected(joints.error());
+  const ToolPose end = forward(model, model.tool_length_mm, *joints);
+  return stream::StraightMove{end, end, *options.feed, *joints};
+}
+
+[[nodiscard]] int exit_code_of(const stream::MoveResult& result) {
+  switch (result.end) {
+    case stream::MoveEnd::kThere:
+      return kFine;
+    case stream::MoveEnd::kRefused:
+      return refuse_move(result.text);
+    case stream::MoveEnd::kStopped:
+      return fail_move("the move was stopped on its way: " + result.text, kVerdictNo);
+    case stream::MoveEnd::kNoAnswer:
+      return fail_move("the machine does not answer: look what it does", kNoPeer);
+  }
+  return kVerdictNo;
+}
+
+}  // namespace
+
+std::vector<const CLI::Option*> add_move_options(CLI::App& command, MoveOptions& options) {
+  return {command.add_option("--tip", options.tip,
+                             "move: where the tip goes straight: x,y,z[,i,j,k] in the work frame "
+                             "in force, mm; without i,j,k the tool axis stays"),
+          command.add_option("--joints", options.joints,
+                             "move: where joints go straight, all at once: NAME=VALUE with commas "
+                             "between, mm and deg; the others stay"),
+          command.add_option("--to", options.position,
+                             "move: the position of the machine file where the joints go, or home"),
+          command
+              .add_option("--feed", options.feed,
+                          "move: feed of the tip, mm/min; of joints along their way, 1 rad as 50 "
+                          "mm")
+              ->check(finite_range(1e-3, 1e6))};
+}
+
+std::optional<ToolPose> pose_of(const std::string& text, const ToolPose& now) {
+  std::array<double, 6> value{0, 0, 0, now.axis.x(), now.axis.y(), now.axis.z()};
+  std::size_t count = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (count < value.size()) {
+    const auto [rest, error] = std::from_chars(at, end, value[count]);
+    if (error != std::errc() || !std::isfinite(value[count])) return std::nullopt;
+    ++count;
+    at = rest;
+    if (at == end) break;
+    if (*at++ != ',') return std::nullopt;
+  }
+  if (at != end || (count != 3 && count != value.size())) return std::nullopt;
+  return ToolPose{{value[0], value[1], value[2]}, {value[3], value[4], value[5]}};
+}
+
+Expected<JointVector, std::string> joints_of(const std::string& text, const MachineModel& model,
+                                             const JointVector& now) {
+  JointVector joints = now;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    const std::size_t sign = word.find('=');
+    const std::string name = word.substr(0, sign);
+    const auto begin = model.joints.begin(), end = begin + model.joint_count;
+    const auto joint =
+        std::find_if(begin, end, [&name](const JointSpec& known) { return known.name == name; });
+    double value = 0;
+    const char* const last = word.data() + word.size();
+    const char* const first = sign == std::string::npos ? last : word.data() + sign + 1;
+    const auto [rest, error] = std::from_chars(first, last, value);
+    if (joint == end || error != std::errc() || rest != last || !std::isfinite(value)) {
+      return tl::make_unexpected("'" + word + "': say a joint of machine " + model.name +
+                                 " and its value, as " + begin->name + "=12.5");
+    }
+    joints[static_cast<std::size_t>(joint - begin)] =
+        joint->is_rotary ? units::rad_from_deg(value) : value;
+  }
+  return joints;
+}
+
+int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
+             dds::Participant& participant, stream::OperatorLink& link,
+             const std::string& operator_name, const PeerOptions& peer) {
+  const int targets = !options.tip.empty() + !options.joints.empty() + !options.position.empty();
+  if (targets != 1 || !options.feed) {
+    return fail_move("move needs one of --tip, --joints and --to, and --feed", kUsage);
+  }
+  auto model = told_machine(machine);
+  if (!model) return fail_move("the machine does not tell its file", kVerdictNo);
+  if (!link.wait_for_status(peer.timeout())) {
+    return fail_move("machine " + machine.name + " does not answer", kNoPeer);
+  }
+  const dds::Status status = *link.status();
+  if (status.state != State::kReady || status.session != 0) {
+    return refuse_move("the machine is " + std::string(name_of(status.state)) +
+                       "; a move begins in Ready, with no program");
+  }
+  model->tool_length_mm = status.tool_length_mm;
+  const auto move = move_of(options, machine, *model, status.joints);
+  if (!move) return fail_move(move.error(), kUsage);
+  const simulate::MoveForecast forecast = simulate::forecast(*move, status.joints, *model);
+  if (!forecast.refusal.empty()) return refuse_move(forecast.refusal);
+  print_pose("from", forward(*model, status.tool_length_mm, status.joints));
+  print_pose("to  ", move->to);
+  if (move->joints) print_joints(*model, *move->joints);
+  std::printf("%.2f s at 100 %%\n", forecast.time_s);
+  std::fflush(stdout);
+  watch_for_stop();
+  const stream::MoveOrder order{
+      *move,       status.joints, status.tool_length_mm, operator_name, stream::frame_sum(*model),
+      status.tools};
+  const auto result = stream::run_move(participant, link, order, stop_flag(), peer.timeout());
+  const int exit_code = exit_code_of(result);
+  if (exit_code == kFine) std::printf("there\n");
+  return exit_code;
+}
+
+}  // namespace meridian::cli

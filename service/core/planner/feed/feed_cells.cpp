@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/feed_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "service/core/planner/feed/path_choice.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
+constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
+constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
+/// Of a joint at the begin: rounding, 1e-10 rad of the free joint 8 µrad from the pole, and of
+/// slides that make up for it so much of their way to its axis.
+constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
+constexpr double kNoCell_mm = 1e-6;      // of u: an end that is not worth a cell
+constexpr double kLeastSplit_mm = 5e-4;  // of u: below, motion would creep
+constexpr double kMostCells = 2;         // of time, that one takes where it is slowest
+constexpr int kRounds = 16;              // of halving: lengths of a ratio of 60 000
+constexpr double kNone = 1e-12;          // derivative that counts as none
+
+double square(double x) noexcept { return x * x; }
+
+double speed_square(const Vec3<Jet<3>>& x) noexcept {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) sum += square(x[i].derivative(1));
+  return sum;
+}
+
+/// Share of jerk left beside what rounding of the axis near the pole shows as in third differences.
+double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
+                         const Pose<double>& pose) noexcept {
+  if (free_joint(model) < 0) return 1;
+  const double distance = pole_distance(model, pose.axis);
+  const double noise = distance > 0 ? kAxisNoise / distance : 0;
+  const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
+  double share = 1;
+  for (int i = 0; i < limits.count; ++i) {
+    share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
+  }
+  return std::max(share, FeedCell::kLeastTight);
+}
+
+/// The range of the samples, and an eighth of it either side for what lies between.
+CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexcept {
+  constexpr double kBetween = 0.125;
+  CellBound out;
+  const auto bound = [&](LimitedVector CellSample::*d, CellBound::Sides& sides) {
+    for (std::size_t i = 0; i < kMaxLimited; ++i) {
+      double low = (at[0].*d)[i], high = low;
+      for (const CellSample& sample : at) {
+        low = std::min(low, (sample.*d)[i]);
+        high = std::max(high, (sample.*d)[i]);
+      }
+      const double beyond = kBetween * (high - low);
+      const auto n = static_cast<Eigen::Index>(i);
+      sides.up[n] = std::max(0.0, high + beyond);
+      sides.down[n] = std::max(0.0, beyond - low);
+    }
+  };
+  bound(&CellSample::d1, out.d1);
+  bound(&CellSample::d2, out.d2);
+  bound(&CellSample::d3, out.d3);
+  out.rate = out.d1.up.max(out.d1.down);
+  return out;
+}
+
+}  // namespace
+
+CellGrid::CellGrid(const MachineModel& model, const FeedLimits& limits,
+                   const CellSettings& settings)
+    : model_(model), limits_(limits), settings_(settings), cells_(kCells) {
+  drafts_.reserve(kDrafts);
+  finer_.reserve(kDrafts);
+}
+
+void CellGrid::begin(const JointVector& joints, double tool_length_mm) noexcept {
+  waiting_count_ = 0;
+  drafts_.clear();
+  next_span_ = 0;
+  first_ = last_ = 0;
+  last_h_ = 0;
+  joints_ = joints;
+  tool_length_mm_ = tool_length_mm;
+  is_finished_ = false;
+  fault_ = {};
+}
+
+PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& reference,
+                                CellSample& out) const noexcept {
+  const auto pose = pose_on(span.band.c, Jet<3>::variable(x));
+  const auto at = span.is_free_driven
+                      ? solve_driven(model_, tool_length_mm_, pose,
+                                     quintic_at(span.free, Jet<3>::variable(x) / span.band.length),
+                                     span.branch, reference)
+                      : solve(model_, tool_length_mm_, pose, span.branch, reference);
+  if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
+  const double tip_speed = speed_square(pose.tip);
+  const double share = square(settings_.feed_share);
+  double b = std::min(1 / kNone, share * square(span.band.u_speed_mm_per_s));
+  b = std::min(b, share * square(span.band.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
+  if (std::isfinite(span.band.turn_rad_per_s)) {
+    const double turn_speed =
+        speed_square(span.is_free_driven ? forward(model_, tool_length_mm_, at.q).axis : pose.axis);
+    b = std::min(b, share * square(span.band.turn_rad_per_s) / std::max(turn_speed, square(kNone)));
+  }
+  const auto take = [&](int i, const Jet<3>& q) {
+    const double d1 = out.d1[i] = q.derivative(1);
+    const double d2 = out.d2[i] = q.derivative(2);
+    const double d3 = out.d3[i] = q.derivative(3);
+    b = std::min(b, square(limits_.velocity[i] / std::max(std::abs(d1), kNone)));
+    b = std::min(b, limits_.acceleration[i] / std::max(std::abs(d2), kNone));
+    // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
+    b = std::min(b, 4 * std::pow(limits_.jerk[i] / std::max(std::abs(d3), kNone), 2.0 / 3.0));
+  };
+  for (int i = 0; i < model_.joint_count; ++i) {
+    reference[i] = value_of(at.q[i]);
+    take(i, at.q[i]);
+  }
+  if (has_stage(model_)) {
+    const Limited<Jet<3>> all = limited_of(model_, at.q);
+    for (int i = model_.joint_count; i < limits_.count; ++i) take(i, all[i]);
+  }
+  if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
+  out.most_b = b;
+  return {};
+}
+
+double CellGrid::time_per_u(const JointSpan& span, double x) const noexcept {
+  JointVector reference = joints_;
+  CellSample at;
+  if (take_sample(span, x, reference, at).kind != PathFault::Kind::kNone) return 0;
+  double slowest = 1 / std::sqrt(at.most_b);
+  for (int i = 0; i < limits_.count; ++i) {
+    slowest = std::max({slowest, std::abs(at.d1[i]) / limits_.velocity[i],
+                        kCurvatureShare * std::sqrt(std::abs(at.d2[i]) / limits_.acceleration[i]),
+                        kCurvatureShare * std::cbrt(std::abs(at.d3[i]) / limits_.jerk[i])});
+  }
+  return slowest;
+}
+
+void CellGrid::draft_cells(const JointSpan& span) noexcept {
+  constexpr int kProbes = 4;
+  double time = 0;
+  for (int k = 0; k < kProbes; ++k)
+    time += time_per_u(span, span.band.length * (k + 0.5) / kProbes);
+  time *= span.band.length / kProbes;
+  const double wanted = std::ceil(std::min(time / settings_.cell_s, 1.0 * kMostPerSpan));
+  const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
+  const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMostPerSpan));
+  const double h = span.band.length / cells;
+  for (int k = 0; k < cells; ++k) {
+    if (model_.family == MachineFamily::kRobot) {
+      draft_graded(span, k * h, h);
+    } else {
+      drafts_.push_back({waiting_count_ - 1, k * h, h});
+    }
+  }
+}
+
+void CellGrid::draft_graded(const JointSpan& span, double x, double h) noexcept {
+  const double slowest =
+      std::max({time_per_u(span, x), time_per_u(span, x + 0.5 * h), time_per_u(span, x + h)});
+  const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMostPerSpan;
+  if (slowest * h > kMostCells * settings_.cell_s && h > kLeastSplit_mm && has_room) {
+    draft_graded(span, x, 0.5 * h);
+    draft_graded(span, x + 0.5 * h, 0.5 * h);
+  } else {
+    drafts_.push_back({waiting_count_ - 1, x, h});
+  }
+}
+
+void CellGrid::halve(double left, double ratio, int rounds) noexcept {
+  for (int round = 0; round < rounds; ++round) {
+    finer_.clear();
+    bool is_changed = false;
+    for (std::size_t n = 0; n < drafts_.size(); ++n) {
+      const Draft& draft = drafts_[n];
+      const double before = n > 0 ? drafts_[n - 1].h : left;
+      const double behind = n + 1 < drafts_.size() ? drafts_[n + 1].h : draft.h;
+      const bool is_long = draft.h > ratio * before || draft.h > ratio * behind;
+      const std::size_t needed = finer_.size() + 2 + drafts_.size() - n;
+      if (!is_long || needed > kDrafts) {
+        finer_.push_back(draft);
+        continue;
+      }
+      finer_.push_back({draft.waiting, draft.x, 0.5 * draft.h});
+      finer_.push_back({draft.waiting, draft.x + 0.5 * draft.h, 0.5 * draft.h});
+      is_changed = true;
+    }
+    drafts_.swap(finer_);
+    if (!is_changed) return;
+  }
+}
+
+PathFault CellGrid::push(const JointSpan& span) noexcept {
+  if (fault_.kind != PathFault::Kind::kNone) return fault_;
+  if (!(span.band.length > 0)) return {};
+  waiting_[static_cast<std::size_t>(waiting_count_++)] = span;
+  draft_cells(span);
+  halve(last_ > 0 ? last_h_ : std::numeric_limits<double>::infinity(), kRatio, kRounds);
+  return make_cells();
+}
+
+PathFault CellGrid::finish() noexcept {
+  if (fault_.kind != PathFault::Kind::kNone) return fault_;
+  is_finished_ = true;
+  // A short path: cells enough for a motion to be shaped.
+  while (last_ == 0 && !drafts_.empty() && drafts_.size() < kLeast) {
+    halve(std::numeric_limits<double>::infinity(), 0, 1);
+  }
+  return make_cells();
+}
+
+void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
+                      std::int64_t least) noexcept {
+  const auto begins_before = [&](const FeedCell& cell) {
+    return cell.span < number || (cell.span == number && cell.x < x - kNoCell_mm);
+  };
+  fault_ = {};
+  is_finished_ = true;
+  drafts_.clear();
+  waiting_count_ = 0;
+  const std::int64_t kept = std::max(first_, least);
+  while (last_ > kept && !begins_before((*this)[last_ - 1])) --last_;
+  double begin = 0;  // of the cell that ends at x
+  if (last_ > first_) {
+    const FeedCell& cell = (*this)[last_ - 1];
+    const double end = cell.x + cell.h;
+    if (cell.span == number && end > x + kNoCell_mm) {
+      if (last_ == kept) return;
+      begin = cell.x;
+      --last_;
+    } else if (cell.span == number) {
+      begin = end;
+    } else if (cell.span + 1 != number) {
+      return;
+    }
+  }
+  if (x - begin <= kNoCell_mm) return;
+  // On a sliver of a cell the path would end from all but a rest, and a plan swings back there.
+  if (last_ > kept) {
+    const FeedCell& before = (*this)[last_ - 1];
+    if (before.span == number && x - begin < before.h / kRatio) {
+      begin = before.x;
+      --last_;
+    }
+  }
+  waiting_[0] = span;
+  waiting_count_ = 1;
+  next_span_ = number;
+  drafts_.push_back({0, begin, x - begin});
+  if (make_cells().kind == PathFault::Kind::kNone) return;
+  fault_ = {};  // it ends a cell earlier
+  drafts_.clear();
+}
+
+/// Beside a singular place of a robot joints turn sharply: into halves, as long as there is room.
+bool CellGrid::split(std::size_t draft) noexcept {
+  if (model_.family != MachineFamily::kRobot || drafts_.size() == drafts_.capacity() ||
+      drafts_[draft].h < kLeastSplit_mm) {
+    return false;
+  }
+  Draft half = drafts_[draft];
+  half.h = drafts_[draft].h *= 0.5;
+  half.x += half.h;
+  drafts_.insert(drafts_.begin() + static_cast<std::ptrdiff_t>(draft) + 1, half);
+  return true;
+}
+
+PathFault CellGrid::make_cells() noexcept {
+  std::size_t used = 0;
+  while (used < drafts_.size() && last_ - first_ < kCells) {
+    const int behind = waiting_count_ - 1 - drafts_[used].waiting;
+    const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kLeast;
+    if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
+    fault_ = make_cell(drafts_[used]);
+    if (fault_.kind == PathFault::Kind::kJump && split(used)) {
+      fault_ = {};
+      continue;
+    }
+    if (fault_.kind != PathFault::Kind::kNone) {
+      faulty_span_ = next_span_ + static_cast<std::uint64_t>(drafts_[used].waiting);
+      break;
+    }
+    ++used;
+  }
+  if (used == 0) return fault_;
+  drafts_.erase(drafts_.begin(), drafts_.begin() + static_cast<std::ptrdiff_t>(used));
+  const int gone = drafts_.empty() ? waiting_count_ : drafts_.front().waiting;
+  for (int n = gone; n < waiting_count_; ++n) waiting_[n - gone] = waiting_[n];
+  for (Draft& draft : drafts_) draft.waiting -= gone;
+  waiting_count_ -= gone;
+  next_span_ += static_cast<std::uint64_t>(gone);
+  return fault_;
+}
+
+PathFault CellGrid::make_cell(const Draft& draft) noexcept {
+  const JointSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
+  FeedCell& cell = (*this)[last_];
+  cell.span = next_span_ + static_cast<std::uint64_t>(draft.waiting);
+  cell.x = draft.x;
+  cell.h = draft.h;
+  cell.most_b = std::numeric_limits<double>::infinity();
+  JointVector reference = joints_;
+  LimitedVector values{};  // at the sample before
+  for (int k = 0; k <= FeedCell::kSteps; ++k) {
+    CellSample& at = cell.at[static_cast<std::size_t>(k)];
+    const double x = draft.x + draft.h * k / FeedCell::kSteps;
+    faulty_x_ = x;
+    const JointVector before = reference;
+    if (const auto fault = take_sample(span, x, reference, at);
+        fault.kind != PathFault::Kind::kNone) {
+      return fault;
+    }
+    cell.most_b = std::min(cell.most_b, at.most_b);
+    if (const int joint = first_joint_outside_travel(model_, reference, kTravelMargin);
+        joint >= 0) {
+      return {PathFault::Kind::kTravel, joint, limited_value(model_, reference, joint)};
+    }
+    const LimitedVector here = limited_of(model_, reference);
+    if (k > 0) {
+      const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
+      const double step = draft.h / FeedCell::kSteps;
+      PathFault fault = judge_turns(model_, values, last.d1, here, at.d1, step);
+      if (!is_fault(fault)) {
+        fault = check_joins(model_, {values, last.d1, last.d2, last.d3},
+                            {here, at.d1, at.d2, at.d3}, step);
+      }
+      if (is_fault(fault)) return fault;
+    }
+    values = here;
+    const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here
+    for (int i = 0; i < model_.joint_count; ++i) {
+      const double jump = reference[i] - before[i];
+      const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
+      if (is_begin && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
+      if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
+        return {PathFault::Kind::kJump, i, jump};
+      }
+    }
+  }
+  joints_ = reference;
+  cell.bound = bound_of(cell.at);
+  cell.tight = 1;
+  for (const double x : {draft.x, draft.x + draft.h}) {
+    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.band.c, x)));
+  }
+  cell.made_b = cell.most_b;
+  cell.made_tight = cell.tight;
+  last_h_ = cell.h;
+  ++last_;
+  return {};
+}
+
+double CellGrid::most_b_at(std::int64_t cell) const noexcept {
+  double b = std::numeric_limits<double>::infinity();
+  if (cell > first_) b = (*this)[cell - 1].most_b;
+  if (cell < last_) b = std::min(b, (*this)[cell].most_b);
+  return b;
+}
+
+}  // namespace meridian

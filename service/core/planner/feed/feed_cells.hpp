@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/core/planner/feed/feed_limits.hpp"
+#include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/feed/joint_span.hpp"
+
+/// The grid of the feed planner: short cells of the path with the joints' derivatives by the path
+/// parameter u. Cell boundaries lie on every end of a span, so that derivatives are smooth inside a
+/// cell. Units: mm, rad, s. Source: docs/motion.md, section 8.
+namespace meridian {
+
+/// Derivatives of joints and drives by u at one place, and the largest u̇² that feed, velocity, and
+/// the curvature terms of acceleration and jerk allow there.
+struct CellSample {
+  LimitedVector d1{}, d2{}, d3{};
+  double most_b = 0;
+};
+
+/// Bounds of the derivatives in a cell: that much above zero (`up`) and below (`down`), both >= 0.
+struct CellBound {
+  using Values = Eigen::Array<double, 8, 1>;  ///< as LimitedVector, whole registers of them
+  struct Sides {
+    Values up = Values::Zero(), down = Values::Zero();
+  };
+  Sides d1, d2, d3;
+  Values rate = Values::Zero();  ///< the larger side of d1
+};
+static_assert(CellBound::Values::SizeAtCompileTime >= kMaxLimited);
+
+struct FeedCell {
+  static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included
+  static constexpr double kLeastTight = 0.2;
+
+  std::uint64_t span = 0;  ///< counts spans from 0 since begin()
+  double x = 0;            ///< where it begins in its span
+  double h = 0;            ///< length
+  double most_b = 0;       ///< least of the samples', lowered where a plan overshot the feed
+  double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot,
+                           ///< but not below kLeastTight
+  double made_b = 0, made_tight = 1;  ///< both before any was lowered
+  CellBound bound;
+  std::array<CellSample, kSteps + 1> at;
+};
+
+/// How spans become cells.
+struct CellSettings {
+  double cell_s = 0.004;       ///< time that a cell takes at full speed, about
+  double feed_share = 0.9985;  ///< of the programmed feed that is planned
+};
+
+/// Makes cells of spans as they come, in a fixed store. What a cell is depends on the spans up to
+/// kAhead behind its own and on nothing else. Cells are named by their number since begin().
+class CellGrid {
+ public:
+  static constexpr int kCells = 1024;  ///< kept at a time
+  static constexpr int kAhead = 4;     ///< spans that bound the cells of the one before them
+  static constexpr int kLeast = 40;    ///< cells of a path, however short
+
+  CellGrid(const MachineModel& model, const FeedLimits& limits, const CellSettings& settings);
+
+  /// Starts a path from `joints`.
+  void begin(const JointVector& joints, double tool_length_mm) noexcept;
+
+  /// Whether another span may be pushed.
+  [[nodiscard]] bool has_room() const noexcept {
+    return waiting_count_ < kWaiting && static_cast<int>(drafts_.size()) < kDrafts / 2;
+  }
+
+  /// Takes the next span; a fault ends the path, cells before it stay valid.
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+
+  /// No more spans: makes the last cells, as far as there is room for them.
+  [[nodiscard]] PathFault finish() noexcept;
+
+  /// Behind a fault, or where it is not waited for more: the path ends at `x` of `span`, the
+  /// `number`th, whose cell there is shortened. Cells before `least` stand.
+  void end_at(const JointSpan& span, std::uint64_t number, double x, std::int64_t least) noexcept;
+
+  /// Makes the cells for which there was no room before drop_before().
+  [[nodiscard]] PathFault make_cells() noexcept;
+
+  /// Whether last() is the end of the path.
+  [[nodiscard]] bool is_complete() const noexcept { return is_finished_ && drafts_.empty(); }
+
+  /// Cells exist from first() to last() - 1.
+  [[nodiscard]] std::int64_t first() const noexcept { return first_; }
+  [[nodiscard]] std::int64_t last() const noexcept { return last_; }
+  /// What plans have lowered from `cell` on is forgotten with them.
+  void restore_from(std::int64_t cell) noexcept {
+    for (; cell < last_; ++cell) {
+      FeedCell& here = (*this)[cell];
+      here.most_b = here.made_b;
+      here.tight = here.made_tight;
+    }
+  }
+  /// Forgets the cells before `cell`.
+  void drop_before(std::int64_t cell) noexcept {
+    first_ = std::max(first_, cell < last_ ? cell : last_);
+  }
+
+  /// Why the path ends before its time, the number of the span on which it does, and where on it.
+  [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
+  [[nodiscard]] std::uint64_t faulty_span() const noexcept { return faulty_span_; }
+  [[nodiscard]] double faulty_x() const noexcept { return faulty_x_; }
+
+  [[nodiscard]] const FeedCell& operator[](std::int64_t cell) const noexcept {
+    return cells_[static_cast<std::size_t>(cell % kCells)];
+  }
+  [[nodiscard]] FeedCell& operator[](std::int64_t cell) noexcept {
+    return cells_[static_cast<std::size_t>(cell % kCells)];
+  }
+
+  /// Largest u̇² at the boundary before `cell`: what the cells on both sides allow.
+  [[nodiscard]] double most_b_at(std::int64_t cell) const noexcept;
+
+  /// Joints at the end of the last cell.
+  [[nodiscard]] const JointVector& joints() const noexcept { return joints_; }
+
+ private:
+  static constexpr int kMostPerSpan = 400;
+  static constexpr int kWaiting = kLeast + kAhead + 4;
+  static constexpr int kDrafts = 4096;
+
+  /// A cell to be: a piece of a span that waits.
+  struct Draft {
+    int waiting = 0;  ///< index of its span among those that wait
+    double x = 0, h = 0;
+  };
+
+  [[nodiscard]] PathFault take_sample(const JointSpan& span, double x, JointVector& reference,
+                                      CellSample& out) const noexcept;
+  [[nodiscard]] double time_per_u(const JointSpan& span, double x) const noexcept;
+  void draft_cells(const JointSpan& span) noexcept;
+  /// Beside a singular place of a robot the time per u changes manifold inside of a span: halves
+  /// the cell at `x` as long as it takes too long where it is slowest.
+  void draft_graded(const JointSpan& span, double x, double h) noexcept;
+  /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
+  void halve(double left, double ratio, int rounds) noexcept;
+  [[nodiscard]] bool split(std::size_t draft) noexcept;
+  [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
+
+  const MachineModel& model_;
+  FeedLimits limits_;
+  CellSettings settings_;
+  std::vector<FeedCell> cells_;
+  std::array<JointSpan, kWaiting> waiting_;
+  int waiting_count_ = 0;
+  std::vector<Draft> drafts_, finer_;
+  std::uint64_t next_span_ = 0;  ///< number of waiting_[0]
+  std::int64_t first_ = 0, last_ = 0;
+  double last_h_ = 0;  ///< length of the last cell made
+  JointVector joints_{};
+  double tool_length_mm_ = 0;
+  bool is_finished_ = false;
+  PathFault fault_;
+  std::uint64_t faulty_span_ = 0;
+  double faulty_x_ = 0;
+};
+
+}  // namespace meridian

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/feed_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "service/core/planner/feed/parabola.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr int kSteps = FeedCell::kSteps;
+constexpr double kNoBound = 1e9;
+using Samples = std::array<double, kSteps + 1>;
+
+/// A cubic leaves the parabola through three of its samples by no more than that of its third
+/// difference: 1 / (9 √3), about.
+constexpr double kOfThird = 0.0642;
+
+/// By how much a function may rise above the parabola about sample `k`, by its third differences.
+double rise_above(const Samples& f, int k) noexcept {
+  const auto third = [&f](int n) {
+    return std::abs(f[n + 3] - 3 * f[n + 2] + 3 * f[n + 1] - f[n]);
+  };
+  return kOfThird * std::min(third(std::max(k - 2, 0)), third(std::min(k - 1, kSteps - 3)));
+}
+
+/// Largest |f| of a smooth function from its samples: between them a peak rises to about the top of
+/// the parabola through the three samples around it; beside the first or the last one, through the
+/// three there.
+double peak_of(const Samples& f) noexcept {
+  double most = 0;
+  for (int k = 0; k <= kSteps; ++k) most = std::max(most, std::abs(f[k]));
+  for (int k = 1; k < kSteps; ++k) {
+    const double sign = f[k] < 0 ? -1 : 1;
+    const Parabola about(sign * f[k - 1], sign * f[k], sign * f[k + 1]);
+    const double before = k == 1 ? 2 : 1, behind = k == kSteps - 1 ? 2 : 1;  // half samples
+    const bool has_top = about.bend > 0 && !(-about.slope > before * about.bend) &&
+                         !(about.slope > behind * about.bend);
+    if (has_top) most = std::max(most, about.top() + rise_above(f, k));
+  }
+  return most;
+}
+
+/// Whether the law stands still inside the cell.
+bool comes_to_rest(const CellLaw& law, double second, double h) noexcept {
+  const bool has_least = second > 0 && law.slope < 0 && -law.slope < second * h;
+  return has_least && !(2 * law.b * second > law.slope * law.slope);
+}
+
+/// `b` is u̇² at the samples.
+FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const CellMotion& motion,
+                      const Samples& b) noexcept {
+  const auto& [v, a, j] = motion;
+  FeedUse use;
+  Samples share;
+  for (int k = 0; k <= kSteps; ++k) share[k] = b[k] / cell.at[k].most_b;
+  use.b = peak_of(share);
+  for (int i = 0; i < limits.count; ++i) {
+    Samples velocity, acceleration, jerk;
+    for (int k = 0; k <= kSteps; ++k) {
+      const CellSample& at = cell.at[k];
+      velocity[k] = at.d1[i] * v[k];
+      acceleration[k] =
+          std::abs(at.d1[i] * a[k] + at.d2[i] * b[k]) + limits.slope * std::abs(velocity[k]);
+      jerk[k] = at.d1[i] * j[k] + 3 * at.d2[i] * v[k] * a[k] + at.d3[i] * v[k] * b[k];
+    }
+    use.velocity = std::max(use.velocity, peak_of(velocity) / limits.velocity[i]);
+    use.acceleration = std::max(use.acceleration, peak_of(acceleration) / limits.acceleration[i]);
+    use.jerk = std::max(use.jerk, peak_of(jerk) / limits.jerk[i]);
+  }
+  return use;
+}
+
+}  // namespace
+
+FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& law) noexcept {
+  FeedUse none;
+  none.jerk = kNoBound;
+  const double second = (law.slope_end - law.slope) / cell.h;
+  if (comes_to_rest(law, second, cell.h)) return none;
+  CellMotion motion;
+  Samples b;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double x = cell.h * k / kSteps;
+    b[k] = law.b + x * (law.slope + 0.5 * second * x);
+    if (!(b[k] > 0)) return none;
+    motion.v[k] = std::sqrt(b[k]);
+    motion.a[k] = 0.5 * (law.slope + second * x);
+    motion.j[k] = 0.5 * second * motion.v[k];
+  }
+  return use_of_motion(limits, cell, motion, b);
+}
+
+FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
+                      const CellMotion& motion) noexcept {
+  Samples b;
+  for (int k = 0; k <= kSteps; ++k) b[k] = motion.v[k] * motion.v[k];
+  return use_of_motion(limits, cell, motion, b);
+}
+
+void add_use(const FeedLimits& limits, const CellSample& at, double v, double a, double j,
+             FeedUse& use) noexcept {
+  use.b = std::max(use.b, v * v / at.most_b);
+  for (int i = 0; i < limits.count; ++i) {
+    const double velocity = std::abs(at.d1[i] * v);
+    const double acceleration = std::abs(at.d1[i] * a + at.d2[i] * v * v);
+    const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v);
+    use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
+    use.acceleration = std::max(use.acceleration,
+                                (acceleration + limits.slope * velocity) / limits.acceleration[i]);
+    use.jerk = std::max(use.jerk, jerk / limits.jerk[i]);
+  }
+}
+
+}  // namespace meridian

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/feed_limits.hpp"
+
+#include <algorithm>
+
+namespace meridian {
+
+FeedLimits make_feed_limits(const MachineModel& model, const RateReserve& reserve) noexcept {
+  constexpr double kLargestShare = 0.5;  // of the jerk that the reserve may take
+  FeedLimits out;
+  out.count = limited_count(model);
+  out.slope = reserve.slope;
+  for (int i = 0; i < out.count; ++i) {
+    const JointLimits& limits = limited_spec(model, i).limits;
+    const double wanted =
+        3 * reserve.slope * limits.acceleration + reserve.curvature * limits.velocity;
+    const double share = std::min(1.0, kLargestShare * limits.jerk / std::max(wanted, 1e-300));
+    out.velocity[i] = share * limits.velocity;
+    out.acceleration[i] = share * limits.acceleration;
+    out.jerk[i] = limits.jerk - share * wanted;
+  }
+  return out;
+}
+
+}  // namespace meridian

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/feed_check.hpp"
+#include "service/core/planner/feed/feed_rest.hpp"
+#include "service/core/planner/feed/jerk_step.hpp"
+
+namespace meridian {
+
+/// A stretch of time of a planned feed: s⃛ = j + k ṡ on the span, as a TimePiece has it.
+struct FeedPiece {
+  std::uint64_t span = 0;  ///< counts spans of the path
+  std::int64_t cell = 0;
+  double duration = 0;
+  double s0 = 0, v = 0, a = 0, j = 0, k = 0;
+};
+
+/// Pieces of a window, in order, in a fixed store.
+class FeedPieces {
+ public:
+  static constexpr int kMostParts = 64;  ///< that a cell is cut into
+  /// Of every cell of a window or a crawl as many.
+  static constexpr std::size_t kCapacity =
+      static_cast<std::size_t>(JerkStep::kCells + 2) * kMostParts;
+
+  FeedPieces() { pieces_.reserve(kCapacity); }
+  void clear() noexcept { pieces_.clear(); }
+  [[nodiscard]] const std::vector<FeedPiece>& all() const noexcept { return pieces_; }
+
+  /// ṡ² quadratic in the cell: j = 0, k = b''/2. Cut so that |k| t² <= 1, where the series of the
+  /// law is exact to rounding.
+  void add(const FeedCell& cell, std::int64_t number, const CellLaw& law) noexcept;
+  /// The first or last cell of a motion.
+  void add(const FeedCell& cell, std::int64_t number, const RestCell& rest, bool is_start) noexcept;
+  /// The crawl from cell `first` on, cut at cells and phases.
+  void add(const CellGrid& grid, std::int64_t first, const Crawl& crawl) noexcept;
+
+ private:
+  void add(const FeedPiece& piece) noexcept {
+    if (pieces_.size() < kCapacity) pieces_.push_back(piece);
+  }
+  std::vector<FeedPiece> pieces_;
+};
+
+}  // namespace meridian

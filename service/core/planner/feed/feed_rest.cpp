@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/feed_rest.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "service/core/planner/feed/feed_check.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kCurvatureShare = 0.7;
+constexpr double kRestShare = 0.92;  // of the limits in a first or last cell
+constexpr double kRestStep = 0.7;    // of the ladder
+constexpr int kRestSteps = 120;
+constexpr double kCrawlMargin = 1.02;  // on the duration: limits between samples
+constexpr double kNone = 1e-12;
+
+}  // namespace
+
+double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
+                std::int64_t last) noexcept {
+  double most = std::numeric_limits<double>::infinity();
+  for (std::int64_t cell = first; cell < last; ++cell) {
+    for (int k = 0; k <= FeedCell::kSteps; k += FeedCell::kSteps / 2) {
+      const CellSample& at = grid[cell].at[k];
+      most = std::min(most, at.most_b);
+      for (int i = 0; i < limits.count; ++i) {
+        const double d2 = std::max(std::abs(at.d2[i]), kNone);
+        const double d3 = std::max(std::abs(at.d3[i]), kNone);
+        most = std::min({most, kCurvatureShare * limits.acceleration[i] / d2,
+                         kCurvatureShare * std::pow(limits.jerk[i] / d3, 2.0 / 3.0)});
+      }
+    }
+  }
+  return most;
+}
+
+RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,
+                        double most_b) noexcept {
+  const double h = cell.h;
+  const CellSample& rest = is_start ? cell.at.front() : cell.at.back();
+  // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
+  double jerk = std::pow(0.8 * std::max(most_b, kNone), 1.5) / (36 * h * h);
+  for (int i = 0; i < limits.count; ++i) {
+    jerk = std::min(jerk, kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kNone));
+  }
+  for (int n = 0; n < kRestSteps; ++n) {
+    FeedUse use;
+    for (int k = 0; k <= FeedCell::kSteps; ++k) {
+      const double x = h * k / FeedCell::kSteps;
+      const double t = std::cbrt(6 * x / jerk);
+      const double a = is_start ? jerk * t : -jerk * t;
+      const int sample = is_start ? k : FeedCell::kSteps - k;
+      add_use(limits, cell.at[sample], 0.5 * jerk * t * t, a, jerk, use);
+    }
+    if (use.worst() < kRestShare * cell.tight && use.b < kRestShare) break;
+    jerk *= kRestStep;
+  }
+  const double t = std::cbrt(6 * h / jerk), v = 0.5 * jerk * t * t;
+  return {{v * v, 2 * jerk * t}, t, jerk};
+}
+
+Crawl::Shape Crawl::shape_at(double x) noexcept {
+  constexpr double kJerk = 32;
+  if (x > 0.5) {
+    const Shape mirror = shape_at(1 - x);
+    return {1 - mirror.t, mirror.v, -mirror.a, x < 11.0 / 12 ? -kJerk : kJerk};
+  }
+  if (x < 1.0 / 12) {
+    const double t = std::cbrt(6 * std::max(x, 0.0) / kJerk);
+    return {t, 0.5 * kJerk * t * t, kJerk * t, kJerk};
+  }
+  // Second phase, seen from its end at t = ½, x = ½, where ü = 0 and u̇ = 2: Newton for
+  // ½ - x = 2 r - 16 r³/3 with r = ½ - t.
+  double r = 0.5 * (0.5 - x);
+  for (int n = 0; n < 30; ++n) {
+    const double step = (0.5 - x - 2 * r + kJerk * r * r * r / 6) / (2 - 0.5 * kJerk * r * r);
+    r = std::min(r + step, 0.25);
+    if (std::abs(step) < 1e-17) break;
+  }
+  return {0.5 - r, 2 - 0.5 * kJerk * r * r, kJerk * r, -kJerk};
+}
+
+Crawl crawl_over(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
+                 int cells) noexcept {
+  Crawl crawl{cells, 0, 1e-3};
+  for (int n = 0; n < cells; ++n) crawl.length += grid[first + n].h;
+  double begin = 0;
+  for (int n = 0; n < cells; ++n) {
+    const FeedCell& cell = grid[first + n];
+    for (int k = 0; k <= FeedCell::kSteps; ++k) {
+      const double x = (begin + cell.h * k / FeedCell::kSteps) / crawl.length;
+      const Crawl::Shape shape = Crawl::shape_at(std::min(x, 1.0));
+      const double v = crawl.length * shape.v, a = crawl.length * shape.a;
+      const CellSample& at = cell.at[k];
+      crawl.duration = std::max(crawl.duration, kCrawlMargin * v / std::sqrt(at.most_b));
+      for (const double j : {crawl.length * shape.j, -crawl.length * shape.j}) {
+        for (int i = 0; i < limits.count; ++i) {
+          const double speed = std::abs(at.d1[i] * v) / limits.velocity[i];
+          const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v) /
+                              (cell.tight * limits.jerk[i]);
+          const double accel = std::abs(at.d1[i] * a + at.d2[i] * v * v) / limits.acceleration[i];
+          // accel/T² + filter/T <= 1
+          const double filter = limits.slope * std::abs(at.d1[i] * v) / limits.acceleration[i];
+          const double by_accel = 0.5 * (filter + std::sqrt(filter * filter + 4 * accel));
+          crawl.duration =
+              std::max(crawl.duration, kCrawlMargin * std::max({speed, by_accel, std::cbrt(jerk)}));
+        }
+      }
+    }
+    begin += cell.h;
+  }
+  return crawl;
+}
+
+FeedUse use_of(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
+               const Crawl& crawl) noexcept {
+  const double d = crawl.length, t = crawl.duration;
+  FeedUse use;
+  double begin = 0;
+  for (int n = 0; n < crawl.cells; ++n) {
+    const FeedCell& cell = grid[first + n];
+    // The jerk changes its sign inside cells: either one is taken for the whole of each.
+    for (const double sign : {-1.0, 1.0}) {
+      CellMotion motion;
+      for (std::size_t k = 0; k < motion.v.size(); ++k) {
+        const double x = (begin + cell.h * static_cast<double>(k) / FeedCell::kSteps) / d;
+        const Crawl::Shape shape = Crawl::shape_at(std::min(x, 1.0));
+        motion.v[k] = d * shape.v / t;
+        motion.a[k] = d * shape.a / (t * t);
+        motion.j[k] = sign * d * std::abs(shape.j) / (t * t * t);
+      }
+      const FeedUse here = use_of_motion(limits, cell, motion);
+      use.velocity = std::max(use.velocity, here.velocity);
+      use.acceleration = std::max(use.acceleration, here.acceleration);
+      use.jerk = std::max(use.jerk, here.jerk);
+      use.b = std::max(use.b, here.b);
+    }
+    begin += cell.h;
+  }
+  return use;
+}
+
+Crawl checked(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
+              Crawl crawl) noexcept {
+  const FeedUse use = use_of(limits, grid, first, crawl);
+  // Acceleration is made up of 1/T², and of 1/T for the rate filter.
+  const double slower =
+      std::max({use.velocity, use.acceleration, std::cbrt(use.jerk), std::sqrt(use.b)});
+  if (slower > 1) crawl.duration *= slower;
+  return crawl;
+}
+
+}  // namespace meridian

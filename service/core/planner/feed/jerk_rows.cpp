@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/jerk_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meridian {
+namespace {
+
+constexpr double kNone = 1e-300;
+
+/// What the rate filter adds to an acceleration, (8.6): at b = 0, and per b.
+struct FilterTerm {
+  double fixed = 0, per_b = 0;
+};
+FilterTerm filter_term(const FeedLimits& limits, double d1, double bar) noexcept {
+  const double filter = limits.slope * std::abs(d1), root = std::sqrt(bar);
+  return {0.5 * filter * root, filter / (2 * root)};
+}
+
+}  // namespace
+
+void bound_slope(const FeedLimits& limits, JerkCell& at) noexcept {
+  const CellSample& place = at.cell->at[0];
+  at.most_slope = std::numeric_limits<double>::infinity();
+  for (int j = 0; j < limits.count; ++j) {
+    const double d1 = std::abs(place.d1[j]);
+    const double left = limits.acceleration[j] * at.accel_share -
+                        filter_term(limits, d1, at.bar[0]).fixed +
+                        std::abs(place.d2[j]) * at.most_b[0];
+    const double most = 2 * left / std::max(d1, kNone);
+    if (most >= at.most_slope) continue;
+    at.most_slope = most;
+    at.slope_joint = j;
+  }
+}
+
+void JerkRows::add(const JerkCoefficients& a, double limit) noexcept {
+  rows_[static_cast<std::size_t>(count_++)] = {a, limit};
+}
+
+void JerkRows::add_pair(const JerkCoefficients& value, const JerkCoefficients& rest,
+                        double limit) noexcept {
+  add({value[0] + rest[0], value[1] + rest[1], value[2] + rest[2]}, limit);
+  add({rest[0] - value[0], rest[1] - value[1], rest[2] - value[2]}, limit);
+}
+
+void JerkRows::add_acceleration(const FeedLimits& limits, const JerkCell& at) noexcept {
+  const CellSample& place = at.cell->at[0];
+  for (int j = 0; j < limits.count; ++j) {
+    const double d1 = place.d1[j], d2 = place.d2[j];
+    const FilterTerm filter = filter_term(limits, d1, at.bar[0]);
+    const double limit = limits.acceleration[j] * at.accel_share - filter.fixed;
+    const double most =
+        0.5 * std::abs(d1) * at.most_slope + (std::abs(d2) + filter.per_b) * at.most_b[0];
+    if (most <= limit && j != at.slope_joint) continue;
+    JerkCoefficients value{}, rest{};
+    for (std::size_t t = 0; t < 3; ++t) {
+      value[t] = 0.5 * d1 * at.slope[t] + d2 * at.b[t];
+      rest[t] = filter.per_b * at.b[t];
+    }
+    add_pair(value, rest, limit);
+  }
+}
+
+void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
+  std::array<Place, 3> places;
+  const double h = at.cell->h;
+  for (std::size_t p = 0; p < 3; ++p) {
+    Place& place = places[p];
+    const double x = 0.5 * static_cast<double>(p) * h;
+    for (std::size_t t = 0; t < 3; ++t) {
+      place.bend[t] = (at.end[t] - at.slope[t]) / h;
+      place.slope[t] = at.slope[t] + place.bend[t] * x;
+      place.b[t] = at.b[t] + at.slope[t] * x + 0.5 * place.bend[t] * x * x;
+    }
+    place.most_b = at.most_b[p];
+    place.bar = at.bar[p];
+    place.at = &at.cell->at[p * FeedCell::kSteps / 2];
+  }
+  places[0].most_slope = at.most_slope;
+  places[1].most_slope = std::max(at.most_slope, at.most_end);
+  places[2].most_slope = at.most_end;
+
+  // Largest |b''|, which is the same all over the cell, and by which row.
+  double most_bend = std::numeric_limits<double>::infinity();
+  std::size_t bend_place = 0;
+  int bend_joint = -1;
+  for (std::size_t p = 0; p < 3; ++p) {
+    const Place& place = places[p];
+    const double per_root = 1.5 * at.jerk_share / std::sqrt(place.bar);
+    for (int j = 0; j < limits.count; ++j) {
+      const double most = (limits.jerk[j] * per_root + std::abs(place.at->d3[j]) * place.most_b +
+                           1.5 * std::abs(place.at->d2[j]) * place.most_slope) /
+                          std::max(0.5 * std::abs(place.at->d1[j]), kNone);
+      if (most >= most_bend) continue;
+      most_bend = most;
+      bend_place = p;
+      bend_joint = j;
+    }
+  }
+  for (std::size_t p = 0; p < 3; ++p) {
+    const Place& place = places[p];
+    const double root = std::sqrt(place.bar);
+    for (int j = 0; j < limits.count; ++j) {
+      const double jerk = limits.jerk[j] * at.jerk_share;
+      const double d1 = place.at->d1[j], d2 = place.at->d2[j], d3 = place.at->d3[j];
+      const double limit = 1.5 * jerk / root, per_b = jerk / (2 * place.bar * root);
+      const double most = (std::abs(d3) + per_b) * place.most_b +
+                          1.5 * std::abs(d2) * place.most_slope + 0.5 * std::abs(d1) * most_bend;
+      if (most <= limit && (p != bend_place || j != bend_joint)) continue;
+      JerkCoefficients value{}, rest{};
+      for (std::size_t t = 0; t < 3; ++t) {
+        value[t] = d3 * place.b[t] + 1.5 * d2 * place.slope[t] + 0.5 * d1 * place.bend[t];
+        rest[t] = per_b * place.b[t];
+      }
+      add_pair(value, rest, limit);
+    }
+  }
+}
+
+void JerkRows::find(const FeedLimits& limits, const JerkCell& at) noexcept {
+  count_ = 0;
+  if (!at.is_first) {
+    add_acceleration(limits, at);
+    add(at.b, at.most_b[0]);
+  }
+  add_jerk(limits, at);
+  add(at.middle, at.most_b[1]);
+}
+
+}  // namespace meridian

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/jerk_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meridian {
+namespace {
+
+constexpr double kLeastSlack = 1e-2;
+constexpr double kGapGoal = 1e-4;     // of the time
+constexpr double kPrimalGoal = 1e-7;  // rows are scaled to about 1
+constexpr double kPrimalGood = 1e-5;  // what is accepted when the rounds are over
+constexpr double kToTheWall = 0.995;  // share of the way to the next bound that is gone
+constexpr double kLeastScale = 1e-3;  // of the limit: a row of a joint that hardly moves
+constexpr int kStallRounds = 6;       // the primal residual has to halve in them
+
+}  // namespace
+
+JerkStep::JerkStep(const CellGrid& grid, const FeedLimits& limits) : grid_(grid), limits_(limits) {
+  for (Values* v : {&h_, &left_, &right_, &rise_, &bar_, &c_, &step_, &gradient_, &pull_,
+                    &diagonal_, &first_off_, &second_off_}) {
+    v->resize(kCells + 2);
+  }
+  middle_.resize(kCells);
+  rows_.resize(kCells);
+}
+
+void JerkStep::set_up(const JerkProblem& problem) noexcept {
+  cells_ = problem.cells;
+  for (int i = 0; i < cells_; ++i) h_[i] = grid_[problem.first + i].h;
+  for (int k = 0; k <= cells_; ++k) {
+    const double before = h_[std::max(k - 1, 0)], behind = h_[std::min(k, cells_ - 1)];
+    left_[k] = behind / (before + behind);
+    right_[k] = before / (before + behind);
+    rise_[k] = 2 / (before + behind);
+  }
+  bar_[0] = problem.bar_knots[0];
+  bar_[cells_ + 1] = problem.bar_knots[cells_];
+  for (int i = 0; i < cells_; ++i) bar_[i + 1] = problem.bar_middles[i];
+  set_up_cells(problem);
+  for (int k = 0; k < cells_ + 2; ++k) c_[k] = 0.5;
+  set_ends(problem);
+}
+
+void JerkStep::set_ends(const JerkProblem& problem) noexcept {
+  const int m = cells_;
+  const FeedState& begin = problem.begin;
+  const FeedState& end = problem.end;
+  c_[0] = (begin.b - right_[0] / rise_[0] * begin.slope) / bar_[0];
+  c_[1] = (begin.b + left_[0] / rise_[0] * begin.slope) / bar_[1];
+  c_[m] = (end.b - right_[m] / rise_[m] * end.slope) / bar_[m];
+  c_[m + 1] = (end.b + left_[m] / rise_[m] * end.slope) / bar_[m + 1];
+}
+
+void JerkStep::put_row(int cell, int row, const JerkRow& from) noexcept {
+  const JerkCoefficients& a = from.a;
+  const double a0 = a[0] * bar_[cell], a1 = a[1] * bar_[cell + 1], a2 = a[2] * bar_[cell + 2];
+  const double scale = std::max(
+      {std::abs(a0), std::abs(a1), std::abs(a2), std::abs(from.limit) * kLeastScale, 1e-300});
+  CellRows& rows = rows_[cell];
+  const int pack = row / kLanes, lane = row % kLanes;
+  rows.a0[pack][lane] = a0 / scale;
+  rows.a1[pack][lane] = a1 / scale;
+  rows.a2[pack][lane] = a2 / scale;
+  rows.limit[pack][lane] = from.limit / scale;
+}
+
+/// What is known of a cell beforehand, |b'| at its end left out.
+JerkCell JerkStep::describe(const JerkProblem& problem, int i) const noexcept {
+  JerkCell at;
+  at.cell = &grid_[problem.first + i];
+  at.is_first = i == 0;
+  at.b = {left_[i], right_[i], 0};
+  at.slope = {-rise_[i], rise_[i], 0};
+  at.end = {0, -rise_[i + 1], rise_[i + 1]};
+  for (int t = 0; t < 3; ++t) {
+    at.middle[t] = at.b[t] + (3 * at.slope[t] + at.end[t]) * h_[i] / 8;
+  }
+  at.bar = {problem.bar_knots[i], problem.bar_middles[i], problem.bar_knots[i + 1]};
+  const bool is_last = i + 1 == cells_;
+  const double most_begin = grid_.most_b_at(problem.first + i);
+  at.most_b = {at.is_first ? problem.begin.b : most_begin, std::min(most_begin, at.cell->most_b),
+               is_last ? problem.end.b : grid_.most_b_at(problem.first + i + 1)};
+  at.accel_share = problem.accel_share[i];
+  at.jerk_share = problem.jerk_share[i];
+  if (at.is_first) {
+    at.most_slope = std::abs(problem.begin.slope);
+  } else {
+    bound_slope(limits_, at);
+  }
+  return at;
+}
+
+void JerkStep::set_up_cells(const JerkProblem& problem) noexcept {
+  JerkCell at = describe(problem, 0);
+  places_ = 0;
+  for (int i = 0; i < cells_; ++i) {
+    JerkCell next;
+    if (i + 1 < cells_) next = describe(problem, i + 1);
+    at.most_end = i + 1 < cells_ ? next.most_slope : std::abs(problem.end.slope);
+    found_.find(limits_, at);
+    const int packs = rows_[i].packs = (found_.count() + kLanes - 1) / kLanes;
+    for (int row = 0; row < packs * kLanes; ++row) {
+      put_row(i, row, row < found_.count() ? found_[row] : JerkRow{{}, 1});
+    }
+    places_ += packs * kLanes;
+    for (int t = 0; t < 3; ++t) middle_[i][t] = at.middle[t] * bar_[i + t];
+    at = next;
+  }
+}
+
+void JerkStep::start() noexcept {
+  double time = 0;
+  for (int i = 0; i < cells_; ++i) time += h_[i] / std::sqrt(std::max(middle_of(i, c_), 1e-9));
+  const double centre = time / places_;
+  for (int i = 0; i < cells_; ++i) {
+    CellRows& rows = rows_[i];
+    for (int p = 0; p < rows.packs; ++p) {
+      const Pack value = rows.a0[p] * c_[i] + rows.a1[p] * c_[i + 1] + rows.a2[p] * c_[i + 2];
+      rows.slack[p] = (rows.limit[p] - value).max(kLeastSlack);
+      rows.lambda[p] = centre / rows.slack[p];
+      rows.step_slack[p] = rows.step_lambda[p] = Pack::Zero();
+    }
+  }
+}
+
+bool JerkStep::assemble() noexcept {
+  const auto clear = [this](Values& v) { std::fill(v.begin(), v.begin() + cells_ + 2, 0.0); };
+  for (Values* v : {&gradient_, &pull_, &diagonal_, &first_off_, &second_off_}) clear(*v);
+  time_ = gap_ = primal_ = dual_ = 0;
+  for (int i = 0; i < cells_; ++i) {
+    const double b = middle_of(i, c_);
+    if (!(b > 0)) return false;
+    const double inverse = 1 / b, root = std::sqrt(inverse);
+    const double slope = -0.5 * h_[i] * root * inverse, curvature = -1.5 * slope * inverse;
+    const JerkCoefficients& w = middle_[i];
+    time_ += h_[i] * root;
+    for (int t = 0; t < 3; ++t) gradient_[i + t] -= w[t] * slope;
+
+    CellRows& rows = rows_[i];
+    Pack m00 = Pack::Zero(), m11 = m00, m22 = m00, m01 = m00, m12 = m00, m02 = m00;
+    Pack pull0 = m00, pull1 = m00, pull2 = m00, gap = m00, residual = m00;
+    for (int p = 0; p < rows.packs; ++p) {
+      const Pack &a0 = rows.a0[p], &a1 = rows.a1[p], &a2 = rows.a2[p];
+      const Pack &s = rows.slack[p], &l = rows.lambda[p];
+      const Pack per_slack = 1 / s;
+      const Pack weight = l * per_slack;
+      const Pack w0 = weight * a0, w1 = weight * a1;
+      m00 += w0 * a0;
+      m01 += w0 * a1;
+      m02 += w0 * a2;
+      m11 += w1 * a1;
+      m12 += w1 * a2;
+      m22 += weight * a2 * a2;
+      pull0 += l * a0;
+      pull1 += l * a1;
+      pull2 += l * a2;
+      gap += l * s;
+      const Pack off = a0 * c_[i] + a1 * c_[i + 1] + a2 * c_[i + 2] + s - rows.limit[p];
+      residual = residual.max(off.abs());
+      rows.residual[p] = off;
+      rows.inverse[p] = per_slack;
+    }
+    diagonal_[i] += m00.sum() + curvature * w[0] * w[0];
+    diagonal_[i + 1] += m11.sum() + curvature * w[1] * w[1];
+    diagonal_[i + 2] += m22.sum() + curvature * w[2] * w[2];
+    first_off_[i + 1] += m01.sum() + curvature * w[0] * w[1];
+    first_off_[i + 2] += m12.sum() + curvature * w[1] * w[2];
+    second_off_[i + 2] += m02.sum() + curvature * w[0] * w[2];
+    pull_[i] += pull0.sum();
+    pull_[i + 1] += pull1.sum();
+    pull_[i + 2] += pull2.sum();
+    gap_ += gap.sum();
+    primal_ = std::max(primal_, residual.maxCoeff());
+  }
+  for (int k = 2; k < cells_; ++k) dual_ = std::max(dual_, std::abs(pull_[k] - gradient_[k]));
+  return std::isfinite(gap_) && std::isfinite(primal_);
+}
+
+void JerkStep::factorise() noexcept {
+  // Unknowns 2 .. cells - 1; the four at the ends are given. L is kept in the off-diagonals.
+  for (int k = 2; k < cells_; ++k) {
+    double pivot = diagonal_[k] * (1 + 1e-12) + 1e-14;
+    if (k >= 3) {
+      double off = first_off_[k];
+      if (k >= 4) {
+        off -= second_off_[k] * first_off_[k - 1] * diagonal_[k - 2];
+        pivot -= second_off_[k] * second_off_[k] * diagonal_[k - 2];
+      }
+      off /= diagonal_[k - 1];
+      pivot -= off * off * diagonal_[k - 1];
+      first_off_[k] = off;
+    }
+    diagonal_[k] = pivot;
+    if (k + 2 < cells_) second_off_[k + 2] /= pivot;
+  }
+}
+
+void JerkStep::substitute() noexcept {
+  const int m = cells_;
+  step_[0] = step_[1] = step_[m] = step_[m + 1] = 0;
+  for (int k = 2; k < m; ++k) {
+    if (k >= 3) step_[k] -= first_off_[k] * step_[k - 1];
+    if (k >= 4) step_[k] -= second_off_[k] * step_[k - 2];
+  }
+  for (int k = m - 1; k >= 2; --k) {
+    step_[k] /= diagonal_[k];
+    if (k + 1 < m) step_[k] -= first_off_[k + 1] * step_[k + 1];
+    if (k + 2 < m) step_[k] -= second_off_[k + 2] * step_[k + 2];
+  }
+}
+
+void JerkStep::find_step(double centre, bool is_corrector) noexcept {
+  const double second_order = is_corrector ? 1 : 0;
+  // What slack times multiplier shall become, over the slack.
+  const auto aim = [&](const CellRows& rows, int p) -> Pack {
+    return (centre - second_order * (rows.step_slack[p] * rows.step_lambda[p])) * rows.inverse[p];
+  };
+  std::copy(gradient_.begin(), gradient_.begin() + cells_ + 2, step_.begin());
+  for (int i = 0; i < cells_; ++i) {
+    const CellRows& rows = rows_[i];
+    Pack sum0 = Pack::Zero(), sum1 = sum0, sum2 = sum0;
+    for (int p = 0; p < rows.packs; ++p) {
+      const Pack t = rows.lambda[p] * rows.inverse[p] * rows.residual[p] + aim(rows, p);
+      sum0 += rows.a0[p] * t;
+      sum1 += rows.a1[p] * t;
+      sum2 += rows.a2[p] * t;
+    }
+    step_[i] -= sum0.sum();
+    step_[i + 1] -= sum1.sum();
+    step_[i + 2] -= sum2.sum();
+  }
+  substitute();
+  Pack primal = Pack::Constant(kToTheWall), dual = primal;
+  for (int i = 0; i < cells_; ++i) {
+    CellRows& rows = rows_[i];
+    for (int p = 0; p < rows.packs; ++p) {
+      const Pack &l = rows.lambda[p], &inverse = rows.inverse[p];
+      const Pack ds = -rows.residual[p] - (rows.a0[p] * step_[i] + rows.a1[p] * step_[i + 1] +
+                                           rows.a2[p] * step_[i + 2]);
+      const Pack share = ds * inverse;
+      const Pack dl = aim(rows, p) - l - l * share;
+      rows.step_slack[p] = ds;
+      rows.step_lambda[p] = dl;
+      primal = primal.max(-share);
+      dual = dual.max(-dl / l);
+    }
+  }
+  step_primal_ = kToTheWall / primal.maxCoeff();
+  step_dual_ = kToTheWall / dual.maxCoeff();
+}
+
+double JerkStep::gap_after_step() const noexcept {
+  Pack gap = Pack::Zero();
+  for (int i = 0; i < cells_; ++i) {
+    const CellRows& rows = rows_[i];
+    for (int p = 0; p < rows.packs; ++p) {
+      gap += (rows.lambda[p] + step_dual_ * rows.step_lambda[p]) *
+             (rows.slack[p] + step_primal_ * rows.step_slack[p]);
+    }
+  }
+  return gap.sum();
+}
+
+void JerkStep::take_step() noexcept {
+  for (int i = 0; i < cells_; ++i) {  // b stays positive
+    const double change = middle_of(i, step_);
+    if (change < 0) step_primal_ = std::min(step_primal_, -0.9 * middle_of(i, c_) / change);
+  }
+  for (int k = 0; k < cells_ + 2; ++k) c_[k] += step_primal_ * step_[k];
+  for (int i = 0; i < cells_; ++i) {
+    CellRows& rows = rows_[i];
+    for (int p = 0; p < rows.packs; ++p) {
+      rows.slack[p] += step_primal_ * rows.step_slack[p];
+      rows.lambda[p] += step_dual_ * rows.step_lambda[p];
+    }
+  }
+}
+
+bool JerkStep::solve(const JerkProblem& problem) noexcept {
+  set_up(problem);
+  start();
+  const double rows = places_;
+  std::array<double, kRounds> history{};
+  for (round_ = 0; round_ < kRounds; ++round_) {
+    if (!assemble()) return false;
+    history[static_cast<std::size_t>(round_)] = primal_;
+    const bool is_at_goal =
+        gap_ < kGapGoal * time_ && primal_ < kPrimalGoal && dual_ < kGapGoal * time_;
+    if (is_at_goal) return true;
+    const bool is_stalled =
+        round_ > kStallRounds + 2 && primal_ > 10 * kPrimalGoal &&
+        primal_ > 0.5 * history[static_cast<std::size_t>(round_ - kStallRounds)];
+    if (is_stalled || !(gap_ < 1e6 * time_)) return primal_ < kPrimalGood;
+    factorise();
+    find_step(0, false);
+    const double share = std::min(1.0, gap_after_step() / gap_);
+    find_step(share * share * share * gap_ / rows, true);
+    take_step();
+  }
+  return primal_ < kPrimalGood;
+}
+
+}  // namespace meridian

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/planner/rest_to_rest.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "meridian/geometry/great_circle.hpp"
+#include "meridian/geometry/unit_vector.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/look_ahead/fault_code.hpp"
+#include "service/core/planner/route/router.hpp"
+#include "service/core/planner/route/staging.hpp"
+#include "service/core/planner/route/unwind_choice.hpp"
+
+namespace meridian {
+namespace {
+
+TimeKind barrier_of(BlockKind kind) noexcept {
+  switch (kind) {
+    case BlockKind::kDwell:
+      return TimeKind::kDwell;
+    case BlockKind::kStop:
+      return TimeKind::kStop;
+    case BlockKind::kOptionalStop:
+      return TimeKind::kOptionalStop;
+    case BlockKind::kEnd:
+      return TimeKind::kEnd;
+    case BlockKind::kAuxiliary:
+    case BlockKind::kTool:
+    case BlockKind::kCut:
+    case BlockKind::kRapid:
+      break;
+  }
+  return TimeKind::kAction;
+}
+
+bool is_finite(const ClBlock& block) noexcept {
+  double zero = 0;
+  for (int i = 0; i < 3; ++i) {
+    zero += 0 * block.tip_mm[i] + 0 * block.axis[i];
+    if (block.is_arc) zero += 0 * block.centre_mm[i] + 0 * block.normal[i];
+  }
+  zero += 0 * block.feed + 0 * block.value + 0 * block.sweep_rad;
+  return zero == 0;
+}
+
+}  // namespace
+
+struct RestToRestPlanner::Workspace {
+  Workspace(const MachineModel& m, ToolTable t) : model(m), tools(std::move(t)), router(m) {}
+
+  const MachineModel& model;
+  ToolTable tools;
+  Router router;
+  Staging staging;
+  PlanCursor cursor;                                  ///< end of what is published
+  PlanCursor next;                                    ///< end of what is staged
+  PlanResult result;                                  ///< of what is staged
+  std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
+  bool retracts_first = false;
+  std::optional<JointVector> first_joints;
+  bool is_staged = false;
+  bool is_refused = false;
+  bool needs_ahead = false;  ///< nothing is staged: the foresight waits for blocks
+
+  void refuse(const BlockReject& reject) noexcept {
+    is_refused = true;
+    result = {PlanStatus::kRefused, reject, 0, {}};
+  }
+  void refuse(const ClBlock& block, RejectCode code, int joint, double value) noexcept {
+    refuse({block.sequence, block.line, code, joint, value});
+  }
+
+  /// Stages the whole of `block` behind `cursor`, or refuses it.
+  void stage(const ClBlock& block) noexcept;
+  void stage_motion(ClBlock block) noexcept;
+  void stage_barrier(const ClBlock& block) noexcept;
+  void stage_retraction(const ClBlock& block) noexcept;
+  /// Whether `fault` is one that turning the free joint back may help.
+  [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
+  /// Stages an unwinding from `next`, to a winding that `trial` lets pass, or without one with
+  /// `block` behind it; or tells why that cannot be: `fault` of the block without one.
+  [[nodiscard]] PathFault unwind(const ClBlock& block, const PathFault& fault,
+                                 const WindingTrial* trial) noexcept;
+  /// The last motion staged ends `block`.
+  void mark_end(const ClBlock& block) noexcept {
+    if (staging.path_count == 0) return;
+    PathPiece& last = staging.paths[staging.path_count - 1];
+    last.marks.add({last.length, 0, block.line});
+  }
+  /// All of what is staged is there.
+  void finish_staging() noexcept {
+    next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
+    is_staged = true;
+  }
+};
+
+bool RestToRestPlanner::Workspace::may_unwind(const PathFault& fault) const noexcept {
+  return model.unwind_policy == UnwindPolicy::kRetract && fault.kind == PathFault::Kind::kTravel &&
+         fault.joint >= 0 && fault.joint == free_joint(model);
+}
+
+PathFault RestToRestPlanner::Workspace::unwind(const ClBlock& block, const PathFault& fault,
+                                               const WindingTrial* trial) noexcept {
+  const PlanCursor rest = next;
+  const Staging::Mark mark = staging.mark();
+  const double from = rest.joints[fault.joint];
+  UnwindChoice choice(model.joints[fault.joint].limits, from, fault.value);
+  for (int turns = choice.next(); turns != 0; turns = choice.next()) {
+    if (trial != nullptr && !trial->fits(turns)) continue;
+    if (router.unwind(block, turns, next, staging).kind == PathFault::Kind::kNone) {
+      ++next.window;
+      result.unwinding = {block.sequence, block.line, turns, from, model.unwind_retract_mm};
+      if (trial != nullptr) return {};
+      if (router.route(block, next, staging).kind == PathFault::Kind::kNone) {
+        ++next.window;
+        return {};
+      }
+    }
+    next = rest;
+    staging.go_back(mark);
+  }
+  result.unwinding = {};
+  return fault;
+}
+
+void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
+  staging.clear(cursor.path_index);
+  next = cursor;
+  result = {};
+  needs_ahead = false;
+  if (!is_finite(block)) return refuse(block, RejectCode::kNotFinite, -1, 0);
+  if (is_motion(block.kind)) {
+    stage_motion(block);
+  } else {
+    stage_barrier(block);
+  }
+  if (!is_refused && !needs_ahead) finish_staging();
+}
+
+void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
+  const auto axis = UnitVector3::near_unit(to_vector(block.axis));
+  if (!axis) return refuse(block, RejectCode::kNotFinite, -1, 0);
+  block.axis = to_array(axis->vector());
+  const bool is_cut = block.kind == BlockKind::kCut;
+  if (is_cut && (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0))) {
+    return refuse(block, RejectCode::kFeed, -1, block.feed);
+  }
+  const auto count_window = [this](int pieces_before) {
+    if (staging.time_count > pieces_before) ++next.window;
+  };
+  PathFault fault;
+  if (next.is_first) {
+    fault = first_joints ? router.approach_joints(block, *first_joints, next, staging)
+                         : router.approach(block, next, staging);
+    if (router.lost_block()) return refuse(*router.lost_block());
+    staged_approach = router.way_in();
+    result.axis_deviation_rad = router.axis_deviation_rad();
+    next.is_first = false;
+    count_window(0);
+  }
+  if (fault.kind == PathFault::Kind::kNone) {
+    if (!find_great_circle(next.pose.axis, to_vector(block.axis)).is_unique) {
+      return refuse(block, RejectCode::kAxisReversal, -1, 0);
+    }
+    const PlanCursor rest = next;
+    const Staging::Mark before = staging.mark();
+    fault = router.route(block, next, staging);
+    if (may_unwind(fault)) {
+      staging.go_back(before);
+      next = rest;
+      fault = unwind(block, fault, nullptr);
+    } else {
+      count_window(before.times);
+    }
+    result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
+    needs_ahead = router.needs_ahead();
+    if (needs_ahead) return;
+  }
+  if (fault.kind == PathFault::Kind::kNone) return mark_end(block);
+  RejectCode code = code_of(fault.kind);
+  if (code == RejectCode::kTravelBetween) {
+    if (!router.is_reachable(block, next)) {
+      code = RejectCode::kTravel;
+    } else if (cursor.is_first && staging.time_count == 0) {
+      code = RejectCode::kApproach;
+    }
+  }
+  refuse(block, code, fault.joint, fault.value);
+}
+
+/// Leaves where the machine rests ahead of the first action of a program that may begin in the
+/// part.
+void RestToRestPlanner::Workspace::stage_retraction(const ClBlock& block) noexcept {
+  const bool is_action = block.kind == BlockKind::kAuxiliary || block.kind == BlockKind::kTool;
+  if (!is_action || !retracts_first || !next.is_first || next.has_retracted) return;
+  const PathFault fault = router.retract(block, next, staging);
+  if (fault.kind != PathFault::Kind::kNone) {
+    return refuse(block, code_of(fault.kind), fault.joint, fault.value);
+  }
+  if (staging.time_count > 0) ++next.window;
+}
+
+void RestToRestPlanner::Workspace::stage_barrier(const ClBlock& block) noexcept {
+  stage_retraction(block);
+  if (is_refused) return;
+  TimePiece piece;
+  piece.kind = barrier_of(block.kind);
+  piece.is_from_rest = true;
+  piece.epoch = next.epoch;
+  piece.window = next.window++;
+  piece.sequence = block.sequence;
+  piece.line = block.line;
+  piece.duration = block.kind == BlockKind::kDwell ? std::max(0.0, block.value) : 0.0;
+  if (block.kind == BlockKind::kTool) {
+    const Tool* tool = tools.find(static_cast<int>(std::lround(block.value)));
+    if (tool == nullptr) return refuse(block, RejectCode::kUnknownTool, -1, block.value);
+    next.tool_length_mm = tool->tip_length_mm();
+    next.pose.tip = forward(model, next.tool_length_mm, next.joints).tip;
+  }
+  (void)staging.add(piece);
+}
+
+RestToRestPlanner::RestToRestPlanner(const MachineModel& model, ToolTable tools)
+    : workspace_(std::make_unique<Workspace>(model, std::move(tools))) {
+  begin(JointVector{}, model.tool_length_mm, 0);
+}
+
+RestToRestPlanner::~RestToRestPlanner() = default;
+
+void RestToRestPlanner::swap_tools(ToolTable& tools) noexcept {
+  std::swap(workspace_->tools, tools);
+}
+
+void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
+                              std::uint16_t epoch, bool retracts_first,
+                              const std::optional<JointVector>& first_joints) noexcept {
+  Workspace& w = *workspace_;
+  w.retracts_first = retracts_first;
+  w.first_joints = first_joints;
+  PlanCursor cursor;
+  if (epoch == w.cursor.epoch) {
+    // What the epoch published before may still lie in the port: no index comes twice.
+    cursor.path_index = w.cursor.path_index;
+    cursor.window = w.cursor.window;
+  }
+  w.cursor = cursor;
+  w.router.look_at({}, {});
+  w.cursor.joints = at_rest;
+  w.cursor.tool_length_mm = tool_length_mm;
+  w.cursor.epoch = epoch;
+  w.cursor.pose = forward(w.model, tool_length_mm, at_rest);
+  w.staged_approach = w.approach = std::nullopt;
+  w.is_staged = false;
+  w.is_refused = w.needs_ahead = false;
+  w.router.set_feed_factor(1);
+  w.router.set_free_cone(0);
+}
+
+void RestToRestPlanner::ask(PoleForesight* foresight) noexcept {
+  workspace_->router.ask(foresight);
+}
+
+bool RestToRestPlanner::needs_ahead() const noexcept { return workspace_->needs_ahead; }
+
+void RestToRestPlanner::set_free_cone(double rad) noexcept {
+  workspace_->router.set_free_cone(rad);
+}
+
+void RestToRestPlanner::set_feed_factor(double factor) noexcept {
+  workspace_->router.set_feed_factor(factor);
+}
+
+PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  if (w.is_refused) return w.result;
+  if (!w.is_staged) w.stage(block);
+  if (w.needs_ahead) return {PlanStatus::kNoRoom, {}, 0, {}};
+  return w.is_refused ? w.result : publish(writer);
+}
+
+bool RestToRestPlanner::take_approach(Approach& out) noexcept {
+  Workspace& w = *workspace_;
+  if (!w.approach) return false;
+  out = *std::exchange(w.approach, std::nullopt);
+  return true;
+}
+
+void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack_mm,
+                                double axis_slack_rad) noexcept {
+  workspace_->router.look_at(ahead, {tip_slack_mm, axis_slack_rad});
+}
+
+PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
+                                     MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  if (w.is_refused) return w.result;
+  if (!w.is_staged) {
+    w.staging.clear(w.cursor.path_index);
+    w.next = w.cursor;
+    w.result = {};
+    PathFault fault{PathFault::Kind::kTravel, free_joint(w.model), beyond};
+    if (w.may_unwind(fault)) fault = w.unwind(block, fault, &trial);
+    if (fault.kind != PathFault::Kind::kNone) {
+      w.refuse(block, code_of(fault.kind), fault.joint, fault.value);
+      return w.result;
+    }
+    w.finish_staging();
+  }
+  return publish(writer);
+}
+
+PlanResult RestToRestPlanner::publish(MotionWriter& writer) noexcept {
+  Workspace& w = *workspace_;
+  const Staging& staged = w.staging;
+  if (!writer.has_room(static_cast<std::size_t>(staged.path_count),
+                       static_cast<std::size_t>(staged.time_count))) {
+    return {PlanStatus::kNoRoom, {}, 0, {}};
+  }
+  bool is_written = true;
+  for (int n = 0; n < staged.path_count; ++n) is_written &= writer.stage(staged.paths[n]);
+  for (int n = 0; n < staged.time_count; ++n) is_written &= writer.stage(staged.times[n]);
+  if (!is_written) {
+    writer.discard();
+    return {PlanStatus::kNoRoom, {}, 0, {}};
+  }
+  writer.publish();
+  if (w.staged_approach) w.approach = std::exchange(w.staged_approach, std::nullopt);
+  w.cursor = w.next;
+  w.is_staged = false;
+  return w.result;
+}
+
+RestToRestPlanner::Junction RestToRestPlanner::junction() const noexcept {
+  const PlanCursor& at = workspace_->cursor;
+  return {at.pose, at.joints, at.tool_length_mm, at.epoch, at.path_index, at.window, at.is_first};
+}
+
+void RestToRestPlanner::continue_at(const Junction& junction) noexcept {
+  Workspace& w = *workspace_;
+  w.cursor = {junction.pose,       junction.joints, junction.tool_length_mm, junction.is_first,
+              junction.path_index, junction.window, junction.epoch};
+  w.is_staged = false;
+}
+
+const JointVector& RestToRestPlanner::joints() const noexcept { return workspace_->cursor.joints; }
+
+double RestToRestPlanner::tool_length_mm() const noexcept {
+  return workspace_->cursor.tool_length_mm;
+}
+
+}  // namespace meridian

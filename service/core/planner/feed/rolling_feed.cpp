@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/rolling_feed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "service/core/planner/feed/feed_check.hpp"
+#include "service/core/planner/feed/two_pass.hpp"
+
+namespace meridian {
+namespace {
+
+// Shares of the limits that are planned; checked is against the limits themselves.
+constexpr double kVelocityShare = 0.9999;
+constexpr double kAccelShare = 0.999;
+constexpr double kJerkShare = 0.998;
+/// Plans use that much less of the limits at the far end of a window, growing evenly: the tail of a
+/// plan is strictly inside the limits of the next one, which therefore has an interior.
+constexpr double kFunnel = 0.02;
+constexpr int kTightenings = 4;
+constexpr int kLeastCells = 4;        // of a window
+constexpr int kRestReach = 11;        // cells beside a rest whose limits its speed keeps
+constexpr int kHistory = 240;         // cells kept behind the next one: three windows
+constexpr double kOldShare = 0.6;     // of the bound: an old plan above it is worth linearising at
+constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
+
+}  // namespace
+
+/// One try at a window.
+struct RollingFeed::Attempt {
+  bool is_around_old;  ///< linearise at the old plan where it is fast
+  double softness;     ///< share of the speed beside rests
+  int shorter;         ///< cells that the window is shortened by
+};
+
+RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings)
+    : settings_(settings),
+      limits_(make_feed_limits(model, settings.reserve)),
+      planned_(limits_.scaled(kVelocityShare, kAccelShare, kJerkShare)),
+      grid_(model, planned_, settings.cells),
+      solver_(grid_, planned_) {
+  settings_.window_cells = std::clamp(settings.window_cells, 20, JerkStep::kCells);
+  settings_.commit_cells = std::clamp(settings.commit_cells, 1, settings_.window_cells - 10);
+  for (auto* v : {&backward_, &bound_, &bar_knots_, &bar_middles_, &accel_share_, &jerk_share_,
+                  &old_.b, &old_.slope, &new_.b, &new_.slope, &best_.b, &best_.slope}) {
+    v->resize(JerkStep::kCells + 2);
+  }
+}
+
+void RollingFeed::begin(const JointVector& joints, int branch, double tool_length_mm) noexcept {
+  grid_.begin(joints, tool_length_mm);
+  branch_ = branch;
+  next_ = 0;
+  is_at_rest_ = true;
+  old_.first = old_.end = 0;
+  window_ = {};
+}
+
+PathFault RollingFeed::push(const JointSpan& span) noexcept { return grid_.push(span); }
+
+PathFault RollingFeed::finish() noexcept { return grid_.finish(); }
+
+std::int64_t RollingFeed::window_end() const noexcept {
+  const std::int64_t end = next_ + settings_.window_cells;
+  return grid_.is_complete() ? std::min(end, grid_.last()) : end;
+}
+
+bool RollingFeed::is_failing() const noexcept {
+  auto hash = static_cast<std::uint32_t>(count_.windows) * 2654435761U;
+  hash ^= hash >> 15U;
+  hash *= 2246822519U;
+  hash ^= hash >> 13U;
+  return (hash & 0xffffU) < settings_.failing_share * 65536;
+}
+
+void RollingFeed::resume_from(std::int64_t cell) noexcept {
+  if (cell < grid_.first() || cell > grid_.last()) return;
+  next_ = cell;
+  is_at_rest_ = true;
+  old_.first = old_.end = cell;
+  grid_.restore_from(cell);  // how many windows were planned behind it only the clock knows
+}
+
+bool RollingFeed::try_plan() noexcept {
+  grid_.drop_before(next_ - kHistory);
+  (void)grid_.make_cells();  // fault() tells
+  if (is_done() || grid_.last() < window_end()) return false;
+  ++count_.windows;
+  window_rounds_ = 0;
+  if (!is_failing() && plan_window()) {
+    commit(true);
+  } else if (is_at_rest_) {
+    commit_crawl();
+  } else {
+    ++count_.kept;
+    commit(false);
+  }
+  return true;
+}
+
+bool RollingFeed::plan_window() noexcept {
+  static constexpr Attempt kLadder[] = {
+      {true, 1, 0},    {false, 1, 0},    {true, 0.3, 0},   {true, 1, 7},     {false, 0.3, 13},
+      {true, 0.3, 19}, {false, 0.05, 0}, {true, 0.05, 11}, {false, 0.01, 5},
+  };
+  return std::any_of(std::begin(kLadder), std::end(kLadder),
+                     [this](const Attempt& how) { return attempt(how); });
+}
+
+bool RollingFeed::attempt(const Attempt& how) noexcept {
+  const std::int64_t first = is_at_rest_ ? next_ + 1 : next_;
+  std::int64_t end = window_end();
+  if (how.shorter > 0) {
+    const bool is_last = grid_.is_complete() && end == grid_.last();
+    end -= how.shorter;
+    if (is_last || end < first + kLeastCells + 2) return false;
+  }
+  if (end - first < kLeastCells) return false;
+  if (is_at_rest_) {
+    const auto reach = std::min(next_ + kRestReach + 1, end);
+    start_ = find_rest_cell(planned_, grid_[next_], true,
+                            how.softness * steady_b(grid_, planned_, next_, reach));
+    state_ = start_.state;
+  }
+  const auto boundaries = static_cast<std::size_t>(end - first) + 1;
+  two_pass(grid_, planned_, first, state_.b, {backward_.data(), boundaries},
+           {bound_.data(), boundaries});
+  new_.first = first;
+  new_.end = end;
+  const double reachable = 4 * backward_[boundaries - 2];
+  const auto reach = std::max(first, end - kRestReach - 1);
+  new_.stop =
+      find_rest_cell(planned_, grid_[end - 1], false,
+                     how.softness * std::min(reachable, steady_b(grid_, planned_, reach, end)));
+  choose_bar(how);
+  return refine();
+}
+
+void RollingFeed::choose_bar(const Attempt& how) noexcept {
+  const int cells = new_.cells();
+  double most = 0;
+  for (int k = 0; k <= cells; ++k) most = std::max(most, bound_[k]);
+  for (int k = 0; k <= cells; ++k) bar_knots_[k] = std::max(bound_[k], 1e-6 * most);
+  if (how.is_around_old && !is_at_rest_) {
+    // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
+    // share of the bound that it has before.
+    const auto skipped = new_.first - old_.first;
+    int last = std::min(cells, static_cast<int>(old_.cells() - skipped));
+    double share = 0;
+    for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
+    share *= kOldShare / (last / 2 + 1);
+    while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
+    for (int k = 0; k <= last; ++k) bar_knots_[k] = old_.b[k + skipped];
+  }
+  for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
+}
+
+bool RollingFeed::refine() noexcept {
+  const int cells = new_.cells();
+  int good = 0;
+  for (int round = 0; round < kTightenings + settings_.refinements; ++round) {
+    for (int k = 0; k <= cells; ++k) {
+      const double funnel = 1 - kFunnel * std::min(1.0, 1.0 * k / settings_.window_cells);
+      accel_share_[k] = jerk_share_[k] = funnel * grid_[new_.first + k].tight;
+    }
+    if (window_rounds_ >= settings_.most_rounds) break;
+    ++count_.solves;
+    const bool is_solved = solver_.solve({new_.first,
+                                          cells,
+                                          state_,
+                                          {new_.stop.state.b, -new_.stop.state.slope},
+                                          bar_knots_.data(),
+                                          bar_middles_.data(),
+                                          accel_share_.data(),
+                                          jerk_share_.data()});
+    count_.rounds += solver_.rounds();
+    window_rounds_ += solver_.rounds();
+    count_.most_rounds = std::max(count_.most_rounds, window_rounds_);
+    if (!is_solved) break;
+    take_result();
+    if (!check_and_tighten(round < kTightenings)) {
+      ++count_.tightened;
+      continue;
+    }
+    std::swap(best_.b, new_.b);
+    std::swap(best_.slope, new_.slope);
+    if (++good == settings_.refinements) break;
+    for (int k = 0; k <= cells; ++k) bar_knots_[k] = best_.b[k];
+    for (int k = 0; k < cells; ++k) bar_middles_[k] = solver_.middle(k);
+  }
+  if (good == 0) return false;
+  std::swap(best_.b, new_.b);
+  std::swap(best_.slope, new_.slope);
+  return true;
+}
+
+void RollingFeed::take_result() noexcept {
+  const int cells = new_.cells();
+  for (int k = 0; k <= cells; ++k) {
+    new_.b[k] = solver_.b(k);
+    new_.slope[k] = solver_.slope(k);
+  }
+  // The ends are given: not even rounding may come between two plans.
+  new_.b[0] = state_.b;
+  new_.slope[0] = state_.slope;
+}
+
+bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
+  const int cells = new_.cells();
+  bool is_good = true;
+  for (int k = 0; k < cells; ++k) {
+    FeedCell& cell = grid_[new_.first + k];
+    const FeedUse use = use_of(limits_, cell, {new_.b[k], new_.slope[k], new_.slope[k + 1]});
+    const double worst = use.worst();
+    if (worst > 1) {
+      is_good = false;
+      if (!may_tighten) continue;
+      for (int n = std::max(0, k - 1); n <= std::min(cells - 1, k + 1); ++n) {
+        FeedCell& near = grid_[new_.first + n];
+        const double by = n == k ? std::min(worst, 1.5) + 0.004 : 1.002;
+        near.tight = std::max(FeedCell::kLeastTight, near.tight / by);
+      }
+    } else if (use.b > kFeedSlack) {
+      is_good = false;
+      if (may_tighten) cell.most_b /= std::min(use.b, 1.1) + 0.002;
+    }
+  }
+  return is_good;
+}
+
+}  // namespace meridian

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/feed_piece.hpp"
+#include "service/core/planner/feed/feed_rest.hpp"
+#include "service/core/planner/feed/jerk_step.hpp"
+#include "service/core/planner/feed/joint_span.hpp"
+
+namespace meridian {
+
+struct FeedSettings {
+  CellSettings cells;
+  RateReserve reserve;
+  int window_cells = 120;  ///< planned at a time, to a rest at their end; at most 160
+  int commit_cells = 40;   ///< of them kept, and on to twice as many while they yield
+  double commit_s = 0.06;  ///< less motion than this
+  int most_rounds = 240;   ///< of the solver per window; then the plan before it stands
+  /// Convex programmes per window, each around the result of the last. The plan of the window
+  /// before is a good place to linearise at: a second one gains little and doubles the work.
+  int refinements = 1;
+  /// Share of the windows that are declared to have no plan: for tests of what then happens.
+  double failing_share = 0;
+};
+
+/// A planned window: pieces that stand, then the rest of its plan up to rest, which a later window
+/// may replace. The last window of a path and every crawl have no tail.
+struct FeedWindow {
+  bool is_from_rest = false;
+  std::span<const FeedPiece> committed, tail;
+  std::int64_t rest_cell = 0;  ///< cell before which the window comes to rest, tail included
+};
+
+/// What was done, for reports and tests.
+struct FeedCount {
+  std::int64_t windows = 0, solves = 0, rounds = 0, kept = 0, stops = 0, crawls = 0, tightened = 0;
+  std::int64_t most_rounds = 0;  ///< of one window
+};
+
+/// The feed over a stream of spans, window by window, inside velocity, acceleration and jerk of
+/// every joint and the programmed feed; every plan ends at rest inside the spans that are there.
+///
+/// A window is planned when the cells it covers are there and not earlier, so what is planned
+/// follows from the spans alone, not from when they came. A window without a plan of its own keeps
+/// the tail of the one before; at rest the last resort is a crawl. Both always exist: the motion
+/// is never without a plan that ends at rest.
+///
+/// Fixed store, bounded work per window, no clock. Units: mm, rad, s. Context: planner thread.
+/// Source: docs/motion.md, section 8. Proof: tests/property/planner/feed_test.cpp.
+class RollingFeed {
+ public:
+  RollingFeed(const MachineModel& model, const FeedSettings& settings);
+
+  /// Starts a path, at rest at its begin, on `branch` of the inverse kinematics; `joints` tell the
+  /// windings.
+  void begin(const JointVector& joints, int branch, double tool_length_mm) noexcept;
+
+  /// Whether push() would take another span.
+  [[nodiscard]] bool has_room() const noexcept { return grid_.has_room(); }
+  /// Takes the next span. A fault (travel, reach) ends the path: nothing of the span is planned.
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+  /// A span on the branch of begin().
+  [[nodiscard]] PathFault push(const BandSpan& span) noexcept {
+    JointSpan on_branch;
+    on_branch.band = span;
+    on_branch.branch = branch_;
+    return push(on_branch);
+  }
+  /// The path ends with the last span, at rest.
+  [[nodiscard]] PathFault finish() noexcept;
+
+  /// Behind a fault: the path ends at `x` of `span`, the `number`th, at rest; or behind what was
+  /// planned, and behind `least` cells, where that is farther.
+  void end_at(const JointSpan& span, std::uint64_t number, double x, std::int64_t least) noexcept {
+    grid_.end_at(span, number, x, std::max(least, is_at_rest_ ? next_ : old_.end));
+  }
+
+  /// What push(), finish() or, where cells had to wait for room, try_plan() found.
+  [[nodiscard]] const PathFault& fault() const noexcept { return grid_.fault(); }
+  /// Counts spans from 0 since begin().
+  [[nodiscard]] std::uint64_t faulty_span() const noexcept { return grid_.faulty_span(); }
+  [[nodiscard]] double faulty_x() const noexcept { return grid_.faulty_x(); }
+
+  /// Plans the next window if its cells are there; window() is then valid until the next call.
+  [[nodiscard]] bool try_plan() noexcept;
+  [[nodiscard]] const FeedWindow& window() const noexcept { return window_; }
+
+  /// The machine ran the tail of a window and rests before `cell` (FeedWindow::rest_cell): the next
+  /// window starts there from rest. For one of the last three windows.
+  void resume_from(std::int64_t cell) noexcept;
+
+  /// Whether all of a finished path is committed.
+  [[nodiscard]] bool is_done() const noexcept {
+    return grid_.is_complete() && next_ == grid_.last();
+  }
+  [[nodiscard]] const CellGrid& grid() const noexcept { return grid_; }
+  [[nodiscard]] const FeedLimits& limits() const noexcept { return limits_; }
+  [[nodiscard]] const FeedCount& count() const noexcept { return count_; }
+
+ private:
+  /// A plan from the boundary before `first` to rest before `end`; its last cell is `stop`.
+  struct Plan {
+    std::int64_t first = 0, end = 0;
+    std::vector<double> b, slope;  ///< at boundaries first .. end - 1
+    RestCell stop;
+    [[nodiscard]] int cells() const noexcept { return static_cast<int>(end - first) - 1; }
+  };
+  struct Attempt;
+
+  [[nodiscard]] bool plan_window() noexcept;
+  [[nodiscard]] bool attempt(const Attempt& how) noexcept;
+  void choose_bar(const Attempt& how) noexcept;
+  [[nodiscard]] bool refine() noexcept;
+  [[nodiscard]] bool check_and_tighten(bool may_tighten) noexcept;
+  void take_result() noexcept;
+  [[nodiscard]] int cells_to_keep(const Plan& plan) const noexcept;
+  [[nodiscard]] std::size_t find_tail(std::int64_t first, int& kept) const noexcept;
+  void commit(bool is_new) noexcept;
+  void commit_crawl() noexcept;
+  [[nodiscard]] bool is_failing() const noexcept;
+  [[nodiscard]] std::int64_t window_end() const noexcept;
+
+  FeedSettings settings_;
+  FeedLimits limits_;   ///< what plans are checked against
+  FeedLimits planned_;  ///< what they are made for
+  CellGrid grid_;
+  int branch_ = 0;
+  JerkStep solver_;
+  std::int64_t next_ = 0;  ///< first cell that is not committed
+  bool is_at_rest_ = true;
+  FeedState state_;  ///< at the boundary before next_, where not at rest
+  RestCell start_;   ///< of the window being planned
+  Plan old_, new_, best_;
+  std::vector<double> backward_, bound_, bar_knots_, bar_middles_, accel_share_, jerk_share_;
+  FeedPieces pieces_;  ///< of the window, the tail behind what is committed
+  FeedWindow window_;
+  FeedCount count_;
+  std::int64_t window_rounds_ = 0;  ///< of the solver, spent on this window
+};
+
+}  // namespace meridian

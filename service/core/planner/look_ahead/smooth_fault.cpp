@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "service/core/planner/look_ahead/smooth_run.hpp"
+
+/// Where a smooth run ends that cannot go on: which block is named, and the rest ahead of it. Part
+/// of SmoothRun.
+namespace meridian {
+
+/// Names the block that lies where the feed found a fault.
+void SmoothRun::fail_on_span() noexcept {
+  const auto number = static_cast<std::int64_t>(feed_.faulty_span());
+  const BandSpan& span = spans_[number].band;
+  fail(feed_.fault(), span.sequence, span.line);
+  name_block_at(number, feed_.faulty_x());
+  end_ahead_of_fault();
+}
+
+void SmoothRun::name_block_at(std::int64_t number, double x) noexcept {
+  for (std::int64_t i = number; i < spans_.end_index(); ++i) {
+    const JointSpan& span = spans_[i];
+    for (std::uint32_t n = 0; n < span.marks.count; ++n) {
+      const BlockMark& mark = span.marks.at[n];
+      if (i == number && mark.s < x) continue;
+      faulty_block_.sequence = span.band.sequence + mark.ahead;
+      faulty_block_.line = mark.line;
+      return;
+    }
+  }
+}
+
+void SmoothRun::end_ahead_of_fault() noexcept {
+  is_held_ = false;
+  is_feed_finished_ = true;
+  note_ease(nullptr);
+  // What is published may be run to its rests.
+  std::int64_t least = 0;
+  for (const OpenWindow& open : open_) least = std::max(least, open.rest_cell);
+  for (std::int64_t i = spans_.end_index() - 1; i >= spans_.begin_index(); --i) {
+    const JointSpan& span = spans_[i];
+    for (std::uint32_t n = span.marks.count; n > 0; --n) {
+      const BlockMark& mark = span.marks.at[n - 1];
+      if (span.band.sequence + mark.ahead >= faulty_block_.sequence) continue;
+      return feed_.end_at(span, static_cast<std::uint64_t>(i), mark.s, least);
+    }
+  }
+  feed_.end_at({}, 0, 0, least);  // nothing lies ahead of it
+}
+
+/// Names the block ahead of which the machine comes to rest: of the first span that is held back
+/// beside the pole, or else of the last that was handed on.
+void SmoothRun::fail_ahead() noexcept {
+  const BandSpan* at = corridor_.first_held();
+  if (at == nullptr && spans_.end_index() > 0) at = &spans_.back().band;
+  const PathFault fault = band_.has_failed()
+                              ? PathFault{PathFault::Kind::kTooLong, -1, 0}
+                              : PathFault{PathFault::Kind::kBranch, free_joint(model_), 0};
+  fail(fault, at != nullptr ? at->sequence : 0, at != nullptr ? at->line : 0);
+}
+
+}  // namespace meridian

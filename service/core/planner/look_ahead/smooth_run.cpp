@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/look_ahead/smooth_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/joints_at.hpp"
+
+namespace meridian {
+namespace {
+
+/// More spans than the feed keeps cells: every cell lies in one span.
+constexpr std::size_t kSpans = 2048;
+constexpr std::size_t kEases = 256;  // that wait to be taken; the oldest go
+constexpr std::size_t kBlockEnds = 8192;
+constexpr double kSamePlace_mm = 1e-9;  // of u, where spans were cut
+
+/// What the feed leaves to the rate filter of this machine's cycle.
+FeedSettings feed_settings(const MachineModel& model) noexcept {
+  const RateLimits rates = rate_limits(model.override_ramp_s);
+  FeedSettings settings;
+  settings.reserve = {rates.slope_per_s, rates.curvature_per_s2};
+  return settings;
+}
+
+/// Least time that a span takes at its programmed feed.
+double least_time(const BandSpan& span) noexcept {
+  const double chord = (pose_on(span.c, span.length).tip - pose_on(span.c, 0.0).tip).norm();
+  return std::max(chord / span.feed_mm_per_s, span.length / span.u_speed_mm_per_s);
+}
+
+}  // namespace
+
+SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight* foresight)
+    : model_(model),
+      raise_(raise),
+      corridor_(model, foresight),
+      passes_(model),
+      feed_(model, feed_settings(model)),
+      authority_(model),
+      travel_(model),
+      spans_(kSpans),
+      ends_(kBlockEnds),
+      eases_(kEases) {}
+
+void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
+                      double pole_tolerance_rad) noexcept {
+  start_ = start;
+  band_.begin(start.pose, tolerance);
+  corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
+                   pole_tolerance_rad, start.is_on_pole});
+  passes_.begin({start.joints, start.branch, start.tool_length_mm, start.pose, pole_tolerance_rad,
+                 tolerance.tip_mm});
+  begin_feed(start.branch);
+  ends_.clear();
+  const int free = free_joint(model_);
+  follows_free_ = model_.unwind_policy == UnwindPolicy::kRetract && free >= 0 &&
+                  !model_.joints[free].is_endless;
+  is_held_ = is_just_unwound_ = is_easing_ = is_band_finished_ = false;
+  fault_ = {};
+  faulty_block_ = {};
+}
+
+void SmoothRun::begin_feed(int branch) noexcept {
+  feed_.begin(start_.joints, branch, start_.tool_length_mm);
+  raise_.rest();
+  spans_.clear();
+  staged_spans_ = 0;
+  span_joints_ = start_.joints;
+  travel_.begin(start_.joints, start_.tool_length_mm);
+  window_ = start_.window;
+  open_.fill({});
+  has_window_ = is_feed_finished_ = false;
+}
+
+void SmoothRun::go_on(const JointVector& joints, int turns, std::uint64_t path_index,
+                      std::uint32_t window) noexcept {
+  const double by = turns * kTurn_rad;
+  corridor_.wind(by, travel_.end_of(held_, by));
+  start_.joints = joints;
+  start_.path_index = path_index;
+  start_.window = window;
+  for (double& value : held_.free) value += by;
+  begin_feed(held_.branch);
+  is_just_unwound_ = true;
+}
+
+bool SmoothRun::fits(int turns) const noexcept {
+  const double by = turns * kTurn_rad;
+  return travel_.fits(held_, by) && corridor_.fits_zone(by);
+}
+
+void SmoothRun::take(const ClBlock& block) noexcept {
+  if (band_.push(block)) return;
+  fail({PathFault::Kind::kTooLong, -1, 0}, block.sequence, block.line);
+  band_.finish();
+}
+
+void SmoothRun::fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept {
+  fault_ = fault;
+  faulty_block_.sequence = sequence;
+  faulty_block_.line = line;
+  faulty_block_.joint = fault.joint;
+  faulty_block_.value = fault.value;
+}
+
+SmoothRun::Status SmoothRun::publish(MotionWriter& writer) noexcept {
+  for (;;) {
+    const Status status = publish_window(writer);
+    if (status != Status::kPublished) return status;
+  }
+}
+
+SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
+  for (;;) {
+    follow_tail(writer);
+    if (has_window_) {
+      if (!write(writer)) return Status::kNoRoom;
+      has_window_ = false;
+      return Status::kPublished;
+    }
+    const Status status = prepare(writer.feed_override());
+    if (has_window_) continue;
+    const bool is_end = status == Status::kDone || status == Status::kUnwind;
+    return is_end && !is_end_certain(writer) ? Status::kNoRoom : status;
+  }
+}
+
+/// Whether the cycle will come to the end of the run: no tail is left that it could enter instead.
+bool SmoothRun::is_end_certain(const MotionWriter& writer) const noexcept {
+  const bool has_one_window = window_ == start_.window + 1;
+  if (window_ == start_.window || has_one_window) return true;
+  const auto begun = writer.window_begun();
+  return begun && begun->epoch == start_.epoch && begun->window + 1 == window_;
+}
+
+/// Plans the next window, from as many spans as it takes.
+SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
+  for (;;) {
+    has_window_ = feed_.try_plan();
+    if (has_window_) return Status::kNoRoom;
+    if (is_fault(feed_.fault())) {
+      fail_on_span();
+      continue;
+    }
+    const bool is_at_unwinding = is_held_ && !is_just_unwound_;
+    if (is_feed_finished_ && feed_.is_done()) {
+      if (has_fault()) return Status::kFailed;
+      return is_at_unwinding ? Status::kUnwind : Status::kDone;
+    }
+    if (is_at_unwinding) return Status::kNoRoom;  // every cell is there: windows go on coming
+    if (!feed_.has_room()) return Status::kNeedsBlocks;
+    if (const JointSpan* span = is_held_ ? &held_ : next_span()) {
+      if (!(span->band.length > 0)) continue;
+      if (follows_free_ && !follow(*span)) {
+        if (is_just_unwound_) {
+          fail({PathFault::Kind::kTravel, unwind_at_.joint, unwind_at_.value}, span->band.sequence,
+               span->band.line);
+          return Status::kFailed;
+        }
+        held_ = *span;
+        is_held_ = is_feed_finished_ = true;
+        (void)feed_.finish();
+      } else {
+        note_ease(span);
+        push(*span, feed_override);
+        is_held_ = is_just_unwound_ = false;
+      }
+    } else if (band_.has_failed() || corridor_.has_failed()) {
+      fail_ahead();
+      end_ahead_of_fault();
+    } else if (is_band_finished_ && !is_feed_finished_ && !corridor_.needs_ahead()) {
+      is_feed_finished_ = true;
+      note_ease(nullptr);
+      (void)feed_.finish();
+    } else {
+      return Status::kNeedsBlocks;
+    }
+  }
+}
+
+void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
+  const FeedFactors factors = raise_.next(span.band.sequence, feed_override, least_time(span.band));
+  spans_.push(span);
+  spans_.back().feed_factor = factors.label;
+  mark_block_ends(spans_.back());
+  JointSpan planned = span;
+  if (factors.planned > 1) {
+    BandSpan& band = planned.band;
+    band.u_speed_mm_per_s *= factors.planned;
+    band.turn_rad_per_s *= factors.planned;
+    band.feed_mm_per_s *= factors.planned;
+    limit_feed(band);
+  }
+  (void)feed_.push(planned);
+}
+
+void SmoothRun::limit_feed(BandSpan& span) const noexcept {
+  const double most = model_.max_feed_mm_per_s;
+  if (most > 0) span.feed_mm_per_s = std::min(span.feed_mm_per_s, most);
+}
+
+void SmoothRun::note_block_ends() noexcept {
+  for (std::uint32_t n = 0; const auto end = band_.next_block_end(); ++n) {
+    if (n < BlockMarks::kMost) {
+      ends_.push_over_oldest(*end);
+    } else {
+      ends_.back() = *end;
+    }
+  }
+}
+
+void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
+  const BandSpan& band = span.band;
+  span.marks = {};
+  for (std::int64_t i = ends_.begin_index(); i < ends_.end_index(); ++i) {
+    const BlockEnd& end = ends_[i];
+    if (end.u > band.u0 + band.length + kSamePlace_mm) break;
+    const auto ahead = static_cast<std::uint32_t>(end.sequence - band.sequence);
+    span.marks.add({std::clamp(end.u - band.u0, 0.0, band.length), ahead, end.line});
+    ends_.drop_before(i + 1);
+  }
+}
+
+bool SmoothRun::follow(const JointSpan& span) noexcept {
+  const auto outside = travel_.follow(span);
+  if (outside) {
+    unwind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween,
+                  free_joint(model_), *outside};
+  }
+  return !outside;
+}
+
+void SmoothRun::note_ease(const JointSpan* span) noexcept {
+  if (span != nullptr && is_easing_) {  // as far as the begin of a span that is exact again
+    ease_.last_sequence = span->band.sequence;
+    ease_.last_line = span->band.line;
+  }
+  if (span != nullptr && span->axis_deviation_rad > 0) {
+    if (!is_easing_) {
+      ease_ = {span->band.sequence, span->band.sequence, span->band.line, span->band.line, 0,
+               span->reason};
+    }
+    ease_.deviation_rad = std::max(ease_.deviation_rad, span->axis_deviation_rad);
+    is_easing_ = true;
+  } else if (is_easing_) {
+    is_easing_ = false;
+    eases_.push_over_oldest(ease_);
+  }
+}
+
+const JointSpan* SmoothRun::next_span() noexcept {
+  for (;;) {
+    if (const JointSpan* span = passes_.next()) return span;
+    if (const JointSpan* span = corridor_.next()) {
+      passes_.push(*span);
+      continue;
+    }
+    if (is_band_finished_ || corridor_.needs_ahead()) return nullptr;
+    const BandSpan* band = band_.next();
+    if (band != nullptr) note_block_ends();
+    while (const auto mark = band_.next_axis()) {
+      if (!(mark->u > 0)) continue;
+      corridor_.mark(mark->u, to_vector(mark->axis));
+      passes_.mark(*mark);
+    }
+    if (band != nullptr) {
+      BandSpan limited = *band;
+      limit_feed(limited);
+      corridor_.push(limited);
+    } else if (band_.is_done()) {
+      is_band_finished_ = true;
+      corridor_.finish();
+      passes_.finish();
+    } else {
+      return nullptr;
+    }
+  }
+}
+
+/// The cycle came to a tail before the next window did: go on from the rest at its end.
+void SmoothRun::follow_tail(MotionWriter& writer) noexcept {
+  const auto tail = writer.tail_entered();
+  if (!tail || tail->epoch != start_.epoch) return;
+  for (OpenWindow& open : open_) {
+    if (open.rest_cell < 0 || open.window != tail->window) continue;
+    feed_.resume_from(open.rest_cell);
+    writer.forget_ahead();
+    open_.fill({});
+    has_window_ = false;
+    return;
+  }
+}
+
+bool SmoothRun::write(MotionWriter& writer) noexcept {
+  const FeedWindow& window = feed_.window();
+  std::uint64_t until = staged_spans_;
+  for (const auto& pieces : {window.committed, window.tail}) {
+    for (const FeedPiece& piece : pieces) until = std::max(until, piece.span + 1);
+  }
+  if (!writer.has_room(until - staged_spans_, window.committed.size() + window.tail.size())) {
+    return false;
+  }
+  bool is_written = stage_spans(writer, until);
+  authority_.begin(feed_.grid(), window.rest_cell);
+  for (const FeedPiece& piece : window.committed) is_written &= stage_piece(writer, piece, false);
+  for (const FeedPiece& piece : window.tail) is_written &= stage_piece(writer, piece, true);
+  if (!is_written) {
+    writer.discard();
+    return false;
+  }
+  writer.publish();
+  open_[window_ % open_.size()] = {window_, window.tail.empty() ? -1 : window.rest_cell};
+  ++window_;
+  return true;
+}
+
+/// On the pole the free joint is held where it came from: it is followed there, as the cycle does,
+/// which rests where the last of its places led.
+JointVector SmoothRun::joints_at_end(const PathPiece& piece) const noexcept {
+  JointVector joints = piece.joints_begin;
+  for (double left = 0.1; left > 1e-7; left *= 0.1) {
+    const auto near_end = joints_at(model_, piece, (1 - left) * piece.length, joints);
+    if (near_end.status != SolveStatus::kUnreachable) joints = near_end.q;
+  }
+  return joints_at(model_, piece, piece.length, joints).q;
+}
+
+bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
+  for (; staged_spans_ < until; ++staged_spans_) {
+    const JointSpan& span = spans_[static_cast<std::int64_t>(staged_spans_)];
+    PathPiece piece = make_spline(span);
+    piece.index = start_.path_index + staged_spans_;
+    piece.epoch = start_.epoch;
+    piece.tool_length_mm = start_.tool_length_mm;
+    piece.joints_begin = joints_at(model_, piece, 0.0, span_joints_).q;
+    piece.joints_end = joints_at_end(piece);
+    span_joints_ = piece.joints_end;
+    if (!writer.stage(piece)) return false;
+  }
+  return true;
+}
+
+bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool is_tail) noexcept {
+  const JointSpan& joint_span = spans_[static_cast<std::int64_t>(piece.span)];
+  const BandSpan& span = joint_span.band;
+  TimePiece time;
+  time.kind = TimeKind::kMove;
+  time.is_tail = is_tail;
+  time.is_from_rest = feed_.window().is_from_rest;
+  time.epoch = start_.epoch;
+  time.window = window_;
+  time.path_index = start_.path_index + piece.span;
+  time.sequence = span.sequence;
+  time.line = span.line;
+  time.duration = piece.duration;
+  time.s0 = piece.s0;
+  time.v = piece.v;
+  time.a = piece.a;
+  time.j = piece.j;
+  time.k = piece.k;
+  time.feed_mm_per_s = std::isfinite(span.feed_mm_per_s) ? span.feed_mm_per_s : 0;
+  time.feed_factor = joint_span.feed_factor;
+  authority_.grant(piece, time);
+  return writer.stage(time);
+}
+
+}  // namespace meridian

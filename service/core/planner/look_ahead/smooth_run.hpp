@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/band_spline.hpp"
+#include "meridian/path/block_reject.hpp"
+#include "meridian/planner/motion_port.hpp"
+#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/unwinding.hpp"
+#include "service/core/path/index_ring.hpp"
+#include "service/core/planner/feed/feed_authority.hpp"
+#include "service/core/planner/feed/feed_raise.hpp"
+#include "service/core/planner/feed/rolling_feed.hpp"
+#include "service/core/planner/route/free_travel.hpp"
+#include "service/core/planner/singular/pole_corridor.hpp"
+#include "service/core/planner/singular/robot_passes.hpp"
+
+namespace meridian {
+
+/// Where a run starts, and the names that its pieces get.
+struct RunStart {
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+  JointVector joints{};
+  int branch = 0;
+  /// The axis stays on the pole all the way: the free joint is held, nothing is sought about it.
+  bool is_on_pole = false;
+  double tool_length_mm = 0;
+  std::uint16_t epoch = 0;
+  std::uint64_t path_index = 0;  ///< of the next path piece
+  std::uint32_t window = 0;      ///< the next one
+};
+
+/// A stretch of program without a rest: from blocks through spline and feed to windows in the port.
+/// It starts and ends at rest.
+class SmoothRun : public WindingTrial {
+ public:
+  enum class Status : std::uint8_t {
+    kPublished,    ///< publish_window() alone: a window was published, call again
+    kNeedsBlocks,  ///< all that is ready was published
+    kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
+                   ///< again
+    kDone,         ///< finish() was called and everything is published
+    kUnwind,       ///< published to a rest at which the free joint has to be turned back: see
+                   ///< unwind_at(), then go_on()
+    kFailed        ///< fault() says why; what lies ahead of it is published to its end
+  };
+
+  /// `raise` says what the feed is planned with, `foresight` how far ways behind the pole carry.
+  SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight* foresight = nullptr);
+
+  /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
+  void begin(const RunStart& start, const BandTolerance& tolerance,
+             double pole_tolerance_rad) noexcept;
+
+  /// Takes a cut. Only where publish() has said kNeedsBlocks.
+  void take(const ClBlock& block) noexcept;
+  /// No more blocks: the run ends on the last one.
+  void finish() noexcept { band_.finish(); }
+
+  /// Plans and publishes what is ready.
+  [[nodiscard]] Status publish(MotionWriter& writer) noexcept;
+  /// The same one window at a time.
+  [[nodiscard]] Status publish_window(MotionWriter& writer) noexcept;
+
+  /// Behind kNeedsBlocks: the blocks are needed by the foresight, take() is not to be called.
+  [[nodiscard]] bool needs_ahead() const noexcept { return corridor_.needs_ahead(); }
+
+  /// Known before kFailed says so: what lies ahead of it has to be published first.
+  [[nodiscard]] const PathFault& fault() const noexcept { return fault_; }
+  [[nodiscard]] bool has_fault() const noexcept { return fault_.kind != PathFault::Kind::kNone; }
+  /// The block that the fault is on; its code is left to the caller.
+  [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
+
+  /// Where the free joint runs out of travel: the block, and `value` outside travel.
+  [[nodiscard]] const BlockReject& unwind_at() const noexcept { return unwind_at_; }
+  /// Behind kUnwind: whether the span that would have left travel fits with the free joint turned
+  /// by whole `turns`, with the rest of a zone that it lies in.
+  [[nodiscard]] bool fits(int turns) const noexcept override;
+  /// Behind kUnwind: the free joint was turned by whole `turns`, the machine rests at `joints` in
+  /// the same place; the names are those of what follows.
+  void go_on(const JointVector& joints, int turns, std::uint64_t path_index,
+             std::uint32_t window) noexcept;
+
+  /// Takes the oldest stretch beside the pole on which the axis was moved; false if there is none.
+  [[nodiscard]] bool take_ease(PoleEase& out) noexcept { return eases_.take_oldest(out); }
+
+  /// Names for what follows the run, and the joints at its end.
+  [[nodiscard]] std::uint64_t next_path_index() const noexcept {
+    return start_.path_index + staged_spans_;
+  }
+  [[nodiscard]] std::uint32_t next_window() const noexcept { return window_; }
+  [[nodiscard]] const JointVector& joints() const noexcept { return span_joints_; }
+
+ private:
+  /// A published window that may still end in its tail.
+  struct OpenWindow {
+    std::uint32_t window = 0;
+    std::int64_t rest_cell = -1;  ///< -1: it has no tail
+  };
+
+  [[nodiscard]] Status prepare(double feed_override) noexcept;
+  /// Gives the next span to the feed, with the factors that hold for it.
+  void push(const JointSpan& span, double feed_override) noexcept;
+  /// The next span that joints follow, nullptr where there is none yet.
+  [[nodiscard]] const JointSpan* next_span() noexcept;
+  /// No faster than the machine's highest feed.
+  void limit_feed(BandSpan& span) const noexcept;
+  /// Remembers where blocks end on the span that the band gave last.
+  void note_block_ends() noexcept;
+  /// Marks the ends of blocks on `span`, the next one.
+  void mark_block_ends(JointSpan& span) noexcept;
+  /// Follows the free joint over `span`, the next one. False: it would leave its travel, and
+  /// unwind_at() names where; nothing is followed then.
+  [[nodiscard]] bool follow(const JointSpan& span) noexcept;
+  /// Starts the feed where the machine rests.
+  void begin_feed(int branch) noexcept;
+  /// Keeps account of stretches beside the pole; `span` nullptr: the path ends.
+  void note_ease(const JointSpan* span) noexcept;
+  void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
+  void fail_on_span() noexcept;
+  void fail_ahead() noexcept;
+  /// The faulty block is the first that ends behind `x` of the `number`th span, where one is known.
+  void name_block_at(std::int64_t number, double x) noexcept;
+  /// The path ends where the last block ahead of the faulty one does.
+  void end_ahead_of_fault() noexcept;
+  [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
+  void follow_tail(MotionWriter& writer) noexcept;
+  [[nodiscard]] bool write(MotionWriter& writer) noexcept;
+  [[nodiscard]] JointVector joints_at_end(const PathPiece& piece) const noexcept;
+  [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;
+  [[nodiscard]] bool stage_piece(MotionWriter& writer, const FeedPiece& piece,
+                                 bool is_tail) noexcept;
+
+  const MachineModel& model_;
+  FeedRaise& raise_;
+  BandSpline band_;
+  PoleCorridor corridor_;
+  RobotPasses passes_;
+  RollingFeed feed_;
+  FeedAuthority authority_;
+  FreeTravel travel_;
+  IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
+  IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
+  RunStart start_;
+  std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
+  JointVector span_joints_{};       ///< at the end of the last of them
+  std::uint32_t window_ = 0;
+  std::array<OpenWindow, 4> open_;
+  bool has_window_ = false;  ///< feed_.window() waits for room
+  bool is_band_finished_ = false, is_feed_finished_ = false;
+  bool follows_free_ = false;     ///< the free joint has travel and may be turned back
+  bool is_held_ = false;          ///< held_ waits for an unwinding
+  bool is_just_unwound_ = false;  ///< nothing was taken since
+  JointSpan held_;
+  BlockReject unwind_at_;
+  PoleEase ease_;  ///< going on where is_easing_
+  bool is_easing_ = false;
+  IndexRing<PoleEase> eases_;
+  PathFault fault_;
+  BlockReject faulty_block_;
+};
+
+}  // namespace meridian

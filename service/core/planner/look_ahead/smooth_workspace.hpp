@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+#include "meridian/planner/smooth_planner.hpp"
+#include "service/core/path/index_ring.hpp"
+#include "service/core/planner/feed/feed_raise.hpp"
+#include "service/core/planner/feed/leg_planner.hpp"
+#include "service/core/planner/look_ahead/block_window.hpp"
+#include "service/core/planner/look_ahead/smooth_run.hpp"
+#include "service/core/planner/singular/pole_bounds.hpp"
+
+namespace meridian {
+
+/// Whether there is a branch to choose.
+[[nodiscard]] inline bool has_branches(const MachineModel& model) noexcept {
+  return free_joint(model) >= 0 || model.family == MachineFamily::kRobot;
+}
+
+/// What a smooth planner is made of, and how runs through blocks and motion from rest to rest take
+/// turns: which block may be run on through, where a run begins and ends, and what is done at rest
+/// between. Memory: all of it at the start. Units: mm, rad, s.
+struct SmoothPlanner::Workspace {
+  static constexpr std::size_t kUnwindings = 256;  ///< that wait to be taken; the oldest go
+  static constexpr std::size_t kEases = 256;       ///< the same
+
+  Workspace(const MachineModel& m, ToolTable t)
+      : model(m),
+        plain(m, std::move(t)),
+        raise(m),
+        window(m, has_branches(m)),
+        run(m, raise, has_branches(m) ? &window : nullptr),
+        plain_eases(kEases),
+        unwindings(kUnwindings) {
+    if (has_branches(m)) plain.ask(&window);
+  }
+
+  [[nodiscard]] BandTolerance tolerance() const noexcept;
+  /// Of the axis beside the pole. What a program asks for holds there too.
+  [[nodiscard]] double pole_tolerance_rad() const noexcept {
+    const double axis_rad = tolerance().axis_rad;
+    return settings.axis_tolerance_rad > 0 ? axis_rad
+                                           : std::max(axis_rad, model.tolerances.pole_axis_rad);
+  }
+
+  [[nodiscard]] bool is_smooth() const noexcept {
+    return settings.transition.value_or(model.transition) == Transition::kSmooth;
+  }
+  /// `block` as it can be run on through, or nothing where it is done at rest. In exact stop it is
+  /// a run of its own where a robot comes near a singular place.
+  [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
+  /// The solution that the joints at the last rest are nearest to.
+  [[nodiscard]] int find_branch(const RestToRestPlanner::Junction& at) const noexcept;
+  [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
+  void begin_run(const ClBlock& cut) noexcept;
+  void end_run() noexcept;
+  /// Publishes what is ready of the run.
+  [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
+  /// Turns the free joint back at the rest that the run came to; false: no room in the port, or
+  /// refused.
+  [[nodiscard]] bool unwind(MotionWriter& writer) noexcept;
+  void note(const Unwinding& unwinding) noexcept;
+  /// The program begins with what waits; `is_late`: because no more came for too long.
+  void end_look(bool is_late) noexcept {
+    if (!is_looking) return;
+    looked_at = window.waiting();
+    if (looked_at > 0) raise.note_look({.looked_at = looked_at, .is_late = is_late});
+    is_looking = false;
+  }
+  /// What is planned waits for blocks behind it: they tell which way past the pole carries.
+  [[nodiscard]] bool awaits_ahead() noexcept {
+    return (is_running ? run.needs_ahead() : plain.needs_ahead()) && window.is_missing();
+  }
+  /// Whether `block` is wanted for a look, and not planned at once.
+  [[nodiscard]] bool is_looking_at(const ClBlock& block) noexcept {
+    if (is_looking) return window.waiting() > 0 || is_motion(block.kind);
+    return awaits_ahead();
+  }
+  /// Whether the look goes on with what comes.
+  [[nodiscard]] bool wants_more() noexcept {
+    if (!is_looking) return awaits_ahead();
+    return window.waiting() != (replayed_look > 0 ? replayed_look : kLookAhead);
+  }
+  void refuse(const PlanResult& why) noexcept {
+    is_refused = true;
+    refusal = why;
+  }
+
+  const MachineModel& model;
+  RestToRestPlanner plain;
+  FeedRaise raise;
+  BlockWindow window;
+  SmoothRun run;
+  SmoothSettings settings;
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
+  JointVector joints{};
+  bool is_running = false;
+  bool is_for_plain = false;  ///< the block that waits for room goes from rest to rest
+  bool has_factor = false;    ///< and has been given the factor of its feed
+  bool is_run_on_pole = false;
+  bool is_refused = false;
+  bool is_ending = false;  ///< no block comes any more
+  PlanResult refusal;
+  IndexRing<PoleEase> plain_eases;  ///< of blocks from rest to rest
+  IndexRing<Unwinding> unwindings;
+  bool is_looking = false;          ///< more of the program's begin may come
+  std::size_t looked_at = 0;        ///< blocks of the begin
+  std::uint64_t replayed_look = 0;  ///< blocks that a run before was begun with; 0: none was
+};
+
+}  // namespace meridian

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/route/ahead_follower.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meridian/geometry/unit_vector.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/singular/pole_bounds.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kStepShare = 0.3;      // of the distance to the pole, that the axis turns at once
+constexpr double kMostStep_rad = 0.05;  // more would miss where slides turn round
+constexpr double kArcStep_rad = 0.1;    // of an arc
+constexpr double kLeastPole_rad = 1e-3;
+constexpr int kMostSteps = 256;  // per block
+constexpr double kMargin = 1e-9;
+constexpr double kBend = 1.5;  // of the joints over the slack: it ends well outside of the pole
+
+/// Whether turning the free joint back may help where it runs out of travel.
+bool may_unwind(const MachineModel& model) noexcept {
+  const JointLimits& limits = model.joints[free_joint(model)].limits;
+  return model.unwind_policy == UnwindPolicy::kRetract &&
+         limits.travel_max - limits.travel_min >= kTurn_rad;
+}
+
+/// Whether a way that came to `end` may still turn out otherwise.
+bool is_open(AheadEnd end) noexcept { return end == AheadEnd::kNone || end == AheadEnd::kDoubt; }
+
+}  // namespace
+
+AheadFollower::AheadFollower(const MachineModel& model, double tool_length_mm,
+                             const AheadSlack& slack, int branch, const ToolPose& start,
+                             std::span<AheadWay> ways) noexcept
+    : model_(model),
+      tool_length_mm_(tool_length_mm),
+      slack_(slack),
+      branch_(branch),
+      free_(free_joint(model)),
+      pole_rad_(
+          std::max(kZoneTolerances * std::max(axis_tolerance_beside_pole(model), slack.axis_rad),
+                   kLeastPole_rad)),
+      pose_(start),
+      ways_(ways) {
+  const auto at = solve(model_, tool_length_mm_, start, branch_, JointVector{});
+  const double distance = pole_distance(model_, start.axis);
+  is_over_ = at.status != SolveStatus::kOk || distance < kPoleEase_rad;
+  has_left_pole_ = distance >= pole_rad_;
+  is_branch_certain_ = has_left_pole_ || !(slack.axis_rad > 0);
+  joints_ = at.q;
+  begin_ = joints_[free_];
+}
+
+void AheadFollower::follow(const ClBlock& block) noexcept {
+  block_ = &block;
+  is_tool_known_ &= block.kind != BlockKind::kTool;
+  if (is_motion(block.kind)) run(block);
+  if (is_over_) return;
+  for (AheadWay& way : ways_) {
+    if (way.branch != branch_ || way.end != AheadEnd::kNone) continue;
+    ++way.carries;
+    way.time_s = time_s_;
+  }
+}
+
+void AheadFollower::run(const ClBlock& block) noexcept {
+  const auto unit = UnitVector3::near_unit(to_vector(block.axis));
+  const ToolPose end{to_vector(block.tip_mm), unit ? unit->vector() : Vector3::UnitZ()};
+  if (!unit || !end.tip.allFinite()) {
+    is_over_ = true;
+    return;
+  }
+  const PathPiece path = block.is_arc ? make_arc(pose_, end, block) : make_line(pose_, end);
+  pose_ = end;
+  if (!(path.length > 0)) return;
+  const double feed_s = feed_time_s(path, block);
+  const double arc_steps = block.is_arc ? std::abs(block.sweep_rad) / kArcStep_rad : 1;
+  double share = 0;
+  for (int n = 0; share < 1 && !is_over_; ++n) {
+    const double turn = std::min(
+        kMostStep_rad, kStepShare * pole_distance(model_, pose_at(path, share * path.length).axis));
+    const double by =
+        std::min(1 / std::max(1.0, arc_steps), path.axis_turn > turn ? turn / path.axis_turn : 1.0);
+    const double next = std::min(1.0, share + by);
+    is_over_ =
+        n == kMostSteps || !put_at(pose_at(path, next * path.length), (next - share) * feed_s);
+    share = next;
+  }
+}
+
+double AheadFollower::feed_time_s(const PathPiece& path, const ClBlock& block) const noexcept {
+  if (block.kind != BlockKind::kCut || !(block.feed > 0)) return 0;
+  return block.feed_meaning == FeedMeaning::kTip ? tip_length(path) / block.feed : 1 / block.feed;
+}
+
+bool AheadFollower::put_at(const ToolPose& pose, double feed_s) noexcept {
+  const auto at = solve(model_, tool_length_mm_, pose, branch_, joints_);
+  const double distance = pole_distance(model_, pose.axis);
+  has_left_pole_ |= distance >= pole_rad_;
+  const double nearest = has_left_pole_ ? pole_rad_ : kPoleEase_rad;
+  if (at.status != SolveStatus::kOk || distance < nearest) return false;
+  double time_s = feed_s;
+  for (int i = 0; i < model_.joint_count; ++i) {
+    time_s = std::max(time_s, std::abs(at.q[i] - joints_[i]) / model_.joints[i].limits.velocity);
+  }
+  time_s_ += time_s;
+  joints_ = at.q;
+  bool is_any_left = false;
+  for (AheadWay& way : ways_) {
+    if (way.branch != branch_) continue;
+    if (is_open(way.end)) judge(pose, way);
+    is_any_left |= is_open(way.end);
+  }
+  return is_any_left;
+}
+
+void AheadFollower::judge(const ToolPose& pose, AheadWay& way) const noexcept {
+  JointVector all = joints_;
+  all[free_] += way.free - begin_;
+  const int joint = first_outside(all);
+  if (joint < 0) return;
+  way.end = joint == free_ && may_unwind(model_) ? AheadEnd::kUnwinds : AheadEnd::kDoubt;
+  if (way.end == AheadEnd::kUnwinds) return;
+  const double value = limited_value(model_, all, joint);
+  const JointLimits& limits = limited_spec(model_, joint).limits;
+  const double beyond = std::max(value - limits.travel_max, limits.travel_min - value);
+  if (!is_branch_certain_ || !(beyond > spread_of(joint, pose))) return;
+  way.end = AheadEnd::kLost;
+  way.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
+}
+
+int AheadFollower::first_outside(const JointVector& all) const noexcept {
+  if (is_tool_known_) return first_joint_outside_travel(model_, all, kMargin);
+  for (int i = 0; i < model_.joint_count; ++i) {
+    if (model_.joints[i].is_rotary && !is_inside_travel(model_.joints[i], all[i], kMargin))
+      return i;
+  }
+  return -1;
+}
+
+double AheadFollower::spread_of(int joint, const ToolPose& pose) const noexcept {
+  const double here = limited_value(model_, joints_, joint);
+  double sum = 0;
+  const auto add = [&](const ToolPose& beside) {
+    const auto at = solve(model_, tool_length_mm_, beside, branch_, joints_);
+    sum += at.status == SolveStatus::kOk ? std::abs(limited_value(model_, at.q, joint) - here)
+                                         : std::numeric_limits<double>::infinity();
+  };
+  const Vector3 across = pose.axis.unitOrthogonal();
+  for (const Vector3& way : {across, Vector3(pose.axis.cross(across))}) {
+    add({pose.tip, (pose.axis + std::tan(slack_.axis_rad) * way).normalized()});
+  }
+  for (int i = 0; i < 3; ++i) add({pose.tip + slack_.tip_mm * Vector3::Unit(i), pose.axis});
+  return kBend * sum;
+}
+
+}  // namespace meridian

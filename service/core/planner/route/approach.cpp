@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "service/core/planner/look_ahead/robot_look_ahead.hpp"
+#include "service/core/planner/route/ahead_look.hpp"
+#include "service/core/planner/route/router.hpp"
+
+/// The approach: retract along the tool axis, joint move, down. Part of Router.
+namespace meridian {
+namespace {
+
+constexpr double kThere = 1e-12;  // joints that differ less are where they should be
+constexpr double kNearby = 1e-3;  // mm, rad: so near that a joint move alone is made
+constexpr double kNoClearance_mm = 1e-3;
+
+double largest_difference(const JointVector& a, const JointVector& b) noexcept {
+  double largest = 0;
+  for (int i = 0; i < kMaxJoints; ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+std::uint32_t rotary_mask(const MachineModel& model) noexcept {
+  std::uint32_t mask = 0;
+  for (int i = 0; i < model.joint_count; ++i) {
+    if (model.joints[i].is_rotary) mask |= 1U << static_cast<unsigned>(i);
+  }
+  return mask;
+}
+
+ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
+  return {pose.tip + by_mm * pose.axis, pose.axis};
+}
+
+/// Adds length and time of what is staged from `begin` on.
+void add_way(const Staging::Mark& begin, const Staging& staged, Approach& way) noexcept {
+  for (int n = begin.paths; n < staged.path_count; ++n) way.length += staged.paths[n].length;
+  for (int n = begin.times; n < staged.time_count; ++n) way.time += staged.times[n].duration;
+}
+
+}  // namespace
+
+double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
+                              double tool_length_mm, double whole_mm) const noexcept {
+  if (!(whole_mm > 0)) return 0;
+  double share = 1;
+  if (free_joint(model_) < 0) {
+    // The joints of an arm bend on the way up: as far as the whole way stays in reach and travel.
+    constexpr int kSteps = 16;
+    for (int n = 1; n <= kSteps; ++n) {
+      const auto at = solve_near(lifted(pose, whole_mm * n / kSteps), joints, tool_length_mm);
+      if (at.status == SolveStatus::kOk && first_joint_outside_travel(model_, at.q, 0) < 0)
+        continue;
+      share = static_cast<double>(n - 1) / kSteps;
+      break;
+    }
+    return share * whole_mm > kNoClearance_mm ? share * whole_mm : 0;
+  }
+  // With the axis fixed joints and drives of a machine with linear joints are linear in the lift.
+  const auto at = solve_near(lifted(pose, whole_mm), joints, tool_length_mm);
+  const LimitedVector from = limited_of(model_, joints), to = limited_of(model_, at.q);
+  for (int i = 0; i < limited_count(model_); ++i) {
+    const JointSpec& spec = limited_spec(model_, i);
+    if (spec.is_endless) continue;
+    const double by = to[i] - from[i];
+    const double end = by > 0 ? spec.limits.travel_max : spec.limits.travel_min;
+    if (std::abs(by) > 1e-9) share = std::min(share, (end - from[i]) / by);
+  }
+  const double clearance = std::max(0.0, share) * whole_mm;
+  return clearance > kNoClearance_mm ? clearance : 0;
+}
+
+PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
+  const Staging::Mark begin = out.mark();
+  const ToolPose rest = cursor.pose;
+  retracted_ = {};
+  retracted_.from = cursor.joints;
+  left_ = rest;
+  cursor.has_retracted = true;
+  const double up = find_clearance(rest, cursor.joints, cursor.tool_length_mm, model_.clearance_mm);
+  if (!(up > 0)) return {};
+  const Job rapid{block, MotionKind::kApproach, 0, 0};
+  const PathFault fault = run_lift(make_line(rest, lifted(rest, up)), rapid, cursor, out);
+  if (is_fault(fault)) return fault;
+  cursor.pose = lifted(rest, up);
+  retracted_.retract = up;
+  add_way(begin, out, retracted_);
+  return {};
+}
+
+PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging& out) noexcept {
+  const double above = (cursor.pose.tip - left_.tip).dot(left_.axis);
+  const double least = retracted_.retract - kNoClearance_mm;
+  if (above >= least) return {};
+  const double missing = model_.clearance_mm - above;
+  const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, missing);
+  if (above + up < least) {
+    const auto at = solve_near(lifted(cursor.pose, missing), cursor.joints, cursor.tool_length_mm);
+    const int joint = first_joint_outside_travel(model_, at.q, 0);
+    return {PathFault::Kind::kTravel, joint, joint >= 0 ? limited_value(model_, at.q, joint) : 0.0};
+  }
+  way_in_.lift = up;
+  return run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
+}
+
+PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job& job,
+                              PlanCursor& cursor, Staging& out) noexcept {
+  const std::uint32_t rotary = rotary_mask(model_);
+  Job rapid = job;
+  rapid.feed_mm_per_s = 0;
+  PathFault fault;
+  const double apart = largest_difference(way.joints, cursor.joints);
+  const double clearance = model_.clearance_mm;
+  double up = 0, down = 0;
+  if (apart > kNearby) {
+    if (cursor.has_retracted) {
+      fault = lift_longer_tool(rapid, cursor, out);
+      if (is_fault(fault)) return fault;
+    } else {
+      up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
+    }
+    if (up > 0) {
+      fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
+      if (is_fault(fault)) return fault;
+    }
+    down = find_clearance(target, way.joints, cursor.tool_length_mm, clearance);
+  }
+  way_in_.retract = up;
+  way_in_.descent = down;
+  const JointVector over =
+      down > 0 ? solve_near(lifted(target, down), way.joints, cursor.tool_length_mm).q : way.joints;
+  if (largest_difference(over, cursor.joints) > kThere) {
+    fault = run(make_joint_move(cursor.joints, over, rotary), rapid, 0, cursor, out);
+    if (is_fault(fault)) return fault;
+  }
+  if (down > 0) {
+    fault = run_lift(make_line(lifted(target, down), target), job, cursor, out);
+  }
+  return fault;
+}
+
+void Router::describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
+                             const Staging::Mark& begin, const Staging& staged) noexcept {
+  way_in_.is_planned = true;
+  way_in_.epoch = from.epoch;
+  way_in_.sequence = job.block.sequence;
+  way_in_.line = job.block.line;
+  if (from.has_retracted) {
+    way_in_.from = retracted_.from;
+    way_in_.retract = retracted_.retract;
+    way_in_.has_rest = true;
+    way_in_.length = retracted_.length;
+    way_in_.time = retracted_.time;
+  } else {
+    way_in_.from = from.joints;
+  }
+  way_in_.to = way.joints;
+  way_in_.branch = static_cast<std::uint8_t>(way.branch);
+  add_way(begin, staged, way_in_);
+}
+
+void Router::take_looked(std::span<const AheadWay> found, Ways& ways) noexcept {
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    ways.way[n].carries = found[n].carries;
+    ways.way[n].cost += found[n].time_s;
+    if (found[n].end == AheadEnd::kLost) ways.way[n].lost = found[n].lost;
+  }
+  ways.sort();
+}
+
+void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                        Ways& ways) const noexcept {
+  const std::span<const ClBlock> blocks = behind(block);
+  if (blocks.empty()) return;
+  const AheadWays found = ahead_of(ways);
+  AheadLook look(model_);
+  look.begin(tool_length_mm, start, slack_, {found.data(), static_cast<std::size_t>(ways.count)});
+  for (const ClBlock& next : blocks) look.follow(next);
+  take_looked(look.ways(), ways);
+}
+
+void Router::look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                            Ways& ways) const noexcept {
+  const AheadSlack slack{std::max(slack_.tip_mm, model_.tolerances.tip_mm),
+                         std::max(slack_.axis_rad, model_.tolerances.axis_rad)};
+  for (int n = 0; n < ways.count; ++n) {
+    Way& way = ways.way[n];
+    way.carries =
+        follow_ahead(model_, slack, {tool_length_mm, start, way.branch, way.joints}, behind(block));
+  }
+  ways.sort();
+}
+
+/// The blocks behind where `block` begins to be cut, of those that are known.
+std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
+  const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
+    return one.sequence == block.sequence;
+  });
+  if (first == ahead_.end()) return {};
+  return {block.is_arc ? first : first + 1, ahead_.end()};
+}
+
+void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                         Ways& ways) noexcept {
+  if (foresight_ == nullptr) return look_along(block, start, tool_length_mm, ways);
+  const AheadWays found = ahead_of(ways);
+  foresight_->ask({block.sequence, false, start, tool_length_mm},
+                  {found.data(), static_cast<std::size_t>(ways.count)});
+  needs_ahead_ = !foresight_->look();
+  take_looked(foresight_->ways(), ways);
+}
+
+Router::AheadWays Router::ahead_of(const Ways& ways) const noexcept {
+  AheadWays found;
+  for (int n = 0; n < ways.count; ++n) {
+    found[static_cast<std::size_t>(n)] = {ways.way[n].branch,
+                                          ways.way[n].joints[free_joint(model_)]};
+  }
+  return found;
+}
+
+PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, PlanCursor& cursor,
+                                  Staging& out) noexcept {
+  deviation_rad_ = 0;
+  lost_.reset();
+  way_in_ = {};
+  const int outside = first_joint_outside_travel(model_, to, 1e-9);
+  if (outside >= 0) {
+    return {PathFault::Kind::kTravel, outside, limited_value(model_, to, outside)};
+  }
+  const PlanCursor from = cursor;
+  const Staging::Mark mark = out.mark();
+  const PathPiece path = make_joint_move(cursor.joints, to, rotary_mask(model_));
+  const Job job{block, MotionKind::kApproach, 0,
+                path.length > 0 ? job_of(block).feed_mm_per_s / path.length : 0};
+  if (largest_difference(to, cursor.joints) > kThere) {
+    const PathFault fault = run(path, job, 1, cursor, out);
+    if (is_fault(fault)) return fault;
+  }
+  cursor.pose = forward(model_, cursor.tool_length_mm, cursor.joints);
+  Way way;
+  way.joints = cursor.joints;
+  way.branch = branch_of(cursor.pose, cursor.joints, cursor.tool_length_mm);
+  describe_way_in(way, job, from, mark, out);
+  return {};
+}
+
+PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
+  deviation_rad_ = 0;
+  const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
+                        eased(to_vector(block.axis))};
+  Ways ways = find_ways(target, cursor);
+  const int free = free_joint(model_);
+  // Room to turn counts as well: a winding at the end of travel is taken only where no other is.
+  if (free >= 0 && !model_.joints[free].is_endless) {
+    const JointLimits& limits = model_.joints[free].limits;
+    for (int n = 0; n < ways.count; ++n) {
+      const double at = ways.way[n].joints[free];
+      const double room = std::min(at - limits.travel_min, limits.travel_max - at);
+      ways.way[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
+    }
+    ways.sort();
+  }
+  if (free >= 0) {
+    look_along(block, target, cursor.tool_length_mm, ways);
+  } else if (model_.family == MachineFamily::kRobot) {
+    look_along_arm(block, target, cursor.tool_length_mm, ways);
+  }
+  const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
+  PathFault first{PathFault::Kind::kUnreachable, -1, 0};
+  if (ways.count == 0) {
+    const auto at = solve(model_, cursor.tool_length_mm, target, 0, cursor.joints);
+    const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
+    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
+  }
+  lost_.reset();
+  bool is_tried = false;
+  for (int n = 0; n < ways.count; ++n) {
+    const Way& way = ways.way[n];
+    if (way.lost) {
+      if (!lost_) lost_ = way.lost;
+      continue;
+    }
+    PlanCursor trial = cursor;
+    const Staging::Mark mark = out.mark();
+    way_in_ = {};
+    const PathFault fault = approach_by(target, way, job, trial, out);
+    if (!is_fault(fault)) {
+      describe_way_in(way, job, cursor, mark, out);
+      cursor = trial;
+      cursor.pose = target;
+      lost_.reset();
+      return {};
+    }
+    out.go_back(mark);
+    if (!is_tried) first = fault;
+    is_tried = true;
+  }
+  if (is_tried) lost_.reset();
+  return lost_ ? PathFault{PathFault::Kind::kTravel, lost_->joint, lost_->value} : first;
+}
+
+}  // namespace meridian

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/path/cl_block.hpp"
+#include "meridian/planner/approach.hpp"
+#include "service/core/planner/feed/leg_planner.hpp"
+#include "service/core/planner/route/ahead_way.hpp"
+#include "service/core/planner/route/staging.hpp"
+#include "service/core/planner/singular/pole_foresight.hpp"
+
+namespace meridian {
+
+/// Where the plan has got to.
+struct PlanCursor {
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+  JointVector joints{};
+  double tool_length_mm = 0;
+  bool is_first = true;  ///< no motion block yet: the next one is approached
+  std::uint64_t path_index = 0;
+  std::uint32_t window = 0;
+  std::uint16_t epoch = 0;
+  bool has_retracted = false;  ///< the approach goes on from where retract() led
+};
+
+/// Finds the legs of a motion block: which branch and winding, where it stops on the pole, and the
+/// approach of the first block. What it stages is judged; on a fault nothing of the block is meant.
+class Router {
+ public:
+  explicit Router(const MachineModel& model) noexcept : model_(model), legs_(model) {}
+
+  /// Cuts are planned for `factor` times their feed.
+  void set_feed_factor(double factor) noexcept { feed_factor_ = factor; }
+
+  /// Plans the way from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
+  [[nodiscard]] PathFault route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+
+  /// Blocks that are known, among them those that are planned: where branch and winding can be
+  /// chosen, the ways that carry farthest through them come first, of these the cheapest. Empty:
+  /// the nearest. They stay as they are until this is called again.
+  void look_at(std::span<const ClBlock> ahead, const AheadSlack& slack) noexcept {
+    ahead_ = ahead;
+    slack_ = slack;
+  }
+
+  /// Who tells of blocks behind those that are routed; nullptr: only look_at() does. What it does
+  /// not know yet leaves needs_ahead() true: route() is to be called again then.
+  void ask(PoleForesight* foresight) noexcept { foresight_ = foresight; }
+  [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
+
+  /// Nearer to the pole than `rad` the free joint may be turned at rest, the axis inside that of
+  /// where it was programmed.
+  void set_free_cone(double rad) noexcept { free_cone_rad_ = rad; }
+
+  /// Lifts the tool off where the machine rests, along its axis by the clearance as far as travel
+  /// allows, in the name of `block`, which is done there: the first part of the approach.
+  [[nodiscard]] PathFault retract(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+
+  /// Brings the first block's begin under the tool. Ways that are lost (AheadWay) are none: where
+  /// no other is left, lost_block() says why, else it is nothing.
+  [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
+  /// The same to joints that are known: all of them straight there, at the feed of the block (1 rad
+  /// counts as 50 mm of path) and the limits of the joints, with no retraction. There the block
+  /// begins.
+  [[nodiscard]] PathFault approach_joints(const ClBlock& block, const JointVector& to,
+                                          PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] const std::optional<BlockReject>& lost_block() const noexcept { return lost_; }
+  /// The way that the last approach() found.
+  [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }
+
+  /// Turns the free joint by whole `turns` off the part and comes back to where the tool rests, as
+  /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
+  /// is no room for it. The machine has a free joint.
+  [[nodiscard]] PathFault unwind(const ClBlock& block, int turns, PlanCursor& cursor,
+                                 Staging& out) noexcept;
+
+  /// Whether any branch and winding puts the tool on the block's end.
+  [[nodiscard]] bool is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept;
+
+  /// Largest ease of the axis in the last route().
+  [[nodiscard]] double axis_deviation_rad() const noexcept { return deviation_rad_; }
+
+  /// `axis`, or the pole itself where `axis` is eased onto it.
+  [[nodiscard]] Vector3 eased(const Vector3& axis) noexcept;
+
+ private:
+  static constexpr int kMaxWays = 24;
+
+  /// A value of the free joint at the end of a way, from one branch and winding.
+  struct Way {
+    JointVector joints{};
+    double cost = 0;
+    int branch = 0;
+    int carries = 0;  ///< blocks ahead, where they were looked at
+    std::optional<BlockReject> lost;
+  };
+  struct Ways {
+    std::array<Way, kMaxWays> way;
+    int count = 0;
+
+    /// Those that carry farthest first, then the cheapest, equal ones as they were found. Takes no
+    /// memory.
+    void sort() noexcept;
+  };
+
+  /// What all legs of a block share.
+  struct Job {
+    const ClBlock& block;
+    MotionKind motion;
+    double feed_mm_per_s = 0;
+    double share_per_s = 0;
+    double feed_factor = 1;
+  };
+
+  [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
+  [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
+  /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it: of the
+  /// program's begin.
+  void look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                  Ways& ways) const noexcept;
+  /// The same for a robot.
+  void look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                      Ways& ways) const noexcept;
+  [[nodiscard]] std::span<const ClBlock> behind(const ClBlock& block) const noexcept;
+  using AheadWays = std::array<AheadWay, kMaxWays>;
+  [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
+  static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;
+  /// The same by what the foresight tells, where there is one.
+  void look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                   Ways& ways) noexcept;
+  [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;
+  [[nodiscard]] PathFault run(const PathPiece& path, const Job& job, double share,
+                              PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault run_held(PathPiece path, double free_end, const Job& job, double share,
+                                   PlanCursor& cursor, Staging& out) noexcept;
+  /// A way with the axis fixed: on the free joint held where it is, or on the branch in force.
+  [[nodiscard]] PathFault run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
+                                   Staging& out) noexcept;
+  [[nodiscard]] int branch_of(const ToolPose& pose, const JointVector& joints,
+                              double tool_length_mm) const noexcept;
+  /// The joints of `pose` nearest to `joints`, the free joint held where the machine has one.
+  [[nodiscard]] Solution<double> solve_near(const ToolPose& pose, const JointVector& joints,
+                                            double tool_length_mm) const noexcept;
+  [[nodiscard]] PathFault run_solved(PathPiece path, const Job& job, double share,
+                                     PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` ends on the pole.
+  [[nodiscard]] PathFault enter_pole(const PathPiece& path, const Job& job, double share,
+                                     PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` begins on the pole and ends at `end`: turn the free joint at rest, then go.
+  [[nodiscard]] PathFault leave_pole_by(const PathPiece& path, const JointVector& end,
+                                        const Job& job, PlanCursor& cursor, Staging& out) noexcept;
+  /// The free joint at `share` of `path`, followed back from the joints at its end.
+  [[nodiscard]] double follow_back(PathPiece path, const JointVector& end, double share,
+                                   double tool_length_mm) const noexcept;
+  [[nodiscard]] PathFault turn_free(const ToolPose& pose, double free_end, const Job& job,
+                                    PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
+                                     PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault pass_pole(const PathPiece& path, const ToolPose& end, double share,
+                                    const Job& job, PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` begins beside the pole, and the free joint runs out of travel on the branch in force:
+  /// turn it at rest to another branch or winding, then go. `fault`: of the branch in force.
+  [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,
+                                          const Job& job, const PathFault& fault,
+                                          PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] bool is_straight_passage(const PathPiece& path, double free_end,
+                                         const PlanCursor& cursor) noexcept;
+  [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
+                                      PlanCursor& cursor, Staging& out) noexcept;
+  /// Lifts a tool that is longer than the one that retract() led off the part as far as that was.
+  [[nodiscard]] PathFault lift_longer_tool(const Job& rapid, PlanCursor& cursor,
+                                           Staging& out) noexcept;
+  /// Fills in what is known of the way once it is staged from `begin` on.
+  void describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
+                       const Staging::Mark& begin, const Staging& staged) noexcept;
+  /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel; 0: not at
+  /// all.
+  [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
+                                      double tool_length_mm, double whole_mm) const noexcept;
+
+  const MachineModel& model_;
+  LegPlanner legs_;
+  std::span<const ClBlock> ahead_;
+  PoleForesight* foresight_ = nullptr;
+  bool needs_ahead_ = false;  ///< of the last route()
+  AheadSlack slack_;
+  std::optional<BlockReject> lost_;                   ///< of the last approach
+  Approach way_in_;                                   ///< of the last approach
+  Approach retracted_;                                ///< what the last retract() was of it
+  ToolPose left_{Vector3::Zero(), Vector3::UnitZ()};  ///< where the last retract() began
+  double feed_factor_ = 1;
+  double free_cone_rad_ = 0;
+  double deviation_rad_ = 0;
+};
+
+}  // namespace meridian

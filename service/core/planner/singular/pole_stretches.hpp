@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "service/core/planner/singular/pole_probes.hpp"
+#include "service/core/planner/singular/pole_zone.hpp"
+
+namespace meridian {
+
+inline constexpr double kPoleReach_mm = 20;  ///< of a stretch to either side of what is close
+
+/// What is settled of a path, ahead of a stretch that is looked for.
+struct SettledPath {
+  double end = 0;         ///< u: of the last stretch, or of what was handed out
+  bool is_begun = false;  ///< there is a stretch, or something was handed out
+  bool is_held = false;   ///< at the end the free joint is not exact: a stretch goes on there
+  bool is_whole = false;  ///< no more spans come
+  int branch = 0;         ///< at the end
+};
+
+/// A stretch of path close to the pole.
+struct PoleStretch {
+  PolePlace place;                        ///< all but the joints
+  PoleProbes::Place first = 0, last = 0;  ///< of the path close to the pole
+  double nearest = 0;                     ///< u: where it comes closest first
+  bool has_room = false;  ///< the free joint may go another way than the exact one there
+};
+
+/// Looks along the probes of a path for stretches close to the pole, or minima of the distance
+/// farther off, and says where the free joint may leave the exact way about one and be back.
+///
+///     find_next() ─▶ decide() ─▶ find_next() ... until false
+///
+/// What it says depends on spans alone. Units: mm, rad. Source: docs/motion.md, section 10.
+class PoleStretches {
+ public:
+  using Place = PoleProbes::Place;
+
+  enum class Answer : std::uint8_t {
+    kNeedsSpans,  ///< too little is known of what is behind: ask again
+    kPassed,      ///< what is settled reaches over it
+    kFound
+  };
+
+  explicit PoleStretches(const PoleProbes& probes) noexcept : probes_(probes) {}
+  PoleStretches(const PoleStretches&) = delete;
+  PoleStretches& operator=(const PoleStretches&) = delete;
+
+  /// `tolerance_rad`: of the axis from the programmed one.
+  void begin(double tolerance_rad) noexcept;
+  /// All that is held back is looked at again.
+  void begin_again() noexcept;
+
+  /// Goes on to the next place to decide; false: there is none as far as the path is known.
+  [[nodiscard]] bool find_next(const SettledPath& settled) noexcept;
+  /// Decides the place that was found. Behind anything but kNeedsSpans it is done with it.
+  [[nodiscard]] Answer decide(PoleStretch& out) noexcept;
+  /// Takes the last answer back.
+  void go_back_to(Place place) noexcept { place_ = place; }
+
+  /// All in front of this place is decided.
+  [[nodiscard]] Place place() const noexcept { return place_; }
+  /// Whether the path is closest to the pole there of what is around.
+  [[nodiscard]] bool is_minimum(Place place) const noexcept;
+
+ private:
+  /// What is known of a stretch stays while spans behind it come.
+  struct Run {
+    Place first = -1;       ///< where it was found
+    Place last = 0;         ///< of what is close
+    Place seen = 0;         ///< looked at as far as here
+    bool has_left = false;  ///< there is nothing close behind any more
+  };
+
+  /// Whether the path is so close to the pole there that it belongs to a stretch.
+  [[nodiscard]] bool is_close(Place place) const noexcept;
+  [[nodiscard]] bool ends_path(Place place) const noexcept;
+  /// Whether enough of the path behind `u` is known.
+  [[nodiscard]] bool is_known_behind(double u) const noexcept;
+  [[nodiscard]] double nearest_about(Place place) const noexcept;
+  [[nodiscard]] double snapped(double u) const noexcept;
+  void follow() noexcept;
+  [[nodiscard]] Place find_hold(double begin) const noexcept;
+  [[nodiscard]] double find_room_behind(double core_end) const noexcept;
+  void place_begin(PoleStretch& out, double core_begin) const noexcept;
+  void place_end(PoleStretch& out, double core_end) const noexcept;
+
+  const PoleProbes& probes_;
+  double tolerance_rad_ = 0;
+  SettledPath settled_;
+  Place place_ = 0;
+  Run run_;
+};
+
+}  // namespace meridian

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "service/core/planner/singular/pole_zone.hpp"
+#include "service/core/planner/singular/programmed_tip.hpp"
+
+namespace meridian {
+
+/// Singular places of a robot at which a joint has no direction of its own.
+enum class Singularity : std::uint8_t {
+  kWrist,    ///< 6R: the tool in line with the forearm; the roll is redundant, the axis may give
+  kShoulder  ///< the wrist point over the base axis; the yaw is redundant, the tip may give
+};
+inline constexpr int kSingularities = 2;
+
+/// A stretch of path beside a singular place of a robot on which its redundant joint is driven and
+/// the others follow. At the wrist the tip is exact and the axis inside its tolerance, at the
+/// shoulder the axis is exact and the tip inside its tolerance. Outside it the joints follow the
+/// path.
+struct RobotPass {
+  double begin = 0, end = 0;  ///< u; equal: none
+  FreeQuintic joint{};        ///< the redundant one: Bernstein values over [begin, end]
+  int branch_before = 0, branch_after = 0;
+  double deviation = 0;  ///< largest from the programmed path: of the axis, rad, or the tip, mm
+};
+
+/// How a pass meets an end of its range.
+enum class PassEnd : std::uint8_t {
+  kOnPath,  ///< anywhere inside it, on the exact way
+  kAtRest   ///< at that end, which is singular and where the machine rests: any joint value
+};
+
+/// Where a pass may lie: about `nearest`, between `from` and `to`.
+struct PassRange {
+  Singularity at = Singularity::kWrist;
+  double nearest = 0, from = 0, to = 0;
+  PassEnd at_from = PassEnd::kOnPath;  ///< kAtRest: the redundant joint begins as it stands
+  PassEnd at_to = PassEnd::kOnPath;
+  int branch = 0;        ///< on the way in
+  JointVector joints{};  ///< at `from`
+};
+
+/// What stays the same along a path.
+struct PassTask {
+  const MachineModel& model;
+  const SpanLookup& spans;
+  const ProgrammedAxis& axes;
+  const ProgrammedTip& tips;
+  double tool_length_mm = 0;
+  double axis_tolerance_rad = 0, tip_tolerance_mm = 0;  ///< from what was programmed
+  bool is_exact = false;                                ///< from the spans instead
+};
+
+/// Farthest that a pass begins ahead of the nearest point, and ends behind it.
+inline constexpr double kPassReach_mm = 20;
+
+/// The branch that solve_driven() asks for where the redundant joint of `at` is driven.
+[[nodiscard]] constexpr int driven_branch(Singularity at, int branch) noexcept {
+  return at == Singularity::kShoulder ? branch | robot::kYawDriven : branch;
+}
+
+/// How far `pose` in W is from the singular place with the front and the elbow of `branch`: the
+/// angle between tool and forearm, or wrist point and base axis in mm. Infinite where the robot has
+/// no such place.
+[[nodiscard]] double singular_distance(const MachineModel& model, double tool_length_mm,
+                                       Singularity at, const ToolPose& pose, int branch,
+                                       const JointVector& joints) noexcept;
+
+/// How a robot comes to a block.
+struct PassCourse {
+  const MachineModel& model;
+  double tool_length_mm = 0;
+  int branch = 0;
+  const JointVector& joints;
+};
+
+/// Whether `pose` is so near a singular place that the redundant joint turns fast there.
+[[nodiscard]] bool is_near_singularity(const PassCourse& course, const ToolPose& pose) noexcept;
+
+/// Whether the way from `from` to the end of `block`, whose axis is unit, comes so near one.
+[[nodiscard]] bool comes_near_singularity(const PassCourse& course, const ToolPose& from,
+                                          const ClBlock& block) noexcept;
+
+/// Picks the pass with the least time between `from` and `to`. Candidates are quintics of the
+/// redundant joint that meet the exact way with two derivatives at both ends, out on the same
+/// branch or on the one with the bend, or the arm, turned over: straight through, the joint hardly
+/// turns. One that leaves the tolerance about the programmed path, or whose joints leave travel, is
+/// none. Bounded work, no memory. Source: docs/motion.md, section 2. Proof:
+/// tests/property/planner/robot_passes_test.cpp.
+[[nodiscard]] RobotPass find_robot_pass(const PassTask& task, const PassRange& range) noexcept;
+
+}  // namespace meridian

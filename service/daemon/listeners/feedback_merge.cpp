@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/daemon/listeners/feedback_merge.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "service/daemon/ports/drive_words.hpp"
+
+namespace meridian::interpolator {
+
+DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group,
+                                       std::int64_t now_ns) noexcept {
+  for (DriveSource& source : sources_.places) {
+    if (source.writer == writer && source.group == group) return &source;
+  }
+  for (DriveSource& source : sources_.places) {
+    if (source.writer == 0) return &source;
+  }
+  DriveSource* idlest = nullptr;
+  for (DriveSource& source : sources_.places) {
+    const bool counts = source.bound_mask != 0 || source.has_only_stop || source.is_emergency_stop;
+    if (counts || now_ns - source.arrival_ns <= kSilence_ns) continue;
+    if (idlest == nullptr || source.arrival_ns < idlest->arrival_ns) idlest = &source;
+  }
+  if (idlest != nullptr) *idlest = {};
+  return idlest;
+}
+
+bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
+                         std::int64_t now_ns, bool may_hand_over) noexcept {
+  if (writer == 0 || (sample.joint_mask >> kMaxJoints) != 0) return false;
+  DriveSource* const place = find_place(writer, sample.drive_group, now_ns);
+  if (place == nullptr) {
+    sources_.is_full = true;
+    if (sample.is_emergency_stop) stopped_ns_ = now_ns;
+    merge(now_ns);
+    return true;
+  }
+  const bool is_new = place->writer == 0;
+  if (!is_new && sample.sample <= place->sample) return false;
+  place->writer = writer;
+  place->group = sample.drive_group;
+  place->claimed_mask = sample.joint_mask & joints_;
+  place->sample = sample.sample;
+  place->cycle_seen = sample.cycle_seen;
+  place->master = sample.service_id;
+  if (is_new) place->first_ns = now_ns;
+  place->arrival_ns = now_ns;
+  place->has_only_stop = sample.joint_mask == 0;
+  place->is_emergency_stop = sample.is_emergency_stop;
+  bind(*place, now_ns, may_hand_over);
+  take_joints(sample, place->joints());
+  merge(now_ns);
+  return true;
+}
+
+void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept {
+  std::uint32_t kept = 0;
+  for (DriveSource& other : sources_.places) {
+    if (&other == &source || other.bound_mask == 0) continue;
+    const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
+    const std::uint32_t reported = is_silent ? 0 : other.claimed_mask;
+    if (may_hand_over) other.bound_mask &= reported | ~source.claimed_mask;
+    kept |= other.bound_mask;
+  }
+  source.bound_mask |= source.claimed_mask & ~kept;
+}
+
+void FeedbackMerge::forget(std::uint64_t writer, std::int64_t now_ns, bool is_off) noexcept {
+  bool has_more = false;
+  for (DriveSource& source : sources_.places) {
+    const bool is_missed = !is_off && (source.bound_mask != 0 || source.has_only_stop);
+    if (source.writer == writer && !is_missed) source = {};
+    has_more = has_more || source.writer == 0;
+  }
+  if (has_more) sources_.is_full = false;
+  merge(now_ns);
+}
+
+void FeedbackMerge::take_joints(const dds::DriveFeedback& sample, std::uint32_t joints) noexcept {
+  for (std::uint32_t left = joints; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const std::uint32_t bit = 1U << i;
+    feedback_.position[i] = sample.position[i];
+    words_.statusword[i] = sample.statusword[i];
+    words_.error[i] = sample.error[i];
+    const DriveState state = drive_state(sample.statusword[i]);
+    const auto set = [bit](std::uint32_t& mask, bool is_set) {
+      mask = is_set ? mask | bit : mask & ~bit;
+    };
+    const bool is_obeyed = sample.service_id == service_id_ || sample.service_id == 0;
+    set(feedback_.foreign_mask, service_id_ != 0 && !is_obeyed);
+    set(feedback_.enabled_mask, state == DriveState::kOperationEnabled);
+    set(feedback_.fault_mask, state == DriveState::kFault || state == DriveState::kFaultReaction);
+    set(feedback_.referenced_mask, (sample.referenced_mask & bit) != 0);
+    const bool is_homing = sample.mode_display[i] == dds::kHomingMode;
+    const HomingWord homing = is_homing ? homing_word(sample.statusword[i]) : HomingWord{};
+    set(feedback_.homing_mask, is_homing);
+    set(feedback_.still_mask, homing.is_still);
+    set(feedback_.homed_mask, homing.is_attained);
+    set(feedback_.homing_error_mask, homing.has_failed);
+  }
+}
+
+void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
+  const DriveSource* oldest = nullptr;
+  const DriveSource* deafest = nullptr;
+  feedback_.joint_mask = feedback_.contested_mask = 0;
+  feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
+  feedback_.emergency_ns = feedback_.emergency_stop ? stopped_ns_ : 0;
+  for (const DriveSource& source : sources_.places) {
+    if (source.writer == 0) continue;
+    if (source.is_emergency_stop) {
+      feedback_.emergency_stop = true;
+      feedback_.emergency_ns = std::max(feedback_.emergency_ns, source.arrival_ns);
+    }
+    for (const DriveSource& other : sources_.places) {
+      if (other.writer == 0) continue;
+      feedback_.contested_mask |= contested(source, other, now_ns, kSilence_ns);
+    }
+    if (source.joints() == 0 && !source.has_only_stop) continue;
+    if (oldest == nullptr || source.arrival_ns < oldest->arrival_ns) oldest = &source;
+    if (source.joints() == 0) continue;
+    if (deafest == nullptr || source.cycle_seen < deafest->cycle_seen) deafest = &source;
+    feedback_.joint_mask |= source.joints();
+  }
+  const auto lowest = [](const DriveSource* source) noexcept {
+    const bool has_joint = source != nullptr && source->joints() != 0;
+    return has_joint ? static_cast<std::uint8_t>(std::countr_zero(source->joints())) : kNoJoint;
+  };
+  feedback_.arrival_ns = oldest != nullptr ? oldest->arrival_ns : 0;
+  feedback_.oldest_joint = oldest != nullptr ? lowest(oldest) : 0;
+  feedback_.cycle_seen = deafest != nullptr ? deafest->cycle_seen : 0;
+  feedback_.deafest_joint = deafest != nullptr ? lowest(deafest) : 0;
+  words_.joint_mask = feedback_.joint_mask;
+  words_.enabled_mask = feedback_.enabled_mask;
+  words_.fault_mask = feedback_.fault_mask;
+  words_.contested_mask = feedback_.contested_mask;
+  words_.oldest_group = oldest != nullptr ? oldest->group : 0;
+  words_.oldest_mask = oldest != nullptr ? oldest->joints() : 0;
+}
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "service/daemon/supervisor/supervisor.hpp"
+
+/// What enabling devices do, in words: the cycle has held the machine by then where it had to.
+namespace meridian::interpolator {
+
+void Supervisor::take_enabling_changes() {
+  using Beat = EnablingWatch::Beat;
+  EnablingChange change;
+  while (ports_.enabling_changes.try_pop(change)) {
+    const std::string device = std::string("enabling device of ") + change.name.data();
+    switch (change.beat) {
+      case Beat::kBegun:
+        enabling_devices_[enabling_devices_at_++ % enabling_devices_.size()] = {change.source,
+                                                                                change.name.data()};
+        notice(device + " is pressed", false);
+        break;
+      case Beat::kReleased:
+        notice(device + " was released: what moved is held", true);
+        break;
+      case Beat::kLeft:
+        notice(device + " has left", false);
+        break;
+      case Beat::kNoRoom:
+        notice(device + " does not count: there are too many of them", true);
+        break;
+      case Beat::kKnown:
+        break;
+    }
+  }
+  const std::uint32_t losses = ports_.enabling.losses();
+  if (std::exchange(enabling_losses_, losses) == losses) return;
+  const std::uint64_t source = ports_.enabling.lost_source();
+  const auto device =
+      std::find_if(enabling_devices_.begin(), enabling_devices_.end(),
+                   [source](const EnablingDevice& known) { return known.source == source; });
+  notice("enabling device of " + (device != enabling_devices_.end() ? device->name : "somebody") +
+             " fell silent: what moved is held; press it again, then resume",
+         true);
+}
+
+/// What finds no room is lost: telemetry is held up by then, and motion is not.
+void Supervisor::notice(const std::string& text, bool is_for_status) {
+  Notice notice{.is_warning = is_for_status, .is_for_status = is_for_status, .text = {}};
+  std::memcpy(notice.text.data(), text.data(), std::min(text.size(), notice.text.size() - 1));
+  (void)ports_.notices.try_push(notice);
+}
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/cycle/step.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/daemon/ports/cycle_clock.hpp"
+#include "service/daemon/ports/ports.hpp"
+
+namespace meridian::interpolator {
+
+/// The fixed-rate loop: sleep, step(), hand over. Never calls DDS, allocates, locks or logs; its
+/// system calls are the sleep and the publisher's wake. Proof: tests/integration/counters_test.cpp.
+class CycleThread {
+ public:
+  CycleThread(const MachineModel& model, const CycleOptions& options, Ports& ports) noexcept;
+
+  /// Before run(): where the workpiece lies.
+  void set_up(const SetUpInForce& in_force) noexcept { place(model_, in_force); }
+  /// Runs until Ports::is_stopping.
+  void run() noexcept;
+
+ private:
+  /// Takes over the work frame that an accepted word puts in force, from the next period on.
+  void take_frame() noexcept;
+  void gather(const Period& period, std::int64_t now_ns) noexcept;
+  void hand_over() noexcept;
+  void show() noexcept;
+  void show_drives_asked() noexcept;
+  void watch_enabling(std::int64_t now_ns) noexcept;
+  void tell_spans() noexcept;
+
+  MachineModel model_;
+  Ports& ports_;
+  CycleState state_;
+  MotionReader motion_;
+  CycleInputs inputs_;
+  StepOutput output_;
+  CycleView view_;
+  DrivesAsked drives_asked_;  ///< as it was shown last
+  std::int32_t computation_ns_ = 0;
+  struct Times {
+    std::int64_t woke_ns = 0, gathered_ns = 0, computed_ns = 0, handed_ns = 0;
+  } times_;  ///< of this cycle; gathered_ns only where it is traced
+  trace::SpanWriter spans_;
+};
+
+}  // namespace meridian::interpolator

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Work frame and tools as they are put in force: into the status and the recording.
+#include "service/daemon/threads/telemetry_thread.hpp"
+
+namespace meridian::interpolator {
+
+bool TelemetryThread::take_set_up() noexcept {
+  if (!ports_.set_up.for_telemetry.refresh()) return false;
+  (void)ports_.set_up.telemetry_tools.try_take(tools_);
+  put_in_force(ports_.set_up.for_telemetry.latest());
+  return true;
+}
+
+void TelemetryThread::put_in_force(const SetUpInForce& in_force) noexcept {
+  in_force_ = in_force;
+  place(model_, in_force);
+  setup_.frame = in_force.sum;
+  setup_.tools = in_force.tools;
+  status_.work_frame = in_force.number;
+  status_.frame = in_force.sum;
+  status_.tools = in_force.tools;
+}
+
+void TelemetryThread::record_frame(std::uint64_t cycle) noexcept {
+  recorder_.take(
+      record::RecordedFrame{cycle, in_force_.number, in_force_.origin_mm, in_force_.rotation});
+}
+
+/// A table that is longer comes from the service's own file alone: it was too long to be told.
+void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
+  constexpr std::size_t kMaxRecorded = 256;
+  if (tools_.tools().size() > kMaxRecorded) return;
+  if (tools_.tools().empty()) recorder_.take(record::RecordedTool{cycle, 0, 0, 0});
+  for (const Tool& tool : tools_.tools()) {
+    recorder_.take(
+        record::RecordedTool{cycle, tool.number, tool.tip_length_mm(), tool.cutting_radius_mm()});
+  }
+}
+
+void TelemetryThread::tell_set_up_told() noexcept {
+  if (ports_.set_up.told.load(std::memory_order_relaxed) == in_force_.change) return;
+  ports_.set_up.status.store(status_.status_sequence, std::memory_order_relaxed);
+  ports_.set_up.told.store(in_force_.change, std::memory_order_release);
+}
+
+}  // namespace meridian::interpolator

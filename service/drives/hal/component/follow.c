@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
+#include "service/drives/hal/component/follow.h"
+
+static const struct meridian_hal_setpoint* kept(const struct meridian_hal_follow* me,
+                                                uint64_t number) {
+  const struct meridian_hal_setpoint* const found = &me->kept[number % MERIDIAN_HAL_KEPT];
+  return number > 0 && found->number == number ? found : 0;
+}
+
+/// The first setpoint that ends at `at_ns` or later; 0: all end before it.
+static const struct meridian_hal_setpoint* ends_after(const struct meridian_hal_follow* me,
+                                                      int64_t at_ns) {
+  const struct meridian_hal_setpoint* out = 0;
+  for (uint64_t number = me->newest; number > 0 && number + MERIDIAN_HAL_KEPT > me->newest;
+       --number) {
+    const struct meridian_hal_setpoint* const one = kept(me, number);
+    if (one == 0 || one->end_ns < at_ns) break;
+    out = one;
+  }
+  return out;
+}
+
+/// The cubic through positions and velocities of both ends. Where it is farther from the straight
+/// line than the largest acceleration bends a way, the velocities do not belong to the positions:
+/// the straight line then.
+static void between(const struct meridian_hal_setpoint* from,
+                    const struct meridian_hal_setpoint* to, double acceleration, int64_t at_ns,
+                    int joint, double* position, double* velocity) {
+  const double length_s = 1e-9 * (double)(to->end_ns - from->end_ns);
+  const double s = length_s > 0 ? 1e-9 * (double)(at_ns - from->end_ns) / length_s : 1;
+  const double p0 = from->position[joint], way = to->position[joint] - p0;
+  const double v0 = from->velocity[joint] * length_s, v1 = to->velocity[joint] * length_s;
+  const double curve = v0 + v1 - 2 * way, steep = 3 * way - 2 * v0 - v1;
+  const double line = p0 + s * way, cubic = p0 + s * (v0 + s * (steep + s * curve));
+  const double off = cubic < line ? line - cubic : cubic - line;
+  const int is_smooth = off <= acceleration * length_s * length_s / 8;
+  *position = is_smooth ? cubic : line;
+  const double slope = is_smooth ? v0 + s * (2 * steep + 3 * s * curve) : way;
+  *velocity = length_s > 0 ? slope / length_s : 0;
+}
+
+static void ramp_down(struct meridian_hal_follow* me, const struct meridian_hal_setup* setup,
+                      int joint, double dt_s) {
+  const double step = setup->fault_acceleration[joint] * dt_s;
+  const double before = me->velocity[joint], speed = before < 0 ? -before : before;
+  // Without an acceleration it stands at once.
+  const double after = step > 0 && speed > step ? speed - step : 0;
+  me->velocity[joint] = before < 0 ? -after : after;
+  if (step > 0) me->position[joint] += 0.5 * (before + me->velocity[joint]) * dt_s;
+  if (after == 0) me->phase[joint] = MERIDIAN_HAL_LOST;
+}
+
+/// `at_ns` is not behind the newest setpoint.
+static void follow(struct meridian_hal_follow* me, const struct meridian_hal_setup* setup,
+                   int64_t at_ns, int joint) {
+  const struct meridian_hal_setpoint* const to = ends_after(me, at_ns);
+  const struct meridian_hal_setpoint* const from = kept(me, to->number - 1);
+  const uint32_t bit = 1u << joint;
+  if (from == 0 || (from->on_mask & bit) == 0) {  // it begins
+    me->position[joint] = to->position[joint];
+    me->velocity[joint] = to->velocity[joint];
+    return;
+  }
+  between(from, to, setup->fault_acceleration[joint], at_ns, joint, &me->position[joint],
+          &me->velocity[joint]);
+}
+
+/// Beyond the newest setpoint the joint goes on with its velocity: a late one is bridged, no jump.
+static void bridge(struct meridian_hal_follow* me, int joint, double dt_s) {
+  me->position[joint] += me->velocity[joint] * dt_s;
+}
+
+void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal_shared* shared,
+                       const struct meridian_hal_setup* setup, int64_t now_ns,
+                       const double* feedback) {
+  struct meridian_hal_setpoint copy[MERIDIAN_HAL_KEPT];
+  if (meridian_hal_read(&shared->setpoint_lock, shared->setpoints, copy, sizeof copy)) {
+    memcpy(me->kept, copy, sizeof copy);
+    for (int i = 0; i < MERIDIAN_HAL_KEPT; ++i) {
+      if (copy[i].number > me->newest) me->newest = copy[i].number;
+    }
+  }
+  const double dt_s = me->time_ns > 0 ? 1e-9 * (double)(now_ns - me->time_ns) : 0;
+  me->time_ns = now_ns;
+  const struct meridian_hal_setpoint* const newest = kept(me, me->newest);
+  const int64_t at_ns = now_ns - setup->period_ns;
+  const int is_lost = newest == 0 || now_ns - newest->end_ns > setup->bridge_ns + setup->period_ns;
+  for (int i = 0; i < MERIDIAN_HAL_JOINTS; ++i) {
+    const int is_wanted = newest != 0 && (newest->on_mask >> i & 1u) != 0;
+    switch (me->phase[i]) {
+      case MERIDIAN_HAL_OFF:
+        if (is_wanted && !is_lost) me->phase[i] = MERIDIAN_HAL_FOLLOWS;
+        break;
+      case MERIDIAN_HAL_FOLLOWS:
+        if (is_lost) me->phase[i] = MERIDIAN_HAL_RAMPS;
+        if (!is_wanted) me->phase[i] = MERIDIAN_HAL_OFF;
+        break;
+      case MERIDIAN_HAL_RAMPS:
+        break;
+      case MERIDIAN_HAL_LOST:
+        if (!is_wanted && !is_lost) me->phase[i] = MERIDIAN_HAL_OFF;
+        break;
+    }
+    switch (me->phase[i]) {
+      case MERIDIAN_HAL_FOLLOWS:
+        if (newest->end_ns < at_ns) {
+          bridge(me, i, dt_s);
+        } else {
+          follow(me, setup, at_ns, i);
+        }
+        break;
+      case MERIDIAN_HAL_RAMPS:
+        ramp_down(me, setup, i, dt_s);
+        break;
+      default:
+        me->position[i] = feedback[i];
+        me->velocity[i] = 0;
+        break;
+    }
+  }
+}

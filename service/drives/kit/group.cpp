@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/kit/group.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meridian::drive {
+
+Group::Group(const GroupSpec& spec)
+    : number_(spec.number),
+      machine_joints_(spec.joints),
+      cycle_s_(static_cast<double>(spec.cycle_ns) * 1e-9),
+      bridge_cycles_(spec.bridge_cycles),
+      own_bridge_cycles_(spec.bridge_cycles) {
+  axis_of_.fill(-1);
+  for (const GroupAxis& axis : spec.axes) {
+    const auto joint = static_cast<std::size_t>(axis.joint);
+    axis_of_[joint] = size();
+    joint_mask_ |= 1U << joint;
+    joints_.push_back(joint);
+    axes_.emplace_back(axis.spec, axis.homing, axis.position);
+    machine_joints_ = std::max(machine_joints_, axis.joint + 1);
+  }
+}
+
+bool Group::is_off() const noexcept {
+  return std::all_of(axes_.begin(), axes_.end(), [](const FollowingAxis& axis) {
+    return axis.state() == DriveState::kSwitchOnDisabled ||
+           axis.state() == DriveState::kReadyToSwitchOn || axis.state() == DriveState::kFault;
+  });
+}
+
+Drop Group::take(const dds::DriveCommand& command, std::uint64_t sender) noexcept {
+  const Drop drop = admit(command, sender);
+  if (drop == Drop::kNone) apply(command);
+  return drop;
+}
+
+Drop Group::admit(const dds::DriveCommand& command, std::uint64_t sender) noexcept {
+  const Master from{sender, command.service_id};
+  const Master before = pin_.master();
+  Drop drop = Drop::kNone;
+  if (command.service_id == 0 || command.drive >= machine_joints_) {
+    drop = Drop::kImplausible;
+  } else if (!pin_.obeys(from)) {
+    drop = Drop::kForeignCommand;
+  }
+  dropped_.count(drop);
+  if (drop == Drop::kNone && before != from) obey_new_master();
+  return drop;
+}
+
+void Group::apply(const dds::DriveCommand& command) noexcept {
+  const int axis = command.drive < axis_of_.size() ? axis_of_[command.drive] : -1;
+  if (axis < 0) return;
+  axes_[static_cast<std::size_t>(axis)].take_controlword(command.controlword, command.mode);
+}
+
+void Group::obey_new_master() noexcept {
+  has_setpoint_ = is_new_ = false;
+  age_ = {};
+  bridge_cycles_ = own_bridge_cycles_;
+  for (const Bridge& bridge : bridges_) {
+    if (bridge.by == pin_.master()) bridge_cycles_ = bridge.cycles;
+  }
+}
+
+void Group::see_master(bool is_there) noexcept { pin_.work(is_there, is_off()); }
+
+void Group::take(const Bridge& bridge) noexcept {
+  // A service says it when it comes, which may be before the last master is gone.
+  const auto known = std::find_if(bridges_.begin(), bridges_.end(), [&](const Bridge& one) {
+    return one.by.participant == bridge.by.participant;
+  });
+  if (known != bridges_.end()) {
+    *known = bridge;
+  } else {
+    bridges_[next_bridge_++ % bridges_.size()] = bridge;
+  }
+  if (pin_.state() != MasterPin::State::kFree && bridge.by == pin_.master()) {
+    bridge_cycles_ = bridge.cycles;
+  }
+}
+
+Drop Group::take(const dds::SetpointSample& setpoint, std::uint64_t sender,
+                 std::int64_t arrival_ns) noexcept {
+  const Drop drop = admit(setpoint, sender, arrival_ns);
+  if (drop != Drop::kNone || (setpoint.setpoint.flags & kSetpointDry) != 0) return drop;
+  return accept(setpoint);
+}
+
+Drop Group::admit(const dds::SetpointSample& setpoint, std::uint64_t sender,
+                  std::int64_t arrival_ns) noexcept {
+  const Drop drop = check(setpoint, sender, arrival_ns);
+  dropped_.count(drop);
+  return drop;
+}
+
+Drop Group::check(const dds::SetpointSample& setpoint, std::uint64_t sender,
+                  std::int64_t arrival_ns) noexcept {
+  if (pin_.state() == MasterPin::State::kFree) return Drop::kNoMaster;
+  if (!pin_.is_master(sender)) return Drop::kForeignSetpoint;
+  if (setpoint.crc != dds::setpoint_crc(setpoint.setpoint, pin_.master().service_id)) {
+    return Drop::kChecksum;
+  }
+  if (arrival_ns == 0) return Drop::kNone;
+  const auto longest_ns = static_cast<std::int64_t>(1e9 * cycle_s_ * (bridge_cycles_ + 1));
+  const bool is_late = age_.is_late(setpoint.setpoint.due_ns, arrival_ns, longest_ns, is_off());
+  return is_late ? Drop::kStale : Drop::kNone;
+}
+
+Drop Group::accept(const dds::SetpointSample& setpoint) noexcept {
+  if (has_setpoint_ && setpoint.setpoint.cycle <= newest_.setpoint.cycle) {
+    dropped_.count(Drop::kOutOfOrder);
+    return Drop::kOutOfOrder;
+  }
+  newest_ = setpoint;
+  has_setpoint_ = is_new_ = true;
+  ++setpoints_seen_;
+  return Drop::kNone;
+}
+
+/// Between the setpoint that the drives worked with last and the newest: by the sender's cycles,
+/// and no longer than this side's own periods allow.
+double Group::elapsed_s() const noexcept {
+  constexpr std::int64_t kSlack = 2;  // periods of two clocks
+  const std::uint64_t cycles = newest_.setpoint.cycle - followed_cycle_;
+  const auto most = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
+  return cycle_s_ * static_cast<double>(std::min(cycles, most));
+}
+
+AxisInput Group::input_of(std::size_t joint, int bridged) const noexcept {
+  return {.is_new = is_new_,
+          .is_enabled = (newest_.setpoint.flags & kSetpointEnabled) != 0,
+          .is_fault_stop = (newest_.setpoint.flags & kSetpointFaultStop) != 0,
+          .position = newest_.setpoint.position[joint],
+          .velocity = newest_.setpoint.velocity[joint],
+          .elapsed_s = elapsed_s(),
+          .periods_without = periods_without_,
+          .bridge_cycles = bridge_cycles_,
+          .bridged_s = cycle_s_ * bridged};
+}
+
+void Group::work(int periods, Hardware& hardware) noexcept {
+  const double dt_s = cycle_s_ * periods;
+  // Who slept through a setpoint did not miss it: periods that this side lost count from the next
+  // one on, when a service that the same host held up has sent again.
+  periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
+  periods_slept_ = is_new_ ? 0 : periods - 1;
+  // However long this side slept, the sent velocity leads on no farther than the bridge.
+  if (is_new_) bridge_left_ = bridge_cycles_;
+  const int bridged = is_new_ ? 0 : std::min(periods, bridge_left_);
+  bridge_left_ -= bridged;
+  if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
+  periods_since_ += periods;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const int axis = static_cast<int>(i);
+    hardware.write(axis, axes_[i].lead(input_of(joints_[i], bridged), dt_s, axis, hardware));
+  }
+  if (is_new_) {
+    followed_cycle_ = newest_.setpoint.cycle;
+    periods_since_ = 0;
+  }
+  is_new_ = false;
+  hardware.exchange(dt_s);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    axes_[i].see(hardware.read(static_cast<int>(i)), dt_s);
+  }
+  is_emergency_stop_ = hardware.is_emergency_stop();
+}
+
+void Group::see(Hardware& hardware) noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    axes_[i].see(hardware.read(static_cast<int>(i)), 0);
+  }
+  is_emergency_stop_ = hardware.is_emergency_stop();
+}
+
+dds::DriveFeedback Group::feedback() noexcept {
+  dds::DriveFeedback feedback;
+  feedback.drive_group = number_;
+  feedback.joint_mask = joint_mask_;
+  feedback.sample = ++sample_;
+  feedback.cycle_seen = has_setpoint_ ? newest_.setpoint.cycle : 0;
+  feedback.service_id = pin_.master().service_id;
+  feedback.is_emergency_stop = is_emergency_stop_;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const FollowingAxis& axis = axes_[i];
+    const std::size_t joint = joints_[i];
+    feedback.position[joint] = axis.position();
+    feedback.statusword[joint] = axis.statusword();
+    feedback.error[joint] = axis.error();
+    feedback.mode_display[joint] = axis.mode();
+    if (axis.is_referenced()) feedback.referenced_mask |= 1U << joint;
+  }
+  return feedback;
+}
+
+}  // namespace meridian::drive

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/machine/inspect/placing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/limited.hpp"
+
+namespace meridian::inspect {
+namespace {
+
+constexpr int kSpread = 1024;   // frames that the search begins with
+constexpr int kBest = 12;       // of them, that steps begin from
+constexpr int kFewPoses = 400;  // that a search looks at
+constexpr int kRounds = 8;      // of search, each with the pose that was worst before
+constexpr double kSmallest_mm = 0.05, kSmallest_rad = 1e-4;
+constexpr double kOutOfReach = -1;  // and a share of the program more
+
+/// Number `index` of the van der Corput sequence in `base`: spread evenly over 0 to 1.
+double spread(int index, int base) {
+  double value = 0, share = 1.0 / base;
+  for (; index > 0; index /= base, share /= base) value += share * (index % base);
+  return value;
+}
+
+/// Range of a joint over a program.
+struct Range {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+  std::uint32_t least_line = 0, most_line = 0;
+
+  void add(double q, std::uint32_t line) {
+    if (q < least) {
+      least = q;
+      least_line = line;
+    }
+    if (q > most) {
+      most = q;
+      most_line = line;
+    }
+  }
+};
+
+/// What is left to the ends of travel: negative where the range is beyond, and the nearer end.
+struct Room {
+  double share = 1;
+  std::uint32_t line = 0;
+};
+
+Room room_of(const JointSpec& joint, Range& range) {
+  const double low = joint.limits.travel_min, high = joint.limits.travel_max;
+  const double half = 0.5 * (high - low);
+  if (joint.is_rotary) {
+    // The whole program in the winding that leaves most room.
+    constexpr double kTurn = 2 * std::numbers::pi;
+    const double off = 0.5 * (low + high) - 0.5 * (range.least + range.most);
+    const double by = kTurn * std::round(off / kTurn);
+    range.least += by;
+    range.most += by;
+  }
+  const double below = (range.least - low) / half, above = (high - range.most) / half;
+  return below < above ? Room{below, range.least_line} : Room{above, range.most_line};
+}
+
+Fit fit_on(const MachineModel& model, const std::vector<ProgramPose>& poses, int branch) {
+  Fit fit;
+  fit.branch = branch;
+  std::array<Range, kMaxLimited> ranges;
+  JointVector q{};
+  for (int i = 0; i < model.joint_count; ++i) q[i] = model.joints[i].home;
+  std::size_t out_of_reach = 0;
+  for (const ProgramPose& at : poses) {
+    const auto solution = solve(model, at.tool_length_mm, at.pose, branch, q);
+    if (solution.status == SolveStatus::kUnreachable) {
+      if (out_of_reach++ == 0) fit.line = at.line;
+      continue;
+    }
+    q = solution.q;
+    const LimitedVector all = limited_of(model, q);
+    for (int i = 0; i < limited_count(model); ++i)
+      ranges[static_cast<std::size_t>(i)].add(all[i], at.line);
+  }
+  if (out_of_reach > 0) {
+    fit.margin =
+        kOutOfReach - static_cast<double>(out_of_reach) / static_cast<double>(poses.size());
+    fit.score = fit.margin;
+    return fit;
+  }
+  constexpr double kOfMean = 0.01;
+  double sum = 0;
+  fit.margin = 1;
+  for (int i = 0; i < limited_count(model); ++i) {
+    Range& range = ranges[static_cast<std::size_t>(i)];
+    const JointSpec& joint = limited_spec(model, i);
+    if (!joint.is_endless) {
+      const Room room = room_of(joint, range);
+      sum += room.share;
+      if (room.share < fit.margin) {
+        fit.margin = std::max(room.share, -0.999);
+        fit.joint = i;
+        fit.line = room.line;
+      }
+    }
+    fit.least[i] = range.least;
+    fit.most[i] = range.most;
+  }
+  fit.score = fit.margin + kOfMean * sum / limited_count(model);
+  return fit;
+}
+
+std::vector<ProgramPose> few_of(const std::vector<ProgramPose>& poses) {
+  const std::size_t step = std::max<std::size_t>(1, poses.size() / kFewPoses);
+  std::vector<ProgramPose> few;
+  for (std::size_t n = 0; n < poses.size(); n += step) few.push_back(poses[n]);
+  return few;
+}
+
+/// A frame as the search moves it: x, y, z and the turn.
+using Place = std::array<double, 4>;
+
+class Search {
+ public:
+  Search(const MachineModel& model, const PlacingBox& box) : model_(model), box_(box) {}
+
+  [[nodiscard]] Place run(const std::vector<ProgramPose>& poses, const std::vector<Place>& also) {
+    struct Tried {
+      Place place;
+      double score;
+    };
+    std::vector<Tried> tried;
+    const auto add = [&](const Place& place) { tried.push_back({place, score(place, poses)}); };
+    for (int n = 0; n < kSpread; ++n) {
+      Place place{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        constexpr std::array kBases = {2, 3, 5};
+        place[i] = box_.low_mm[i] + spread(n, kBases[i]) * (box_.high_mm[i] - box_.low_mm[i]);
+      }
+      if (box_.may_turn) place[3] = 2 * std::numbers::pi * (spread(n, 7) - 0.5);
+      add(place);
+    }
+    for (const Place& place : also) add(place);
+    std::stable_sort(tried.begin(), tried.end(),
+                     [](const Tried& a, const Tried& b) { return a.score > b.score; });
+    Tried best = tried.front();
+    for (std::size_t n = 0; n < std::min<std::size_t>(kBest, tried.size()); ++n) {
+      Tried from = tried[n];
+      climb(from.place, from.score, poses);
+      if (from.score > best.score) best = from;
+    }
+    return best.place;
+  }
+
+  [[nodiscard]] int frames() const noexcept { return frames_; }
+
+ private:
+  [[nodiscard]] double score(const Place& place, const std::vector<ProgramPose>& poses) {
+    ++frames_;
+    return fit_of(placed(model_, {place[0], place[1], place[2]}, place[3]), poses).score;
+  }
+
+  /// Steps along each direction as long as they gain, halved where none does.
+  void climb(Place& at, double& best, const std::vector<ProgramPose>& poses) {
+    Place step{};
+    for (std::size_t i = 0; i < 3; ++i) step[i] = (box_.high_mm[i] - box_.low_mm[i]) / 8;
+    step[3] = box_.may_turn ? std::numbers::pi / 8 : 0;
+    const auto is_worth = [&] {
+      return *std::max_element(step.begin(), step.begin() + 3) > kSmallest_mm ||
+             step[3] > kSmallest_rad;
+    };
+    while (is_worth()) {
+      bool has_gained = false;
+      for (std::size_t i = 0; i < step.size(); ++i) {
+        for (const double by : {step[i], -step[i]}) {
+          Place next = at;
+          next[i] += by;
+          if (i < 3) next[i] = std::clamp(next[i], box_.low_mm[i], box_.high_mm[i]);
+          if (next == at) continue;
+          const double found = score(next, poses);
+          if (!(found > best)) continue;
+          best = found;
+          at = next;
+          has_gained = true;
+        }
+      }
+      if (has_gained) continue;
+      for (double& one : step) one *= 0.5;
+    }
+  }
+
+  const MachineModel& model_;
+  const PlacingBox& box_;
+  int frames_ = 0;
+};
+
+}  // namespace
+
+MachineModel placed(MachineModel model, const std::array<double, 3>& origin_mm, double turn_rad) {
+  const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+  Eigen::Matrix3d about_z;
+  about_z << c, -s, 0, s, c, 0, 0, 0, 1;
+  model.frame_rotation = about_z * model.frame_rotation;
+  model.frame_origin_mm = Vector3(origin_mm[0], origin_mm[1], origin_mm[2]);
+  return model;
+}
+
+Fit fit_of(const MachineModel& model, const std::vector<ProgramPose>& poses) {
+  Fit best;
+  for (int branch = 0; branch < branch_count(model); ++branch) {
+    const Fit fit = fit_on(model, poses, branch);
+    if (branch == 0 || fit.score > best.score) best = fit;
+  }
+  return best;
+}
+
+PlacingBox widest_box(const MachineModel& model, const std::vector<ProgramPose>& poses) {
+  constexpr int kSamples = 512;
+  constexpr std::array kBases = {2, 3, 5, 7, 11, 13};
+  Vector3 middle = Vector3::Zero();
+  for (const ProgramPose& at : poses) {
+    middle += model.frame_rotation * at.pose.tip / static_cast<double>(poses.size());
+  }
+  const MachineModel bare = placed(model, {0, 0, 0}, 0);
+  PlacingBox box;
+  box.low_mm.fill(std::numeric_limits<double>::infinity());
+  box.high_mm.fill(-std::numeric_limits<double>::infinity());
+  for (int n = 0; n < kSamples; ++n) {
+    JointVector q{};
+    for (int i = 0; i < model.joint_count; ++i) {
+      const JointSpec& joint = model.joints[i];
+      const double low = joint.is_endless ? -std::numbers::pi : joint.limits.travel_min;
+      const double high = joint.is_endless ? std::numbers::pi : joint.limits.travel_max;
+      q[i] = low + spread(n + 1, kBases[static_cast<std::size_t>(i)]) * (high - low);
+    }
+    const Vector3 tip = bare.frame_rotation * forward(bare, bare.tool_length_mm, q).tip;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double at = tip[static_cast<Eigen::Index>(i)] - middle[static_cast<Eigen::Index>(i)];
+      box.low_mm[i] = std::min(box.low_mm[i], at);
+      box.high_mm[i] = std::max(box.high_mm[i], at);
+    }
+  }
+  return box;
+}
+
+Placing find_placing(const MachineModel& model, const std::vector<ProgramPose>& poses,
+                     const PlacingBox& box) {
+  Search search(model, box);
+  std::vector<ProgramPose> few = few_of(poses);
+  Placing best;
+  std::vector<Place> also;
+  for (int round = 0; round < kRounds; ++round) {
+    Place place = search.run(few, also);
+    for (std::size_t i = 0; i < 3; ++i) place[i] = std::round(place[i] * 1e3) * 1e-3;
+    const std::array<double, 3> origin = {place[0], place[1], place[2]};
+    const Fit fit = fit_of(placed(model, origin, place[3]), poses);
+    if (round == 0 || fit.score > best.fit.score) best = {origin, place[3], fit, 0};
+    // The few had the margin that all have: no pose between them is worse.
+    const Fit seen = fit_of(placed(model, origin, place[3]), few);
+    if (fit.margin > seen.margin - 1e-3) break;
+    also.push_back(place);
+    for (const ProgramPose& at : poses) {
+      if (at.line == fit.line) few.push_back(at);
+    }
+  }
+  best.frames = search.frames();
+  return best;
+}
+
+}  // namespace meridian::inspect

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/neighbours/bridge/ros_bridge.hpp"
+
+#include "meridian/kinematics/limited.hpp"
+#include "service/machine/file/config_error.hpp"
+#include "service/protocol/served_model.hpp"
+
+namespace meridian::bridge {
+namespace {
+
+constexpr std::int64_t kDiagnosticsPeriod_ns = 1'000'000'000, kStale_ns = 2'000'000'000;
+constexpr int kWaitingReports = 64;  ///< of several groups of drives, between two steps
+
+/// Whether ROS 2 has a description of the machine that does not hold any more.
+[[nodiscard]] bool is_outdated(const MachineModel& published, const MachineModel& now) {
+  return published.tool_length_mm != now.tool_length_mm ||
+         published.frame_origin_mm != now.frame_origin_mm ||
+         published.frame_rotation != now.frame_rotation;
+}
+
+}  // namespace
+
+RosBridge::RosBridge(dds::Participant& machine, dds::Participant& ros, const MachineModel& model,
+                     BridgeTime now)
+    : machines_(machine),
+      statuses_(machine),
+      setpoints_(machine),
+      feedbacks_(machine, {}, kWaitingReports),
+      publisher_(ros, model, now.system_ns),
+      drives_(model.joint_count) {}
+
+void RosBridge::take(BridgeTime now) {
+  dds::DriveFeedback feedback;
+  while (feedbacks_.take(feedback)) {
+    drives_.add(feedback, now.steady_ns);
+    is_news_ = true;
+  }
+  drives_.pass(now.steady_ns);
+  dds::SetpointSample setpoint;
+  while (setpoints_.take(setpoint)) {
+    if ((setpoint.setpoint.flags & kSetpointDry) != 0) continue;  // nobody follows it
+    setpoint_ = setpoint.setpoint;
+    is_news_ = true;
+  }
+  dds::Status status;
+  if (followed_status_.take(statuses_, status)) {
+    status_ = status;
+    status_ns_ = now.steady_ns;
+  }
+  if (status_ && now.steady_ns - status_ns_ > kStale_ns) status_.reset();
+}
+
+void RosBridge::publish_joints(std::int64_t system_ns) {
+  const MachineModel& model = publisher_.model();
+  const std::optional<JointVector> reported = drives_.all();
+  if (!reported && !setpoint_) return;
+  const JointVector joints = joints_of(model, reported ? *reported : setpoint_->position);
+  const JointVector velocity =
+      setpoint_ ? joint_velocity_of(model, joints, setpoint_->velocity) : JointVector{};
+  publisher_.publish_joints(system_ns, joints, velocity);
+}
+
+void RosBridge::work(BridgeTime now) {
+  take(now);
+  dds::MachineInfo info;
+  if (followed_machine_.take(machines_, info) && !info.machine_file.empty()) {
+    try {
+      const MachineModel model = stream::served_model(info);
+      if (is_outdated(publisher_.model(), model)) publisher_.describe(model, now.system_ns);
+    } catch (const config::ConfigError&) {
+      // Another version wrote it: what was described first stays.
+    }
+  }
+  if (is_news_) publish_joints(now.system_ns);
+  is_news_ = false;
+  if (now.steady_ns - diagnosed_ns_ < kDiagnosticsPeriod_ns) return;
+  diagnosed_ns_ = now.steady_ns;
+  publisher_.publish_diagnostics(
+      now.system_ns, diagnose(publisher_.model(), status_ ? &*status_ : nullptr, drives_));
+}
+
+}  // namespace meridian::bridge

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+
+#include "service/drives/kit/action_link.hpp"
+#include "service/panel/desks/outcome.hpp"
+#include "service/panel/serve/hub.hpp"
+#include "service/transport/messages.hpp"
+#include "service/transport/participant.hpp"
+
+namespace meridian::panel {
+
+/// The operator in the place of a PLC: shows what the path waits for (tool, spindle, coolant, stop,
+/// vendor word) and answers when a person has done it, or could not. For machines where nobody else
+/// answers actions.
+class ActionDesk {
+ public:
+  /// `participant` and `hub` must live on. Throws DdsError.
+  ActionDesk(dds::Participant& participant, Hub& hub);
+
+  /// Publishes what is to be done now. One thread.
+  void poll();
+  /// Answers the action of that id; `is_done` false: it could not be done. Any thread.
+  [[nodiscard]] Outcome answer(std::uint64_t id, bool is_done);
+
+ private:
+  static constexpr std::size_t kMaxOpen = 8;
+  void publish() const;
+
+  Hub& hub_;
+  std::mutex mutex_;  ///< of all below
+  drive::ActionLink link_;
+  std::deque<dds::Action> open_;  ///< that wait for an answer
+};
+
+}  // namespace meridian::panel

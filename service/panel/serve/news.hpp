@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/transport/messages.hpp"
+
+namespace meridian::panel {
+
+enum class Severity : std::uint8_t { kNews, kWarning, kAlarm };
+
+/// One line of what the machine said.
+struct NewsItem {
+  std::uint64_t number = 0;  ///< from 1 on
+  std::chrono::system_clock::time_point time;
+  Severity severity = Severity::kNews;
+  std::string text;
+};
+
+/// What the machine said since the panel began, newest last: a page that is loaded again shows it
+/// all. At most kKept items; one thread. Proof: tests/panel/panel_unit_test.cpp.
+class News {
+ public:
+  static constexpr std::size_t kKept = 200;
+
+  /// Looks at the next status; true where it says something new.
+  bool add(const dds::Status& status, const MachineModel& model,
+           std::chrono::system_clock::time_point now);
+
+  [[nodiscard]] const std::deque<NewsItem>& items() const noexcept { return items_; }
+
+ private:
+  void push(Severity severity, const std::string& text, std::chrono::system_clock::time_point now);
+
+  std::deque<NewsItem> items_;
+  std::uint64_t count_ = 0, service_id_ = 0, periods_lost_ = 0;
+  Alarm alarm_ = Alarm::kNone;
+  std::string message_;
+  bool has_status_ = false;
+};
+
+}  // namespace meridian::panel

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "service/programs/cl/dialect.hpp"
+
+namespace meridian::cl {
+
+struct Recognised {
+  /// What a text is that is no CL file, e.g. "a Siemens NC program (TRAORI)" or "a ZIP archive";
+  /// empty where nothing speaks against a CL file.
+  std::string foreign;
+  /// More of the text would say nothing else.
+  bool is_certain = false;
+  bool is_nc = false;                   ///< it is an NC program
+  Dialect program = Dialect::kUnknown;  ///< of an NC program whose words tell it for certain
+  std::string shown_by;                 ///< what tells it: "G43.4"
+};
+
+/// `head` is the first 64 KiB or less.
+///
+/// NC programs are told by what only they have; a text with a CL word and its slash in it is none.
+[[nodiscard]] Recognised recognise_foreign(std::string_view head);
+
+}  // namespace meridian::cl

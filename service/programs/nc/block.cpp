@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/programs/nc/block.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/codes.hpp"
+#include "service/programs/nc/siemens/siemens_names.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::refuse;
+
+constexpr std::string_view kLetters = "GMXYZABCUVWIJKRFSTHDPQLEO";
+
+/// What the G codes of a block say that holds for this block alone.
+struct OneShot {
+  enum class Kind : std::uint8_t {
+    kMove,
+    kDwell,
+    kHome,
+    kMachinePlace,
+    kPlaneTilt,
+    kPlaneFollow,
+    kLocalZero,
+    kSetting,
+    kNothing  ///< what its words say was done already
+  };
+  Kind kind = Kind::kMove;
+};
+
+std::string code_of(const Word& word) { return "G" + std::string(word.digits); }
+
+cl::Outcome check_addresses(const Line& line) {
+  for (const Word& word : line.words) {
+    if (word.address.size() == 1 && kLetters.find(word.address.front()) == std::string_view::npos) {
+      return refuse("address " + std::string(word.address) + " is not understood");
+    }
+  }
+  return {};
+}
+
+/// Codes that were let through by name go to the machine.
+cl::Outcome take_unknown(State& s, const Line& line, const Word& word) {
+  const auto& allowed = s.cl.options.allowed_words;
+  const std::string code = code_of(word);
+  if (std::find(allowed.begin(), allowed.end(), code) != allowed.end()) {
+    s.cl.path.vendor_word(code, word.number, line.number);
+    return {};
+  }
+  return refuse(code + " is not known here",
+                "--allow-unknown " + code + " passes it to the machine as a vendor word",
+                "unknown " + code);
+}
+
+cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot) {
+  switch (row.kind) {
+    case GKind::kMotion:
+      s.modes.motion = static_cast<Motion>(row.value);
+      begin_cycle(s, 0);
+      break;
+    case GKind::kCycle:
+      begin_cycle(s, row.value);
+      break;
+    case GKind::kReturn:
+      s.modes.cycle.returns_to_r = row.value != 0;
+      break;
+    case GKind::kPlane:
+      s.modes.plane = row.value;
+      break;
+    case GKind::kUnit:
+      return set_unit(s, row.value != 0 ? cl::LengthUnit::kInch : cl::LengthUnit::kMillimetre);
+    case GKind::kDistance:
+      s.modes.is_incremental = row.value != 0;
+      break;
+    case GKind::kCentre:
+      s.modes.is_centre_absolute = row.value != 0;
+      break;
+    case GKind::kFeed:
+      if (s.modes.feed_unit != static_cast<cl::FeedUnit>(row.value)) s.cl.written_feed = {};
+      s.modes.feed_unit = static_cast<cl::FeedUnit>(row.value);
+      s.cl.feed.reset();
+      break;
+    case GKind::kControl:
+      return set_control(s, line, static_cast<Control>(row.value));
+    case GKind::kWorkOffset:
+      return set_work_offset(s, line, row.tenths);
+    case GKind::kDwell:
+      shot.kind = OneShot::Kind::kDwell;
+      break;
+    case GKind::kHome:
+      shot.kind = OneShot::Kind::kHome;
+      break;
+    case GKind::kMachinePlace:
+      shot.kind = OneShot::Kind::kMachinePlace;
+      break;
+    case GKind::kPlaneTilt:
+      shot.kind = OneShot::Kind::kPlaneTilt;
+      break;
+    case GKind::kPlaneFollow:
+      shot.kind = OneShot::Kind::kPlaneFollow;
+      break;
+    case GKind::kPlaneOff:
+      if (s.frames.tilt == Tilt::kNone) s.cl.summary.skip("G69", line.number);
+      set_plane(s, line, {}, Tilt::kNone);
+      break;
+    case GKind::kLocalZero:
+      shot.kind = OneShot::Kind::kLocalZero;
+      break;
+    case GKind::kSetting:
+      shot.kind = OneShot::Kind::kSetting;
+      break;
+    case GKind::kNothing:
+    case GKind::kRefused:
+      break;
+  }
+  return {};
+}
+
+/// Two of one kind contradict each other, but for those that say nothing.
+cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
+                        std::array<bool, 32>& seen) {
+  if (row.kind == GKind::kNothing || row.kind == GKind::kSetting) return {};
+  bool& is_seen = seen[static_cast<std::size_t>(row.kind)];
+  if (is_seen) return refuse("two G codes of one group in a block");
+  is_seen = true;
+  const bool is_shot = row.kind == GKind::kDwell || row.kind == GKind::kHome ||
+                       row.kind == GKind::kPlaneTilt || row.kind == GKind::kPlaneFollow ||
+                       row.kind == GKind::kLocalZero;
+  if (is_shot && motion_kind) return refuse("two G codes of one group in a block");
+  if (is_shot || row.kind == GKind::kMachinePlace) motion_kind = row.kind;
+  return {};
+}
+
+cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
+  std::optional<GKind> motion_kind;
+  std::array<bool, 32> seen{};
+  const bool is_siemens = s.modes.language == Language::kSiemens;
+  for (const Word& word : line.words) {
+    if (!word.is('G')) continue;
+    const GRow* const row = is_siemens ? find_siemens_g(word.number) : find_g(word.number);
+    if (row == nullptr) {
+      if (auto done = take_unknown(s, line, word); !done) return done;
+      continue;
+    }
+    if (row->kind == GKind::kRefused) {
+      return refuse(code_of(word) + ": " + std::string(row->note), std::string(row->remedy),
+                    code_of(word));
+    }
+    if (auto done = check_kinds(*row, motion_kind, seen); !done) return done;
+    if (row->kind == GKind::kNothing || row->kind == GKind::kSetting) {
+      s.cl.summary.skip(code_of(word), line.number);
+    }
+    if (auto done = take_code(s, line, *row, shot); !done) return done;
+  }
+  return {};
+}
+
+bool moves(const Line& line) {
+  return std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
+    constexpr std::string_view kMoving = "XYZABCUVWIJKR";
+    return word.address.size() > 1 || kMoving.find(word.address.front()) != std::string_view::npos;
+  });
+}
+
+cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
+  switch (shot.kind) {
+    case OneShot::Kind::kDwell:
+      return dwell(s, line);
+    case OneShot::Kind::kHome:
+      return move_to_machine_place(s, line, false);
+    case OneShot::Kind::kMachinePlace:
+      return move_to_machine_place(s, line, true);
+    case OneShot::Kind::kPlaneTilt:
+      return define_plane(s, line);
+    case OneShot::Kind::kPlaneFollow:
+      if (moves(line)) return refuse("G53.1 with axis words", "write it in a block of its own");
+      return follow_plane(s, line);
+    case OneShot::Kind::kLocalZero:
+      return set_local_zero(s, line);
+    case OneShot::Kind::kNothing:
+      return {};
+    case OneShot::Kind::kMove:
+    case OneShot::Kind::kSetting:
+      break;
+  }
+  if (!moves(line)) return {};
+  if (s.modes.cycle.code != 0) return run_cycle(s, line);
+  if (shot.kind == OneShot::Kind::kSetting) {
+    s.cl.remarks.warn("setting", line.number, [] {
+      return std::string("axis words beside a setting of the control are taken as motion");
+    });
+  }
+  return move(s, line);
+}
+
+/// MCALL and what it calls: behind a line that moves, or where the tool stands.
+cl::Outcome run_holes(State& s, const Line& line, const NameOutcome& names, OneShot shot) {
+  using Holes = NameOutcome::Holes;
+  switch (names.holes) {
+    case Holes::kNoMore:
+      s.modes.at_every_point.reset();
+      return {};
+    case Holes::kAtEveryPoint:
+      s.modes.at_every_point = names.drilling;
+      return {};
+    case Holes::kHere:
+      return drill(s, line, names.drilling);
+    case Holes::kAsBefore:
+      break;
+  }
+  const bool is_motion = shot.kind == OneShot::Kind::kMove && moves(line);
+  if (!s.modes.at_every_point || !is_motion) return {};
+  return drill(s, line, *s.modes.at_every_point);
+}
+
+}  // namespace
+
+cl::Outcome run_block(State& s, const Line& line) {
+  if (auto done = check_addresses(line); !done) return done;
+  if (s.modes.language == Language::kSiemens) {
+    if (auto done = check_siemens_addresses(s, line); !done) return done;
+  }
+  OneShot shot;
+  if (auto done = take_codes(s, line, shot); !done) return done;
+  const auto names = take_names(s, line);
+  if (!names) return tl::make_unexpected(names.error());
+  if (names->has_frame) shot.kind = OneShot::Kind::kNothing;
+  if (names->has_machine_place && moves(line)) shot.kind = OneShot::Kind::kMachinePlace;
+  const bool is_dwell = shot.kind == OneShot::Kind::kDwell;
+  if (is_dwell && s.modes.language == Language::kSiemens) return siemens_dwell(s, line);
+  if (auto done = act_before(s, line); !done) return done;
+  if (auto done = run_motion(s, line, shot); !done) return done;
+  if (auto done = run_holes(s, line, *names, shot); !done) return done;
+  return act_behind(s, line);
+}
+
+}  // namespace meridian::nc

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames that a program puts between its points and its zero, and tilted planes.
+#include "service/programs/nc/frames.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "meridian/units.hpp"
+#include "service/programs/nc/state.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::refuse;
+
+constexpr double kSameAxis = 1e-6;  // of the sine: 0.2 arc seconds
+
+/// What is known of the tool's place, as the frames of now say it.
+void restate_place(State& s, const cl::Frame& from_before) {
+  Place& place = s.place;
+  if (place.is_known()) {
+    const Vector3 tip = from_before.point(Vector3(*place.tip[0], *place.tip[1], *place.tip[2]));
+    for (std::size_t k = 0; k < 3; ++k) place.tip[k] = tip[static_cast<Eigen::Index>(k)];
+  } else if (from_before.rotation.isIdentity()) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (place.tip[k]) *place.tip[k] += from_before.origin[static_cast<Eigen::Index>(k)];
+    }
+  } else {
+    place.forget();
+  }
+  place.vector = to_array(from_before.direction(to_vector(place.vector)));
+}
+
+void set_frames(State& s, const Line& line, const cl::Frame& shift, const cl::Frame& plane) {
+  ProgramFrames& frames = s.frames;
+  const cl::Frame before = frames.now;
+  frames.shift = shift;
+  frames.plane = plane;
+  frames.now = s.modes.language == Language::kSiemens ? cl::compose(plane, shift)
+                                                      : cl::compose(shift, plane);
+  if (cl::is_identity(cl::relative(before, frames.now))) return;
+  restate_place(s, cl::relative(frames.now, before));
+  begin_cycle(s, 0);
+  s.modes.pole = {};
+  if (s.cl.path.has_moved()) ++s.cl.summary.frame_changes;
+  s.cl.remarks.warn("frame", line.number, [] {
+    return std::string("the program changes its frame: points behind it are put through it");
+  });
+}
+
+bool is_along(const Vector3& a, const Vector3& b) {
+  return a.cross(b).norm() < kSameAxis && a.dot(b) > 0;
+}
+
+bool are_all_told(const State& s, const Place& place) {
+  const std::size_t needed = s.axes ? s.axes->rotary_count() : 2;
+  return place.rotary.size() >= needed;
+}
+
+}  // namespace
+
+cl::Frame turned_about(std::size_t axis, double deg) {
+  cl::Frame out;
+  const auto at = static_cast<Eigen::Index>(axis);
+  // Quarter turns to the last digit, so that a plane along the axes stays along them.
+  const double quarters = deg / 90;
+  double c = std::cos(units::rad_from_deg(deg)), sn = std::sin(units::rad_from_deg(deg));
+  if (quarters == std::round(quarters)) {
+    c = std::round(c);
+    sn = std::round(sn);
+  }
+  const Eigen::Index a = (at + 1) % 3, b = (at + 2) % 3;
+  out.rotation(a, a) = c;
+  out.rotation(b, a) = sn;
+  out.rotation(a, b) = -sn;
+  out.rotation(b, b) = c;
+  return out;
+}
+
+cl::Frame moved_by(const Vector3& way) {
+  cl::Frame out;
+  out.origin = way;
+  return out;
+}
+
+cl::Frame turned(std::initializer_list<Turn> turns) {
+  cl::Frame out;
+  for (const Turn& turn : turns) out = cl::compose(out, turned_about(turn.axis, turn.deg));
+  return out;
+}
+
+void set_shift(State& s, const Line& line, const cl::Frame& shift) {
+  set_frames(s, line, shift, s.frames.plane);
+}
+
+void set_plane(State& s, const Line& line, const cl::Frame& plane, Tilt tilt) {
+  set_frames(s, line, s.frames.shift, plane);
+  s.frames.tilt = tilt;
+  if (tilt == Tilt::kTurned) turn_to_plane(s, line);
+}
+
+void turn_to_plane(State& s, const Line& line) {
+  s.frames.tilt = Tilt::kTurned;
+  s.place.forget();
+  s.place.rotary.clear();
+  s.place.is_by_control = !s.frames.plane.rotation.isIdentity();
+  if (!s.cl.path.has_moved()) return;
+  s.cl.remarks.warn("plane", line.number, [] {
+    return std::string(
+        "the control turns the tool across a tilted plane: how it gets there is not in the "
+        "program; the next motion goes straight from the point before; see that nothing is in "
+        "the way");
+  });
+}
+
+bool is_across_plane(const State& s, const Place& place) {
+  const ProgramFrames& frames = s.frames;
+  if (frames.tilt == Tilt::kTurned) return true;
+  if (frames.tilt == Tilt::kNone) return false;
+  const Vector3 wanted = tool_of_plane(s);
+  if (!place.is_turned()) return is_along(wanted, Vector3::UnitZ());
+  if (!s.axes || !s.axes->refusal().empty() || !are_all_told(s, place)) return false;
+  return is_along(s.axes->to_program() * s.axes->axis(place.rotary), wanted);
+}
+
+Vector3 tool_of_plane(const State& s) {
+  const cl::Frame& shift = s.frames.shift;
+  const Vector3 z = s.frames.plane.rotation.col(2);
+  return s.modes.language == Language::kSiemens ? z : shift.direction(z);
+}
+
+void note_rotary_words(State& s, Place& to) {
+  if (s.frames.tilt == Tilt::kTurned && !holds_tip(s.modes.control)) {
+    s.frames.tilt = Tilt::kDefined;
+  }
+  if (are_all_told(s, to)) to.is_by_control = false;
+}
+
+Vector3 in_program(const State& s, const Vector3& written) { return s.frames.now.point(written); }
+
+Vector3 as_written(const State& s, const Vector3& p_w) {
+  const Vector3 program = (s.axes ? Vector3(s.axes->to_program() * p_w) : p_w) / s.cl.units.to_mm;
+  return cl::relative(s.frames.now, moved_by(program)).origin;
+}
+
+Vector3 direction_in_w(const State& s, const Vector3& program) {
+  return s.axes ? Vector3(s.axes->to_program().transpose() * program) : program;
+}
+
+/// G68.2 X Y Z I J K: the origin, and turns about z, the new x and the new z.
+cl::Outcome define_plane(State& s, const Line& line) {
+  std::array<double, 6> v{};
+  constexpr std::array<std::string_view, 6> kAddresses = {"X", "Y", "Z", "I", "J", "K"};
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    if (const Word* const word = line.find(kAddresses[k]); word != nullptr) v[k] = word->number;
+  }
+  const Word* const form = line.find("P");
+  if (form != nullptr && form->number != 0) {
+    return refuse("G68.2 P" + std::string(form->digits) + ": a plane that is not told by angles",
+                  "output G68.2 with X Y Z and the angles I J K", "G68.2 P");
+  }
+  if (s.modes.is_incremental) return refuse("G68.2 under G91", "write G90 before it");
+  if (holds_tip(s.modes.control)) {
+    return refuse("G68.2 while tool-centre control is on", "write G49 before it");
+  }
+  const cl::Frame plane =
+      cl::compose(moved_by({v[0], v[1], v[2]}), turned({{2, v[3]}, {0, v[4]}, {2, v[5]}}));
+  set_plane(s, line, plane, Tilt::kDefined);
+  return {};
+}
+
+/// G53.1: the rotary axes turn the tool across the plane.
+cl::Outcome follow_plane(State& s, const Line& line) {
+  if (s.frames.tilt == Tilt::kNone) return refuse("G53.1, but no G68.2 tells a plane");
+  turn_to_plane(s, line);
+  return {};
+}
+
+/// G52: a zero beside the zero; axes that are left out keep theirs.
+cl::Outcome set_local_zero(State& s, const Line& line) {
+  if (s.frames.tilt != Tilt::kNone) {
+    return refuse("G52 in a tilted plane", "write it before G68.2");
+  }
+  cl::Frame shift = s.frames.shift;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Word* const word = line.find(k == 0 ? "X" : k == 1 ? "Y" : "Z");
+    if (word != nullptr) shift.origin[static_cast<Eigen::Index>(k)] = word->number;
+  }
+  set_shift(s, line, shift);
+  return {};
+}
+
+}  // namespace meridian::nc

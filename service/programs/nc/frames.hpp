@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "service/programs/cl/frame.hpp"
+
+namespace meridian::nc {
+
+/// Whether the tool stands across a tilted plane.
+enum class Tilt : std::uint8_t {
+  kNone,
+  kDefined,  ///< G68.2 without G53.1, PLANE .. STAY: the rotary axes have not followed yet
+  kTurned    ///< the control has turned them: the tool axis is z of the plane
+};
+
+/// What lies between the points of a program and its zero. Lengths in the unit of the program.
+struct ProgramFrames {
+  cl::Frame shift;  ///< TRANS, ROT and their kin, datum shift, G52
+  cl::Frame plane;  ///< G68.2, CYCLE800, PLANE SPATIAL
+  cl::Frame now;    ///< both together: program = now * written
+  Tilt tilt = Tilt::kNone;
+};
+
+/// A turn by `deg` about x, y or z (0, 1, 2).
+[[nodiscard]] cl::Frame turned_about(std::size_t axis, double deg);
+[[nodiscard]] cl::Frame moved_by(const Vector3& way);
+
+/// One turn after the other, each about an axis as the ones before have left it.
+struct Turn {
+  std::size_t axis;
+  double deg;
+};
+[[nodiscard]] cl::Frame turned(std::initializer_list<Turn> turns);
+
+}  // namespace meridian::nc

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+// Klartext: every statement becomes the words of ISO that say the same.
+#include <algorithm>
+#include <array>
+
+#include "service/programs/cl/text/number.hpp"
+#include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/block.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_cycles.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
+#include "service/programs/nc/remedy.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::refuse;
+
+/// M codes of the control that say how it moves and nothing about where.
+constexpr std::array kSilent = {107, 108, 116, 117, 120, 124, 126, 127, 138, 141};
+
+bool has_name(const Line& line, std::string_view name) {
+  return std::any_of(line.names.begin(), line.names.end(),
+                     [name](const Line::Name& n) { return n.name == name; });
+}
+
+bool mentions(std::string_view text, std::string_view what) {
+  return text.find(what) != std::string_view::npos;
+}
+
+cl::Outcome begin_program(State& s, const Line& line) {
+  const std::string_view text = line.names.front().arguments;
+  if (mentions(text, " INCH")) {
+    return refuse("a program in inch, whose feeds count tenths of an inch", "output it in MM");
+  }
+  const std::size_t begin = text.find_first_not_of(' ');
+  if (begin != std::string_view::npos) {
+    s.cl.summary.program = std::string(text.substr(begin, text.find(' ', begin) - begin));
+  }
+  return set_unit(s, cl::LengthUnit::kMillimetre);
+}
+
+cl::Outcome switch_on(State& s, const Line& line, bool turns_evenly) {
+  s.modes.is_oriented = true;
+  s.modes.turns_evenly = turns_evenly;
+  return set_control(s, line, s.axes ? Control::kRotary : Control::kVector);
+}
+
+cl::Outcome switch_off(State& s, const Line& line) {
+  s.modes.is_oriented = false;
+  return set_control(s, line, Control::kLength);
+}
+
+/// FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR, FUNCTION RESET TCPM.
+cl::Outcome run_function(State& s, const Line& line) {
+  const std::string_view text = line.names.front().arguments;
+  if (mentions(text, "RESET TCPM")) return switch_off(s, line);
+  if (!mentions(text, "TCPM")) {
+    return refuse("FUNCTION" + std::string(text.substr(0, 24)) + " is not run here", kMovesByCam,
+                  "FUNCTION");
+  }
+  if (mentions(text, "AXIS SPAT")) {
+    return refuse("FUNCTION TCPM with angles in space (AXIS SPAT)",
+                  "output AXIS POS, or LN with TX TY TZ");
+  }
+  if (mentions(text, "CENTER")) {
+    return refuse("FUNCTION TCPM whose points are those of the ball's centre (REFPNT)",
+                  "output the points of the tip");
+  }
+  if (mentions(text, "F CONT")) {
+    s.cl.remarks.warn("F CONT", line.number, [] {
+      return std::string("FUNCTION TCPM F CONT: F is taken as the feed of the tip");
+    });
+  }
+  return switch_on(s, line, !mentions(text, "PATHCTRL VECTOR"));
+}
+
+/// CYCL DEF 9.1 DWELL 0.500, and what of the other cycles says nothing about where.
+cl::Outcome run_cycle_definition(State& s, const Line& line) {
+  std::string_view text = line.names.front().arguments;
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  const std::string number(text.substr(0, text.find(' ')));
+  if (number.size() == 3 && number.starts_with("7.") && number != "7.0") {
+    return shift_datum(s, line, text.substr(number.size()));
+  }
+  if (number.starts_with("32.") || number == "9.0" || number == "7.0") {
+    s.cl.summary.skip("CYCL DEF " + number, line.number);
+    return {};
+  }
+  double seconds = 0;
+  if (number == "9.1" && cl::parse_number(text.substr(text.rfind(' ') + 1), seconds)) {
+    return rest(s, line, seconds);
+  }
+  return define_cycle(s, number, text.substr(number.size()));
+}
+
+/// CYCL CALL, with FMAX at most.
+cl::Outcome run_cycle_call(State& s, const Line& line) {
+  std::string_view text = line.names.front().arguments;
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  if (!text.empty() && text != "FMAX") {
+    return refuse("CYCL CALL " + std::string(text.substr(0, 16)) + " is not run here", kMovesByCam,
+                  "CYCL CALL");
+  }
+  return call_cycle(s, line);
+}
+
+void move_word(Line& to, const Word& word, std::string_view address) {
+  Word copy = word;
+  copy.address = address;
+  to.words.push_back(copy);
+}
+
+/// A line of Klartext as ISO says it.
+struct Translated {
+  Line iso;
+  bool is_machine_place = false;
+  bool calls_cycle = false;  ///< M99, M89
+};
+
+/// The words of a line under their addresses in ISO. M13 and M14 start spindle and coolant.
+cl::Outcome translate(State& s, const Line& line, Translated& out) {
+  Line& iso = out.iso;
+  iso.number = line.number;
+  const bool is_radius_arc = line.names.front().name == "CR";
+  for (const Word& word : line.words) {
+    const bool is_m = word.is('M');
+    const int code =
+        is_m && word.number >= 0 && word.number < 1e6 ? static_cast<int>(word.number) : -1;
+    if (std::find(kSilent.begin(), kSilent.end(), code) != kSilent.end()) {
+      s.cl.summary.skip("M" + std::string(word.digits), line.number);
+    } else if (code == 91) {
+      out.is_machine_place = true;
+    } else if (code == 128 || code == 129) {
+      auto done = code == 128 ? switch_on(s, line, true) : switch_off(s, line);
+      if (!done) return done;
+    } else if (code == 89 || code == 99) {
+      out.calls_cycle = true;
+      if (s.modes.definition) s.modes.definition->runs_at_every_point = code == 89;
+    } else if (code == 92 || code == 136 || code == 140) {
+      return refuse("M" + std::string(word.digits) + " is not run here", kMovesByCam,
+                    "M" + std::string(word.digits));
+    } else if (code == 13 || code == 14) {
+      Word start = word;
+      start.number = code == 13 ? 3 : 4;
+      move_word(iso, start, "M");
+      start.number = 8;
+      move_word(iso, start, "M");
+    } else if (word.is('R') && !is_radius_arc) {
+      if (word.number != 0) return refuse("R beside a straight line", kMovesByCam);
+    } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ") {
+      s.cl.summary.skip(word.address, line.number);
+    } else if (word.address == "DL" || word.address == "DR") {
+      if (word.number != 0) {
+        s.cl.remarks.warn("delta", line.number,
+                          [] { return std::string("DL and DR of TOOL CALL are not applied"); });
+      }
+    } else {
+      move_word(iso, word, word.address);
+    }
+  }
+  return {};
+}
+
+/// The pole of arcs, in the plane across the tool.
+cl::Outcome set_pole(State& s, const Line& line) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Word* const word = line.find(k == 0 ? "X" : "Y");
+    if (word == nullptr) continue;
+    const bool is_relative = word->way == Word::Way::kIncremental;
+    if (is_relative && !s.place.tip[k]) return refuse("CC from a place that is not known here");
+    s.modes.pole[k] = is_relative ? *s.place.tip[k] + word->number : word->number;
+  }
+  return {};
+}
+
+cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
+  const std::string_view statement = line.names.front().name;
+  const bool is_rapid = has_name(line, "FMAX");
+  if (has_name(line, "RL") || has_name(line, "RR")) {
+    return refuse("radius compensation (RL, RR)", "output the path of the tool's centre (R0)");
+  }
+  s.modes.motion = is_rapid ? Motion::kRapid : Motion::kLine;
+  if (statement != "C" && statement != "CR") return {};
+  const bool is_left = has_name(line, "DR+");
+  if (!is_left && !has_name(line, "DR-")) return refuse("an arc without DR+ or DR-");
+  s.modes.motion = is_left ? Motion::kCounterClockwise : Motion::kClockwise;
+  if (statement == "CR") return {};
+  if (!s.modes.pole[0] || !s.modes.pole[1]) return refuse("an arc (C) before any CC");
+  Word centre;
+  centre.way = Word::Way::kAbsolute;
+  for (std::size_t k = 0; k < 2; ++k) {
+    centre.number = *s.modes.pole[k];
+    move_word(iso, centre, k == 0 ? "I" : "J");
+  }
+  return {};
+}
+
+bool is_of_motion(const Word& word) {
+  return !word.is('F') && !word.is('S') && !word.is('T') && !word.is('M');
+}
+
+/// L B+Q121 C+Q122 behind PLANE .. STAY: the rotary axes go to where the plane wants them.
+cl::Outcome take_plane_angles(State& s, Line& iso) {
+  const auto is_of_plane = [](const Word& word) { return word.way == Word::Way::kOfPlane; };
+  if (std::none_of(iso.words.begin(), iso.words.end(), is_of_plane)) return {};
+  if (s.frames.tilt == Tilt::kNone || s.modes.motion != Motion::kRapid) {
+    return refuse("a Q parameter", kMovesByCam, "Q");
+  }
+  const bool has_others = std::any_of(iso.words.begin(), iso.words.end(), [&](const Word& word) {
+    return is_of_motion(word) && !is_of_plane(word);
+  });
+  if (has_others) {
+    return refuse("other coordinates beside Q120, Q121 or Q122",
+                  "turn the tool in a block of its own");
+  }
+  std::erase_if(iso.words, is_of_plane);
+  turn_to_plane(s, iso);
+  return {};
+}
+
+/// FAUTO: the feed of the last TOOL CALL that told one.
+cl::Outcome take_auto_feed(State& s, const Line& line) {
+  if (!has_name(line, "FAUTO")) return {};
+  if (!(s.modes.auto_feed > 0)) return refuse("FAUTO, but no TOOL CALL before it tells F");
+  s.cl.written_feed = {s.modes.auto_feed, s.modes.feed_unit};
+  s.cl.feed.reset();
+  return {};
+}
+
+/// L, LN, C, CR: what moves, with the actions of its line.
+cl::Outcome run_words(State& s, const Line& line) {
+  Translated translated;
+  const std::string_view statement = line.names.front().name;
+  if (auto done = translate(s, line, translated); !done) return done;
+  Line& iso = translated.iso;
+  if (auto done = prepare_motion(s, line, iso); !done) return done;
+  if (auto done = take_auto_feed(s, line); !done) return done;
+  if (auto done = act_before(s, iso); !done) return done;
+  const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
+  const bool is_motion = statement != "STOP" && statement != "M" && statement != "TOOL CALL";
+  if (moves && !is_motion) return refuse(std::string(statement) + " with coordinates");
+  if (moves) {
+    if (auto taken = take_plane_angles(s, iso); !taken) return taken;
+    const bool goes_on = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
+    if (!goes_on) return act_behind(s, iso);
+    auto done = translated.is_machine_place ? move_to_machine_place(s, iso, true) : move(s, iso);
+    if (!done) return done;
+  }
+  const bool is_modal = s.modes.definition && s.modes.definition->runs_at_every_point;
+  if (translated.calls_cycle || (is_modal && moves)) {
+    if (auto done = call_cycle(s, iso); !done) return done;
+  }
+  return act_behind(s, iso);
+}
+
+/// A new speed of a spindle that turns holds from the next line on, which often tells its sense.
+void tell_speed(State& s, const Line& line) {
+  if (!s.modes.has_new_speed) return;
+  s.modes.has_new_speed = false;
+  const bool tells_sense = std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
+    constexpr std::array kSense = {3.0, 4.0, 5.0, 13.0, 14.0};
+    return word.is('M') && std::find(kSense.begin(), kSense.end(), word.number) != kSense.end();
+  });
+  if (tells_sense) return;
+  s.cl.path.act(BlockKind::kAuxiliary, s.cl.spindle.state, s.cl.spindle.speed_rpm, line.number);
+}
+
+/// TOOL CALL 5 Z S6000: the tool, and a speed for it. F is that of FAUTO.
+cl::Outcome call_tool(State& s, const Line& line) {
+  Translated translated;
+  if (auto done = translate(s, line, translated); !done) return done;
+  Line& iso = translated.iso;
+  if (const Word* const feed = iso.find("F")) s.modes.auto_feed = feed->number;
+  std::erase_if(iso.words, [](const Word& word) { return word.is('F'); });
+  const Word* const speed = iso.find("S");
+  if (speed != nullptr && s.cl.spindle.state != ActionKind::kSpindleOff && speed->number > 0 &&
+      speed->number < 1e6) {
+    s.cl.spindle.speed_rpm = speed->number;
+    s.modes.has_new_speed = true;
+    std::erase_if(iso.words, [](const Word& word) { return word.is('S'); });
+  }
+  Word change;
+  change.number = 6;
+  if (iso.find("T") != nullptr) move_word(iso, change, "M");
+  return act_before(s, iso);
+}
+
+}  // namespace
+
+cl::Outcome run_heidenhain(State& s, const Line& line) {
+  const std::string_view statement = line.names.front().name;
+  tell_speed(s, line);
+  if (statement == "Q") return take_cycle_parameters(s, line.names.front().arguments);
+  s.modes.open = OpenDefinition::kNone;
+  if (statement == "BEGIN PGM") return begin_program(s, line);
+  if (statement == "END PGM") {
+    s.cl.structure.phase = cl::Structure::Phase::kEnded;
+    return {};
+  }
+  if (statement == "FUNCTION") return run_function(s, line);
+  if (statement == "TOOL CALL") return call_tool(s, line);
+  if (statement == "CYCL DEF") return run_cycle_definition(s, line);
+  if (statement == "CYCL CALL") return run_cycle_call(s, line);
+  if (statement == "CC") return set_pole(s, line);
+  if (statement == "PLANE") return set_klartext_plane(s, line, line.names.front().arguments);
+  const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF";
+  if (is_nothing) {
+    s.cl.summary.skip(statement, line.number);
+    return {};
+  }
+  const bool has_words = statement == "L" || statement == "LN" || statement == "C" ||
+                         statement == "CR" || statement == "M" || statement == "STOP";
+  if (!has_words) {
+    return refuse(std::string(statement) + ": this word of Klartext is not run here", kMovesByCam,
+                  std::string(statement));
+  }
+  if (auto done = run_words(s, line); !done) return done;
+  if (statement == "STOP") s.cl.path.act(BlockKind::kStop, ActionKind::kStop, 0, line.number);
+  return {};
+}
+
+}  // namespace meridian::nc

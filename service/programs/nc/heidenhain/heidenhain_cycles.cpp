@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drilling cycles of Klartext: lengths count from the workpiece surface Q203.
+#include "service/programs/nc/heidenhain/heidenhain_cycles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "service/programs/cl/text/number.hpp"
+#include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/remedy.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::HoleKind;
+using cl::refuse;
+
+/// Q parameters that the cycles share.
+constexpr int kQClearance = 200, kQDepth = 201, kQPeck = 202, kQSurface = 203,
+              kQSecondClearance = 204, kQLeastPeck = 205, kQFeed = 206, kQFeedOut = 208,
+              kQDwell = 211, kQDecrement = 212, kQBreaks = 213, kQBack = 256, kQBreakDepth = 257,
+              kQByDiameter = 343, kQStartDepth = 379, kQDepthOfShank = 395;
+constexpr int kPreset247 = 247, kQPreset = 339;
+/// A feed that stands for rapid.
+constexpr double kRapidFeed = 99999;
+
+struct KlartextRow {
+  int number;
+  HoleKind kind;
+  bool has_pecks;
+};
+
+constexpr std::array kKlartextCycles = std::to_array<KlartextRow>({{200, HoleKind::kDeep, true},
+                                                                   {201, HoleKind::kFeedOut, false},
+                                                                   {203, HoleKind::kDeep, true},
+                                                                   {205, HoleKind::kDeep, true},
+                                                                   {240, HoleKind::kDrill, false}});
+
+const KlartextRow* find_klartext_cycle(int number) {
+  const auto at = std::find_if(kKlartextCycles.begin(), kKlartextCycles.end(),
+                               [number](const KlartextRow& row) { return row.number == number; });
+  return at == kKlartextCycles.end() ? nullptr : &*at;
+}
+
+std::string title_of(const CycleDefinition& cycle) {
+  return "CYCL DEF " + std::to_string(cycle.number);
+}
+
+cl::Refusal refusal_of(const CycleDefinition& cycle, const std::string& why) {
+  return {title_of(cycle) + why, kMovesByCam, title_of(cycle), 0};
+}
+
+double value_of(const CycleDefinition& cycle, int parameter) {
+  const auto at = cycle.parameters.find(parameter);
+  return at == cycle.parameters.end() ? 0 : at->second;
+}
+
+/// What these ask for is not run here; nothing is asked where they are zero or left out.
+cl::Outcome check_left_out(const CycleDefinition& cycle) {
+  constexpr std::array kNotRun = {kQByDiameter, kQBreakDepth, kQStartDepth, kQDepthOfShank};
+  for (const int parameter : kNotRun) {
+    if (value_of(cycle, parameter) == 0) continue;
+    return tl::make_unexpected(
+        refusal_of(cycle, " with Q" + std::to_string(parameter) + " other than 0"));
+  }
+  for (const int parameter : {kQClearance, kQDepth, kQSurface}) {
+    if (cycle.parameters.contains(parameter)) continue;
+    return tl::make_unexpected(refusal_of(cycle, " without Q" + std::to_string(parameter)));
+  }
+  return {};
+}
+
+/// Each peck is shorter than the one before by Q212, down to Q205.
+std::vector<double> klartext_pecks(const CycleDefinition& cycle, double depth) {
+  constexpr std::size_t kMaxPecks = 10000;
+  const double decrement = std::max(value_of(cycle, kQDecrement), 0.0);
+  std::vector<double> pecks;
+  double peck = value_of(cycle, kQPeck);
+  const double least = std::max({value_of(cycle, kQLeastPeck), depth / kMaxPecks});
+  for (double left = depth; peck > 0 && left > 0 && pecks.size() < kMaxPecks;) {
+    pecks.push_back(peck);
+    left -= peck;
+    if (decrement > 0) peck = std::max(peck - decrement, std::min(least, peck));
+  }
+  return pecks;
+}
+
+cl::Outcome add_klartext_pecks(const CycleDefinition& cycle, cl::HoleCycle& hole) {
+  const double peck = value_of(cycle, kQPeck);
+  if (!(peck > hole.depth * 1e-4)) {
+    return tl::make_unexpected(refusal_of(cycle, " without a plunging depth Q202"));
+  }
+  hole.pecks = klartext_pecks(cycle, hole.depth);
+  const double breaks = cycle.number == 203 ? value_of(cycle, kQBreaks) : 0;
+  if (breaks > 0) {
+    hole.kind = HoleKind::kChipBreak;
+    hole.pecks_to_retract = static_cast<int>(std::min(breaks, 1e4)) + 1;
+    hole.back = value_of(cycle, kQBack);
+  }
+  return {};
+}
+
+Expected<Drilling, cl::Refusal> drilling_of(const CycleDefinition& cycle) {
+  if (auto done = check_left_out(cycle); !done) return tl::make_unexpected(done.error());
+  const KlartextRow& row = *find_klartext_cycle(cycle.number);
+  Drilling out;
+  out.top = value_of(cycle, kQSurface);
+  cl::HoleCycle& hole = out.hole;
+  hole.kind = row.kind;
+  hole.depth = -value_of(cycle, kQDepth);
+  hole.rapid_level = value_of(cycle, kQClearance);
+  hole.retract_level = std::max(value_of(cycle, kQSecondClearance), hole.rapid_level);
+  hole.dwell_s = value_of(cycle, kQDwell);
+  hole.dwells_at_pecks = false;
+  if (!(hole.depth > 0) || hole.rapid_level < 0) {
+    return tl::make_unexpected(refusal_of(cycle, ": the depth Q201 has to be below zero"));
+  }
+  if (value_of(cycle, kQFeed) > 0) {
+    hole.feed = {value_of(cycle, kQFeed), cl::FeedUnit::kMillimetrePerMinute};
+  }
+  if (cycle.parameters.contains(kQFeedOut)) {
+    const double feed_out = value_of(cycle, kQFeedOut);
+    if (feed_out == 0) hole.feed_out = hole.feed;
+    if (feed_out > 0 && feed_out < kRapidFeed) {
+      hole.feed_out = {feed_out, cl::FeedUnit::kMillimetrePerMinute};
+    }
+  }
+  if (row.has_pecks) {
+    if (auto done = add_klartext_pecks(cycle, hole); !done)
+      return tl::make_unexpected(done.error());
+  }
+  return out;
+}
+
+/// The next of Q201=-20: parameter, value; the point may be a comma.
+bool take_parameter(std::string_view& text, int& parameter, double& value) {
+  const std::size_t equals = text.find('=');
+  double number = 0;
+  if (!text.starts_with('Q') || equals == std::string_view::npos ||
+      !cl::parse_number(text.substr(1, equals - 1), number) || number < 1 || number > 9999) {
+    return false;
+  }
+  parameter = static_cast<int>(number);
+  text.remove_prefix(equals + 1);
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  const std::size_t size = std::min(text.find_first_of(" ~\t"), text.size());
+  std::string plain(text.substr(0, size));
+  std::replace(plain.begin(), plain.end(), ',', '.');
+  text.remove_prefix(size);
+  if (plain == "FMAX") plain = "99999";
+  return cl::parse_number(plain.starts_with('+') ? plain.substr(1) : plain, value);
+}
+
+}  // namespace
+
+cl::Outcome take_cycle_parameters(State& s, std::string_view text) {
+  const auto skip = [&text] {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '~')) {
+      text.remove_prefix(1);
+    }
+  };
+  for (skip(); !text.empty(); skip()) {
+    int parameter = 0;
+    double value = 0;
+    const std::string_view from = text;
+    if (s.modes.open == OpenDefinition::kNone || !take_parameter(text, parameter, value)) {
+      return refuse("a Q parameter: " + cl::quoted(from.substr(0, 16)), kMovesByCam, "Q");
+    }
+    if (s.modes.open == OpenDefinition::kCycle) {
+      s.modes.definition->parameters[parameter] = value;
+    } else if (parameter == kQPreset) {
+      const bool is_row = value >= 0 && value < 1000 && value == std::floor(value);
+      if (!is_row) return refuse("CYCL DEF 247 with Q339 that is no row of a table");
+      if (auto done = set_preset(s, static_cast<int>(value)); !done) return done;
+    }
+  }
+  return {};
+}
+
+cl::Outcome define_cycle(State& s, std::string_view number, std::string_view text) {
+  double value = 0;
+  const bool is_number = cl::parse_number(number, value) && value > 0 && value < 1000;
+  const bool is_preset = is_number && value == kPreset247;
+  if (!is_preset) s.modes.definition.reset();
+  const bool is_drilling =
+      is_number && value == std::floor(value) && find_klartext_cycle(static_cast<int>(value));
+  if (!is_drilling && !is_preset) {
+    return refuse("CYCL DEF " + std::string(number.substr(0, 16)) + ": a cycle of the control",
+                  kMovesByCam, "CYCL DEF");
+  }
+  s.modes.open = is_preset ? OpenDefinition::kPreset : OpenDefinition::kCycle;
+  if (is_drilling) s.modes.definition = CycleDefinition{static_cast<int>(value), {}};
+  const std::size_t first = text.find(" Q");
+  if (first == std::string_view::npos) return {};
+  return take_cycle_parameters(s, text.substr(first));
+}
+
+cl::Outcome call_cycle(State& s, const Line& line) {
+  if (!s.modes.definition) {
+    return refuse("a cycle is called, but no CYCL DEF that is run here stands before it",
+                  kMovesByCam, "CYCL CALL");
+  }
+  const auto drilling = drilling_of(*s.modes.definition);
+  if (!drilling) return tl::make_unexpected(drilling.error());
+  return drill(s, line, *drilling);
+}
+
+}  // namespace meridian::nc

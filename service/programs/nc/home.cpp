@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// G28 and G53: single axes go to places of the machine itself.
+#include <algorithm>
+#include <array>
+
+#include "meridian/units.hpp"
+#include "service/programs/cl/words/motion.hpp"
+#include "service/programs/nc/state.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::refuse;
+
+bool is_axis_word(const Word& word) {
+  const char c = word.address.front();
+  return (c >= 'X' && c <= 'Z') || word.may_be_rotary();
+}
+
+bool is_linear(const Word& word) { return word.address.front() >= 'X'; }
+
+/// Before the first motion nothing is known of where the tool is, and nothing has to be.
+void move_unseen(State& s, const Line& line) {
+  s.place.forget();
+  for (const Word& word : line.words) {
+    if (!is_axis_word(word) || is_linear(word)) continue;
+    std::erase_if(s.place.rotary, [&](const RotaryAt& at) { return at.address == word.address; });
+    s.place.rotary.push_back({std::string(word.address), std::nullopt});
+  }
+}
+
+cl::Outcome check_intermediate(const State& s, const Line& line) {
+  for (const Word& word : line.words) {
+    if (!is_axis_word(word) || (s.modes.is_incremental && word.number == 0)) continue;
+    return refuse("G28 by way of a point between", "write G91 G28 with zeros, such as G91 G28 Z0.");
+  }
+  return {};
+}
+
+}  // namespace
+
+cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place) {
+  const bool is_siemens = s.modes.language == Language::kSiemens;
+  const bool is_klartext = s.modes.language == Language::kHeidenhain;
+  const char* const code = !is_machine_place ? "G28"
+                           : is_siemens      ? "SUPA"
+                           : is_klartext     ? "M91"
+                                             : "G53";
+  std::vector<MachineAxes::Target> targets;
+  if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
+  for (const Word& word : line.words) {
+    if (!is_axis_word(word)) continue;
+    MachineAxes::Target target{word.address, std::nullopt};
+    if (is_machine_place) target.value = word.number * (is_linear(word) ? s.cl.units.to_mm : 1);
+    targets.push_back(target);
+  }
+  if (targets.empty()) return refuse(std::string(code) + " without axis words");
+  if (!is_machine_place) {
+    if (auto done = check_intermediate(s, line); !done) return done;
+  } else if (s.modes.is_incremental || s.modes.motion > Motion::kLine) {
+    return refuse(std::string(code) + " needs G90, and G0 or G1");
+  }
+  if (!s.cl.path.has_moved()) {
+    move_unseen(s, line);
+    return {};
+  }
+  if (!s.axes) {
+    return refuse(std::string(code) + " moves to a place of the machine, which is not known here",
+                  "--machine FILE", "machine");
+  }
+  if (s.cl.path.position() == cl::BlockPath::Position::kLost) {
+    s.place.forget();
+    return {};
+  }
+  const auto reached = s.axes->move(s.in_w, s.place.rotary, s.cl.tool, targets);
+  if (!reached) return tl::make_unexpected(reached.error());
+  s.cl.remarks.warn(code, line.number, [code] {
+    return std::string(code) +
+           ": a straight rapid to where the machine file has that place; see that nothing is in "
+           "the way";
+  });
+  const Vector3 written = as_written(s, reached->pose.tip);
+  const auto pose = in_path(s, {written, reached->pose.axis.normalized()});
+  if (!pose) return tl::make_unexpected(pose.error());
+  s.in_w = reached->pose;
+  const bool turns = std::any_of(line.words.begin(), line.words.end(),
+                                 [](const Word& word) { return word.may_be_rotary(); });
+  s.place.rotary = reached->rotary;
+  s.place.is_by_control = false;
+  if (turns) note_rotary_words(s, s.place);
+  s.place.forget();
+  if (!s.place.is_turned() || holds_tip(s.modes.control) || is_across_plane(s, s.place)) {
+    for (std::size_t k = 0; k < 3; ++k) s.place.tip[k] = written[static_cast<Eigen::Index>(k)];
+  }
+  return s.cl.path.line_to(pose->tip, pose->axis, {BlockKind::kRapid, FeedMeaning::kNone, 0},
+                           line.number);
+}
+
+}  // namespace meridian::nc

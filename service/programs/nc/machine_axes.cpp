@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/programs/nc/machine_axes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "meridian/units.hpp"
+#include "service/programs/post/tip_frame.hpp"
+
+namespace meridian::nc {
+
+using cl::refuse;
+
+MachineAxes::MachineAxes(const MachineModel& model, const ToolTable& tools)
+    : model_(model), tools_(tools) {
+  auto words = post::AxisWords::of(model_);
+  if (!words) {
+    refusal_ = words.error().message;
+  } else if (has_stage(model_)) {
+    refusal_ = "machine " + model_.name + " has a stage, which no tool-centre control knows";
+  } else if (const auto zero = post::find_program_zero(model_, *words); !zero) {
+    refusal_ = zero.error().message;
+  } else {
+    words_ = *words;
+  }
+}
+
+bool MachineAxes::is_rotary(std::string_view address) const noexcept {
+  if (!words_) return false;
+  const int i = words_->find(address);
+  return i >= 0 && words_->is_rotary(i);
+}
+
+std::size_t MachineAxes::rotary_count() const noexcept {
+  std::size_t count = 0;
+  for (int i = 0; words_ && i < words_->count(); ++i) count += words_->is_rotary(i) ? 1 : 0;
+  return count;
+}
+
+JointVector MachineAxes::joints(const std::vector<RotaryAt>& rotary) const {
+  JointVector q{};
+  if (!words_) return q;
+  for (const RotaryAt& at : rotary) {
+    const int i = words_->find(at.address);
+    if (i >= 0 && at.deg) q[i] = words_->axis(i, *at.deg);
+  }
+  return q;
+}
+
+Vector3 MachineAxes::axis(const std::vector<RotaryAt>& rotary) const {
+  return forward(model_, model_.tool_length_mm, joints(rotary)).axis.normalized();
+}
+
+/// Of all solutions the one whose rotary joints are nearest to `near`.
+std::optional<JointVector> MachineAxes::solve_near(const ToolPose& pose, double tool_length_mm,
+                                                   const JointVector& near) const {
+  std::optional<JointVector> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int branch = 0; branch < branch_count(model_); ++branch) {
+    const auto solution = meridian::solve(model_, tool_length_mm,
+                                          Pose<double>{{pose.tip[0], pose.tip[1], pose.tip[2]},
+                                                       {pose.axis[0], pose.axis[1], pose.axis[2]}},
+                                          branch, near);
+    if (solution.status == SolveStatus::kUnreachable) continue;
+    double turn = 0;
+    for (int i = 0; i < model_.joint_count; ++i) {
+      if (words_->is_rotary(i)) turn += std::abs(solution.q[i] - near[i]);
+    }
+    if (turn < least) best = solution.q;
+    least = std::min(least, turn);
+  }
+  return best;
+}
+
+Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
+    const ToolPose& from, const std::vector<RotaryAt>& rotary, std::optional<std::uint32_t> tool,
+    const std::vector<Target>& targets) const {
+  if (!words_) return refuse(refusal_);
+  double length_mm = model_.tool_length_mm;
+  if (tool) {
+    const Tool* const row = tools_.find(static_cast<int>(*tool));
+    if (row == nullptr) {
+      return refuse("a move to a place of the machine needs the length of tool " +
+                        std::to_string(*tool) + ", which is not in the tool table",
+                    "give --tools FILE or --unknown-tool-length MM");
+    }
+    length_mm = row->tip_length_mm();
+  }
+  auto q = solve_near(from, length_mm, joints(rotary));
+  if (!q) return refuse("the machine does not reach the place where this move begins");
+  for (const Target& target : targets) {
+    const int i = words_->find(target.address);
+    if (i < 0) {
+      return refuse("machine " + model_.name + " has no axis " + std::string(target.address));
+    }
+    (*q)[i] = target.value ? words_->axis(i, *target.value) : model_.joints[i].home;
+  }
+  Reached out;
+  out.pose = forward(model_, length_mm, *q);
+  for (int i = 0; i < words_->count(); ++i) {
+    if (words_->is_rotary(i)) out.rotary.push_back({words_->address(i), words_->value(i, (*q)[i])});
+  }
+  return out;
+}
+
+}  // namespace meridian::nc

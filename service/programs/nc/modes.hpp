@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meridian/geometry/vector3.hpp"
+#include "service/programs/cl/modal.hpp"
+
+namespace meridian::nc {
+
+enum class Motion : std::uint8_t { kNone, kRapid, kLine, kClockwise, kCounterClockwise };
+
+/// What X Y Z mean.
+enum class Control : std::uint8_t {
+  kNone,    ///< G49: the tip where nothing is tilted
+  kLength,  ///< G43: the same
+  kRotary,  ///< G43.4: the tip; the rotary words give the tool axis
+  kVector   ///< G43.5: the tip; I J K are the tool axis
+};
+[[nodiscard]] constexpr bool holds_tip(Control control) noexcept {
+  return control == Control::kRotary || control == Control::kVector;
+}
+
+enum class Language : std::uint8_t { kFanuc, kSiemens, kHeidenhain };
+
+/// A canned cycle in force. Lengths in the unit of the program.
+struct Cycle {
+  std::uint8_t code = 0;      ///< 81 of G81; 0: none
+  double initial = 0;         ///< where Z stood before it
+  bool returns_to_r = false;  ///< G99; G98: to `initial`
+  std::optional<double> r, z, peck;
+  double dwell_s = 0;
+};
+
+/// Holes along Z of the program as their cycle tells them. Lengths in the unit of the program.
+struct Drilling {
+  cl::HoleCycle hole;
+  double top = 0;  ///< Z of what the levels of `hole` count from
+};
+
+/// CYCL DEF of Klartext: a cycle with the Q parameters that the lines behind it give.
+struct CycleDefinition {
+  int number = 0;
+  std::map<int, double> parameters;
+  bool runs_at_every_point = false;  ///< M89
+};
+
+/// What lines of Q parameters alone belong to, in Klartext.
+enum class OpenDefinition : std::uint8_t {
+  kNone,
+  kCycle,  ///< the cycle in force
+  kPreset  ///< CYCL DEF 247
+};
+
+/// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
+struct Modes {
+  Motion motion = Motion::kNone;
+  Control control = Control::kNone;
+  std::uint8_t plane = 2;  ///< the axis across it
+  bool is_incremental = false;
+  bool is_centre_absolute = false;
+  cl::FeedUnit feed_unit = cl::FeedUnit::kPerMinute;
+  Cycle cycle;
+  std::optional<Drilling> at_every_point;     ///< MCALL of Siemens
+  std::optional<CycleDefinition> definition;  ///< CYCL DEF of Klartext
+  OpenDefinition open = OpenDefinition::kNone;
+  int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
+  std::optional<std::uint32_t> next_tool;
+  Language language = Language::kFanuc;
+  std::array<std::optional<double>, 2> pole;  ///< CC of Klartext
+  double auto_feed = 0;           ///< F of TOOL CALL in Klartext, which FAUTO means; 0: none
+  bool has_new_speed = false;     ///< TOOL CALL S of Klartext, for a spindle that turns
+  bool is_oriented = false;       ///< TRAORI: vectors or rotary words, as each block has them
+  bool turns_evenly = true;       ///< rotary joints between two blocks; else the axis: great circle
+  bool has_machine_axes = false;  ///< ORIMKS: directions are the machine's
+};
+
+/// A rotary axis as the program has turned it, deg as written; nothing: by the control, unknown.
+struct RotaryAt {
+  std::string address;
+  std::optional<double> deg;
+};
+
+/// Where the program has put the tool. Lengths in the unit of the program, from its zero.
+struct Place {
+  std::array<std::optional<double>, 3> tip;  ///< nothing: not known here
+  std::vector<RotaryAt> rotary;              ///< of every axis that was told
+  std::array<double, 3> vector{0, 0, 1};     ///< of G43.5, unit
+  bool has_vector = false;
+  bool is_by_control = false;  ///< the control has turned rotary axes, to where is not told
+
+  [[nodiscard]] bool is_known() const noexcept { return tip[0] && tip[1] && tip[2]; }
+  void forget() noexcept { tip = {}; }
+  [[nodiscard]] bool is_turned() const noexcept;
+};
+
+}  // namespace meridian::nc

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a line leads: tip and tool axis by the words that it has.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/cl/words/motion.hpp"
+#include "service/programs/nc/state.hpp"
+
+namespace meridian::nc {
+namespace {
+
+using cl::refuse;
+
+constexpr std::array<std::string_view, 3> kTip = {"X", "Y", "Z"};
+
+/// Numbers without a point are whole units here; older controls count least increments.
+void note_digits(State& s, const Line& line, const Word& word) {
+  s.cl.summary.decimals = std::max(s.cl.summary.decimals, word.decimals);
+  if (word.has_point || word.number == 0) return;
+  s.cl.remarks.warn("point", line.number, [&word] {
+    return std::string(word.address) + std::string(word.digits) +
+           " has no decimal point: taken as whole millimetres, inches or degrees; some controls "
+           "count least increments there";
+  });
+}
+
+void set_rotary(Place& place, std::string_view address, double deg) {
+  const auto at = std::find_if(place.rotary.begin(), place.rotary.end(),
+                               [&](const RotaryAt& r) { return r.address == address; });
+  if (at != place.rotary.end()) {
+    at->deg = deg;
+  } else {
+    place.rotary.push_back({std::string(address), deg});
+  }
+}
+
+std::optional<double> rotary_of(const Place& place, std::string_view address) {
+  for (const RotaryAt& at : place.rotary) {
+    if (at.address == address) return at.deg;
+  }
+  return std::nullopt;
+}
+
+bool is_relative(const State& s, const Word& word) {
+  return word.way == Word::Way::kModal ? s.modes.is_incremental
+                                       : word.way == Word::Way::kIncremental;
+}
+
+cl::Outcome take_tip(State& s, const Line& line, Target& to) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Word* const word = line.find(kTip[k]);
+    if (word == nullptr) continue;
+    note_digits(s, line, *word);
+    std::optional<double>& at = to.place.tip[k];
+    const bool is_incremental = is_relative(s, *word);
+    if (is_incremental && !at) {
+      return refuse("G91, but where " + std::string(kTip[k]) + " stands is not known here",
+                    "write a G0 with X, Y and Z under G90 first", "not known");
+    }
+    at = is_incremental ? *at + word->number : word->number;
+  }
+  return {};
+}
+
+cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
+  bool has_any = false;
+  for (const Word& word : line.words) {
+    if (!word.may_be_rotary()) continue;
+    const std::string address(word.address);
+    if (s.modes.control == Control::kVector) {
+      return refuse("rotary word " + address + " under G43.5, where I J K give the tool axis");
+    }
+    if (s.axes && s.axes->refusal().empty() && !s.axes->is_rotary(word.address)) {
+      return refuse("the machine has no rotary axis with the NC word " + address,
+                    "check nc_word in the machine file", "no axis " + address);
+    }
+    note_digits(s, line, word);
+    const std::optional<double> before = rotary_of(to.place, address);
+    const bool is_incremental = is_relative(s, word);
+    if (is_incremental && !before) {
+      return refuse("G91, but where " + address + " stands is not known here");
+    }
+    const double deg = is_incremental ? *before + word.number : word.number;
+    if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg");
+    to.turns = to.turns || before.value_or(0) != deg;
+    set_rotary(to.place, address, deg);
+    has_any = true;
+  }
+  if (has_any) note_rotary_words(s, to.place);
+  return {};
+}
+
+cl::Outcome find_axis(const State& s, Target& to) {
+  if (s.modes.control == Control::kRotary) {
+    if (!s.axes) {
+      return refuse(
+          "rotary words with tool-centre control need the machine that they are written for: which "
+          "axes turn "
+          "what is in its machine file",
+          "--machine FILE", "machine");
+    }
+    if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
+    if (to.place.is_by_control) {
+      return refuse(
+          "the control turned the rotary axes (G53.1 and its kin), and no word tells to "
+          "where",
+          "write all rotary words into the first block with tool-centre control", "not told");
+    }
+    to.axis = s.axes->axis(to.place.rotary);
+    return {};
+  }
+  Vector3 axis = Vector3::UnitZ();  // along the machine's Z
+  const bool is_bare = !holds_tip(s.modes.control);
+  if (is_bare && is_across_plane(s, to.place)) axis = tool_of_plane(s);
+  if (s.modes.control == Control::kVector) {
+    if (!to.place.has_vector && to.place.is_turned()) {
+      return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not told",
+                    "write the tool axis into the first block with tool-centre control");
+    }
+    const bool is_tilted = !s.frames.now.rotation.isIdentity();
+    if (is_tilted && s.modes.language == Language::kFanuc) {
+      return refuse("G43.5 in a tilted plane", "output G43.5 without G68.2, in one frame", "G43.5");
+    }
+    if (to.place.has_vector) axis = s.frames.now.direction(to_vector(to.place.vector));
+  }
+  to.axis = direction_in_w(s, axis);
+  return {};
+}
+
+/// Words that mean nothing where they stand.
+cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
+  for (const char* const address : {"I", "J", "K", "R"}) {
+    const bool is_vector = s.modes.control == Control::kVector && address[0] != 'R' &&
+                           s.modes.language == Language::kFanuc;
+    if (line.find(address) != nullptr && !is_arc && !is_vector) {
+      return refuse(std::string("word ") + address + " in a block that is no arc");
+    }
+  }
+  for (const char* const address : {"U", "V", "W"}) {
+    if (line.find(address) != nullptr) {
+      return refuse(std::string("word ") + address + " moves an axis beside X, Y and Z");
+    }
+  }
+  const bool is_fanuc = s.modes.language == Language::kFanuc;  // else D is the tool's own offset
+  if (line.find("E") != nullptr || (is_fanuc && line.find("D") != nullptr)) {
+    return refuse("word E or D in a motion block is not understood");
+  }
+  return {};
+}
+
+/// A cut of words of Fanuc without G43: its Z may be that of the spindle.
+void warn_of_no_length(State& s, const Line& line) {
+  const bool is_bare = s.modes.control == Control::kNone && s.modes.language == Language::kFanuc;
+  if (!is_bare || s.modes.motion == Motion::kRapid) return;
+  s.cl.remarks.warn("no length", line.number, [] {
+    return "a cut without G43 or G43.4: Z is read as that of the tip; where it means the spindle, "
+           "the tool cuts off by its length";
+  });
+}
+
+/// Without tool-centre control X Y Z are those of the tip only where no rotary axis is turned, or
+/// where the tool stands across a tilted plane.
+bool is_of_tip(const State& s, const Target& to) {
+  if (holds_tip(s.modes.control)) return true;
+  return !to.turns && (!to.place.is_turned() || is_across_plane(s, to.place));
+}
+
+/// A cut in a tilted plane waits for the rotary axes.
+cl::Outcome check_plane(const State& s, const Target& to) {
+  const bool waits = s.modes.motion != Motion::kRapid && s.frames.tilt == Tilt::kDefined &&
+                     !holds_tip(s.modes.control);
+  if (!waits || is_across_plane(s, to.place)) return {};
+  return refuse("a cut in a tilted plane that the tool does not stand across",
+                s.axes ? "turn the tool first: G53.1, or PLANE .. TURN"
+                       : "turn the tool first (G53.1, PLANE .. TURN); by rotary words: "
+                         "--machine FILE",
+                "no G53.1");
+}
+
+cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
+  warn_of_no_length(s, line);
+  const bool is_cut = s.modes.motion != Motion::kRapid;
+  if (is_of_tip(s, to)) {
+    if (to.place.is_known()) return line_to(s, line, to);
+  } else if (is_cut) {
+    return refuse("a cut without tool-centre control while a rotary axis is not at zero",
+                  "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
+  }
+  if (s.cl.path.has_moved())
+    s.cl.remarks.warn("no tip", line.number, [] {
+      return "rapids behind which the tip is not known (rotary axes turned without tool-centre "
+             "control, or not all of X Y Z told) are no part of the path: the next motion goes "
+             "straight from the point before them; see that nothing is in the way";
+    });
+  s.place = to.place;
+  if (!is_of_tip(s, to)) s.place.forget();
+  return {};
+}
+
+}  // namespace
+
+bool Place::is_turned() const noexcept {
+  return is_by_control || std::any_of(rotary.begin(), rotary.end(), [](const RotaryAt& at) {
+           return !at.deg || std::fmod(*at.deg, 360.0) != 0;
+         });
+}
+
+Vector3 in_w(const State& s, const Vector3& written) {
+  return direction_in_w(s, s.cl.units.to_mm * in_program(s, written));
+}
+
+cl::Outcome move(State& s, const Line& line) {
+  if (s.modes.motion == Motion::kNone) {
+    return refuse("a point, but no G0, G1, G2 or G3 before it");
+  }
+  const bool is_arc =
+      s.modes.motion == Motion::kClockwise || s.modes.motion == Motion::kCounterClockwise;
+  if (auto done = check_words(s, line, is_arc); !done) return done;
+  if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
+  if (auto done = choose_orientation(s, line); !done) return done;
+  Target to{s.place, Vector3::UnitZ(), false};
+  if (auto done = take_tip(s, line, to); !done) return done;
+  if (auto done = take_rotary(s, line, to); !done) return done;
+  if (s.modes.control == Control::kVector && !is_arc) {
+    if (auto done = take_vector(s, line, to); !done) return done;
+  }
+  if (auto done = find_axis(s, to); !done) return done;
+  if (auto done = check_plane(s, to); !done) return done;
+  const bool is_cut = s.modes.motion != Motion::kRapid;
+  const bool has_begun = s.cl.path.has_moved() || is_arc;
+  if (is_cut && (!to.place.is_known() || (has_begun && !s.place.is_known()))) {
+    return refuse("a cut, but where it begins is not known here",
+                  "write a G0 with X, Y and Z before it, under the tool-centre control in force",
+                  "not known");
+  }
+  ++(holds_tip(s.modes.control) ? s.cl.summary.goto_six : s.cl.summary.goto_three);
+  return is_arc ? arc_to(s, line, to) : move_plainly(s, line, to);
+}
+
+}  // namespace meridian::nc

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "service/programs/nc/state.hpp"
+
+namespace meridian::nc {
+
+/// What the names of a line say about its other words.
+struct NameOutcome {
+  bool has_machine_place = false;  ///< SUPA: they are places of the machine
+  bool has_frame = false;          ///< they are those of a frame, which is in force now
+  enum class Holes : std::uint8_t {
+    kAsBefore,
+    kHere,          ///< CYCLE81(...): one, where the tool stands
+    kAtEveryPoint,  ///< MCALL CYCLE81(...): behind every motion from the next line on
+    kNoMore         ///< MCALL alone
+  };
+  Holes holes = Holes::kAsBefore;
+  Drilling drilling;  ///< of kHere and kAtEveryPoint
+};
+
+/// Puts the names of a Siemens line in force: TRAORI, ORIVECT, TRANS and their kin. Jumps,
+/// subprograms and most cycles are refused by name. Proof: tests/unit/nc/siemens_test.cpp.
+[[nodiscard]] Expected<NameOutcome, cl::Refusal> take_names(State& s, const Line& line);
+
+/// Refuses what only a control can run by its name, however the rest of the line reads.
+[[nodiscard]] cl::Outcome check_names(const Line& line);
+
+/// Addresses that the language has beside single letters.
+[[nodiscard]] cl::Outcome check_siemens_addresses(const State& s, const Line& line);
+
+}  // namespace meridian::nc

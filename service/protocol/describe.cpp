@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/units.hpp"
+#include "service/protocol/block_judge.hpp"
+
+namespace meridian::stream {
+
+namespace {
+
+constexpr std::array kPlaces = {"tip x",    "tip y",    "tip z",    "axis i",   "axis j",
+                                "axis k",   "feed",     "value",    "centre x", "centre y",
+                                "centre z", "normal x", "normal y", "normal z", "sweep"};
+
+template <class... Arguments>
+std::string text(const char* format, Arguments... arguments) {
+  char buffer[192];
+  std::snprintf(buffer, sizeof buffer, format, arguments...);
+  return buffer;
+}
+
+/// Returns "b4 at 612.3 mm (travel -400 to 400 mm)"; of a drive of the stage the same.
+std::string joint_text(const BlockReject& reject, const MachineModel& model) {
+  if (reject.joint < 0 || reject.joint >= limited_count(model)) return "a joint";
+  const JointSpec& joint = limited_spec(model, reject.joint);
+  const char* unit = joint.is_rotary ? "deg" : "mm";
+  const auto shown = [&joint](double value) {
+    return joint.is_rotary ? units::deg_from_rad(value) : value;
+  };
+  return text("%s at %.6g %s (travel %.6g to %.6g %s)", joint.name.c_str(), shown(reject.value),
+              unit, shown(joint.limits.travel_min), shown(joint.limits.travel_max), unit);
+}
+
+}  // namespace
+
+std::string reason_of(const BlockReject& reject, const MachineModel& model) {
+  switch (reject.code) {
+    case RejectCode::kNone:
+      return "nothing is wrong";
+    case RejectCode::kNotFinite: {
+      const auto place = static_cast<std::size_t>(reject.value);
+      return std::string(place < kPlaces.size() ? kPlaces[place] : "a number") +
+             " is not a finite number";
+    }
+    case RejectCode::kKind:
+      return "kind of block, feed or action is unknown, or out of place";
+    case RejectCode::kAxisNotUnit:
+      return text("tool axis or arc normal has length %.6g, not 1 within %g", reject.value,
+                  kAxisNormTolerance);
+    case RejectCode::kFeed:
+      return text("feed %.6g per minute is not positive, has no meaning or is beyond %.0f mm/min",
+                  reject.value, kMaxFeed_mm_per_min);
+    case RejectCode::kArc:
+      return text("arc does not lead from the block before to its end (%.6g, allowed %g mm)",
+                  reject.value, kArcTolerance_mm);
+    case RejectCode::kValue:
+      return text("value %.6g is out of range", reject.value);
+    case RejectCode::kUnknownTool:
+      return text("tool %.6g is not in the tool table; add it to tools.toml", reject.value);
+    case RejectCode::kNoActionPeer:
+      return "nobody answers actions; start the action peer or set auxiliary = \"ignore\"";
+    case RejectCode::kUnreachable:
+      return "no joint positions put the tool there";
+    case RejectCode::kTravel:
+      return joint_text(reject, model) + " leaves travel at this block";
+    case RejectCode::kTravelBetween:
+      return joint_text(reject, model) + " leaves travel on the way from the block before";
+    case RejectCode::kBranch:
+      return "no branch or winding leads here from the block before";
+    case RejectCode::kApproach:
+      return "the machine finds no way to this block from where it stands";
+    case RejectCode::kAxisReversal:
+      return "tool axis turns by half a turn at once: no way round is meant; add a block between";
+    case RejectCode::kTooComplex:
+      return "the block is too long or too curved for one plan; split it";
+    case RejectCode::kDiscontinuous:
+      return "its joints would jump or creep: it leads through a singularity or within a hair's "
+             "breadth of one; move the workpiece, or pass farther off";
+  }
+  return "unknown reason";
+}
+
+std::string describe(const BlockReject& reject, const MachineModel& model) {
+  return text("line %u, block %llu: ", reject.line,
+              static_cast<unsigned long long>(reject.sequence)) +
+         reason_of(reject, model);
+}
+
+}  // namespace meridian::stream

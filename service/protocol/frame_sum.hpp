@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "meridian/geometry/vector3.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/text/checksum.hpp"
+
+namespace meridian::stream {
+
+/// By which station and service know that they mean the same work frame: FNV-1a, 64 bit, of its
+/// rotation, row by row, and its origin, as they lie in memory. Never 0.
+/// Proof: tests/unit/protocol/frame_sum_test.cpp.
+[[nodiscard]] inline std::uint64_t frame_sum(const std::array<double, 9>& rotation,
+                                             const Array3& origin_mm) noexcept {
+  text::Checksum sum;
+  const auto add = [&sum](double value) {
+    sum.add({reinterpret_cast<const char*>(&value), sizeof value});
+  };
+  for (const double value : rotation) add(value);
+  for (const double value : origin_mm) add(value);
+  return sum.sum();
+}
+
+/// A rotation row by row, as it travels.
+[[nodiscard]] inline std::array<double, 9> rows_of(const Eigen::Matrix3d& rotation) noexcept {
+  std::array<double, 9> rows{};
+  for (int i = 0; i < 9; ++i) rows[static_cast<std::size_t>(i)] = rotation(i / 3, i % 3);
+  return rows;
+}
+
+[[nodiscard]] inline std::uint64_t frame_sum(const MachineModel& model) noexcept {
+  return frame_sum(rows_of(model.frame_rotation), to_array(model.frame_origin_mm));
+}
+
+/// The inverse of rows_of() and to_array(): puts the workpiece of `model` there, bit for bit.
+inline void place_frame(MachineModel& model, const std::array<double, 9>& rows,
+                        const Array3& origin_mm) noexcept {
+  for (int i = 0; i < 9; ++i) {
+    model.frame_rotation(i / 3, i % 3) = rows[static_cast<std::size_t>(i)];
+  }
+  model.frame_origin_mm = to_vector(origin_mm);
+}
+
+}  // namespace meridian::stream

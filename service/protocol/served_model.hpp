@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/transport/messages.hpp"
+
+namespace meridian::stream {
+
+/// The machine as its service has it: the file that it tells, with the frame and the tool in force.
+/// Throws config::ConfigError where the file did not fit the topic, or another version wrote it.
+[[nodiscard]] MachineModel served_model(const dds::MachineInfo& info);
+
+}  // namespace meridian::stream

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <string_view>
+
+#include "service/transport/convert.hpp"
+#include "service/transport/wire_fields.hpp"
+
+namespace meridian::dds {
+namespace {
+
+static_assert(kMaxHistograms == meridian_wire_kHistograms);
+constexpr WorkFrame kNoFrame{};
+static_assert(WorkFrames::kMost == meridian_wire_kWorkFrames);
+
+template <class Way, class Message, class Wire>
+void status_fields(Way way, Message& message, Wire& wire) {
+  way(message.service_id, wire.service_id);
+  way(message.status_sequence, wire.status_sequence);
+  way(message.time_ns, wire.time_ns);
+  way(message.cycle, wire.cycle);
+  way(message.state, wire.state);
+  way(message.realtime_mode, wire.realtime_mode);
+  way(message.is_secured, wire.is_secured);
+  way(message.is_open_network, wire.is_open_network);
+  way(message.is_enabling_required, wire.is_enabling_required);
+  way(message.enabling_devices, wire.enabling_devices);
+  way(message.is_auxiliary_ignored, wire.is_auxiliary_ignored);
+  way(message.alarm, wire.alarm);
+  way(message.alarm_joint, wire.alarm_joint);
+  way(message.epoch, wire.epoch);
+  way(message.alarm_line, wire.alarm_line);
+  way(message.alarm_value, wire.alarm_value);
+  way(message.session, wire.session);
+  way(message.station, wire.station);
+  way(message.program, wire.program);
+  way(message.block_count, wire.block_count);
+  way(message.block, wire.block);
+  way(message.line, wire.line);
+  way(message.motion, wire.motion);
+  way(message.branch, wire.branch);
+  way(message.is_at_pole, wire.is_at_pole);
+  way(message.limiting_joint, wire.limiting_joint);
+  way(message.feed_programmed_mm_per_min, wire.feed_programmed_mm_per_min);
+  way(message.feed_achieved_mm_per_min, wire.feed_achieved_mm_per_min);
+  way(message.feed_override, wire.feed_override);
+  way(message.rapid_override, wire.rapid_override);
+  way(message.is_single_block, wire.is_single_block);
+  way(message.stops_at_optional, wire.stops_at_optional);
+  way(message.is_dry_run, wire.is_dry_run);
+  way(message.work_frame, wire.work_frame);
+  way(message.frame, wire.frame);
+  way(message.tools, wire.tools);
+  way(message.tool, wire.tool);
+  way(message.tool_length_mm, wire.tool_length_mm);
+  way(message.rate, wire.rate);
+  way(message.plan_time_s, wire.plan_time_s);
+  way(message.joints, wire.joints);
+  way(message.drives_enabled_mask, wire.drives_enabled_mask);
+  way(message.drives_fault_mask, wire.drives_fault_mask);
+  way(message.blocks_received, wire.blocks_received);
+  way(message.blocks_done, wire.blocks_done);
+  way(message.blocks_queued, wire.blocks_queued);
+  way(message.pieces_queued, wire.pieces_queued);
+  way(message.planned_s, wire.planned_s);
+  way(message.stop_time_s, wire.stop_time_s);
+  way(message.stop_distance_mm, wire.stop_distance_mm);
+  way(message.cycles_run, wire.cycles_run);
+  way(message.periods_lost, wire.periods_lost);
+  way(message.starvations, wire.starvations);
+  way(message.batches_dropped, wire.batches_dropped);
+  way(message.batches_lost, wire.batches_lost);
+  way(message.setpoints_overrun, wire.setpoints_overrun);
+  way(message.records_overrun, wire.records_overrun);
+  way(message.events_overrun, wire.events_overrun);
+  way(message.commands_dropped, wire.commands_dropped);
+  way(message.replies_dropped, wire.replies_dropped);
+  way(message.stalled_reader, wire.stalled_reader);
+  way(message.message, wire.message);
+}
+
+template <class Way, class Message, class Wire>
+void joint_info_fields(Way way, Message& message, Wire& wire) {
+  way(message.name, wire.name);
+  way(message.is_rotary, wire.is_rotary);
+  way(message.is_endless, wire.is_endless);
+  way(message.drive, wire.drive);
+  way(message.limits.travel_min, wire.travel_min);
+  way(message.limits.travel_max, wire.travel_max);
+  way(message.limits.velocity, wire.velocity);
+  way(message.limits.acceleration, wire.acceleration);
+  way(message.limits.jerk, wire.jerk);
+  way(message.limits.fault_acceleration, wire.fault_acceleration);
+  way(message.limits.fault_jerk, wire.fault_jerk);
+  way(message.limits.following_error, wire.following_error);
+  way(message.home, wire.home);
+}
+
+template <class Way, class Message, class Wire>
+void work_frame_fields(Way way, Message& message, Wire& wire) {
+  way(message.number, wire.number);
+  way.name(message.name, wire.name);
+  way(message.origin_mm, wire.origin_mm);
+  way(message.rotation_deg, wire.rotation_deg);
+}
+
+template <class Way, class Message, class Wire>
+void machine_info_fields(Way way, Message& message, Wire& wire) {
+  way(message.service_id, wire.service_id);
+  way(message.served_ns, wire.served_ns);
+  way(message.name, wire.name);
+  way(message.file_version, wire.file_version);
+  way(message.service_version, wire.service_version);
+  way(message.host, wire.host);
+  way(message.pid, wire.pid);
+  way(message.is_serving, wire.is_serving);
+  way(message.kinematics, wire.kinematics);
+  way(message.clock, wire.clock);
+  way(message.cycle_ns, wire.cycle_ns);
+  way(message.bridge_cycles, wire.bridge_cycles);
+  way(message.joint_count, wire.joint_count);
+  for (std::size_t i = 0; i < kMaxJoints; ++i)
+    joint_info_fields(way, message.joints[i], wire.joints[i]);
+  way(message.stage_drive_count, wire.stage_drive_count);
+  for (std::size_t i = 0; i < kStageDrives; ++i) {
+    joint_info_fields(way, message.stage_drives[i], wire.stage_drives[i]);
+  }
+  way(message.max_feed_mm_per_min, wire.max_feed_mm_per_min);
+  way(message.tip_tolerance_mm, wire.tip_tolerance_mm);
+  way(message.axis_tolerance_rad, wire.axis_tolerance_rad);
+  way(message.tool_length_mm, wire.tool_length_mm);
+  way(message.frame_rotation, wire.frame_rotation);
+  way(message.frame_origin_mm, wire.frame_origin_mm);
+  way(message.work_frame, wire.work_frame);
+  way.whole(message.machine_file, wire.machine_file);
+  way.whole(message.tool_file, wire.tool_file);
+}
+
+/// "number:count number:count ..." of the buckets that are not empty. What does not fit is left
+/// out, the fewest counts being at the far end.
+template <std::size_t N>
+void print_buckets(const Histogram& histogram, char (&text)[N]) noexcept {
+  constexpr std::size_t kLongest = 32;
+  char* at = text;
+  for (std::size_t i = 0; i < Histogram::kBuckets; ++i) {
+    if (histogram.bucket(i) == 0) continue;
+    if (static_cast<std::size_t>(text + N - at) < kLongest) break;
+    if (at != text) *at++ = ' ';
+    at = std::to_chars(at, text + N, i).ptr;
+    *at++ = ':';
+    at = std::to_chars(at, text + N, histogram.bucket(i)).ptr;
+  }
+  *at = '\0';
+}
+
+void read_buckets(std::string_view text, Histogram& histogram) noexcept {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (;;) {
+    std::size_t index = 0;
+    std::uint64_t count = 0;
+    const auto number = std::from_chars(at, end, index);
+    if (number.ec != std::errc() || number.ptr == end || *number.ptr != ':') return;
+    const auto counted = std::from_chars(number.ptr + 1, end, count);
+    if (counted.ec != std::errc()) return;
+    histogram.restore_bucket(index, count);
+    if (counted.ptr == end) return;
+    at = counted.ptr + 1;
+  }
+}
+
+void histogram_to_wire(const NamedHistogram& message, meridian_wire_Histogram& wire) noexcept {
+  const Histogram& histogram = message.histogram;
+  ToWire()(message.name, wire.name);
+  wire.count = histogram.count();
+  wire.sum_ns = histogram.sum_ns();
+  wire.p50_ns = histogram.percentile_ns(0.5);
+  wire.p99_ns = histogram.percentile_ns(0.99);
+  wire.p999_ns = histogram.percentile_ns(0.999);
+  wire.max_ns = histogram.max_ns();
+  print_buckets(histogram, wire.buckets);
+}
+
+void histogram_from_wire(const meridian_wire_Histogram& wire, NamedHistogram& message) {
+  FromWire()(message.name, wire.name);
+  message.histogram.clear();
+  read_buckets({wire.buckets, ::strnlen(wire.buckets, sizeof wire.buckets)}, message.histogram);
+  message.histogram.restore_sum_and_max(wire.sum_ns, wire.max_ns);
+}
+
+}  // namespace
+
+void to_wire(const Status& message, meridian_wire_Status& wire) noexcept {
+  status_fields(ToWire(), message, wire);
+}
+
+void from_wire(const meridian_wire_Status& wire, Status& message) {
+  status_fields(FromWire(), message, wire);
+}
+
+void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
+  machine_info_fields(ToWire(), message, wire);
+  const std::size_t count = std::min<std::size_t>(message.work_frames.size(), WorkFrames::kMost);
+  wire.work_frame_count = static_cast<std::uint32_t>(count);
+  for (std::size_t i = 0; i < WorkFrames::kMost; ++i) {
+    work_frame_fields(ToWire(), i < count ? message.work_frames[i] : kNoFrame, wire.work_frames[i]);
+  }
+}
+
+void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
+  machine_info_fields(FromWire(), message, wire);
+  message.joint_count = std::min<std::uint32_t>(message.joint_count, kMaxJoints);
+  message.stage_drive_count = std::min<std::uint32_t>(message.stage_drive_count, kStageDrives);
+  message.work_frames.resize(std::min<std::size_t>(wire.work_frame_count, WorkFrames::kMost));
+  for (std::size_t i = 0; i < message.work_frames.size(); ++i) {
+    work_frame_fields(FromWire(), message.work_frames[i], wire.work_frames[i]);
+  }
+}
+
+void to_wire(const Latency& message, meridian_wire_Latency& wire) noexcept {
+  wire.service_id = message.service_id;
+  wire.time_ns = message.time_ns;
+  const std::size_t count = std::min(message.histograms.size(), kMaxHistograms);
+  wire.count = static_cast<std::uint32_t>(count);
+  std::memset(wire.histograms, 0, sizeof wire.histograms);
+  for (std::size_t i = 0; i < count; ++i) {
+    histogram_to_wire(message.histograms[i], wire.histograms[i]);
+  }
+}
+
+void from_wire(const meridian_wire_Latency& wire, Latency& message) {
+  message.service_id = wire.service_id;
+  message.time_ns = wire.time_ns;
+  message.histograms.resize(std::min<std::size_t>(wire.count, kMaxHistograms));
+  for (std::size_t i = 0; i < message.histograms.size(); ++i) {
+    histogram_from_wire(wire.histograms[i], message.histograms[i]);
+  }
+}
+
+}  // namespace meridian::dds

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Holds at any instant of smooth programs, in the cycle: how long they take and how far they go,
+/// against the least that the joints' limits allow on the path ahead. A longer run on other seeds:
+///
+///     MERIDIAN_HOLD_SEED=1000 MERIDIAN_HOLD_PROGRAMS=300 rt_motion_test
+///     --gtest_filter='SmoothHold*'
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "property/cycle/program_run.hpp"
+#include "property/cycle/stop_oracle.hpp"
+#include "property/path/hostile_path.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "support/draws.hpp"
+
+namespace meridian::test::smooth_hold {
+namespace {
+
+using SmoothRunning = PlannedRun<SmoothPlanner>;
+
+constexpr int kPrograms = draws(12);
+constexpr double kMostSeconds = 15;  // of motion per program
+
+std::vector<ClBlock> hostile(std::uint32_t seed) {
+  auto blocks = HostilePath(seed).make_program(6);
+  for (ClBlock& block : blocks) block.feed = std::max(block.feed, 20.0);
+  return blocks;
+}
+
+/// The path of a plan from one of its pieces on: joints at path lengths that grow, counted from the
+/// begin of that piece.
+class PathAhead {
+ public:
+  PathAhead(const MachineModel& model, const Trace& trace, std::size_t piece,
+            const JointVector& joints)
+      : model_(model), trace_(trace), piece_(piece), reference_(joints) {}
+
+  [[nodiscard]] Joints<Jet<3>> operator()(double s) {
+    while (s - passed_ > path().length) {
+      std::size_t next = piece_;
+      while (is_move(next) && trace_.paths[next].index == path().index) ++next;
+      if (!is_move(next)) break;
+      passed_ += path().length;
+      piece_ = next;
+    }
+    const double here = std::min(s - passed_, path().length);
+    const auto q = joints_at(model_, path(), Jet<3>::variable(here), reference_).q;
+    for (std::size_t i = 0; i < q.size(); ++i) reference_[i] = value_of(q[i]);
+    return q;
+  }
+
+ private:
+  [[nodiscard]] const PathPiece& path() const { return trace_.paths[piece_]; }
+  [[nodiscard]] bool is_move(std::size_t n) const {
+    return n < trace_.times.size() && trace_.times[n].kind == TimeKind::kMove;
+  }
+
+  const MachineModel& model_;
+  const Trace& trace_;
+  std::size_t piece_;
+  JointVector reference_;
+  double passed_ = 0;
+};
+
+/// Where the cycle is in a plan that was read piece by piece; the trace's size where it is not.
+std::size_t find_piece(const Trace& trace, const TimePiece& wanted) {
+  const auto is_it = [&](const TimePiece& piece) {
+    return piece.window == wanted.window && piece.path_index == wanted.path_index &&
+           piece.s0 == wanted.s0 && piece.is_tail == wanted.is_tail;
+  };
+  return static_cast<std::size_t>(std::find_if(trace.times.begin(), trace.times.end(), is_it) -
+                                  trace.times.begin());
+}
+
+/// What holds came to; the cycles that the budget of a stop grants are taken off, and the way at
+/// the first speed in them.
+struct Holds {
+  const probe::Budget stop = probe::load_budget("stop_time");  ///< in cycles
+  std::vector<double> time, distance;                          ///< over the least
+  std::vector<double> late_s, far_mm;                          ///< beyond its factor of the least
+
+  void take(double time_s, double distance_mm, const LeastStop& least) {
+    time.push_back(time_s / least.time_s);
+    distance.push_back(distance_mm / least.distance_mm);
+    late_s.push_back(time_s - stop.factor * least.time_s);
+    far_mm.push_back(distance_mm - stop.factor * least.distance_mm);
+  }
+  void sort() {
+    for (auto* all : {&time, &distance, &late_s, &far_mm}) std::sort(all->begin(), all->end());
+  }
+  /// The value that a share of them does not exceed.
+  [[nodiscard]] static double at(const std::vector<double>& all, double share) {
+    return all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
+  }
+};
+
+void print(const char* what, const std::vector<double>& all) {
+  std::printf("  %-34s median %.3f, 75 %% %.3f, 90 %% %.3f, 99 %% %.3f, worst %.3f\n", what,
+              Holds::at(all, 0.5), Holds::at(all, 0.75), Holds::at(all, 0.9), Holds::at(all, 0.99),
+              all.back());
+}
+
+void expect_kept(const std::string& name, double figure, double reference = 0) {
+  const probe::Budget budget = probe::load_budget(name);
+  EXPECT_TRUE(budget.is_kept(figure, reference)) << figure << "; " << to_text(budget, reference);
+}
+
+void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
+  RandomPrograms random(seed);
+  MachineModel machine = seed % 2 == 0 ? bench_machine() : lai_machine();
+  machine.transition = Transition::kSmooth;
+  const auto blocks = hostile(seed);
+  const JointVector start = joints_of(machine, blocks[0]);
+  const auto trace = plan_smooth(machine, blocks, start);
+  SmoothRunning run(machine, blocks, start);
+  ASSERT_TRUE(run.is_started());
+  const double dt = run.world.dt();
+  double next = random.uniform(0, 0.2);
+  for (double t = 0; t < kMostSeconds && !run.is_over(); t += dt) {
+    if (t < next || !is_on_path(run.world.now()) || run.world.reader.path() == nullptr) {
+      run.run();
+      continue;
+    }
+    next = t + random.log_uniform(0.02, 3);  // a resume takes a second to come back to full rate
+    const PathState begin = run.world.state.on_path;
+    const bool is_smooth = run.world.reader.path()->kind == PathKind::kSpline;
+    const std::size_t piece = find_piece(trace, *run.world.reader.piece());
+    const JointVector joints = run.world.state.joints;
+    run.command(Verb::kHold);
+    for (double s = 0; s < 10 && run.world.now() != State::kHeld; s += dt) run.run();
+    ASSERT_EQ(run.world.now(), State::kHeld);
+    const Event stopped = run.world.last(EventCode::kStopped);
+    run.command(Verb::kResume);
+    if (!is_smooth || begin.ds <= 1e-3) continue;
+    ASSERT_LT(piece, trace.times.size());
+    PathAhead ahead(machine, trace, piece, joints);
+    const LeastStop least = least_stop(machine, begin, [&](double s) { return ahead(s); });
+    const double granted_s = holds.stop.plus * dt;
+    const double taken_s = static_cast<double>(stopped.a) * 1e-9 - granted_s;
+    holds.take(taken_s, stopped.x - granted_s * begin.ds, least);
+  }
+}
+
+TEST(SmoothHold, StopsInLittleMoreThanTheLeastTimeAndLength) {
+  const std::uint32_t first = number_of("MERIDIAN_HOLD_SEED", 1);
+  const std::uint32_t programs =
+      number_of("MERIDIAN_HOLD_PROGRAMS", static_cast<std::uint32_t>(kPrograms));
+  Holds holds;
+  for (std::uint32_t seed = first; seed < first + programs; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    hold_at_any_instant(seed, holds);
+  }
+  ASSERT_GT(holds.time.size(), 10U);
+  holds.sort();
+  const auto beyond = std::count_if(holds.late_s.begin(), holds.late_s.end(),
+                                    [](double late_s) { return late_s > 0; });
+  const double late_percent =
+      100.0 * static_cast<double>(beyond) / static_cast<double>(holds.time.size());
+  std::printf("%zu holds, %.1f %% later than %.2f of the least time\n", holds.time.size(),
+              late_percent, holds.stop.factor);
+  print("time over the least", holds.time);
+  print("length over the least", holds.distance);
+  print("later than the budget of a stop, s", holds.late_s);
+  print("farther than its factor, mm", holds.far_mm);
+  expect_kept("smooth_stop_late_by", holds.late_s.back());
+  expect_kept("smooth_stop_far_by", holds.far_mm.back());
+  if (holds.time.size() < 100) return;  // a sanitizer's few draws have no shares
+  expect_kept("smooth_stop_late", late_percent);
+  expect_kept("smooth_stop_time_p75", Holds::at(holds.time, 0.75), 1);
+  expect_kept("smooth_stop_length_p75", Holds::at(holds.distance, 0.75), 1);
+}
+
+}  // namespace
+}  // namespace meridian::test::smooth_hold

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+#include "property/cycle/program_run.hpp"
+#include "property/cycle/stop_oracle.hpp"
+#include "service/host/probe/budgets.hpp"
+#include "support/draws.hpp"
+
+/// Holds at any instant of random programs against the least time that the path allows.
+namespace meridian::test::stopping_time {
+namespace {
+
+using test::Draw;
+using test::ProgramRun;
+
+constexpr std::uint64_t kSeed = 20240620;
+constexpr int kPrograms = test::draws(60);  // or as many as MERIDIAN_HOLD_PROGRAMS says
+constexpr double kMostSeconds = 40;         // of motion per program
+
+TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
+  const std::uint64_t seed = test::number_of("MERIDIAN_HOLD_SEED", kSeed + 1000);
+  const auto programs = static_cast<int>(test::number_of("MERIDIAN_HOLD_PROGRAMS", kPrograms));
+  std::cout << "seed " << seed << "\n";
+  const probe::Budget budget = probe::load_budget("stop_time");  // in cycles
+  std::vector<double> ratios;
+  for (int n = 0; n < programs; ++n) {
+    Draw draw(seed + static_cast<std::uint64_t>(n));
+    ProgramRun run(draw.machine, draw.blocks, draw.start());
+    if (!run.is_started()) continue;
+    const double dt = run.world.dt();
+    double next = draw.random.uniform(0, 0.2);
+    for (double t = 0; t < kMostSeconds && !run.is_over(); t += dt) {
+      if (t < next || !is_on_path(run.world.now()) || run.world.reader.path() == nullptr) {
+        run.run();
+        continue;
+      }
+      next = t + draw.random.log_uniform(0.02, 0.5);
+      const PathPiece path = *run.world.reader.path();
+      const PathState begin = run.world.state.on_path;
+      const JointVector joints = run.world.state.joints;
+      run.command(Verb::kHold);
+      ASSERT_TRUE(run.world.run_until(State::kHeld, 10));
+      const double taken = static_cast<double>(run.world.last(EventCode::kStopped).a) * 1e-9;
+      run.command(Verb::kResume);
+      if (begin.ds <= 1e-3 || path.kind == PathKind::kJoint) continue;
+      const double least = test::least_stopping_time(draw.machine, path, begin, joints);
+      ratios.push_back((taken - budget.plus * dt) / least);
+      if (ratios.back() > budget.factor) {
+        std::printf("program %d: %.4f s, least %.4f s, v %.3f a %.1f s %.3f of %.3f kind %d\n", n,
+                    taken, least, begin.ds, begin.dds, begin.s, path.length,
+                    static_cast<int>(path.kind));
+      }
+    }
+  }
+  std::sort(ratios.begin(), ratios.end());
+  ASSERT_GT(ratios.size(), 100u);
+  std::printf("%zu stops, (time - 2 cycles)/least: median %.3f, 99 %% %.3f, worst %.3f\n",
+              ratios.size(), ratios[ratios.size() / 2], ratios[ratios.size() * 99 / 100],
+              ratios.back());
+  EXPECT_LE(ratios.back(), budget.factor);
+}
+
+}  // namespace
+}  // namespace meridian::test::stopping_time

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/protocol/frame_sum.hpp"
+
+#include <gtest/gtest.h>
+
+#include "service/machine/file/machine_file.hpp"
+
+namespace meridian::stream {
+namespace {
+
+MachineModel placed(const char* frame) {
+  MachineModel model;
+  config::place_workpiece(model, config::parse_frame(frame));
+  return model;
+}
+
+TEST(FrameSum, TellsFramesApartByEveryOneOfTheirNumbers) {
+  const std::uint64_t sum = frame_sum(placed("1,2,3,4,5,6"));
+  EXPECT_NE(sum, 0U);
+  EXPECT_EQ(frame_sum(placed("1,2,3,4,5,6")), sum);
+  for (const char* other : {"1.0000000000000002,2,3,4,5,6", "1,2.1,3,4,5,6", "1,2,3.1,4,5,6",
+                            "1,2,3,4.1,5,6", "1,2,3,4,5.1,6", "1,2,3,4,5,6.1"}) {
+    EXPECT_NE(frame_sum(placed(other)), sum) << other;
+  }
+}
+
+TEST(FrameSum, IsThatOfTheFrameThatCameOverTheWire) {
+  const MachineModel model = placed("10,-20,30,11,22,33");
+  MachineModel other;
+  place_frame(other, rows_of(model.frame_rotation), to_array(model.frame_origin_mm));
+  EXPECT_EQ(other.frame_rotation, model.frame_rotation);
+  EXPECT_EQ(other.frame_origin_mm, model.frame_origin_mm);
+  EXPECT_EQ(frame_sum(other), frame_sum(model));
+}
+
+}  // namespace
+}  // namespace meridian::stream
