@@ -62,7 +62,7 @@ class Interpolator {
   bool hold() noexcept;
   bool resume() noexcept;
   bool abort() noexcept;
-  /// 1 is 100 %; at most MachineModel::most_feed_override. Above 100 % it raises the feed of what
+  /// 1 is 100 %; at most MachineModel::max_feed_override. Above 100 % it raises the feed of what
   /// is not planned yet.
   bool set_feed_override(double factor) noexcept;
 

@@ -64,7 +64,7 @@ void find_overrides(Options& options, const MachineModel& model) {
   if (auto overrides = record::read_feed_overrides(text)) {
     options.check.overrides = std::move(*overrides);
   } else {
-    options.check.feed_factor = model.most_feed_override;
+    options.check.feed_factor = model.max_feed_override;
   }
 }
 
@@ -105,7 +105,7 @@ int check(Options& options, const MachineModel& model) {
   if (!options.file.empty()) {
     cl::ClReaderOptions reading = reader_options(options.cl, model);
     add_unknown_tools(options.file, reading, options.machine, tools);
-    tell_machine(reading, model, tools, load_tool_names(options.machine));
+    report_machine(reading, model, tools, load_tool_names(options.machine));
     std::vector<cl::ClWarning> warnings;
     const std::string refusal = record::read_path(options.file, reading, tools, path, &warnings);
     print_warnings(options.file, warnings);
@@ -250,12 +250,13 @@ void add(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand(
       "check",
-      "A recording judged against its CL file by forward kinematics, and against the limits of the "
+      "A recording checked against its CL file by forward kinematics, and against the limits of "
+      "the "
       "machine; an NC program, run as its control would, against its CL file; "
       "or two recordings compared bit for bit. Exit code 1 where anything is wrong");
   command->add_option("recording", options->recording, "Recording (CSV), or NC program");
   command->add_option("file", options->file,
-                      "CL file that it cut; without one only joints and cycles are judged");
+                      "CL file that it cut; without one only joints and cycles are checked");
   add_machine_options(*command, options->machine, true);
   command
       ->add_option("--same", options->same,

@@ -15,7 +15,7 @@ namespace meridian::cli {
 /// Exit codes of the tool (`meridian --help`).
 enum ExitCode : int {
   kFine = 0,
-  kVerdictNo = 1,       ///< the command ran; what it judged is not in order
+  kVerdictNo = 1,       ///< the command ran; what it checked is not in order
   kUsage = 2,           ///< options that make no sense
   kInputRefused = 3,    ///< a file that cannot be read or is not what it should be
   kMachineRefused = 4,  ///< the service said no; its reason is printed

@@ -17,7 +17,7 @@
 #include "service/cli/options/machine_name_option.hpp"
 #include "service/cli/options/peer_options.hpp"
 #include "service/cli/stoppable_output.hpp"
-#include "service/drives/kit/line_teller.hpp"
+#include "service/drives/kit/line_reporter.hpp"
 #include "service/drives/kit/other_source.hpp"
 #include "service/drives/simulated/simulated_drives.hpp"
 #include "service/machine/file/machine_file.hpp"
@@ -126,7 +126,7 @@ int run_drives(const DrivesOptions& options) {
   if (!options.is_beside_others && !is_alone(participant, model)) return kMachineRefused;
   StoppableOutput output;
   // Drives wait for nobody who reads what they say, at their begin and end neither.
-  drive::LineTeller lines([&](const std::string& text) { output.print(text); });
+  drive::LineReporter lines([&](const std::string& text) { output.print(text); });
   lines.tell(fmt::format("drives of machine {} in DDS domain {}: {} drives, cycle {:.3f} ms{}",
                          model.name, options.domain, model.joint_count,
                          static_cast<double>(model.cycle_ns) * 1e-6,

@@ -13,7 +13,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/options/machine_options.hpp"
 #include "service/cli/options/peer_options.hpp"
-#include "service/cli/options/told_machine.hpp"
+#include "service/cli/options/reported_machine.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/pose_solutions.hpp"
 #include "service/machine/inspect/pose_table.hpp"
@@ -29,7 +29,7 @@ struct Options {
   bool is_json = false;
 };
 
-constexpr double kLeastAxis = 1e-9;  // of the length of a tool axis as it is given
+constexpr double kMinAxis = 1e-9;  // of the length of a tool axis as it is given
 
 int refuse(const std::string& message) {
   std::cerr << "meridian pose: " << message << "\n";
@@ -60,7 +60,7 @@ int show_joints(const MachineModel& model, const std::vector<double>& at_edge, b
 int show_pose(const MachineModel& model, const std::vector<double>& values, bool is_json) {
   const Vector3 axis(values[3], values[4], values[5]);
   const double length = axis.norm();
-  if (!std::isfinite(length) || !(length > kLeastAxis)) {
+  if (!std::isfinite(length) || !(length > kMinAxis)) {
     return refuse("the tool axis i j k is no direction");
   }
   const ToolPose pose{{values[0], values[1], values[2]}, axis / length};
@@ -92,7 +92,7 @@ int show_table(const MachineModel& model, const Options& options) {
   }
   if (are_poses) {
     for (const inspect::TableRow& row : *rows) {
-      if (Vector3(row.values[3], row.values[4], row.values[5]).norm() > kLeastAxis) continue;
+      if (Vector3(row.values[3], row.values[4], row.values[5]).norm() > kMinAxis) continue;
       return refuse(name + ":" + std::to_string(row.line) +
                     ": the tool axis i j k is no direction");
     }
@@ -114,7 +114,7 @@ std::optional<MachineModel> find_model(Options& options, int& exit_code) {
   if (!options.machine.machine.empty()) return load_machine(options.machine);
   const auto info = find_machine(options.peer, exit_code);
   if (!info) return std::nullopt;
-  auto model = told_machine(*info);
+  auto model = reported_machine(*info);
   if (!model) {
     exit_code = refuse("machine " + info->name + " does not tell its file; name it by --machine");
   } else if (!options.machine.frame.empty()) {

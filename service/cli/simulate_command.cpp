@@ -135,8 +135,8 @@ void take_recorded_tools(const Options& options, const simulate::OperatorEvents&
                          MachineModel& model, ToolTable& tools) {
   if (!options.machine.tools.empty()) return;
   if (events.tools) tools = *events.tools;
-  const bool is_told = !events.feed_marks.empty() && events.feed_marks.front().is_begin;
-  const double length_mm = is_told ? events.feed_marks.front().tool_length_mm : 0;
+  const bool is_reported = !events.feed_marks.empty() && events.feed_marks.front().is_begin;
+  const double length_mm = is_reported ? events.feed_marks.front().tool_length_mm : 0;
   if (length_mm > 0) model.tool_length_mm = length_mm;
 }
 
@@ -160,7 +160,7 @@ int run(const Options& options) {
     std::ifstream file(options.events, std::ios::binary);
     if (!file) return refuse(options.events + ": cannot be opened");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    auto events = simulate::read_operator_events(text, options.events, model.most_feed_override);
+    auto events = simulate::read_operator_events(text, options.events, model.max_feed_override);
     if (!events) return refuse(events.error());
     simulation.events = std::move(*events);
     const auto& frame = simulation.events.frame;

@@ -75,7 +75,7 @@ void add(CLI::App& app, int& exit_code) {
       app.add_subcommand("soak",
                          "Service, simulated drives and station run for long, with mishaps on a "
                          "seeded schedule; every "
-                         "setpoint is judged while it runs. Exit code 1 where anything was wrong");
+                         "setpoint is checked while it runs. Exit code 1 where anything was wrong");
   command->add_option("programs", options->soak.programs,
                       "CL files to cut, one after the other; default: drawn ones near home");
   command->add_option("--for", options->duration, "How long: 90s, 15m, 8h")->capture_default_str();

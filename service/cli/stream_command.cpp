@@ -14,7 +14,7 @@
 #include "service/cli/options/cl_options.hpp"
 #include "service/cli/options/machine_options.hpp"
 #include "service/cli/options/peer_options.hpp"
-#include "service/cli/options/told_machine.hpp"
+#include "service/cli/options/reported_machine.hpp"
 #include "service/cli/progress_text.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/file/tool_names.hpp"
@@ -54,7 +54,7 @@ int exit_code_of(stream::StreamEnd end) {
   return kVerdictNo;
 }
 
-/// The tools that NC programs may call by name: those of the table that the file is judged for.
+/// The tools that NC programs may call by name: those of the table that the file is checked for.
 nc::NamedTools named_tools(const StreamCommandOptions& options, const dds::MachineInfo& info) {
   if (!options.machine_file.empty()) {
     return options.tool_file.empty() ? nc::NamedTools()
@@ -65,7 +65,7 @@ nc::NamedTools named_tools(const StreamCommandOptions& options, const dds::Machi
              : config::parse_tool_names(info.tool_file, "tool table of the service");
 }
 
-/// Returns the machine that the file is judged for: the one that the service tells, unless files
+/// Returns the machine that the file is checked for: the one that the service tells, unless files
 /// were given. Nothing where the service does not tell its file.
 std::optional<stream::PreflightMachine> preflight_machine(const StreamCommandOptions& options,
                                                           const dds::MachineInfo& info) {
@@ -76,7 +76,7 @@ std::optional<stream::PreflightMachine> preflight_machine(const StreamCommandOpt
     if (!options.tool_file.empty()) machine->tools = config::load_tools(options.tool_file);
     return machine;
   }
-  auto model = told_machine(info);
+  auto model = reported_machine(info);
   if (!model) return machine;
   machine.emplace();
   machine->model = std::move(*model);
@@ -96,7 +96,7 @@ bool pass_preflight(StreamCommandOptions& options,
   std::printf("preflight: %llu blocks, %s at programmed feeds%s\n",
               static_cast<unsigned long long>(report.blocks),
               time_text(report.times.total_s()).c_str(),
-              machine ? "" : "; reach and travel are the service's to judge");
+              machine ? "" : "; reach and travel are the service's to check");
   options.stream.preflight = std::move(report);
   return true;
 }
@@ -114,24 +114,25 @@ int run_stream_command(StreamCommandOptions& options) {
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
-  const auto judged_for = preflight_machine(options, *machine);
-  options.stream.frame = judged_for
-                             ? stream::frame_sum(judged_for->model)
+  const auto checked_for = preflight_machine(options, *machine);
+  options.stream.frame = checked_for
+                             ? stream::frame_sum(checked_for->model)
                              : stream::frame_sum(machine->frame_rotation, machine->frame_origin_mm);
-  if (judged_for && judged_for->tools) options.stream.tools = stream::tools_sum(*judged_for->tools);
+  if (checked_for && checked_for->tools)
+    options.stream.tools = stream::tools_sum(*checked_for->tools);
   cl::ClReaderOptions& reader = options.stream.reader;
   reader.max_feed_mm_per_s = units::per_s_from_per_min(machine->max_feed_mm_per_min);
-  if (judged_for && judged_for->model.default_unit_mm) {
+  if (checked_for && checked_for->model.default_unit_mm) {
     reader.default_unit = cl::LengthUnit::kMillimetre;
-  } else if (judged_for && judged_for->model.default_unit_inch) {
+  } else if (checked_for && checked_for->model.default_unit_inch) {
     reader.default_unit = cl::LengthUnit::kInch;
   }
-  if (judged_for) {
-    tell_machine(reader, judged_for->model, judged_for->tools.value_or(ToolTable()),
-                 named_tools(options, *machine));
+  if (checked_for) {
+    report_machine(reader, checked_for->model, checked_for->tools.value_or(ToolTable()),
+                   named_tools(options, *machine));
   }
   const bool is_read_first = !options.has_no_preflight && options.stream.file != "-";
-  if (is_read_first && !pass_preflight(options, judged_for)) return kInputRefused;
+  if (is_read_first && !pass_preflight(options, checked_for)) return kInputRefused;
 
   watch_for_stop();
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
@@ -162,7 +163,7 @@ void add(CLI::App& app, int& exit_code) {
                     "Stream at once, for endless sources; what is wrong is found on the way");
   CLI::Option* const machine =
       command->add_option("--machine", options->machine_file,
-                          "Judge reach and travel in the preflight by this machine file; default: "
+                          "Check reach and travel in the preflight by this machine file; default: "
                           "the one that the service tells");
   command->add_option("--tools", options->tool_file, "... and this tool table; only with --machine")
       ->needs(machine);

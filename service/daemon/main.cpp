@@ -128,8 +128,8 @@ int serve(const ServiceParts& parts, const sigset_t& signals) {
   std::uint32_t looks = 0;
   while ((signal = sigtimedwait(&signals, nullptr, &kLeasePeriod)) < 0) {
     service->keep_lease();
-    service->tell_set_up();
-    service->tell_sources();
+    service->report_set_up();
+    service->report_sources();
     if (++looks % 10 == 0) service->report_stalled_readers();
     dds::report_left_out();
     manager.beat(service->heartbeat(), std::chrono::steady_clock::now());

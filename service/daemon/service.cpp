@@ -184,8 +184,8 @@ Service::Service(const ServiceParts& parts, const Realtime& realtime,
   });
   telemetry_.audit_into(audit_);
   take_lease();
-  tell_security();
-  tell_last_program();
+  report_security();
+  report_last_program();
 }
 
 Service::~Service() { stop(); }
@@ -203,7 +203,7 @@ std::unique_ptr<trace::Tracer> Service::make_tracer() {
   options.before_ns = ns(wish.before_ms, 1e6);
   options.after_ns = ns(wish.after_ms, 1e6);
   options.every_ns = ns(wish.every_s, 1e9);
-  options.most_files = wish.files;
+  options.max_files = wish.files;
   const dds::MachineInfo info = machine_info(parts_, service_id_);
   return trace::make_tracer(
       options, trace::TraceOrigin{info.name, info.service_version, info.host}, *rings_,
@@ -240,7 +240,7 @@ void Service::read_set_up() {
   cycle_.set_up(in_force);
   telemetry_.set_up(in_force, tools);
   supervisor_.keep_set_up(set_up_, *set_up, tools, in_force);
-  lease_.set_up(set_up->frames, in_force, told_tools(*set_up), false);
+  lease_.set_up(set_up->frames, in_force, reported_tools(*set_up), false);
   if (in_force.number != 0) {
     log_->info("work frame {} of the set-up is in force, in the place of the machine file's",
                in_force.number);
@@ -252,19 +252,19 @@ void Service::read_set_up() {
   }
 }
 
-std::string Service::told_tools(const telemetry::SetUp& set_up) const {
+std::string Service::reported_tools(const telemetry::SetUp& set_up) const {
   const std::string& text = set_up.tools ? *set_up.tools : parts_.tool_file;
   return text.size() <= dds::kToolFileBytes ? text : "";
 }
 
-void Service::tell_set_up() {
+void Service::report_set_up() {
   if (!supervisor_.has_set_up_to_tell()) return;
   const telemetry::SetUp& set_up = supervisor_.set_up();
-  lease_.set_up(set_up.frames, supervisor_.in_force(), told_tools(set_up), true);
-  supervisor_.set_up_told();
+  lease_.set_up(set_up.frames, supervisor_.in_force(), reported_tools(set_up), true);
+  supervisor_.set_up_reported();
 }
 
-void Service::tell_security() {
+void Service::report_security() {
   if (participant_.is_secured()) {
     log_->info("secured: only identities of this machine's authority take part, each in its role");
   } else if (participant_.is_open_network()) {
@@ -278,7 +278,7 @@ void Service::tell_security() {
 }
 
 /// Behind the lease: the journal of a machine is its service's alone.
-void Service::tell_last_program() {
+void Service::report_last_program() {
   if (!journal_.is_kept()) {
     log_->info("no journal of the last executed block is kept: no state_directory is named");
     return;
@@ -308,8 +308,8 @@ void Service::keep_lease() {
   if (keeper) throw served_already(*keeper);
 }
 
-void Service::tell_sources() {
-  feedback_.tell_sources([this](telemetry::Weight weight, const std::string& text) {
+void Service::report_sources() {
+  feedback_.report_sources([this](telemetry::Weight weight, const std::string& text) {
     log_->log(telemetry::level_of(weight), "{}", text);
   });
 }

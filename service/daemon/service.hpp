@@ -62,10 +62,10 @@ class Service {
   void keep_lease();
   /// Tells everybody of a set-up that was changed; to be called several times a second, by the
   /// thread that made the service.
-  void tell_set_up();
+  void report_set_up();
   /// Logs who reports drives, and whom of two that report the same one the machine goes by; to be
   /// called several times a second, by the thread that made the service.
-  void tell_sources();
+  void report_sources();
   /// Logs, and shows in the status, who does not acknowledge what the service sends; to be called
   /// about once a second, by the thread that made the service.
   void report_stalled_readers();
@@ -82,9 +82,9 @@ class Service {
   /// What the set-up of this machine says, before it is told to anybody. Throws StartError.
   void read_set_up();
   /// The text of the tool table in force; empty where it is longer than can be told.
-  [[nodiscard]] std::string told_tools(const telemetry::SetUp& set_up) const;
-  void tell_security();
-  void tell_last_program();
+  [[nodiscard]] std::string reported_tools(const telemetry::SetUp& set_up) const;
+  void report_security();
+  void report_last_program();
 
   ServiceParts parts_;
   const Realtime& realtime_;

@@ -60,7 +60,7 @@ constexpr double kFirst_us = 0.256;
 
 /// What a budget allows, µs; nothing where that is by comparison.
 [[nodiscard]] std::optional<double> limit_of(const probe::Budget& budget, std::int64_t cycle_ns) {
-  if (budget.bound != probe::Bound::kMost) return std::nullopt;
+  if (budget.bound != probe::Bound::kMax) return std::nullopt;
   if (budget.unit == "us") return budget.limit;
   if (budget.unit == "%") return 1e-2 * budget.limit * us_of(cycle_ns);
   return std::nullopt;

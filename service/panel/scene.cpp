@@ -96,13 +96,13 @@ std::string describe_scene(const MachineModel& model, const ToolTable& tools) {
                         {"axis", to_json(tree.axis)},
                         {"frame", frame_to_json(model)},
                         {"stage", stage_to_json(model)},
-                        {"free_joint", free_joint(model)},
+                        {"redundant_joint", redundant_joint(model)},
                         {"pole", to_json(pole_direction(model))},
                         {"tool_length", model.tool_length_mm},
                         {"tools", table},
                         {"tip_tolerance", model.tolerances.tip_mm},
                         {"max_feed", model.max_feed_mm_per_s * 60},
-                        {"max_override", model.most_feed_override},
+                        {"max_override", model.max_feed_override},
                         {"cycle_s", static_cast<double>(model.cycle_ns) * 1e-9}};
   return json_text(picture);
 }

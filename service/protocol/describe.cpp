@@ -5,7 +5,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
-#include "service/protocol/block_judge.hpp"
+#include "service/protocol/block_check.hpp"
 
 namespace meridian::stream {
 

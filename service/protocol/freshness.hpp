@@ -57,7 +57,7 @@ class StatusTimes {
     entries_[sequence % kEntries] = {sequence, now_ns, rest};
   }
   /// What was told of the rest with status `sequence`; 0: none, or forgotten.
-  [[nodiscard]] std::uint64_t rest_told(std::uint64_t sequence) const noexcept {
+  [[nodiscard]] std::uint64_t rest_reported(std::uint64_t sequence) const noexcept {
     const Entry& entry = entries_[sequence % kEntries];
     return entry.sequence == sequence ? entry.rest : 0;
   }
@@ -100,7 +100,7 @@ class StatusTimes {
 /// rest_of()) start and resume are stale too where that status told of another rest: said twice
 /// they send on once.
 /// Proof: tests/unit/protocol/freshness_test.cpp.
-[[nodiscard]] inline Refusal judge_freshness(const dds::CommandRequest& request,
+[[nodiscard]] inline Refusal check_freshness(const dds::CommandRequest& request,
                                              std::uint64_t service_id, std::uint16_t epoch,
                                              const StatusTimes& times, std::int64_t now_ns,
                                              std::uint64_t rest = 0) noexcept {
@@ -110,7 +110,8 @@ class StatusTimes {
   const bool is_fresh =
       is_same_service && request.epoch_seen == epoch && times.is_fresh(request.status_seen, now_ns);
   const bool sends_on = request.verb == Verb::kStart || request.verb == Verb::kResume;
-  const bool is_of_rest = !sends_on || rest == 0 || times.rest_told(request.status_seen) == rest;
+  const bool is_of_rest =
+      !sends_on || rest == 0 || times.rest_reported(request.status_seen) == rest;
   return is_fresh && is_of_rest ? Refusal::kNone : Refusal::kStale;
 }
 

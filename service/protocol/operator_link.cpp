@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kRepeat{300};
 /// A dry run that was told on just now is in the status by then.
-constexpr std::chrono::milliseconds kTold{300};
+constexpr std::chrono::milliseconds kReported{300};
 /// Whoever publishes a status for this machine is known by then: discovery, and two statuses.
 constexpr std::chrono::milliseconds kEverybodySeen{400};
 /// A service that was silent for so long speaks no more.
@@ -172,7 +172,7 @@ std::optional<dds::Reply> OperatorLink::ask(dds::CommandRequest request, Millise
   for (Service& service : services_) service.reply.reset();
   const bool is_for_dry_run = may_be_dry(verb) && argument != 0;
   const auto begin = Clock::now(), end = begin + timeout;
-  const auto told = begin + std::min<Clock::duration>(kTold, timeout / 2);
+  const auto told = begin + std::min<Clock::duration>(kReported, timeout / 2);
   auto due = begin;
   bool is_quoted = false;
   for (auto now = due; now < end; now = Clock::now()) {

@@ -8,7 +8,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "service/programs/cl/cl_reader.hpp"
-#include "service/protocol/block_judge.hpp"
+#include "service/protocol/block_check.hpp"
 
 namespace meridian::stream {
 
@@ -44,44 +44,44 @@ class IdealTime {
   bool has_tip_ = false;
 };
 
-/// Judges the blocks of a file and goes on behind those that are refused.
+/// Checks the blocks of a file and goes on behind those that are refused.
 class BlockFindings {
  public:
   BlockFindings(const PreflightMachine& machine, std::string file)
       : machine_(machine),
         file_(std::move(file)),
-        judge_(machine.model, machine.tools ? lengths_of(*machine.tools) : ToolLengths()) {}
+        check_(machine.model, machine.tools ? lengths_of(*machine.tools) : ToolLengths()) {}
 
-  void judge(ClBlock block, cl::Findings& findings) {
+  void check(ClBlock block, cl::Findings& findings) {
     const bool is_tool = block.kind == BlockKind::kTool;
     if (is_tool && !machine_.tools) return;
-    // An arc is judged from the end of the block before it, which must have been judged.
-    const bool lacks_begin = block.is_arc && !is_begin_judged_;
+    // An arc is checked from the end of the block before it, which must have been checked.
+    const bool lacks_begin = block.is_arc && !is_begin_checked_;
     if (is_motion(block.kind) && (!is_tool_known_ || lacks_begin)) {
-      is_begin_judged_ = false;
+      is_begin_checked_ = false;
       return;
     }
-    const BlockReject verdict = judge_.judge(block, {.is_there = true});
+    const BlockReject verdict = check_.check(block, {.is_there = true});
     const bool passes = verdict.code == RejectCode::kNone;
     if (is_tool) is_tool_known_ = passes;
-    if (is_motion(block.kind)) is_begin_judged_ = passes;
+    if (is_motion(block.kind)) is_begin_checked_ = passes;
     if (!passes) findings.add(finding(verdict));
   }
   /// A statement was refused: where the tool is then nobody knows.
-  void lose_position() { is_begin_judged_ = false; }
+  void lose_position() { is_begin_checked_ = false; }
 
-  /// What the judge changed in blocks that pass.
+  /// What the check changed in blocks that pass.
   void add_changes(cl::Findings& findings) const {
-    if (judge_.feeds_limited() > 0) {
-      findings.add(cl::ClWarning{judge_.first_limited_line(),
+    if (check_.feeds_limited() > 0) {
+      findings.add(cl::ClWarning{check_.first_limited_line(),
                                  "a feed above the machine's, which will be limited to it",
-                                 judge_.feeds_limited()});
+                                 check_.feeds_limited()});
     }
-    if (judge_.poses_rounded() > 0) {
-      findings.add(cl::ClWarning{judge_.first_rounded_line(),
+    if (check_.poses_rounded() > 0) {
+      findings.add(cl::ClWarning{check_.first_rounded_line(),
                                  "a position beyond travel by no more than 1 um or 1e-4 deg: taken "
                                  "to the end of travel",
-                                 judge_.poses_rounded()});
+                                 check_.poses_rounded()});
     }
   }
 
@@ -102,8 +102,8 @@ class BlockFindings {
 
   const PreflightMachine& machine_;
   std::string file_;
-  BlockJudge judge_;
-  bool is_tool_known_ = true, is_begin_judged_ = true;
+  BlockCheck check_;
+  bool is_tool_known_ = true, is_begin_checked_ = true;
 };
 
 PreflightReport not_opened() {
@@ -123,27 +123,27 @@ PreflightReport preflight(const std::string& file, const cl::ClReaderOptions& op
   PreflightReport report;
   cl::ClReader reader(input, file, options);
   cl::Findings findings;
-  std::optional<BlockFindings> judge;
-  if (machine) judge.emplace(*machine, file);
+  std::optional<BlockFindings> check;
+  if (machine) check.emplace(*machine, file);
   IdealTime ideal;
   while (true) {
     auto next = reader.next();
     if (!next) {
       findings.add(next.error());
-      if (judge) judge->lose_position();
+      if (check) check->lose_position();
       if (!reader.go_on()) break;
       continue;
     }
     if (!*next) break;
     ClBlock block = **next;
     block.sequence = report.blocks;
-    if (judge) judge->judge(block, findings);
+    if (check) check->check(block, findings);
     report.contains_actions = report.contains_actions || is_action(block.kind);
     report.times.append(ideal.of(block));
     ++report.blocks;
   }
   for (const cl::ClWarning& warning : reader.warnings()) findings.add(warning);
-  if (judge) judge->add_changes(findings);
+  if (check) check->add_changes(findings);
   report.is_refused = findings.is_refused();
   report.findings = findings.sorted();
   return report;

@@ -14,10 +14,10 @@
 
 namespace meridian::stream {
 
-/// The machine that a file is judged for.
+/// The machine that a file is checked for.
 struct PreflightMachine {
   MachineModel model;
-  std::optional<ToolTable> tools;  ///< nothing: not known here, the service judges tools
+  std::optional<ToolTable> tools;  ///< nothing: not known here, the service checks tools
   std::string tool_remedy = "add it to the tool table of the service";  ///< for unknown tools
 };
 
@@ -30,11 +30,11 @@ struct PreflightReport {
   TimeTable times;  ///< at programmed feeds
 };
 
-/// Reads the whole of a CL file and judges every block as the service will, reach and travel
+/// Reads the whole of a CL file and checks every block as the service will, reach and travel
 /// included where `machine` is given: everything that is wrong with it is found in one pass. Behind
-/// an unknown tool reach is not judged, as its length is not known. A file that cannot be opened is
-/// refused. Action words pass: whether somebody answers them is the service's to know.
-/// Proof: tests/unit/protocol/preflight_test.cpp.
+/// an unknown tool reach is not checked, as its length is not known. A file that cannot be opened
+/// is refused. Action words pass: whether somebody answers them is the service's to know. Proof:
+/// tests/unit/protocol/preflight_test.cpp.
 [[nodiscard]] PreflightReport preflight(const std::string& file, const cl::ClReaderOptions& options,
                                         const std::optional<PreflightMachine>& machine);
 

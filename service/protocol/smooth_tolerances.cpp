@@ -13,9 +13,8 @@ struct ToleranceBounds {
   const char *name, *unit;
   double least, most;
 };
-constexpr ToleranceBounds kTipBounds{"tip", "mm", kLeastTipTolerance_mm, kMostTipTolerance_mm};
-constexpr ToleranceBounds kAxisBounds{"axis", "rad", kLeastAxisTolerance_rad,
-                                      kMostAxisTolerance_rad};
+constexpr ToleranceBounds kTipBounds{"tip", "mm", kMinTipTolerance_mm, kMaxTipTolerance_mm};
+constexpr ToleranceBounds kAxisBounds{"axis", "rad", kMinAxisTolerance_rad, kMaxAxisTolerance_rad};
 
 /// With as many digits as tell `value` from every other number, six at least.
 std::string in_full(double value) {

@@ -48,7 +48,8 @@ std::string percentile_table(const Histogram& histogram) {
     const std::int64_t value_ns = std::min(Histogram::bucket_end_ns(i), histogram.max_ns());
     const double percent = 100 * static_cast<double>(seen) / total;
     const bool is_last = seen == histogram.count();  // one level is told of it, then 100 %
-    for (bool is_told = false; wanted_percent <= percent && !(is_last && is_told); is_told = true) {
+    for (bool is_reported = false; wanted_percent <= percent && !(is_last && is_reported);
+         is_reported = true) {
       line(static_cast<double>(value_ns), wanted_percent / 100, seen);
       wanted_percent = next_percent(wanted_percent);
     }

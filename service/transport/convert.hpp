@@ -8,9 +8,9 @@
 
 #include "service/transport/messages.hpp"
 
-/// Wire <-> core, both ways, field by field; nothing here judges. Texts longer than the wire holds
+/// Wire <-> core, both ways, field by field; nothing here checks. Texts longer than the wire holds
 /// are cut, texts without an end are ended. Enumerations keep a value that they do not name:
-/// whoever acts on one judges it. Proof: tests/unit/transport/convert_test.cpp.
+/// whoever acts on one checks it. Proof: tests/unit/transport/convert_test.cpp.
 namespace meridian::dds {
 
 void to_wire(const Batch& message, meridian_wire_ClBatch& wire) noexcept;

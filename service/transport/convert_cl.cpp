@@ -6,7 +6,7 @@ namespace meridian::dds {
 namespace {
 
 static_assert(kBatchBlocks == meridian_wire_kBatchBlocks);
-static_assert(kMostOptions + 1 == sizeof(meridian_wire_ClSession::options));
+static_assert(kMaxOptions + 1 == sizeof(meridian_wire_ClSession::options));
 
 template <class Way, class Message, class Wire>
 void cl_block_fields(Way way, Message& message, Wire& wire) {

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(kMaxHistograms == meridian_wire_kHistograms);
 constexpr WorkFrame kNoFrame{};
-static_assert(WorkFrames::kMost == meridian_wire_kWorkFrames);
+static_assert(WorkFrames::kMax == meridian_wire_kWorkFrames);
 
 template <class Way, class Message, class Wire>
 void status_fields(Way way, Message& message, Wire& wire) {
@@ -201,9 +201,9 @@ void from_wire(const meridian_wire_Status& wire, Status& message) {
 
 void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   machine_info_fields(ToWire(), message, wire);
-  const std::size_t count = std::min<std::size_t>(message.work_frames.size(), WorkFrames::kMost);
+  const std::size_t count = std::min<std::size_t>(message.work_frames.size(), WorkFrames::kMax);
   wire.work_frame_count = static_cast<std::uint32_t>(count);
-  for (std::size_t i = 0; i < WorkFrames::kMost; ++i) {
+  for (std::size_t i = 0; i < WorkFrames::kMax; ++i) {
     work_frame_fields(ToWire(), i < count ? message.work_frames[i] : kNoFrame, wire.work_frames[i]);
   }
 }
@@ -212,7 +212,7 @@ void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
   machine_info_fields(FromWire(), message, wire);
   message.joint_count = std::min<std::uint32_t>(message.joint_count, kMaxJoints);
   message.stage_drive_count = std::min<std::uint32_t>(message.stage_drive_count, kStageDrives);
-  message.work_frames.resize(std::min<std::size_t>(wire.work_frame_count, WorkFrames::kMost));
+  message.work_frames.resize(std::min<std::size_t>(wire.work_frame_count, WorkFrames::kMax));
   for (std::size_t i = 0; i < message.work_frames.size(); ++i) {
     work_frame_fields(FromWire(), message.work_frames[i], wire.work_frames[i]);
   }

@@ -19,7 +19,7 @@ namespace meridian::dds {
 inline constexpr std::size_t kBatchBlocks = 32;
 
 /// `cl_batch`: up to kBatchBlocks consecutive blocks. `crc` is batch_crc() of the rest as the
-/// sender computed it; whoever judges a batch computes it again.
+/// sender computed it; whoever checks a batch computes it again.
 struct Batch {
   std::uint64_t session = 0;
   std::uint64_t first_sequence = 0;
@@ -34,9 +34,9 @@ struct Batch {
 [[nodiscard]] std::uint32_t batch_crc(const Batch& batch) noexcept;
 
 /// So many characters of a station's options travel.
-inline constexpr std::size_t kMostOptions = 191;
+inline constexpr std::size_t kMaxOptions = 191;
 /// Characters of a reply's text and of a status' message; what is longer is cut.
-inline constexpr std::size_t kMostText = 191;
+inline constexpr std::size_t kMaxText = 191;
 
 enum class SessionRequestKind : std::uint8_t { kOpen, kClose };
 
@@ -60,7 +60,7 @@ struct SessionRequest {
   double tip_tolerance_mm = 0;    ///< 0: the machine's
   double axis_tolerance_rad = 0;  ///< 0: the machine's
   std::uint32_t policies = 0;     ///< SessionPolicy, or-ed
-  std::string options{};  ///< of the station's command line, at most kMostOptions characters
+  std::string options{};          ///< of the station's command line, at most kMaxOptions characters
   std::uint64_t file_checksum = 0;  ///< FNV-1a, 64 bit, of the file's bytes; 0: not known
   std::uint32_t from_line = 0;      ///< the program begins with this line; 0: with its first
   std::uint64_t frame = 0;     ///< stream::frame_sum() that it was checked under; 0: under none
@@ -323,7 +323,7 @@ struct MachineInfo {
   std::array<double, 9> frame_rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row
   Array3 frame_origin_mm{};
   std::uint8_t work_frame = 0;           ///< number of the one in force; 0: the machine file's
-  std::vector<WorkFrame> work_frames{};  ///< the set-up, at most WorkFrames::kMost rows
+  std::vector<WorkFrame> work_frames{};  ///< the set-up, at most WorkFrames::kMax rows
   std::string machine_file{};  ///< its text; empty where it is longer than kMachineFileBytes
   std::string tool_file{};     ///< text of the tool table; empty: none, or longer than fits
 };

@@ -16,7 +16,7 @@ namespace {
 /// No write waits for a reader that does not acknowledge: what it has not taken by then is lost to
 /// it alone (docs/topics.md).
 constexpr dds_duration_t kMaxBlocking = 0;
-/// No false alarm by host stalls of 5 ms; receivers judge freshness by sequence and their own
+/// No false alarm by host stalls of 5 ms; receivers check freshness by sequence and their own
 /// clock.
 constexpr dds_duration_t kCyclicDeadline = DDS_MSECS(20);
 constexpr dds_duration_t kSetpointLease = DDS_MSECS(100);

@@ -3,11 +3,11 @@
 /// motion_table [MACHINE.toml FILE...]: time, limits, tolerance and throughput of smooth programs,
 /// a line each; without files the throughput of dense data and of programs that are meant to hurt.
 ///
-/// A file is simulated and its recording judged as `meridian check` does; shares of 1 are the whole
-/// of a limit or a tolerance. One that does not say its unit is in mm; its tools are all as long as
-/// the machine's. Throughput is the planner's alone: seconds of motion per second of
-/// CPU time, and which share of the motion that a window yields it took (median, 99 %, most): from
-/// the window before to this one, blocks taken, spline, plan and authority. Every run is done three
+/// A file is simulated and its recording checked as `meridian check` does; shares of 1 are the
+/// whole of a limit or a tolerance. One that does not say its unit is in mm; its tools are all as
+/// long as the machine's. Throughput is the planner's alone: seconds of motion per second of CPU
+/// time, and which share of the motion that a window yields it took (median, 99 %, most): from the
+/// window before to this one, blocks taken, spline, plan and authority. Every run is done three
 /// times, the least cost of a window counts: the plan is the same, what else the host does is not.
 
 #include <unistd.h>

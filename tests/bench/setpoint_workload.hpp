@@ -25,7 +25,8 @@ namespace meridian::bench {
 
 enum class SetpointsOf {
   kSpline,  ///< a winding pass far from the pole
-  kPole  ///< passes at 0.05 deg from the pole, where the free joint is driven and the tilt follows
+  kPole     ///< passes at 0.05 deg from the pole, where the redundant joint is driven and the tilt
+            ///< follows
 };
 
 /// 0.3 mm blocks of a curve, or passes of 60 mm to and fro beside the pole, 100 mm/s.
@@ -128,7 +129,8 @@ class Setpoints {
     return bits;
   }
 
-  /// What the port holds: setpoints on spans, beside the pole on those that drive the free joint.
+  /// What the port holds: setpoints on spans, beside the pole on those that drive the redundant
+  /// joint.
   void read(MotionReader& reader, SetpointsOf what) {
     while (const TimePiece* time = reader.advance()) {
       const PathPiece* path = reader.path();

@@ -74,26 +74,26 @@ class SmoothWindows {
   explicit SmoothWindows(const MachineModel& model)
       : model_(model), raise_(model_), run_(model_, raise_), writer_(port_) {}
 
-  /// Ends early once `total` has `most_windows`.
+  /// Ends early once `total` has `max_windows`.
   void run(const std::vector<ClBlock>& blocks, SmoothTotal& total,
-           std::size_t most_windows = std::numeric_limits<std::size_t>::max()) {
+           std::size_t max_windows = std::numeric_limits<std::size_t>::max()) {
     RunStart start = start_at(model_, blocks.front());
     start.epoch = ++epoch_;
     start.is_on_pole = std::all_of(blocks.begin(), blocks.end(), [this](const ClBlock& block) {
-      return free_joint(model_) >= 0 &&
+      return redundant_joint(model_) >= 0 &&
              pole_distance(model_, to_vector(block.axis)) < kPoleEase_rad;
     });
     BandTolerance tolerance;
     tolerance.tip_mm = model_.tolerances.tip_mm;
     tolerance.axis_rad = model_.tolerances.axis_rad;
-    const bool eases = free_joint(model_) >= 0 && model_.pole_policy == PolePolicy::kEase;
+    const bool eases = redundant_joint(model_) >= 0 && model_.pole_policy == PolePolicy::kEase;
     if (eases) tolerance.pole = to_array(pole_direction(model_));
     run_.begin(start, tolerance,
                std::max(model_.tolerances.axis_rad, model_.tolerances.pole_axis_rad));
-    most_windows_ = most_windows;
+    max_windows_ = max_windows;
     cost_ = {};
     begin_s_ = cpu_s();
-    for (std::size_t n = 1; n < blocks.size() && total.windows.size() < most_windows; ++n) {
+    for (std::size_t n = 1; n < blocks.size() && total.windows.size() < max_windows; ++n) {
       run_.take(blocks[n]);
       ++cost_.blocks;
       publish(total);
@@ -106,7 +106,7 @@ class SmoothWindows {
   void publish(SmoothTotal& total) {
     using Status = SmoothRun::Status;
     Status status = Status::kPublished;
-    for (int tries = 0; tries < 100 && total.windows.size() < most_windows_;) {
+    for (int tries = 0; tries < 100 && total.windows.size() < max_windows_;) {
       status = run_.publish_window(writer_);
       if (status == Status::kNeedsBlocks || status == Status::kDone) return;
       if (status == Status::kFailed) {
@@ -151,7 +151,7 @@ class SmoothWindows {
   WindowCost cost_;
   double begin_s_ = 0;  ///< CPU time at which what cost_ has not counted yet began
   std::uint16_t epoch_ = 0;
-  std::size_t most_windows_ = 0;
+  std::size_t max_windows_ = 0;
 };
 
 [[nodiscard]] inline std::vector<ClBlock> dense_blocks(int count, double step, double feed) {

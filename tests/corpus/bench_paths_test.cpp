@@ -11,7 +11,7 @@
 #include "support/text_file.hpp"
 
 /// The benchmark paths on deploy/machines/bench.toml: time from the first to
-/// the last block, approach left out, every limit and tolerance judged.
+/// the last block, approach left out, every limit and tolerance checked.
 namespace meridian {
 namespace {
 
@@ -20,7 +20,7 @@ struct BenchRun {
   PolePolicy policy;
   double override_ramp_s;  ///< 1 is the default; 1000 keeps next to nothing for the override
   double optimum_s;        ///< jerk-limited, under the same limits on the path; 0: none is known
-  double most_s;           ///< what it took when it was last looked at, and up to 2 %: no budget
+  double max_s;            ///< what it took when it was last looked at, and up to 2 %: no budget
 };
 
 std::string name_of(const BenchRun& run) {
@@ -44,7 +44,7 @@ TEST_P(BenchPaths, IsCutInTimeInsideEveryLimitAndTolerance) {
   certify::Certifier certifier(model);
   simulate::SimulateOptions options;
   constexpr double kCertified_s = 30;  // longer ones cost more than they add
-  if (one.most_s < kCertified_s) options.certifier = &certifier;
+  if (one.max_s < kCertified_s) options.certifier = &certifier;
   const test::SimulatedRun run = test::run_simulation(text, model, options);
   EXPECT_TRUE(certifier.certificate().is_given()) << to_text(certifier.certificate(), model);
   ASSERT_EQ(run.report.outcome, simulate::Outcome::kDone) << run.report.reason;
@@ -56,7 +56,7 @@ TEST_P(BenchPaths, IsCutInTimeInsideEveryLimitAndTolerance) {
               name_of(one).c_str(), run.report.program_s,
               static_cast<unsigned long long>(run.report.ease_count),
               units::deg_from_rad(run.report.largest_ease_rad), run.report.computing_s);
-  EXPECT_LE(run.report.program_s, one.most_s) << "slower than it was";
+  EXPECT_LE(run.report.program_s, one.max_s) << "slower than it was";
   if (one.optimum_s == 0) return;
   const probe::Budget budget = probe::load_budget("traversal_time");
   std::printf("  %s\n", to_text(budget, one.optimum_s).c_str());

@@ -12,8 +12,8 @@ namespace {
 using test::SimulatedFile;
 
 /// The checker in bench/ of the shared folder shares no code with ours. It takes more than a
-/// millisecond a cycle, so that what is judged here is short; docs/recordings.md says how the whole
-/// corpus fares.
+/// millisecond a cycle, so that what is checked here is short; docs/recordings.md says how the
+/// whole corpus fares.
 class OutsideChecker : public testing::Test {
  protected:
   void SetUp() override {
@@ -33,7 +33,7 @@ class OutsideChecker : public testing::Test {
 
   /// Exit status of the checker for the recording, on the points of `meridian cl` in the frame of
   /// the kinematics.
-  [[nodiscard]] int judge(const SimulatedFile& simulated) const {
+  [[nodiscard]] int check(const SimulatedFile& simulated) const {
     const MachineModel& model = simulated.model;
     cl::RunOptions points;
     points.file = simulated.file();
@@ -87,7 +87,7 @@ constexpr std::int64_t kCycle_ns = 4'000'000;
 TEST_F(OutsideChecker, PassesAWholeFileWithArcs) {
   const auto file = test::shared_folder() / "cl_corpus" / "makino_ff_Plane_2.cldata";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-  EXPECT_EQ(judge(SimulatedFile(file, test::lai_at("20,-30,50", kCycle_ns))), 0);
+  EXPECT_EQ(check(SimulatedFile(file, test::lai_at("20,-30,50", kCycle_ns))), 0);
 }
 
 TEST_F(OutsideChecker, PassesTheHeadOfAFiveAxisFile) {
@@ -95,7 +95,7 @@ TEST_F(OutsideChecker, PassesTheHeadOfAFiveAxisFile) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
   const auto head = scratch_ / "head.apt";
   test::write_head(file, 60, head);
-  EXPECT_EQ(judge(SimulatedFile(head, test::lai_at("20,-30,50", kCycle_ns))), 0);
+  EXPECT_EQ(check(SimulatedFile(head, test::lai_at("20,-30,50", kCycle_ns))), 0);
 }
 
 /// Where a line turns back sharply from an arc, two ways run side by side: with points a millimetre
@@ -105,7 +105,7 @@ TEST_F(OutsideChecker, KeepsItsPlaceWhereALineTurnsBackFromAnArc) {
   std::ofstream(part) << "UNITS / MM\nFEDRAT / 1000, MMPM\nGOTO / 20, 0, 20, 0, 0, 1\n"
                          "CIRCLE / 0, 0, 20, 0, 0, 1, 20\nGOTO / 0, 20, 20\n"
                          "GOTO / 17.3205, 10, 20\nFINI\n";
-  EXPECT_EQ(judge(SimulatedFile(part, test::lai_at("0,0,0", kCycle_ns))), 0);
+  EXPECT_EQ(check(SimulatedFile(part, test::lai_at("0,0,0", kCycle_ns))), 0);
 }
 
 TEST_F(OutsideChecker, PassesTheJointsOfAMachineOnAStage) {
@@ -119,7 +119,7 @@ TEST_F(OutsideChecker, PassesTheJointsOfAMachineOnAStage) {
                          "GOTO / 10, 0, 20, 0.28, 0, 0.96\nRAPID\n"
                          "GOTO / -8, 0, 14, 0, 0.1908, 0.98163\nFINI\n";
   const SimulatedFile simulated(part, model);
-  EXPECT_EQ(judge(simulated), 0);
+  EXPECT_EQ(check(simulated), 0);
   const auto report = simulated.check();  // the outside checker knows no sliders
   EXPECT_TRUE(report.passed()) << record::to_text(report);
 }
@@ -129,11 +129,11 @@ TEST_F(OutsideChecker, RefusesWhatOursRefuses) {
   std::ofstream(part) << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
                          "GOTO / 90, -40, 20, 0, 0.6, 0.8\nGOTO / 90, -35, 20, 0, 0.6, 0.8\nFINI\n";
   const SimulatedFile simulated(part, test::lai_at("0,0,0", kCycle_ns));
-  EXPECT_EQ(judge(simulated), 0);
+  EXPECT_EQ(check(simulated), 0);
   std::ofstream(part)
       << "UNITS / MM\nFEDRAT / 1200, MMPM\nGOTO / 80, -40, 20, 0, 0.6, 0.8\n"
          "GOTO / 90, -40.002, 20, 0, 0.6, 0.8\nGOTO / 90, -35, 20, 0, 0.6, 0.8\nFINI\n";
-  EXPECT_NE(judge(simulated), 0);
+  EXPECT_NE(check(simulated), 0);
 }
 
 }  // namespace

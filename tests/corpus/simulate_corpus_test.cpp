@@ -28,7 +28,7 @@ class SimulatedCorpus : public testing::TestWithParam<CorpusRun> {};
 
 class SmoothCorpus : public testing::TestWithParam<CorpusRun> {};
 
-/// Simulates the file, or its head, and judges what came out.
+/// Simulates the file, or its head, and checks what came out.
 void expect_whole_cut(const CorpusRun& run, Transition transition) {
   auto file = test::shared_folder() / "cl_corpus" / run.name;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
@@ -129,7 +129,7 @@ class MutatedRecording : public testing::Test {
     ASSERT_GT(longest, 400U);
   }
 
-  [[nodiscard]] CheckReport judge() {
+  [[nodiscard]] CheckReport check() {
     auto writer = record::RecordingWriter::create(simulated_->recording(), simulated_->model);
     for (const CycleRecord& row : rows_) EXPECT_TRUE(writer->write(row));
     EXPECT_TRUE(writer->close());
@@ -148,21 +148,21 @@ class MutatedRecording : public testing::Test {
   std::size_t middle_ = 0;
 };
 
-TEST_F(MutatedRecording, PassesAsItIs) { EXPECT_TRUE(judge().passed()); }
+TEST_F(MutatedRecording, PassesAsItIs) { EXPECT_TRUE(check().passed()); }
 
 TEST_F(MutatedRecording, IsRefusedWhereTheTipIsTwoMicrometresOff) {
   for (int i = -150; i <= 150; ++i) {  // smooth: no joint limit notices
     const double x = i / 150.0;
     rows_[middle_ + i].joints[2] += 0.002 * std::pow(1 - x * x, 4);
   }
-  const CheckReport report = judge();
+  const CheckReport report = check();
   EXPECT_TRUE(has(report, Finding::Kind::kTip)) << to_text(report);
   EXPECT_FALSE(has(report, Finding::Kind::kJerk)) << to_text(report);
 }
 
 TEST_F(MutatedRecording, IsRefusedForAJerkSpikeInsideTheTolerance) {
   rows_[middle_].joints[2] += 0.0009;
-  const CheckReport report = judge();
+  const CheckReport report = check();
   EXPECT_TRUE(has(report, Finding::Kind::kJerk)) << to_text(report);
   EXPECT_FALSE(has(report, Finding::Kind::kTip)) << to_text(report);
 }
@@ -189,7 +189,7 @@ TEST_F(MutatedRecording, IsRefusedWhereAVertexIsCut) {
       rows_[i].joints[joint] = (1 - t) * rows_[from].joints[joint] + t * rows_[to].joints[joint];
     }
   }
-  const CheckReport report = judge();
+  const CheckReport report = check();
   EXPECT_TRUE(has(report, Finding::Kind::kVertex) || has(report, Finding::Kind::kTip))
       << to_text(report);
 }
@@ -204,7 +204,7 @@ TEST_F(MutatedRecording, IsRefusedForATipFasterThanTheFeed) {
     faster.back().setpoint.due_ns = faster[faster.size() - 2].setpoint.due_ns + kMs;
   }
   rows_ = faster;
-  const CheckReport report = judge();
+  const CheckReport report = check();
   EXPECT_TRUE(has(report, Finding::Kind::kFeed)) << to_text(report);
   EXPECT_NEAR(report.feed.value, 2, 0.01);
   EXPECT_FALSE(has(report, Finding::Kind::kTip)) << to_text(report);
@@ -212,7 +212,7 @@ TEST_F(MutatedRecording, IsRefusedForATipFasterThanTheFeed) {
 
 TEST_F(MutatedRecording, IsRefusedForAMissingCycle) {
   rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(middle_));
-  const CheckReport report = judge();
+  const CheckReport report = check();
   ASSERT_EQ(report.findings.size(), 1U) << to_text(report);
   EXPECT_EQ(report.findings[0].kind, Finding::Kind::kMissingCycles);
 }

@@ -20,7 +20,7 @@
 #include "service/recording/record/file/recording_writer.hpp"
 #include "support/shared_folder.hpp"
 
-/// Real CL files, in shared_folder(), simulated and judged.
+/// Real CL files, in shared_folder(), simulated and checked.
 namespace meridian::test {
 
 inline constexpr double kTipTolerance_mm = 1e-3;  // what the rest-to-rest planner owes

@@ -29,7 +29,7 @@ void read_machine(Bytes bytes);
 
 /// Samples off the wire, one behind the other, each for whoever acts on its type: intake, station,
 /// supervisor, drives, feedback, viewer.
-void judge_wire(Bytes bytes);
+void check_wire(Bytes bytes);
 [[nodiscard]] Seeds wire_seeds();
 
 struct Target {
@@ -37,7 +37,7 @@ struct Target {
   void (*run)(Bytes);
 };
 inline constexpr Target kTargets[] = {
-    {"cl", read_cl}, {"machine", read_machine}, {"wire", judge_wire}, {"nc", read_nc}};
+    {"cl", read_cl}, {"machine", read_machine}, {"wire", check_wire}, {"nc", read_nc}};
 
 /// Ends the process with `what` where `holds` is false.
 void require(bool holds, const char* what);

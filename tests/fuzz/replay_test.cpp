@@ -60,10 +60,10 @@ TEST(Fuzzing, OfTheMachineFileFindsNothing) {
   replay(kTargets[1], machine_seeds(MERIDIAN_SOURCE_DIR "/deploy/machines"));
 }
 
-TEST(Fuzzing, OfEveryWireTypesJudgeFindsNothing) { replay(kTargets[2], wire_seeds()); }
+TEST(Fuzzing, OfEveryWireTypesCheckFindsNothing) { replay(kTargets[2], wire_seeds()); }
 
 TEST(Fuzzing, OfTheWireBeginsWithAndWithoutWhateverASampleMayHave) {
-  for (const Input& seed : wire_seeds()) judge_wire(seed);
+  for (const Input& seed : wire_seeds()) check_wire(seed);
   for (std::size_t choice = 0; choice < kWireChoices; ++choice) {
     EXPECT_TRUE(wire_choices()[choice][0]) << "never without: WireChoice " << choice;
     EXPECT_TRUE(wire_choices()[choice][1]) << "never with: WireChoice " << choice;

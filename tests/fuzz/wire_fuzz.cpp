@@ -13,13 +13,13 @@
 #include "service/cli/status_text.hpp"
 #include "service/daemon/listeners/feedback_merge.hpp"
 #include "service/daemon/listeners/jog_intake.hpp"
-#include "service/daemon/listeners/lease_judge.hpp"
+#include "service/daemon/listeners/lease_check.hpp"
 #include "service/daemon/ports/command_port.hpp"
 #include "service/drives/kit/action_words.hpp"
 #include "service/drives/simulated/action_peer.hpp"
 #include "service/drives/simulated/drive_group.hpp"
 #include "service/protocol/freshness.hpp"
-#include "service/protocol/intake_judge.hpp"
+#include "service/protocol/intake_check.hpp"
 #include "service/protocol/station.hpp"
 #include "service/transport/convert.hpp"
 #include "support/machines.hpp"
@@ -131,7 +131,7 @@ class Listeners {
     return {.now_ns = now_ns_, .free_places = 100, .actions = {.is_there = true}};
   }
 
-  /// A few blocks with a CRC that is right, so that the judge looks at them.
+  /// A few blocks with a CRC that is right, so that the check looks at them.
   void take_batch(Supplies& in) {
     dds::Batch batch;
     batch.session = in.next<std::uint8_t>() % 3;
@@ -151,14 +151,14 @@ class Listeners {
       batch.blocks[i] = one.blocks[0];
     }
     batch.crc = dds::batch_crc(batch);
-    judge(batch);
+    check(batch);
   }
   void take_raw_batch(Supplies& in) {
     dds::Batch batch;
     in.read<meridian_wire_ClBatch>(batch);
-    judge(batch);
+    check(batch);
   }
-  void judge(const dds::Batch& batch) {
+  void check(const dds::Batch& batch) {
     const std::uint64_t before = intake_.next_sequence();
     stream::Accepted accepted;
     static_cast<void>(intake_.on_batch(batch, around(), accepted));
@@ -202,7 +202,7 @@ class Listeners {
     const std::uint64_t rest = (how & 0x7FU) % 3, told = in.next<std::uint8_t>() % 3;
     in.read<meridian_wire_Command>(request);
     times_.published(5, now_ns_, told);
-    const Refusal refusal = stream::judge_freshness(request, kServiceId, 1, times_, now_ns_, rest);
+    const Refusal refusal = stream::check_freshness(request, kServiceId, 1, times_, now_ns_, rest);
     if (static_cast<int>(request.verb) >= kVerbCount) return;  // as the supervisor does
     require(refusal == Refusal::kNone || stream::needs_freshness(request.verb, request.argument),
             "a stop is stale");
@@ -323,15 +323,15 @@ class Listeners {
     const auto bridge = drive::bridge_of(machine_, 40 + machine_.service_id % 3);
     if (bridge) drives_.take(*bridge);
     work_drives();
-    judge_lease();
+    check_lease();
     show();
   }
-  void judge_lease() {
+  void check_lease() {
     const std::uint64_t other = machine_.service_id;
     lease_.hear({other, machine_.is_serving, machine_.served_ns}, now_ns_);
-    lease_.judge(now_ns_, machine_.pid % 2 == 0);
+    lease_.check(now_ns_, machine_.pid % 2 == 0);
     if (lease_.has_to_speak(now_ns_)) lease_.on_said(lease_.word(now_ns_), now_ns_);
-    now_ns_ += interpolator::LeaseJudge::kStepBack_ns;
+    now_ns_ += interpolator::LeaseCheck::kStepBack_ns;
     const auto keeper = lease_.keeper(now_ns_);
     choose(kLeaseLeft, keeper.has_value());
     require(!keeper || *keeper < 3, "left to a service that nobody heard");
@@ -352,7 +352,7 @@ class Listeners {
 
   MachineModel model_;
   std::int64_t now_ns_ = 1'000'000'000;
-  stream::IntakeJudge intake_;
+  stream::IntakeCheck intake_;
   std::optional<stream::Station> station_;
   stream::StatusTimes times_;
   DryMachine machine_that_obeys_;
@@ -363,7 +363,7 @@ class Listeners {
   dds::MachineInfo machine_;
   interpolator::CommandPort port_;
   interpolator::JogIntake hands_{kServiceId};
-  interpolator::LeaseJudge lease_{kServiceId};
+  interpolator::LeaseCheck lease_{kServiceId};
   std::array<std::uint64_t, 128> asked_{};  ///< who said which request
   std::uint64_t request_ = 0, orders_ = 0;
   dds::ActionDone done_;
@@ -374,7 +374,7 @@ class Listeners {
 
 const WireChoices& wire_choices() { return choices(); }
 
-void judge_wire(Bytes bytes) {
+void check_wire(Bytes bytes) {
   Listeners listeners;
   Supplies supplies(bytes);
   for (int n = 0; n < 64 && !supplies.is_empty(); ++n) listeners.take(supplies);

@@ -28,7 +28,7 @@ enum SampleType : std::uint8_t {
   kTypes
 };
 
-/// What a sample may have or not, and so must have been judged with and without.
+/// What a sample may have or not, and so must have been checked with and without.
 enum WireChoice : std::uint8_t {
   kInverseTime,
   kArc,
@@ -48,10 +48,10 @@ enum WireChoice : std::uint8_t {
   kWireChoices
 };
 
-/// Of each: judged without, judged with.
+/// Of each: checked without, checked with.
 using WireChoices = std::array<std::array<bool, 2>, kWireChoices>;
 
-/// What judge_wire() has come to since the process began.
+/// What check_wire() has come to since the process began.
 [[nodiscard]] const WireChoices& wire_choices();
 
 }  // namespace meridian::fuzz

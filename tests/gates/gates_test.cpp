@@ -137,16 +137,16 @@ TEST_P(BrokenGate, IsRed) {
 INSTANTIATE_TEST_SUITE_P(Of, BrokenGate, testing::ValuesIn(gates_to_break()),
                          [](const auto& one) { return std::string(one.param.budget); });
 
-TEST(Gates, AreAllOfThoseThatTheTableSaysTestsJudge) {
-  std::set<std::string> judged, broken;
+TEST(Gates, AreAllOfThoseThatTheTableSaysTestsCheck) {
+  std::set<std::string> checked, broken;
   for (const probe::Budget& one : probe::load_budgets(kTable)) {
     const bool is_by_test = std::regex_search(
-        one.judged, std::regex("(unit|integration|property|latency|corpus) test"));
-    if (is_by_test || one.name.starts_with("instructions_")) judged.insert(one.name);
+        one.checked, std::regex("(unit|integration|property|latency|corpus) test"));
+    if (is_by_test || one.name.starts_with("instructions_")) checked.insert(one.name);
   }
-  judged.erase("turns_taken");  // it says how long the gate measures; a wrong one never ends
+  checked.erase("turns_taken");  // it says how long the gate measures; a wrong one never ends
   for (const Gate& gate : gates()) broken.insert(gate.budget);
-  EXPECT_EQ(broken, judged);
+  EXPECT_EQ(broken, checked);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ TEST(FamilyCorpusReach, IsExactlyTheInterval) {
             .is_reachable,
         table.number(row, "n") > 0);
     const auto reach = chain::reach(machine.chain);
-    EXPECT_NEAR(reach.least_rad, table.number(row, "lo"), 1e-14);
+    EXPECT_NEAR(reach.min_rad, table.number(row, "lo"), 1e-14);
     EXPECT_NEAR(reach.largest_rad, table.number(row, "hi"), 1e-14);
   }
 }

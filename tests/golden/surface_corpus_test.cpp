@@ -47,7 +47,7 @@ TEST_F(SurfaceCorpus, ReferencePatchHasItsPointsNormalsAndCurvatures) {
     const Contact& c = path->lines[line].contacts[line % 2 == 0 ? place : 20 - place];
     EXPECT_LT((c.pose.tip - vector_of(table, row, "Sx")).norm(), kPlace_mm);
     EXPECT_LT((c.pose.axis - vector_of(table, row, "Nx")).norm(), kUnit);
-    EXPECT_NEAR(c.shape.least_curvature, table.number(row, "k1"), kCurvature_per_mm);
+    EXPECT_NEAR(c.shape.min_curvature, table.number(row, "k1"), kCurvature_per_mm);
     EXPECT_NEAR(c.shape.largest_curvature, table.number(row, "k2"), kCurvature_per_mm);
   }
 }

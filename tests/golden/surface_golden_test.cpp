@@ -76,7 +76,7 @@ TEST(SurfaceGolden, HasNormalsCurvaturesAndTipsOfEveryCutter) {
     const auto c = find_contact(rule, table.number(row, "u"), table.number(row, "v"));
     ASSERT_TRUE(c);
     EXPECT_LT((c->shape.normal - vector_of(table, row, "nx")).norm(), kUnit);
-    EXPECT_NEAR(c->shape.least_curvature, table.number(row, "k1"), kCurvature);
+    EXPECT_NEAR(c->shape.min_curvature, table.number(row, "k1"), kCurvature);
     EXPECT_NEAR(c->shape.largest_curvature, table.number(row, "k2"), kCurvature);
     EXPECT_LT((c->pose.axis - vector_of(table, row, "i")).norm(), kUnit);
     EXPECT_LT((c->pose.tip - vector_of(table, row, "tipx")).norm(), kPlace_mm);

@@ -13,7 +13,7 @@
 namespace meridian::test {
 namespace {
 
-/// Cuts a file of the corpus live, and judges it by simulation and checker.
+/// Cuts a file of the corpus live, and checks it by simulation and checker.
 void cut(Plant& plant, const std::filesystem::path& part) {
   const std::string tools = (plant.folder() / "tools.toml").string();
   std::ofstream(tools) << "[[tool]]\nnumber = 1\nlength_mm = 110\nradius_mm = 5\n"
@@ -25,7 +25,7 @@ void cut(Plant& plant, const std::filesystem::path& part) {
   live.reader = {"--units", "mm"};
   live.simulate = {frame, "--tools", tools};
   live.patience = std::chrono::hours(1);
-  run_and_judge(plant, part.string(), live);
+  run_and_check(plant, part.string(), live);
 }
 
 /// Its head: the first two lines of a five-axis part with its tool and its rapids, 25 s.

@@ -87,7 +87,7 @@ void FaultCase::run() {
   plant_->service().send_signal(SIGTERM);
   ASSERT_EQ(plant_->service().wait(milliseconds(8000)), 0) << story();
   expect_provoked();
-  judge_all();
+  check_all();
 }
 
 std::string FaultCase::host_said() const {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "integration/checked_part.hpp"
 #include "integration/fault_kinds.hpp"
-#include "integration/judged_part.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
 #include "service/host/soak/host_watch.hpp"
@@ -51,11 +51,11 @@ class FaultCase {
   void go_on();              ///< the machine did not stop for it
   void recover_and_go_on();  ///< from Fault or a new service
   void replace_station();
-  [[nodiscard]] std::uint32_t told_by_journal();
+  [[nodiscard]] std::uint32_t reported_by_journal();
   [[nodiscard]] std::string transition() const;
   void resume_held();
   void run_to_end(PartCut& cut, bool is_kept_waiting = false);
-  void judge_all();
+  void check_all();
 
   [[nodiscard]] bool has_ended() { return station_ && station_->wait(milliseconds(0)).has_value(); }
   [[nodiscard]] std::uint32_t fed_line() const;

@@ -202,7 +202,7 @@ void FaultCase::break_off_recovery(std::uint32_t line) {
   plant_->service().send_signal(SIGKILL);
   ASSERT_TRUE(plant_->service().wait(milliseconds(2000)));
   ASSERT_NO_FATAL_FAILURE(restart_killed_service());
-  EXPECT_EQ(told_by_journal(), line) << story();
+  EXPECT_EQ(reported_by_journal(), line) << story();
   ASSERT_NO_FATAL_FAILURE(enable_again());
 }
 
@@ -224,7 +224,7 @@ void FaultCase::start_attacker() {
 }
 
 /// The line to go on with, as the new service told it when it began.
-std::uint32_t FaultCase::told_by_journal() {
+std::uint32_t FaultCase::reported_by_journal() {
   std::string told;
   // It is told ahead of the first status, which has come.
   const std::string said = plant_->service().said();
@@ -257,7 +257,7 @@ void FaultCase::recover_and_go_on() {
   // A program that was at its end before has nothing to go on with.
   const bool is_over =
       has_program_ && !is_new_service && has_ended() && station_->wait(milliseconds(0)) == 0;
-  const std::uint32_t line = is_new_service ? told_by_journal() : stopped.alarm_line;
+  const std::uint32_t line = is_new_service ? reported_by_journal() : stopped.alarm_line;
   mend();
   ASSERT_NO_FATAL_FAILURE(enable_again());
   EXPECT_TRUE(eventually([this] { return plant_->status().alarm == Alarm::kNone; }))
@@ -288,13 +288,13 @@ void FaultCase::recover_and_go_on() {
   run_to_end(*second_);
 }
 
-void FaultCase::judge_all() {
+void FaultCase::check_all() {
   const MachineModel model = config::load_machine(plant_->machine());
   const ToolTable tools =
       config::load_tools(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/tools.toml");
   const PartAsked part{model, tools, part_file_, part_.motions};
   LinesCut before;
-  if (!first_.recording.empty() && (has_program_ || second_)) before = judge(part, first_);
+  if (!first_.recording.empty() && (has_program_ || second_)) before = check(part, first_);
   if (!second_) {
     EXPECT_EQ(before.last, part_.motions.back());
     EXPECT_TRUE(before.is_last_done);
@@ -305,7 +305,7 @@ void FaultCase::judge_all() {
       phase_.where == Where::kTool && passes_with(part, *second_, next->length_mm)) {
     second_->tool_mm = next->length_mm;
   }
-  const LinesCut behind = judge(part, *second_);
+  const LinesCut behind = check(part, *second_);
   EXPECT_EQ(behind.last, part_.motions.back());
   EXPECT_TRUE(behind.is_last_done);
   if (second_->from_line > 0) expect_seam(part, before, behind, second_->from_line, letter_ == "X");

@@ -24,8 +24,8 @@ using Words = std::vector<std::string>;
   return words;
 }
 
-/// How the part is read and on which machine it is judged.
-[[nodiscard]] Words judged(const Plant& plant, const LiveRun& live) {
+/// How the part is read and on which machine it is checked.
+[[nodiscard]] Words checked(const Plant& plant, const LiveRun& live) {
   return joined(joined({"--machine", plant.machine()}, live.reader), live.simulate);
 }
 
@@ -125,7 +125,7 @@ std::string simulate_part(const Plant& plant, const std::string& part, const Liv
                           const Words& more) {
   const std::string simulated = plant.folder() / "simulated.csv";
   Process simulate(
-      joined(joined({"meridian", "simulate", part, "--record", simulated}, judged(plant, live)),
+      joined(joined({"meridian", "simulate", part, "--record", simulated}, checked(plant, live)),
              more),
       plant.folder() / "simulate.log");
   EXPECT_EQ(simulate.wait(milliseconds(60'000)), 0) << simulate.said();
@@ -174,13 +174,13 @@ void expect_on_wire(const Plant& plant, const LiveRun& live) {
 
 void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live) {
   Process check(joined({"meridian", "check", plant.recording(), part, "--max-missing", "1000000"},
-                       judged(plant, live)),
+                       checked(plant, live)),
                 plant.folder() / "check.log");
   EXPECT_EQ(check.wait(milliseconds(60'000)), 0) << check.said();
   std::printf("%s\n", check.said().c_str());
 }
 
-void run_and_judge(Plant& plant, const std::string& part, const LiveRun& live) {
+void run_and_check(Plant& plant, const std::string& part, const LiveRun& live) {
   const std::string simulated = simulate_part(plant, part, live);
   ASSERT_NO_FATAL_FAILURE(run_live(plant, part, live));
   ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulated));

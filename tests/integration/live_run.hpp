@@ -7,7 +7,7 @@
 
 #include "integration/plant.hpp"
 
-/// One program cut live by service, drives, station and operator, and judged by the simulation.
+/// One program cut live by service, drives, station and operator, and checked by the simulation.
 /// Failures are those of GoogleTest.
 namespace meridian::test {
 
@@ -51,6 +51,6 @@ void expect_on_wire(const Plant& plant, const LiveRun& live);
 void expect_checked(const Plant& plant, const std::string& part, const LiveRun& live);
 
 /// All of that without an operator's doing.
-void run_and_judge(Plant& plant, const std::string& part, const LiveRun& live);
+void run_and_check(Plant& plant, const std::string& part, const LiveRun& live);
 
 }  // namespace meridian::test

@@ -30,7 +30,7 @@ TEST(Live, EqualsTheSimulationBitForBitOnEveryCycleThatWasSent) {
   write_cl_file(part, 16);
   LiveRun live;
   live.wire = (plant.folder() / "wire.csv").string();
-  run_and_judge(plant, part, live);
+  run_and_check(plant, part, live);
   expect_on_wire(plant, live);
 }
 
@@ -134,7 +134,7 @@ TEST_P(LiveAtCycle, KeepsItsRateAndEqualsTheSimulation) {
   ASSERT_NO_FATAL_FAILURE(plant.set_cycle_us(cycle_us));
   const std::string part = (plant.folder() / "part.cls").string();
   write_cl_file(part, 8);
-  run_and_judge(plant, part, {});
+  run_and_check(plant, part, {});
   const CycleFigures figures = cycle_figures(plant);
   std::printf(
       "cycle of %d us: %.2f %% of the periods executed, computation p50 %.1f us, p99 %.1f us\n",
@@ -311,7 +311,7 @@ TEST(Live, CutsDryWithoutDrivesAsTheSimulationDoesAndDrivesThatComeStandStill) {
     ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   };
   live.watch = [&] { stand.look(model); };
-  ASSERT_NO_FATAL_FAILURE(run_and_judge(plant, part, live));
+  ASSERT_NO_FATAL_FAILURE(run_and_check(plant, part, live));
   EXPECT_GT(stand.seen, 100);
   EXPECT_EQ(stand.moved, 0);
   EXPECT_FALSE(stand.were_on);

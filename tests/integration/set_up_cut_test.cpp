@@ -44,7 +44,7 @@ TEST(SetUpCut, InAFrameSetLiveIsThatOfAServiceThatWasStartedWithItBitForBit) {
   ASSERT_NO_FATAL_FAILURE(end_service(plant));
   ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulate_part(plant, part, framed)));
 
-  // The recording says where the workpiece lay: for a replay, and for who judges it.
+  // The recording says where the workpiece lay: for a replay, and for who checks it.
   const LiveRun bare;
   const std::string replayed = simulate_part(plant, part, bare, {"--events", events_of(plant)});
   ASSERT_NO_FATAL_FAILURE(expect_same(plant, replayed));

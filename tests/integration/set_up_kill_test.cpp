@@ -24,7 +24,7 @@ namespace {
 }
 
 /// What the machine tells is `acknowledged`.
-void expect_told(const dds::MachineInfo& told, const telemetry::SetUp& acknowledged) {
+void expect_reported(const dds::MachineInfo& told, const telemetry::SetUp& acknowledged) {
   const WorkFrames& frames = acknowledged.frames;
   EXPECT_TRUE(std::equal(told.work_frames.begin(), told.work_frames.end(), frames.rows().begin(),
                          frames.rows().end()));
@@ -45,7 +45,7 @@ TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
     plant.start_service();
     ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.cycles_run > 0; }))
         << plant.service().said();
-    expect_told(told_by(plant), acknowledged);
+    expect_reported(reported_by(plant), acknowledged);
     // A word for the table, one for the row in force, one for the tools, in turns.
     const int number = 1 + n / 3 % 3;
     const bool is_select = n % 3 == 1 && acknowledged.frames.find(number) != nullptr;

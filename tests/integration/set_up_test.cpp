@@ -27,14 +27,14 @@ class SetUp : public testing::Test {
   }
   /// Refused for that reason, and everything is as it was.
   void expect_refused(const FrameOrder& order, Refusal why) {
-    const dds::MachineInfo before = told_by(plant);
+    const dds::MachineInfo before = reported_by(plant);
     const JointVector joints = plant.status().joints;
     const bool is_at_rest = plant.status().state != State::kRunning;
     const dds::Reply reply = anna.ask(order);
     EXPECT_FALSE(reply.is_accepted);
     EXPECT_EQ(reply.refusal, why) << reply.text;
     EXPECT_NE(reply.text.find("frame refused: "), std::string::npos) << reply.text;
-    const dds::MachineInfo after = told_by(plant);
+    const dds::MachineInfo after = reported_by(plant);
     EXPECT_EQ(after.work_frames, before.work_frames);
     EXPECT_EQ(after.work_frame, before.work_frame);
     EXPECT_EQ(after.frame_origin_mm, before.frame_origin_mm);
@@ -49,38 +49,38 @@ class SetUp : public testing::Test {
 
 TEST_F(SetUp, IsToldByTheMachineTopicAndTheStatusAsSoonAsItIsAcknowledged) {
   start();
-  const dds::MachineInfo bare = told_by(plant);
+  const dds::MachineInfo bare = reported_by(plant);
   EXPECT_TRUE(bare.work_frames.empty());
   const FrameOrder set = order_of(FrameWord::kSet, 3, 12.5, "vice");
   dds::Reply reply = anna.ask(set);
   ASSERT_TRUE(reply.is_accepted) << reply.text;
   EXPECT_EQ(reply.text, "frame 3 set; work frame 0 (machine file) in force");
-  dds::MachineInfo told = told_by(plant);
+  dds::MachineInfo told = reported_by(plant);
   ASSERT_EQ(told.work_frames, std::vector{set.frame});
   EXPECT_EQ(told.work_frame, 0);
   EXPECT_EQ(told.frame_origin_mm, bare.frame_origin_mm);
   reply = anna.ask(order_of(FrameWord::kSelect, 3));
   ASSERT_TRUE(reply.is_accepted) << reply.text;
   EXPECT_EQ(reply.text, "work frame 3 (vice) in force");
-  told = told_by(plant);
+  told = reported_by(plant);
   EXPECT_EQ(told.work_frame, 3);
   EXPECT_EQ(told.frame_origin_mm, (Array3{12.5, 0, 0}));
   ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 3; }));
   EXPECT_EQ(plant.status().frame, stream::frame_sum(told.frame_rotation, told.frame_origin_mm));
   reply = anna.ask(order_of(FrameWord::kSet, 3, 7));  // the one in force
   ASSERT_TRUE(reply.is_accepted) << reply.text;
-  EXPECT_EQ(told_by(plant).frame_origin_mm, (Array3{7, 0, 0}));
+  EXPECT_EQ(reported_by(plant).frame_origin_mm, (Array3{7, 0, 0}));
 }
 
 TEST_F(SetUp, SurvivesTheService) {
   start();
   ASSERT_TRUE(anna.ask(order_of(FrameWord::kSet, 54, -3, "tower")).is_accepted);
   ASSERT_TRUE(anna.ask(order_of(FrameWord::kSelect, 54)).is_accepted);
-  const dds::MachineInfo before = told_by(plant);
+  const dds::MachineInfo before = reported_by(plant);
   plant.service().send_signal(SIGTERM);
   ASSERT_EQ(plant.service().wait(kToolPatience), 0) << plant.service().said();
   start();
-  const dds::MachineInfo after = told_by(plant);
+  const dds::MachineInfo after = reported_by(plant);
   EXPECT_NE(after.service_id, before.service_id);
   EXPECT_EQ(after.work_frames, before.work_frames);
   EXPECT_EQ(after.work_frame, 54);
@@ -147,7 +147,7 @@ TEST_F(SetUp, ObeysOneOfTwoOperatorsWhoSawTheSame) {
     if (!a->is_accepted && !b->is_accepted) continue;  // the host was slow: both saw an old status
     ASSERT_NE(a->is_accepted, b->is_accepted) << a->text << "\n" << b->text;
     EXPECT_EQ((a->is_accepted ? b : a)->refusal, Refusal::kStale);
-    const auto frames = told_by(plant).work_frames;
+    const auto frames = reported_by(plant).work_frames;
     ASSERT_EQ(frames.size(), 1U);
     EXPECT_EQ(frames.front().origin_mm[0], a->is_accepted ? round : -round);
     EXPECT_STREQ(frames.front().name.data(), a->is_accepted ? "anna" : "bert");
@@ -166,7 +166,7 @@ TEST_F(SetUp, IsStaleForWhoHasNotSeenTheChangeBeforeIt) {
   const auto enable = plant.say_having_seen(Verb::kEnable, before);
   ASSERT_TRUE(enable);
   EXPECT_EQ(enable->refusal, Refusal::kStale) << enable->text;
-  EXPECT_EQ(told_by(plant).work_frames.front().origin_mm[0], 1);
+  EXPECT_EQ(reported_by(plant).work_frames.front().origin_mm[0], 1);
 }
 
 TEST_F(SetUp, DoesAWordOnceThatIsRepeated) {
@@ -234,12 +234,12 @@ TEST_F(SetUp, LetsAProgramInOrAFrameAndNeverBoth) {
     const bool is_open = credit.verdict == dds::Verdict::kGood;
     EXPECT_FALSE(is_open && reply->is_accepted) << credit.text << "\n" << reply->text;
     if (!is_open) {
-      const bool is_told = credit.text.find("work frame") != std::string::npos ||
-                           credit.text.find("set-up is being changed") != std::string::npos;
-      EXPECT_TRUE(is_told) << credit.text;
+      const bool is_reported = credit.text.find("work frame") != std::string::npos ||
+                               credit.text.find("set-up is being changed") != std::string::npos;
+      EXPECT_TRUE(is_reported) << credit.text;
     }
     ++(is_open ? opened : changed);
-    const bool is_in_force = told_by(plant).frame_origin_mm[0] == round;
+    const bool is_in_force = reported_by(plant).frame_origin_mm[0] == round;
     EXPECT_EQ(is_in_force, reply->is_accepted) << reply->text;
     request.request = dds::SessionRequestKind::kClose;
     (void)requests.write(request);

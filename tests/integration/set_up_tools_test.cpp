@@ -90,7 +90,7 @@ TEST(SetUpTools, MeasureTheToolInTheSpindleAnewAndSurviveTheService) {
   EXPECT_GT((forward(model, 95, after.joints).tip - tip).norm(), 0.9) << "mm, of 1 mm of tool";
   ASSERT_NO_FATAL_FAILURE(end_service(plant));
   plant.start_service();
-  EXPECT_EQ(told_by(plant).tool_file, tools_of(96));
+  EXPECT_EQ(reported_by(plant).tool_file, tools_of(96));
   EXPECT_EQ(plant.status().tools, stream::tools_sum(config::parse_tools(tools_of(96), "test")));
 }
 
@@ -108,7 +108,7 @@ TEST(SetUpTools, AreThoseOfOneOfTwoOperatorsWhoSawTheSame) {
     if (!a->is_accepted && !b->is_accepted) continue;  // the host was slow: both saw an old status
     ASSERT_NE(a->is_accepted, b->is_accepted) << a->text << "\n" << b->text;
     EXPECT_EQ((a->is_accepted ? b : a)->refusal, Refusal::kStale);
-    EXPECT_EQ(told_by(plant).tool_file, tools_of((a->is_accepted ? 100 : 200) + round));
+    EXPECT_EQ(reported_by(plant).tool_file, tools_of((a->is_accepted ? 100 : 200) + round));
   }
 }
 

@@ -35,7 +35,7 @@ class Tap {
 };
 
 /// What the wire saw are the drive coordinates of the recording, bit for bit.
-void judge_wire(const Tap& tap, record::RecordingReader& recording, const MachineModel& model) {
+void check_wire(const Tap& tap, record::RecordingReader& recording, const MachineModel& model) {
   record::RecordingRow row;
   std::uint64_t compared = 0, moved = 0;
   while (recording.next(row).value_or(false)) {
@@ -59,12 +59,12 @@ TEST(LiveStage, SendsDriveCoordinatesAndEqualsTheSimulationBitForBit) {
   LiveRun run;
   run.machine = machine;
   run.watch = [&tap] { tap.look(); };
-  ASSERT_NO_FATAL_FAILURE(run_and_judge(plant, part, run));
+  ASSERT_NO_FATAL_FAILURE(run_and_check(plant, part, run));
 
   const MachineModel model = config::load_machine(machine_file(machine));
   auto live = record::RecordingReader::open(plant.recording(), model);
   ASSERT_TRUE(live);
-  judge_wire(tap, *live, model);
+  check_wire(tap, *live, model);
   ASSERT_EQ(tap.machine.joint_count, static_cast<std::uint32_t>(model.joint_count));
   ASSERT_EQ(tap.machine.stage_drive_count, has_stage(model) ? 2U : 0U);
   for (std::uint32_t i = 0; i < tap.machine.stage_drive_count; ++i) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "integration/checked_part.hpp"
 #include "integration/fault_kinds.hpp"
-#include "integration/judged_part.hpp"
 #include "integration/live_run.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
@@ -81,7 +81,7 @@ class StationDeath : public testing::TestWithParam<const char*> {
     station.send_signal(SIGKILL);
     ASSERT_TRUE(station.wait(milliseconds(2000)));
   }
-  /// Cuts the rest from `line` on and judges both.
+  /// Cuts the rest from `line` on and checks both.
   void go_on(std::uint32_t line) {
     PartCut first{.recording = plant.recording(), .is_finished = false};
     const dds::Status between = plant.status();
@@ -101,7 +101,7 @@ class StationDeath : public testing::TestWithParam<const char*> {
     const MachineModel model = config::load_machine(plant.machine());
     const ToolTable none;
     const PartAsked part{model, none, file(), motion_lines(model, none, file())};
-    const LinesCut before = judge(part, first), behind = judge(part, second);
+    const LinesCut before = check(part, first), behind = check(part, second);
     EXPECT_EQ(behind.last, part.motions.back());
     EXPECT_TRUE(behind.is_last_done);
     expect_seam(part, before, behind, line);

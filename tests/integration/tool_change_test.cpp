@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "integration/checked_part.hpp"
 #include "integration/fault_part.hpp"
-#include "integration/judged_part.hpp"
 #include "integration/live_run.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
@@ -113,7 +113,7 @@ TEST_F(ToolChange, ThatIsRefusedOrComesTooLateHoldsWithoutMotionUntilItIsDone) {
   const MachineModel model = config::load_machine(plant.machine());
   const ToolTable tools =
       config::load_tools(std::string(MERIDIAN_SOURCE_DIR) + "/deploy/tools.toml");
-  const LinesCut cut = judge({model, tools, file(), part.motions}, whole);
+  const LinesCut cut = check({model, tools, file(), part.motions}, whole);
   EXPECT_EQ(cut.first, part.motions[1]);
   EXPECT_EQ(cut.last, part.motions.back());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// The reference by itself: what this host can do without Meridian. Judged loosely, it only has to
+/// The reference by itself: what this host can do without Meridian. Checked loosely, it only has to
 /// be a measurement at all; its figures are the other half of every latency gate.
 
 #include "service/host/probe/bare_reference.hpp"

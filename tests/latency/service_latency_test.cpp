@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// Latency of the real service, judged against a bare thread and a bare ping of the same run.
+/// Latency of the real service, checked against a bare thread and a bare ping of the same run.
 ///
 /// Turns of 1 s, ten of each kind, one after the other on the same CPU: the service alone, the bare
 /// thread alone, the bare ping alone; the service is stopped (SIGSTOP) while the others run. The
-/// first 100 periods of every turn are warm-up; no other sample is dropped. Judged are medians of
+/// first 100 periods of every turn are warm-up; no other sample is dropped. Checked are medians of
 /// per-turn percentiles, so that single host stalls decide nothing. On a shared machine a whole
 /// measurement may still be spoilt: it is repeated up to kAttempts times and one attempt inside the
 /// budgets passes; all attempts are printed.
@@ -57,12 +57,12 @@ RateMeasurement take_turns_of_a_second(int turns) {
 /// outside, or unknown.
 bool is_inside_all(const RateMeasurement& m) {
   bool is_inside = true;
-  std::size_t judged = 0;
-  for (const Verdict& one : judge(m)) {
-    const auto judges = {"cycle_lateness", "setpoint_latency_p50", "setpoint_latency_p99",
+  std::size_t checked = 0;
+  for (const Verdict& one : check(m)) {
+    const auto checks = {"cycle_lateness", "setpoint_latency_p50", "setpoint_latency_p99",
                          "setpoints_unseen", "turns_taken"};
-    if (std::find(judges.begin(), judges.end(), one.budget.name) == judges.end()) continue;
-    ++judged;
+    if (std::find(checks.begin(), checks.end(), one.budget.name) == checks.end()) continue;
+    ++checked;
     std::printf("  %s %s: %.1f %s; %s; %llu samples, %llu wanted\n",
                 one.is_inside() ? "inside " : "OUTSIDE", one.budget.name.c_str(), one.figure,
                 one.budget.unit.c_str(), to_text(one.budget, one.reference).c_str(),
@@ -70,7 +70,7 @@ bool is_inside_all(const RateMeasurement& m) {
                 static_cast<unsigned long long>(one.wanted));
     is_inside &= one.is_inside();
   }
-  EXPECT_EQ(judged, 5U);
+  EXPECT_EQ(checked, 5U);
   return is_inside;
 }
 

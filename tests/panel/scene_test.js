@@ -6,7 +6,7 @@ import { Machine } from "../../service/panel/page/src/machine.js";
 
 const kTip_mm = 1e-6; // reach 5e3 mm * eps = 1e-12, a million times
 const kAxis = 1e-9;
-const kLeastMachines = 10;
+const kMinMachines = 10;
 const [cases, machines] = process.argv.slice(4);
 const text = execFileSync(cases, [machines], { encoding: "utf8", maxBuffer: 1 << 28 });
 const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
@@ -40,4 +40,4 @@ for (const line of text.trim().split("\n")) {
   count += 1;
 }
 console.log(`${count} machines, tip within ${worstTip.toExponential(2)} mm, axis within ${worstAxis.toExponential(2)}`);
-process.exit(failures === 0 && count >= kLeastMachines ? 0 : 1);
+process.exit(failures === 0 && count >= kMinMachines ? 0 : 1);

@@ -88,7 +88,7 @@ def deviations(points, tips, axes):
     return tip_mm, axis_rad
 
 
-def judge(machine, points, joints):
+def check(machine, points, joints):
     """Figures of the cut `joints` of the CL points `points` (x y z i j k feed)."""
     tip_mm, axis_rad = deviations(numpy.array(points), *poses(machine, joints))
     worst = [numpy.abs(rate).max(axis=0) for rate in rates(machine, joints)]

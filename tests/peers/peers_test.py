@@ -60,18 +60,18 @@ def main():
         points = linuxcnc_cut.points_of(meridian, file)
         ours = figures.read(recording)
         if which == "ours":
-            found = figures.judge(machine, points, ours)
+            found = figures.check(machine, points, ours)
             expect_fan(found, 2.3)
             expect_what_check_says(meridian, found, recording, file)
             off = numpy.array(points) + [0, 0, 0.05, 0, 0, 0, 0]
-            expect("tip beside a path 50 um higher", figures.judge(machine, off, ours).tip_um, 49, 51)
+            expect("tip beside a path 50 um higher", figures.check(machine, off, ours).tip_um, 49, 51)
             return
         recording = folder / "linuxcnc.csv"
         cut = subprocess.run([HERE / "linuxcnc_cut.py", meridian, MACHINE, file, recording], check=False)
         if cut.returncode:
             sys.exit(cut.returncode)
         theirs = figures.read(recording)
-        found = figures.judge(machine, points, theirs)
+        found = figures.check(machine, points, theirs)
         expect_fan(found, 2.2)
         for joint, said in expect_what_check_says(meridian, found, recording, file).items():
             velocity = said["velocity_use"]  # there is no approach in this one

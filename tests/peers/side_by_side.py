@@ -71,7 +71,7 @@ def main():
         cuts = list(bench.cuts(path))
         points = points_of(bench.meridian, bench.file(path))
         for control, joints in cuts:
-            found = figures.judge(bench.machine, points, joints)
+            found = figures.check(bench.machine, points, joints)
             row = f"| {path} | {control} |"
             whole.append(f"{row} {found.time_s:.2f} | {found.tip_um:.1f} | {found.axis_deg:.3f} |")
             shares.append(row + "".join(f" {v:.2f}, {a:.2f} |" for v, a, _ in found.shares.values())

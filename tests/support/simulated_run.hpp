@@ -14,7 +14,7 @@
 #include "service/recording/record/file/recording_reader.hpp"
 #include "service/recording/record/file/recording_writer.hpp"
 
-/// A CL text simulated, and its recording judged.
+/// A CL text simulated, and its recording checked.
 namespace meridian::test {
 
 struct SimulatedRun {
@@ -48,7 +48,7 @@ struct SimulatedRun {
   }
 }
 
-/// Judges `records` by way of the file `recording`.
+/// Checks `records` by way of the file `recording`.
 [[nodiscard]] inline record::CheckReport check_records(const std::vector<CycleRecord>& records,
                                                        const record::CheckedPath& path,
                                                        const MachineModel& model,

@@ -67,7 +67,7 @@ struct StepOutput {
 };
 static_assert(std::is_trivially_copyable_v<StepOutput>);
 
-/// Setpoints are kept for that many cycles, to judge the following error of feedback that saw them.
+/// Setpoints are kept for that many cycles, to check the following error of feedback that saw them.
 inline constexpr std::size_t kSentCycles = 256;
 
 struct SentSetpoint {
@@ -114,7 +114,7 @@ struct Jogging {
   int joint = -1;          ///< that `axis` moves; from kMaxJoints on a ToolAxis; -1: none yet
   bool is_ready = false;   ///< `axis` may move
   JogAxis axis;
-  ToolWay way;  ///< of a ToolAxis
+  ToolPath way;  ///< of a ToolAxis
   ToolSurvey survey;
   JogRates fault;  ///< what a FaultStop may use
 };
@@ -161,7 +161,7 @@ struct DriveWatch {
 };
 
 /// What the action peer said about the action that the cycle waits for.
-enum class ActionState : std::uint8_t { kNotTold, kWaiting, kDone, kRefused };
+enum class ActionState : std::uint8_t { kNotReported, kWaiting, kDone, kRefused };
 
 /// How fast the rate filter of this machine may change the rate.
 [[nodiscard]] inline RateBounds rate_bounds(const MachineModel& machine) noexcept {
@@ -178,10 +178,10 @@ struct CycleState {
   State state = State::kOff;
   double state_time = 0;  ///< s since it was entered
   std::uint16_t epoch = 1;
-  Alarm alarm = Alarm::kNone;     ///< why the machine is in FaultStop or Fault
-  std::uint32_t alarms_told = 0;  ///< one bit per Alarm since the last reset
+  Alarm alarm = Alarm::kNone;         ///< why the machine is in FaultStop or Fault
+  std::uint32_t alarms_reported = 0;  ///< one bit per Alarm since the last reset
 
-  double feed_override = 1;   ///< wanted, 0 to MachineModel::most_feed_override
+  double feed_override = 1;   ///< wanted, 0 to MachineModel::max_feed_override
   double rapid_override = 1;  ///< wanted, 0 to 1
   RateFilter rate;
   double piece_time = 0;    ///< plan time since the piece in force began
@@ -205,7 +205,7 @@ struct CycleState {
   bool has_block = false;  ///< kBlockStarted was told for `sequence` and kBlockDone was not
 
   double barrier_time = 0;  ///< s at the dwell or action in force
-  ActionState action = ActionState::kNotTold;
+  ActionState action = ActionState::kNotReported;
   std::uint64_t starved_session = 0;
   std::uint64_t starvations = 0;
   std::uint64_t periods_lost = 0;

@@ -50,11 +50,11 @@ inline constexpr double kWatchMoved_mm = 0.01, kWatchMoved_rad = 1e-4;
   watch.has_moved = true;
   watch.time = 0;
   if (!watch.is_astray) {
-    c.state.alarms_told &= ~(1U << static_cast<unsigned>(Alarm::kDrivesAstray));
+    c.state.alarms_reported &= ~(1U << static_cast<unsigned>(Alarm::kDrivesAstray));
     return;
   }
   const int joint = moving >= 0 ? moving : first_bit(enabled);
-  tell_alarm(c, Alarm::kDrivesAstray, joint, moved[static_cast<std::size_t>(joint)]);
+  report_alarm(c, Alarm::kDrivesAstray, joint, moved[static_cast<std::size_t>(joint)]);
   if (c.state.state == State::kFault) return;
   c.state.alarm = Alarm::kDrivesAstray;
   drop_program(c);

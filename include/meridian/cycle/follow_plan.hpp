@@ -23,7 +23,7 @@ namespace meridian {
 
 /// Plan and queue are at their end and the program is not: at rest, waiting for blocks.
 inline void starve(Cycle& c) noexcept {
-  tell_block_done(c);
+  report_block_done(c);
   rest(c);
   ++c.state.starvations;
   c.state.starved_session = c.in.session;
@@ -51,14 +51,14 @@ inline void aim_rate(Cycle& c) noexcept {
 inline void fail_action(Cycle& c) noexcept {
   tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed), 0,
        c.state.barrier_time);
-  c.state.action = ActionState::kNotTold;
+  c.state.action = ActionState::kNotReported;
   c.state.barrier_time = 0;
   enter(c, State::kHeld);
 }
 
 /// One period at an action: told once, then waited for.
 inline void wait_for_action(Cycle& c) noexcept {
-  if (c.state.action == ActionState::kNotTold) {
+  if (c.state.action == ActionState::kNotReported) {
     tell(c, EventCode::kActionDue, c.state.sequence, c.state.line);
     c.state.action = ActionState::kWaiting;
   } else if (c.state.action == ActionState::kDone) {
@@ -96,7 +96,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
       next_piece(c);
       return;
     case TimeKind::kEnd:
-      tell_block_done(c);
+      report_block_done(c);
       tell(c, EventCode::kProgramEnd, piece.sequence);
       c.reader.advance();
       c.state.piece_time = 0;
@@ -127,7 +127,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
     follow_braking_rate(c);
     return true;
   }
-  for (int n = 0; n < kMostPieces && is_on_move(c); ++n) {
+  for (int n = 0; n < kMaxPieces && is_on_move(c); ++n) {
     const double beyond = c.state.piece_time - c.reader.piece()->duration;
     if (beyond < 0) return true;
     const TimePiece& piece = *c.reader.piece();

@@ -32,8 +32,8 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
          q <= std::max(limits.travel_max + kGuardTravel, previous + kGuardOutside);
 }
 
-/// The drives of a stage, judged like joints; without `has_travel` not for their travel.
-[[nodiscard, gnu::noinline]] inline GuardVerdict judge_stage(const MachineModel& machine,
+/// The drives of a stage, checked like joints; without `has_travel` not for their travel.
+[[nodiscard, gnu::noinline]] inline GuardVerdict check_stage(const MachineModel& machine,
                                                              const JointVector& next,
                                                              const JointVector& previous,
                                                              double elapsed,
@@ -50,11 +50,11 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
   return {};
 }
 
-/// Judges the next joint setpoint, the last thing before it is sent: finite, inside travel (for the
+/// Checks the next joint setpoint, the last thing before it is sent: finite, inside travel (for the
 /// joints of `has_travel`; where there are none, the drives of a stage have none either), and no
 /// farther from `previous` (sent `elapsed` seconds ago) than the velocity limits of joints and
 /// drives reach. RT: cycle. Proof: tests/unit/cycle/guard_test.cpp, stage_cycle_test.cpp.
-[[nodiscard]] inline GuardVerdict judge(const MachineModel& machine, const JointVector& next,
+[[nodiscard]] inline GuardVerdict check(const MachineModel& machine, const JointVector& next,
                                         const JointVector& velocity, const JointVector& previous,
                                         double elapsed, std::uint32_t has_travel = ~0U) noexcept {
   for (int i = 0; i < machine.joint_count; ++i) {
@@ -62,13 +62,13 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
     const JointSpec& joint = machine.joints[n];
     const double q = next[n], step = q - previous[n];
     if (!std::isfinite(q) || !std::isfinite(velocity[n])) return {Alarm::kNotFinite, i, q};
-    const bool is_judged = !joint.is_endless && (has_travel >> n & 1U) != 0;
-    if (is_judged && !is_in_travel(joint.limits, q, previous[n])) return {Alarm::kTravel, i, q};
+    const bool is_checked = !joint.is_endless && (has_travel >> n & 1U) != 0;
+    if (is_checked && !is_in_travel(joint.limits, q, previous[n])) return {Alarm::kTravel, i, q};
     if (!(std::abs(step) <= joint.limits.velocity * elapsed + kGuardStep)) {
       return {Alarm::kStep, i, step};
     }
   }
-  return has_stage(machine) ? judge_stage(machine, next, previous, elapsed, has_travel != 0)
+  return has_stage(machine) ? check_stage(machine, next, previous, elapsed, has_travel != 0)
                             : GuardVerdict{};
 }
 

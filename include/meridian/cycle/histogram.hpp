@@ -30,17 +30,17 @@ class Histogram {
 
   /// Counts a value that was measured once every `interval_ns`, and with it the measurements that
   /// it kept from being made: value, value - interval, value - 2 interval, ... down to above 0 (at
-  /// most kMostOmitted). Without them a thread that was held up for ten periods would count one bad
+  /// most kMaxOmitted). Without them a thread that was held up for ten periods would count one bad
   /// one instead of ten. Source: Tene, "How NOT to measure latency" (coordinated omission).
   void record_every(std::int64_t value_ns, std::int64_t interval_ns) noexcept {
     record(value_ns);
     if (interval_ns <= 0) return;
     std::int64_t omitted_ns = value_ns - interval_ns;
-    for (int i = 0; i < kMostOmitted && omitted_ns > 0; ++i, omitted_ns -= interval_ns) {
+    for (int i = 0; i < kMaxOmitted && omitted_ns > 0; ++i, omitted_ns -= interval_ns) {
       record(omitted_ns);
     }
   }
-  static constexpr int kMostOmitted = 1 << 16;
+  static constexpr int kMaxOmitted = 1 << 16;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] std::int64_t max_ns() const noexcept { return static_cast<std::int64_t>(max_); }

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "meridian/cycle/jog_path.hpp"
 #include "meridian/cycle/jog_room.hpp"
-#include "meridian/cycle/jog_way.hpp"
 #include "meridian/geometry/jet.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
@@ -27,9 +27,9 @@ namespace meridian {
 class ToolSurvey {
  public:
   ToolSurvey() = default;
-  ToolSurvey(const MachineModel& machine, const ToolWay& way, const JointVector& joints,
+  ToolSurvey(const MachineModel& machine, const ToolPath& way, const JointVector& joints,
              double distance) noexcept {
-    const double whole = way.is_tilt ? kToolWay_rad : kToolWay_mm;
+    const double whole = way.is_tilt ? kToolPath_rad : kToolPath_mm;
     step_ = std::min(distance > 0 ? distance : whole, whole) / kSteps;
     is_over_ = !look(machine, way, 0, joints, middle_);
     last_ = middle_;
@@ -39,7 +39,7 @@ class ToolSurvey {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
   /// Looks at the next places.
-  void go_on(const MachineModel& machine, const ToolWay& way) noexcept {
+  void go_on(const MachineModel& machine, const ToolPath& way) noexcept {
     constexpr int kPlaces = 2;
     for (int n = 0; n < kPlaces && !is_over_; ++n) {
       Place next;
@@ -65,7 +65,7 @@ class ToolSurvey {
 
   /// After it: the way as an axis at its middle, with rates that hold all
   /// along.
-  [[nodiscard]] JogRoom room(const MachineModel& machine, const ToolWay& way) const noexcept {
+  [[nodiscard]] JogRoom room(const MachineModel& machine, const ToolPath& way) const noexcept {
     JogRoom room;
     room.axis.low = first_in_ > 0 ? first_in_ : low_;
     room.axis.high = last_out_ < 0 && !(first_in_ > 0) ? last_out_ : high_;
@@ -109,7 +109,7 @@ class ToolSurvey {
   }
 
   /// False where no joints are there.
-  [[nodiscard]] static bool look(const MachineModel& machine, const ToolWay& way, double s,
+  [[nodiscard]] static bool look(const MachineModel& machine, const ToolPath& way, double s,
                                  const JointVector& reference, Place& place) noexcept {
     const auto at = joints_on(machine, way, Jet<3>::variable(s), reference);
     if (at.status != SolveStatus::kOk) return false;

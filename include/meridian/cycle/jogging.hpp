@@ -33,7 +33,7 @@ inline void begin_jogging(Cycle& c, std::uint64_t request) noexcept {
 }
 
 /// A hand that was silent for longer than its dead man's time let go.
-inline void judge_silence(Jogging& jogging) noexcept {
+inline void check_silence(Jogging& jogging) noexcept {
   if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.is_let_go = true;
 }
 
@@ -45,7 +45,7 @@ inline void take_order(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
   const JogOrder& order = c.in.jog;
   jogging.silence += c.dt * (1.0 + c.in.lost_periods);  // c.periods is 1 where nothing moved
-  judge_silence(jogging);
+  check_silence(jogging);
   const bool is_late = order.age_s > order.dead_man_s && order.velocity != 0;
   const bool is_mine = order.hand == jogging.hand && order.epoch == c.state.epoch && !is_late;
   if (is_mine && order.sample > jogging.order.sample && !jogging.is_let_go) {
@@ -53,7 +53,7 @@ inline void take_order(Cycle& c) noexcept {
     jogging.order = order;
     jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
     jogging.silence = order.age_s;
-    judge_silence(jogging);
+    check_silence(jogging);
   }
 }
 

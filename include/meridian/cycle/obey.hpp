@@ -26,7 +26,7 @@ inline void drop_program(Cycle& c) noexcept {
   c.state.program_time = 0;
   // What it waited for, or was answered, is not of the program that comes.
   c.state.barrier_time = 0;
-  c.state.action = ActionState::kNotTold;
+  c.state.action = ActionState::kNotReported;
   c.state.epoch = static_cast<std::uint16_t>(c.state.epoch + 1);
   c.reader.set_epoch(c.state.epoch);
   tell(c, EventCode::kEpochAdvanced, c.state.epoch);
@@ -118,12 +118,12 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
       return is_emergency_heard(c.machine, c.in) ? Refusal::kFaultPresent : Refusal::kNone;
     case Verb::kFeedOverride:
     case Verb::kRapidOverride: {
-      const double most = command.verb == Verb::kFeedOverride ? c.machine.most_feed_override : 1.0;
+      const double most = command.verb == Verb::kFeedOverride ? c.machine.max_feed_override : 1.0;
       return command.argument >= 0 && command.argument <= most ? Refusal::kNone
                                                                : Refusal::kOutOfRange;
     }
     case Verb::kSingleBlock:
-      if (command.argument == 1 && c.machine.override_ramp_s > kMostStepRamp_s) {
+      if (command.argument == 1 && c.machine.override_ramp_s > kMaxStepRamp_s) {
         return Refusal::kSlowRamp;
       }
       [[fallthrough]];
@@ -172,7 +172,7 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
     case State::kApproaching:
       c.state.program_time = 0;
       c.state.single_block.next_block = 0;
-      tell_block(c);
+      report_block(c);
       break;
     case State::kHolding:
     case State::kAborting:
@@ -188,7 +188,7 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
       break;
     case State::kOff:
       c.state.alarm = Alarm::kNone;
-      c.state.alarms_told = 0;
+      c.state.alarms_reported = 0;
       break;
     default:
       break;

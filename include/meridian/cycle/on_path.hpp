@@ -15,7 +15,7 @@ namespace meridian {
 
 /// A cycle goes over at most that many time pieces; pieces are longer than a cycle, so this is a
 /// bound and not a rule.
-inline constexpr int kMostPieces = 64;
+inline constexpr int kMaxPieces = 64;
 
 /// A plan that is no faster rests: rounding of its end is 1e-12 of its speed.
 inline constexpr double kRest_mm_per_s = 1e-6;
@@ -53,7 +53,7 @@ inline void rest(Cycle& c) noexcept {
 }
 
 /// Tells which block ended and which began, if the piece in force belongs to another one.
-inline void tell_block(Cycle& c) noexcept {
+inline void report_block(Cycle& c) noexcept {
   const TimePiece& piece = *c.reader.piece();
   if (c.state.has_block && c.state.sequence == piece.sequence) return;
   if (piece.sequence < c.state.single_block.next_block) return;  // the path piece began in it
@@ -65,7 +65,7 @@ inline void tell_block(Cycle& c) noexcept {
 }
 
 /// Tells that the block in force is done; nothing happens if there is none.
-inline void tell_block_done(Cycle& c) noexcept {
+inline void report_block_done(Cycle& c) noexcept {
   if (!c.state.has_block) return;
   c.state.has_block = false;
   tell(c, EventCode::kBlockDone, c.state.sequence, c.state.line);
@@ -77,9 +77,9 @@ inline bool next_piece(Cycle& c) noexcept {
   if (c.reader.piece() != nullptr) c.state.program_time += c.reader.piece()->duration;
   c.state.piece_time = 0;
   c.state.barrier_time = 0;
-  c.state.action = ActionState::kNotTold;
+  c.state.action = ActionState::kNotReported;
   if (c.reader.advance() == nullptr) return false;
-  tell_block(c);
+  report_block(c);
   return true;
 }
 
@@ -111,7 +111,7 @@ inline bool next_piece(Cycle& c) noexcept {
 /// in force; path pieces left behind are subtracted from `s` and added to `passed`. False where the
 /// plan rests before: `s` is then the end of the path that was there, and the joints are put there.
 [[nodiscard]] inline bool walk_to(Cycle& c, double& s, double& passed) noexcept {
-  for (int n = 0; n < kMostPieces && is_on_move(c); ++n) {
+  for (int n = 0; n < kMaxPieces && is_on_move(c); ++n) {
     const TimePiece& piece = *c.reader.piece();
     const PathPiece& path = *c.reader.path();
     const PathState end = state_at(piece, piece.duration);

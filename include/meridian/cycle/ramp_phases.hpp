@@ -25,15 +25,15 @@ struct RampPhases {
   [[nodiscard]] bool is_over() const noexcept { return phase == kCount; }
 };
 
-/// Lays the way out from `value`, which changes by `slope`, to `target`, with |u'| <= `most_slope`
+/// Lays the way out from `value`, which changes by `slope`, to `target`, with |u'| <= `max_slope`
 /// and |u''| <= `bend`.
 [[nodiscard]] inline RampPhases lay_out_ramp(double value, double slope, double target,
-                                             double most_slope, double bend) noexcept {
+                                             double max_slope, double bend) noexcept {
   const double rest = value + 0.5 * slope * std::abs(slope) / bend;  // after full braking
   const double way = target >= rest ? 1.0 : -1.0;
   const double along = way * slope, distance = way * (target - value);
   const double peak =
-      std::min(most_slope, std::sqrt(std::max(0.0, bend * distance + 0.5 * along * along)));
+      std::min(max_slope, std::sqrt(std::max(0.0, bend * distance + 0.5 * along * along)));
   const double gained = (peak * peak - 0.5 * along * along) / bend;  // in the first and third phase
   RampPhases ramp;
   ramp.left[0] = std::max(0.0, (peak - along) / bend);

@@ -25,15 +25,15 @@ namespace meridian {
 
 /// Single block is offered up to this override ramp: braking takes half of it in plan time, which
 /// must be well in sight (docs/decisions/0011-single-block.md).
-inline constexpr double kMostStepRamp_s = 2;
+inline constexpr double kMaxStepRamp_s = 2;
 /// Places of the port that are gone over in one look, but for the tail that it ends in or behind.
 /// Where they last less than it takes to come to rest the rate goes down until they do; of dense
 /// smooth plans up to 1900 last as long as it takes at most.
-inline constexpr std::size_t kMostPlacesAhead = 3072;
+inline constexpr std::size_t kMaxPlacesAhead = 3072;
 /// Nearer to a rest of the plan than this a block ends there.
 inline constexpr double kSameEnd_mm = 5e-7;
 /// Far above the rounding of sums of plan time.
-inline constexpr double kLeast_s = 1e-12;
+inline constexpr double kMin_s = 1e-12;
 
 /// How far the end of a block is away on the plan ahead.
 struct BlockEndAhead {
@@ -83,7 +83,7 @@ struct BlockEndAhead {
   const TimePiece* piece = c.reader.piece();
   double begin = -c.state.piece_time;
   while (piece != nullptr && begin <= most) {
-    if (ahead.places() >= kMostPlacesAhead) {
+    if (ahead.places() >= kMaxPlacesAhead) {
       out.is_limited = true;
       break;
     }
@@ -137,7 +137,7 @@ inline void begin_braking(Cycle& c, const BlockEndAhead& end) noexcept {
   const double least = rate.plan_time_to_rest();
   RateFilter next = rate;
   const double passed = next.advance(c.dt);
-  const double needed = passed + next.plan_time_to_rest() + kLeast_s;
+  const double needed = passed + next.plan_time_to_rest() + kMin_s;
   const BlockEndAhead end = find_block_end(c, least, needed + c.dt);
   if (end.tail != nullptr && end.tail_time < needed) c.reader.keep_tail(*end.tail);
   if (!end.is_found && end.is_limited && end.plan_time < needed) {
@@ -168,7 +168,7 @@ inline void rest_behind_block(Cycle& c, std::uint64_t sequence, std::uint32_t li
   c.state.rate.reset(0);
   c.state.sequence = sequence;
   c.state.line = line;
-  tell_block_done(c);
+  report_block_done(c);
   enter(c, State::kStepping);
 }
 
@@ -218,7 +218,7 @@ inline void follow_braking_rate(Cycle& c) noexcept {
 /// Behind a rest in mid-motion: tells the block that begins, where its end is in sight.
 inline void begin_next_block(Cycle& c) noexcept {
   for (std::size_t n = 0; const PathPiece* path = c.reader.path_ahead(n); ++n) {
-    if (n == static_cast<std::size_t>(kMostPieces)) return;
+    if (n == static_cast<std::size_t>(kMaxPieces)) return;
     for (std::uint32_t i = 0; i < path->marks.count; ++i) {
       const std::uint64_t sequence = path->sequence + path->marks.at[i].ahead;
       if (sequence < c.state.single_block.next_block) continue;

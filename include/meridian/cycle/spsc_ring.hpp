@@ -67,7 +67,7 @@ class SpscRing {
   }
 
   /// Producer: as free_places(), but asks the consumer's counter even where the last answer would
-  /// do; use it to judge whether a whole window fits.
+  /// do; use it to check whether a whole window fits.
   [[nodiscard]] std::size_t count_free_places() noexcept {
     seen_read_ = read_.load(std::memory_order_acquire);
     return N - (staged_ - seen_read_);

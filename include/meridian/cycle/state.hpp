@@ -36,7 +36,7 @@ enum class Verb : std::uint8_t {
   kResume,
   kAbort,
   kReset,
-  kFeedOverride,   ///< argument: factor, 0 to MachineModel::most_feed_override
+  kFeedOverride,   ///< argument: factor, 0 to MachineModel::max_feed_override
   kRapidOverride,  ///< argument: factor, 0 to 1
   kJog,            ///< argument: the joint that is jogged first; a ToolAxis + kMaxJoints
   kHome,           ///< argument: mask of the joints, 0: all

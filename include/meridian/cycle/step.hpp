@@ -182,7 +182,7 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
   if (!is_enabled(c.state.state)) return;
   const std::uint32_t has_travel = joints_with_travel(c);
   GuardVerdict verdict =
-      judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
+      check(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
   if (!has_joints) verdict.alarm = Alarm::kUnreachable;
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
@@ -190,7 +190,7 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
   c.state.jogging = {};
   begin_stop_off_path(c, c.previous, last_velocity);
   (void)follow_stop(c);
-  verdict = judge(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
+  verdict = check(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
   rest(c);

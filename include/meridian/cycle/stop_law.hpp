@@ -9,7 +9,7 @@
 namespace meridian {
 
 /// Acceleration and jerk along the path that a stop may use. Units: mm, s.
-struct StopAuthority {
+struct StopMargin {
   double accel = 0, jerk = 0;
 };
 
@@ -33,16 +33,16 @@ class StopLaw {
   StopLaw() = default;
 
   /// Lays out the stop from `begin`; a negative speed (rounding) counts as zero.
-  StopLaw(const PathState& begin, const StopAuthority& authority) noexcept : begin_(begin) {
+  StopLaw(const PathState& begin, const StopMargin& authority) noexcept : begin_(begin) {
     const double v = begin_.ds = std::max(0.0, begin.ds);
-    const double a = begin.dds, j = std::max(authority.jerk, kLeast);
+    const double a = begin.dds, j = std::max(authority.jerk, kMin);
     if (v == 0) {
       begin_.dds = 0;
     } else if (a < 0 && a * a >= 2 * j * v) {
       duration_[2] = -2 * v / a;  // v = a²/2j' with the jerk j' that fits
       jerk_[2] = a * a / (2 * v);
     } else {
-      lay_out(v, a, std::max(authority.accel, kLeast), j);
+      lay_out(v, a, std::max(authority.accel, kMin), j);
     }
     at_[0] = begin_;
     at_[1] = move(at_[0], jerk_[0], duration_[0]);
@@ -70,7 +70,7 @@ class StopLaw {
   }
 
  private:
-  static constexpr double kLeast = 1e-9;  ///< authority below it would never end a stop
+  static constexpr double kMin = 1e-9;  ///< authority below it would never end a stop
 
   void lay_out(double v, double a, double accel, double j) noexcept {
     // Deepest deceleration without a constant phase: the speed lost turning a to -d and -d to 0.

@@ -9,7 +9,7 @@
 #include "meridian/cycle/follow_plan.hpp"
 #include "meridian/cycle/on_path.hpp"
 #include "meridian/cycle/single_block.hpp"
-#include "meridian/cycle/stop_authority.hpp"
+#include "meridian/cycle/stop_margin.hpp"
 
 /// Stops: hold, abort and FaultStop, on the path and, where it cannot be evaluated, beside it.
 /// RT: cycle.
@@ -56,8 +56,7 @@ inline void lower_rate(Cycle& c, StopKind kind, double share) noexcept {
 }
 
 /// Lays out the stop in progress with `authority`, from `begin` on the path in force.
-inline void lay_out_stop(Cycle& c, const PathState& begin,
-                         const StopAuthority& authority) noexcept {
+inline void lay_out_stop(Cycle& c, const PathState& begin, const StopMargin& authority) noexcept {
   StopInProgress& stop = c.state.stop;
   stop.law = StopLaw(begin, authority);
   stop.speed_begin = begin.ds;
@@ -89,7 +88,7 @@ inline void lay_out_stop(Cycle& c, const PathState& begin,
 /// brakes for, which rounding may make behind it, or beyond: the brake is no longer way to rest
 /// then.
 [[nodiscard]] inline bool passes_block_end(Cycle& c, const PathState& begin,
-                                           const StopAuthority& authority) noexcept {
+                                           const StopMargin& authority) noexcept {
   if (!c.state.single_block.is_braking || !(authority.jerk > 0)) return false;
   return StopLaw(begin, authority).distance() > way_to_block_end(c) - kSameEnd_mm;
 }
@@ -103,7 +102,7 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   const double rate = stop.is_active && stop.speed_begin > 0
                           ? stop.rate_begin * c.state.on_path.ds / stop.speed_begin
                           : c.state.rate.rate();
-  StopAuthority authority;
+  StopMargin authority;
   PathState begin{c.state.on_path.s, 0, 0, 0};
   if (is_on_move(c)) {
     const TimePiece& piece = *c.reader.piece();
@@ -133,9 +132,9 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
 /// Lessens `authority` so that the drives of a stage stop inside their FaultStop limits too, the
 /// joints running along `direction` from `joints`: where the curvature of the stage alone takes
 /// most of a limit, a quarter of it.
-[[nodiscard, gnu::noinline]] inline StopAuthority authority_beside_stage(
+[[nodiscard, gnu::noinline]] inline StopMargin authority_beside_stage(
     const MachineModel& machine, const JointVector& joints, const JointVector& direction,
-    StopAuthority authority) noexcept {
+    StopMargin authority) noexcept {
   Joints<Jet<3>> moving;
   for (std::size_t i = 0; i < moving.size(); ++i) {
     moving[i] = Jet<3>::with_derivative(joints[i], direction[i]);
@@ -163,7 +162,7 @@ inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
   stop = {};
   stop.is_active = stop.is_off_path = true;
   stop.begin = joints;
-  StopAuthority authority{1e9, 1e12};
+  StopMargin authority{1e9, 1e12};
   bool is_moving = false;
   for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
     const double speed = std::abs(velocity[i]);
@@ -224,7 +223,7 @@ inline void end_stop_here(Cycle& c) noexcept {
 [[nodiscard]] inline bool slow_down_one_period(Cycle& c) noexcept {
   const SingleBlock& single = c.state.single_block;
   c.state.piece_time += c.state.rate.advance(c.dt);
-  for (int n = 0; n < kMostPieces; ++n) {
+  for (int n = 0; n < kMaxPieces; ++n) {
     const TimePiece& piece = *c.reader.piece();
     const bool is_last = single.is_braking && single.pieces == 0;
     if (is_last) c.state.piece_time = std::min(c.state.piece_time, single.time);
@@ -241,13 +240,13 @@ inline void end_stop_here(Cycle& c) noexcept {
 /// Whether a FaultStop's law with `authority` may begin here. Its rate falls faster than authority
 /// reckons with: the deceleration must be one that the law has anyway, on the way down from a speed
 /// that has the same authority.
-[[nodiscard]] inline bool is_reckoned_with(Cycle& c, const StopAuthority& authority) noexcept {
+[[nodiscard]] inline bool is_reckoned_with(Cycle& c, const StopMargin& authority) noexcept {
   const PathState& here = c.state.on_path;
   if (here.dds >= 0) return true;
   const TimePiece& piece = *c.reader.piece();
   const double top = here.ds + 0.5 * here.dds * here.dds / authority.jerk;
   if (-here.dds > authority.accel || top > state_at(piece, c.state.piece_time).ds) return false;
-  const StopAuthority same = authority_of(piece, StopKind::kFault, {here.s, top, here.dds, 0});
+  const StopMargin same = authority_of(piece, StopKind::kFault, {here.s, top, here.dds, 0});
   return same.accel == authority.accel && same.jerk == authority.jerk;
 }
 
@@ -257,7 +256,7 @@ inline void leave_plan(Cycle& c) noexcept {
   const bool is_beside = stop.time < stop.deviation_time;
   if (!is_on_move(c) || is_beside || !(c.state.on_path.ds > 0)) return;
   const StopKind kind = stop.is_fault ? StopKind::kFault : StopKind::kHold;
-  const StopAuthority authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
+  const StopMargin authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
   if (!(authority.jerk > 0)) return;
   if (stop.is_fault && !is_reckoned_with(c, authority)) return;
   if (!stop.is_fault && passes_block_end(c, c.state.on_path, authority)) return;

@@ -32,10 +32,10 @@ namespace meridian {
 }
 
 /// Tells an alarm, once until the next reset.
-inline void tell_alarm(Cycle& c, Alarm alarm, int joint, double value) noexcept {
+inline void report_alarm(Cycle& c, Alarm alarm, int joint, double value) noexcept {
   const std::uint32_t bit = 1U << static_cast<unsigned>(alarm);
-  if ((c.state.alarms_told & bit) != 0) return;
-  c.state.alarms_told |= bit;
+  if ((c.state.alarms_reported & bit) != 0) return;
+  c.state.alarms_reported |= bit;
   tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm), static_cast<std::uint64_t>(joint),
        value);
 }
@@ -43,7 +43,7 @@ inline void tell_alarm(Cycle& c, Alarm alarm, int joint, double value) noexcept 
 /// Tells an alarm and goes to FaultStop on the path, or with drives that are homing told to stop;
 /// one that is going on goes on.
 inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexcept {
-  tell_alarm(c, alarm, joint, value);
+  report_alarm(c, alarm, joint, value);
   if (c.state.state == State::kFaultStop) return;
   c.state.alarm = alarm;
   if (c.state.jogging.is_active) {
@@ -119,7 +119,7 @@ inline void count_unheard(Cycle& c) noexcept {
 inline constexpr int kHearingSlack = 4;
 
 /// Whether drives that report have not taken a setpoint for longer than drives that hear them could
-/// have been without one: nobody knows where they were to be, and no following error is judged.
+/// have been without one: nobody knows where they were to be, and no following error is checked.
 [[nodiscard]] inline bool is_unheard(const Cycle& c) noexcept {
   return c.dt * static_cast<double>(static_cast<std::int64_t>(c.state.unheard) -
                                     (c.machine.bridge_cycles + kHearingSlack)) >
@@ -143,7 +143,7 @@ inline constexpr int kHearingSlack = 4;
 }
 
 /// Looks at drives and feedback while they are enabled.
-inline void judge_drives(Cycle& c) noexcept {
+inline void check_drives(Cycle& c) noexcept {
   const Feedback& f = c.drives;
   const std::uint32_t all = all_joints(c.machine);
   const std::uint32_t are_on = c.in.feedback.enabled_mask & all;
@@ -322,7 +322,7 @@ inline void supervise(Cycle& c) noexcept {
     }
     c.periods = 1;
   }
-  judge_drives(c);
+  check_drives(c);
 }
 
 }  // namespace meridian

@@ -37,11 +37,11 @@ inline constexpr std::array<Octant, 8> kOctants{
 /// tests/unit/geometry/atan2_test.cpp.
 [[nodiscard, gnu::always_inline]] inline double atan2(double y, double x) noexcept {
   constexpr double kTanEighth = 0x1.a827999fcef32p-2;  // tan(π/8)
-  constexpr double kLeast = 1e-290, kMost = 1e290;     // beyond: the library's
+  constexpr double kMin = 1e-290, kMax = 1e290;        // beyond: the library's
   const double ax = std::abs(x), ay = std::abs(y);
   const bool is_steep = ay > ax;
   const double small = is_steep ? ax : ay, large = is_steep ? ay : ax;
-  if (!(large > kLeast && large < kMost && small < kMost)) return std::atan2(y, x);
+  if (!(large > kMin && large < kMax && small < kMax)) return std::atan2(y, x);
   const bool is_wide = small > kTanEighth * large;
   const double n = is_wide ? small - large : small;
   const double d = is_wide ? small + large : large;

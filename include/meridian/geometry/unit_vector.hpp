@@ -15,7 +15,7 @@ class UnitVector3 {
   UnitVector3() noexcept : vector_(0, 0, 1) {}
 
   /// Returns `vector` over its length, or nothing where a component is not finite or the length is
-  /// farther than `tolerance` from 1. The judge of a peer's tool axis uses 1e-3.
+  /// farther than `tolerance` from 1. The check of a peer's tool axis uses 1e-3.
   /// Proof: tests/unit/geometry/unit_vector_test.cpp.
   [[nodiscard]] static std::optional<UnitVector3> near_unit(const Vector3& vector,
                                                             double tolerance = 1e-3) noexcept {

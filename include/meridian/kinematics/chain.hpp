@@ -85,7 +85,7 @@ namespace chain {
 inline constexpr double kReachMargin_rad = 1e-12;
 
 /// Volume of the linear directions below which they do not span space.
-inline constexpr double kLeastVolume = 1e-9;
+inline constexpr double kMinVolume = 1e-9;
 /// Below this one, Cramer's rule would cost the tip digits by itself.
 inline constexpr double kRefinedVolume = 0.1;
 
@@ -251,7 +251,7 @@ template <class S>
   const std::array<Vec3<S>, 3> d{column(k, 0, a, b), column(k, 1, a, b), column(k, 2, a, b)};
   const std::array<Vec3<S>, 3> dual{cross(d[1], d[2]), cross(d[2], d[0]), cross(d[0], d[1])};
   const S volume = scalar_product(d[0], dual[0]);
-  if (!(std::abs(value_of(volume)) > kLeastVolume)) return false;
+  if (!(std::abs(value_of(volume)) > kMinVolume)) return false;
   const S per_volume = 1.0 / volume;
   for (int i = 0; i < 3; ++i) q[k.linear[i].joint] = scalar_product(dual[i], way) * per_volume;
   if (std::abs(value_of(volume)) < kRefinedVolume) {
@@ -318,7 +318,7 @@ template <class S>
 
 /// Least and largest angle between the tool axis and rotary axis a, eq. 4.4.
 struct Reach {
-  double least_rad, largest_rad;
+  double min_rad, largest_rad;
 };
 [[nodiscard]] Reach reach(const ChainKinematics& k) noexcept;
 

@@ -23,12 +23,12 @@
 /// allocates or throws. Units: mm, rad. Source: docs/kinematics.md.
 namespace meridian {
 
-/// Nearer to the pole than this the free joint has no direction of its own and is held.
+/// Nearer to the pole than this the redundant joint has no direction of its own and is held.
 inline constexpr double kPoleHold_rad = 1e-9;
 
 enum class SolveStatus : std::uint8_t {
-  kOk,          ///< joints give back tip and axis
-  kAtPole,      ///< inside kPoleHold_rad of the pole: free joint held, tip exact, axis within 1e-9
+  kOk,      ///< joints give back tip and axis
+  kAtPole,  ///< inside kPoleHold_rad of the pole: redundant joint held, tip exact, axis within 1e-9
   kUnreachable  ///< no such joints, or the pose is not finite: do not use `q`
 };
 
@@ -88,17 +88,17 @@ template <class S>
 
 /// Index of the rotary joint that the pole leaves free; -1 where the machine has no pole of the
 /// tool axis (robots are singular by where the arm stands, not by where the tool points).
-[[nodiscard]] inline int free_joint(const MachineModel& model) noexcept {
+[[nodiscard]] inline int redundant_joint(const MachineModel& model) noexcept {
   if (model.family == MachineFamily::kLai) return lai::kTheta1;
   const bool has_pole = model.family == MachineFamily::kChain &&
                         (model.chain.has_pole || model.chain.has_opposite_pole);
   return has_pole ? model.chain.a.joint : -1;
 }
 
-/// Returns the direction of the pole in W, unit: the tool axis along the free joint's own axis. Of
-/// a machine with two opposite poles, either. Zero where it has none.
+/// Returns the direction of the pole in W, unit: the tool axis along the redundant joint's own
+/// axis. Of a machine with two opposite poles, either. Zero where it has none.
 [[nodiscard]] inline Vector3 pole_direction(const MachineModel& model) noexcept {
-  if (free_joint(model) < 0) return Vector3::Zero();
+  if (redundant_joint(model) < 0) return Vector3::Zero();
   Vector3 pole = Vector3::UnitZ();
   if (model.family == MachineFamily::kChain) {
     pole = model.chain.has_pole ? model.chain.a.axis : Vector3(-model.chain.a.axis);
@@ -213,7 +213,8 @@ template <class S>
 
 }  // namespace detail
 
-/// Returns the joints that put the tool at `pose` with the free joint (see free_joint) at `free`.
+/// Returns the joints that put the tool at `pose` with the redundant joint (see redundant_joint) at
+/// `free`.
 ///
 /// The tip is exact for any value; the axis is the nearest one that the machine has with its free
 /// joint there (docs/kinematics.md, eq. 2.6). Pole turns and eased passages use it. Status: kOk or
@@ -244,10 +245,10 @@ template <class S>
 ///
 /// It follows: neighbouring poses of a path give neighbouring joints, so a rotary joint that leaves
 /// travel shows there (first_joint_outside_travel) and never jumps a whole turn. Who starts a path
-/// afresh calls wind_into_travel() on the result. Inside kPoleHold_rad of the pole the free joint
-/// is held at the value that `reference` has, the tilt takes the sign that fits it whatever
+/// afresh calls wind_into_travel() on the result. Inside kPoleHold_rad of the pole the redundant
+/// joint is held at the value that `reference` has, the tilt takes the sign that fits it whatever
 /// `branch` is, and the status is kAtPole. `branch` outside its range counts as 1. Travel is not
-/// judged here. Frame: W. RT: cycle. Proof: tests/golden, tests/property/kinematics.
+/// checked here. Frame: W. RT: cycle. Proof: tests/golden, tests/property/kinematics.
 template <class S>
 [[nodiscard]] inline Solution<S> solve(const MachineModel& model, double tool_length_mm,
                                        const Pose<S>& pose, int branch,
@@ -274,10 +275,10 @@ template <class S>
   return model.family == MachineFamily::kRobot && model.robot.has_spherical_wrist;
 }
 
-/// Which joint solve_driven() drives: the free joint, the yaw of a robot or the roll of a 6R one;
-/// -1: none.
+/// Which joint solve_driven() drives: the redundant joint, the yaw of a robot or the roll of a 6R
+/// one; -1: none.
 [[nodiscard]] inline int driven_joint(const MachineModel& model, int branch) noexcept {
-  if (model.family != MachineFamily::kRobot) return free_joint(model);
+  if (model.family != MachineFamily::kRobot) return redundant_joint(model);
   if ((branch & robot::kYawDriven) != 0) return robot::kYaw;
   return model.robot.has_spherical_wrist ? static_cast<int>(robot::kRoll) : -1;
 }

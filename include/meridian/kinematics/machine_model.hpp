@@ -42,17 +42,19 @@ enum class MachineFamily : std::uint8_t {
 };
 
 /// What the planner does beside the pole of the free rotary joint. Where the azimuth differs on
-/// leaving the pole itself, the free joint turns at rest, tip and axis fixed, whatever the policy.
+/// leaving the pole itself, the redundant joint turns at rest, tip and axis fixed, whatever the
+/// policy.
 enum class PolePolicy : std::uint8_t {
-  kEase,  ///< the free joint may take a shorter way that moves the axis inside its tolerance
-  kExact  ///< the joints follow the path, which slows down as the free joint needs it
+  kEase,  ///< the redundant joint may take a shorter way that moves the axis inside its tolerance
+  kExact  ///< the joints follow the path, which slows down as the redundant joint needs it
 };
 
-/// What the planner does where the free joint would leave its travel within the program and tip and
-/// axis do not rest on the pole, where it turns in place whatever the policy.
+/// What the planner does where the redundant joint would leave its travel within the program and
+/// tip and axis do not rest on the pole, where it turns in place whatever the policy.
 enum class UnwindPolicy : std::uint8_t {
   kRefuse,  ///< the block is refused
-  kRetract  ///< rest, off the part along the tool axis, whole turns of the free joint, back, on
+  kRetract  ///< rest, off the part along the tool axis, whole turns of the redundant joint, back,
+            ///< on
 };
 
 /// How the cuts of a program join.
@@ -63,11 +65,11 @@ enum class Transition : std::uint8_t {
 
 /// Least tolerances that smooth runs are planned for: every edge refuses less where a run is
 /// smooth.
-inline constexpr double kLeastTipTolerance_mm = 1e-3;
-inline constexpr double kLeastAxisTolerance_rad = 1e-4;
+inline constexpr double kMinTipTolerance_mm = 1e-3;
+inline constexpr double kMinAxisTolerance_rad = 1e-4;
 /// Largest that may be asked for, 10 mm and 10 degrees: every edge refuses more.
-inline constexpr double kMostTipTolerance_mm = 10;
-inline constexpr double kMostAxisTolerance_rad = 0.17453292519943295;
+inline constexpr double kMaxTipTolerance_mm = 10;
+inline constexpr double kMaxAxisTolerance_rad = 0.17453292519943295;
 
 /// Deviation that smoothing and pole easing may use together, measured from the programmed path.
 struct Tolerances {
@@ -81,7 +83,7 @@ struct Tolerances {
   }
 };
 
-/// Farther from the pole than this the free joint is never eased.
+/// Farther from the pole than this the redundant joint is never eased.
 inline constexpr double kPoleReach_rad = 0.4;
 
 /// Everything that is known about a machine before it moves: built and checked once by
@@ -118,7 +120,7 @@ struct MachineModel {
   /// 0, s. Every plan keeps room in the joints' limits for it; the longer, the less.
   double override_ramp_s = 1.0;
   /// Highest feed override, at least 1. Above 1 later motion is planned for a higher feed.
-  double most_feed_override = 1.0;
+  double max_feed_override = 1.0;
   /// The chain's directions and points are measured: what is a little off is meant.
   bool is_measured = false;
 };

@@ -44,7 +44,7 @@ struct FrameOrder {
 enum class FrameFault : std::uint8_t {
   kNone,
   kWord,     ///< no such word
-  kNumber,   ///< `kSet`: 1 to WorkFrames::kMost
+  kNumber,   ///< `kSet`: 1 to WorkFrames::kMax
   kValue,    ///< not finite, beyond 1e5 mm or 360 degrees
   kNotSet,   ///< no frame stands under this number
   kIsActive  ///< it is in force: select another one first
@@ -55,8 +55,8 @@ enum class FrameFault : std::uint8_t {
 /// Proof: tests/unit/kinematics/work_frame_test.cpp.
 class WorkFrames {
  public:
-  static constexpr int kMost = 54;
-  static constexpr double kMost_mm = 1e5, kMost_deg = 360;
+  static constexpr int kMax = 54;
+  static constexpr double kMax_mm = 1e5, kMax_deg = 360;
 
   /// The rows by their numbers.
   [[nodiscard]] std::span<const WorkFrame> rows() const noexcept { return {rows_.data(), count_}; }
@@ -104,8 +104,8 @@ class WorkFrames {
   }
 
   [[nodiscard]] FrameFault put(const WorkFrame& frame) noexcept {
-    if (frame.number < 1 || frame.number > kMost) return FrameFault::kNumber;
-    if (!is_within(frame.origin_mm, kMost_mm) || !is_within(frame.rotation_deg, kMost_deg)) {
+    if (frame.number < 1 || frame.number > kMax) return FrameFault::kNumber;
+    if (!is_within(frame.origin_mm, kMax_mm) || !is_within(frame.rotation_deg, kMax_deg)) {
       return FrameFault::kValue;
     }
     WorkFrame* const at = std::find_if(
@@ -119,7 +119,7 @@ class WorkFrames {
     return FrameFault::kNone;
   }
 
-  std::array<WorkFrame, kMost> rows_{};
+  std::array<WorkFrame, kMax> rows_{};
   std::size_t count_ = 0;
   int active_ = 0;
 };

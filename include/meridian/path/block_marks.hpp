@@ -14,15 +14,15 @@ struct BlockMark {
   std::uint32_t line = 0;   ///< its source line
 };
 
-/// The ends of blocks on a path piece, in order. Where there are more than kMost the last one moves
+/// The ends of blocks on a path piece, in order. Where there are more than kMax the last one moves
 /// on: the blocks from there on count as one. Trivially copyable, fixed size.
 struct BlockMarks {
-  static constexpr std::uint32_t kMost = 16;
+  static constexpr std::uint32_t kMax = 16;
   std::uint32_t count = 0;
-  std::array<BlockMark, kMost> at{};
+  std::array<BlockMark, kMax> at{};
 
   void add(const BlockMark& mark) noexcept {
-    if (count < kMost) ++count;
+    if (count < kMax) ++count;
     at[count - 1] = mark;
   }
 };

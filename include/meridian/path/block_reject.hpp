@@ -6,8 +6,8 @@
 
 namespace meridian {
 
-/// Why a block cannot be run: the same words from the judge of single blocks at the intake and from
-/// the planner, who judges the joint path between them.
+/// Why a block cannot be run: the same words from the check of single blocks at the intake and from
+/// the planner, who checks the joint path between them.
 enum class RejectCode : std::uint8_t {
   kNone,
   kNotFinite,      ///< a number is NaN or infinite; `value`: its place in the block, see the text

@@ -26,7 +26,7 @@ namespace meridian {
 /// Where an arc block starts that ends on its tip: for a program that begins with an arc.
 [[nodiscard]] Vector3 find_arc_begin(const ClBlock& block) noexcept;
 
-/// A turn of the free joint at `pose` on the pole. Its length is 50 mm per rad.
+/// A turn of the redundant joint at `pose` on the pole. Its length is 50 mm per rad.
 [[nodiscard]] PathPiece make_turn(const ToolPose& pose, double free_begin,
                                   double free_end) noexcept;
 

@@ -25,7 +25,7 @@ enum class PathKind : std::uint8_t {
 /// (mm), d = 3..5 O (the tool axis is O/|O|).
 using PoseQuartic = std::array<std::array<double, 5>, 6>;
 
-/// Values of a quintic in Bernstein form: of the free joint over a kSpline piece, rad.
+/// Values of a quintic in Bernstein form: of the redundant joint over a kSpline piece, rad.
 using FreeQuintic = std::array<double, 6>;
 
 /// What the operator sees the machine do on a piece; the `kind` column of a recording.
@@ -34,7 +34,7 @@ enum class MotionKind : std::uint8_t {
   kCut,
   kRapid,
   kPoleTurn,
-  kUnwind  ///< off the part, whole turns of the free joint, and back to the same place
+  kUnwind  ///< off the part, whole turns of the redundant joint, and back to the same place
 };
 
 /// A stretch of path as a function of the path length s in [0, length]: where, not when.
@@ -75,7 +75,7 @@ struct PathPiece {
   double azimuth_from = 0;  ///< atan2(o sin, cos) at azimuth_begin
   PoseQuartic spline{};  ///< kSpline: quartics in s; s is the parameter u of the spline, which is
                          ///< nearly, not exactly, the length named above
-  /// kSpline where `is_free_driven`: the free joint over [0, length].
+  /// kSpline where `is_free_driven`: the redundant joint over [0, length].
   FreeQuintic free_quintic{};
   JointVector
       joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve

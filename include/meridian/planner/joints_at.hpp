@@ -13,9 +13,9 @@ namespace meridian {
 /// Returns the joints of `piece` at path length `s`, rotary joints in the winding nearest to
 /// `reference`: the joints at the last evaluated place of the path, joints_begin for the first one.
 ///
-/// kTurn pieces and pieces with a driven free joint take it from the piece: `reference` matters for
-/// their tilt only. Status kUnreachable means: do not use the joints. Units: mm, rad. RT: cycle.
-/// Proof: tests/unit/planner/joints_at_test.cpp.
+/// kTurn pieces and pieces with a driven redundant joint take it from the piece: `reference`
+/// matters for their tilt only. Status kUnreachable means: do not use the joints. Units: mm, rad.
+/// RT: cycle. Proof: tests/unit/planner/joints_at_test.cpp.
 template <class S>
 [[nodiscard]] inline Solution<S> joints_at(const MachineModel& model, const PathPiece& piece,
                                            const S& s, const JointVector& reference) noexcept {

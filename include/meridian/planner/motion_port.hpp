@@ -161,12 +161,12 @@ class MotionWriter {
 /// * A tail that is kept (keep_tail()) is run whatever is there when the cycle comes to it.
 /// * Pieces of another epoch than the one set are dropped.
 ///
-/// RT: cycle; bounded by kMostDrops per call. Proof: tests/unit/planner/motion_port_test.cpp.
+/// RT: cycle; bounded by kMaxDrops per call. Proof: tests/unit/planner/motion_port_test.cpp.
 class MotionReader {
  public:
   /// A call drops at most this many pieces and goes on at the next call: an emptied queue never
   /// costs a cycle its deadline.
-  static constexpr int kMostDrops = 128;
+  static constexpr int kMaxDrops = 128;
 
   explicit MotionReader(MotionPort& port) noexcept : port_(port) {}
 
@@ -185,11 +185,11 @@ class MotionReader {
       piece_ = nullptr;
       path_ = nullptr;
     }
-    for (int drops = 0; drops < kMostDrops;) {
+    for (int drops = 0; drops < kMaxDrops;) {
       const TimePiece* next = port_.times.peek(0);
       if (next == nullptr) return nullptr;
       if (const std::size_t skipped = count_skipped(*next); skipped > 0) {
-        const auto now = std::min<std::size_t>(skipped, kMostDrops - drops);
+        const auto now = std::min<std::size_t>(skipped, kMaxDrops - drops);
         port_.times.drop(now);
         drops += static_cast<int>(now);
         continue;
@@ -275,7 +275,7 @@ class MotionReader {
 
   /// Brings the path that `next` refers to to the front of its ring.
   [[nodiscard]] bool find_path(const TimePiece& next, int& drops) noexcept {
-    for (; drops < kMostDrops; ++drops) {
+    for (; drops < kMaxDrops; ++drops) {
       const PathPiece* path = port_.paths.peek(0);
       if (path == nullptr) return false;
       if (path->epoch == next.epoch && path->index == next.path_index) {

@@ -8,8 +8,9 @@ namespace meridian {
 
 /// Why the tool axis was moved off the programmed one beside the pole.
 enum class EaseReason : std::uint8_t {
-  kThrough,  ///< straight through the pole, out on the other branch: the free joint hardly turns
-  kBeside,   ///< past it on the same branch, the free joint on a shorter way
+  kThrough,  ///< straight through the pole, out on the other branch: the redundant joint hardly
+             ///< turns
+  kBeside,   ///< past it on the same branch, the redundant joint on a shorter way
   kOnPole    ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
 };
 

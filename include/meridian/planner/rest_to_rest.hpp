@@ -18,7 +18,7 @@
 
 namespace meridian {
 
-class PoleForesight;
+class PoleLookAhead;
 
 enum class PlanStatus : std::uint8_t {
   kOk,      ///< published (nothing, where the block does not move)
@@ -34,20 +34,20 @@ struct PlanResult {
 };
 
 /// Within this distance of the pole the programmed axis is eased onto the pole: nearer, the turn of
-/// the free joint would be made of rounding. 0.00046 deg.
+/// the redundant joint would be made of rounding. 0.00046 deg.
 inline constexpr double kPoleEase_rad = 8e-6;
 
 /// The plain planner: every block from rest to rest, tip on its line or arc, axis on its great
 /// circle, every joint inside its limits at every override, feed never exceeded.
 ///
-/// Where the free joint would leave its travel on the way and the machine's file says how, it is
-/// turned back by whole turns ahead of the block, off the part (PlanResult::unwinding).
+/// Where the redundant joint would leave its travel on the way and the machine's file says how, it
+/// is turned back by whole turns ahead of the block, off the part (PlanResult::unwinding).
 ///
 /// One window per block, without a tail: it ends at rest. The joints of the whole way between two
-/// blocks are judged before anything of it is published. What a block becomes depends on the blocks
-/// before it and on begin() alone. plan() allocates nothing, throws nothing and needs no clock.
-/// Method and formulas: docs/motion.md. Context: planner thread.
-/// Proof: tests/unit/planner, tests/property/planner.
+/// blocks are checked before anything of it is published. What a block becomes depends on the
+/// blocks before it and on begin() alone. plan() allocates nothing, throws nothing and needs no
+/// clock. Method and formulas: docs/motion.md. Context: planner thread. Proof: tests/unit/planner,
+/// tests/property/planner.
 class RestToRestPlanner {
  public:
   explicit RestToRestPlanner(const MachineModel& model, ToolTable tools = {});
@@ -82,12 +82,12 @@ class RestToRestPlanner {
 
   /// Who tells how far ways behind a block that ends off the pole carry; nullptr: look_at() does.
   /// Where it waits for blocks, plan() gives kNoRoom and needs_ahead() is true.
-  void ask(PoleForesight* foresight) noexcept;
+  void ask(PoleLookAhead* foresight) noexcept;
   [[nodiscard]] bool needs_ahead() const noexcept;
 
-  /// Where a block begins nearer to the pole than `rad` and the free joint would leave its travel
-  /// on it, the joint is turned at rest to another branch or winding that carries it, with the axis
-  /// inside `rad` (PlanResult::axis_deviation_rad). 0, which begin() sets: never.
+  /// Where a block begins nearer to the pole than `rad` and the redundant joint would leave its
+  /// travel on it, the joint is turned at rest to another branch or winding that carries it, with
+  /// the axis inside `rad` (PlanResult::axis_deviation_rad). 0, which begin() sets: never.
   void set_free_cone(double rad) noexcept;
 
   /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's
@@ -116,9 +116,9 @@ class RestToRestPlanner {
   /// junction() would tell. Only where no block waits for room.
   void continue_at(const Junction& junction) noexcept;
 
-  /// Turns the free joint back off the part, where the tool rests, to the best winding that `trial`
-  /// lets pass: in `block` it would come to `beyond`, outside travel. Refused where none does, or
-  /// where the tool cannot leave the part.
+  /// Turns the redundant joint back off the part, where the tool rests, to the best winding that
+  /// `trial` lets pass: in `block` it would come to `beyond`, outside travel. Refused where none
+  /// does, or where the tool cannot leave the part.
   [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
                                   MotionWriter& writer) noexcept;
 

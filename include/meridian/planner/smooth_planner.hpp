@@ -21,7 +21,7 @@
 namespace meridian {
 
 /// What a program may ask for instead of what the machine's file says. Tolerances are at least
-/// kLeastTipTolerance_mm and kLeastAxisTolerance_rad; less, which no edge lets into a
+/// kMinTipTolerance_mm and kMinAxisTolerance_rad; less, which no edge lets into a
 /// smooth run, counts as these.
 struct SmoothSettings {
   std::optional<Transition> transition;
@@ -34,7 +34,7 @@ struct SmoothSettings {
 /// The planner that runs on through blocks: cuts become a band spline, the rolling feed moves along
 /// it in windows that each end in a stop of their own. Everything else is left to the plain planner
 /// and done at rest: approach, rapids, dwells, actions, stops, blocks that lead off the pole from
-/// rest. Through and past the pole, and lingering there, the free joint may ease the axis
+/// rest. Through and past the pole, and lingering there, the redundant joint may ease the axis
 /// inside its tolerance (docs/motion.md, section 10).
 ///
 /// A cut that was taken (kOk) is published when enough of what follows it is known: up to 172 mm
@@ -43,15 +43,15 @@ struct SmoothSettings {
 /// then goes on from where it came to rest. Fixed store, no clock.
 ///
 /// What is taken up while the operator asks for more than 100 % (MotionWriter::feed_override()) is
-/// planned for that much of the programmed feed, up to MachineModel::most_feed_override; joints and
+/// planned for that much of the programmed feed, up to MachineModel::max_feed_override; joints and
 /// the machine's highest feed bound it as always. take_feed_mark() tells from where on, and with
 /// replay_feed() the plan is the same again.
 ///
-/// A machine with a free joint: branch and winding at the begin of a program are those that carry
-/// farthest through the first kLookAhead blocks, which are therefore taken before anything is
+/// A machine with a redundant joint: branch and winding at the begin of a program are those that
+/// carry farthest through the first kLookAhead blocks, which are therefore taken before anything is
 /// published (fewer where the program ends, or look_no_further() is called). So are those behind
 /// every place beside the pole where cuts run on: where more than one way carries through what is
-/// there, as many blocks are taken before the place is planned. Where the free joint
+/// there, as many blocks are taken before the place is planned. Where the redundant joint
 /// runs out of travel all the same, the machine rests, in mid-block where cuts run on, and the
 /// joint is turned back off the part if the machine's file says how (docs/motion.md, section 11).
 ///

@@ -55,7 +55,7 @@ struct TimePiece {
   double stop_velocity = kAnyVelocity, fault_velocity = kAnyVelocity;
   /// For a machine that is slower than planned (override, resume). Where `slow_velocity` is set,
   /// slow_* hold as they stand up to it. Where `authority_velocity` is set, they hold next to rest,
-  /// the former up to that ṡ, and what lies between may be used: cycle/stop_authority.hpp.
+  /// the former up to that ṡ, and what lies between may be used: cycle/stop_margin.hpp.
   double slow_velocity = 0;
   double authority_velocity = 0;
   double slow_stop_accel = 0, slow_stop_jerk = 0;

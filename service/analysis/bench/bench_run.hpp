@@ -30,7 +30,7 @@ struct BenchResult {
   [[nodiscard]] bool is_in_order() const noexcept;
 };
 
-/// Runs path `name` on `model` as `meridian simulate` does, judges the recording as
+/// Runs path `name` on `model` as `meridian simulate` does, checks the recording as
 /// `meridian check` does, and certifies the plan where asked. The error is a message: no file can
 /// be written, or the machine refuses the path.
 [[nodiscard]] Expected<BenchResult, std::string> run_path(const std::string& name,

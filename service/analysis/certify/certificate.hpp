@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/analysis/certify/piece_judge.hpp"
+#include "service/analysis/certify/piece_check.hpp"
 
 namespace meridian::certify {
 
@@ -29,7 +29,7 @@ struct CertificateFinding {
 
 /// What was proved of a plan. Units: s, shares of limits.
 struct Certificate {
-  static constexpr std::size_t kMostFindings = 50;
+  static constexpr std::size_t kMaxFindings = 50;
 
   std::uint64_t pieces = 0;  ///< that move
   std::uint64_t refuted = 0, undecided = 0;
@@ -39,7 +39,7 @@ struct Certificate {
   std::array<PlacedShare, kQuantities> bound;  ///< no share is larger anywhere
   std::array<PlacedShare, kQuantities> attained;  ///< so much is used somewhere
   std::array<PlacedShare, 3> jump;                ///< of joins, by order of the difference
-  std::vector<CertificateFinding> findings;       ///< the first kMostFindings
+  std::vector<CertificateFinding> findings;       ///< the first kMaxFindings
   double computing_s = 0;                         ///< of this host
 
   [[nodiscard]] bool is_given() const noexcept {

@@ -9,7 +9,7 @@ Certifier::Certifier(const MachineModel& model)
     : model_(model), pieces_(model), committed_(model), tail_(model) {}
 
 void Certifier::find(CertificateFinding::Kind kind, const Share& share) {
-  if (certificate_.findings.size() == Certificate::kMostFindings) return;
+  if (certificate_.findings.size() == Certificate::kMaxFindings) return;
   place_.share = share;
   certificate_.findings.push_back({kind, place_});
 }
@@ -34,7 +34,7 @@ void Certifier::note(const PieceVerdict& verdict) {
   }
 }
 
-void Certifier::note(const JoinJudge::Verdict& verdict) {
+void Certifier::note(const JoinCheck::Verdict& verdict) {
   ++certificate_.joins;
   for (std::size_t n = 0; n < verdict.worst.size(); ++n) {
     place_.share = verdict.worst[n];
@@ -87,9 +87,9 @@ void Certifier::add(const TimePiece& piece, const PathPiece* path) {
 }
 
 void Certifier::add_motion(const TimePiece& piece, const PathPiece& path) {
-  const PieceVerdict verdict = pieces_.judge(piece, path);
+  const PieceVerdict verdict = pieces_.check(piece, path);
   note(verdict);
-  JoinJudge& joins = piece.is_tail ? tail_ : committed_;
+  JoinCheck& joins = piece.is_tail ? tail_ : committed_;
   note(joins.go_on(verdict, piece.duration, path.index == path_index_));
   path_index_ = path.index;
   (piece.is_tail ? certificate_.tails_s : certificate_.plan_s) += piece.duration;

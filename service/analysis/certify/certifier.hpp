@@ -3,8 +3,8 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/analysis/certify/certificate.hpp"
-#include "service/analysis/certify/join_judge.hpp"
-#include "service/analysis/certify/piece_judge.hpp"
+#include "service/analysis/certify/join_check.hpp"
+#include "service/analysis/certify/piece_check.hpp"
 
 namespace meridian::certify {
 
@@ -26,13 +26,13 @@ class Certifier {
   void begin_window(const TimePiece& piece);
   void add_motion(const TimePiece& piece, const PathPiece& path);
   void note(const PieceVerdict& verdict);
-  void note(const JoinJudge::Verdict& verdict);
+  void note(const JoinCheck::Verdict& verdict);
   void find(CertificateFinding::Kind kind, const Share& share);
 
   const MachineModel& model_;
-  PieceJudge pieces_;
-  JoinJudge committed_;  ///< along the plan without tails
-  JoinJudge tail_;       ///< along the tail of the window
+  PieceCheck pieces_;
+  JoinCheck committed_;  ///< along the plan without tails
+  JoinCheck tail_;       ///< along the tail of the window
   Certificate certificate_;
   PlacedShare place_;  ///< of the piece that is looked at
   std::uint16_t epoch_ = 0;

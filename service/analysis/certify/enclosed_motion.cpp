@@ -15,10 +15,10 @@ namespace {
 }
 
 /// Whether the tool axis is as near to the pole all over the stretch as the kinematics hold the
-/// free joint for: its solution there is that of the free joint at rest.
+/// redundant joint for: its solution there is that of the redundant joint at rest.
 [[nodiscard]] bool is_held(const MachineModel& model, const PathPiece& path, const Enclosure& s) {
   constexpr double kHold = 0.999 * kPoleHold_rad;  // what rounds to less is held
-  const int free = free_joint(model);
+  const int free = redundant_joint(model);
   if (free < 0) return false;
   const auto joint = static_cast<std::size_t>(free);
   if (path.joints_begin[joint] != path.joints_end[joint]) return false;  // held at another place
@@ -33,7 +33,7 @@ namespace {
   return upper(square) < kHold * kHold;
 }
 
-/// As joints_at(). A driven free joint is taken from its value at the begin of the piece on: a
+/// As joints_at(). A driven redundant joint is taken from its value at the begin of the piece on: a
 /// quintic of a few micrometres would lose the digits of its derivatives beside that value.
 [[nodiscard]] Solution<Enclosure> solve_on(const MachineModel& model, const PathPiece& path,
                                            const Enclosure& s, const JointVector& reference) {
@@ -59,9 +59,9 @@ EnclosedMotion enclose(const MachineModel& model, const PathPiece& path, const E
                        const JointVector& reference, bool wants_tip) {
   EnclosedMotion out;
   const Solution<Enclosure> at = solve_on(model, path, s, reference);
-  out.is_told = at.status == SolveStatus::kOk ||
-                (at.status == SolveStatus::kAtPole && is_held(model, path, s));
-  if (!out.is_told) return out;
+  out.is_reported = at.status == SolveStatus::kOk ||
+                    (at.status == SolveStatus::kAtPole && is_held(model, path, s));
+  if (!out.is_reported) return out;
   out.q = limited_of(model, at.q);
   if (!wants_tip) return out;
   const Vec3<Enclosure> tip = tip_of(model, path, s, at.q);

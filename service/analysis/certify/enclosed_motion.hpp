@@ -14,9 +14,9 @@ using Enclosure = Taylor<kOrder>;
 
 /// What has limits, as functions of time about an instant or all over a stretch.
 struct EnclosedMotion {
-  Limited<Enclosure> q;  ///< joints and drives; windings are those nearest to the piece's begin
-  Enclosure tip_square;  ///< tip speed squared, (mm/s)², one order less
-  bool is_told = false;  ///< false: out of reach, or a joint is held for want of a direction
+  Limited<Enclosure> q;      ///< joints and drives; windings are those nearest to the piece's begin
+  Enclosure tip_square;      ///< tip speed squared, (mm/s)², one order less
+  bool is_reported = false;  ///< false: out of reach, or a joint is held for want of a direction
 };
 
 /// From path length to what has limits, by the functions that the cycle calls (planner/joints_at).

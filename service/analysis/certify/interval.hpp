@@ -13,7 +13,7 @@ namespace meridian::certify {
 /// (Moore; here by midpoint and radius, Rump 1999). The midpoint is what double would give, so its
 /// error is half a unit in the last place of it; radii are sums of positive terms and are rounded
 /// up by a factor that covers 16 roundings. Where a function is not defined or not smooth on all of
-/// the operand, the result is everything: `rad` is infinite or not a number. So a bound is judged
+/// the operand, the result is everything: `rad` is infinite or not a number. So a bound is checked
 /// as `upper(x) <= most`, never as its contrary. Proof: tests/unit/certify/interval_test.cpp.
 struct Interval {
   double mid = 0, rad = 0;
@@ -32,7 +32,7 @@ inline constexpr double kUnderflow = 1e-300;
 /// Square roots and angles of points whose square is below this are not told: the kinematics hold a
 /// joint nearer than 1e-9 (rad, or mm) to where it has no direction of its own, which is a branch
 /// that a set must not reach over.
-inline constexpr double kLeastSquare = 1e-17;
+inline constexpr double kMinSquare = 1e-17;
 
 inline constexpr Interval kEverything{0, std::numeric_limits<double>::infinity()};
 
@@ -85,10 +85,10 @@ inline constexpr Interval kEverything{0, std::numeric_limits<double>::infinity()
   return a * inverse(b);
 }
 
-/// Everything where `a` reaches below kLeastSquare.
+/// Everything where `a` reaches below kMinSquare.
 [[nodiscard]] inline Interval sqrt(const Interval& a) noexcept {
   const double least = (a.mid - a.rad) * (2 - kRaised);
-  if (!(least > kLeastSquare)) return kEverything;
+  if (!(least > kMinSquare)) return kEverything;
   const double root = std::sqrt(a.mid);
   return rounded(root, a.rad / (root + std::sqrt(least)));
 }
@@ -105,11 +105,11 @@ struct IntervalSinCos {
 }
 
 /// The angle of the points (x, y), in one winding over all of them; everything where one is nearer
-/// to the origin than the root of kLeastSquare. Its gradient is no larger than 1/r.
+/// to the origin than the root of kMinSquare. Its gradient is no larger than 1/r.
 [[nodiscard]] inline Interval atan2(const Interval& y, const Interval& x) noexcept {
   const double near_x = least(x), near_y = least(y);
   const double square = (near_x * near_x + near_y * near_y) * (2 - kRaised);
-  if (!(square > kLeastSquare)) return kEverything;
+  if (!(square > kMinSquare)) return kEverything;
   const double angle = std::atan2(y.mid, x.mid);
   return rounded(
       angle, (largest(x) * y.rad + largest(y) * x.rad) / square + 4 * kRounding * std::abs(angle));

@@ -17,7 +17,7 @@ namespace meridian::certify {
 /// cycle's instructions are counted for. Midpoints and radii lie apart, for whole rows of them are
 /// added up at once. value_of() is the midpoint, by which the kinematics choose their branches:
 /// next to where one could be chosen otherwise on the stretch, sqrt and atan2 give everything
-/// (kLeastSquare). Proof: tests/unit/certify/taylor_test.cpp.
+/// (kMinSquare). Proof: tests/unit/certify/taylor_test.cpp.
 template <int N>
 struct Taylor {
   static_assert(N >= 1);

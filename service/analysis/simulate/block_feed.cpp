@@ -10,23 +10,23 @@ BlockFeed::BlockFeed(cl::ClReader& reader, const MachineModel& model, const Tool
                      MotionPort& port, bool has_action_peer, Explainer* explainer)
     : reader_(reader),
       model_(model),
-      judge_(model, stream::lengths_of(tools)),
+      check_(model, stream::lengths_of(tools)),
       actions_{.is_there = has_action_peer, .is_ignored = false},
       planner_(model, tools),
       writer_(port),
       explainer_(explainer) {
-  if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
+  if (model.max_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
 }
 
 void BlockFeed::begin(const JointVector& at_rest, std::uint16_t epoch,
                       const SmoothSettings& settings) {
-  judge_.begin(model_.tool_length_mm);
+  check_.begin(model_.tool_length_mm);
   planner_.begin(at_rest, model_.tool_length_mm, epoch, settings);
   writer_.forget_ahead();  // what was published has run or is void
   has_begun_ = true;
 }
 
-/// Reads and judges the next block into `block_`; false if there is none to plan.
+/// Reads and checks the next block into `block_`; false if there is none to plan.
 bool BlockFeed::take_block() {
   auto read = reader_.next();
   if (!read) {
@@ -35,7 +35,7 @@ bool BlockFeed::take_block() {
   }
   if (!*read) return false;
   const double programmed_feed = (*read)->feed;
-  const BlockReject verdict = judge_.judge(**read, actions_);
+  const BlockReject verdict = check_.check(**read, actions_);
   if (verdict.code != RejectCode::kNone) {
     refusal_ = stream::describe(verdict, model_);
     return false;
@@ -65,7 +65,7 @@ void BlockFeed::take_eases() {
   while (planner_.take_ease(ease)) {
     ++eases_.count;
     eases_.largest_rad = std::max(eases_.largest_rad, ease.deviation_rad);
-    if (eases_.first.size() < kMostEases) eases_.first.push_back(ease);
+    if (eases_.first.size() < kMaxEases) eases_.first.push_back(ease);
     if (explainer_ != nullptr) {
       explainer_->add_ease(ease.first_sequence, ease.last_sequence, ease.deviation_rad);
     }
@@ -73,7 +73,7 @@ void BlockFeed::take_eases() {
   Unwinding unwinding;
   while (planner_.take_unwinding(unwinding)) {
     ++unwinding_count_;
-    if (unwindings_.size() < kMostEases) unwindings_.push_back(unwinding);
+    if (unwindings_.size() < kMaxEases) unwindings_.push_back(unwinding);
   }
 }
 

@@ -11,11 +11,11 @@
 #include "meridian/planner/smooth_planner.hpp"
 #include "service/analysis/simulate/explainer.hpp"
 #include "service/programs/cl/cl_reader.hpp"
-#include "service/protocol/block_judge.hpp"
+#include "service/protocol/block_check.hpp"
 
 namespace meridian::simulate {
 
-/// Reader, judge and planner in one hand: what station, intake and planner thread do live, block by
+/// Reader, check and planner in one hand: what station, intake and planner thread do live, block by
 /// block in the same order, so that the plan is the same.
 class BlockFeed {
  public:
@@ -36,20 +36,20 @@ class BlockFeed {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
   /// Why the last block was refused, one sentence; empty where none was.
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
-  /// Stretches beside the pole on which the axis was moved: the first kMostEases, how many there
+  /// Stretches beside the pole on which the axis was moved: the first kMaxEases, how many there
   /// were, the farthest.
   struct Eases {
     std::vector<PoleEase> first;
     std::uint64_t count = 0;
     double largest_rad = 0;
   };
-  static constexpr std::size_t kMostEases = 100;
+  static constexpr std::size_t kMaxEases = 100;
   [[nodiscard]] const Eases& eases() const noexcept { return eases_; }
-  /// Unwindings so far, in order: the first kMostEases.
+  /// Unwindings so far, in order: the first kMaxEases.
   [[nodiscard]] const std::vector<Unwinding>& unwindings() const noexcept { return unwindings_; }
   [[nodiscard]] std::uint64_t unwinding_count() const noexcept { return unwinding_count_; }
   [[nodiscard]] std::uint64_t motion_blocks() const noexcept { return motion_blocks_; }
-  [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return judge_.feeds_limited(); }
+  [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return check_.feeds_limited(); }
 
  private:
   [[nodiscard]] bool take_block();
@@ -60,13 +60,13 @@ class BlockFeed {
 
   cl::ClReader& reader_;
   const MachineModel& model_;
-  stream::BlockJudge judge_;
+  stream::BlockCheck check_;
   stream::ActionPeer actions_;
   SmoothPlanner planner_;
   MotionWriter writer_;
   Explainer* explainer_;
   std::optional<ToolPose> pose_;  ///< end of the last motion block
-  std::optional<ClBlock> block_;  ///< judged, not planned yet
+  std::optional<ClBlock> block_;  ///< checked, not planned yet
   void take_eases();
 
   std::string refusal_;

@@ -198,8 +198,8 @@ void Explainer::give(Open& open, double time_s, const LimitView& view, double sp
                      double feed_mm_per_s, std::optional<Cause> cause) {
   const bool is_first = !(open.block.time_s > 0);
   open.block.way_mm += feed_mm_per_s * time_s;
-  open.block.least_mm_per_s =
-      is_first ? feed_mm_per_s : std::min(open.block.least_mm_per_s, feed_mm_per_s);
+  open.block.min_mm_per_s =
+      is_first ? feed_mm_per_s : std::min(open.block.min_mm_per_s, feed_mm_per_s);
   const double programmed = open.block.programmed_mm_per_s;
   const double share = open.share_per_s > 0 ? find_feed_share(open, speed)
                        : programmed > 0     ? feed_mm_per_s / programmed
@@ -233,7 +233,7 @@ void Explainer::account(Open& open, LimitId limit, std::optional<Cause> cause, d
     book(open, limit, *cause, time_s, lost_s);
     return;
   }
-  if (undecided_.size() == kMostUndecided) decide(Cause::kPath);
+  if (undecided_.size() == kMaxUndecided) decide(Cause::kPath);
   undecided_.push_back({open.block.sequence, limit, time_s, lost_s});
 }
 
@@ -286,7 +286,7 @@ void Explainer::add_to_stretch(const ExplainedBlock& block) {
     stretch_.first_line = block.line;
     stretch_.limit = limit;
     stretch_.cause = cause;
-    stretch_.least_mm_per_s = block.least_mm_per_s;
+    stretch_.min_mm_per_s = block.min_mm_per_s;
   }
   stretch_.last_line = block.line;
   ++stretch_.blocks;
@@ -294,7 +294,7 @@ void Explainer::add_to_stretch(const ExplainedBlock& block) {
   stretch_.lost_s += block.lost_s;
   stretch_.way_mm += block.way_mm;
   stretch_.programmed_mm_per_s = std::max(stretch_.programmed_mm_per_s, block.programmed_mm_per_s);
-  stretch_.least_mm_per_s = std::min(stretch_.least_mm_per_s, block.least_mm_per_s);
+  stretch_.min_mm_per_s = std::min(stretch_.min_mm_per_s, block.min_mm_per_s);
 }
 
 void Explainer::close_stretch() {
@@ -304,7 +304,7 @@ void Explainer::close_stretch() {
         worst.begin(), worst.end(),
         [this](const ExplainedStretch& other) { return stretch_.lost_s > other.lost_s; });
     worst.insert(place, stretch_);
-    if (worst.size() > Explanation::kMostStretches) worst.pop_back();
+    if (worst.size() > Explanation::kMaxStretches) worst.pop_back();
   }
   stretch_ = {};
 }

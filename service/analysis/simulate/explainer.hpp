@@ -28,10 +28,10 @@ struct ExplainedCycle {
 ///
 /// A cycle that passes several blocks is shared among them by the lengths passed; the sum over all
 /// blocks is the number of cycles. Memory: the blocks that are planned and not yet run, and the
-/// cycles of one braking stretch (at most kMostUndecided); it does not grow with the program.
+/// cycles of one braking stretch (at most kMaxUndecided); it does not grow with the program.
 class Explainer {
  public:
-  static constexpr std::size_t kMostUndecided = 4096;
+  static constexpr std::size_t kMaxUndecided = 4096;
 
   using TakeBlock = std::function<void(const ExplainedBlock&)>;
   using TakeCycle = std::function<void(const ExplainedCycle&)>;

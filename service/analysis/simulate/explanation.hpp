@@ -23,7 +23,7 @@ struct ExplainedBlock {
   double time_s = 0;               ///< taken
   double lost_s = 0;               ///< of it: more than the programmed feed takes; cuts alone
   double way_mm = 0;               ///< of the tip in that time
-  double least_mm_per_s = 0;       ///< slowest cycle; blocks shorter than one have their mean
+  double min_mm_per_s = 0;         ///< slowest cycle; blocks shorter than one have their mean
   double eased_rad = 0;            ///< beside the pole, largest
   std::array<float, kLimitIds> by_limit{};  ///< s of time at each limit
   std::array<float, kCauses> by_cause{};
@@ -44,7 +44,7 @@ struct ExplainedStretch {
   Cause cause = Cause::kPath;
   double time_s = 0, lost_s = 0, way_mm = 0;
   double programmed_mm_per_s = 0;  ///< largest
-  double least_mm_per_s = 0;
+  double min_mm_per_s = 0;
 };
 
 /// Where the time of a program went.
@@ -56,8 +56,8 @@ struct Explanation {
   double time_s = 0;
   double lost_s = 0;
   std::array<std::array<Share, kCauses>, kLimitIds> shares{};
-  std::vector<ExplainedStretch> worst;  ///< most lost first, at most kMostStretches
-  static constexpr std::size_t kMostStretches = 15;
+  std::vector<ExplainedStretch> worst;  ///< most lost first, at most kMaxStretches
+  static constexpr std::size_t kMaxStretches = 15;
 };
 
 /// Tables for a person: time by limit and cause, then the stretches that cost most.

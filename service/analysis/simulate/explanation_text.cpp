@@ -20,13 +20,13 @@ struct Row {
 };
 
 void append_shares(std::string& out, const Explanation& explanation, const MachineModel& model) {
-  constexpr double kLeastShare = 0.002;  // of the time: below it a row says nothing
+  constexpr double kMinShare = 0.002;  // of the time: below it a row says nothing
   std::vector<Row> rows;
   Row others{kNoLimit, Cause::kPath, {}};
   for (std::size_t limit = 0; limit < kLimitIds; ++limit) {
     for (std::size_t cause = 0; cause < kCauses; ++cause) {
       const Explanation::Share& share = explanation.shares[limit][cause];
-      if (share.time_s > kLeastShare * explanation.time_s) {
+      if (share.time_s > kMinShare * explanation.time_s) {
         rows.push_back({static_cast<LimitId>(limit), static_cast<Cause>(cause), share});
       } else {
         others.share.time_s += share.time_s;
@@ -90,7 +90,7 @@ std::string to_text(const Explanation& explanation, const MachineModel& model) {
            static_cast<Count>(stretch.blocks), stretch.lost_s, stretch.time_s,
            units::per_min_from_per_s(stretch.programmed_mm_per_s),
            units::per_min_from_per_s(stretch.way_mm / stretch.time_s),
-           units::per_min_from_per_s(stretch.least_mm_per_s), name_of(stretch.limit, model).c_str(),
+           units::per_min_from_per_s(stretch.min_mm_per_s), name_of(stretch.limit, model).c_str(),
            name_of(stretch.cause));
   }
   return out;
@@ -98,7 +98,7 @@ std::string to_text(const Explanation& explanation, const MachineModel& model) {
 
 std::string explained_header(const MachineModel& model) {
   std::string out =
-      "sequence,line,kind,length_mm,programmed_mm_per_min,mean_mm_per_min,least_mm_per_min,time_s,"
+      "sequence,line,kind,length_mm,programmed_mm_per_min,mean_mm_per_min,min_mm_per_min,time_s,"
       "lost_s,held_by,why,eased_deg";
   for (std::size_t id = 0; id < limit_count(model); ++id) {
     std::string name = name_of(static_cast<LimitId>(id), model);
@@ -117,7 +117,7 @@ std::string to_csv(const ExplainedBlock& block, const MachineModel& model) {
          block.line, name_of(block.kind), block.length_mm,
          units::per_min_from_per_s(block.programmed_mm_per_s),
          units::per_min_from_per_s(block.mean_mm_per_s()),
-         units::per_min_from_per_s(block.least_mm_per_s), block.time_s, block.lost_s);
+         units::per_min_from_per_s(block.min_mm_per_s), block.time_s, block.lost_s);
   out += name_of(block.main_limit(), model) + "," + name_of(block.main_cause());
   append(out, ",%.6f", units::deg_from_rad(block.eased_rad));
   const double whole = std::max(block.time_s, 1e-300);

@@ -45,7 +45,7 @@ void FeedPicture::merge_pairs() {
 
 void FeedPicture::add(const ExplainedCycle& cycle) {
   if (columns_.empty() || cycles_in_last_ == cycles_per_column_) {
-    if (columns_.size() == kMostColumns) merge_pairs();
+    if (columns_.size() == kMaxColumns) merge_pairs();
     columns_.emplace_back();
     cycles_in_last_ = 0;
   }

@@ -18,11 +18,9 @@ namespace meridian::simulate {
 /// not grow with the program.
 class FeedPicture {
  public:
-  static constexpr std::size_t kMostColumns = 1600;
+  static constexpr std::size_t kMaxColumns = 1600;
 
-  explicit FeedPicture(const MachineModel& model) : model_(model) {
-    columns_.reserve(kMostColumns);
-  }
+  explicit FeedPicture(const MachineModel& model) : model_(model) { columns_.reserve(kMaxColumns); }
 
   void add(const ExplainedCycle& cycle);
 

@@ -39,11 +39,11 @@ enum class Cause : std::uint8_t {
   kFeed,      ///< the feed itself: nothing is lost
   kPath,      ///< joints have that far to go on the way
   kBend,      ///< the path bends: a corner or a curve, here or where the motion brakes for it
-  kPole,      ///< the free joint turns beside the pole
+  kPole,      ///< the redundant joint turns beside the pole
   kRest,      ///< the motion sets off from a rest or comes to one
   kOverride,  ///< the operator: an override below what was planned, a hold, a resume
   kWaiting,   ///< at rest: dwell, action, stop, hold, or blocks that did not come
-  kUnwinding  ///< the free joint ran out of travel and is turned back off the part
+  kUnwinding  ///< the redundant joint ran out of travel and is turned back off the part
 };
 inline constexpr std::size_t kCauses = 8;
 [[nodiscard]] const char* name_of(Cause cause) noexcept;

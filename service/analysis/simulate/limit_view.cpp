@@ -88,7 +88,7 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
                      std::abs(parts.jerk_bend) / own.jerk});
   }
   const int joint = joint_of(view.limit);
-  const bool is_beside_pole = joint >= 0 && joint == free_joint(model_) &&
+  const bool is_beside_pole = joint >= 0 && joint == redundant_joint(model_) &&
                               path.kind != PathKind::kJoint &&
                               pole_distance(model_, pose_at(path, p.s).axis) < kPole_rad;
   if (view.limit == kFeedLimit) {

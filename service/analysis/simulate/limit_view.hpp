@@ -31,7 +31,7 @@ class LimitMap {
   static constexpr double kNearShare = 0.95;
   /// Accelerations and jerks count from this share on.
   static constexpr double kRampShare = 0.5;
-  /// Nearer to the pole than this a limit of the free joint counts as the pole's.
+  /// Nearer to the pole than this a limit of the redundant joint counts as the pole's.
   static constexpr double kPole_rad = 0.1;
 
   explicit LimitMap(const MachineModel& model);

@@ -22,8 +22,8 @@ struct MoveForecast {
 /// Simulates `move` from `joints`, which are at rest, in exact stop, with the tool in the spindle
 /// as `model` has it: as the service will do it. Refused are what the service refuses, and moves on
 /// whose way the tip would leave the straight line: where it has to be approached by another branch
-/// or winding, or the free joint is rewound. A move of the joints takes the tip where they lead it.
-/// Context: a tool's main thread. Proof: tests/unit/simulate/move_forecast_test.cpp.
+/// or winding, or the redundant joint is rewound. A move of the joints takes the tip where they
+/// lead it. Context: a tool's main thread. Proof: tests/unit/simulate/move_forecast_test.cpp.
 [[nodiscard]] MoveForecast forecast(const stream::StraightMove& move, const JointVector& joints,
                                     const MachineModel& model);
 

@@ -52,7 +52,7 @@ template <class Number>
   return out.append(text).append("' ").append(what);
 }
 
-constexpr double kMostPeriods = 1e9;
+constexpr double kMaxPeriods = 1e9;
 
 [[nodiscard]] bool is_of_loss(std::string_view word) {
   return word == record::kPeriodsBridgedWord || word == record::kPeriodsLostWord;
@@ -64,7 +64,7 @@ struct EventRow {
 };
 
 /// What is wrong with the row, empty if nothing is.
-[[nodiscard]] std::string read_row(std::string_view text, double most_feed, EventRow& row) {
+[[nodiscard]] std::string read_row(std::string_view text, double max_feed, EventRow& row) {
   const std::string_view cycle = cut(text, ',');
   row.word = cut(text, ',');
   const std::string_view argument = cut(text, ',');
@@ -79,7 +79,7 @@ struct EventRow {
   }
   if (!text.empty()) return "there is more than cycle, verb and argument";
   if (is_of_host) {
-    const double most = is_loss ? kMostPeriods : 1;
+    const double most = is_loss ? kMaxPeriods : 1;
     const bool is_count = !argument.empty() && value >= (is_loss ? 1 : 0) && value <= most &&
                           value == std::floor(value);
     return is_count ? "" : about(row.word, "needs a whole number");
@@ -89,7 +89,7 @@ struct EventRow {
     return about(row.word, "needs 1 (on) or 0 (off)");
   }
   if (is_override(*verb) && argument.empty()) return about(row.word, "needs its factor");
-  const double most = *verb == Verb::kFeedOverride ? most_feed : 1;
+  const double most = *verb == Verb::kFeedOverride ? max_feed : 1;
   if (is_override(*verb) && !(value >= 0 && value <= most)) {
     std::string fault = about(argument, "is no factor from 0 to ");
     text::append(fault, "%.4g", most);
@@ -153,7 +153,7 @@ void keep_settings(const std::vector<EventRow>& rows, std::int64_t start,
 
 Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                            const std::string& name,
-                                                           double most_feed) {
+                                                           double max_feed) {
   const std::string_view all = text;
   std::vector<EventRow> rows;
   OperatorEvents events;
@@ -178,7 +178,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
     }
     EventRow row;
     std::string fault = part == "incomplete" ? "the recorder lost events: they cannot be replayed"
-                                             : read_row(part, most_feed, row);
+                                             : read_row(part, max_feed, row);
     if (fault.empty() && !rows.empty() && row.event.cycle < rows.back().event.cycle) {
       fault = "cycles do not go up";
     }

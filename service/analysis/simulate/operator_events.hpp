@@ -52,7 +52,7 @@ struct OperatorEvents {
 /// Reads operator events: a row `cycle,verb[,argument]` each, in the order of cycles; the header
 /// `cycle,verb,argument,block,span`, empty lines and lines that begin with # are skipped. Verbs are
 /// those of name_of(Verb); an override's argument is its factor, that of the feed up to
-/// `most_feed`. A row `start` says which cycle the others count from (that of a live run); without
+/// `max_feed`. A row `start` says which cycle the others count from (that of a live run); without
 /// one they count from the start as they are. Of what was before the start the overrides in force
 /// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
@@ -63,6 +63,6 @@ struct OperatorEvents {
 /// Proof: tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                                          const std::string& name,
-                                                                         double most_feed = 1.0);
+                                                                         double max_feed = 1.0);
 
 }  // namespace meridian::simulate

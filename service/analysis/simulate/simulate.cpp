@@ -237,7 +237,7 @@ class Run {
       default:
         return;
     }
-    if (report.happenings.size() < SimulateReport::kMostHappenings) {
+    if (report.happenings.size() < SimulateReport::kMaxHappenings) {
       report.happenings.push_back({in_.cycle, event});
     } else {
       ++report.happenings_dropped;

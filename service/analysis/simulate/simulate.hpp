@@ -28,7 +28,7 @@ struct SimulateOptions {
   certify::Certifier* certifier = nullptr;  ///< gets every piece of plan that is published
 };
 
-/// Runs a CL file through judge, planner and cycle as the service does, without DDS and without a
+/// Runs a CL file through check, planner and cycle as the service does, without DDS and without a
 /// clock: drives that are ideal (feedback is the last setpoint, enabled at once), actions that are
 /// done at once, or when the events say, an operator who enables, starts, and resumes at program
 /// stops, unless the events list the resumes.

@@ -41,13 +41,13 @@ void append_shares(std::string& text, const LimitShares& shares, const MachineMo
 }
 
 void append_unwindings(std::string& text, const SimulateReport& report, const MachineModel& model) {
-  constexpr std::size_t kMostTold = 12;
+  constexpr std::size_t kMaxTold = 12;
   append(text, "unwinding  %llu times\n", static_cast<Count>(report.unwinding_count));
-  const std::size_t told = std::min(kMostTold, report.unwindings.size());
+  const std::size_t told = std::min(kMaxTold, report.unwindings.size());
   for (std::size_t n = 0; n < told; ++n) {
     const Unwinding& one = report.unwindings[n];
     append(text, "  line %u: %s would leave its travel; from %.3f deg by %+d turns, %.6g mm off\n",
-           one.line, model.joints[free_joint(model)].name.c_str(),
+           one.line, model.joints[redundant_joint(model)].name.c_str(),
            units::deg_from_rad(one.from_rad), one.turns, one.retract_mm);
   }
   if (report.unwinding_count > told) {
@@ -57,15 +57,15 @@ void append_unwindings(std::string& text, const SimulateReport& report, const Ma
 
 /// The stretches that were eased, the farthest first where there are many.
 void append_eases(std::string& text, const SimulateReport& report) {
-  constexpr std::size_t kMostTold = 12;
+  constexpr std::size_t kMaxTold = 12;
   append(text, "pole       axis eased in %llu stretches, at most %.4f deg\n",
          static_cast<Count>(report.ease_count), units::deg_from_rad(report.largest_ease_rad));
   std::vector<PoleEase> told = report.eases;
-  if (told.size() > kMostTold) {
+  if (told.size() > kMaxTold) {
     std::stable_sort(told.begin(), told.end(), [](const PoleEase& a, const PoleEase& b) {
       return a.deviation_rad > b.deviation_rad;
     });
-    told.resize(kMostTold);
+    told.resize(kMaxTold);
   }
   for (const PoleEase& ease : told) {
     append(text, "  lines %u to %u: %.4f deg, %s\n", ease.first_line, ease.last_line,

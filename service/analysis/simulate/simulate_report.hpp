@@ -58,12 +58,12 @@ struct SimulateReport {
   std::vector<PoleEase> eases;      ///< beside the pole: the first ones
   std::uint64_t ease_count = 0;
   double largest_ease_rad = 0;
-  std::vector<Unwinding> unwindings;  ///< of the free joint: the first ones
+  std::vector<Unwinding> unwindings;  ///< of the redundant joint: the first ones
   std::uint64_t unwinding_count = 0;
   LimitShares shares;
-  std::vector<Happening> happenings;  ///< the first kMostHappenings: state changes, alarms
+  std::vector<Happening> happenings;  ///< the first kMaxHappenings: state changes, alarms
   std::uint64_t happenings_dropped = 0;
-  static constexpr std::size_t kMostHappenings = 200;
+  static constexpr std::size_t kMaxHappenings = 200;
 };
 
 /// The report for a person.

@@ -126,7 +126,7 @@ std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
   add("--transition", join.transition);
   add("--tip-tolerance-mm", number(join.tip_tolerance_mm));
   add("--axis-tolerance-deg", number(join.axis_tolerance_deg));
-  return text.size() <= dds::kMostOptions ? text : "(more than a session takes)";
+  return text.size() <= dds::kMaxOptions ? text : "(more than a session takes)";
 }
 
 void add_frame_option(CLI::App& command, ClFileOptions& options) {

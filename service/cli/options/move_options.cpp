@@ -14,7 +14,7 @@
 #include "service/analysis/simulate/move_forecast.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/options/finite_range.hpp"
-#include "service/cli/options/told_machine.hpp"
+#include "service/cli/options/reported_machine.hpp"
 #include "service/machine/file/positions_file.hpp"
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/move_run.hpp"
@@ -158,7 +158,7 @@ int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
   if (targets != 1 || !options.feed) {
     return fail_move("move needs one of --tip, --joints and --to, and --feed", kUsage);
   }
-  auto model = told_machine(machine);
+  auto model = reported_machine(machine);
   if (!model) return fail_move("the machine does not tell its file", kVerdictNo);
   if (!link.wait_for_status(peer.timeout())) {
     return fail_move("machine " + machine.name + " does not answer", kNoPeer);

@@ -25,7 +25,7 @@ std::nullopt_t refuse_tool(const std::string& what) {
   return std::nullopt;
 }
 
-[[nodiscard]] ToolTable told_tools(const dds::MachineInfo& machine) {
+[[nodiscard]] ToolTable reported_tools(const dds::MachineInfo& machine) {
   return config::parse_tools(machine.tool_file, "tool table of the machine");
 }
 
@@ -73,7 +73,7 @@ std::nullopt_t refuse_tool(const std::string& what) {
 [[nodiscard]] std::optional<ToolOrder> edited(const std::string& word, int number,
                                               const ToolOptions& options,
                                               const dds::MachineInfo& machine) {
-  const ToolTable told = told_tools(machine);
+  const ToolTable told = reported_tools(machine);
   std::vector<Tool> tools = told.tools();
   const auto row = std::find_if(tools.begin(), tools.end(),
                                 [number](const Tool& tool) { return tool.number == number; });
@@ -179,7 +179,7 @@ int answer_tool_question(const std::vector<std::string>& words, const dds::Machi
 
 std::string tools_text(const dds::MachineInfo& machine, std::uint32_t in_spindle) {
   std::string text;
-  const ToolTable told = told_tools(machine);
+  const ToolTable told = reported_tools(machine);
   for (const Tool& tool : told.tools()) {
     const bool is_in = static_cast<std::uint32_t>(tool.number) == in_spindle;
     text::append(text, "%c %3d  --length %.10g --radius %.10g", is_in ? '*' : ' ', tool.number,

@@ -13,7 +13,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/options/finite_range.hpp"
-#include "service/cli/options/told_machine.hpp"
+#include "service/cli/options/reported_machine.hpp"
 #include "service/machine/file/machine_file.hpp"
 
 namespace meridian::cli {
@@ -179,7 +179,7 @@ int run_touch_off(const std::vector<std::string>& words, const TouchOffOptions& 
                   const ToolOptions& tool, const dds::MachineInfo& machine,
                   stream::OperatorLink& link, std::chrono::milliseconds timeout) {
   if (!link.wait_for_status(timeout)) return fail_touch_off("the machine does not answer", kNoPeer);
-  const auto model = told_machine(machine);
+  const auto model = reported_machine(machine);
   if (!model) return fail_touch_off("the machine does not tell its file", kVerdictNo);
   if (!is_at_rest(link.status()->state)) {
     return fail_touch_off("touches are noted and set in Off and Ready alone", kVerdictNo);

@@ -11,7 +11,7 @@
 #include "meridian/cycle/step.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/smooth_planner.hpp"
-#include "service/protocol/block_judge.hpp"
+#include "service/protocol/block_check.hpp"
 
 namespace meridian {
 namespace {
@@ -58,7 +58,7 @@ class Interpolator::Machine {
       return refused("the program is over; call begin() for the next one");
     }
     ClBlock checked = block;
-    const BlockReject reject = check_.judge(checked, {.is_there = false, .is_ignored = false});
+    const BlockReject reject = check_.check(checked, {.is_there = false, .is_ignored = false});
     if (reject.code != RejectCode::kNone) return refuse(reject);
     has_end_ = checked.kind == BlockKind::kEnd;
     blocks_.push_back(checked);
@@ -230,7 +230,7 @@ class Interpolator::Machine {
   const MachineModel model_;
   const ToolTable tools_;
   // The pushing thread's.
-  stream::BlockJudge check_;
+  stream::BlockCheck check_;
   SmoothPlanner planner_;
   MotionPort port_;
   MotionWriter writer_;

@@ -41,14 +41,14 @@ std::string sort_joints(ChainKinematics& k) {
 }
 
 std::string find_fault(const ChainKinematics& k) {
-  constexpr double kLeast = 1e-3;
-  if (k.a.axis.cross(k.b.axis).norm() < kLeast) return "the rotary axes are parallel";
-  if (k.b.axis.cross(k.home_axis).norm() < kLeast) {
+  constexpr double kMin = 1e-3;
+  if (k.a.axis.cross(k.b.axis).norm() < kMin) return "the rotary axes are parallel";
+  if (k.b.axis.cross(k.home_axis).norm() < kMin) {
     return "the tool axis is parallel to the rotary axis next to it";
   }
   Eigen::Matrix3d directions;
   for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
-  if (std::abs(directions.determinant()) < kLeast) {
+  if (std::abs(directions.determinant()) < kMin) {
     return "the linear joints do not span space at home";
   }
   return "";

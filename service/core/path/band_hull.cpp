@@ -9,7 +9,7 @@ namespace {
 
 using Points = std::array<Vector6, 5>;
 
-constexpr int kMostHalvings = 3;
+constexpr int kMaxHalvings = 3;
 constexpr double kEnough = 0.99 * 0.99;  // squared: a bound below needs no halving
 constexpr double kQuick = 0.99;          // a bound by places below it needs no Bernstein points
 
@@ -172,7 +172,7 @@ double bound_by_hull(const BandPolyline& line, const PoseQuartic& quartic, doubl
     const BandVertex& b = line[i + 1];
     const double to = i + 1 < line.last() ? std::min(end, b.u) : end;
     const Points points = find_difference(quartic, a, b, u - begin, to - u, begin);
-    worst = std::max(worst, bound_square(points, scale_of(line, b), kMostHalvings));
+    worst = std::max(worst, bound_square(points, scale_of(line, b), kMaxHalvings));
     u = to;
   }
   return std::sqrt(worst);

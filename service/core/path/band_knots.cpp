@@ -59,13 +59,13 @@ bool is_straight(const BandPolyline& line, std::int64_t i, double gap) noexcept 
 }
 
 /// Largest gap that needs no look at the blocks: the polyline is 1-Lipschitz in u.
-double least_gap(const BandTolerance& tolerance) noexcept {
+double min_gap(const BandTolerance& tolerance) noexcept {
   const double axis_tolerance = (tolerance.pole ? kPoleShare : 1.0) * tolerance.axis_rad;
   return kMeanShare / kSpread * std::min(tolerance.tip_mm, kAxisLength_mm_per_rad * axis_tolerance);
 }
 
 double find_gap(const BandPolyline& line, std::int64_t i) noexcept {
-  const double least = least_gap(line.tolerance());
+  const double least = min_gap(line.tolerance());
   const double dense = gap_by_density(line, i);
   if (i == 0 || i == line.last()) return std::max(dense, least);
   if (dense > least && is_straight(line, i, dense)) return dense;

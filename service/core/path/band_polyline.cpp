@@ -13,7 +13,7 @@ namespace {
 
 /// Share of the tip tolerance that chords of an arc may use.
 constexpr double kChordShare = 0.02;
-/// Share of the tolerances that is kept for points dropped (kLeastStep_mm), for the chord of the
+/// Share of the tolerances that is kept for points dropped (kMinStep_mm), for the chord of the
 /// axis instead of its arc and for the parameter of the two (docs/motion.md, 1.1).
 constexpr double kReserve = 0.002;
 /// Within this angle of the pole the band has kPoleShare of the axis tolerance.
@@ -137,7 +137,7 @@ void BandPolyline::add(const ToolPose& pose, bool ends_block) noexcept {
   const Vector3 axis = axis_of(next.x) - axis_of(before.x);
   const double square =
       tip.squaredNorm() + kAxisLength_mm_per_rad * kAxisLength_mm_per_rad * axis.squaredNorm();
-  if (square < kLeastStep_mm * kLeastStep_mm) {
+  if (square < kMinStep_mm * kMinStep_mm) {
     if (ends_block && before.sequence == next.sequence) before.ends_block = true;
     return;
   }

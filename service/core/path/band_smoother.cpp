@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kDegree = 4;
 constexpr std::size_t kSamplesPerSpan = 8;
-constexpr double kLeastSpacing = 0.2;  // of a span, between vertices that are samples
+constexpr double kMinSpacing = 0.2;  // of a span, between vertices that are samples
 
 std::size_t place(std::int64_t i) noexcept { return static_cast<std::size_t>(i); }
 
@@ -97,7 +97,7 @@ void BandSmoother::collect_samples(const BandPolyline& line, const BandKnots& kn
     segment = line.segment_at(begin, segment);
     add_sample(line, t, s, begin, segment);
     add_sample(line, t, s, middle, line.segment_at(middle, segment));
-    const double spacing = kLeastSpacing * (end - begin);
+    const double spacing = kMinSpacing * (end - begin);
     std::int64_t i = segment + 1;
     while (i <= line.last() && line[i].u < end) {
       add_sample(line, t, s, line[i].u, line.segment_at(line[i].u, i - 1));

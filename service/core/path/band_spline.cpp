@@ -16,10 +16,10 @@ namespace {
 
 /// A window looks at that many knots behind its last control point.
 constexpr std::int64_t kKnotsAhead = 7;
-/// Vertices that a window may lie over, unless it would have fewer points than kLeastWindow: what
+/// Vertices that a window may lie over, unless it would have fewer points than kMinWindow: what
 /// the ring holds less what the knots look ahead and back.
 constexpr std::int64_t kWindowVertices = kVertexCapacity - 4 * kVertexReach;
-constexpr std::int64_t kLeastWindow = 8;
+constexpr std::int64_t kMinWindow = 8;
 
 std::size_t capacity_for(const BandTuning& tuning) noexcept {
   return std::bit_ceil(2 * static_cast<std::size_t>(tuning.window) + 64);
@@ -70,7 +70,7 @@ struct BandSpline::Workspace {
   bool advance_knots() noexcept {
     const auto needs_more = [&] {
       const std::int64_t last = knots.count() - 1;
-      if (last < first + kLeastWindow + kKnotsAhead) return true;
+      if (last < first + kMinWindow + kKnotsAhead) return true;
       return last < first + tuning.window + kKnotsAhead && vertices_to(last) <= kWindowVertices;
     };
     while (!knots.is_complete() && needs_more()) {
@@ -94,7 +94,7 @@ struct BandSpline::Workspace {
     std::int64_t end = first + tuning.window;
     if (knots.is_complete()) end = std::min(end, count() - 1);
     const auto knot_behind = [&] { return std::min(end + kKnotsAhead, knots.count() - 1); };
-    while (end > first + kLeastWindow &&
+    while (end > first + kMinWindow &&
            (vertices_to(knot_behind()) > kWindowVertices ||
             (!knots.is_complete() && end + kKnotsAhead >= knots.count()))) {
       --end;
@@ -223,9 +223,8 @@ std::optional<AxisMark> BandSpline::next_axis() noexcept {
   w.axis_mark = std::max(w.axis_mark, w.line.first());
   if (w.axis_mark > w.line.last()) return std::nullopt;
   const BandVertex& vertex = w.line[w.axis_mark++];
-  return AxisMark{vertex.u,
-                  {vertex.x[0], vertex.x[1], vertex.x[2]},
-                  {vertex.x[3], vertex.x[4], vertex.x[5]}};
+  return AxisMark{
+      vertex.u, {vertex.x[0], vertex.x[1], vertex.x[2]}, {vertex.x[3], vertex.x[4], vertex.x[5]}};
 }
 
 bool BandSpline::is_done() const noexcept {

@@ -56,7 +56,7 @@ void FeedbackListener::on_data(dds::Reader<dds::DriveFeedback>& reader) noexcept
   spans_.write(trace::Doing::kFeedback, begun_ns, monotonic_ns(), merge_.feedback().cycle_seen);
 }
 
-void FeedbackListener::tell_sources(const SourceTeller::Say& say) {
+void FeedbackListener::report_sources(const SourceReporter::Say& say) {
   sources_.refresh();
   const DriveSources& sources = sources_.latest();
   const std::int64_t now_ns = monotonic_ns();

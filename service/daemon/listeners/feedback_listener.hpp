@@ -10,7 +10,7 @@
 #include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/daemon/listeners/feedback_merge.hpp"
-#include "service/daemon/listeners/source_teller.hpp"
+#include "service/daemon/listeners/source_reporter.hpp"
 #include "service/daemon/ports/ports.hpp"
 #include "service/transport/messages.hpp"
 #include "service/transport/participant.hpp"
@@ -27,9 +27,9 @@ class FeedbackListener {
 
   /// Says who reports drives, who went, who reports what is another one's, and whose drives obey
   /// another service; to be called several times a second, by one thread that may log.
-  void tell_sources(const SourceTeller::Say& say);
-  /// The service that the machine's drives obey, as of the last tell_sources(): ours as soon as one
-  /// of them does; 0: nobody, or they do not agree.
+  void report_sources(const SourceReporter::Say& say);
+  /// The service that the machine's drives obey, as of the last report_sources(): ours as soon as
+  /// one of them does; 0: nobody, or they do not agree.
   [[nodiscard]] std::uint64_t master() const noexcept { return master_; }
 
  private:
@@ -45,7 +45,7 @@ class FeedbackListener {
   std::int64_t shown_ns_ = 0;   ///< when `sources_` were stored last
   LatestValue<DriveSources> sources_;
   SpscRing<std::uint64_t, 64> gone_;  ///< writers that DDS does not know any more
-  SourceTeller teller_;
+  SourceReporter teller_;
   std::uint64_t master_ = 0;
   trace::SpanWriter spans_;
   dds::Reader<dds::DriveFeedback> reader_;

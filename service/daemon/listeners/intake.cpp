@@ -36,7 +36,7 @@ Intake::Intake(dds::Participant& participant, const MachineModel& model,
       ports_(ports),
       service_(service),
       model_(model),
-      judge_(model_, tools, service_id),
+      check_(model_, tools, service_id),
       batches_(participant),
       requests_(participant),
       credits_(participant),
@@ -55,7 +55,7 @@ void Intake::run() noexcept {
     show_cut_off();
     look_for_station();
     free_idle_machine();
-    publish(judge_.due_credit(around()));
+    publish(check_.due_credit(around()));
     show();
     waitset_.wait(kIdle);
   }
@@ -76,13 +76,13 @@ void Intake::take_events() {
   Event event;
   while (ports_.session_events.try_pop(event)) {
     if (event.code == EventCode::kProgramEnd) {
-      publish(judge_.on_program_end(around()));
+      publish(check_.on_program_end(around()));
     } else if (event.b == 1) {
       mark_.epoch = static_cast<std::uint16_t>(event.a);
       show_mark();
     } else {
       empty_queue(static_cast<std::uint16_t>(event.a));
-      publish(judge_.on_queues_emptied("the operator or a fault ended the program", around()));
+      publish(check_.on_queues_emptied("the operator or a fault ended the program", around()));
     }
   }
 }
@@ -100,8 +100,8 @@ void Intake::show_mark() noexcept {
 void Intake::take_rejects() {
   SessionReject refused;
   while (ports_.rejects.try_pop(refused)) {
-    if (refused.session != judge_.session()) continue;
-    publish(judge_.on_planner_reject(refused.reject, around()));
+    if (refused.session != check_.session()) continue;
+    publish(check_.on_planner_reject(refused.reject, around()));
   }
 }
 
@@ -110,7 +110,7 @@ void Intake::take_rejects() {
 void Intake::free_idle_machine() {
   // Longer than the planner waits for more blocks to look at before it begins with what is there.
   constexpr std::int64_t kIdle_ns = 1'500'000'000;
-  const bool is_idle = refused_session_ != 0 && refused_session_ == judge_.session() &&
+  const bool is_idle = refused_session_ != 0 && refused_session_ == check_.session() &&
                        ports_.state.load(std::memory_order_relaxed) == State::kReady &&
                        ports_.blocks.empty() && ports_.motion.times.empty();
   if (!is_idle) {
@@ -121,7 +121,7 @@ void Intake::free_idle_machine() {
   if (idle_since_ns_ == 0) idle_since_ns_ = now_ns;
   if (now_ns - idle_since_ns_ < kIdle_ns) return;
   empty_queue(mark_.epoch);
-  publish(judge_.on_queues_emptied("nothing of the program is left to run", around()));
+  publish(check_.on_queues_emptied("nothing of the program is left to run", around()));
 }
 
 void Intake::take_requests() {
@@ -134,10 +134,10 @@ void Intake::take_requests() {
 
 void Intake::take_request(const dds::SessionRequest& request, std::uint64_t source) {
   if (!may_open(request) || !may_go_on(request)) return;
-  const std::uint64_t before = judge_.session();
+  const std::uint64_t before = check_.session();
   publish(
-      judge_.on_request(request, around(), ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
-  if (judge_.session() != request.session || !judge_.is_held()) return;
+      check_.on_request(request, around(), ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
+  if (check_.session() != request.session || !check_.is_held()) return;
   if (station_source_ != source) {
     station_identity_ = dds::describe_source(participant_, requests_.handle(), source);
   }
@@ -148,13 +148,13 @@ void Intake::take_request(const dds::SessionRequest& request, std::uint64_t sour
 
 /// The claim is given back in show() where no session comes of it.
 bool Intake::may_open(const dds::SessionRequest& request) {
-  if (request.request != dds::SessionRequestKind::kOpen || judge_.is_held()) return true;
+  if (request.request != dds::SessionRequestKind::kOpen || check_.is_held()) return true;
   if (!ports_.set_up.claim.try_take(ProgramClaim::Holder::kSession)) {
-    publish(judge_.refuse_program(request, "the set-up is being changed; stream it again"));
+    publish(check_.refuse_program(request, "the set-up is being changed; stream it again"));
     return false;
   }
   if (ports_.set_up.for_intake.refresh()) put_in_force(ports_.set_up.for_intake.latest());
-  if (ToolTable tools; ports_.set_up.intake_tools.try_take(tools)) judge_.set_tools(tools);
+  if (ToolTable tools; ports_.set_up.intake_tools.try_take(tools)) check_.set_tools(tools);
   std::string stale;
   if (request.frame != 0 && request.frame != in_force_.sum) {
     stale = "stale: the program was checked under another work frame than number " +
@@ -164,7 +164,7 @@ bool Intake::may_open(const dds::SessionRequest& request) {
         "stale: the program was checked with another tool table than the one that is in force "
         "now; stream it again";
   }
-  if (!stale.empty()) publish(judge_.refuse_program(request, stale));
+  if (!stale.empty()) publish(check_.refuse_program(request, stale));
   return stale.empty();
 }
 
@@ -185,16 +185,16 @@ bool Intake::is_within_quota(std::uint64_t source) {
 
 bool Intake::may_go_on(const dds::SessionRequest& request) {
   const bool is_open = request.request == dds::SessionRequestKind::kOpen;
-  if (last_ == nullptr || !is_open || judge_.is_held()) return true;
+  if (last_ == nullptr || !is_open || check_.is_held()) return true;
   std::string refusal = telemetry::refusal_to_go_on(last_->get(), request, setup_);
   if (refusal.empty()) return true;
-  publish(judge_.refuse_program(request, std::move(refusal)));
+  publish(check_.refuse_program(request, std::move(refusal)));
   return false;
 }
 
 void Intake::begin_session(const dds::SessionRequest& request) {
   ports_.session_settings.store({request.session, settings_of(request)});
-  opened_ = judge_.message();
+  opened_ = check_.message();
   remark_ = last_ == nullptr ? "" : telemetry::remark_on(last_->get(), request, setup_);
   const std::lock_guard lock(view_mutex_);
   line_ends_.clear();
@@ -210,8 +210,8 @@ void Intake::take_batches() {
   stream::Accepted accepted;
   for (int left = kMaxSamples; left > 0 && batches_.take(batch); --left) {
     const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
-    std::optional<dds::Credit> answer = judge_.on_batch(batch, around(), accepted);
-    if (!push(accepted)) answer = judge_.on_queue_full(around());
+    std::optional<dds::Credit> answer = check_.on_batch(batch, around(), accepted);
+    if (!push(accepted)) answer = check_.on_queue_full(around());
     publish(answer);
     if (spans_.is_on()) spans_.write(trace::Doing::kTakeBlocks, begun_ns, monotonic_ns(), pushed_);
   }
@@ -224,7 +224,7 @@ bool Intake::push(const stream::Accepted& accepted) {
   if (accepted.count == 0) return true;
   std::size_t count = 0;
   while (count < accepted.count &&
-         ports_.blocks.stage({judge_.session(), accepted.blocks[count]})) {
+         ports_.blocks.stage({check_.session(), accepted.blocks[count]})) {
     ++count;
   }
   pushed_ += count;
@@ -247,12 +247,12 @@ void Intake::note_line_ends(const stream::Accepted& accepted, std::size_t count)
 }
 
 void Intake::show_cut_off() noexcept {
-  if (!judge_.is_cut_off() || cut_off_session_ == judge_.session()) return;
+  if (!check_.is_cut_off() || cut_off_session_ == check_.session()) return;
   QueuedBlock none;
-  none.session = judge_.session();
+  none.session = check_.session();
   none.is_cut_off = true;
   if (!ports_.blocks.stage(none)) return;  // again as soon as there is room
-  cut_off_session_ = judge_.session();
+  cut_off_session_ = check_.session();
   ++pushed_;
   ports_.blocks.publish();
   ports_.planner_wake.notify();
@@ -260,41 +260,41 @@ void Intake::show_cut_off() noexcept {
 
 void Intake::look_for_station() {
   const std::int64_t now_ns = monotonic_ns();
-  if (!is_station_there_ || !judge_.is_held() || now_ns - looked_ns_ < kLookForStation_ns) return;
+  if (!is_station_there_ || !check_.is_held() || now_ns - looked_ns_ < kLookForStation_ns) return;
   looked_ns_ = now_ns;
   if (requests_.has_source(station_source_)) return;
   is_station_there_ = false;
-  judge_.on_station_lost(judge_.session());
+  check_.on_station_lost(check_.session());
 }
 
 void Intake::publish(const std::optional<dds::Credit>& credit) {
   if (!credit) return;
   (void)credits_.write(*credit);
-  if (credit->session == judge_.session() && credit->verdict >= dds::Verdict::kRefusedStation) {
+  if (credit->session == check_.session() && credit->verdict >= dds::Verdict::kRefusedStation) {
     refused_session_ = credit->session;
   }
 }
 
 void Intake::show() {
-  ports_.session.store(judge_.session(), std::memory_order_relaxed);
-  if (!judge_.is_held()) ports_.set_up.claim.give_back(ProgramClaim::Holder::kSession);
-  const stream::IntakeCounters& counters = judge_.counters();
+  ports_.session.store(check_.session(), std::memory_order_relaxed);
+  if (!check_.is_held()) ports_.set_up.claim.give_back(ProgramClaim::Holder::kSession);
+  const stream::IntakeCounters& counters = check_.counters();
   const std::lock_guard lock(view_mutex_);
-  view_.session = judge_.session();
-  if (judge_.is_held()) {
-    view_.station = judge_.request().station;
-    view_.program = judge_.request().program;
-    view_.options = judge_.request().options;
+  view_.session = check_.session();
+  if (check_.is_held()) {
+    view_.station = check_.request().station;
+    view_.program = check_.request().program;
+    view_.options = check_.request().options;
     view_.identity = station_identity_;
-    view_.file_checksum = judge_.request().file_checksum;
-    view_.from_line = judge_.request().from_line;
-    view_.is_move = (judge_.request().policies & dds::kPolicyMove) != 0;
-    view_.block_count = judge_.request().block_count;
-    view_.blocks_received = judge_.next_sequence();
+    view_.file_checksum = check_.request().file_checksum;
+    view_.from_line = check_.request().from_line;
+    view_.is_move = (check_.request().policies & dds::kPolicyMove) != 0;
+    view_.block_count = check_.request().block_count;
+    view_.blocks_received = check_.next_sequence();
   }
   view_.batches_dropped = counters.batches_duplicate + counters.batches_stale;
   view_.batches_lost = counters.batches_corrupted + counters.batches_gap;
-  view_.message = judge_.message();
+  view_.message = check_.message();
   if (!remark_.empty() && view_.message == opened_) view_.message += "; " + remark_;
 }
 

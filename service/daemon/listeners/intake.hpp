@@ -9,7 +9,7 @@
 #include "service/daemon/listeners/participant_quota.hpp"
 #include "service/daemon/ports/ports.hpp"
 #include "service/machine/file/service_file.hpp"
-#include "service/protocol/intake_judge.hpp"
+#include "service/protocol/intake_check.hpp"
 #include "service/protocol/line_ends.hpp"
 #include "service/recording/telemetry/recovery.hpp"
 #include "service/transport/messages.hpp"
@@ -34,7 +34,7 @@ struct SessionView {
   std::string message;
 };
 
-/// The service's end of sessions on DDS: drains its readers always, asks the judge, fills the block
+/// The service's end of sessions on DDS: drains its readers always, asks the check, fills the block
 /// queue, answers with credits.
 class Intake {
  public:
@@ -50,7 +50,7 @@ class Intake {
   /// Before run(): where the workpiece lies, and with which tools it is cut.
   void set_up(const SetUpInForce& in_force, const ToolTable& tools) {
     put_in_force(in_force);
-    judge_.set_tools(tools);
+    check_.set_tools(tools);
   }
   [[nodiscard]] SessionView view() const;
   /// Of credits, see dds::StalledReaders.
@@ -91,7 +91,7 @@ class Intake {
   void show();
   [[nodiscard]] stream::Surroundings around() noexcept;
 
-  /// Free places that the judge is not told of, for what is on its way while it computes credits.
+  /// Free places that the check is not told of, for what is on its way while it computes credits.
   static constexpr std::size_t kReserve = 64;
 
   dds::Participant& participant_;
@@ -99,7 +99,7 @@ class Intake {
   const config::ServiceConfig& service_;
   MachineModel model_;
   SetUpInForce in_force_;
-  stream::IntakeJudge judge_;
+  stream::IntakeCheck check_;
   dds::Reader<dds::Batch> batches_;
   dds::Reader<dds::SessionRequest> requests_;
   dds::Writer<dds::Credit> credits_;

@@ -46,8 +46,8 @@ class JogIntake {
                           jog.joint < (jog.frame == 1 ? kToolAxisCount : joint_count) &&
                           jog.distance >= 0 && jog.dead_man_ns > 0;
     const bool is_of_us = jog.service_id_seen == 0 || jog.service_id_seen == service_id_;
-    const bool is_told = (superseded_ns && is_of_us) || jog.velocity == 0;
-    if (!is_of_holder || !is_sound || !is_told || jog.epoch_seen != epoch) return std::nullopt;
+    const bool is_reported = (superseded_ns && is_of_us) || jog.velocity == 0;
+    if (!is_of_holder || !is_sound || !is_reported || jog.epoch_seen != epoch) return std::nullopt;
     newest_ = jog.sample;
     return JogOrder{
         .sample = ++orders_,

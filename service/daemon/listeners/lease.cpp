@@ -16,40 +16,40 @@ Lease::Lease(dds::Participant& participant, const dds::MachineInfo& claim, Repor
       report_(std::move(report)),
       reader_(participant),
       writer_(participant),
-      judge_(claim.service_id) {
+      check_(claim.service_id) {
   say();
 }
 
 void Lease::hold() {
-  judge_.hold(monotonic_ns());
+  check_.hold(monotonic_ns());
   say();
 }
 
 void Lease::set_up(const WorkFrames& frames, const SetUpInForce& in_force,
-                   const std::string& tool_file, bool is_told) {
+                   const std::string& tool_file, bool is_reported) {
   claim_.frame_rotation = in_force.rotation;
   claim_.frame_origin_mm = in_force.origin_mm;
   claim_.work_frame = in_force.number;
   claim_.work_frames.assign(frames.rows().begin(), frames.rows().end());
   claim_.tool_file = tool_file;
-  if (is_told) say();
+  if (is_reported) say();
 }
 
 void Lease::say() {
-  const LeaseJudge::Word word = judge_.word(monotonic_ns());
+  const LeaseCheck::Word word = check_.word(monotonic_ns());
   claim_.is_serving = word.is_serving;
   claim_.served_ns = word.served_ns;
-  if (writer_.write(claim_)) judge_.on_said(word, monotonic_ns());
+  if (writer_.write(claim_)) check_.on_said(word, monotonic_ns());
 }
 
 void Lease::take(const dds::MachineInfo& info, std::uint64_t source) {
   // Who says another id than before has the place of before, and none more.
   std::erase_if(others_, [&](const Other& known) {
     const bool is_replaced = known.source == source && known.info.service_id != info.service_id;
-    if (is_replaced) judge_.forget(known.info.service_id);
+    if (is_replaced) check_.forget(known.info.service_id);
     return is_replaced;
   });
-  const bool is_heard = judge_.hear(
+  const bool is_heard = check_.hear(
       {.service_id = info.service_id, .is_serving = info.is_serving, .served_ns = info.served_ns},
       monotonic_ns());
   if (!is_heard) return report_once(source, "claims this machine implausibly, or as one too many");
@@ -76,7 +76,7 @@ void Lease::look() {
   }
   std::erase_if(others_, [this](const Other& other) {
     const bool is_gone = !reader_.has_source(other.source);
-    if (is_gone) judge_.forget(other.info.service_id);
+    if (is_gone) check_.forget(other.info.service_id);
     return is_gone;
   });
 }
@@ -84,9 +84,9 @@ void Lease::look() {
 std::optional<dds::MachineInfo> Lease::find_keeper(bool may_leave, std::uint64_t master) {
   const std::int64_t before_ns = monotonic_ns();
   look();
-  judge_.judge(before_ns, may_leave, master);
-  if (judge_.has_to_speak(before_ns)) say();
-  const auto keeper = judge_.keeper(before_ns);
+  check_.check(before_ns, may_leave, master);
+  if (check_.has_to_speak(before_ns)) say();
+  const auto keeper = check_.keeper(before_ns);
   if (!keeper) return std::nullopt;
   const auto found = std::find_if(others_.begin(), others_.end(), [&](const Other& other) {
     return other.info.service_id == *keeper;

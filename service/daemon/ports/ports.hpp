@@ -69,7 +69,7 @@ struct CycleView {
   bool is_single_block = false, stops_at_optional = false, is_dry_run = false;
   double feed_mm_per_s = 0;  ///< programmed, of the last motion of the program; 0: rapid
   std::uint8_t branch = 0;   ///< of the path piece in force
-  bool is_at_pole = false;   ///< the free joint turns on the pole
+  bool is_at_pole = false;   ///< the redundant joint turns on the pole
   HomingAsked homing;        ///< what drives are asked for beside the machine's state
   std::uint64_t cycles_run = 0;
   std::uint64_t periods_lost = 0;
@@ -97,7 +97,7 @@ struct EnablingChange {
 /// Something for the log, and where it is for the operator for the status too.
 struct Notice {
   bool is_warning = false, is_for_status = false;
-  std::array<char, dds::kMostText + 1> text{};  ///< zero-terminated
+  std::array<char, dds::kMaxText + 1> text{};  ///< zero-terminated
 };
 
 /// Who does not acknowledge what the service writes; empty: nobody.

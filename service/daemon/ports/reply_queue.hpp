@@ -18,7 +18,7 @@ struct QueuedReply {
   Refusal refusal = Refusal::kNone;
   State state = State::kOff;
   std::uint16_t epoch = 0;
-  std::array<char, dds::kMostText + 1> text{};  ///< zero-terminated
+  std::array<char, dds::kMaxText + 1> text{};  ///< zero-terminated
 };
 
 /// Replies on their way from the commands thread to the thread that writes them: a bounded lane for

@@ -22,11 +22,11 @@ class StatusClock {
     const std::lock_guard lock(mutex_);
     times_.published(status.status_sequence, now_ns, stream::rest_of(status.state, status.block));
   }
-  [[nodiscard]] Refusal judge(const dds::CommandRequest& request, std::uint64_t service_id,
+  [[nodiscard]] Refusal check(const dds::CommandRequest& request, std::uint64_t service_id,
                               std::uint16_t epoch, std::int64_t now_ns, std::uint64_t rest) const {
     if (!stream::needs_freshness(request.verb, request.argument)) return Refusal::kNone;
     const std::lock_guard lock(mutex_);
-    return stream::judge_freshness(request, service_id, epoch, times_, now_ns, rest);
+    return stream::check_freshness(request, service_id, epoch, times_, now_ns, rest);
   }
 
   /// The sequence of the newest status; 0: none yet. Waits for nobody.

@@ -109,7 +109,7 @@ void Supervisor::take_events() {
         publish_action(event);
         break;
       case EventCode::kStateChanged:
-        told_state_ = static_cast<State>(event.a);
+        reported_state_ = static_cast<State>(event.a);
         break;
       case EventCode::kAlarm:
         // Asked again after a resume: what was answered to this time is no answer to that.
@@ -121,7 +121,7 @@ void Supervisor::take_events() {
         action_ = {};
         // Nothing was planned while the drives were off: what waits in the queue stays good.
         event.b =
-            event.code == EventCode::kEpochAdvanced && told_state_ == State::kEnabling ? 1 : 0;
+            event.code == EventCode::kEpochAdvanced && reported_state_ == State::kEnabling ? 1 : 0;
         has_session_event = ports_.session_events.try_push(event) || has_session_event;
         break;
       default:
@@ -131,7 +131,7 @@ void Supervisor::take_events() {
       ports_.events_overrun.fetch_add(1, std::memory_order_relaxed);
     }
   }
-  if (has_session_event && tell_intake_) tell_intake_(has_action_peer_);
+  if (has_session_event && report_intake_) report_intake_(has_action_peer_);
 }
 
 void Supervisor::publish_action(const Event& event) {
@@ -214,7 +214,8 @@ void Supervisor::look_for_action_peer() {
   looked_ns_ = monotonic_ns();
   const bool is_there =
       is_dry_run_ || (actions_.matched_readers() > 0 && actions_done_.matched_writers() > 0);
-  if (std::exchange(has_action_peer_, is_there) != is_there && tell_intake_) tell_intake_(is_there);
+  if (std::exchange(has_action_peer_, is_there) != is_there && report_intake_)
+    report_intake_(is_there);
 }
 
 /// Asks for the next step to Off, where there is one to ask for: a machine that is on its way there

@@ -67,23 +67,23 @@ class Supervisor {
   /// Any thread: bring the machine to rest and to Off, then has_switched_off().
   void switch_off() noexcept;
   [[nodiscard]] bool has_switched_off() const noexcept { return is_off_.load(); }
-  /// Before run(): `tell_intake` is called when there is something in a ring for intake, or when
+  /// Before run(): `report_intake` is called when there is something in a ring for intake, or when
   /// an action peer came or went.
-  void on_session_event(std::function<void(bool has_action_peer)> tell_intake) {
-    tell_intake_ = std::move(tell_intake);
+  void on_session_event(std::function<void(bool has_action_peer)> report_intake) {
+    report_intake_ = std::move(report_intake);
   }
   /// Before run(): the set-up that `file` holds, and what is in force by it. Without it every
   /// change of work frames and tools is refused.
   void keep_set_up(telemetry::SetUpFile& file, const telemetry::SetUp& set_up,
                    const ToolTable& tools, const SetUpInForce& in_force);
   /// Main thread: whether the set-up is another one than it was told of; then set_up() and
-  /// in_force() stay as they are until set_up_told().
+  /// in_force() stay as they are until set_up_reported().
   [[nodiscard]] bool has_set_up_to_tell() const noexcept {
     return has_set_up_to_tell_.load(std::memory_order_acquire);
   }
   [[nodiscard]] const telemetry::SetUp& set_up() const noexcept { return set_up_; }
   [[nodiscard]] const SetUpInForce& in_force() const noexcept { return in_force_; }
-  void set_up_told() noexcept { has_set_up_to_tell_.store(false, std::memory_order_release); }
+  void set_up_reported() noexcept { has_set_up_to_tell_.store(false, std::memory_order_release); }
 
  private:
   struct Pending {
@@ -197,10 +197,10 @@ class Supervisor {
   ParticipantQuota quota_{200, 400};  ///< of commands
   JogIntake jog_intake_;
   dds::Waitset waitset_;
-  std::function<void(bool)> tell_intake_;
+  std::function<void(bool)> report_intake_;
 
   CycleView view_;
-  State told_state_ = State::kOff;  ///< by the events so far
+  State reported_state_ = State::kOff;  ///< by the events so far
   std::array<Pending, 96> pending_{};
   std::array<Answered, 512> answered_{};  ///< for requests that come twice
   std::size_t answered_at_ = 0;
@@ -237,7 +237,7 @@ class Supervisor {
     kAtTheCycle,
     kOnItsWayBack,  ///< the cycle has refused it: the old set-up is written again
     kAccepted,      ///< it is in force at the cycle, and passed on to the other threads
-    kTold           ///< it is in force: status and machine topic are to say so
+    kReported       ///< it is in force: status and machine topic are to say so
   };
   telemetry::SetUpFile* set_up_file_ = nullptr;
   SetUpPhase set_up_phase_ = SetUpPhase::kNone;

@@ -69,7 +69,7 @@ void Supervisor::take_command(const Arrival& arrival) {
   // Whoever saw a status that is younger than the last look at the cycle is not late.
   refresh_view();
   const std::uint64_t rest = stream::rest_of(view_.record.state, view_.record.sequence);
-  Refusal refusal = status_clock_.judge(request, service_id_, view_.epoch, monotonic_ns(), rest);
+  Refusal refusal = status_clock_.check(request, service_id_, view_.epoch, monotonic_ns(), rest);
   if (refusal == Refusal::kNone) refusal = check_turn(command);
   if (is_switching_off_ || refusal != Refusal::kNone) {
     const Refusal why = refusal != Refusal::kNone ? refusal : Refusal::kWrongState;
@@ -277,7 +277,7 @@ std::string Supervisor::what_happens(const dds::CommandRequest& request) {
     return telemetry::describe(request.verb, view_.record.state, request.argument);
   }
   const std::size_t taken = kStarted.size() + (view_.is_dry_run ? kDry.size() : 0);
-  return kStarted + telemetry::describe(approach, model_, dds::kMostText - taken);
+  return kStarted + telemetry::describe(approach, model_, dds::kMaxText - taken);
 }
 
 void Supervisor::reply(const Pending& command, bool is_accepted, Refusal refusal,

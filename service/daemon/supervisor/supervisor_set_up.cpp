@@ -155,7 +155,7 @@ void Supervisor::work_on_set_up_change() {
       return;
     case SetUpPhase::kAccepted:
       return pass_set_up_on();
-    case SetUpPhase::kTold: {
+    case SetUpPhase::kReported: {
       const bool is_in_status =
           ports_.set_up.told.load(std::memory_order_acquire) == in_force_.change;
       if (!is_in_status || has_set_up_to_tell()) return;
@@ -224,7 +224,7 @@ void Supervisor::pass_set_up_on() {
   ports_.set_up.for_intake.store(in_force_);
   ports_.set_up.for_telemetry.store(in_force_);
   has_set_up_to_tell_.store(true, std::memory_order_release);
-  set_up_phase_ = SetUpPhase::kTold;
+  set_up_phase_ = SetUpPhase::kReported;
 }
 
 std::string Supervisor::words_of_frames() const {

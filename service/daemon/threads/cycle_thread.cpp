@@ -42,7 +42,7 @@ void CycleThread::run() noexcept {
     if (spans_.is_on()) times_.gathered_ns = monotonic_ns();
     step(model_, state_, motion_, inputs_, output_);
     hand_over();
-    if (spans_.is_on()) tell_spans();
+    if (spans_.is_on()) report_spans();
   }
 }
 
@@ -112,7 +112,7 @@ void CycleThread::watch_enabling(std::int64_t now_ns) noexcept {
   ports_.commands.stage_stop(Verb::kHold, ports_.commands.next_request());
 }
 
-void CycleThread::tell_spans() noexcept {
+void CycleThread::report_spans() noexcept {
   using trace::Doing;
   const std::uint64_t cycle = inputs_.cycle;
   const std::int64_t first_due_ns = inputs_.due_ns - inputs_.lost_periods * model_.cycle_ns;

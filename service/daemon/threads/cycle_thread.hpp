@@ -29,7 +29,7 @@ class CycleThread {
   void show() noexcept;
   void show_drives_asked() noexcept;
   void watch_enabling(std::int64_t now_ns) noexcept;
-  void tell_spans() noexcept;
+  void report_spans() noexcept;
 
   MachineModel model_;
   Ports& ports_;

@@ -12,7 +12,7 @@ PlannerThread::PlannerThread(const MachineModel& model, const ToolTable& tools, 
       model_(model),
       planner_(model_, tools),
       spans_(ports.spans != nullptr ? &ports.spans->planner : nullptr) {
-  if (model.most_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
+  if (model.max_feed_override > 1) writer_.set_horizon(kFeedHorizon_s);
 }
 
 void PlannerThread::run() noexcept {
@@ -28,11 +28,11 @@ void PlannerThread::run() noexcept {
 bool PlannerThread::work() noexcept {
   const QueueFollower::Look look = queue_.look();
   if (look.is_emptied || look.is_new_epoch) has_begun_ = false;
-  if (look.is_emptied) is_refused_ = is_action_told_ = false;
+  if (look.is_emptied) is_refused_ = is_action_reported_ = false;
   if (!look.is_in_step) return look.is_emptied;
   if (look.front == nullptr) {
     if (has_begun_) advance();
-    tell_of_plan();
+    report_of_plan();
     return false;
   }
   const bool is_cut_off = look.front->is_cut_off;
@@ -55,7 +55,7 @@ bool PlannerThread::work() noexcept {
     writer_.forget_ahead();  // in Ready all that was published has run or is void
     published_before_s_ = writer_.published_s();
     tell(Approach{});
-    tell_of_plan();  // that it begins, before anything of it can be started
+    report_of_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
     look_ = 0;
   }
@@ -104,7 +104,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
     (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
     planning_ns_ = 0;
   }
-  tell_of_plan();
+  report_of_plan();
   switch (result.status) {
     case PlanStatus::kNoRoom:
       return false;
@@ -119,7 +119,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   return true;
 }
 
-void PlannerThread::tell_of_plan() noexcept {
+void PlannerThread::report_of_plan() noexcept {
   ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
   if (Approach approach; planner_.take_approach(approach)) tell(approach);
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
@@ -137,14 +137,14 @@ void PlannerThread::tell(const Approach& approach) noexcept {
 bool PlannerThread::announce_action(const ClBlock& block) noexcept {
   const bool is_action = block.kind == BlockKind::kAuxiliary || block.kind == BlockKind::kTool ||
                          block.kind == BlockKind::kStop;
-  if (!is_action || is_action_told_) return true;
-  is_action_told_ = ports_.actions.try_push({queue_.view().epoch, block});
-  return is_action_told_;
+  if (!is_action || is_action_reported_) return true;
+  is_action_reported_ = ports_.actions.try_push({queue_.view().epoch, block});
+  return is_action_reported_;
 }
 
 void PlannerThread::pop() noexcept {
   queue_.pop();
-  is_action_told_ = false;
+  is_action_reported_ = false;
 }
 
 }  // namespace meridian::interpolator

@@ -34,7 +34,7 @@ class PlannerThread {
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
   void refuse(const BlockReject& reject) noexcept;
   /// What others want to know of what was planned.
-  void tell_of_plan() noexcept;
+  void report_of_plan() noexcept;
   /// How the program is approached; of one that begins nothing is known yet.
   void tell(const Approach& approach) noexcept;
   /// Goes on with what is there while no block comes.
@@ -54,11 +54,11 @@ class PlannerThread {
   std::int64_t last_block_ns_ = 0;  ///< when one was planned last
   std::uint64_t look_ = 0;          ///< SmoothPlanner::look() when last asked
   std::int64_t looking_since_ns_ = 0;  ///< it waits for blocks
-  std::int64_t planning_ns_ = 0;   ///< spent on the block in hand, attempts without room included
-  double published_before_s_ = 0;  ///< when the plan was begun
-  bool has_begun_ = false;         ///< a plan is being made
-  bool is_refused_ = false;        ///< a block was refused: nothing behind it moves
-  bool is_action_told_ = false;    ///< of the block at the head of the queue
+  std::int64_t planning_ns_ = 0;     ///< spent on the block in hand, attempts without room included
+  double published_before_s_ = 0;    ///< when the plan was begun
+  bool has_begun_ = false;           ///< a plan is being made
+  bool is_refused_ = false;          ///< a block was refused: nothing behind it moves
+  bool is_action_reported_ = false;  ///< of the block at the head of the queue
   trace::SpanWriter spans_;
 };
 

@@ -37,7 +37,7 @@ void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
   }
 }
 
-void TelemetryThread::tell_set_up_told() noexcept {
+void TelemetryThread::report_set_up_reported() noexcept {
   if (ports_.set_up.told.load(std::memory_order_relaxed) == in_force_.change) return;
   ports_.set_up.status.store(status_.status_sequence, std::memory_order_relaxed);
   ports_.set_up.told.store(in_force_.change, std::memory_order_release);

@@ -17,10 +17,10 @@ std::string TelemetryThread::silent_group(const Event& event) {
   }
   if (ports_.drive_words_for_status.refresh()) words_ = ports_.drive_words_for_status.latest();
   const std::uint32_t mask = words_.oldest_mask;
-  const bool is_told = mask != 0 && first_bit(mask) == static_cast<int>(event.b);
-  if (!is_told && event.b != kNoJoint) return "";
+  const bool is_reported = mask != 0 && first_bit(mask) == static_cast<int>(event.b);
+  if (!is_reported && event.b != kNoJoint) return "";
   return "; drive group " + std::to_string(words_.oldest_group) + " is silent" +
-         (is_told ? ": " + telemetry::drive_names(mask, model_) : "");
+         (is_reported ? ": " + telemetry::drive_names(mask, model_) : "");
 }
 
 bool TelemetryThread::take_approach() {
@@ -29,7 +29,7 @@ bool TelemetryThread::take_approach() {
   approach_.clear();
   is_approach_new_ = way_.is_planned;
   if (!way_.is_planned) return false;
-  approach_ = telemetry::describe(way_, model_, dds::kMostText);
+  approach_ = telemetry::describe(way_, model_, dds::kMaxText);
   const bool is_short = telemetry::is_short_of_clearance(way_, model_);
   log_->log(is_short ? spdlog::level::warn : spdlog::level::info, "{}",
             telemetry::describe(way_, model_, SIZE_MAX));
@@ -46,12 +46,12 @@ std::string TelemetryThread::with_approach(const std::string& words) const {
   const State state = view_.record.state;
   const bool is_ahead = state == State::kLoaded || state == State::kApproaching;
   const std::string front = words + "; ";
-  if (!is_ahead || approach_.empty() || front.size() >= dds::kMostText) return words;
-  const std::string both = front + telemetry::describe(way_, model_, dds::kMostText - front.size());
-  return both.size() <= dds::kMostText ? both : words;
+  if (!is_ahead || approach_.empty() || front.size() >= dds::kMaxText) return words;
+  const std::string both = front + telemetry::describe(way_, model_, dds::kMaxText - front.size());
+  return both.size() <= dds::kMaxText ? both : words;
 }
 
-void TelemetryThread::say_what_is_new(const SessionView& session, bool has_told_program) {
+void TelemetryThread::say_what_is_new(const SessionView& session, bool has_reported_program) {
   (void)take_approach();
   bool is_declared = !std::exchange(is_approach_new_, false);
   const bool has_message = !session.message.empty() && session.message != session_message_;
@@ -61,11 +61,11 @@ void TelemetryThread::say_what_is_new(const SessionView& session, bool has_told_
   }
   if (status_.alarm != Alarm::kNone) {
     // Of an alarm the operator needs reason and remedy first.
-    const bool is_said = has_message && !has_told_program;
+    const bool is_said = has_message && !has_reported_program;
     if (is_said) status_.message = alarm_message_ + "; " + session.message;
     return;
   }
-  if (has_message && !has_told_program) {
+  if (has_message && !has_reported_program) {
     status_.message = with_approach(session.message);
     if (status_.message != session.message) approach_message_ = status_.message, is_declared = true;
   }
@@ -81,7 +81,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   // Whoever hears that a session is over hears how its program went: the cycle that ended it is
   // among the records by now, its alarm among the events.
   if (is_other_session) drain();
-  const bool has_told_program = (is_other_session || is_last) && tell_program();
+  const bool has_reported_program = (is_other_session || is_last) && report_program();
   if (is_other_session && session.session != 0) {
     status.blocks_done = 0;
     note(telemetry::AuditKind::kSession, session.program, session);
@@ -138,11 +138,11 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   if (ports_.stalled_reader.refresh()) {
     status.stalled_reader = ports_.stalled_reader.latest().name.data();
   }
-  say_what_is_new(session, has_told_program);
+  say_what_is_new(session, has_reported_program);
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);
   (void)statuses_.write(status);
-  tell_set_up_told();
+  report_set_up_reported();
   status_ns_ = now_ns;
   has_news_ = false;
   motion_.reset();

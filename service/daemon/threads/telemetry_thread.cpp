@@ -79,7 +79,7 @@ void TelemetryThread::run() noexcept {
   drain();
   keep_journal(monotonic_ns());
   flight_.finish();
-  flight_.tell_missed();
+  flight_.report_missed();
   publish_status(monotonic_ns());
 }
 
@@ -171,7 +171,7 @@ void TelemetryThread::drain() {
   while (ports_.round_trips.try_pop(took_ns)) book(kRoundTrip).record(took_ns);
   if (ports_.telemetry_view.refresh()) view_ = ports_.telemetry_view.latest();
   keeper_.set_dry_run(view_.is_dry_run);
-  if (std::exchange(told_state_, view_.record.state) != view_.record.state) has_news_ = true;
+  if (std::exchange(reported_state_, view_.record.state) != view_.record.state) has_news_ = true;
 }
 
 void TelemetryThread::drain_records() {
@@ -194,12 +194,12 @@ void TelemetryThread::drain_records() {
   }
 }
 
-bool TelemetryThread::tell_program() {
+bool TelemetryThread::report_program() {
   const auto summary = program_.take();
   if (!summary) return false;
   const double period_s = 1e-9 * static_cast<double>(model_.cycle_ns);
   const std::string alarm = status_.alarm == Alarm::kNone ? "" : alarm_message_ + "; ";
-  const std::size_t room = dds::kMostText - std::min(dds::kMostText, alarm.size());
+  const std::size_t room = dds::kMaxText - std::min(dds::kMaxText, alarm.size());
   status_.message = alarm + describe(*summary, status_.program, period_s, room);
   log_->info("{}", describe(*summary, status_.program, period_s, SIZE_MAX));
   return true;
@@ -269,11 +269,11 @@ void TelemetryThread::tell(const Event& event) {
   std::string words = telemetry::describe(event, model_);
   if (event.code == EventCode::kAlarm) alarm_message_ = words;
   words += silent_group(event);
-  const bool is_told_stop =
+  const bool is_reported_stop =
       event.code == EventCode::kStopped && status_.alarm == Alarm::kNone;  // else the reason stays
   if (event.code == EventCode::kAlarm) status_.message = words;
   // Why it stopped stays behind how it stopped.
-  if (is_told_stop) status_.message = notice_.empty() ? words : notice_ + "; " + words;
+  if (is_reported_stop) status_.message = notice_.empty() ? words : notice_ + "; " + words;
   log_->log(telemetry::level_of(weight), "cycle {}: {}", event.cycle, words);
 }
 
@@ -293,7 +293,7 @@ void TelemetryThread::publish_latency(std::int64_t now_ns) {
   latency_ns_ = now_ns;
   if (periods_lost_ > 0) log_->warn("{} periods lost in the last second", periods_lost_);
   periods_lost_ = 0;
-  flight_.tell_missed();
+  flight_.report_missed();
   latency_.time_ns = now_ns;
   (void)latencies_.write(latency_);
 }

@@ -73,9 +73,9 @@ class TelemetryThread {
   void record_frame(std::uint64_t cycle) noexcept;
   void record_tools(std::uint64_t cycle) noexcept;
   /// Lets the commands thread know that the newest status tells of the newest set-up.
-  void tell_set_up_told() noexcept;
+  void report_set_up_reported() noexcept;
   /// Tells how the program went that is over; false: none is.
-  bool tell_program();
+  bool report_program();
   void tell(const Event& event);
   /// Which group is silent, where `event` is the alarm of one that is; else empty.
   [[nodiscard]] std::string silent_group(const Event& event);
@@ -84,7 +84,7 @@ class TelemetryThread {
   /// Its program will not be run.
   void forget_approach();
   /// Into the message of the status: what stations did, and the approach.
-  void say_what_is_new(const SessionView& session, bool has_told_program);
+  void say_what_is_new(const SessionView& session, bool has_reported_program);
   /// `words` with the approach behind them, where that is still ahead.
   [[nodiscard]] std::string with_approach(const std::string& words) const;
   void keep_journal(std::int64_t now_ns);
@@ -133,7 +133,7 @@ class TelemetryThread {
   [[nodiscard]] Histogram& book(Book which) { return latency_.histograms[which].histogram; }
   dds::Latency latency_;
   std::int64_t status_ns_ = 0, latency_ns_ = 0;
-  State told_state_ = State::kOff;
+  State reported_state_ = State::kOff;
   std::uint64_t periods_lost_ = 0;  ///< since that was told last
   bool has_news_ = true;
   std::string session_message_;  ///< newest of intake that was told

@@ -9,7 +9,7 @@
 #include "service/drives/kit/action_thread.hpp"
 #include "service/drives/kit/group.hpp"
 #include "service/drives/kit/intake.hpp"
-#include "service/drives/kit/line_teller.hpp"
+#include "service/drives/kit/line_reporter.hpp"
 #include "service/drives/kit/machine_axes.hpp"
 #include "service/drives/kit/other_source.hpp"
 #include "service/drives/kit/pace.hpp"
@@ -93,7 +93,7 @@ struct Drives::Impl {
   void report_states(const dds::DriveFeedback& feedback);
 
   Options options;
-  LineTeller lines;      ///< whoever reads the news stops no thread that sends
+  LineReporter lines;    ///< whoever reads the news stops no thread that sends
   std::mutex reporting;  ///< two threads have news
   Intake::Report report;
   Hardware& hardware;

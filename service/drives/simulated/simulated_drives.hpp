@@ -40,7 +40,7 @@ struct SimulatedDrivesReport {
 /// Puts a DriveGroup and an ActionPeer on the wire and works at the machine's cycle time until
 /// `is_stopping`. Wake-ups keep phase; lost periods of this process are worked in one step. `say`
 /// gets news for the operator: states of drives, actions; while it takes its time the drives stand
-/// still (LineTeller). Takes bridge_cycles from the machine
+/// still (LineReporter). Takes bridge_cycles from the machine
 /// topic where a service tells it. Throws DdsError at start.
 SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const MachineModel& model,
                                            const SimulatedDrivesOptions& options,

@@ -29,7 +29,7 @@ std::string text_of(const toml::table& row, const char* key, const std::string& 
   budget.what = text_of(row, "what", name);
   budget.statistic = text_of(row, "statistic", name);
   budget.unit = text_of(row, "unit", name);
-  budget.judged = text_of(row, "judged", name);
+  budget.checked = text_of(row, "checked", name);
   const auto limit = row["limit"].value<double>();
   const auto factor = row["factor"].value<double>();
   const auto plus = row["plus"].value<double>();
@@ -43,10 +43,10 @@ std::string text_of(const toml::table& row, const char* key, const std::string& 
   budget.plus = plus.value_or(0);
   budget.at_least = at_least.value_or(0);
   if (factor) {
-    budget.bound = Bound::kMostByReference;
+    budget.bound = Bound::kMaxByReference;
     budget.reference = text_of(row, "reference", name);
   } else if (at_least) {
-    budget.bound = Bound::kLeast;
+    budget.bound = Bound::kMin;
   }
   return budget;
 }
@@ -54,13 +54,13 @@ std::string text_of(const toml::table& row, const char* key, const std::string& 
 }  // namespace
 
 double Budget::allowed(double reference_figure) const {
-  if (bound == Bound::kMostByReference) return factor * reference_figure + plus;
-  return bound == Bound::kLeast ? at_least : limit;
+  if (bound == Bound::kMaxByReference) return factor * reference_figure + plus;
+  return bound == Bound::kMin ? at_least : limit;
 }
 
 bool Budget::is_kept(double figure, double reference_figure) const {
   const double border = allowed(reference_figure);
-  return bound == Bound::kLeast ? figure >= border : figure <= border;
+  return bound == Bound::kMin ? figure >= border : figure <= border;
 }
 
 Budget load_budget(const std::string& name, const std::string& file) {
@@ -86,13 +86,13 @@ std::string bound_text(const Budget& budget) {
   std::ostringstream text;
   text.precision(10);
   switch (budget.bound) {
-    case Bound::kMost:
+    case Bound::kMax:
       text << "<= " << budget.limit << " " << budget.unit;
       break;
-    case Bound::kLeast:
+    case Bound::kMin:
       text << ">= " << budget.at_least << " " << budget.unit;
       break;
-    case Bound::kMostByReference:
+    case Bound::kMaxByReference:
       text << "<= ";
       if (budget.factor != 1) text << budget.factor << " x ";
       text << budget.reference;
@@ -106,9 +106,9 @@ std::string to_text(const Budget& budget, double reference_figure) {
   std::ostringstream text;
   text.precision(10);
   text << budget.what << ": " << budget.statistic << " "
-       << (budget.bound == Bound::kLeast ? ">= " : "<= ") << budget.allowed(reference_figure) << " "
+       << (budget.bound == Bound::kMin ? ">= " : "<= ") << budget.allowed(reference_figure) << " "
        << budget.unit;
-  if (budget.bound == Bound::kMostByReference) {
+  if (budget.bound == Bound::kMaxByReference) {
     text << " (" << budget.factor << " x " << reference_figure << " + " << budget.plus << ")";
   }
   return text.str();

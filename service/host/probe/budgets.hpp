@@ -10,14 +10,14 @@ namespace meridian::probe {
 
 /// From which side a budget bounds its figure.
 enum class Bound : std::uint8_t {
-  kMost,             ///< limit: the figure must not exceed it
-  kMostByReference,  ///< factor, plus: nor factor * reference + plus
-  kLeast             ///< at_least: the figure must not fall below it
+  kMax,             ///< limit: the figure must not exceed it
+  kMaxByReference,  ///< factor, plus: nor factor * reference + plus
+  kMin              ///< at_least: the figure must not fall below it
 };
 
 struct Budget {
-  std::string name, what, statistic, unit, reference, judged;
-  Bound bound = Bound::kMost;
+  std::string name, what, statistic, unit, reference, checked;
+  Bound bound = Bound::kMax;
   double limit = 0;
   double factor = 0, plus = 0;
   double at_least = 0;
@@ -42,7 +42,7 @@ struct Budget {
 [[nodiscard]] std::string bound_text(const Budget& budget);
 
 /// "p50 12.3, p99 45.6 us" is written by tests; this is the budget's half of the line: what it is,
-/// how much is allowed and how it is judged.
+/// how much is allowed and how it is checked.
 [[nodiscard]] std::string to_text(const Budget& budget, double reference_figure = 0);
 
 }  // namespace meridian::probe

@@ -17,8 +17,7 @@ namespace {
             "monotonic clock, which nobody sets)",
             "apt install chrony; ptp4l and phc2sys where drives on other hosts need due times"};
   }
-  std::snprintf(found, sizeof found, "synchronised, off by %.1f ms at most",
-                1e3 * now.most_error_s);
+  std::snprintf(found, sizeof found, "synchronised, off by %.1f ms at most", 1e3 * now.max_error_s);
   return {"time of day", Health::kFine, found, ""};
 }
 
@@ -59,7 +58,7 @@ TimeOfDay read_time_of_day() {
   timex now{};
   const int state = ::adjtimex(&now);
   return {.is_synchronised = state >= 0 && state != TIME_ERROR && (now.status & STA_UNSYNC) == 0,
-          .most_error_s = static_cast<double>(now.maxerror) * 1e-6};
+          .max_error_s = static_cast<double>(now.maxerror) * 1e-6};
 }
 
 Findings examine_clocks(const HostFiles& host, const TimeOfDay& now) {

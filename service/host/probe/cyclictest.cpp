@@ -15,7 +15,7 @@
 namespace meridian::probe {
 namespace {
 
-constexpr std::int64_t kMost_us = 20'000;  ///< what is longer is counted there
+constexpr std::int64_t kMax_us = 20'000;  ///< what is longer is counted there
 
 }  // namespace
 
@@ -27,7 +27,7 @@ std::optional<Histogram> parse_cyclictest(const std::string& text) {
     if (line.starts_with("# Histogram Overflows:")) {
       std::uint64_t count = 0;
       words.ignore(22) >> count;
-      for (std::uint64_t i = 0; i < count; ++i) histogram.record(kMost_us * 1000);
+      for (std::uint64_t i = 0; i < count; ++i) histogram.record(kMax_us * 1000);
       continue;
     }
     std::int64_t us = 0;
@@ -49,7 +49,7 @@ std::optional<Histogram> run_cyclictest(int cpu, std::int64_t period_ns, double 
   process::ChildProcess cyclictest(
       {kPath, "-q", "-m", "-p80", "--policy=fifo", "-t1", "-a" + std::to_string(cpu),
        "-i" + std::to_string(period_ns / 1000), "-l" + std::to_string(loops),
-       "-h" + std::to_string(kMost_us)},
+       "-h" + std::to_string(kMax_us)},
       {.error_file = "/dev/null", .output_file = output, .has_own_group = true});
   const auto patience = std::chrono::milliseconds(std::llround(seconds * 1000) + 20'000);
   if (wait_for_exit(cyclictest, patience, is_stopping) != 0) return std::nullopt;

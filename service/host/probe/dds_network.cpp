@@ -42,7 +42,7 @@ namespace {
   return std::strtoul(text->c_str(), nullptr, 16);
 }
 
-[[nodiscard]] Finding judge_interface(const HostFiles& host, const std::string& said,
+[[nodiscard]] Finding check_interface(const HostFiles& host, const std::string& said,
                                       const std::string& name) {
   const std::string found = said == name ? name : said + " (" + name + ")";
   const auto flags = flags_of(host, name);
@@ -61,7 +61,7 @@ namespace {
   return {"DDS interface", Health::kFine, found, ""};
 }
 
-[[nodiscard]] Finding judge_multicast(const HostFiles& host, const dds::NetworkConfig& configured,
+[[nodiscard]] Finding check_multicast(const HostFiles& host, const dds::NetworkConfig& configured,
                                       const std::string& interface, const NetworkView& network) {
   if (!configured.has_multicast) {
     if (!configured.peers.empty()) {
@@ -94,7 +94,7 @@ namespace {
           "works on " + interface + " of this host; switches between hosts may still drop it", ""};
 }
 
-[[nodiscard]] Finding judge_peer(const std::string& peer, Reach reach) {
+[[nodiscard]] Finding check_peer(const std::string& peer, Reach reach) {
   const std::string what = "DDS peer " + peer;
   switch (reach) {
     case Reach::kAnswers:
@@ -118,8 +118,8 @@ namespace {
 Findings examine_dds_network(const HostFiles& host, const std::string& cyclone_uri,
                              const NetworkView& network) {
   if (cyclone_uri.empty()) {
-    return {judge_interface(host, "lo", "lo"),
-            judge_multicast(host, {{"lo"}, {"127.0.0.1"}, false}, "lo", network)};
+    return {check_interface(host, "lo", "lo"),
+            check_multicast(host, {{"lo"}, {"127.0.0.1"}, false}, "lo", network)};
   }
   std::string missing;
   const auto xml = read_uri(host, cyclone_uri, missing);
@@ -132,17 +132,17 @@ Findings examine_dds_network(const HostFiles& host, const std::string& cyclone_u
   if (configured.interfaces.empty()) {
     out.push_back({"DDS interface", Health::kNote, "none is named: Cyclone takes the one it likes",
                    "name the interface of the machine's network in CYCLONEDDS_URI"});
-    out.push_back(judge_multicast(host, configured, "", network));
+    out.push_back(check_multicast(host, configured, "", network));
   }
   for (const std::string& said : configured.interfaces) {
     const bool is_name = flags_of(host, said).has_value();
     const std::string name = is_name ? said : network.interface_of(said);
-    out.push_back(judge_interface(host, said, name));
+    out.push_back(check_interface(host, said, name));
     if (out.back().health != Health::kFine) continue;
-    out.push_back(judge_multicast(host, configured, name, network));
+    out.push_back(check_multicast(host, configured, name, network));
   }
   for (const std::string& peer : configured.peers) {
-    out.push_back(judge_peer(peer, network.reach(peer)));
+    out.push_back(check_peer(peer, network.reach(peer)));
   }
   return out;
 }

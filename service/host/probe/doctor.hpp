@@ -35,7 +35,7 @@ struct Rights {
 /// Time of day as the kernel keeps it.
 struct TimeOfDay {
   bool is_synchronised = false;
-  double most_error_s = 0;
+  double max_error_s = 0;
 };
 [[nodiscard]] TimeOfDay read_time_of_day();
 /// Time of day, what fires timers, and whether they are moved to other processors.

@@ -64,7 +64,7 @@ std::vector<std::int64_t> with_omitted(const std::vector<std::int64_t>& late_ns,
     all.push_back(late);
     if (interval_ns <= 0) continue;
     std::int64_t omitted = late - interval_ns;
-    for (int i = 0; i < Histogram::kMostOmitted && omitted > 0; ++i, omitted -= interval_ns) {
+    for (int i = 0; i < Histogram::kMaxOmitted && omitted > 0; ++i, omitted -= interval_ns) {
       all.push_back(omitted);
     }
   }

@@ -21,8 +21,8 @@ constexpr double kUs = 1e-3;
 }
 
 [[nodiscard]] Weight weight_of(const Budget& budget) {
-  if (budget.judged.starts_with("reported")) return Weight::kReported;
-  return budget.judged.starts_with("on a target host") ? Weight::kTargetHost : Weight::kJudged;
+  if (budget.checked.starts_with("reported")) return Weight::kReported;
+  return budget.checked.starts_with("on a target host") ? Weight::kTargetHost : Weight::kChecked;
 }
 
 /// Samples of one distribution, and how many the time was for.
@@ -31,7 +31,7 @@ struct Samples {
 };
 
 /// Fewer samples than this have no such percentile.
-[[nodiscard]] std::uint64_t least_for(const std::string& statistic) {
+[[nodiscard]] std::uint64_t min_for(const std::string& statistic) {
   return statistic.find("p99.9") != std::string::npos ? 1000 : 100;
 }
 
@@ -42,11 +42,11 @@ struct Samples {
 [[nodiscard]] const char* word(const Verdict& verdict) {
   if (!verdict.is_measured()) return "UNKNOWN";
   if (verdict.is_inside()) return "inside";
-  return verdict.weight == Weight::kJudged ? "OUTSIDE" : "outside";
+  return verdict.weight == Weight::kChecked ? "OUTSIDE" : "outside";
 }
 
 [[nodiscard]] const char* word(Weight weight) {
-  constexpr const char* kWeights[] = {"judged", "target host", "reported"};
+  constexpr const char* kWeights[] = {"checked", "target host", "reported"};
   return kWeights[static_cast<std::size_t>(weight)];
 }
 
@@ -115,7 +115,7 @@ std::vector<Shown> distributions(const RateMeasurement& m) {
   return shown;
 }
 
-std::vector<Verdict> judge(const RateMeasurement& m, const std::string& budgets_file) {
+std::vector<Verdict> check(const RateMeasurement& m, const std::string& budgets_file) {
   const double wanted_share = load_budget("samples_taken", budgets_file).at_least / 100;
   std::vector<Verdict> verdicts;
   const auto hold = [&](const char* name, double figure, double reference,
@@ -123,7 +123,7 @@ std::vector<Verdict> judge(const RateMeasurement& m, const std::string& budgets_
     const Budget budget = load_budget(name, budgets_file);
     Verdict verdict{budget, weight_of(budget), m.rate_hz, m.is_loaded, figure, reference};
     for (const Samples& one : all) {
-      const double of = static_cast<double>(std::max(one.of, least_for(budget.statistic)));
+      const double of = static_cast<double>(std::max(one.of, min_for(budget.statistic)));
       const auto wanted = static_cast<std::uint64_t>(std::ceil(wanted_share * of));
       if (verdict.wanted == 0 || one.taken * verdict.wanted < verdict.samples * wanted) {
         verdict.samples = one.taken;
@@ -185,9 +185,9 @@ std::vector<std::string> missing_rights(const Rights& rights,
 }
 
 void ProbeReport::add(const RateMeasurement& measured) {
-  const std::vector<Verdict> judged = judge(measured);
+  const std::vector<Verdict> checked = check(measured);
   measurements.push_back(measured);
-  verdicts.insert(verdicts.end(), judged.begin(), judged.end());
+  verdicts.insert(verdicts.end(), checked.begin(), checked.end());
 }
 
 bool ProbeReport::is_fit() const {
@@ -199,7 +199,7 @@ bool ProbeReport::is_fit() const {
   if (!std::all_of(measurements.begin(), measurements.end(), is_whole)) return false;
   return std::all_of(verdicts.begin(), verdicts.end(), [this](const Verdict& verdict) {
     const bool is_counted =
-        verdict.weight == Weight::kJudged || (is_target && verdict.weight == Weight::kTargetHost);
+        verdict.weight == Weight::kChecked || (is_target && verdict.weight == Weight::kTargetHost);
     return verdict.is_inside() || !is_counted;
   });
 }
@@ -228,7 +228,7 @@ std::string to_text(const ProbeReport& report) {
   if (!report.broken_off.empty()) out += "\nBROKEN OFF: " + report.broken_off + "\n";
   append(out, "\n%s: %s\n", report.is_fit() ? "FIT" : "NOT FIT",
          report.is_target ? "budgets of a target host counted"
-                          : "judged in comparison with bare programs of the same run");
+                          : "checked in comparison with bare programs of the same run");
   if (!report.is_fit()) {
     out +=
         "what is wrong with the host: meridian doctor; what a slow cycle waited for: meridiand "

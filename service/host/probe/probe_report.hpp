@@ -16,7 +16,7 @@ namespace meridian::probe {
 
 /// How much a budget that is missed matters.
 enum class Weight : std::uint8_t {
-  kJudged,      ///< decides
+  kChecked,     ///< decides
   kTargetHost,  ///< decides where the host is to cut: the budget says "on a target host"
   kReported     ///< never
 };
@@ -24,7 +24,7 @@ enum class Weight : std::uint8_t {
 /// One budget held against what was measured.
 struct Verdict {
   Budget budget;
-  Weight weight = Weight::kJudged;
+  Weight weight = Weight::kChecked;
   int rate_hz = 0;
   bool is_loaded = false;
   double figure = 0, reference = 0;  ///< in the unit of the budget
@@ -38,7 +38,7 @@ struct Verdict {
 };
 
 /// Every budget of the table that this measurement can be held against.
-[[nodiscard]] std::vector<Verdict> judge(const RateMeasurement& measured,
+[[nodiscard]] std::vector<Verdict> check(const RateMeasurement& measured,
                                          const std::string& budgets_file = "");
 
 /// Rights to real time that this process has not, of those that a service with these wishes needs:

@@ -41,7 +41,7 @@ constexpr std::uintmax_t kWanted_bytes = 16'000'000;
   return place.string() + " has " + std::to_string(space.available / 1'000'000) + " MB left";
 }
 
-[[nodiscard]] std::string tell_kept(const fs::path& folder) {
+[[nodiscard]] std::string report_kept(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return "the service makes " + folder.string();
   const auto kept = trace::find_kept(folder);
@@ -69,7 +69,7 @@ Findings examine_traces(const fs::path& folder) {
              "without traces too"}};
   }
   try {
-    return {{what, Health::kFine, tell_kept(folder), ""}};
+    return {{what, Health::kFine, report_kept(folder), ""}};
   } catch (const fs::filesystem_error& error) {
     return {{what, Health::kNote, error.what(), "let this user read the folder"}};
   }

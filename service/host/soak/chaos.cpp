@@ -24,11 +24,11 @@ constexpr std::array<int, kMishapCount> kWeights{6, 6, 2, 3, 2, 0, 0, 0, 0, 1};
 
 const char* word(Mishap mishap) noexcept { return kWords[static_cast<std::size_t>(mishap)]; }
 
-Chaos::Chaos(std::uint64_t seed, double every_s, int drives, double most_override)
+Chaos::Chaos(std::uint64_t seed, double every_s, int drives, double max_override)
     : random_(seed),
       drives_random_(~seed),
       every_s_(every_s),
-      most_override_(most_override),
+      max_override_(max_override),
       drives_(drives) {}
 
 Planned Chaos::next() {
@@ -39,7 +39,7 @@ Planned Chaos::next() {
   std::size_t which = 0;
   while (place >= kWeights[which]) place -= kWeights[which++];
   Planned planned{static_cast<Mishap>(which), at_s_, 0, 0};
-  if (planned.mishap == Mishap::kOverride) planned.value = draw(random_, 0.2, most_override_);
+  if (planned.mishap == Mishap::kOverride) planned.value = draw(random_, 0.2, max_override_);
   if (planned.mishap == Mishap::kHold) planned.value = draw(random_, 0.1, 2);
   if (planned.mishap == Mishap::kStationStops) planned.value = draw(random_, 0.3, 3);
   return planned;

@@ -34,11 +34,11 @@ struct Planned {
 };
 
 /// The schedule of mishaps: the same for the same seed. Distances are drawn between half and three
-/// halves of `every_s`, overrides up to `most_override`, distances of mishaps of the drives between
+/// halves of `every_s`, overrides up to `max_override`, distances of mishaps of the drives between
 /// one and four times that. Proof: tests/unit/soak/soak_test.cpp.
 class Chaos {
  public:
-  Chaos(std::uint64_t seed, double every_s, int drives, double most_override = 1);
+  Chaos(std::uint64_t seed, double every_s, int drives, double max_override = 1);
   /// The next of operator, station and service.
   [[nodiscard]] Planned next();
   /// The next of the drives; `at_s` counts from when they are enabled.
@@ -46,7 +46,7 @@ class Chaos {
 
  private:
   std::mt19937_64 random_, drives_random_;
-  double every_s_, at_s_ = 0, most_override_;
+  double every_s_, at_s_ = 0, max_override_;
   int drives_;
 };
 

@@ -28,7 +28,7 @@ void HealthWatch::look(pid_t service, double now_s, const dds::Status* status) {
   Life& life = report_.lives.back();
   life.last.process = *account;
   life.last.threads = process::threads_of(service);
-  life.most_resident_mib = std::max(life.most_resident_mib, account->resident_mib);
+  life.max_resident_mib = std::max(life.max_resident_mib, account->resident_mib);
   if (status != nullptr) {
     life.last.cycles_run = status->cycles_run;
     report_.is_enforced = status->realtime_mode == dds::RealtimeMode::kEnforced;

@@ -62,7 +62,7 @@ std::int64_t longest_away_ns(std::span<const Stall> stalls, std::int64_t since_n
 
 HostWatch::HostWatch(std::int64_t bridge_ns)
     : nap_ns_(nap_ns(bridge_ns)),
-      least_ns_(std::clamp(bridge_ns - nap_ns_, nap_ns_, std::int64_t{kStall_ns})) {
+      min_ns_(std::clamp(bridge_ns - nap_ns_, nap_ns_, std::int64_t{kStall_ns})) {
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &process::initial_cpus())) continue;
     threads_.emplace_back([this, cpu](const std::stop_token& stop) { watch(cpu, stop); });
@@ -89,8 +89,8 @@ void HostWatch::note(const Stall& late) {
     ++count_;
     longest_ns_ = std::max(longest_ns_, late.length_ns);
   }
-  if (late.length_ns < least_ns_) return;
-  if (stalls_.size() == kMostStalls) stalls_.erase(stalls_.begin());
+  if (late.length_ns < min_ns_) return;
+  if (stalls_.size() == kMaxStalls) stalls_.erase(stalls_.begin());
   stalls_.push_back(late);
 }
 

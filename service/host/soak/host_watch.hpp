@@ -64,15 +64,15 @@ class HostWatch {
   void watch(int cpu, const std::stop_token& stop);
   void note(const Stall& late);
 
-  std::int64_t nap_ns_, least_ns_;  ///< stalls of less are not told one by one
+  std::int64_t nap_ns_, min_ns_;  ///< stalls of less are not told one by one
   mutable std::mutex mutex_;
   std::map<int, Histogram> lateness_;  ///< by processor
-  std::vector<Stall> stalls_;          ///< the newest kMostStalls
+  std::vector<Stall> stalls_;          ///< the newest kMaxStalls
   std::uint64_t count_ = 0;
   std::int64_t longest_ns_ = 0;
   std::atomic<std::size_t> watched_ = 0;
   std::vector<std::jthread> threads_;
-  static constexpr std::size_t kMostStalls = 1000;
+  static constexpr std::size_t kMaxStalls = 1000;
 };
 
 }  // namespace meridian::soak

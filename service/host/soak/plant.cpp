@@ -49,7 +49,7 @@ Plant::Plant(PlantOptions options, std::filesystem::path folder, const std::file
     : options_(std::move(options)),
       domain_(std::to_string(options_.domain)),
       folder_(std::move(folder)),
-      kept_(kept, "fault", kMostKept) {}
+      kept_(kept, "fault", kMaxKept) {}
 
 void Plant::start_service(const std::filesystem::path& recording) {
   const auto file = folder_ / "service.toml";

@@ -47,7 +47,7 @@ class Plant {
   void kill_service() { service_.reset(); }
   void kill_station() { station_.reset(); }
 
-  /// Copies what service and drives said so far, at most kMostKept times; returns where to, or
+  /// Copies what service and drives said so far, at most kMaxKept times; returns where to, or
   /// "soak" where they were not kept.
   [[nodiscard]] std::string keep_logs();
   /// Copies what the flight recorder wrote of the fault whose logs were kept last, as
@@ -65,7 +65,7 @@ class Plant {
   [[nodiscard]] std::string log(const char* name) const { return (folder_ / name).string(); }
   [[nodiscard]] std::filesystem::path flights() const { return folder_ / "flights"; }
 
-  static constexpr int kMostKept = 20;
+  static constexpr int kMaxKept = 20;
   PlantOptions options_;
   std::string domain_;
   std::filesystem::path folder_;

@@ -16,29 +16,30 @@ namespace {
 
 using text::append;
 using text::json_quoted;
-using Verdict = Judgement::Verdict;
+using Verdict = CheckResult::Verdict;
 
 constexpr double kMicro = 1e-3;
 constexpr const char* kComputation = "cycle computation";
 constexpr const char* kNotWatched = "the host was not watched: no right to real time";
 
-[[nodiscard]] Judgement judged(const probe::Budget& budget, double figure, double reference = 0) {
+[[nodiscard]] CheckResult checked(const probe::Budget& budget, double figure,
+                                  double reference = 0) {
   const bool is_kept = budget.is_kept(figure, reference);
   return {budget, figure, reference, is_kept ? Verdict::kKept : Verdict::kBroken, ""};
 }
 
 [[nodiscard]] std::string too_short(const char* what) {
-  return std::string("too short: ") + what + " " + std::to_string(kLeastSamples);
+  return std::string("too short: ") + what + " " + std::to_string(kMinSamples);
 }
 
 /// The same without a verdict, for the reason `why`.
-[[nodiscard]] Judgement left_open(Judgement judgement, std::string why) {
-  judgement.verdict = Verdict::kNotJudged;
-  judgement.why = std::move(why);
-  return judgement;
+[[nodiscard]] CheckResult left_open(CheckResult result, std::string why) {
+  result.verdict = Verdict::kNotChecked;
+  result.why = std::move(why);
+  return result;
 }
 
-[[nodiscard]] Judgement judge_faults(const SoakReport& report) {
+[[nodiscard]] CheckResult check_faults(const SoakReport& report) {
   double faults = 0;
   bool has_ready = false, is_locked = true;
   for (const Life& life : report.lives) {
@@ -49,31 +50,30 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
       faults += static_cast<double>(faults_of(life.ready, life.last.threads, name));
     }
   }
-  const Judgement judgement = judged(report.budgets.page_faults, faults);
-  if (!has_ready) return left_open(judgement, "the machine was never Ready");
-  return is_locked ? judgement : left_open(judgement, "memory could not be locked");
+  const CheckResult result = checked(report.budgets.page_faults, faults);
+  if (!has_ready) return left_open(result, "the machine was never Ready");
+  return is_locked ? result : left_open(result, "memory could not be locked");
 }
 
-[[nodiscard]] Judgement judge_lost(const SoakReport& report) {
+[[nodiscard]] CheckResult check_lost(const SoakReport& report) {
   const auto own = static_cast<double>(report.periods_lost - report.periods_lost_to_host);
   const auto all = static_cast<double>(report.cycles_run + report.periods_lost);
-  const Judgement judgement = judged(report.budgets.periods_lost, all > 0 ? 100 * own / all : 0);
-  if (!report.is_host_watched) return left_open(judgement, kNotWatched);
-  if (report.cycles_run < kLeastSamples)
-    return left_open(judgement, too_short("fewer cycles than"));
-  return judgement;
+  const CheckResult result = checked(report.budgets.periods_lost, all > 0 ? 100 * own / all : 0);
+  if (!report.is_host_watched) return left_open(result, kNotWatched);
+  if (report.cycles_run < kMinSamples) return left_open(result, too_short("fewer cycles than"));
+  return result;
 }
 
 /// A ring is full where its reader was kept from its processor, too.
-[[nodiscard]] Judgement judge_overruns(const SoakReport& report) {
+[[nodiscard]] CheckResult check_overruns(const SoakReport& report) {
   const auto own = static_cast<double>(report.overruns - report.overruns_by_host);
-  const Judgement judgement = judged(report.budgets.overruns, own);
-  if (judgement.verdict == Verdict::kKept || report.is_host_watched) return judgement;
-  return left_open(judgement, kNotWatched);
+  const CheckResult result = checked(report.budgets.overruns, own);
+  if (result.verdict == Verdict::kKept || report.is_host_watched) return result;
+  return left_open(result, kNotWatched);
 }
 
 /// Of the life that switched most.
-[[nodiscard]] Judgement judge_switches(const SoakReport& report) {
+[[nodiscard]] CheckResult check_switches(const SoakReport& report) {
   std::optional<double> most;
   bool is_real_time = false;
   for (const Life& life : report.lives) {
@@ -82,13 +82,13 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
     if (!life.has_first || first == nullptr || last == nullptr) continue;
     is_real_time |= last->policy == SCHED_FIFO;
     const std::uint64_t cycles = life.last.cycles_run - life.first.cycles_run;
-    if (cycles < kLeastSamples) continue;
+    if (cycles < kMinSamples) continue;
     const auto switches = static_cast<double>(last->voluntary_switches - first->voluntary_switches);
     most = std::max(most.value_or(0), switches / static_cast<double>(cycles));
   }
-  const Judgement judgement = judged(report.budgets.switches, most.value_or(0));
-  if (!most) return left_open(judgement, too_short("no life of so many cycles:"));
-  return is_real_time ? judgement : left_open(judgement, "the cycle had no real-time priority");
+  const CheckResult result = checked(report.budgets.switches, most.value_or(0));
+  if (!most) return left_open(result, too_short("no life of so many cycles:"));
+  return is_real_time ? result : left_open(result, "the cycle had no real-time priority");
 }
 
 /// The share of its time for which a witness that naps for `nap_ns` was kept waiting.
@@ -105,16 +105,16 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
   return time_ns > 0 ? away_ns / time_ns : 0;
 }
 
-[[nodiscard]] Judgement judge_drift(const SoakReport& report, const RunBudgets::Drift& drift,
-                                    TimeSlices::Named& first, TimeSlices::Named& last) {
+[[nodiscard]] CheckResult check_drift(const SoakReport& report, const RunBudgets::Drift& drift,
+                                      TimeSlices::Named& first, TimeSlices::Named& last) {
   const auto us = [&drift](const Histogram& one) {
     return kMicro * static_cast<double>(one.percentile_ns(drift.share));
   };
   const Histogram &before = first[drift.histogram], &after = last[drift.histogram];
   const Histogram &bare_before = first[kBareThread], &bare_after = last[kBareThread];
-  const Judgement judgement = judged(drift.budget, us(after), us(before));
-  if (std::min(before.count(), after.count()) < kLeastSamples) {
-    return left_open(judgement, too_short("a quarter of the run has fewer samples than"));
+  const CheckResult result = checked(drift.budget, us(after), us(before));
+  if (std::min(before.count(), after.count()) < kMinSamples) {
+    return left_open(result, too_short("a quarter of the run has fewer samples than"));
   }
   constexpr double kSameWork = 0.05;
   const double cut_before = first[kCutting].mean_ns(), cut_after = last[kCutting].mean_ns();
@@ -124,10 +124,10 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
            "a cycle that cuts computes longer: %.0f %% of the first quarter cut, %.0f %% of "
            "the last",
            100 * cut_before, 100 * cut_after);
-    return left_open(judgement, why);
+    return left_open(result, why);
   }
-  if (judgement.verdict == Verdict::kKept) return judgement;
-  if (!report.is_host_watched) return left_open(judgement, kNotWatched);
+  if (result.verdict == Verdict::kKept) return result;
+  if (!report.is_host_watched) return left_open(result, kNotWatched);
   // What the host alone did to more than half of the values beyond the percentile decides nothing.
   const double away = std::max(away_share(bare_before, report.host_nap_ns),
                                away_share(bare_after, report.host_nap_ns));
@@ -138,11 +138,13 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
     append(why, "a bare thread of highest priority there went from %.1f to %.1f us",
            us(bare_before), us(bare_after));
   }
-  return why.empty() ? judgement : left_open(judgement, why);
+  return why.empty() ? result : left_open(result, why);
 }
 
 [[nodiscard]] const char* word(Verdict verdict) noexcept {
-  return verdict == Verdict::kKept ? "kept" : verdict == Verdict::kBroken ? "BROKEN" : "not judged";
+  return verdict == Verdict::kKept     ? "kept"
+         : verdict == Verdict::kBroken ? "BROKEN"
+                                       : "not checked";
 }
 
 }  // namespace
@@ -158,20 +160,20 @@ RunBudgets load_run_budgets() {
                      {"wake-up lateness", 0.999, probe::load_budget("soak_lateness_drift_p999")}}};
 }
 
-std::vector<Judgement> judge_run(const SoakReport& report) {
-  std::vector<Judgement> all{judge_faults(report), judge_lost(report), judge_overruns(report),
-                             judge_switches(report)};
+std::vector<CheckResult> check_run(const SoakReport& report) {
+  std::vector<CheckResult> all{check_faults(report), check_lost(report), check_overruns(report),
+                               check_switches(report)};
   TimeSlices::Named first = report.slices.first_quarter(report.elapsed_s);
   TimeSlices::Named last = report.slices.last_quarter(report.elapsed_s);
   for (const RunBudgets::Drift& drift : report.budgets.drifts) {
-    all.push_back(judge_drift(report, drift, first, last));
+    all.push_back(check_drift(report, drift, first, last));
   }
   return all;
 }
 
-std::string to_text(const std::vector<Judgement>& judgements) {
+std::string to_text(const std::vector<CheckResult>& results) {
   std::string out;
-  for (const Judgement& one : judgements) {
+  for (const CheckResult& one : results) {
     append(out, "  %-10s %-28s %.6g, allowed %.6g %s", word(one.verdict), one.budget.name.c_str(),
            one.figure, one.budget.allowed(one.reference), one.budget.unit.c_str());
     if (!one.why.empty()) append(out, " (%s)", one.why.c_str());
@@ -180,10 +182,10 @@ std::string to_text(const std::vector<Judgement>& judgements) {
   return out;
 }
 
-std::string to_json(const std::vector<Judgement>& judgements) {
+std::string to_json(const std::vector<CheckResult>& results) {
   std::string out = "[";
   const char* separator = "";
-  for (const Judgement& one : judgements) {
+  for (const CheckResult& one : results) {
     append(out, "%s\n  {\"budget\": %s, \"figure\": %.6g, \"allowed\": %.6g, \"unit\": %s, ",
            separator, json_quoted(one.budget.name).c_str(), one.figure,
            one.budget.allowed(one.reference), json_quoted(one.budget.unit).c_str());

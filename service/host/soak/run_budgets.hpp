@@ -26,27 +26,27 @@ struct RunBudgets {
 [[nodiscard]] RunBudgets load_run_budgets();
 
 /// What came of one budget.
-struct Judgement {
-  enum class Verdict : std::uint8_t { kKept, kBroken, kNotJudged };
+struct CheckResult {
+  enum class Verdict : std::uint8_t { kKept, kBroken, kNotChecked };
   probe::Budget budget;
   double figure = 0, reference = 0;
-  Verdict verdict = Verdict::kNotJudged;
-  std::string why;  ///< not judged: the reason
+  Verdict verdict = Verdict::kNotChecked;
+  std::string why;  ///< not checked: the reason
 };
 
-/// Judges a run by its budgets: page faults of cycle and publisher after Ready, periods lost and
+/// Checks a run by its budgets: page faults of cycle and publisher after Ready, periods lost and
 /// overruns that no stall of the host explains, switches of the cycle, drift of latencies. What
-/// nobody can know here is not judged and says why: rights that were missing, too few samples, a
+/// nobody can know here is not checked and says why: rights that were missing, too few samples, a
 /// host that stalled or drifted itself, quarters of different work. Proof:
 /// tests/unit/soak/run_budgets_test.cpp.
-[[nodiscard]] std::vector<Judgement> judge_run(const SoakReport& report);
+[[nodiscard]] std::vector<CheckResult> check_run(const SoakReport& report);
 
 /// A line each, and an array of JSON.
-[[nodiscard]] std::string to_text(const std::vector<Judgement>& judgements);
-[[nodiscard]] std::string to_json(const std::vector<Judgement>& judgements);
+[[nodiscard]] std::string to_text(const std::vector<CheckResult>& results);
+[[nodiscard]] std::string to_json(const std::vector<CheckResult>& results);
 
-/// So many samples a quarter must have, and a life cycles, to be judged: a minute at 1 kHz.
-inline constexpr std::uint64_t kLeastSamples = 60'000;
+/// So many samples a quarter must have, and a life cycles, to be checked: a minute at 1 kHz.
+inline constexpr std::uint64_t kMinSamples = 60'000;
 
 /// The witness's histogram among the slices of a run.
 inline constexpr const char* kBareThread = "bare thread";

@@ -24,10 +24,10 @@ void RunWatch::begin_life(double now_s) {
   faults_.lose_service();
 }
 
-std::optional<FaultJudge::Cause> RunWatch::see(const dds::Status& status, double now_s) {
+std::optional<FaultCheck::Cause> RunWatch::see(const dds::Status& status, double now_s) {
   newest_ = status;
   count(status, now_s);
-  constexpr std::int64_t kMemory_ns = FaultJudge::kStallsOf_ns + FaultJudge::kLongestStop_ns;
+  constexpr std::int64_t kMemory_ns = FaultCheck::kStallsOf_ns + FaultCheck::kLongestStop_ns;
   const Witness witness{host_.stalls_since(status.time_ns - kMemory_ns), host_.is_watching(),
                         misses_setpoints()};
   return faults_.see(status, now_s, witness);
@@ -63,7 +63,7 @@ void RunWatch::look(pid_t service, double now_s) {
   health_.look(service, now_s, newest_ ? &*newest_ : nullptr);
 }
 
-void RunWatch::tell_of_host() {
+void RunWatch::report_of_host() {
   report_.is_host_watched = host_.is_watching();
   report_.host_stalls = host_.stalls();
   report_.host_longest_s = host_.longest_s();

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/host/soak/fault_judge.hpp"
+#include "service/host/soak/fault_check.hpp"
 #include "service/host/soak/health_watch.hpp"
 #include "service/host/soak/host_credit.hpp"
 #include "service/host/soak/host_watch.hpp"
@@ -33,16 +33,16 @@ class RunWatch {
   /// A service was started.
   void begin_life(double now_s);
   /// Of what drives are told to suffer, and when they come and go.
-  [[nodiscard]] FaultJudge& faults() { return faults_; }
+  [[nodiscard]] FaultCheck& faults() { return faults_; }
   /// New drives have said nothing yet.
   void forget_feedback() { feedback_ = {}; }
 
   /// Every status in its order; the cause of a Fault once, as soon as it is told.
-  [[nodiscard]] std::optional<FaultJudge::Cause> see(const dds::Status& status, double now_s);
+  [[nodiscard]] std::optional<FaultCheck::Cause> see(const dds::Status& status, double now_s);
   /// Once a second while process `service` runs.
   void look(pid_t service, double now_s);
   /// What the host did until now, into the report.
-  void tell_of_host();
+  void report_of_host();
 
  private:
   void count(const dds::Status& status, double now_s);
@@ -56,7 +56,7 @@ class RunWatch {
   dds::DriveFeedback feedback_;  ///< the newest
   std::int64_t bridge_ns_;       ///< what drives bridge
   HostWatch host_;
-  FaultJudge faults_;
+  FaultCheck faults_;
   HostCredit credit_;
   OverrunExcuse excuse_;
   StatusCounts counts_;

@@ -26,7 +26,7 @@ struct SoakOptions {
 };
 
 /// Runs service, simulated drives and station as processes, one program after the other, and is
-/// their operator, until the time is over or `is_stopping`. Everything the service sends is judged
+/// their operator, until the time is over or `is_stopping`. Everything the service sends is checked
 /// while it runs; the report is written every few seconds. Programs lie beside the running one.
 /// Throws config::ConfigError, std::runtime_error or dds::DdsError where it cannot begin.
 [[nodiscard]] SoakReport run_soak(const SoakOptions& options, const std::atomic<bool>& is_stopping,

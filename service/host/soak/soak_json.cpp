@@ -72,13 +72,13 @@ std::string to_json(const SoakReport& report) {
   append(out, " \"service_file\": %s, \"enforced\": %s, \"cpu\": %d, \"traces\": %s,\n",
          json_quoted(report.service_file).c_str(), report.is_enforced ? "true" : "false",
          report.cpu, json_quoted(report.traces).c_str());
-  out += " \"budgets\": " + to_json(judge_run(report)) + ",\n \"services\": [";
+  out += " \"budgets\": " + to_json(check_run(report)) + ",\n \"services\": [";
   const char* separator = "";
   for (const Life& life : report.lives) {
     append(out,
-           "%s\n  {\"resident_mib\": %.2f, \"most_resident_mib\": %.2f, \"locked_mib\": %.2f, "
+           "%s\n  {\"resident_mib\": %.2f, \"max_resident_mib\": %.2f, \"locked_mib\": %.2f, "
            "\"files\": %d, \"threads\": %d, \"thread_list\": [",
-           separator, life.last.process.resident_mib, life.most_resident_mib,
+           separator, life.last.process.resident_mib, life.max_resident_mib,
            life.last.process.locked_mib, life.last.process.files, life.last.process.threads);
     append_threads(out, life);
     out += "]}";

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kAnswer{1500};
 /// So often is asked for what leads on and the state stays, until the drives are started anew.
-constexpr int kMostInVain = 15;
+constexpr int kMaxInVain = 15;
 /// Between the end of a program and the next: its recording is cut there.
 constexpr double kPause_s = 0.3;
 
@@ -31,7 +31,7 @@ void SoakRun::operate(const dds::Status& status) {
       lead_on(status.drives_fault_mask != 0 ? Verb::kReset : Verb::kEnable);
       break;
     case State::kFault:
-      if (!watch_.faults().is_judged()) break;
+      if (!watch_.faults().is_checked()) break;
       if (std::exchange(is_drive_sick_, false)) start_drives();
       lead_on(Verb::kReset);
       break;
@@ -62,7 +62,7 @@ bool SoakRun::ask(Verb verb, double value) {
 
 void SoakRun::lead_on(Verb verb) {
   ask(verb);
-  if (++asked_in_vain_ >= kMostInVain) start_drives();
+  if (++asked_in_vain_ >= kMaxInVain) start_drives();
 }
 
 void SoakRun::mishaps() {
@@ -84,7 +84,7 @@ bool SoakRun::happen(const Planned& mishap) {
       resume_s_ = now_s() + mishap.value;
       return ask(Verb::kHold);
     case Mishap::kOverride:
-      judge_.announce_override(mishap.value, stream::steady_ns());
+      check_.announce_override(mishap.value, stream::steady_ns());
       return ask(Verb::kFeedOverride, mishap.value);
     case Mishap::kAbort:
       return ask(Verb::kAbort);

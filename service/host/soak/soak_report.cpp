@@ -35,9 +35,9 @@ void append_mishaps(std::string& out, const SoakReport& report) {
 [[nodiscard]] std::uint64_t faults_of_others(const Life& life) {
   std::uint64_t sum = 0;
   for (const process::ThreadAccount& one : life.last.threads) {
-    const bool is_judged = one.name == "cycle" || one.name == "publisher";
+    const bool is_checked = one.name == "cycle" || one.name == "publisher";
     const auto same = std::ranges::find(life.ready, one.id, &process::ThreadAccount::id);
-    if (is_judged || one.priority == 0 || same == life.ready.end()) continue;
+    if (is_checked || one.priority == 0 || same == life.ready.end()) continue;
     sum += one.minor_faults + one.major_faults - same->minor_faults - same->major_faults;
   }
   return sum;
@@ -61,7 +61,7 @@ void append_lives(std::string& out, const SoakReport& report) {
            "  service %zu: resident %.1f -> %.1f MiB (most %.1f, locked %.1f), files %d -> %d, "
            "threads %d -> %d\n",
            i + 1, life.first.process.resident_mib, life.last.process.resident_mib,
-           life.most_resident_mib, life.last.process.locked_mib, life.first.process.files,
+           life.max_resident_mib, life.last.process.locked_mib, life.first.process.files,
            life.last.process.files, life.first.process.threads, life.last.process.threads);
     const process::ThreadAccount cycle = grown(life, "cycle"), publisher = grown(life, "publisher");
     append(out,
@@ -94,8 +94,8 @@ void append_scheduling(std::string& out, const SoakReport& report) {
 
 /// A soak that is not at its end passes so far, and no further.
 void append_verdict(std::string& out, const SoakReport& report,
-                    const std::vector<Judgement>& judgements) {
-  const bool is_clean = report.is_clean(judgements);
+                    const std::vector<CheckResult>& results) {
+  const bool is_clean = report.is_clean(results);
   out += is_clean ? "PASS" : "FAIL";
   if (report.is_interrupted) {
     append(out, "%s, interrupted after %.0f s of %.0f s", is_clean ? " so far" : "",
@@ -104,11 +104,11 @@ void append_verdict(std::string& out, const SoakReport& report,
     out += " so far";
   }
   const auto left =
-      std::ranges::count(judgements, Judgement::Verdict::kNotJudged, &Judgement::verdict);
+      std::ranges::count(results, CheckResult::Verdict::kNotChecked, &CheckResult::verdict);
   append(out,
-         ": %llu violations of limits, tolerance, sequence or state; %zu of %zu budgets judged\n",
-         Count{report.violation_count}, judgements.size() - static_cast<std::size_t>(left),
-         judgements.size());
+         ": %llu violations of limits, tolerance, sequence or state; %zu of %zu budgets checked\n",
+         Count{report.violation_count}, results.size() - static_cast<std::size_t>(left),
+         results.size());
 }
 
 }  // namespace
@@ -136,8 +136,7 @@ std::uint64_t faults_of(const std::vector<process::ThreadAccount>& first,
 
 void SoakReport::violate(std::string text, std::string where) {
   ++violation_count;
-  if (violations.size() < kMostViolations)
-    violations.push_back({std::move(text), std::move(where)});
+  if (violations.size() < kMaxViolations) violations.push_back({std::move(text), std::move(where)});
 }
 
 void SoakReport::add(const record::CheckReport& check, const std::string& where) {
@@ -156,10 +155,10 @@ void SoakReport::add(const record::CheckReport& check, const std::string& where)
   for (const record::Finding& finding : check.findings) violate(finding.text, where);
 }
 
-bool SoakReport::is_clean(const std::vector<Judgement>& judgements) const {
+bool SoakReport::is_clean(const std::vector<CheckResult>& results) const {
   return violation_count == 0 && host_faults == 0 && finished > 0 && segments_unread == 0 &&
-         growth(*this).empty() && std::ranges::none_of(judgements, [](const Judgement& one) {
-           return one.verdict == Judgement::Verdict::kBroken;
+         growth(*this).empty() && std::ranges::none_of(results, [](const CheckResult& one) {
+           return one.verdict == CheckResult::Verdict::kBroken;
          });
 }
 
@@ -172,8 +171,8 @@ std::vector<std::string> growth(const SoakReport& report) {
                                        static_cast<double>(life.first.process.*figure) >
                                    most;
     };
-    if (life.most_resident_mib > report.allowed.resident_mib) {
-      append(text, "%.1f MiB resident, budget %.0f", life.most_resident_mib,
+    if (life.max_resident_mib > report.allowed.resident_mib) {
+      append(text, "%.1f MiB resident, budget %.0f", life.max_resident_mib,
              report.allowed.resident_mib);
     } else if (grew_by(&process::Account::resident_mib, report.allowed.more_mib)) {
       append(text, "resident memory grew from %.1f to %.1f MiB", life.first.process.resident_mib,
@@ -207,7 +206,7 @@ std::string to_text(const SoakReport& report) {
   append_mishaps(out, report);
   append(out, "; asks refused %llu, unanswered %llu", Count{report.asks_refused},
          Count{report.asks_unanswered});
-  append(out, "\n  judged: %llu recordings, %llu setpoints, %llu missing, longest gap %llu\n",
+  append(out, "\n  checked: %llu recordings, %llu setpoints, %llu missing, longest gap %llu\n",
          Count{report.segments}, Count{report.rows}, Count{report.missing},
          Count{report.longest_gap});
   append(
@@ -234,13 +233,13 @@ std::string to_text(const SoakReport& report) {
            us(drift.all, 0.5), us(drift.all, 0.99), us(drift.all, 0.999), us(drift.all, 1),
            us(drift.first, 0.99), us(drift.last, 0.99));
   }
-  const std::vector<Judgement> judgements = judge_run(report);
-  out += "  budgets of the run:\n" + to_text(judgements);
+  const std::vector<CheckResult> results = check_run(report);
+  out += "  budgets of the run:\n" + to_text(results);
   for (const std::string& text : growth(report)) append(out, "  GROWTH: %s\n", text.c_str());
   for (const Violation& one : report.violations) {
     append(out, "  VIOLATION: %s (%s)\n", one.text.c_str(), one.where.c_str());
   }
-  append_verdict(out, report, judgements);
+  append_verdict(out, report, results);
   if (report.host_faults > 0) {
     append(
         out,

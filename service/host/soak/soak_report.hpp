@@ -40,7 +40,7 @@ struct Health {
 struct Life {
   Health first, last;                         ///< first: when it had warmed up
   std::vector<process::ThreadAccount> ready;  ///< its threads when the machine was Ready first
-  double most_resident_mib = 0;
+  double max_resident_mib = 0;
   bool has_first = false;
 };
 
@@ -87,19 +87,19 @@ struct SoakReport {
   /// Latencies, lateness of a bare thread on the cycle's processor, and kCutting.
   TimeSlices slices;
   std::map<std::string, Drift> latencies;
-  std::vector<Violation> violations;  ///< the first kMostViolations
+  std::vector<Violation> violations;  ///< the first kMaxViolations
   std::uint64_t violation_count = 0;
   GrowthBudgets allowed = load_growth_budgets();
   RunBudgets budgets = load_run_budgets();
-  static constexpr std::size_t kMostViolations = 100;
+  static constexpr std::size_t kMaxViolations = 100;
 
   void violate(std::string text, std::string where);
-  /// Takes the judgement of one segment.
+  /// Takes the result of one segment.
   void add(const record::CheckReport& check, const std::string& where);
   /// Nothing was violated by the machine until now, and its host let it run.
-  [[nodiscard]] bool is_clean() const { return is_clean(judge_run(*this)); }
-  /// The same, by what judge_run() said of it.
-  [[nodiscard]] bool is_clean(const std::vector<Judgement>& judgements) const;
+  [[nodiscard]] bool is_clean() const { return is_clean(check_run(*this)); }
+  /// The same, by what check_run() said of it.
+  [[nodiscard]] bool is_clean(const std::vector<CheckResult>& results) const;
   /// The same of a soak that was not interrupted.
   [[nodiscard]] bool passed() const { return is_clean() && !is_interrupted; }
 };

@@ -29,9 +29,9 @@ SoakRun::SoakRun(const SoakOptions& options, const PlantOptions& plant, MachineM
       say_(say),
       model_(std::move(model)),
       tools_(options.tools.empty() ? ToolTable{} : config::load_tools(options.tools)),
-      judge_(model_, tools_, folder_.path(), kept_beside(options.report)),
+      check_(model_, tools_, folder_.path(), kept_beside(options.report)),
       plant_(plant, folder_.path(), kept_beside(options.report)),
-      chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.most_feed_override),
+      chaos_(options.seed, options.chaos_every_s, model_.joint_count, model_.max_feed_override),
       participant_({.domain = options.domain, .machine = model_.name}),
       operator_(participant_, "soak"),
       watch_(participant_, model_, report_) {
@@ -64,7 +64,7 @@ SoakReport SoakRun::run(const std::atomic<bool>& is_stopping) {
 }
 
 void SoakRun::start_service() {
-  plant_.start_service(judge_.pipe());
+  plant_.start_service(check_.pipe());
   ++report_.service_starts;
   watch_.begin_life(now_s());
   state_ = State::kOff;
@@ -125,12 +125,12 @@ std::string SoakRun::next_program() {
 void SoakRun::start_program() {
   const std::string program = next_program();
   ++report_.programs;
-  judge_.announce(program, options_.programs.empty(), stream::steady_ns());
+  check_.announce(program, options_.programs.empty(), stream::steady_ns());
   plant_.start_station(program);
 }
 
 void SoakRun::see(const dds::Status& status) {
-  if (const auto cause = watch_.see(status, now_s())) judge_fault(*cause, status);
+  if (const auto cause = watch_.see(status, now_s())) check_fault(*cause, status);
   if (status.state != state_) asked_in_vain_ = 0;
   if (status.state != state_ || is_moving(status.state)) moved_s_ = now_s();
   state_ = status.state;
@@ -142,16 +142,16 @@ void SoakRun::see(const dds::Status& status) {
   break_off();
 }
 
-void SoakRun::judge_fault(FaultJudge::Cause cause, const dds::Status& status) {
+void SoakRun::check_fault(FaultCheck::Cause cause, const dds::Status& status) {
   ++report_.alarms;
   is_drive_sick_ = true;
-  if (cause == FaultJudge::Cause::kInjected) {
+  if (cause == FaultCheck::Cause::kInjected) {
     ++report_.mishaps[static_cast<std::size_t>(injected_->mishap)];
-  } else if (cause == FaultJudge::Cause::kHost) {
+  } else if (cause == FaultCheck::Cause::kHost) {
     ++report_.host_faults;
     say_("a Fault of the host (" + keep_evidence() + "): " + watch_.faults().describe());
-  } else if (cause != FaultJudge::Cause::kOwnDoing) {
-    const bool is_unwatched = cause == FaultJudge::Cause::kUnwatched;
+  } else if (cause != FaultCheck::Cause::kOwnDoing) {
+    const bool is_unwatched = cause == FaultCheck::Cause::kUnwatched;
     report_.violate(std::string(is_unwatched ? "a Fault that may be of the host, not watched: "
                                              : "a Fault that nothing provoked: ") +
                         watch_.faults().describe() + "; " + status.message,
@@ -177,8 +177,8 @@ void SoakRun::look_and_tell() {
     healthy_s_ = now;
     look();
   }
-  if (now - told_s_ < kReportEvery_s) return;
-  told_s_ = now;
+  if (now - reported_s_ < kReportEvery_s) return;
+  reported_s_ = now;
   tell();
 }
 
@@ -191,8 +191,8 @@ void SoakRun::tell() {
   if (!options_.trace.empty()) {
     report_.traces = probe::examine_traces(options_.trace).front().found;
   }
-  watch_.tell_of_host();
-  judge_.collect(report_);
+  watch_.report_of_host();
+  check_.collect(report_);
   if (options_.report.empty()) return;
   if (!text::write_whole(options_.report, to_json(report_)) ||
       !text::write_whole(text_beside(options_.report), to_text(report_))) {
@@ -208,7 +208,7 @@ void SoakRun::end() {
   if (!plant_.end_service()) report_.violate("the service did not end well", "soak");
   if (plant_.awaits_flight()) plant_.keep_flight();
   plant_.stop_drives();
-  judge_.finish();
+  check_.finish();
   report_.is_over = true;
   tell();
 }

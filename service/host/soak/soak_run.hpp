@@ -10,7 +10,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/host/process/programs.hpp"
 #include "service/host/soak/chaos.hpp"
-#include "service/host/soak/judge.hpp"
+#include "service/host/soak/check.hpp"
 #include "service/host/soak/plant.hpp"
 #include "service/host/soak/run_watch.hpp"
 #include "service/host/soak/soak.hpp"
@@ -47,7 +47,7 @@ class SoakRun {
 
   void see(const dds::Status& status);
   /// What the drives suffer of is over with their process.
-  void judge_fault(FaultJudge::Cause cause, const dds::Status& status);
+  void check_fault(FaultCheck::Cause cause, const dds::Status& status);
   [[nodiscard]] std::string keep_evidence();
   void look_and_tell();
   void look();
@@ -76,7 +76,7 @@ class SoakRun {
   const MachineModel model_;
   const ToolTable tools_;
   SoakReport report_;
-  Judge judge_;
+  Check check_;
   Plant plant_;
   Chaos chaos_;
   dds::Participant participant_;
@@ -88,7 +88,7 @@ class SoakRun {
   int asked_in_vain_ = 0;
   const std::int64_t begin_ns_ = stream::steady_ns();
   double moved_s_ = 0, ended_s_ = 0, ask_again_s_ = 0, resume_s_ = 0, continue_s_ = 0;
-  double service_at_s_ = 0, drives_at_s_ = 0, flight_at_s_ = 0, healthy_s_ = 0, told_s_ = 0;
+  double service_at_s_ = 0, drives_at_s_ = 0, flight_at_s_ = 0, healthy_s_ = 0, reported_s_ = 0;
 };
 
 }  // namespace meridian::soak

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-/// What was announced when, on the machine's clock, for who judges it later. Both forget what no
+/// What was announced when, on the machine's clock, for who checks it later. Both forget what no
 /// later question can ask for. Proof: tests/unit/soak/soak_test.cpp.
 namespace meridian::soak {
 
@@ -20,7 +20,7 @@ class AskedOverrides {
   void announce(double factor, std::int64_t now_ns) { asked_.push_back({factor, now_ns}); }
 
   /// Highest override in force at `time_ns` or later, at least 1.
-  [[nodiscard]] double most_since(std::int64_t time_ns) const {
+  [[nodiscard]] double max_since(std::int64_t time_ns) const {
     double before = 1, most = 1;
     for (const Asked& asked : asked_) {
       if (asked.since_ns <= time_ns) {

@@ -44,7 +44,7 @@ void read_machine(Section machine, MachineModel& model) {
   model.bridge_cycles = machine.integer_or("bridge_cycles", 3, 0, 1000);
   model.tool_length_mm = machine.number("tool_length_mm", {0, 1e4});
   model.override_ramp_s = machine.number_or("override_ramp_s", 1.0, {1, 1000});
-  model.most_feed_override = machine.number_or("feed_override_max_percent", 150, {100, 200}) / 100;
+  model.max_feed_override = machine.number_or("feed_override_max_percent", 150, {100, 200}) / 100;
   machine.finish();
 }
 

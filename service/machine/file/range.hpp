@@ -19,10 +19,10 @@ inline constexpr Range kLength_mm{-1e5, 1e5};
 inline constexpr Range kPositive_mm{1e-3, 1e5};
 
 /// Tolerances of smooth runs, in machine files and on command lines.
-inline constexpr Range kTipTolerance_mm{kLeastTipTolerance_mm, kMostTipTolerance_mm};
+inline constexpr Range kTipTolerance_mm{kMinTipTolerance_mm, kMaxTipTolerance_mm};
 inline constexpr Range kAxisTolerance_deg{0.00573, 10};
-static_assert(units::rad_from_deg(kAxisTolerance_deg.low) >= kLeastAxisTolerance_rad);
-static_assert(units::rad_from_deg(kAxisTolerance_deg.high) == kMostAxisTolerance_rad);
+static_assert(units::rad_from_deg(kAxisTolerance_deg.low) >= kMinAxisTolerance_rad);
+static_assert(units::rad_from_deg(kAxisTolerance_deg.high) == kMaxAxisTolerance_rad);
 
 /// The same in machine files whose programs end their cuts at rest: nothing is smoothed by them.
 inline constexpr Range kRestTipTolerance_mm{1e-6, kTipTolerance_mm.high};

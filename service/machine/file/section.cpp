@@ -45,10 +45,10 @@ std::string plain(double value) {
 }
 
 std::string words(Range range) {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  if (range.low == -kMost && range.high == kMost) return "a finite number";
-  if (range.high == kMost) return "at least " + plain(range.low);
-  if (range.low == -kMost) return "at most " + plain(range.high);
+  constexpr double kMax = std::numeric_limits<double>::max();
+  if (range.low == -kMax && range.high == kMax) return "a finite number";
+  if (range.high == kMax) return "at least " + plain(range.low);
+  if (range.low == -kMax) return "at most " + plain(range.high);
   return plain(range.low) + " to " + plain(range.high);
 }
 

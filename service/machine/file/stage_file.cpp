@@ -14,7 +14,7 @@ namespace meridian::config {
 namespace {
 
 constexpr double kRodMargin = 1.05;   // over the farthest that a pin gets from its rail
-constexpr double kLeastShare = 0.05;  // of the determinant at φ = 0
+constexpr double kMinShare = 0.05;    // of the determinant at φ = 0
 constexpr double kSameJoints = 1e-9;  // there and back rounds by 1e-12
 constexpr int kSteps = 2000;          // of the stage's turn, looked at one by one
 
@@ -63,7 +63,7 @@ void read_geometry(Section& table, int kind, ActuatorStage& stage) {
 }
 
 /// No rod comes near standing square to its rail.
-void judge_rods(Section& table, const ActuatorStage& stage) {
+void check_rods(Section& table, const ActuatorStage& stage) {
   const double cosine = std::cos(stage.phi_max_rad);
   const double farthest = std::max(std::abs(stage.radius_mm - stage.rail_mm),
                                    std::abs(stage.radius_mm * cosine - stage.rail_mm));
@@ -82,10 +82,10 @@ bool is_regular(const ActuatorStage& stage, double phi) {
   const JointVector back = stage::joints_of(stage, stage::drives_of(stage, q));
   double apart = 0;
   for (std::size_t i = 0; i < q.size(); ++i) apart = std::max(apart, std::abs(back[i] - q[i]));
-  return share >= kLeastShare && apart <= kSameJoints;
+  return share >= kMinShare && apart <= kSameJoints;
 }
 
-void judge_turn(Section& table, const ActuatorStage& stage) {
+void check_turn(Section& table, const ActuatorStage& stage) {
   for (int n = 0; n <= kSteps; ++n) {
     const double phi = stage.phi_max_rad * n / kSteps;
     if (is_regular(stage, phi) && is_regular(stage, -phi)) continue;
@@ -96,7 +96,7 @@ void judge_turn(Section& table, const ActuatorStage& stage) {
 }
 
 /// The travel of the rotary joint lies inside what the stage turns.
-void judge_travel(Section& table, const MachineModel& model) {
+void check_travel(Section& table, const MachineModel& model) {
   const ActuatorStage& stage = model.stage;
   const JointSpec& joint = model.joints[static_cast<std::size_t>(stage.rotary_joint)];
   const auto phi = [&stage](double q) {
@@ -157,9 +157,9 @@ void read_stage(Section table, MachineModel& model) {
   read_geometry(table, kind, stage);
   stage.phi_max_rad = units::rad_from_deg(
       table.number("turn_max_deg", {0.1, 89}, "say how far the stage turns either way"));
-  if (kind != kPinSlot) judge_rods(table, stage);
-  judge_turn(table, stage);
-  judge_travel(table, model);
+  if (kind != kPinSlot) check_rods(table, stage);
+  check_turn(table, stage);
+  check_travel(table, model);
   read_drives(table, model);
   table.finish();
 }

@@ -67,12 +67,12 @@ void look_at_tilt(const MachineModel& model, Inspection& out) {
 
 /// How far the tip goes from W's origin along one direction with the tool along z.
 double straight_way(const MachineModel& model, const Vector3& direction) {
-  constexpr double kStep_mm = 10, kMost_mm = 20'000;
+  constexpr double kStep_mm = 10, kMax_mm = 20'000;
   const auto reaches = [&](double way) {
     return is_in_reach(model, {way * direction, Vector3::UnitZ()});
   };
   double good = 0;
-  while (good < kMost_mm && reaches(good + kStep_mm)) good += kStep_mm;
+  while (good < kMax_mm && reaches(good + kStep_mm)) good += kStep_mm;
   double bad = good + kStep_mm;
   for (int i = 0; i < 20; ++i) {
     const double middle = 0.5 * (good + bad);
@@ -131,7 +131,8 @@ JointVector trial_place(const MachineModel& model) {
   JointVector q{};
   for (int i = 0; i < model.joint_count; ++i) q[at(i)] = model.joints[at(i)].home;
   const ToolPose pose = forward(model, model.tool_length_mm, q);
-  if (free_joint(model) < 0 || pole_distance(model, pose.axis) > units::rad_from_deg(1)) return q;
+  if (redundant_joint(model) < 0 || pole_distance(model, pose.axis) > units::rad_from_deg(1))
+    return q;
   const int tilt =
       model.family == MachineFamily::kLai ? static_cast<int>(lai::kTheta2) : model.chain.b.joint;
   double step = units::rad_from_deg(kOffPole_deg);

@@ -102,7 +102,7 @@ std::string trial_text(const Inspection& in, const MachineModel& model) {
 
 std::string pole_text(const Inspection& in, const MachineModel& model) {
   std::string out;
-  const int free = free_joint(model);
+  const int free = redundant_joint(model);
   if (free < 0) {
     out = model.family == MachineFamily::kRobot
               ? "singular   wrist point over the base, arm stretched or folded, wrist aligned; "

@@ -30,16 +30,16 @@ double spread(int index, int base) {
 struct Range {
   double least = std::numeric_limits<double>::infinity();
   double most = -std::numeric_limits<double>::infinity();
-  std::uint32_t least_line = 0, most_line = 0;
+  std::uint32_t min_line = 0, max_line = 0;
 
   void add(double q, std::uint32_t line) {
     if (q < least) {
       least = q;
-      least_line = line;
+      min_line = line;
     }
     if (q > most) {
       most = q;
-      most_line = line;
+      max_line = line;
     }
   }
 };
@@ -62,7 +62,7 @@ Room room_of(const JointSpec& joint, Range& range) {
     range.most += by;
   }
   const double below = (range.least - low) / half, above = (high - range.most) / half;
-  return below < above ? Room{below, range.least_line} : Room{above, range.most_line};
+  return below < above ? Room{below, range.min_line} : Room{above, range.max_line};
 }
 
 Fit fit_on(const MachineModel& model, const std::vector<ProgramPose>& poses, int branch) {

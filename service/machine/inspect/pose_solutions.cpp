@@ -80,7 +80,7 @@ std::string why_unreachable(const MachineModel& model, const ToolPose& pose) {
   const chain::Reach reach = chain::reach(model.chain);
   return printed("the tool axis leans %.4f deg from the axis of %s; the machine has %.4f to %.4f",
                  units::deg_from_rad(lean), model.joints[model.chain.a.joint].name.c_str(),
-                 units::deg_from_rad(reach.least_rad), units::deg_from_rad(reach.largest_rad));
+                 units::deg_from_rad(reach.min_rad), units::deg_from_rad(reach.largest_rad));
 }
 
 }  // namespace meridian::inspect

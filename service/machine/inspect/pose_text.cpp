@@ -45,7 +45,7 @@ std::string to_text(const std::vector<PoseSolution>& solutions, const MachineMod
   std::string out;
   for (const PoseSolution& solution : solutions) {
     out += printed("branch %d, measure %.6g", solution.branch, solution.measure);
-    if (solution.is_at_pole) out += "; singular: the free joint stands at home";
+    if (solution.is_at_pole) out += "; singular: the redundant joint stands at home";
     if (solution.outside >= 0) {
       const JointSpec& joint = limited_spec(model, solution.outside);
       out += printed("; OUTSIDE TRAVEL: %s by %.6g %s", joint.name.c_str(),

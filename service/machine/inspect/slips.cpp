@@ -15,7 +15,7 @@ namespace {
 constexpr double kExact = 1e-6;  // rad and mm: what rounding of a file makes
 constexpr double kNearMiss_deg = 2;
 constexpr double kNearMiss_mm = 0.5;
-constexpr double kLeastVolume = 0.5;  // of three unit vectors
+constexpr double kMinVolume = 0.5;  // of three unit vectors
 
 /// Angle to the nearest direction whose coordinates are all 0 or of one size: axes, 45 degrees
 /// between two, the diagonal of a cube.
@@ -58,7 +58,7 @@ void look_at_directions(const MachineModel& model, const Skeleton& skeleton, Sli
   }
   if (linear.size() != 3) return;
   const double volume = std::abs(linear[0].dot(linear[1].cross(linear[2])));
-  if (volume < kLeastVolume) {
+  if (volume < kMinVolume) {
     out.warnings.push_back(
         printed("the linear joints run nearly in one plane (volume %.3g of 1): small ways "
                 "of the tip take long ways of the joints",

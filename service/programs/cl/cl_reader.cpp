@@ -107,12 +107,12 @@ class ClReader::Impl {
     if (lines_.head().find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
       return final_error(0, "the file is empty");
     }
-    const bool is_told = options_.dialect && is_nc(*options_.dialect);
+    const bool is_reported = options_.dialect && is_nc(*options_.dialect);
     const bool is_text = what.foreign.empty() || what.is_nc;
     const bool is_shown = what.program != Dialect::kUnknown && !options_.dialect;
-    if (options_.nc && is_text && (is_told || is_shown)) {
-      if (!is_told) options_.dialect = what.program;
-      program_ = options_.nc(lines_, name_, options_, is_told ? "--dialect" : what.shown_by);
+    if (options_.nc && is_text && (is_reported || is_shown)) {
+      if (!is_reported) options_.dialect = what.program;
+      program_ = options_.nc(lines_, name_, options_, is_reported ? "--dialect" : what.shown_by);
       return {};
     }
     if (what.foreign.empty()) return {};

@@ -40,7 +40,7 @@ struct NcSummary {
 
 /// What was read so far. Units: mm, rad, s; frame: W. Bounded, whatever the length of the file.
 struct ClSummary {
-  static constexpr std::size_t kMostTools = 64;
+  static constexpr std::size_t kMaxTools = 64;
   static constexpr std::size_t kMaxSkipped = 200;
 
   std::string dialect = "APT";
@@ -78,7 +78,7 @@ struct ClSummary {
   double cut_time_s = 0;  ///< at the programmed feed
   double dwell_time_s = 0;
   double arc_mismatch_max_mm = 0;
-  std::vector<std::uint32_t> tools;  ///< numbers loaded, in order of first use, at most kMostTools
+  std::vector<std::uint32_t> tools;  ///< numbers loaded, in order of first use, at most kMaxTools
   std::vector<SkippedWord> skipped;  ///< each word once, in order of first use
   NcSummary nc;
 

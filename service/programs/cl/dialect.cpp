@@ -80,11 +80,11 @@ Dialect shown_by_text(std::string_view text) {
 DialectFinder::DialectFinder(std::optional<Dialect> told)
     : dialect_(told.value_or(Dialect::kUnknown)),
       traits_(&traits_of(dialect_)),
-      is_told_(told.has_value()),
+      is_reported_(told.has_value()),
       reason_(told ? "--dialect" : "") {}
 
 bool DialectFinder::see(Dialect dialect, std::uint32_t line, std::string_view what) {
-  if (dialect == Dialect::kUnknown || dialect == dialect_ || is_told_) return true;
+  if (dialect == Dialect::kUnknown || dialect == dialect_ || is_reported_) return true;
   if (is_known()) {
     is_doubtful_ = true;
     return false;

@@ -130,7 +130,7 @@ std::string_view siemens_word(std::string_view line) {
   return {};
 }
 
-/// Heads are judged line by line: how many there are, and of which kind.
+/// Heads are checked line by line: how many there are, and of which kind.
 struct Lines {
   std::size_t all = 0;
   std::size_t addresses = 0;
@@ -140,7 +140,7 @@ struct Lines {
   std::string_view siemens;
 
   explicit Lines(std::string_view rest) {
-    while (!rest.empty() && all < kMost) {
+    while (!rest.empty() && all < kMax) {
       const std::size_t stop = std::min(rest.find('\n'), rest.size());
       std::string_view line = rest.substr(0, stop);
       rest.remove_prefix(std::min(stop + 1, rest.size()));
@@ -153,7 +153,7 @@ struct Lines {
   }
 
  private:
-  static constexpr std::size_t kMost = 400;
+  static constexpr std::size_t kMax = 400;
 
   void take(std::string_view line) {
     if (siemens.empty() && !is_cl_line(line)) siemens = siemens_word(line);

@@ -91,7 +91,7 @@ struct RotaryWord {
 };
 
 /// What the points under CUTCOM are: Creo alone writes it.
-enum class CutcomPath : std::uint8_t { kNotTold, kOfTool, kOfPart };
+enum class CutcomPath : std::uint8_t { kNotReported, kOfTool, kOfPart };
 
 /// Everything in a CL file that holds for later statements, and what reading them has given.
 struct Modal {
@@ -126,7 +126,7 @@ struct Modal {
   std::uint64_t holes_of_cycle = 0;
   std::optional<std::uint32_t> tool;
   RotaryWord rotary;
-  CutcomPath cutcom_path = CutcomPath::kNotTold;
+  CutcomPath cutcom_path = CutcomPath::kNotReported;
   Structure structure;
   std::uint64_t refusals = 0;  ///< statements that were refused so far
   BlockPath path;

@@ -13,8 +13,8 @@ namespace {
 
 using cl::refuse;
 
-constexpr double kMostTool = 1e9;
-constexpr double kMostSpeed = 1e6;
+constexpr double kMaxTool = 1e9;
+constexpr double kMaxSpeed = 1e6;
 constexpr double kLongestDwell_s = 86400;
 
 bool is_whole(double number, double most) {
@@ -38,7 +38,7 @@ void start_spindle(State& s, const Line& line) {
 cl::Outcome take_speed(State& s, const Line& line, bool starts) {
   const Word* const speed = line.find("S");
   if (speed == nullptr) return {};
-  if (!(speed->number >= 0 && speed->number <= kMostSpeed)) {
+  if (!(speed->number >= 0 && speed->number <= kMaxSpeed)) {
     return refuse("spindle speed " + cl::short_number(speed->number) + " makes no sense");
   }
   s.cl.feed.reset();
@@ -82,7 +82,7 @@ cl::Outcome take_tool(State& s, const Line& line) {
   const Word* const t = line.find("T");
   if (t == nullptr) return {};
   if (!t->text.empty()) return take_named_tool(s, line, t->text);
-  if (!is_whole(t->number, kMostTool)) {
+  if (!is_whole(t->number, kMaxTool)) {
     return refuse("tool number " + cl::short_number(t->number) + " is not a whole number");
   }
   s.modes.next_tool = static_cast<std::uint32_t>(t->number);
@@ -97,7 +97,7 @@ cl::Outcome change_tool(State& s, const Line& line) {
     return {};
   }
   auto& tools = s.cl.summary.tools;
-  if (tools.size() < cl::ClSummary::kMostTools &&
+  if (tools.size() < cl::ClSummary::kMaxTools &&
       std::find(tools.begin(), tools.end(), tool) == tools.end()) {
     tools.push_back(tool);
   }

@@ -52,7 +52,7 @@ bool is_along(const Vector3& a, const Vector3& b) {
   return a.cross(b).norm() < kSameAxis && a.dot(b) > 0;
 }
 
-bool are_all_told(const State& s, const Place& place) {
+bool are_all_reported(const State& s, const Place& place) {
   const std::size_t needed = s.axes ? s.axes->rotary_count() : 2;
   return place.rotary.size() >= needed;
 }
@@ -119,7 +119,7 @@ bool is_across_plane(const State& s, const Place& place) {
   if (frames.tilt == Tilt::kNone) return false;
   const Vector3 wanted = tool_of_plane(s);
   if (!place.is_turned()) return is_along(wanted, Vector3::UnitZ());
-  if (!s.axes || !s.axes->refusal().empty() || !are_all_told(s, place)) return false;
+  if (!s.axes || !s.axes->refusal().empty() || !are_all_reported(s, place)) return false;
   return is_along(s.axes->to_program() * s.axes->axis(place.rotary), wanted);
 }
 
@@ -133,7 +133,7 @@ void note_rotary_words(State& s, Place& to) {
   if (s.frames.tilt == Tilt::kTurned && !holds_tip(s.modes.control)) {
     s.frames.tilt = Tilt::kDefined;
   }
-  if (are_all_told(s, to)) to.is_by_control = false;
+  if (are_all_reported(s, to)) to.is_by_control = false;
 }
 
 Vector3 in_program(const State& s, const Vector3& written) { return s.frames.now.point(written); }

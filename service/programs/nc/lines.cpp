@@ -17,7 +17,7 @@ Expected<int, cl::Refusal> pieces_of(State& s, const Target& to) {
       s.place.is_known() && s.cl.path.position() == cl::BlockPath::Position::kReached;
   const bool is_swept = s.modes.control == Control::kRotary && s.modes.turns_evenly;
   if (!is_swept || !to.turns || !is_known) return 1;
-  if (largest_turn_deg(s.place.rotary, to.place.rotary) > kMostTurn_deg) {
+  if (largest_turn_deg(s.place.rotary, to.place.rotary) > kMaxTurn_deg) {
     return refuse("more than a hundred turns of a rotary axis in one block");
   }
   const int pieces =

@@ -14,8 +14,8 @@ Expected<std::uint32_t, cl::Refusal> ToolNames::number_of(std::string_view name)
   const auto at = std::find(names_.begin(), names_.end(), name);
   const auto index = static_cast<std::uint32_t>(at - names_.begin());
   if (at == names_.end()) {
-    if (names_.size() == kMost) {
-      return cl::refuse("more than " + std::to_string(kMost) + " names of tools",
+    if (names_.size() == kMax) {
+      return cl::refuse("more than " + std::to_string(kMax) + " names of tools",
                         "name them in the tool table");
     }
     names_.emplace_back(name);

@@ -20,7 +20,7 @@ using NamedTools = std::map<std::string, std::uint32_t>;
 class ToolNames {
  public:
   static constexpr std::uint32_t kFirst = 900'000'001;
-  static constexpr std::size_t kMost = 256;
+  static constexpr std::size_t kMax = 256;
 
   explicit ToolNames(NamedTools table) : table_(std::move(table)) {}
 

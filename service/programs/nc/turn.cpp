@@ -65,7 +65,7 @@ int pieces_of_turn(const MachineAxes& axes, const std::vector<RotaryAt>& from,
     return worst;
   };
   if (pieces > 1 && worst_of(1) <= tolerance_rad && largest_turn_deg(from, to) < 180) return 1;
-  while (pieces < kMostPieces && worst_of(pieces) > tolerance_rad) pieces *= 2;
+  while (pieces < kMaxPieces && worst_of(pieces) > tolerance_rad) pieces *= 2;
   return pieces;
 }
 

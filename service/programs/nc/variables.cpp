@@ -48,7 +48,7 @@ cl::Outcome Variables::declare(std::string_view text) {
     text.remove_prefix(std::min(stop + 1, text.size()));
     const std::size_t equals = std::min(one.find('='), one.size());
     const std::string_view name = stripped(one.substr(0, equals));
-    if (!is_name(name) || numbers_.size() >= kMost) {
+    if (!is_name(name) || numbers_.size() >= kMax) {
       return refuse("DEF of " + cl::quoted(name) + " is not understood", kNumbersByCam, "DEF");
     }
     numbers_.insert_or_assign(std::string(name), std::nullopt);
@@ -68,7 +68,7 @@ cl::Outcome Variables::set(std::string_view name, double number) {
     at->second = number;
     return {};
   }
-  if (!is_r_parameter(name) || numbers_.size() >= kMost) {
+  if (!is_r_parameter(name) || numbers_.size() >= kMax) {
     return refuse(
         "a value for " + std::string(name.substr(0, 32)) + ", which the control alone knows",
         kNumbersByCam, "assignment");

@@ -15,7 +15,7 @@ namespace meridian::nc {
 /// Proof: tests/unit/nc/siemens_variable_test.cpp.
 class Variables {
  public:
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMax = 1000;
 
   /// Takes the text behind DEF: "REAL _X, _Y=2.5".
   [[nodiscard]] cl::Outcome declare(std::string_view text);

@@ -14,7 +14,7 @@ namespace meridian::post {
 namespace {
 
 constexpr int kInverseDecimals = 3;
-constexpr double kMostInverse_per_min = 99999.999;  // what controllers take; faster is slowed
+constexpr double kMaxInverse_per_min = 99999.999;  // what controllers take; faster is slowed
 
 class JointProgram final : public Program {
  public:
@@ -85,7 +85,7 @@ class JointProgram final : public Program {
   void rapid(const Target& to) override { go("G0", to, kAll, ""); }
 
   void cut(const Target& to) override {
-    const double per_min = std::min(units::kMinute_s / to.duration_s, kMostInverse_per_min);
+    const double per_min = std::min(units::kMinute_s / to.duration_s, kMaxInverse_per_min);
     std::string feed = " F";
     feed += fixed_down(per_min, kInverseDecimals);
     go("G1", to, kAll, feed);

@@ -9,8 +9,8 @@
 namespace meridian::post {
 namespace {
 
-constexpr int kMostPositions = 32767;  // of a program
-constexpr double kMostMs = 32000;      // of a move
+constexpr int kMaxPositions = 32767;  // of a program
+constexpr double kMaxMs = 32000;      // of a move
 
 class LsProgram final : public RobotProgram {
  public:
@@ -46,13 +46,13 @@ class LsProgram final : public RobotProgram {
   }
 
   void move(const RobotMove& to) override {
-    if (++count_ > kMostPositions) {
-      refuse("a program of more than " + std::to_string(kMostPositions) +
+    if (++count_ > kMaxPositions) {
+      refuse("a program of more than " + std::to_string(kMaxPositions) +
              " positions; split the CL file ahead of this line");
     }
     const std::string number = std::to_string(count_);
     const double ms = std::max(1.0, std::ceil(to.seconds * 1000 - 1e-6));
-    if (ms > kMostMs) refuse("a move of more than 32 s");
+    if (ms > kMaxMs) refuse("a move of more than 32 s");
     const std::string speed = to.is_first ? "5%" : fixed(ms, 0) + "msec";
     statement("J P[" + number + "] " + speed + " FINE");
     positions_ += "P[" + number + "]{\n   GP1:\n\tUF : 0, UT : 1,\n\t";

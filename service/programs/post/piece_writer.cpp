@@ -12,12 +12,12 @@
 namespace meridian::post {
 namespace {
 
-constexpr double kLeastStep = 1e-6;     // of a joint move
+constexpr double kMinStep = 1e-6;       // of a joint move
 constexpr double kLongestBlock_s = 30;  // keeps four digits of a feed in inverse time
 
 }  // namespace
 
-double PieceWriter::least_time(const JointVector& a, const JointVector& b) const {
+double PieceWriter::min_time(const JointVector& a, const JointVector& b) const {
   const MachineModel& model = parts_.model;
   const DriveLine line = bound_drive_line(model, a, b);
   double longest = 0;
@@ -47,7 +47,7 @@ void PieceWriter::write_joint_move(const PathPiece& piece) {
   for (double share = 0; share < 1;) {
     step = std::min(step, 1 - share);
     const JointVector next = axes_at(share + step);
-    if (step > kLeastStep && !keeps(stands_at_, next)) {
+    if (step > kMinStep && !keeps(stands_at_, next)) {
       step /= 2;
       continue;
     }
@@ -77,7 +77,7 @@ Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, doub
     piece_s = std::max(piece_s, way_length(piece) / way / block.feed);
   }
   const auto duration = [&](const BlockEnd& from, const BlockEnd& to) {
-    return std::max(piece_s * (to.share - from.share), least_time(from.axes, to.axes));
+    return std::max(piece_s * (to.share - from.share), min_time(from.axes, to.axes));
   };
   const bool has_mm_per_min = program_.motion() != BlockMotion::kDrives;
   const bool is_timed = block.feed_meaning == FeedMeaning::kInverseTime && !is_rapid;

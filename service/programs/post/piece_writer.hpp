@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "meridian/kinematics/limited.hpp"
-#include "service/programs/post/planned_way.hpp"
+#include "service/programs/post/planned_path.hpp"
 #include "service/programs/post/program.hpp"
 #include "service/programs/post/subdivide.hpp"
 
@@ -39,7 +39,7 @@ class PieceWriter {
   /// Straight in the joints: behind a stage, rapids along which drives and joints stay together.
   void write_joint_move(const PathPiece& piece);
   /// Least time from `a` to `b` that joints and drives need.
-  [[nodiscard]] double least_time(const JointVector& a, const JointVector& b) const;
+  [[nodiscard]] double min_time(const JointVector& a, const JointVector& b) const;
 
   const ProgramParts parts_;
   const PathTolerance tolerance_;

@@ -14,7 +14,7 @@
 #include "meridian/units.hpp"
 #include "service/programs/post/nc_text.hpp"
 #include "service/programs/post/piece_writer.hpp"
-#include "service/programs/post/planned_way.hpp"
+#include "service/programs/post/planned_path.hpp"
 #include "service/programs/post/program.hpp"
 #include "service/programs/post/robot_axes.hpp"
 #include "service/programs/post/robot_name.hpp"
@@ -23,7 +23,7 @@
 namespace meridian::post {
 namespace {
 
-constexpr double kMostDwell_s = 24 * 3600;
+constexpr double kMaxDwell_s = 24 * 3600;
 
 [[nodiscard]] PathTolerance tolerance_of(const MachineModel& model, const PostOptions& options) {
   return {options.chord_mm ? *options.chord_mm : model.tolerances.tip_mm,
@@ -109,7 +109,7 @@ class Post {
       case BlockKind::kRapid:
         return take_motion(block);
       case BlockKind::kDwell:
-        if (!(block.value >= 0 && block.value <= kMostDwell_s)) {
+        if (!(block.value >= 0 && block.value <= kMaxDwell_s)) {
           return PostError{block.line, "a dwell of " + fixed(block.value, 3) + " s"};
         }
         program_->dwell(block.value);
@@ -244,7 +244,7 @@ class Post {
   const PostOptions& options_;
   std::unique_ptr<Program> program_;
   bool can_retract_;
-  PlannedWay way_;
+  PlannedPath way_;
   PieceWriter writer_;
   std::string name_;
   bool needs_start_ = true, is_retracted_ = false, is_ended_ = false;

@@ -13,9 +13,9 @@
 namespace meridian::post {
 namespace {
 
-constexpr double kMostTurn_rad = 0.5;  // of all rotary joints in one block: the bound needs < 2
-constexpr double kLeastShare = 1e-9;   // of a piece: nothing is gained by shorter blocks
-constexpr double kLandsOn = 1e-6;      // mm, rad: end of the piece, planned and walked to
+constexpr double kMaxTurn_rad = 0.5;  // of all rotary joints in one block: the bound needs < 2
+constexpr double kMinShare = 1e-9;    // of a piece: nothing is gained by shorter blocks
+constexpr double kLandsOn = 1e-6;     // mm, rad: end of the piece, planned and walked to
 
 [[nodiscard]] ToolPose between(const ToolPose& a, const ToolPose& b, double share) {
   const GreatCircle circle = find_great_circle(a.axis, b.axis);
@@ -51,7 +51,7 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
     (is_rotary ? turn : slide) += line.rate[i];
     (is_rotary ? turn_bend : slide_bend) += line.bend[i];
   }
-  if (motion_ != BlockMotion::kTipAndAxis && turn > kMostTurn_rad) return false;
+  if (motion_ != BlockMotion::kTipAndAxis && turn > kMaxTurn_rad) return false;
   const double share = to.end.share - from.end.share;
   const double sweep = piece.arc_sweep * share, axis_turn = piece.axis_turn * share;
   const double path_bend = to_vector(piece.arc_x).norm() * sweep * sweep;
@@ -59,7 +59,7 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
   if (motion_ == BlockMotion::kDrives) {
     // Between the ends the tip comes no farther from an axis than reach + (turn reach + slide)/2.
     const double reach =
-        (std::max(from.reach, to.reach) + slide / 2) / (1 - std::min(turn, kMostTurn_rad) / 2);
+        (std::max(from.reach, to.reach) + slide / 2) / (1 - std::min(turn, kMaxTurn_rad) / 2);
     tip_bend += (turn * turn + turn_bend) * reach + 2 * turn * slide + slide_bend;
   }
   axis_bend +=
@@ -92,7 +92,7 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
          2 * std::asin(std::min(1.0, chord / 2)) <= tolerance_.axis_rad;
 }
 
-bool Subdivider::cut(const PathPiece& piece, const JointVector& begin, const Judge& is_short_enough,
+bool Subdivider::cut(const PathPiece& piece, const JointVector& begin, const Check& is_short_enough,
                      const Take& take) const {
   Place from = place_at(piece, 0, piece.joints_begin);
   from.end.axes = begin;
@@ -109,7 +109,7 @@ bool Subdivider::cut(const PathPiece& piece, const JointVector& begin, const Jud
       continue;
     }
     step /= 2;
-    if (!(step > kLeastShare)) return false;
+    if (!(step > kMinShare)) return false;
   }
   for (int i = 0; i < model_.joint_count; ++i) {
     if (!(std::abs(from.exact[i] - piece.joints_end[i]) < kLandsOn)) return false;

@@ -43,7 +43,7 @@ struct BlockEnd {
 /// cannot be kept: it is finer than the decimals of the words. Proof: tests/property/post.
 class Subdivider {
  public:
-  using Judge = std::function<bool(const BlockEnd& from, const BlockEnd& to)>;
+  using Check = std::function<bool(const BlockEnd& from, const BlockEnd& to)>;
   using Take = std::function<void(const BlockEnd& to)>;
 
   Subdivider(const MachineModel& model, const AxisWords& words, BlockMotion motion,
@@ -51,7 +51,7 @@ class Subdivider {
       : model_(model), words_(words), motion_(motion), tolerance_(tolerance) {}
 
   [[nodiscard]] bool cut(const PathPiece& piece, const JointVector& begin,
-                         const Judge& is_short_enough, const Take& take) const;
+                         const Check& is_short_enough, const Take& take) const;
 
  private:
   static constexpr int kPlaces = 8;

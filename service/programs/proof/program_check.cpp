@@ -26,7 +26,7 @@ using Kind = ProgramStep::Kind;
 
 constexpr double kChord_mm = 2e-5;  // what a straight sample may cut off the tool's path
 constexpr double kChord_rad = 1e-7;
-constexpr int kMostSamples = 4096;     // of one line
+constexpr int kMaxSamples = 4096;      // of one line
 constexpr double kRewindClear_mm = 1;  // the least that [unwind] retract_mm takes
 
 /// Lines of a program between two tool changes, and the part of the CL file that they cut.
@@ -49,7 +49,7 @@ struct Section {
   const double axis = (middle.axis - 0.5 * (from.axis + to.axis)).norm();
   const double ratio = std::max(tip / kChord_mm, axis / kChord_rad);
   const int wanted = static_cast<int>(std::ceil(std::sqrt(std::min(ratio, 1e9))));
-  return std::clamp(wanted, 4, kMostSamples);
+  return std::clamp(wanted, 4, kMaxSamples);
 }
 
 /// One section held against its path.

@@ -52,9 +52,9 @@ struct ProgramReport {
 /// Tool by tool: from the first line that ends on the first CL point to the last that ends on the
 /// last one there has to be a monotone matching of tool and path within both tolerances, in which
 /// every CL point is passed in its order (record::PathMatching). Before and behind there may be
-/// rapids, and before the first point cuts too: the approach. A rewind of the free joint off the
-/// part (find_rewind) is no part of the path. Feeds are not looked at; a rapid is
-/// taken as straight in the drives. Context: I/O. Proof: tests/unit/proof.
+/// rapids, and before the first point cuts too: the approach. A rewind of the redundant joint off
+/// the part (find_rewind) is no part of the path. Feeds are not looked at; a rapid is taken as
+/// straight in the drives. Context: I/O. Proof: tests/unit/proof.
 [[nodiscard]] ProgramReport check_program(const std::vector<ProgramStep>& steps,
                                           const std::vector<ClBlock>& blocks,
                                           const MachineModel& model, const ToolTable& tools,

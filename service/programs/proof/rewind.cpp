@@ -14,7 +14,7 @@ namespace {
 constexpr double kPlace_mm = 1e-3;  // words are rounded to 0.1 um and 0.1 urad
 constexpr double kAngle_rad = 1e-6;
 
-/// Where a step stands as seen from where the rewind began, with the free joint turned back.
+/// Where a step stands as seen from where the rewind began, with the redundant joint turned back.
 struct Lift {
   double up_mm = 0;  ///< along the tool axis
   double turn_rad = 0;
@@ -25,7 +25,7 @@ class RewindFinder {
  public:
   RewindFinder(const ProgramStep& rest, const MachineModel& model)
       : model_(model),
-        free_(free_joint(model)),
+        free_(redundant_joint(model)),
         joints_(joints_of(model, rest.drives)),
         pose_(forward(model, model.tool_length_mm, joints_)) {}
 
@@ -56,8 +56,8 @@ bool is_whole_turn(double turn) {
 
 std::optional<std::size_t> find_rewind(const ProgramStep& rest, std::span<const ProgramStep> steps,
                                        const MachineModel& model, double clear_mm) {
-  if (free_joint(model) < 0 || steps.empty() || steps.front().kind != ProgramStep::Kind::kRapid ||
-      !rest.is_placed || rest.tool_pose) {
+  if (redundant_joint(model) < 0 || steps.empty() ||
+      steps.front().kind != ProgramStep::Kind::kRapid || !rest.is_placed || rest.tool_pose) {
     return std::nullopt;
   }
   const RewindFinder finder(rest, model);

@@ -10,9 +10,9 @@
 namespace meridian::proof {
 
 /// Of `steps`, which begin behind `rest`: the last one of a rewind that begins with the first of
-/// them. A rewind takes the tool off the part along its axis, turns the free joint by whole turns
-/// with nothing else, and brings the tool back to the same place; its ways there and back are
-/// judged by where their lines end. Nothing where none begins. `clear_mm` off the part the joint
+/// them. A rewind takes the tool off the part along its axis, turns the redundant joint by whole
+/// turns with nothing else, and brings the tool back to the same place; its ways there and back are
+/// checked by where their lines end. Nothing where none begins. `clear_mm` off the part the joint
 /// may turn. Proof: tests/unit/proof/rewind_test.cpp.
 [[nodiscard]] std::optional<std::size_t> find_rewind(const ProgramStep& rest,
                                                      std::span<const ProgramStep> steps,

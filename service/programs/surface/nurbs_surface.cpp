@@ -54,12 +54,12 @@ std::optional<NurbsFault> fault_of(const NurbsNet& net) {
   if (!is_degree(net.degree_u) || !is_degree(net.degree_v)) {
     return NurbsFault{Part::kDegree, "1 to " + std::to_string(kMaxDegree), "3 is a cubic patch"};
   }
-  const auto least_u = static_cast<std::size_t>(net.degree_u) + 1;
-  const auto least_v = static_cast<std::size_t>(net.degree_v) + 1;
-  if (net.rows < least_u || net.columns < least_v || net.points.size() != net.rows * net.columns) {
+  const auto min_u = static_cast<std::size_t>(net.degree_u) + 1;
+  const auto min_v = static_cast<std::size_t>(net.degree_v) + 1;
+  if (net.rows < min_u || net.columns < min_v || net.points.size() != net.rows * net.columns) {
     return NurbsFault{Part::kPoints,
-                      "at least " + counted(least_u, "rows of at least ") +
-                          counted(least_v, "points, all rows of one length"),
+                      "at least " + counted(min_u, "rows of at least ") +
+                          counted(min_v, "points, all rows of one length"),
                       "a patch needs degree + 1 points either way"};
   }
   if (!std::all_of(net.points.begin(), net.points.end(),

@@ -14,7 +14,7 @@ namespace {
 using config::Range;
 using config::Section;
 
-constexpr std::size_t kMostPoints = 1000;  // of the net, either way
+constexpr std::size_t kMaxPoints = 1000;  // of the net, either way
 constexpr Range kPlace_mm{-1e5, 1e5};
 constexpr Range kWeight{1e-6, 1e6};
 constexpr Range kKnot{-1e6, 1e6};
@@ -24,7 +24,7 @@ constexpr Range kLean_deg{-80, 80};
 void read_row(Section& row, NurbsNet& net) {
   const bool is_first = net.rows == 0;
   const std::size_t least = is_first ? 2 : net.columns;
-  const std::size_t most = is_first ? kMostPoints : net.columns;
+  const std::size_t most = is_first ? kMaxPoints : net.columns;
   const std::string all = "all rows have as many points as the first";
   const std::vector<double> x = row.numbers("x_mm", least, most, kPlace_mm, all);
   net.columns = x.size();
@@ -66,12 +66,12 @@ void read_surface(Section section, PatchJob& job) {
   if (net.degree_u != degrees[0] || net.degree_v != degrees[1]) {
     section.refuse("degree", "two whole numbers, 1 to 9", "write [3, 3] for a bicubic patch");
   }
-  const std::size_t most = kMostPoints + kMaxDegree + 1;
+  const std::size_t most = kMaxPoints + kMaxDegree + 1;
   net.knots_u = section.numbers("knots_u", 4, most, kKnot);
   net.knots_v = section.numbers("knots_v", 4, most, kKnot);
   job.rule.is_flipped = section.truth_or("flip_normal", false);
   std::vector<Section> rows = section.sections_or("row");
-  if (rows.size() < 2 || rows.size() > kMostPoints) {
+  if (rows.size() < 2 || rows.size() > kMaxPoints) {
     section.refuse("row", "2 to 1000 tables [[surface.row]], one for each control point along u",
                    "write x_mm, y_mm, z_mm and weight of all points along v into each");
   }

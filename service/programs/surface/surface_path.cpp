@@ -16,7 +16,7 @@ namespace {
 
 /// Between the samples of an error it may be a little larger than at them.
 constexpr double kMargin = 0.98;
-constexpr std::size_t kMostLines = 100'000;
+constexpr std::size_t kMaxLines = 100'000;
 constexpr int kScallopSamples = 16;  // on each piece of a line
 
 std::vector<double> even_places(const std::array<double, 2>& range, std::size_t count) {
@@ -59,7 +59,7 @@ class Cover {
     SurfacePath path;
     path.is_zigzag = options_.is_zigzag;
     const std::vector<double> rows = line_places();
-    if (rows.size() * options_.points > kMostContacts) refuse_count();
+    if (rows.size() * options_.points > kMaxContacts) refuse_count();
     std::size_t count = 0;
     for (std::size_t i = 0; i < rows.size() && !fault_; ++i) {
       SurfacePath::Line line;
@@ -70,7 +70,7 @@ class Cover {
         line.crossing = crossing(is_back ? along_[0] : along_[1], rows[i], rows[i + 1]);
       }
       count += line.contacts.size() + line.crossing.size();
-      if (count > kMostContacts) refuse_count();
+      if (count > kMaxContacts) refuse_count();
       path.lines.push_back(std::move(line));
     }
     if (fault_) return tl::make_unexpected(std::move(*fault_));
@@ -115,7 +115,7 @@ class Cover {
 
   void refuse_count() {
     if (fault_) return;
-    fault_ = PathFault{"the path has more than " + std::to_string(kMostContacts) + " contacts",
+    fault_ = PathFault{"the path has more than " + std::to_string(kMaxContacts) + " contacts",
                        "allow more chord error or scallop, or cover less of the patch"};
   }
 
@@ -139,7 +139,7 @@ class Cover {
     std::vector<double> out{breaks.front()};
     for (std::size_t i = 1; i < breaks.size() && !fault_; ++i) {
       const bool is_kept = append_steps(
-          out, breaks[i], kMargin * options_.chord_error_mm, kMostContacts,
+          out, breaks[i], kMargin * options_.chord_error_mm, kMaxContacts,
           [&](double from, double to) { return step_error(fixed, from, to, is_along); });
       if (!is_kept) refuse_count();
     }
@@ -183,7 +183,7 @@ class Cover {
     if (options_.lines > 0) return even_places(across_, options_.lines);
     std::vector<double> out{across_[0]};
     const bool is_kept = append_steps(
-        out, across_[1], kMargin * options_.scallop_mm, kMostLines,
+        out, across_[1], kMargin * options_.scallop_mm, kMaxLines,
         [&](double from, double to) { return scallop_of_lines(rule_, options_, from, to); });
     if (!is_kept && !fault_) check_line(out.back());
     if (!is_kept && !fault_) {

@@ -43,11 +43,11 @@ struct PathFault {
 };
 
 /// Covers the patch. Faults: a place without normal, a crease, a bound that this cutter cannot
-/// keep, more than kMostContacts. Source: docs/surface.md, chapter 3. Proof:
+/// keep, more than kMaxContacts. Source: docs/surface.md, chapter 3. Proof:
 /// tests/unit/surface/surface_path_test.cpp.
 [[nodiscard]] Expected<SurfacePath, PathFault> cover(const ContactRule& rule,
                                                      const CoverOptions& options);
-inline constexpr std::size_t kMostContacts = 1'000'000;
+inline constexpr std::size_t kMaxContacts = 1'000'000;
 
 /// Largest cusp between the lines at parameters `a` and `b` (see scallop_between). None where the
 /// surface has no normal on them. Units: mm.

@@ -29,15 +29,15 @@ std::string radius(double mm) { return std::isfinite(mm) ? print("%.6g mm", mm) 
 class Measure {
  public:
   Measure(const PatchJob& job, SurfaceReport& report) : job_(job), report_(report) {
-    report_.least_tilt_rad = std::numeric_limits<double>::infinity();
+    report_.min_tilt_rad = std::numeric_limits<double>::infinity();
   }
 
   void add(const Contact& c, double& chord_error_mm, bool is_joined) {
     ++report_.contacts;
-    least_ = std::min(least_, c.shape.least_curvature);
+    least_ = std::min(least_, c.shape.min_curvature);
     largest_ = std::max(largest_, c.shape.largest_curvature);
     const double tilt = angle_between(c.pose.axis, Vector3::UnitZ());
-    report_.least_tilt_rad = std::min(report_.least_tilt_rad, tilt);
+    report_.min_tilt_rad = std::min(report_.min_tilt_rad, tilt);
     report_.largest_tilt_rad = std::max(report_.largest_tilt_rad, tilt);
     const double clearance = clearance_curvature(job_.rule.cutter, c.shape, c.pose.axis);
     if (clearance < -kGougeCurvature) {
@@ -118,7 +118,7 @@ std::string to_text(const SurfaceReport& r, const PatchJob& job) {
                r.lines, r.contacts, r.length_mm, r.seconds_at_feed,
                units::per_min_from_per_s(job.program.feed_mm_per_s));
   out += print("axis      %.3f to %.3f deg from z, at most %.3f deg in one block\n",
-               units::deg_from_rad(r.least_tilt_rad), units::deg_from_rad(r.largest_tilt_rad),
+               units::deg_from_rad(r.min_tilt_rad), units::deg_from_rad(r.largest_tilt_rad),
                units::deg_from_rad(r.largest_turn_rad));
   out +=
       print("chord     error at most %.6f mm on lines, %.6f mm between them%s\n", r.chord_error_mm,

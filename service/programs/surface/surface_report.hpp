@@ -25,8 +25,8 @@ struct SurfaceReport {
   double chord_error_mm = 0;     ///< of the lines
   double crossing_chord_error_mm = 0;  ///< of the ways between them
   double scallop_mm = 0;
-  double largest_turn_rad = 0;                      ///< of the tool axis in one block
-  double least_tilt_rad = 0, largest_tilt_rad = 0;  ///< of the tool axis from z
+  double largest_turn_rad = 0;                    ///< of the tool axis in one block
+  double min_tilt_rad = 0, largest_tilt_rad = 0;  ///< of the tool axis from z
   std::size_t gouges = 0;  ///< contacts where the cutter bends less than the surface
   Contact worst_gouge{};
 };

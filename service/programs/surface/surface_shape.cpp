@@ -41,7 +41,7 @@ std::optional<SurfaceShape> shape_at(const NurbsSurface& surface, double u, doub
   const double k22 = l * a * a + 2 * m * a * b + n * b * b;
   out.curvature << k11, k12, k12, k22;
   const double middle = 0.5 * (k11 + k22), radius = std::hypot(0.5 * (k11 - k22), k12);
-  out.least_curvature = middle - radius;
+  out.min_curvature = middle - radius;
   out.largest_curvature = middle + radius;
   return out;
 }

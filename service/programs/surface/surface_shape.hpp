@@ -16,7 +16,7 @@ struct SurfaceShape {
   Vector3 tangent_u, tangent_v;  ///< unit, along growing u and growing v
   Vector3 tangent_2;             ///< normal x tangent_u
   Eigen::Matrix2d curvature;     ///< second fundamental form in (tangent_u, tangent_2)
-  double least_curvature = 0;    ///< principal
+  double min_curvature = 0;      ///< principal
   double largest_curvature = 0;  ///< principal
 
   /// Curvature of the normal section along the unit tangent `t`.
@@ -28,7 +28,7 @@ struct SurfaceShape {
 
 /// Shape at (u, v); the normal is du x dv, turned round where `is_flipped`. None where the surface
 /// has no normal to rely on: at a pole, where an edge has shrunk to a point, or where both
-/// derivatives run the same way. `surface` gives the scale by which that is judged.
+/// derivatives run the same way. `surface` gives the scale by which that is checked.
 ///
 /// Source: docs/surface.md, eq. 1.6 to 1.9. Proof: tests/unit/surface/nurbs_surface_test.cpp.
 [[nodiscard]] std::optional<SurfaceShape> shape_at(const NurbsSurface& surface, double u, double v,

@@ -83,12 +83,13 @@ constexpr const char* kPrefix = "fault-";
   return fmt::format("{}.{:03}", text, total_ms % 1000);
 }
 
-[[nodiscard]] record::ToldAlarm reason(const FlightStore& store) {
-  return store.alarm_count() > 0 ? store.alarm(0) : record::ToldAlarm{};
+[[nodiscard]] record::ReportedAlarm reason(const FlightStore& store) {
+  return store.alarm_count() > 0 ? store.alarm(0) : record::ReportedAlarm{};
 }
 
 /// "following_error-b3": what a file's name says of an alarm.
-[[nodiscard]] std::string name_of_file(const record::ToldAlarm& alarm, const MachineModel& model) {
+[[nodiscard]] std::string name_of_file(const record::ReportedAlarm& alarm,
+                                       const MachineModel& model) {
   std::string name(record::word(alarm.alarm));
   if (record::is_of_joint(alarm.alarm) && alarm.joint >= 0 && alarm.joint < limited_count(model)) {
     name += "-" + limited_spec(model, alarm.joint).name;
@@ -125,7 +126,7 @@ fs::path default_fault_folder(const fs::path& state, const std::string& machine)
 FlightRecorder::FlightRecorder(const config::FlightConfig& config, const MachineModel& model,
                                std::shared_ptr<spdlog::logger> log)
     : folder_(make_writable(config.folder, *log)),
-      most_faults_(static_cast<std::size_t>(config.faults)),
+      max_faults_(static_cast<std::size_t>(config.faults)),
       model_(model),
       log_(std::move(log)),
       store_(is_on() ? rows_that_fit(config.seconds, model) : 0, rows_of(kTail_s, model)) {
@@ -159,13 +160,13 @@ void FlightRecorder::run() noexcept {
   }
 }
 
-void FlightRecorder::tell_missed() noexcept {
+void FlightRecorder::report_missed() noexcept {
   const std::uint64_t missed = faults_missed();
-  if (missed == told_missed_) return;
+  if (missed == reported_missed_) return;
   log_->warn(
       "{} faults have no record of their own: one before was still being recorded or written",
-      missed - told_missed_);
-  told_missed_ = missed;
+      missed - reported_missed_);
+  reported_missed_ = missed;
 }
 
 void FlightRecorder::write() {
@@ -192,11 +193,11 @@ std::string FlightRecorder::write_rows(const fs::path& file) const {
   const fs::path part = file.string() + ".part";
   auto writer = record::FlightWriter::create(part, model_);
   if (!writer) return writer.error().text();
-  const record::ToldAlarm why = reason(store_);
+  const record::ReportedAlarm why = reason(store_);
   for (std::size_t i = 0; i < store_.size(); ++i) {
     const record::FlightRow& row = store_.row(i);
-    const bool is_told = row.record.setpoint.cycle >= why.cycle;
-    if (!writer->write(row, is_told ? why : record::ToldAlarm{})) break;
+    const bool is_reported = row.record.setpoint.cycle >= why.cycle;
+    if (!writer->write(row, is_reported ? why : record::ReportedAlarm{})) break;
   }
   std::error_code error;
   if (!writer->close()) {
@@ -222,7 +223,7 @@ std::string FlightRecorder::write_words(const fs::path& file, const std::string&
   if ((fault.setpoint.flags & kSetpointDry) != 0) out << "dry run: no drive followed\n\n";
   if (store_.alarm_count() == 0) out << "its alarm is not known\n";
   for (std::size_t i = 0; i < store_.alarm_count(); ++i) {
-    const record::ToldAlarm& alarm = store_.alarm(i);
+    const record::ReportedAlarm& alarm = store_.alarm(i);
     out << fmt::format("{:+9.3f} s  {}\n", since(alarm.cycle),
                        describe(alarm.alarm, alarm.joint, alarm.value, alarm.line, model_));
   }
@@ -250,8 +251,8 @@ void FlightRecorder::remove_old(const fs::path& newest) const {
   std::vector<fs::path> files = find_ours(folder_, ".csv");
   std::erase(files, newest);
   std::error_code error;
-  const std::size_t most_others = most_faults_ - 1;
-  for (std::size_t i = 0; i + most_others < files.size(); ++i) {
+  const std::size_t max_others = max_faults_ - 1;
+  for (std::size_t i = 0; i + max_others < files.size(); ++i) {
     fs::remove(files[i], error);
     fs::remove(with_ending(files[i], ".txt"), error);
   }

@@ -40,7 +40,7 @@ class FlightRecorder {
   void finish() noexcept { store_.finish(); }
 
   /// Telemetry thread, now and then: what was missed since is a warning in the log.
-  void tell_missed() noexcept;
+  void report_missed() noexcept;
 
   /// Recorder's thread: removes what a killed service left half written, then writes every fault
   /// until stop().
@@ -64,11 +64,11 @@ class FlightRecorder {
   void remove_old(const std::filesystem::path& newest) const;
 
   std::filesystem::path folder_;
-  std::size_t most_faults_;
+  std::size_t max_faults_;
   const MachineModel& model_;
   std::shared_ptr<spdlog::logger> log_;
   FlightStore store_;
-  std::uint64_t told_missed_ = 0;
+  std::uint64_t reported_missed_ = 0;
   std::atomic<bool> is_stopping_{false};
 };
 

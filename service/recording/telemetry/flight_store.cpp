@@ -32,10 +32,10 @@ void FlightStore::take(const CycleRecord& record) noexcept {
 
 void FlightStore::take(const Event& event, bool is_news) noexcept {
   if (rows_.empty() || is_frozen()) return;
-  if (is_news) events_[event_count_++ % kMostEvents] = event;
+  if (is_news) events_[event_count_++ % kMaxEvents] = event;
   if (event.code != EventCode::kAlarm) return;
   if (!is_armed_) forget_alarms_before(event.cycle);
-  if (alarm_count_ == kMostAlarms) return;
+  if (alarm_count_ == kMaxAlarms) return;
   alarms_[alarm_count_++] = {static_cast<Alarm>(event.a), static_cast<int>(event.b), event.x,
                              event.line, event.cycle};
 }

@@ -21,7 +21,7 @@ namespace meridian::telemetry {
 /// meanwhile nothing is kept. Proof: tests/unit/telemetry/flight_store_test.cpp.
 class FlightStore {
  public:
-  static constexpr std::size_t kMostAlarms = 8, kMostEvents = 256;
+  static constexpr std::size_t kMaxAlarms = 8, kMaxEvents = 256;
 
   /// `rows` 0: nothing is kept. So many rows as `tail` are kept behind the stop.
   FlightStore(std::size_t rows, std::size_t tail) : rows_(rows), tail_(tail) {}
@@ -52,12 +52,14 @@ class FlightStore {
   }
   /// In the order in which they were told; the first one is why.
   [[nodiscard]] std::size_t alarm_count() const noexcept { return alarm_count_; }
-  [[nodiscard]] const record::ToldAlarm& alarm(std::size_t i) const noexcept { return alarms_[i]; }
+  [[nodiscard]] const record::ReportedAlarm& alarm(std::size_t i) const noexcept {
+    return alarms_[i];
+  }
   [[nodiscard]] std::size_t event_count() const noexcept {
-    return std::min(event_count_, kMostEvents);
+    return std::min(event_count_, kMaxEvents);
   }
   [[nodiscard]] const Event& event(std::size_t i) const noexcept {
-    return events_[(event_count_ - event_count() + i) % kMostEvents];
+    return events_[(event_count_ - event_count() + i) % kMaxEvents];
   }
   /// Gives the store back, empty.
   void thaw() noexcept;
@@ -72,9 +74,9 @@ class FlightStore {
   std::vector<record::FlightRow> rows_;
   std::size_t tail_, count_ = 0, fault_ = 0, at_rest_ = 0;
   bool is_armed_ = false;  ///< a fault is going on
-  std::array<record::ToldAlarm, kMostAlarms> alarms_{};
+  std::array<record::ReportedAlarm, kMaxAlarms> alarms_{};
   std::size_t alarm_count_ = 0;
-  std::array<Event, kMostEvents> events_{};
+  std::array<Event, kMaxEvents> events_{};
   std::size_t event_count_ = 0;
   /// Of who puts in, frozen or not.
   record::DriveReport newest_;

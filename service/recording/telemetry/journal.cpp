@@ -22,7 +22,7 @@ namespace meridian::telemetry {
 namespace {
 
 /// No journal is longer; what is, is something else.
-constexpr std::size_t kMost_bytes = 4096;
+constexpr std::size_t kMax_bytes = 4096;
 /// Stations and programs are named in it: it is not everybody's.
 constexpr mode_t kMode = 0640;
 
@@ -98,7 +98,7 @@ void Journal::write_position() noexcept {
 
 std::optional<JournalEntry> Journal::read() {
   if (path_.empty()) return std::nullopt;
-  const auto text = read_small_file(path_, kMost_bytes);
+  const auto text = read_small_file(path_, kMax_bytes);
   if (text && !*text) return std::nullopt;
   auto entry = text ? parse_journal(**text, machine_) : tl::make_unexpected(text.error());
   if (entry) {

@@ -20,11 +20,11 @@ void MotionWatch::see(const CycleRecord& record, double tool_length_mm) noexcept
 
   consecutive_ = record.setpoint.cycle == last_cycle_ + 1 ? consecutive_ + 1 : 0;
   last_cycle_ = record.setpoint.cycle;
-  judge(limited_of(model_, velocity, record.setpoint.velocity),
+  check(limited_of(model_, velocity, record.setpoint.velocity),
         static_cast<double>(model_.cycle_ns) * 1e-9);
 }
 
-void MotionWatch::judge(const LimitedVector& velocities, double period_s) noexcept {
+void MotionWatch::check(const LimitedVector& velocities, double period_s) noexcept {
   const auto take = [this](double share, int joint) {
     if (share <= largest_share_) return;
     largest_share_ = share;

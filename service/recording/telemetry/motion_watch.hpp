@@ -10,7 +10,7 @@
 namespace meridian::telemetry {
 
 /// Watches the records go by and says what the operator wants to see of the motion: how fast the
-/// tip really moves and which joint is nearest to its limits. Judged over the records since the
+/// tip really moves and which joint is nearest to its limits. Checked over the records since the
 /// last reset(). Units: mm, s. Proof: tests/unit/telemetry/motion_watch_test.cpp.
 class MotionWatch {
  public:
@@ -31,7 +31,7 @@ class MotionWatch {
   static constexpr double kLimiting = 0.5;
 
  private:
-  void judge(const LimitedVector& velocities, double period_s) noexcept;
+  void check(const LimitedVector& velocities, double period_s) noexcept;
 
   const MachineModel& model_;
   LimitedVector velocity_{};  ///< of the newest record

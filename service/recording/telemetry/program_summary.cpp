@@ -66,7 +66,7 @@ namespace {
 /// The parts that took long enough to be printed.
 [[nodiscard]] std::string parts_of(const ProgramSummary& summary, double period_s) {
   constexpr std::array<const char*, kProgramParts> kNames{
-      "approach",           "cut",  "rapid",   "turns of the free joint",
+      "approach",           "cut",  "rapid",   "turns of the redundant joint",
       "dwells and actions", "held", "starved", "single block"};
   constexpr double kShown_s = 0.05;
   std::string text;

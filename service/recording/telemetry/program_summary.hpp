@@ -18,7 +18,7 @@ enum class ProgramPart : std::uint8_t {
   kApproach,
   kCut,
   kRapid,
-  kTurn,      ///< the free joint alone: on the pole, or turned back off the part
+  kTurn,      ///< the redundant joint alone: on the pole, or turned back off the part
   kRest,      ///< dwells, and actions that are waited for
   kHeld,      ///< by a hold or a program stop, or by an override of 0
   kStarved,   ///< at rest, no blocks there

@@ -25,7 +25,7 @@ namespace {
   if (is_override(verb)) {
     const bool is_feed = verb == Verb::kFeedOverride;
     return fmt::format("{:.6g} % is out of range: from 0 to {:.6g} %{}", 100 * argument,
-                       is_feed ? 100 * model.most_feed_override : 100.0,
+                       is_feed ? 100 * model.max_feed_override : 100.0,
                        is_feed ? " (feed_override_max_percent of the machine file)" : "");
   }
   const std::string value = fmt::format("{:.6g} is out of range: ", argument);
@@ -111,7 +111,7 @@ std::string describe(Verb verb, Refusal refusal, State state, double argument,
       why = fmt::format(
           "the machine's override_ramp_s is longer than {} s: blocks could not be braked for in "
           "time",
-          kMostStepRamp_s);
+          kMaxStepRamp_s);
       break;
     case Refusal::kDriveEnabled:
       why =

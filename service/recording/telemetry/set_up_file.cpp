@@ -15,7 +15,7 @@ SetUpFile::SetUpFile(const std::filesystem::path& folder, std::string machine, J
 
 Expected<SetUp, std::string> SetUpFile::read() {
   if (path_.empty()) return SetUp();
-  const auto text = read_small_file(path_, kMostSetUpBytes);
+  const auto text = read_small_file(path_, kMaxSetUpBytes);
   if (!text) return tl::make_unexpected(text.error());
   if (!*text) return SetUp();
   auto set_up = parse_set_up(**text, machine_);

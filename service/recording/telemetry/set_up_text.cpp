@@ -65,7 +65,7 @@ Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_vie
   lines.read("frames", count);
   SetUp out;
   WorkFrames& frames = out.frames;
-  bool is_right = count <= std::size_t{WorkFrames::kMost};
+  bool is_right = count <= std::size_t{WorkFrames::kMax};
   for (std::size_t i = 0; is_right && i < count; ++i) {
     FrameOrder set;
     is_right = read_row(lines.value("frame"), set.frame) && frames.apply(set) == FrameFault::kNone;
@@ -100,10 +100,10 @@ std::string describe(FrameFault fault, int number) {
       return "no such word; set, select or clear";
     case FrameFault::kNumber:
       return fmt::format("frame {} cannot be set; the numbers are 1 to {}, 0 is the machine file's",
-                         number, WorkFrames::kMost);
+                         number, WorkFrames::kMax);
     case FrameFault::kValue:
       return fmt::format("its values are out of range: mm within {:g}, degrees within {:g}",
-                         WorkFrames::kMost_mm, WorkFrames::kMost_deg);
+                         WorkFrames::kMax_mm, WorkFrames::kMax_deg);
     case FrameFault::kNotSet:
       return fmt::format("frame {} is not set; see meridian ctl frame list", number);
     case FrameFault::kIsActive:

@@ -20,7 +20,7 @@ struct SetUp {
 };
 
 /// No set-up is longer.
-inline constexpr std::size_t kMostSetUpBytes = 24'576;
+inline constexpr std::size_t kMaxSetUpBytes = 24'576;
 
 /// The set-up of `machine` as the text of its file: a line for each frame with its number, x, y, z
 /// in mm, a, b, c in degrees and its name, then the tool table as it is; every value comes back bit

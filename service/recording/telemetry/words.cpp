@@ -47,9 +47,9 @@ namespace {
   return text + unit;
 }
 
-/// ", theta1 at 388.6 deg": where the free joint ends, of machines that have one.
+/// ", theta1 at 388.6 deg": where the redundant joint ends, of machines that have one.
 [[nodiscard]] std::string winding(const Approach& approach, const MachineModel& model) {
-  const int free = free_joint(model);
+  const int free = redundant_joint(model);
   if (free < 0) return "";
   const double at = approach.to[static_cast<std::size_t>(free)];
   return fmt::format(", {} at {:.4g} deg", joint_name(free, model), units::deg_from_rad(at));
@@ -243,7 +243,8 @@ std::string describe(const PoleEase& ease) {
 
 std::string describe(const Unwinding& unwinding) {
   return fmt::format(
-      "line {}: the free joint would leave its travel; it turns by {:+} turns from {:.3f} deg, {} "
+      "line {}: the redundant joint would leave its travel; it turns by {:+} turns from {:.3f} "
+      "deg, {} "
       "mm "
       "off the part",
       unwinding.line, unwinding.turns, units::deg_from_rad(unwinding.from_rad),

@@ -24,7 +24,7 @@ enum class Doing : std::uint8_t {
   kWaitForRoom,  ///< planner: a block for which the motion has no room yet; arg: its sequence
                  ///< number
   kAdvance,      ///< planner: looks at what it has while no block is there
-  kTakeBlocks,   ///< intake: judges batches and queues them; arg: blocks queued, ever
+  kTakeBlocks,   ///< intake: checks batches and queues them; arg: blocks queued, ever
   kFeedback      ///< receive thread: what the drives told; arg: newest cycle that they saw
 };
 inline constexpr std::size_t kDoings = 11;
@@ -59,9 +59,9 @@ class SpanWriter {
   /// Nobody sees it before publish().
   void stage(Doing doing, std::int64_t begin_ns, std::int64_t end_ns, std::uint64_t arg) noexcept {
     if (ring_ == nullptr) return;
-    constexpr std::int64_t kMost_ns = std::numeric_limits<std::int32_t>::max();
+    constexpr std::int64_t kMax_ns = std::numeric_limits<std::int32_t>::max();
     const auto took_ns =
-        static_cast<std::int32_t>(std::clamp<std::int64_t>(end_ns - begin_ns, 0, kMost_ns));
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(end_ns - begin_ns, 0, kMax_ns));
     if (ring_->spans.stage({begin_ns, arg, took_ns, doing})) return;
     ring_->lost.fetch_add(1, std::memory_order_relaxed);
   }

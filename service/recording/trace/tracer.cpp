@@ -29,7 +29,7 @@ Tracer::Tracer(TraceOptions options, TraceOrigin origin, Rings& rings, Say say)
       origin_(std::move(origin)),
       rings_(rings),
       say_(std::move(say)),
-      files_(options_.folder, options_.most_files),
+      files_(options_.folder, options_.max_files),
       slow_cycles_(options_.limits) {}
 
 void Tracer::run(const std::atomic<bool>& is_stopping) noexcept {

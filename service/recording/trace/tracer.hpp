@@ -24,7 +24,7 @@ struct TraceOptions {
   std::int64_t before_ns = 50'000'000, after_ns = 20'000'000;  ///< around the slow cycle
   /// From the end of one file to the next at least; what is twice as bad need not wait.
   std::int64_t every_ns = 10'000'000'000;
-  int most_files = 10;  ///< in the folder; the worst stay
+  int max_files = 10;  ///< in the folder; the worst stay
 };
 
 /// What every file says of where it comes from.

@@ -74,7 +74,7 @@ std::size_t below_dialects(std::mt19937_64& random) {
   return std::uniform_int_distribution<std::size_t>(0, dialects().size() - 2)(random);
 }
 
-/// Whatever stands in a file: every block that comes out can be judged and run, and reading ends.
+/// Whatever stands in a file: every block that comes out can be checked and run, and reading ends.
 TEST(Mutation, GivesSoundBlocksOrARefusalWithItsPlace) {
   constexpr std::uint64_t kSeed = 20240611;
   std::printf("seed %lu\n", static_cast<unsigned long>(kSeed));

@@ -22,7 +22,7 @@ using test::ProgramRun;
 
 constexpr std::uint64_t kSeed = 20240620;
 constexpr int kPrograms = test::draws(60);
-constexpr double kMostSeconds = 40;                 // of motion per program
+constexpr double kMaxSeconds = 40;                  // of motion per program
 constexpr double kTip_mm = 1e-6, kAxis_rad = 1e-9;  // rounding of the matched pose
 // Beside the pole the axis is eased (kPoleEase_rad), and matching trades axis for tip at this rate.
 constexpr double kTrade_mm_per_rad = 1.01 * 1e-3 / (1e-3 * units::kDegree_rad);
@@ -38,8 +38,8 @@ TEST(CycleMotion, KeepsPathAndLimitsUnderRandomHoldsAndOverrides) {
     Draw draw(kSeed + static_cast<std::uint64_t>(n));
     ProgramRun run(draw.machine, draw.blocks, draw.start());
     if (!run.is_started()) continue;
-    const auto ways = test::programmed_ways(draw.blocks);
-    seconds += random_operator.operate(run, draw.random, kMostSeconds);
+    const auto ways = test::programmed_paths(draw.blocks);
+    seconds += random_operator.operate(run, draw.random, kMaxSeconds);
     done += run.is_over();
     test::expect_within_limits(run.world, 0, false, worst);
     EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
@@ -71,7 +71,7 @@ TEST(CycleMotion, FaultStopsKeepPathAndFaultLimitsAtAnyInstant) {
     Draw draw(kSeed + 2000 + static_cast<std::uint64_t>(n));
     ProgramRun run(draw.machine, draw.blocks, draw.start());
     if (!run.is_started()) continue;
-    const auto ways = test::programmed_ways(draw.blocks);
+    const auto ways = test::programmed_paths(draw.blocks);
     const double until = draw.random.uniform(0.05, 3);
     const bool is_held = draw.random.chance(0.3);
     if (!test::run_into_fault(run, until)) continue;

@@ -24,7 +24,7 @@ using SmoothRunning = PlannedRun<SmoothPlanner>;
 
 MachineModel raising(MachineModel machine, Transition transition = Transition::kSmooth) {
   machine.transition = transition;
-  machine.most_feed_override = 1.5;
+  machine.max_feed_override = 1.5;
   return machine;
 }
 
@@ -55,8 +55,8 @@ std::vector<ClBlock> straight(int count, double feed) {
 
 /// Turns the feed up and down and holds now and then.
 constexpr Operator kRaising{.turns_rapids = false,
-                            .least_wait_s = 0.05,
-                            .most_wait_s = 2,
+                            .min_wait_s = 0.05,
+                            .max_wait_s = 2,
                             .hold_share = 0.15,
                             .feed_share = 0.85,
                             .raise_share = 0.7};
@@ -97,7 +97,7 @@ TEST(FeedRaise, KeepsLimitsFeedTimesOverrideAndTolerancesOnHostilePrograms) {
     const double used = largest_feed(run, feed);
     EXPECT_LE(used, kRounding);
     worst_feed = std::max(worst_feed, used);
-    const auto ways = programmed_ways(blocks);
+    const auto ways = programmed_paths(blocks);
     double programmed = 0;
     Vector3 tip = Vector3::Zero();
     std::uint64_t cycle = 0;

@@ -67,7 +67,7 @@ template <class Uniform>
 
 /// How far tip and axis are off the straight way through `begin`.
 void expect_on_way(const test::CycleWorld& world, std::size_t first, const ToolPose& begin,
-                   const ToolWay& way) {
+                   const ToolPath& way) {
   double tip_off = 0, axis_off = 0;
   for (std::size_t n = first; n < world.records.size(); n += 7) {
     const ToolPose pose =
@@ -106,7 +106,7 @@ TEST(JogTool, KeepsLimitsAndItsWayWhereverTheToolStands) {
     for (int k = 0; k < 6; ++k) {
       hand.hold(axis, (is_tilt ? 1 : 100) * uniform(-2, 2), uniform(0.05, 1.0));
     }
-    const ToolWay way = hand.world.state.jogging.way;
+    const ToolPath way = hand.world.state.jogging.way;
     const std::size_t shown = is_tilt ? 4 : 0;
     const bool has_moved = std::abs(hand.world.state.joints[shown] - draw.at[shown]) > 1e-3;
     moved += has_moved;

@@ -127,12 +127,12 @@ class OperatedMachine {
   }
   static void supervise(Machine& m) {
     if (!is_enabled(m.state)) return;
-    const bool is_judged = m.state != State::kEnabling && m.state != State::kFaultStop;
+    const bool is_checked = m.state != State::kEnabling && m.state != State::kFaultStop;
     if (m.is_dry_run) {
       if (m.hears_emergency() || m.is_on) raise(m);
       return;
     }
-    if (m.is_emergency || !m.has_feedback || m.has_fault || (is_judged && !m.is_on)) raise(m);
+    if (m.is_emergency || !m.has_feedback || m.has_fault || (is_checked && !m.is_on)) raise(m);
   }
   [[nodiscard]] static bool may_enable(const Machine& m) {
     if (m.is_dry_run) return !m.is_on && !m.hears_emergency();

@@ -14,23 +14,23 @@ namespace meridian::test {
 
 /// What an operator does who cannot leave a machine alone.
 struct Operator {
-  double least_override = 0;  ///< to which the feed is turned
+  double min_override = 0;  ///< to which the feed is turned
   bool turns_rapids = true;
-  double least_wait_s = 0.01, most_wait_s = 1;  ///< from word to word
-  double hold_share = 0.5, feed_share = 0.3;    ///< of the words
-  double raise_share = 0;                       ///< of the feed's, above 100 % alone
+  double min_wait_s = 0.01, max_wait_s = 1;   ///< from word to word
+  double hold_share = 0.5, feed_share = 0.3;  ///< of the words
+  double raise_share = 0;                     ///< of the feed's, above 100 % alone
   int holds = 0;
 
-  /// Runs for `most_s` of motion or to the end of the program; returns how long.
+  /// Runs for `max_s` of motion or to the end of the program; returns how long.
   template <class Run>
-  double operate(Run& run, RandomPrograms& random, double most_s) {
+  double operate(Run& run, RandomPrograms& random, double max_s) {
     double next = 0, t = 0;
-    for (; t < most_s && !run.is_over(); t += run.world.dt()) {
+    for (; t < max_s && !run.is_over(); t += run.world.dt()) {
       if (t < next) {
         run.run();
         continue;
       }
-      next = t + random.log_uniform(least_wait_s, most_wait_s);
+      next = t + random.log_uniform(min_wait_s, max_wait_s);
       act(run, random);
     }
     return t;
@@ -47,9 +47,8 @@ struct Operator {
       ++holds;
     } else if (what < hold_share + feed_share) {
       const bool is_raise = raise_share > 0 && random.chance(raise_share);
-      run.command(Verb::kFeedOverride,
-                  std::min(run.world.machine.most_feed_override,
-                           random.uniform(is_raise ? 1 : least_override, 1.5)));
+      run.command(Verb::kFeedOverride, std::min(run.world.machine.max_feed_override,
+                                                random.uniform(is_raise ? 1 : min_override, 1.5)));
     } else if (turns_rapids) {
       run.command(Verb::kRapidOverride, random.uniform(0.2, 1.0));
     }
@@ -74,16 +73,16 @@ inline void expect_within_limits(const CycleWorld& world, std::size_t first, boo
   worst.take(shares);
 }
 
-/// Calls `judge` with every `step`th record from `first` on that moves along the program, and its
+/// Calls `check` with every `step`th record from `first` on that moves along the program, and its
 /// tool pose.
-template <class Judge>
+template <class Check>
 void for_each_cut(const MachineModel& machine, const std::vector<CycleRecord>& records,
-                  std::size_t first, std::size_t step, const Judge& judge) {
+                  std::size_t first, std::size_t step, const Check& check) {
   for (std::size_t k = first; k < records.size(); k += step) {
     const CycleRecord& record = records[k];
     if ((record.setpoint.flags & kSetpointMoving) == 0) continue;
     if (record.motion == MotionKind::kApproach) continue;
-    judge(record, forward(machine, machine.tool_length_mm, record.joints));
+    check(record, forward(machine, machine.tool_length_mm, record.joints));
   }
 }
 

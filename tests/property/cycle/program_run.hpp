@@ -67,7 +67,7 @@ class PlannedRun {
   PlannedRun(const MachineModel& machine, const std::vector<ClBlock>& blocks,
              const JointVector& start, std::size_t blocks_before_start = ~std::size_t{0},
              const std::vector<FeedMark>* replayed = nullptr, bool is_stepped = false)
-      : most_blocks(blocks_before_start),
+      : max_blocks(blocks_before_start),
         world(machine, start),
         planner_(world.machine),
         writer_(*world.port),
@@ -76,7 +76,7 @@ class PlannedRun {
     if constexpr (requires { planner_.replay_feed({}); }) {
       if (replayed != nullptr) planner_.replay_feed(*replayed);
     }
-    if (machine.most_feed_override > 1 && replayed == nullptr) writer_.set_horizon(kFeedHorizon_s);
+    if (machine.max_feed_override > 1 && replayed == nullptr) writer_.set_horizon(kFeedHorizon_s);
     planner_.begin(start, machine.tool_length_mm, world.state.epoch);
     // Blocks come as they are planned, not all at the begin.
     if constexpr (requires { planner_.look_no_further(); }) planner_.look_no_further();
@@ -104,13 +104,12 @@ class PlannedRun {
   [[nodiscard]] Planner& planner() { return planner_; }
   [[nodiscard]] MotionWriter& writer() { return writer_; }
 
-  std::size_t most_blocks;  ///< that come between two cycles
+  std::size_t max_blocks;  ///< that come between two cycles
   CycleWorld world;
 
  private:
   void plan() {
-    const std::size_t last =
-        std::min(blocks_.size(), next_ + std::min(most_blocks, blocks_.size()));
+    const std::size_t last = std::min(blocks_.size(), next_ + std::min(max_blocks, blocks_.size()));
     while (next_ < last && !is_refused_) {
       const PlanResult result = planner_.plan(blocks_[next_], writer_);
       if (result.status == PlanStatus::kNoRoom) return;
@@ -141,7 +140,7 @@ struct LimitShares {
   }
 };
 
-/// Judges the setpoints from record `first` on; `is_fault` takes the FaultStop limits.
+/// Checks the setpoints from record `first` on; `is_fault` takes the FaultStop limits.
 inline LimitShares shares_of_limits(const CycleWorld& world, std::size_t first, bool is_fault) {
   LimitShares out;
   const auto& r = world.records;

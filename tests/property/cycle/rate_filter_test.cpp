@@ -28,8 +28,8 @@ struct Complaints {
   int not_landed = 0, chatter = 0, backwards = 0;
 };
 
-/// Judges the ticks of one target, which lasted long enough to land.
-void judge_one_target(const std::vector<Tick>& ticks, const Tick& before, double target,
+/// Checks the ticks of one target, which lasted long enough to land.
+void check_one_target(const std::vector<Tick>& ticks, const Tick& before, double target,
                       const RateBounds& bounds, double dt, Complaints& out) {
   Tick last = before;
   int turns = 0;
@@ -68,7 +68,7 @@ Complaints try_filter(const Make& make, unsigned seed) {
         const double passed = filter.advance(dt);
         ticks.push_back({filter.rate(), filter.slope(), passed});
       }
-      if (is_left_alone) judge_one_target(ticks, before, target, bounds, dt, out);
+      if (is_left_alone) check_one_target(ticks, before, target, bounds, dt, out);
     }
   }
   return out;

@@ -24,7 +24,7 @@ TEST(SingleBlock, RestsAtTheSamePlacesWhereTheFeedIsPlannedForMoreThan100Percent
     Stepped plain(job);
     ASSERT_TRUE(plain.is_started());
     ASSERT_EQ(step_through(plain, rests), every_block(job));
-    job.machine.most_feed_override = 1.5;
+    job.machine.max_feed_override = 1.5;
     Stepped run(job);
     ASSERT_TRUE(run.is_started());
     run.command(Verb::kFeedOverride, 1.5);
@@ -175,7 +175,7 @@ TEST(SingleBlock, BrakesToTheSamePlaceWherePeriodsAreLostWhileItBrakes) {
   ASSERT_TRUE(run.is_started());
   const auto bridged = static_cast<std::uint32_t>(job.machine.bridge_cycles);
   int lost = 0;
-  for (double t = 0; t < kMostSeconds && !run.is_over(); t += run.world.dt()) {
+  for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
     if (run.world.now() == State::kStepping) {
       const CycleRecord& record = run.world.records.back();
       same[record.sequence] = record.joints;

@@ -93,7 +93,7 @@ TEST(SingleBlock, LeavesNoEndOutBehindAHold) {
     double hold_s = random.log_uniform(0.01, 1);
     std::optional<std::uint64_t> expected, braked;
     std::uint64_t behind = 1;
-    for (double t = 0, run_s = 0; t < kMostSeconds && !run.is_over(); t += run.world.dt()) {
+    for (double t = 0, run_s = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
       const State state = run.world.now();
       if (state == State::kStepping) {
         const std::uint64_t block = run.world.records.back().sequence;
@@ -146,7 +146,7 @@ TEST(SingleBlock, RestsExactlyAtEndsWhateverTheOperatorDoes) {
     std::uint64_t behind = 1;
     std::optional<std::uint64_t> expected;
     double next = 0;
-    for (double t = 0; t < kMostSeconds && !run.is_over(); t += run.world.dt()) {
+    for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
       const State state = run.world.now();
       const CycleRecord& record = run.world.records.back();
       if (state == State::kStepping) {
@@ -199,9 +199,9 @@ TEST(SingleBlock, LeavesNoEndOutWhereBlocksComeTooLate) {
     const double chance = random.log_uniform(0.0001, 0.002);
     Stepped run(job, job.blocks.size() / 2);
     ASSERT_TRUE(run.is_started());
-    run.most_blocks = 1;
+    run.max_blocks = 1;
     std::vector<std::uint64_t> order;
-    for (double t = 0; t < kMostSeconds && !run.is_over(); t += run.world.dt()) {
+    for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
       const bool is_behind = run.world.now() == State::kStepping;
       const std::uint64_t block = run.world.records.back().sequence;
       if (is_behind && (order.empty() || order.back() != block)) order.push_back(block);
@@ -233,7 +233,7 @@ TEST(SingleBlock, RestsAtTheSamePlacesWherePeriodsAreLost) {
   Stepped run(job);
   ASSERT_TRUE(run.is_started());
   std::vector<std::uint64_t> order;
-  for (double t = 0; t < kMostSeconds && !run.is_over(); t += run.world.dt()) {
+  for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
     if (run.world.now() == State::kStepping) {
       order.push_back(run.world.records.back().sequence);
       expect_same_place(run.world.records.back().joints, rests[order.back()], order.back());

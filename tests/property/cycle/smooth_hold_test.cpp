@@ -26,7 +26,7 @@ namespace {
 using SmoothRunning = PlannedRun<SmoothPlanner>;
 
 constexpr int kPrograms = draws(12);
-constexpr double kMostSeconds = 15;  // of motion per program
+constexpr double kMaxSeconds = 15;  // of motion per program
 
 std::vector<ClBlock> hostile(std::uint32_t seed) {
   auto blocks = HostilePath(seed).make_program(6);
@@ -123,7 +123,7 @@ void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
   ASSERT_TRUE(run.is_started());
   const double dt = run.world.dt();
   double next = random.uniform(0, 0.2);
-  for (double t = 0; t < kMostSeconds && !run.is_over(); t += dt) {
+  for (double t = 0; t < kMaxSeconds && !run.is_over(); t += dt) {
     if (t < next || !is_on_path(run.world.now()) || run.world.reader.path() == nullptr) {
       run.run();
       continue;
@@ -141,7 +141,7 @@ void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
     if (!is_smooth || begin.ds <= 1e-3) continue;
     ASSERT_LT(piece, trace.times.size());
     PathAhead ahead(machine, trace, piece, joints);
-    const LeastStop least = least_stop(machine, begin, [&](double s) { return ahead(s); });
+    const LeastStop least = min_stop(machine, begin, [&](double s) { return ahead(s); });
     const double granted_s = holds.stop.plus * dt;
     const double taken_s = static_cast<double>(stopped.a) * 1e-9 - granted_s;
     holds.take(taken_s, stopped.x - granted_s * begin.ds, least);

@@ -19,7 +19,7 @@ using test::LimitShares;
 using SmoothRunning = test::PlannedRun<SmoothPlanner>;
 
 constexpr double kLimit = 1 + 1e-6;
-constexpr double kMostSeconds = 15;  // of motion per program
+constexpr double kMaxSeconds = 15;  // of motion per program
 
 std::vector<ClBlock> hostile(std::uint32_t seed, int sections = 6) {
   auto blocks = test::HostilePath(seed).make_program(sections);
@@ -31,7 +31,7 @@ std::vector<ClBlock> hostile(std::uint32_t seed, int sections = 6) {
 /// that moves.
 double largest_distance(const MachineModel& machine, const std::vector<ClBlock>& blocks,
                         const std::vector<CycleRecord>& records, std::size_t first = 0) {
-  const auto ways = test::programmed_ways(blocks);
+  const auto ways = test::programmed_paths(blocks);
   double largest = 0;
   test::for_each_cut(machine, records, first, 11, [&](const auto& record, const auto& pose) {
     const double off = test::distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
@@ -45,7 +45,7 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
   LimitShares worst;
   double seconds = 0, worst_off = 0;
   int done = 0;
-  test::Operator random_operator{.least_override = 0.1, .turns_rapids = false};
+  test::Operator random_operator{.min_override = 0.1, .turns_rapids = false};
   for (std::uint32_t seed = 1; seed <= test::draws(6); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     test::RandomPrograms random(seed);
@@ -54,7 +54,7 @@ TEST(SmoothMotion, KeepsPathAndLimitsUnderHoldsAndOverrides) {
     const auto blocks = hostile(seed);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]));
     ASSERT_TRUE(run.is_started());
-    seconds += random_operator.operate(run, random, kMostSeconds);
+    seconds += random_operator.operate(run, random, kMaxSeconds);
     done += run.is_over();
     test::expect_within_limits(run.world, 0, false, worst);
     EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
@@ -147,7 +147,7 @@ TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
     const auto blocks = hostile(seed, 20);
     SmoothRunning run(machine, blocks, test::joints_of(machine, blocks[0]), blocks.size() / 2);
     ASSERT_TRUE(run.is_started());
-    run.most_blocks = 1;
+    run.max_blocks = 1;
     for (double t = 0; t < 200 && !run.is_over(); t += run.world.dt()) {
       if (random.chance(0.004)) {
         run.run();

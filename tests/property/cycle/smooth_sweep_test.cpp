@@ -31,7 +31,7 @@ using SmoothRunning = PlannedRun<SmoothPlanner>;
 
 constexpr double kLimit = 1 + 1e-6;
 constexpr double kFeedLimit = 1.0001;
-constexpr double kMostSeconds = 4;  // of motion per program
+constexpr double kMaxSeconds = 4;  // of motion per program
 constexpr int kPrograms = 24;
 
 double rounded(double x, double to) { return std::round(x / to) * to; }
@@ -78,7 +78,7 @@ struct Sweep {
   double feed = 0, off = 0, missed = 0, seconds = 0;
   int programs = 0, refused = 0, faults = 0, bad = 0;
   std::uint64_t dry = 0;
-  Operator random_operator{.least_override = 0, .turns_rapids = true, .raise_share = 0.3};
+  Operator random_operator{.min_override = 0, .turns_rapids = true, .raise_share = 0.3};
 };
 
 /// A run whose blocks come late, one now and then.
@@ -94,15 +94,15 @@ struct LateRun {
   }
 };
 
-/// Runs with blocks that come late, as far as `most_s` of motion; every other program with an
+/// Runs with blocks that come late, as far as `max_s` of motion; every other program with an
 /// operator beside.
 double operate_late(SmoothRunning& run, RandomPrograms& random, Operator& by, bool is_operated,
-                    double most_s) {
-  run.most_blocks = 1;
+                    double max_s) {
+  run.max_blocks = 1;
   LateRun late{run, random};
-  if (is_operated) return by.operate(late, random, most_s);
+  if (is_operated) return by.operate(late, random, max_s);
   double t = 0;
-  for (; t < most_s && !late.is_over(); t += run.world.dt()) late.run();
+  for (; t < max_s && !late.is_over(); t += run.world.dt()) late.run();
   return t;
 }
 
@@ -113,10 +113,10 @@ struct PathShares {
   double feed = 0, off = 0, missed = 0;
 };
 
-PathShares judge_path(const MachineModel& machine, const std::vector<ClBlock>& blocks,
+PathShares check_path(const MachineModel& machine, const std::vector<ClBlock>& blocks,
                       const SmoothRunning& run) {
   PathShares shares;
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   const auto& records = run.world.records;
   shares.feed = largest_feed(run, std::min(blocks.front().feed, machine.max_feed_mm_per_s));
   std::uint64_t before = 0;
@@ -139,7 +139,7 @@ void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
   MachineModel machine = seed % 2 == 0 ? bench_machine() : lai_machine();
   machine.transition = Transition::kSmooth;
   machine.starve_auto_resume_s = 100;
-  if (seed % 5 == 0) machine.most_feed_override = 1.5;
+  if (seed % 5 == 0) machine.max_feed_override = 1.5;
   const bool comes_late = random.chance(0.3);
   const auto blocks = draw_blocks(random, seed, comes_late ? 16 : 4);
   SmoothRunning run(machine, blocks, joints_of(machine, blocks[0]),
@@ -150,11 +150,11 @@ void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
     return;
   }
   sweep.seconds +=
-      comes_late ? operate_late(run, random, sweep.random_operator, seed % 2 == 1, 2 * kMostSeconds)
-                 : sweep.random_operator.operate(run, random, kMostSeconds);
+      comes_late ? operate_late(run, random, sweep.random_operator, seed % 2 == 1, 2 * kMaxSeconds)
+                 : sweep.random_operator.operate(run, random, kMaxSeconds);
   if (run.world.now() == State::kHeld) run.command(Verb::kResume);
   LimitShares shares = shares_of_limits(run.world, 0, false);
-  const PathShares path = judge_path(machine, blocks, run);
+  const PathShares path = check_path(machine, blocks, run);
   sweep.feed = std::max(sweep.feed, path.feed);
   sweep.off = std::max(sweep.off, path.off);
   sweep.missed = std::max(sweep.missed, path.missed);
@@ -186,8 +186,8 @@ TEST(SmoothSweep, GoesOnFromARestOnThePoleWithoutAStepOfC) {
   EXPECT_EQ(sweep.refused, 0);
 }
 
-/// Programs whose free joint turns by more than half a turn between the reach of a zone and its
-/// begin.
+/// Programs whose redundant joint turns by more than half a turn between the reach of a zone and
+/// its begin.
 TEST(SmoothSweep, KnowsTheWindingWhereAZoneBegins) {
   Sweep sweep;
   for (const std::uint32_t seed : {507U, 996U}) run_program(seed, sweep, 1);

@@ -25,7 +25,7 @@ struct Stepped : test::PlannedRun<SmoothPlanner> {
 };
 
 inline constexpr double kSamePlace = 1e-9;  // mm, rad; joints are of 1e3, times eps 2e-13
-inline constexpr double kMostSeconds = 400;
+inline constexpr double kMaxSeconds = 400;
 
 /// Blocks of 0.1 to `longest_mm` that bend, turn back and tilt, with feeds of 10 to 150 mm/s.
 inline std::vector<ClBlock> winding_program(std::uint32_t seed, int blocks, double longest_mm) {
@@ -76,7 +76,7 @@ using Rests = std::map<std::uint64_t, JointVector>;
 inline std::vector<std::uint64_t> step_through(Stepped& run, Rests& rests, int says_again = 0) {
   std::vector<std::uint64_t> order;
   int n = 0;
-  for (double t = 0; t < kMostSeconds && !run.is_over(); t += run.world.dt()) {
+  for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
     if (run.world.now() == State::kStepping) {
       order.push_back(run.world.records.back().sequence);
       rests[order.back()] = run.world.records.back().joints;

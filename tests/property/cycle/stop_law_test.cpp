@@ -17,7 +17,7 @@ constexpr int kDraws = 2000;
 
 struct Case {
   PathState begin;
-  StopAuthority authority;
+  StopMargin authority;
 };
 
 /// A state that a motion inside the authority can be in and still come to rest without going
@@ -126,7 +126,7 @@ TEST(StopLaw, EndsAtRestEvenWhereItBrakesTooHardAlready) {
 TEST(StopLaw, NeverPassesTheRestOfAPlanWithTheSameBounds) {
   // The plan: from cruise to rest by the same acceleration and jerk; the stop begins anywhere on
   // it.
-  const StopAuthority bounds{1000, 20000};
+  const StopMargin bounds{1000, 20000};
   const StopLaw plan({0, 100, 0, 0}, bounds);
   for (int n = 0; n < 1000; ++n) {
     const double begin = plan.duration() * n / 1000.0;

@@ -35,8 +35,8 @@ struct LeastStop {
 /// is faster than any stop that keeps them: never too slow an oracle. On a straight cruise it is
 /// the exact optimum but for its step. `joints_at(s)` are the joints along the path, in jets.
 template <class JointsAt>
-[[nodiscard]] LeastStop least_stop(const MachineModel& machine, PathState state,
-                                   const JointsAt& joints_at) {
+[[nodiscard]] LeastStop min_stop(const MachineModel& machine, PathState state,
+                                 const JointsAt& joints_at) {
   constexpr double kStep_s = 1e-4;
   const double begin = state.s;
   double time = 0;
@@ -68,8 +68,8 @@ template <class JointsAt>
 }
 
 /// Time of the greediest stop on one path piece.
-inline double least_stopping_time(const MachineModel& machine, const PathPiece& path,
-                                  const PathState& state, const JointVector& joints) {
+inline double min_stopping_time(const MachineModel& machine, const PathPiece& path,
+                                const PathState& state, const JointVector& joints) {
   JointVector reference = joints;
   const auto along = [&](double s) {
     const auto at = Jet<3>::variable(std::min(s, path.length));
@@ -77,7 +77,7 @@ inline double least_stopping_time(const MachineModel& machine, const PathPiece& 
     for (std::size_t i = 0; i < q.size(); ++i) reference[i] = value_of(q[i]);
     return q;
   };
-  return least_stop(machine, state, along).time_s;
+  return min_stop(machine, state, along).time_s;
 }
 
 }  // namespace meridian::test

@@ -21,7 +21,7 @@ using test::ProgramRun;
 
 constexpr std::uint64_t kSeed = 20240620;
 constexpr int kPrograms = test::draws(60);  // or as many as MERIDIAN_HOLD_PROGRAMS says
-constexpr double kMostSeconds = 40;         // of motion per program
+constexpr double kMaxSeconds = 40;          // of motion per program
 
 TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
   const std::uint64_t seed = test::number_of("MERIDIAN_HOLD_SEED", kSeed + 1000);
@@ -35,7 +35,7 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
     if (!run.is_started()) continue;
     const double dt = run.world.dt();
     double next = draw.random.uniform(0, 0.2);
-    for (double t = 0; t < kMostSeconds && !run.is_over(); t += dt) {
+    for (double t = 0; t < kMaxSeconds && !run.is_over(); t += dt) {
       if (t < next || !is_on_path(run.world.now()) || run.world.reader.path() == nullptr) {
         run.run();
         continue;
@@ -49,7 +49,7 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
       const double taken = static_cast<double>(run.world.last(EventCode::kStopped).a) * 1e-9;
       run.command(Verb::kResume);
       if (begin.ds <= 1e-3 || path.kind == PathKind::kJoint) continue;
-      const double least = test::least_stopping_time(draw.machine, path, begin, joints);
+      const double least = test::min_stopping_time(draw.machine, path, begin, joints);
       ratios.push_back((taken - budget.plus * dt) / least);
       if (ratios.back() > budget.factor) {
         std::printf("program %d: %.4f s, least %.4f s, v %.3f a %.1f s %.3f of %.3f kind %d\n", n,

@@ -58,7 +58,7 @@ TEST(Chain, TheLaiMachineIsAMember) {
   }
 }
 
-TEST(Chain, HoldsItsFreeJointOnThePoleWithTheTipExact) {
+TEST(Chain, HoldsItsRedundantJointOnThePoleWithTheTipExact) {
   const MachineModel chain = lai_as_chain(test::lai_machine());
   JointVector reference{};
   reference[3] = 1.25;

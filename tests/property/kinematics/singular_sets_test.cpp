@@ -122,12 +122,12 @@ struct Worst {
     return std::abs(chain::scalar_product(direction(0), chain::cross(direction(1), direction(2))));
   }
 
-  void judge(const MachineModel& model, const ToolPose& pose, int branch,
+  void check(const MachineModel& model, const ToolPose& pose, int branch,
              const JointVector& reference) {
     const auto at = solve(model, model.tool_length_mm, pose, branch, reference);
     // Slides that lie in one plane, or nearly so that the other branch asks for kilometres of them.
     const bool is_unable = at.status == SolveStatus::kUnreachable;
-    if ((is_unable && volume(model, at.q) < chain::kLeastVolume) || longest(at.q) > 1e5) {
+    if ((is_unable && volume(model, at.q) < chain::kMinVolume) || longest(at.q) > 1e5) {
       ++flat;
       return;
     }
@@ -157,7 +157,7 @@ TEST_P(SingularSets, GiveTipAndAxisBackOnEveryBranchFromAnyReference) {
     const JointVector reference = marksman.reference(model, q, n);
     const ToolPose pose = forward(model, model.tool_length_mm, q);
     for (int branch = 0; branch < branch_count(model); ++branch) {
-      ASSERT_NO_FATAL_FAILURE(worst.judge(model, pose, branch, reference));
+      ASSERT_NO_FATAL_FAILURE(worst.check(model, pose, branch, reference));
     }
   }
   EXPECT_LE(worst.tip_mm, kTip_mm);
@@ -226,7 +226,7 @@ TEST(AnyChain, GivesTipAndAxisBackAtNearAndOffItsSingularSets) {
       const ToolPose pose = forward(*model, model->tool_length_mm, q);
       const JointVector reference = marksman.reference(*model, q, pose_number);
       for (int branch = 0; branch < 2; ++branch) {
-        ASSERT_NO_FATAL_FAILURE(worst.judge(*model, pose, branch, reference));
+        ASSERT_NO_FATAL_FAILURE(worst.check(*model, pose, branch, reference));
       }
     }
   }

@@ -18,7 +18,7 @@
 #include "service/programs/cl/cl_writer.hpp"
 #include "service/programs/nc/nc_reader.hpp"
 #include "service/programs/post/post.hpp"
-#include "support/cl_way.hpp"
+#include "support/cl_path.hpp"
 #include "support/shipped_machines.hpp"
 
 namespace meridian {
@@ -124,7 +124,7 @@ class PostedProgram : public testing::TestWithParam<std::string> {
       ASSERT_NE(last, nullptr);
       ASSERT_TRUE(is_at(block, *last)) << "CL line " << block.line << ", NC line " << last->line;
       const bool is_first = &block == &told.front();  // which is approached
-      if (has_any && !is_first) judge_motion(block, *last);
+      if (has_any && !is_first) check_motion(block, *last);
     }
   }
 
@@ -143,7 +143,7 @@ class PostedProgram : public testing::TestWithParam<std::string> {
     }
   }
 
-  void judge_motion(const ClBlock& told, const ClBlock& read) {
+  void check_motion(const ClBlock& told, const ClBlock& read) {
     ++counts.motions;
     EXPECT_EQ(told.kind == BlockKind::kRapid, read.kind == BlockKind::kRapid);
     if (told.feed_meaning != FeedMeaning::kTip || read.kind != BlockKind::kCut) return;

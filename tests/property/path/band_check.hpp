@@ -92,7 +92,7 @@ class ProgrammedPath {
     double least = 1e9;
     for (std::size_t i = std::min(low, last - 1); i < high; ++i) {
       const auto at = [&](double x) { return distance(pose, point(i, x), tolerance); };
-      least = std::min(least, least_of(at));
+      least = std::min(least, min_of(at));
     }
     return least;
   }
@@ -108,7 +108,7 @@ class ProgrammedPath {
 
   /// Least value over [0, 1] of a function that falls, then rises (golden section).
   template <class F>
-  static double least_of(F f) {
+  static double min_of(F f) {
     constexpr double kGolden = 0.6180339887498949;
     double low = 0, high = 1, a = 1 - kGolden, b = kGolden, fa = f(a), fb = f(b);
     for (int n = 0; n < 40 && high - low > 1e-7; ++n) {

@@ -14,7 +14,7 @@
 #include "property/planner/random_programs.hpp"
 #include "service/core/planner/feed/rolling_feed.hpp"
 
-/// Smooth paths for the feed planner and what it makes of them, judged by setpoints alone.
+/// Smooth paths for the feed planner and what it makes of them, checked by setpoints alone.
 namespace meridian::test {
 
 /// A path whose spans are there, and the joints at its begin.
@@ -183,7 +183,7 @@ inline FeedRun run_feed(const FeedPath& path, const FeedSettings& settings, bool
     while (feed.try_plan()) {
       const FeedWindow& w = feed.window();
       const auto& last = w.tail.empty() ? w.committed.back() : w.tail.back();
-      EXPECT_LT(w.tail.size(), MotionReader::kMostDrops);  // skipped in one call of the cycle
+      EXPECT_LT(w.tail.size(), MotionReader::kMaxDrops);  // skipped in one call of the cycle
       const PathState end = end_of(last);
       if (std::abs(end.ds) > 1e-9 * (1 + last.v)) run.ended_at_rest = false;
       run.pieces.insert(run.pieces.end(), w.committed.begin(), w.committed.end());
@@ -253,7 +253,7 @@ struct FeedPeaks {
   }
 };
 
-inline FeedPeaks judge(const FeedPath& path, const FeedSetpoints& setpoints, double cycle_s) {
+inline FeedPeaks check(const FeedPath& path, const FeedSetpoints& setpoints, double cycle_s) {
   const LimitUse use = measure_limits(path.model, setpoints.joints, cycle_s);
   FeedPeaks peaks{use.v, use.a, use.j, 0, use.where};
   for (std::size_t n = 1; n < setpoints.tip.size(); ++n) {

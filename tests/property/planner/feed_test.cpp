@@ -33,8 +33,8 @@ MachineModel draw_machine(RandomPrograms& draw) {
   return model;
 }
 
-FeedPeaks judge_run(const FeedPath& path, const FeedRun& run) {
-  return judge(path, sample_feed(path, run, [](int k) { return k * kCycle_s; }), kCycle_s);
+FeedPeaks check_run(const FeedPath& path, const FeedRun& run) {
+  return check(path, sample_feed(path, run, [](int k) { return k * kCycle_s; }), kCycle_s);
 }
 
 FeedSettings without_reserve() {
@@ -57,7 +57,7 @@ TEST(RollingFeed, KeepsEveryLimitAtFourKilohertzOnRandomPaths) {
     const FeedRun run = run_feed(path, settings, true, kNever);
     ASSERT_EQ(run.fault.kind, PathFault::Kind::kNone) << "joint " << run.fault.joint;
     ASSERT_TRUE(run.ended_at_rest);
-    const FeedPeaks use = judge_run(path, run);
+    const FeedPeaks use = check_run(path, run);
     ASSERT_LE(use.worst(), kLimit)
         << use.where << " v " << use.v << " a " << use.a << " j " << use.j << " feed " << use.feed;
     peaks.take(use);
@@ -110,7 +110,7 @@ TEST(RollingFeed, KeepsEveryLimitWhereWindowsHaveNoPlan) {
       settings.failing_share = share;
       const FeedRun run = run_feed(path, settings, true, kNever);
       ASSERT_TRUE(run.ended_at_rest);
-      const FeedPeaks use = judge_run(path, run);
+      const FeedPeaks use = check_run(path, run);
       ASSERT_LE(use.worst(), kLimit) << use.where;
       peaks.take(use);
       motion_s += run.duration_s();
@@ -142,7 +142,7 @@ TEST(RollingFeed, GoesOnFromTheEndOfAnyTailInsideTheLimits) {
       return is_starved;
     });
     ASSERT_TRUE(run.ended_at_rest);
-    const FeedPeaks use = judge_run(path, run);
+    const FeedPeaks use = check_run(path, run);
     ASSERT_LE(use.worst(), kLimit) << use.where;
   }
   EXPECT_GT(starvations, 15);
@@ -165,7 +165,7 @@ TEST(RollingFeed, RunsAtEveryRateThatTheFilterGivesInsideTheLimits) {
       }
       return plan_time += rate.advance(kCycle_s);
     };
-    const FeedPeaks use = judge(path, sample_feed(path, run, time), kCycle_s);
+    const FeedPeaks use = check(path, sample_feed(path, run, time), kCycle_s);
     ASSERT_LE(use.worst(), kLimit)
         << use.where << " v " << use.v << " a " << use.a << " j " << use.j;
     peaks.take(use);

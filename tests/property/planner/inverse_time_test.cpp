@@ -107,11 +107,11 @@ struct Asked {
   double begin = 0, end = 0;
   bool is_timed = false;
   double tip_mm_per_s = 0, turn_rad_per_s = 0;
-  double least_s = 0;
+  double min_s = 0;
 };
 
 std::vector<Asked> asked_by(const std::vector<ClBlock>& blocks, const MachineModel& model) {
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   std::vector<Asked> out;
   double u = 0;
   for (std::size_t n = 1; n < blocks.size(); ++n) {
@@ -119,10 +119,10 @@ std::vector<Asked> asked_by(const std::vector<ClBlock>& blocks, const MachineMod
     if (!is_motion(blocks[n].kind) || !(way > 0)) continue;
     const bool is_timed = blocks[n].feed_meaning == FeedMeaning::kInverseTime;
     const double time = is_timed ? 1 / blocks[n].feed : tip / blocks[n].feed;
-    const double least_tip = is_timed ? way * model.tolerances.tip_mm / kReach_mm : 0;
-    const double least_turn = way * model.tolerances.axis_rad / kReach_mm;
-    out.push_back({u, u + way, is_timed, std::max(tip, least_tip) / time,
-                   std::max(turn, least_turn) / time, is_timed ? time : 0});
+    const double min_tip = is_timed ? way * model.tolerances.tip_mm / kReach_mm : 0;
+    const double min_turn = way * model.tolerances.axis_rad / kReach_mm;
+    out.push_back({u, u + way, is_timed, std::max(tip, min_tip) / time,
+                   std::max(turn, min_turn) / time, is_timed ? time : 0});
     u += way;
   }
   return out;
@@ -150,7 +150,7 @@ Asked fastest_about(const std::vector<Asked>& asked, double u0, double u1) {
 struct Speeds {
   double tip = 0, turn = 0;  ///< largest over what is allowed
   double tip_mm_per_s = 0;
-  double duration_s = 0, least_s = 0;  ///< of the run, and the sum of block times
+  double duration_s = 0, min_s = 0;  ///< of the run, and the sum of block times
 };
 
 Speeds measure(const MachineModel& model, const std::vector<ClBlock>& blocks) {
@@ -173,7 +173,7 @@ Speeds measure(const MachineModel& model, const std::vector<ClBlock>& blocks) {
   }
   const auto asked = asked_by(blocks, model);
   EXPECT_NEAR(u, asked.back().end, kPlace_mm);
-  for (const Asked& block : asked) out.least_s += block.least_s;
+  for (const Asked& block : asked) out.min_s += block.min_s;
   const auto setpoints = sample(model, trace, kCycle_s, 0.37, start);
   for (std::size_t n = 1; n < setpoints.size(); ++n) {
     const PlanSample &from = setpoints[n - 1], &to = setpoints[n];
@@ -202,16 +202,16 @@ TEST(InverseTime, TipAndAxisAreNowhereFasterThanTheFastestBlockWithinReach) {
     const Speeds one = measure(model, MixedTimes(seed).make(40));
     EXPECT_LE(one.tip, 1.0001);
     EXPECT_LE(one.turn, 1.0001);
-    EXPECT_GE(one.duration_s, one.least_s) << "a block took less than its time";
+    EXPECT_GE(one.duration_s, one.min_s) << "a block took less than its time";
     all.tip = std::max(all.tip, one.tip);
     all.turn = std::max(all.turn, one.turn);
     all.duration_s += one.duration_s;
-    all.least_s += one.least_s;
+    all.min_s += one.min_s;
   }
   std::printf(
       "%u programs from seed %u: tip %.4f, axis %.4f of the fastest block within reach, "
       "%.2f s for blocks of %.2f s\n",
-      count, first, all.tip, all.turn, all.duration_s, all.least_s);
+      count, first, all.tip, all.turn, all.duration_s, all.min_s);
 }
 
 TEST(InverseTime, TheMachinesHighestFeedBoundsTheTipAllTheSame) {

@@ -67,8 +67,8 @@ struct Peaks {
   }
 };
 
-/// Judges a plan at the joints of its time pieces and at random places between.
-void judge(const MachineModel& model, const Trace& trace, const std::vector<ClBlock>& blocks,
+/// Checks a plan at the joints of its time pieces and at random places between.
+void check(const MachineModel& model, const Trace& trace, const std::vector<ClBlock>& blocks,
            const JointVector& start, RandomPrograms& draw, Peaks& peaks) {
   std::vector<double> begins;
   double time = 0;
@@ -76,7 +76,7 @@ void judge(const MachineModel& model, const Trace& trace, const std::vector<ClBl
     begins.push_back(time);
     time += piece.duration;
   }
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   for (std::size_t n = 0; n < begins.size(); ++n) {
     for (const double cycle : {1e-3, 250e-6}) {
       const bool at_joint = draw.chance(0.7);
@@ -137,7 +137,7 @@ MachineModel draw_hybrid(RandomPrograms& draw) {
 }
 
 template <class DrawMachine>
-void judge_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any) {
+void check_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any) {
   int refusals = 0;
   Peaks peaks;
   std::size_t pieces = 0;
@@ -161,7 +161,7 @@ void judge_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any
     }
     pieces += trace.times.size();
     motion_s += trace.duration_s();
-    judge(model, trace, blocks, start, draw, peaks);
+    check(model, trace, blocks, start, draw, peaks);
     if (testing::Test::HasFatalFailure()) return;
   }
   std::printf(
@@ -169,15 +169,15 @@ void judge_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any
       "%.7f, tip %.2e mm, axis %.2e deg; refused: %d\n",
       programs, pieces, motion_s, peaks.v, peaks.a, peaks.j, peaks.feed, peaks.tip_mm,
       units::deg_from_rad(peaks.axis_rad), refusals);
-  EXPECT_LT(refusals, programs / 4) << "hardly anything was judged";
+  EXPECT_LT(refusals, programs / 4) << "hardly anything was checked";
 }
 
 TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
-  judge_programs(draws(10'000), 7000000, draw_machine);
+  check_programs(draws(10'000), 7000000, draw_machine);
 }
 
 TEST(RestToRest, KeepsEveryLimitOfJointsAndDrivesBehindAnyStage) {
-  judge_programs(draws(2000), 7200000, draw_hybrid);
+  check_programs(draws(2000), 7200000, draw_hybrid);
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST(LookAhead, RefusesBeforeItStartsWhatNoWindingCarries) {
       EXPECT_TRUE(trace.times.empty()) << "it moves";
       const BlockReject& reject = trace.last.reject;
       EXPECT_EQ(reject.code, RejectCode::kTravelBetween);
-      EXPECT_EQ(reject.joint, free_joint(model));
+      EXPECT_EQ(reject.joint, redundant_joint(model));
       EXPECT_EQ(reject.line, program[reject.sequence].line);
       // The same as is found on the way where nothing was looked at.
       const SmoothTrace cut = plan_smooth(model, program, start, {transition, 0, 0});

@@ -19,7 +19,7 @@
 #include "meridian/planner/time_law.hpp"
 #include "meridian/units.hpp"
 
-/// Plans programs through the real port and judges what comes out of it, knowing nothing of how it
+/// Plans programs through the real port and checks what comes out of it, knowing nothing of how it
 /// was planned.
 namespace meridian::test {
 
@@ -192,7 +192,7 @@ inline Deviation measure_deviation(const MachineModel& model, const Trace& trace
 }
 
 /// The programmed way of every block, by sequence; the first motion block begins where it ends.
-inline std::vector<PathPiece> programmed_ways(const std::vector<ClBlock>& blocks) {
+inline std::vector<PathPiece> programmed_paths(const std::vector<ClBlock>& blocks) {
   std::vector<PathPiece> out(blocks.size());
   ToolPose pose;
   bool is_first = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// Paths that linger so close to the pole that the axis tolerance leaves the free joint free: they
-/// run through their blocks like any other.
+/// Paths that linger so close to the pole that the axis tolerance leaves the redundant joint free:
+/// they run through their blocks like any other.
 
 #include <gtest/gtest.h>
 
@@ -67,11 +67,11 @@ class Way {
   std::vector<ClBlock> blocks_;
 };
 
-/// `count` blocks whose axis wavers within `most_deg` of `centre`.
-Way waver(Way way, int count, double most_deg, const Vector3& centre = Vector3::UnitZ()) {
+/// `count` blocks whose axis wavers within `max_deg` of `centre`.
+Way waver(Way way, int count, double max_deg, const Vector3& centre = Vector3::UnitZ()) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> share(-1, 1);
-  const double most = units::rad_from_deg(most_deg) / std::sqrt(2.0);
+  const double most = units::rad_from_deg(max_deg) / std::sqrt(2.0);
   for (int n = 0; n < count; ++n) {
     const double x = most * share(engine);
     way.to(x, most * share(engine), centre);
@@ -79,7 +79,7 @@ Way waver(Way way, int count, double most_deg, const Vector3& centre = Vector3::
   return way;
 }
 
-/// Plans `blocks`, judges limits, tolerance and that all of them are cut.
+/// Plans `blocks`, checks limits, tolerance and that all of them are cut.
 SmoothTrace cut(const MachineModel& model, const std::vector<ClBlock>& blocks) {
   const JointVector start = joints_of(model, blocks[0]);
   SmoothTrace trace = plan_smooth(model, blocks, start);
@@ -88,7 +88,7 @@ SmoothTrace cut(const MachineModel& model, const std::vector<ClBlock>& blocks) {
       << trace.last.reject.sequence << " by " << trace.last.reject.value;
   if (trace.last.status != PlanStatus::kOk) return trace;
   EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   for (const double cycle : {1e-3, 250e-6}) {
     const auto setpoints = sample(model, trace, cycle, 0.37, start);
     const LimitUse use = measure_limits(model, setpoints, cycle);
@@ -112,13 +112,12 @@ TEST(PoleLinger, AWaveringAxisTakesTheTimeThatItTakesAwayFromThePole) {
   const Vector3 away(std::sin(0.3), 0, std::cos(0.3));
   const int blocks = kIsTimed ? 200 : 90;
   for (const MachineModel& model : cases<MachineModel>({bench_machine(), lai_machine()})) {
-    for (const double most_deg : cases<double>({0.006, 0.02})) {
-      SCOPED_TRACE(testing::Message() << model.name << ", wavers by " << most_deg << " deg");
-      const double here_s = cut(model, waver(Way(1), blocks, most_deg).program()).duration_s();
-      const double away_s =
-          cut(model, waver(Way(1), blocks, most_deg, away).program()).duration_s();
+    for (const double max_deg : cases<double>({0.006, 0.02})) {
+      SCOPED_TRACE(testing::Message() << model.name << ", wavers by " << max_deg << " deg");
+      const double here_s = cut(model, waver(Way(1), blocks, max_deg).program()).duration_s();
+      const double away_s = cut(model, waver(Way(1), blocks, max_deg, away).program()).duration_s();
       std::printf("%s, %d blocks wavering by %.3f deg: %.3f s, away from the pole %.3f s\n",
-                  model.name.c_str(), blocks, most_deg, here_s, away_s);
+                  model.name.c_str(), blocks, max_deg, here_s, away_s);
       EXPECT_LT(here_s, 1.05 * away_s);
     }
   }

@@ -214,7 +214,7 @@ TEST(PoleStreamDrawn, ReplaysWhatRanBeforeAStationWasGone) {
       const std::size_t until = 10 + random() % (drawn.blocks.size() - 11);
       const Played cut = run(drawn, 0, Told::kFinish, nullptr, until);
       const Played replayed = run(drawn, 0, Told::kNothing, &cut.marks);
-      // Zones are compared: what the free joint does past the pole.
+      // Zones are compared: what the redundant joint does past the pole.
       std::size_t n = 0, m = 0;
       bool is_same = true;
       std::uint64_t where = 0;

@@ -99,7 +99,7 @@ TEST(PoleStream, LooksAtTheBeginOfAProgramBehindBlocksThatDoNotMove) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       for (const int turn : {-1, 0}) {  // of C where it stands
         JointVector start = joints_of(model, blocks[static_cast<std::size_t>(dwells)]);
-        start[free_joint(model)] += turn * 2 * 3.14159265358979323846;
+        start[redundant_joint(model)] += turn * 2 * 3.14159265358979323846;
         if (first_joint_outside_travel(model, start, 0) >= 0) continue;
         const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0}, true);
         EXPECT_EQ(trace.last.status, PlanStatus::kOk)

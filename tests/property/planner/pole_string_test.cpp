@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// Drawn paths beside the pole against the least time that their corridor has with feed and the
-/// free joint's speed alone.
+/// redundant joint's speed alone.
 
 #include <gtest/gtest.h>
 
@@ -91,8 +91,9 @@ Draw drawn(std::uint32_t seed) {
   return draw;
 }
 
-/// The corridor of the free joint along a way, by the programmed axes alone, and the least time
-/// through it with feed and the joint's speed alone: the string, on the best sides of its walls.
+/// The corridor of the redundant joint along a way, by the programmed axes alone, and the least
+/// time through it with feed and the joint's speed alone: the string, on the best sides of its
+/// walls.
 class LeastTime {
  public:
   LeastTime(const Draw& draw, double speed) : speed_(speed) {
@@ -192,12 +193,12 @@ SmoothTrace cut(const MachineModel& model, const std::vector<ClBlock>& blocks) {
 }
 
 /// Of limits, and of the tolerance about the programmed way.
-void judge(const MachineModel& model, const std::vector<ClBlock>& blocks,
+void check(const MachineModel& model, const std::vector<ClBlock>& blocks,
            const SmoothTrace& trace) {
   const auto setpoints = sample(model, trace, 1e-3, 0.37, joints_of(model, blocks[0]));
   const LimitUse use = measure_limits(model, setpoints, 1e-3);
   EXPECT_LE(std::max({use.v, use.a, use.j}), 1 + 1e-6) << use.where;
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   for (std::size_t n = 3; n + 3 < setpoints.size(); n += 17) {
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
     if (trace.times[k].kind != TimeKind::kMove) continue;
@@ -210,9 +211,9 @@ void judge(const MachineModel& model, const std::vector<ClBlock>& blocks,
 }
 
 /// The ramps: what the same way takes beyond its feed far off the pole, where the feed has no other
-/// bound, and where the free joint has to turn also one of that from rest to its speed and back.
-/// The least time knows nothing of smoothing: where that closes a gate which the programmed axes
-/// leave open by a hair the way round is far longer, hence a share of the paths beside a mean.
+/// bound, and where the redundant joint has to turn also one of that from rest to its speed and
+/// back. The least time knows nothing of smoothing: where that closes a gate which the programmed
+/// axes leave open by a hair the way round is far longer, hence a share of the paths beside a mean.
 TEST(PoleString, TakesLittleMoreThanTheLeastTimeOfTheCorridor) {
   const auto paths = number_of("MERIDIAN_STRING_PATHS", static_cast<unsigned>(draws(100)));
   const auto first = number_of("MERIDIAN_STRING_SEED", 1U);
@@ -223,21 +224,21 @@ TEST(PoleString, TakesLittleMoreThanTheLeastTimeOfTheCorridor) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const Draw draw = drawn(seed);
     const double feed_s = draw.step_mm * static_cast<double>(draw.axes.size() - 1) / kFeed_mm_per_s;
-    const JointLimits& limits = model.joints[free_joint(model)].limits;
+    const JointLimits& limits = model.joints[redundant_joint(model)].limits;
     const double string_s = LeastTime(draw, limits.velocity).find();
     const double off_s = cut(model, program_of(draw, kFar_rad)).duration_s();
     const double turn_s = limits.velocity / limits.acceleration + limits.acceleration / limits.jerk;
     const double ramps_s = off_s - feed_s + (string_s > 1.01 * feed_s ? turn_s : 0);
-    const double least_s = string_s + ramps_s;
+    const double min_s = string_s + ramps_s;
     const auto blocks = program_of(draw, 0);
     const SmoothTrace trace = cut(model, blocks);
     ASSERT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
-    if (seed % 4 == 1) judge(model, blocks, trace);
-    const double more = trace.duration_s() / least_s - 1;
+    if (seed % 4 == 1) check(model, blocks, trace);
+    const double more = trace.duration_s() / min_s - 1;
     if (more > kMore) {
       ++far;
       std::printf("seed %u: %.3f s, least %.3f s, feed %.3f s, ramps %.3f s\n", seed,
-                  trace.duration_s(), least_s, feed_s, ramps_s);
+                  trace.duration_s(), min_s, feed_s, ramps_s);
     }
     worst = std::max(worst, more);
     sum += more;

@@ -42,12 +42,12 @@ std::vector<ClBlock> pass_at(double distance_deg) {
 
 struct Pass {
   double time_s = 0, peak_deg_per_s = 0;
-  double off_deg = 0;   ///< of the axis across its programmed way, at the setpoints
-  double told_deg = 0;  ///< by the planner, smoothing included
+  double off_deg = 0;       ///< of the axis across its programmed way, at the setpoints
+  double reported_deg = 0;  ///< by the planner, smoothing included
   std::vector<PoleEase> eases;
 };
 
-/// Plans, judges the limits, and measures.
+/// Plans, checks the limits, and measures.
 Pass pass(const MachineModel& model, double distance_deg) {
   constexpr double kCycle = 250e-6;
   const auto blocks = pass_at(distance_deg);
@@ -61,10 +61,10 @@ Pass pass(const MachineModel& model, double distance_deg) {
   out.time_s = trace.duration_s();
   out.eases = trace.eases;
   for (const PoleEase& ease : trace.eases) {
-    out.told_deg = std::max(out.told_deg, units::deg_from_rad(ease.deviation_rad));
+    out.reported_deg = std::max(out.reported_deg, units::deg_from_rad(ease.deviation_rad));
   }
-  const auto ways = programmed_ways(blocks);
-  const int free = free_joint(model);
+  const auto ways = programmed_paths(blocks);
+  const int free = redundant_joint(model);
   for (std::size_t n = 1; n < setpoints.size(); ++n) {
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
     if (trace.times[k].kind != TimeKind::kMove) continue;
@@ -169,13 +169,13 @@ TEST(PoleTable, PassesInsideTheToleranceTakeTheSameTimeAndEaseByTheirDistance) {
       const Pass at = pass(model, distance_deg);
       std::printf("%s, passed at %.6f deg: %.3f s, C %.1f deg/s, axis %.4f deg off (told %.4f)\n",
                   model.name.c_str(), distance_deg, at.time_s, at.peak_deg_per_s, at.off_deg,
-                  at.told_deg);
+                  at.reported_deg);
       if (distance_deg == 0) straight_s = at.time_s;
       EXPECT_LT(at.time_s, 1.1 * straight_s);
       EXPECT_LE(at.off_deg, distance_deg + 1e-3);
       ASSERT_EQ(at.eases.size(), 1U);
-      EXPECT_GE(at.told_deg, at.off_deg - 1e-6);
-      EXPECT_LE(at.told_deg, 0.1);
+      EXPECT_GE(at.reported_deg, at.off_deg - 1e-6);
+      EXPECT_LE(at.reported_deg, 0.1);
       EXPECT_EQ(at.eases[0].reason, EaseReason::kThrough);
       EXPECT_LE(at.eases[0].first_line, 115U);  // the pole is at the end of line 115
       EXPECT_GE(at.eases[0].last_line, 115U);
@@ -192,7 +192,7 @@ TEST(PoleTable, TheExactPolicyNeverEasesAndKeepsEveryLimit) {
     const Pass at = pass(model, distance_deg);
     std::printf("exact, passed at %.6f deg: %.3f s, C %.1f deg/s, axis %.6f deg off\n",
                 distance_deg, at.time_s, at.peak_deg_per_s, at.off_deg);
-    EXPECT_LE(at.told_deg, units::deg_from_rad(kPoleEase_rad));
+    EXPECT_LE(at.reported_deg, units::deg_from_rad(kPoleEase_rad));
     EXPECT_LT(at.off_deg, 1e-3);  // of a straight way smoothing leaves that
     EXPECT_GT(at.peak_deg_per_s, distance_deg > 1e-3 ? 50 : -1);
   }

@@ -25,7 +25,7 @@ ClBlock cut(std::uint64_t sequence, const Vector3& tip, const Vector3& axis) {
   return block;
 }
 
-/// Way of the free joint, up and down added.
+/// Way of the redundant joint, up and down added.
 double free_travel(const Trace& trace) {
   double sum = 0;
   std::uint64_t last = ~std::uint64_t{0};
@@ -42,7 +42,7 @@ void expect_clean(const MachineModel& model, const Trace& trace, const std::vect
                   const JointVector& start) {
   ASSERT_EQ(trace.last.status, PlanStatus::kOk)
       << static_cast<int>(trace.last.reject.code) << " " << trace.last.reject.value;
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   for (const double cycle : {1e-3, 250e-6}) {
     const auto setpoints = sample(model, trace, cycle, 0.37, start);
     const LimitUse use = measure_limits(model, setpoints, cycle);

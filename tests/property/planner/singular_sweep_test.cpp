@@ -53,7 +53,7 @@ double cutting_time_s(const Trace& trace) {
 /// In tolerances.
 double farthest_off(const MachineModel& model, const std::vector<ClBlock>& blocks,
                     const Trace& trace, const std::vector<PlanSample>& setpoints) {
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   double farthest = 0;
   for (std::size_t n = 3; n + 3 < setpoints.size(); n += 7) {
     const auto piece = static_cast<std::size_t>(setpoints[n].piece);

@@ -27,14 +27,14 @@ struct Peaks {
   double v = 0, a = 0, j = 0, feed = 0, off = 0, duration_s = 0;
 };
 
-/// Judges setpoints of `trace` by `blocks` alone.
-void judge(const MachineModel& model, const SmoothTrace& trace, const std::vector<ClBlock>& blocks,
+/// Checks setpoints of `trace` by `blocks` alone.
+void check(const MachineModel& model, const SmoothTrace& trace, const std::vector<ClBlock>& blocks,
            const JointVector& start, Peaks& peaks) {
   ASSERT_EQ(trace.last.status, PlanStatus::kOk)
       << "code " << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
       << " block " << trace.last.reject.sequence;
   ASSERT_EQ(trace.times.back().kind, TimeKind::kEnd);
-  const auto ways = programmed_ways(blocks);
+  const auto ways = programmed_paths(blocks);
   for (const double cycle : {1e-3, 250e-6}) {
     const auto setpoints = sample(model, trace, cycle, 0.37, start);
     const LimitUse use = measure_limits(model, setpoints, cycle);
@@ -76,7 +76,7 @@ TEST(SmoothPlanner, KeepsLimitsFeedAndTolerancesOnHostilePrograms) {
       SCOPED_TRACE(testing::Message() << model.name << " seed " << seed);
       const auto blocks = hostile(seed, 12);
       const JointVector start = joints_of(model, blocks[0]);
-      judge(model, plan_smooth(model, blocks, start), blocks, start, peaks);
+      check(model, plan_smooth(model, blocks, start), blocks, start, peaks);
     }
     print(model.name.c_str(), peaks);
   }
@@ -115,13 +115,13 @@ TEST(SmoothPlanner, RunsThroughThePoleInsideTheTolerance) {
         const JointVector start = joints_of(model, blocks[0]);
         const SmoothTrace trace = plan_smooth(model, blocks, start);
         Peaks peaks;
-        judge(model, trace, blocks, start, peaks);
+        check(model, trace, blocks, start, peaks);
         if (HasFatalFailure()) return;
         std::printf("%s, bend %.0f deg, at %.0e deg: %.3f s, j %.4f, %.3f tolerances\n",
                     model.name.c_str(), bend_deg, distance_deg, peaks.duration_s, peaks.j,
                     peaks.off);
         if (distance_deg == 0) straight_s = peaks.duration_s;
-        EXPECT_LT(peaks.duration_s, 1.15 * straight_s) << "the free joint was turned";
+        EXPECT_LT(peaks.duration_s, 1.15 * straight_s) << "the redundant joint was turned";
         for (std::size_t n = 1; n < trace.times.size(); ++n) {
           const bool is_inside = trace.times[n].sequence > 2 && trace.times[n].sequence < 29;
           EXPECT_FALSE(is_inside && trace.times[n].v == 0)
@@ -166,7 +166,7 @@ TEST(SmoothPlanner, KeepsTheLimitsOfJointsAndDrivesBehindAStage) {
     }
     const JointVector start = joints_of(model, blocks[0]);
     const auto trace = plan_smooth(model, blocks, start);
-    judge(model, trace, blocks, start, peaks);
+    check(model, trace, blocks, start, peaks);
     for (const PathPiece& path : trace.paths) splines += path.kind == PathKind::kSpline;
   }
   EXPECT_GT(splines, draws(200));
@@ -186,7 +186,7 @@ TEST(SmoothPlanner, GoesOnFromWhereTheMachineRanDry) {
         model, blocks, start, {Transition::kSmooth, 0, 0},
         [&](std::size_t) { return engine() % 5 == 0; },
         [&](std::size_t) { return engine() % 4 == 0; });
-    judge(model, trace, blocks, start, peaks);
+    check(model, trace, blocks, start, peaks);
     tails += trace.tails;
   }
   EXPECT_GT(tails, draws(50));
@@ -236,7 +236,7 @@ TEST(SmoothPlanner, RestsWhereRapidsDwellsAndActionsStand) {
   const JointVector start = joints_of(model, program[0]);
   const auto trace = plan_smooth(model, program, start);
   Peaks peaks;
-  judge(model, trace, program, start, peaks);
+  check(model, trace, program, start, peaks);
   int barriers = 0, splines = 0;
   for (std::size_t n = 1; n < trace.times.size(); ++n) {
     splines += trace.paths[n].kind == PathKind::kSpline ? 1 : 0;
@@ -368,7 +368,7 @@ TEST(SmoothPlanner, PassesBesideThePoleInNearlyTheLeastTime) {
   const JointVector start = joints_of(model, blocks[0]);
   const auto trace = plan_smooth(model, blocks, start);
   Peaks peaks;
-  judge(model, trace, blocks, start, peaks);
+  check(model, trace, blocks, start, peaks);
   print("beside the pole", peaks);
   EXPECT_LE(trace.duration_s(), 4.15);
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "meridian/cycle/rate_filter.hpp"
-#include "meridian/cycle/stop_authority.hpp"
+#include "meridian/cycle/stop_margin.hpp"
 #include "property/cycle/stop_oracle.hpp"
 #include "property/path/hostile_path.hpp"
 #include "property/planner/random_programs.hpp"
@@ -51,7 +51,7 @@ bool is_move(const Trace& trace, std::size_t n) {
 
 /// Goes along the plan as the cycle does, its rate falling, until there is authority for a stop.
 /// The time that it takes.
-double wait_for_authority(const Trace& trace, StopKind kind, OnPlan& at, StopAuthority& authority) {
+double wait_for_authority(const Trace& trace, StopKind kind, OnPlan& at, StopMargin& authority) {
   constexpr double kCycle_s = 1e-3;
   RateFilter rate;
   double waited = 0;
@@ -195,9 +195,9 @@ void stop_from(const MachineModel& model, const Trace& trace, OnPlan at, StopKin
   const PathState begin = at.state(trace);
   if (begin.ds <= 1e-3) return;
   const double least =
-      least_stopping_time(kind == StopKind::kFault ? by_fault_limits(model) : model,
-                          trace.paths[at.piece], begin, trace.paths[at.piece].joints_begin);
-  StopAuthority authority;
+      min_stopping_time(kind == StopKind::kFault ? by_fault_limits(model) : model,
+                        trace.paths[at.piece], begin, trace.paths[at.piece].joints_begin);
+  StopMargin authority;
   double time = wait_for_authority(trace, kind, at, authority);
   stops.longest_wait = std::max(stops.longest_wait, time);
   if (authority.jerk > 0) {
@@ -306,8 +306,7 @@ TEST(SmoothStop, LeavesRoomForRoundingBesideThePole) {
     for (std::size_t k = 0; k < trace.times.size(); ++k) {
       if (!is_move(trace, k) || trace.paths[k].kind != PathKind::kSpline) continue;
       const OnPlan from{k, draw.uniform(0, trace.times[k].duration), 1, 0};
-      const StopAuthority authority =
-          authority_of(trace.times[k], StopKind::kHold, from.state(trace));
+      const StopMargin authority = authority_of(trace.times[k], StopKind::kHold, from.state(trace));
       if (!(authority.jerk > 0)) continue;
       const StopLaw law(from.state(trace), authority);
       const auto setpoints = hold_setpoints(model, trace, k, law, kCycle_s);

@@ -125,7 +125,7 @@ inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t se
                             const ToolPose& pose, double tip_mm, double axis_rad,
                             double enough = 0) {
   constexpr double kBehind_mm = 0.3, kAhead_mm = 2.5;  // a span is named by where it begins
-  const auto least_on = [&](const PathPiece& way) {
+  const auto min_on = [&](const PathPiece& way) {
     const auto at = [&](double x) {
       const ToolPose p = pose_at(way, x * way.length);
       return std::max((p.tip - pose.tip).norm() / tip_mm,
@@ -138,16 +138,16 @@ inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t se
     }
     return std::min({at(0.5 * (low + high)), at(0.0), at(1.0)});
   };
-  double least = least_on(ways[sequence]);
+  double least = min_on(ways[sequence]);
   double length = 0;
   for (std::size_t n = sequence; n-- > 0 && length < kBehind_mm; length += ways[n].length) {
     if (least <= enough) return least;
-    if (ways[n].length > 0) least = std::min(least, least_on(ways[n]));
+    if (ways[n].length > 0) least = std::min(least, min_on(ways[n]));
   }
   length = 0;
   for (std::size_t n = sequence + 1; n < ways.size() && length < kAhead_mm; ++n) {
     if (least <= enough) return least;
-    if (ways[n].length > 0) least = std::min(least, least_on(ways[n]));
+    if (ways[n].length > 0) least = std::min(least, min_on(ways[n]));
     length += ways[n].length;
   }
   return least;

@@ -50,9 +50,9 @@ std::vector<PlanSample> stop_samples(const MachineModel& model, const Trace& tra
 
 /// Largest deceleration and jerk along the path that any joint's true limits could allow on
 /// [from, to] with ṡ <= v: what no controller whatever can beat there.
-StopAuthority best_possible(const MachineModel& model, const PathPiece& path, double from,
-                            double to, double v, double a) {
-  StopAuthority best;
+StopMargin best_possible(const MachineModel& model, const PathPiece& path, double from, double to,
+                         double v, double a) {
+  StopMargin best;
   for (int k = 0; k <= 12; ++k) {
     const double s = from + (to - from) * k / 12;
     const auto at = joints_at(model, path, Jet<3>::variable(s), reference_at(path, s));
@@ -93,7 +93,7 @@ ClBlock cut(std::uint64_t sequence, const Vector3& tip, const Vector3& axis) {
   return block;
 }
 
-TEST(StopAuthority, LeavesRoomForRoundingBesideThePole) {
+TEST(StopMargin, LeavesRoomForRoundingBesideThePole) {
   // From just outside the ease, where C is made of the last digits of the axis, at 8 kHz.
   constexpr std::uint64_t kSeed = 4711;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -133,7 +133,7 @@ TEST(StopAuthority, LeavesRoomForRoundingBesideThePole) {
   std::printf("largest use of jerk %.4f\n", largest);
 }
 
-TEST(StopAuthority, KeepsTheLimitsAndWastesLittleFromAnywhere) {
+TEST(StopMargin, KeepsTheLimitsAndWastesLittleFromAnywhere) {
   constexpr int kPrograms = draws(1500);
   double largest_use = 0, largest_ratio = 0, sum_ratio = 0;
   int stops = 0, slow = 0;
@@ -163,7 +163,7 @@ TEST(StopAuthority, KeepsTheLimitsAndWastesLittleFromAnywhere) {
       largest_use = std::max({largest_use, use.v, use.a, use.j});
       if (path.motion == MotionKind::kApproach) continue;
       const double rise = std::max(0.0, state.dds);
-      const StopAuthority best =
+      const StopMargin best =
           best_possible(model, path, state.s, std::min(path.length, state.s + law.distance()),
                         state.ds + 0.5 * rise * rise / time.stop_jerk, state.dds);
       const double least = StopLaw(state, best).duration();

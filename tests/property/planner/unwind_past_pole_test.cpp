@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "property/planner/judged_unwindings.hpp"
+#include "property/planner/checked_unwindings.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
@@ -154,7 +154,7 @@ TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
         blocks.emplace_back().kind = BlockKind::kDwell;
         for (int n = 1; n <= 12; ++n) blocks.push_back(lean(n, 80 + farther_deg, 12 + n));
         number_and_end(blocks);
-        const int free = free_joint(model);
+        const int free = redundant_joint(model);
         const JointVector start = solve_block(model, blocks[0], 0);
         const double sign =
             solve_block(model, lean(12, 81, 0), 0, start)[free] > start[free] ? 1 : -1;
@@ -167,7 +167,7 @@ TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
         const SmoothTrace trace = plan_smooth(turned, blocks, start, {Transition::kSmooth, 0, 0},
                                               policy == UnwindPolicy::kRefuse);
         Found found;
-        judge(turned, trace, blocks, start, found);
+        check(turned, trace, blocks, start, found);
         if (HasFatalFailure()) return;
         EXPECT_EQ(found.unwindings, 0);
         double told = 0;

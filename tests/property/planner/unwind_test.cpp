@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "property/planner/judged_unwindings.hpp"
+#include "property/planner/checked_unwindings.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
@@ -71,15 +71,15 @@ constexpr std::uint32_t kPrograms = 1;  // longer runs: MERIDIAN_UNWIND_PROGRAMS
 constexpr std::uint32_t kProgramsAtThePole = kIsTimed ? 3 : 1;
 
 void run_spirals(Transition transition, Spiral how) {
-  const auto programs = number_of("MERIDIAN_UNWIND_PROGRAMS",
-                                  how.passes_pole ? kProgramsAtThePole : kPrograms);
+  const auto programs =
+      number_of("MERIDIAN_UNWIND_PROGRAMS", how.passes_pole ? kProgramsAtThePole : kPrograms);
   const auto first = number_of("MERIDIAN_UNWIND_SEED", 1U);
   std::uint32_t last = first + programs;
   int unwindings = 0;
   auto all = machines();
   if (!kIsTimed) all.resize(1);  // the slow build sees the same code
   for (const MachineModel& model : all) {
-    const JointLimits& limits = model.joints[free_joint(model)].limits;
+    const JointLimits& limits = model.joints[redundant_joint(model)].limits;
     how.turns = (limits.travel_max - limits.travel_min) / kTurn_rad + 1.4;
     Found found;
     for (std::uint32_t seed = last - programs; seed < last; ++seed) {
@@ -88,7 +88,7 @@ void run_spirals(Transition transition, Spiral how) {
       const auto blocks = spiral(seed, how);
       const JointVector start = joints_of(model, blocks[0]);
       const SmoothSettings settings{transition, 0, 0};
-      judge(model, plan_smooth(model, blocks, start, settings, true), blocks, start, found);
+      check(model, plan_smooth(model, blocks, start, settings, true), blocks, start, found);
       if (testing::Test::HasFatalFailure()) return;
     }
     std::printf("%s: %d unwindings, v %.4f a %.4f j %.4f of the limits, %.3f tolerances\n",
@@ -141,7 +141,7 @@ TEST(Unwinding, IsRefusedWhereNoWindingCarriesTheBlock) {
     const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0}, true);
     EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
     EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
-    EXPECT_EQ(trace.last.reject.joint, free_joint(model));
+    EXPECT_EQ(trace.last.reject.joint, redundant_joint(model));
     EXPECT_TRUE(trace.unwindings.empty());
   }
 }
@@ -154,7 +154,7 @@ TEST(Unwinding, IsNotMadeWhereTheMachineFileDoesNotSayHow) {
   const SmoothTrace trace = plan_smooth(model, blocks, start, {Transition::kExactStop, 0, 0}, true);
   EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
   EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
-  EXPECT_EQ(trace.last.reject.joint, free_joint(model));
+  EXPECT_EQ(trace.last.reject.joint, redundant_joint(model));
 }
 
 TEST(Unwinding, IsRefusedWhereTheToolCannotLeaveThePartSoFar) {

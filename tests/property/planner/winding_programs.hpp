@@ -24,7 +24,7 @@ inline MachineModel limited(MachineModel model, double low_deg, double high_deg)
     model.joints[i].name = name;
     model.joints[i].is_rotary = is_rotary;
   }
-  JointSpec& c = model.joints[free_joint(model)];
+  JointSpec& c = model.joints[redundant_joint(model)];
   c.is_endless = false;
   c.limits.travel_min = units::rad_from_deg(low_deg);
   c.limits.travel_max = units::rad_from_deg(high_deg);

@@ -15,7 +15,7 @@
 #include "service/programs/cl/cl_writer.hpp"
 #include "service/programs/post/axis_words.hpp"
 #include "service/programs/post/post.hpp"
-#include "support/cl_way.hpp"
+#include "support/cl_path.hpp"
 #include "support/nc_program.hpp"
 #include "support/shipped_machines.hpp"
 
@@ -116,7 +116,7 @@ bool is_at(const ToolPose& a, const ToolPose& b) {
 }
 
 /// Least time in which the drives go evenly from `a` to `b` with no joint and no drive too fast.
-double least_time(const MachineModel& model, const JointVector& a, const JointVector& b) {
+double min_time(const MachineModel& model, const JointVector& a, const JointVector& b) {
   constexpr int kParts = 16;
   double longest = 0;
   LimitedVector last = limited_of(model, joints_of(model, a));
@@ -142,8 +142,8 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
   MachineModel model = machine_of(GetParam());
   Counts counts;
 
-  void judge_feed(const ReadBack& read, const test::NcMove& move, const test::NcMove& before,
-                  const test::ClWay& way) {
+  void check_feed(const ReadBack& read, const test::NcMove& move, const test::NcMove& before,
+                  const test::ClPath& way) {
     if (move.is_rapid) return;
     const double most = model.max_feed_mm_per_s;
     const double feed = way.block.feed_meaning == FeedMeaning::kTip
@@ -160,7 +160,7 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
     }
     ASSERT_TRUE(move.is_inverse && move.has_feed) << "NC line " << move.line;
     const double seconds = 60 / move.feed;
-    const double by_joints = least_time(model, read.drives(before), read.drives(move));
+    const double by_joints = min_time(model, read.drives(before), read.drives(move));
     EXPECT_GE(seconds, by_joints * (1 - 1e-6)) << "a joint is too fast, NC line " << move.line;
     EXPECT_LE(length, feed * seconds * (1 + 1e-9) + kDigits_mm) << "NC line " << move.line;
     if (way.block.is_arc || way.block.feed_meaning != FeedMeaning::kTip) return;
@@ -173,7 +173,7 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
 
   /// Largest deviation from `way` of the motion between two blocks, in tolerances.
   static double worst_between(const ReadBack& read, const test::NcMove& from,
-                              const test::NcMove& to, const test::ClWay& way,
+                              const test::NcMove& to, const test::ClPath& way,
                               const post::PostOptions& options) {
     double worst = 0;
     for (int k = 0; k <= kSamples; ++k) {
@@ -183,7 +183,7 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
     return worst;
   }
 
-  void judge(const std::string& cl_text, const std::string& nc_text,
+  void check(const std::string& cl_text, const std::string& nc_text,
              const post::PostOptions& options) {
     const ReadBack read{model, *post::AxisWords::of(model), test::read_nc(nc_text), options};
     const std::vector<ClBlock> blocks = blocks_of(cl_text);
@@ -211,7 +211,7 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
       ASSERT_LE(worst, 1 + kRounding)
           << "NC line " << moves[n].line << ", CL line " << ways[at].block.line;
       counts.worst = std::max(counts.worst, worst);
-      judge_feed(read, moves[n], moves[before], ways[at]);
+      check_feed(read, moves[n], moves[before], ways[at]);
       if (is_at(read.end_of(moves[before]), read.end_of(moves[n]))) ++counts.turns;
       before = n;
     }
@@ -238,7 +238,7 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
         continue;
       }
       ++counts.programs;
-      judge(text, program->text, options);
+      check(text, program->text, options);
       if (HasFatalFailure()) {
         std::printf("%s\n%s\n", text.c_str(), program->text.c_str());
         return;

@@ -221,11 +221,11 @@ std::string Protocol::key() const {
     key += ';';
   }
   key += '|';
-  IntakeJudge copy = *intake_;
+  IntakeCheck copy = *intake_;
   add(copy.due_credit(around()).has_value());
   Surroundings later = around();
   later.now_ns += kTick;
-  if (const auto credit = IntakeJudge(*intake_).due_credit(later)) add_credit(*credit);
+  if (const auto credit = IntakeCheck(*intake_).due_credit(later)) add_credit(*credit);
   for (std::uint64_t session = 1; session <= session_; ++session) {
     if (session == intake_->session()) continue;
     Accepted accepted;

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "service/protocol/intake_judge.hpp"
+#include "service/protocol/intake_check.hpp"
 #include "service/protocol/station.hpp"
 #include "support/explore.hpp"
 #include "support/machines.hpp"
 #include "support/programs.hpp"
 
-/// The session and credit protocol as a finite machine: the real Station and the real IntakeJudge,
+/// The session and credit protocol as a finite machine: the real Station and the real IntakeCheck,
 /// a small program, a small queue, and a wire that may lose, double, spoil and overtake. Time goes
 /// on in steps after which every repetition is due. What is under way to or from a service that is
 /// killed is lost with it: readers that come later get nothing of it, and a station takes what came
@@ -33,12 +33,12 @@ enum class Variant : std::uint8_t {
 /// How small the machine is, and how often what is rare may happen: so that it is finite.
 struct Bounds {
   std::uint64_t blocks = 2;                    ///< of the program, besides its end
-  std::size_t places = 2;                      ///< of the queue, as the judge is told
+  std::size_t places = 2;                      ///< of the queue, as the check is told
   std::size_t to_service = 2, to_station = 1;  ///< messages under way; one more is lost
   int station_restarts = 0, service_restarts = 0, aborts = 0;
 };
 
-inline constexpr std::size_t kReserve = 2;  ///< places that the judge is not told of, as in intake
+inline constexpr std::size_t kReserve = 2;  ///< places that the check is not told of, as in intake
 inline constexpr std::int64_t kTick = 1'000'000'000;
 
 struct ToService {
@@ -125,7 +125,7 @@ class Protocol {
   Variant variant_;
   Bounds bounds_;
   std::optional<Station> station_;
-  std::optional<IntakeJudge> intake_;
+  std::optional<IntakeCheck> intake_;
   std::uint64_t session_ = 0, service_id_ = 0, lost_session_ = 0;
   std::vector<ToService> messages_;
   std::vector<dds::Credit> credits_;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "service/protocol/intake_judge.hpp"
+#include "service/protocol/intake_check.hpp"
 #include "service/protocol/station.hpp"
 #include "support/machines.hpp"
 #include "support/programs.hpp"
@@ -20,7 +20,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 /// What a transport may do to messages, as probabilities per message.
 struct Weather {
   double loss = 0, twice = 0, spoilt = 0;
-  int most_delay_ms = 1;  ///< every message takes 0 to this: overtaking included
+  int max_delay_ms = 1;  ///< every message takes 0 to this: overtaking included
 };
 
 /// A transport with bad manners.
@@ -33,7 +33,7 @@ class Channel {
     if (draw() < weather_.loss) return;
     const int copies = draw() < weather_.twice ? 2 : 1;
     for (int i = 0; i < copies; ++i) {
-      const int delay = std::uniform_int_distribution(0, weather_.most_delay_ms)(engine_);
+      const int delay = std::uniform_int_distribution(0, weather_.max_delay_ms)(engine_);
       under_way_.push_back({now_ns + delay * kMillisecond, message});
     }
   }
@@ -44,7 +44,7 @@ class Channel {
                               [&](const Entry& entry) { return entry.due_ns > now_ns; });
     for (auto it = later; it != under_way_.end(); ++it) messages.push_back(it->message);
     under_way_.erase(later, under_way_.end());
-    if (weather_.most_delay_ms > 0) std::shuffle(messages.begin(), messages.end(), engine_);
+    if (weather_.max_delay_ms > 0) std::shuffle(messages.begin(), messages.end(), engine_);
     return messages;
   }
   [[nodiscard]] double draw() { return std::uniform_real_distribution(0.0, 1.0)(engine_); }
@@ -87,7 +87,7 @@ std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937_64 engine(seed);
   const MachineModel model = test::lai_machine();
-  IntakeJudge intake(model, {}, 99);
+  IntakeCheck intake(model, {}, 99);
   std::uint64_t next = 0;
   Station station({.session = 5, .station = "cam", .program = "part"}, [&]() -> Supply {
     if (next == count) return {.kind = Supply::Kind::kEnd};
@@ -131,7 +131,7 @@ std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_
 }
 
 TEST(Session, FairWeatherLosesNothingAndResendsNothing) {
-  EXPECT_EQ(stream_through(1, 20'000, 5001, {.most_delay_ms = 0}), 0u);
+  EXPECT_EQ(stream_through(1, 20'000, 5001, {.max_delay_ms = 0}), 0u);
 }
 
 TEST(Session, NothingIsLostAndNothingComesTwiceInAnyWeather) {

@@ -9,7 +9,7 @@
 namespace meridian::certify {
 namespace {
 
-using Real = long double;  // 11 digits of a bit more than what is judged
+using Real = long double;  // 11 digits of a bit more than what is checked
 
 struct Draws {
   std::mt19937_64 engine{20261};

@@ -179,9 +179,9 @@ TEST_F(RecordingCommands, CheckSaysNoWhereTheMotionIsNotThatOfTheFile) {
       ".apt");
   const std::string arguments = "check " + recording() + " " + other.path().string() + kMachine;
   EXPECT_EQ(run_tool(arguments).exit_code, 0) << "inside the machine's tolerance";
-  const CommandOutput judged = run_tool(arguments + "--tip-tolerance-mm 0.001 --json");
-  EXPECT_EQ(judged.exit_code, 1) << judged.output;
-  EXPECT_NE(judged.output.find("\"kind\": \"tip\""), std::string::npos) << judged.output;
+  const CommandOutput checked = run_tool(arguments + "--tip-tolerance-mm 0.001 --json");
+  EXPECT_EQ(checked.exit_code, 1) << checked.output;
+  EXPECT_NE(checked.output.find("\"kind\": \"tip\""), std::string::npos) << checked.output;
   const TextFile nothing("", ".csv");
   const CommandOutput shifted = run_tool("simulate " + part() + kMachine +
                                          "--frame 0,0,1 --record " + nothing.path().string());

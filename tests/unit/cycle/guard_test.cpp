@@ -26,14 +26,14 @@ TEST(Guard, LetsAnHonestSetpointPass) {
   const JointVector last{1, 2, 3, 400, 5};
   JointVector next = last;
   next[0] += 0.2;
-  EXPECT_EQ(judge(machine_under_guard(), next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine_under_guard(), next, {}, last, kPeriod_s).alarm, Alarm::kNone);
 }
 
 TEST(Guard, StopsANumberThatIsNotFinite) {
   const JointVector last{};
   JointVector next{};
   next[2] = std::numeric_limits<double>::quiet_NaN();
-  const GuardVerdict verdict = judge(machine_under_guard(), next, {}, last, kPeriod_s);
+  const GuardVerdict verdict = check(machine_under_guard(), next, {}, last, kPeriod_s);
   EXPECT_EQ(verdict.alarm, Alarm::kNotFinite);
   EXPECT_EQ(verdict.joint, 2);
 }
@@ -41,14 +41,14 @@ TEST(Guard, StopsANumberThatIsNotFinite) {
 TEST(Guard, StopsAVelocityThatIsNotFinite) {
   JointVector velocity{};
   velocity[4] = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(judge(machine_under_guard(), {}, velocity, {}, kPeriod_s).alarm, Alarm::kNotFinite);
+  EXPECT_EQ(check(machine_under_guard(), {}, velocity, {}, kPeriod_s).alarm, Alarm::kNotFinite);
 }
 
 TEST(Guard, StopsASetpointOutsideTravel) {
   JointVector last{}, next{};
   last[1] = 99.99;
   next[1] = 100.001;
-  const GuardVerdict verdict = judge(machine_under_guard(), next, {}, last, kPeriod_s);
+  const GuardVerdict verdict = check(machine_under_guard(), next, {}, last, kPeriod_s);
   EXPECT_EQ(verdict.alarm, Alarm::kTravel);
   EXPECT_EQ(verdict.joint, 1);
   EXPECT_EQ(verdict.value, 100.001);
@@ -58,25 +58,25 @@ TEST(Guard, WhoStandsOutsideMayStandAndComeBackButGoNoFarther) {
   JointVector last{}, next{};
   last[1] = next[1] = 105;
   const MachineModel machine = machine_under_guard();
-  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
   next[1] = 104.9;
-  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
   next[1] = 105.001;
-  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s).alarm, Alarm::kTravel);
-  EXPECT_EQ(judge(machine, next, {}, last, kPeriod_s, ~2U).alarm, Alarm::kNone)
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s).alarm, Alarm::kTravel);
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s, ~2U).alarm, Alarm::kNone)
       << "a joint whose position says nothing";
 }
 
 TEST(Guard, EndlessJointsHaveNoTravel) {
   JointVector last{}, next{};
   last[3] = next[3] = 1e4;
-  EXPECT_EQ(judge(machine_under_guard(), next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine_under_guard(), next, {}, last, kPeriod_s).alarm, Alarm::kNone);
 }
 
 TEST(Guard, StopsAStepBeyondTheVelocityLimit) {
   JointVector next{};
   next[0] = -0.2001;
-  const GuardVerdict verdict = judge(machine_under_guard(), next, {}, {}, kPeriod_s);
+  const GuardVerdict verdict = check(machine_under_guard(), next, {}, {}, kPeriod_s);
   EXPECT_EQ(verdict.alarm, Alarm::kStep);
   EXPECT_EQ(verdict.value, -0.2001);
 }
@@ -84,7 +84,7 @@ TEST(Guard, StopsAStepBeyondTheVelocityLimit) {
 TEST(Guard, AllowsTheWayOfThePeriodsThatWereLost) {
   JointVector next{};
   next[0] = 0.59;
-  EXPECT_EQ(judge(machine_under_guard(), next, {}, {}, 3 * kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine_under_guard(), next, {}, {}, 3 * kPeriod_s).alarm, Alarm::kNone);
 }
 
 }  // namespace

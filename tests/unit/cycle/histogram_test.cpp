@@ -84,7 +84,7 @@ TEST(Histogram, CountsWhatALateOneKeptFromBeingMeasured) {
   EXPECT_EQ(corrected.max_ns(), 9'500'000);
   Histogram endless;
   endless.record_every(INT64_MAX, 1);
-  EXPECT_EQ(endless.count(), 1U + Histogram::kMostOmitted);
+  EXPECT_EQ(endless.count(), 1U + Histogram::kMaxOmitted);
 }
 
 TEST(Histogram, TellsWhatWasCountedSinceACopy) {

@@ -61,7 +61,7 @@ struct ToolHand {
     begin = pose();
   }
   void expect_on_line(const ToolPose& is) const {
-    const ToolWay& way = hand.world.state.jogging.way;
+    const ToolPath& way = hand.world.state.jogging.way;
     const Vector3 direction = to_vector(way.direction), moved = is.tip - begin.tip;
     if (way.is_tilt) {
       EXPECT_LE(moved.norm(), kOnLine);

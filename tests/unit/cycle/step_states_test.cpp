@@ -265,7 +265,7 @@ TEST(Step, OverridesOutOfRangeAreRefusedAndThoseInForceStay) {
 
 TEST(Step, TakesAnOverrideUpToTheMachinesHighestAndTellsThePlanner) {
   Program p;
-  p.world.machine.most_feed_override = 1.2;
+  p.world.machine.max_feed_override = 1.2;
   p.world.command(Verb::kFeedOverride, 1.2);
   EXPECT_EQ(p.world.state.feed_override, 1.2);
   EXPECT_EQ(p.world.port->feed_override, 1.2);

@@ -83,7 +83,7 @@ TEST(Lease, LeavesNoMachineWhoseDrivesAreOn) {
   std::this_thread::sleep_for(milliseconds(150));
   moving.lease.hold();
   const auto end =
-      LeaseClock::now() + std::chrono::nanoseconds(LeaseJudge::kStepBack_ns) + milliseconds(300);
+      LeaseClock::now() + std::chrono::nanoseconds(LeaseCheck::kStepBack_ns) + milliseconds(300);
   while (LeaseClock::now() < end) {
     ASSERT_FALSE(older.lease.find_keeper(true));
     ASSERT_FALSE(moving.lease.find_keeper(false));

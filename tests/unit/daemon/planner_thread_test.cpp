@@ -33,7 +33,7 @@ class PlannerThreadTest : public testing::Test {
 
   [[nodiscard]] static MachineModel machine() {
     MachineModel model = test::lai_machine();
-    model.most_feed_override = 1.5;
+    model.max_feed_override = 1.5;
     return model;
   }
   /// The machine is in Ready at home, in `epoch`.

@@ -54,10 +54,10 @@ class SupervisorSetUp : public SupervisorTest {
     });
     return is_there && command.verb == verb ? std::optional(command) : std::nullopt;
   }
-  void tell_accepted(const Command& command) {
+  void report_accepted(const Command& command) {
     tell(EventCode::kAccepted, command.request, Verb::kFrame);
   }
-  void tell_refused(const Command& command, Refusal why) {
+  void report_refused(const Command& command, Refusal why) {
     Event event;
     event.code = EventCode::kRefused;
     event.a = command.request;
@@ -66,12 +66,12 @@ class SupervisorSetUp : public SupervisorTest {
     ASSERT_TRUE(ports_->events.try_push(event));
   }
   /// Status and machine topic tell of what is in force.
-  void tell_everybody() {
+  void report_everybody() {
     ASSERT_TRUE(comes([this] { return supervisor_.has_set_up_to_tell(); }));
     publish_status();
     ports_->set_up.status = status_;
     ports_->set_up.told = supervisor_.in_force().change;
-    supervisor_.set_up_told();
+    supervisor_.set_up_reported();
   }
   [[nodiscard]] bool is_answered() {
     dds::Reply reply;
@@ -105,7 +105,7 @@ class SupervisorSetUp : public SupervisorTest {
     const auto command = write_and_take(verb);
     ASSERT_TRUE(command);
     tell(EventCode::kAccepted, command->request, verb);
-    tell_everybody();
+    report_everybody();
     EXPECT_TRUE(has_reply(verb, Refusal::kNone));
   }
 
@@ -127,9 +127,9 @@ TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndToldBeforeTheyAreAcknowledged)
   ASSERT_TRUE(command);
   EXPECT_EQ(on_disk(3), 12);
   EXPECT_FALSE(is_answered());
-  tell_accepted(*command);
+  report_accepted(*command);
   EXPECT_FALSE(is_answered()) << "nobody was told";
-  tell_everybody();
+  report_everybody();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
 
   say(FrameWord::kSelect, 3);
@@ -138,8 +138,8 @@ TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndToldBeforeTheyAreAcknowledged)
   EXPECT_EQ(command->argument, 3);
   ASSERT_TRUE(ports_->set_up.for_cycle.refresh());
   EXPECT_EQ(ports_->set_up.for_cycle.latest().origin_mm, (Array3{12, 0, 0}));
-  tell_accepted(*command);
-  tell_everybody();
+  report_accepted(*command);
+  report_everybody();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
   ASSERT_TRUE(ports_->set_up.for_planner.refresh() && ports_->set_up.for_intake.refresh());
   EXPECT_EQ(ports_->set_up.for_planner.latest().number, 3);
@@ -150,7 +150,7 @@ TEST_F(SupervisorSetUp, AreTakenOffTheDiskAgainWhereTheCycleRefusesThem) {
   say(FrameWord::kSet, 3, 12);
   const auto command = write_and_take();
   ASSERT_TRUE(command);
-  tell_refused(*command, Refusal::kProgramPresent);
+  report_refused(*command, Refusal::kProgramPresent);
   ASSERT_TRUE(comes([&] {
     file_.work();
     return on_disk(3) == 0;
@@ -196,8 +196,8 @@ TEST_F(SupervisorSetUp, AreAskedForOnceMoreWhereTheCyclesAnswerWasLost) {
   tell(EventCode::kAccepted, behind->request, Verb::kSingleBlock);
   const auto again = take(Verb::kFrame);
   ASSERT_TRUE(again);
-  tell_accepted(*again);
-  tell_everybody();
+  report_accepted(*again);
+  report_everybody();
   EXPECT_TRUE(has_reply(Verb::kSingleBlock, Refusal::kNone));
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
 }
@@ -209,8 +209,8 @@ TEST_F(SupervisorSetUp, AreSetOneAtATimeAndByWhoHasSeenTheLast) {
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kStale));
   const auto command = write_and_take();
   ASSERT_TRUE(command);
-  tell_accepted(*command);
-  tell_everybody();
+  report_accepted(*command);
+  report_everybody();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
   --status_;  // what was published before
   say(FrameWord::kSet, 3, 14);

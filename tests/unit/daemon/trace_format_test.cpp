@@ -27,7 +27,7 @@ using Json = nlohmann::json;
   return std::llround(time.get<double>() * 1e3);
 }
 
-/// Judges a trace by the rules of the Trace Event Format, and by what Perfetto makes of those that
+/// Checks a trace by the rules of the Trace Event Format, and by what Perfetto makes of those that
 /// it leaves open: times from zero on, slices of a thread in their order and properly nested,
 /// threads that are named before their first slice, no key that nobody reads.
 class Format {
@@ -36,11 +36,11 @@ class Format {
     const Json trace = Json::parse(text, nullptr, false);
     if (!trace.is_object()) return {"no JSON object"};
     Format format;
-    format.judge_frame(trace);
+    format.check_frame(trace);
     if (!trace.contains("traceEvents") || !trace["traceEvents"].is_array()) {
       return {"no array traceEvents"};
     }
-    for (const Json& event : trace["traceEvents"]) format.judge(event);
+    for (const Json& event : trace["traceEvents"]) format.check(event);
     format.expect(format.process_names_ == 1, "one process_name");
     return format.found_;
   }
@@ -50,7 +50,7 @@ class Format {
     if (!is_so) found_.push_back("event " + std::to_string(index_) + ": " + rule);
   }
 
-  void judge_frame(const Json& trace) {
+  void check_frame(const Json& trace) {
     static const std::set<std::string> kKeys{"traceEvents", "displayTimeUnit", "otherData"};
     for (const auto& [key, value] : trace.items()) expect(kKeys.contains(key), "key " + key);
     const Json unit = trace.value("displayTimeUnit", Json());
@@ -58,7 +58,7 @@ class Format {
     expect(trace.value("otherData", Json::object()).is_object(), "otherData is an object");
   }
 
-  void judge(const Json& event) {
+  void check(const Json& event) {
     ++index_;
     if (!event.is_object()) return expect(false, "an object");
     const auto is_text = [&event](const char* key) {
@@ -77,7 +77,7 @@ class Format {
     for (const auto& [key, value] : event.items()) {
       expect(keys->second.contains(key), "key " + key + " of " + phase);
     }
-    if (phase == "M") return judge_metadata(event);
+    if (phase == "M") return check_metadata(event);
     expect(is_text("cat"), "a category");
     expect(event.contains("ts") && is_time(event["ts"]), "ts from zero on, in whole ns");
     const Json tid = event.value("tid", Json());
@@ -86,13 +86,13 @@ class Format {
       const std::string scope = event.value("s", "");
       expect(scope == "g" || scope == "p" || scope == "t", "scope is g, p or t");
     } else if (event.contains("dur") && is_time(event["dur"]) && found_.empty()) {
-      judge_nesting(tid.get<int>(), ns_of(event["ts"]), ns_of(event["dur"]));
+      check_nesting(tid.get<int>(), ns_of(event["ts"]), ns_of(event["dur"]));
     } else {
       expect(event.contains("dur") && is_time(event["dur"]), "dur from zero on, in whole ns");
     }
   }
 
-  void judge_metadata(const Json& event) {
+  void check_metadata(const Json& event) {
     const std::string name = event.value("name", "");
     const Json args = event.value("args", Json::object());
     const bool is_thread = name == "thread_name" || name == "thread_sort_index";
@@ -112,7 +112,7 @@ class Format {
   }
 
   /// A slice begins no sooner than the one before it, and lies inside what it begins in.
-  void judge_nesting(int tid, std::int64_t begin_ns, std::int64_t took_ns) {
+  void check_nesting(int tid, std::int64_t begin_ns, std::int64_t took_ns) {
     std::vector<std::int64_t>& ends = open_[tid];
     std::int64_t& before_ns = begun_.try_emplace(tid, 0).first->second;
     expect(begin_ns >= before_ns, "slices of a thread in their order");
@@ -170,7 +170,7 @@ constexpr const char* kPlain = R"({"displayTimeUnit": "ns", "otherData": {}, "tr
 {"name": "b", "cat": "c", "ph": "X", "pid": 1, "tid": 1, "ts": 2.000, "dur": 4.000, "args": {}},
 {"name": "f", "cat": "c", "ph": "i", "s": "g", "pid": 1, "tid": 1, "ts": 3.000}]})";
 
-/// The judge above, judged: each of these is one slip away from what is right.
+/// The check above, checked: each of these is one slip away from what is right.
 TEST(TraceFormat, CatchesEveryRuleThatIsBroken) {
   ASSERT_EQ(Format::violations(kPlain), std::vector<std::string>{});
   struct Slip {

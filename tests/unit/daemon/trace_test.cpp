@@ -73,7 +73,7 @@ class TracerTest : public testing::Test {
     options.folder = folder_.path() / "traces";
     options.limits = {500 * kUs, 400 * kUs};
     options.every_ns = 1000 * kMs;
-    options.most_files = 2;
+    options.max_files = 2;
     return options;
   }
   [[nodiscard]] std::unique_ptr<Tracer> tracer() {

@@ -60,7 +60,7 @@ TEST(Kinematics, FollowsTheWindingOfTheReference) {
   }
 }
 
-TEST(Kinematics, HoldsTheFreeJointOnThePole) {
+TEST(Kinematics, HoldsTheRedundantJointOnThePole) {
   const MachineModel model = test::lai_machine();
   for (const double held : {0.0, 1.1, -9.7}) {
     const ToolPose pose{{40, -30, 20}, {0, 0, 1}};

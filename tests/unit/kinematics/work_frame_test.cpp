@@ -52,13 +52,13 @@ TEST(WorkFrames, ReplaceARowThatIsSetAgain) {
 
 TEST(WorkFrames, HaveAPlaceForEveryNumberAndNoOther) {
   WorkFrames frames;
-  for (int number = WorkFrames::kMost; number >= 1; --number) {
+  for (int number = WorkFrames::kMax; number >= 1; --number) {
     ASSERT_EQ(set(frames, frame_of(number)), FrameFault::kNone);
   }
-  EXPECT_EQ(frames.rows().size(), std::size_t{WorkFrames::kMost});
+  EXPECT_EQ(frames.rows().size(), std::size_t{WorkFrames::kMax});
   const WorkFrames before = frames;
   EXPECT_EQ(set(frames, frame_of(0)), FrameFault::kNumber);
-  EXPECT_EQ(set(frames, frame_of(WorkFrames::kMost + 1)), FrameFault::kNumber);
+  EXPECT_EQ(set(frames, frame_of(WorkFrames::kMax + 1)), FrameFault::kNumber);
   EXPECT_EQ(frames, before);
 }
 

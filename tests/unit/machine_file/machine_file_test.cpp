@@ -155,14 +155,14 @@ TEST(MachineFile, TakesThePolesPolicyAndTheOverridesRamp) {
   const MachineModel model = parse_machine(text, "exact");
   EXPECT_EQ(model.pole_policy, PolePolicy::kExact);
   EXPECT_EQ(model.override_ramp_s, 20);
-  EXPECT_EQ(model.most_feed_override, 1.5) << "unless the file says otherwise";
+  EXPECT_EQ(model.max_feed_override, 1.5) << "unless the file says otherwise";
   put("[machine]\n", "[machine]\nfeed_override_max_percent = 120\n");
-  EXPECT_EQ(parse_machine(text, "120").most_feed_override, 1.2);
+  EXPECT_EQ(parse_machine(text, "120").max_feed_override, 1.2);
   put("= 120", "= 99");
   EXPECT_THROW((void)parse_machine(text, "99"), std::runtime_error);
 }
 
-TEST(MachineFile, TakesHowTheFreeJointIsTurnedBack) {
+TEST(MachineFile, TakesHowTheRedundantJointIsTurnedBack) {
   std::string text = test::read_text(kMachines / "lai.toml");
   EXPECT_EQ(parse_machine(text, "as it ships").unwind_policy, UnwindPolicy::kRefuse);
   const std::string_view refuse = "policy = \"refuse\"";

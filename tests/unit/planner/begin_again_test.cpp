@@ -47,7 +47,7 @@ class LeastTurn final : public WindingTrial {
   [[nodiscard]] bool fits(int turns) const noexcept override { return std::abs(turns) < 2; }
 };
 
-TEST(RestToRestPlanner, TurnsTheFreeJointBackToTheBestWindingThatFitsWhatFollows) {
+TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFollows) {
   MachineModel model = test::lai_machine();  // C two turns either way
   model.unwind_policy = UnwindPolicy::kRetract;
   model.unwind_retract_mm = 20;

@@ -26,7 +26,7 @@ FeedUse use_at_even_speed(int order, const Of& of, double slope = 0) {
   cell.h = 0.1;
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
     CellSample& at = cell.at[static_cast<std::size_t>(k)];
-    at.most_b = 1;
+    at.max_b = 1;
     (order == 1 ? at.d1 : order == 2 ? at.d2 : at.d3)[0] = of(k);
   }
   FeedLimits limits = unit_limits();
@@ -73,7 +73,7 @@ TEST(FeedCheck, TakesAStandstillForAUseWithoutBound) {
 FeedUse use_of_dip(double least, double left) {
   FeedCell cell;
   cell.h = 1;
-  for (CellSample& at : cell.at) at.most_b = 10;
+  for (CellSample& at : cell.at) at.max_b = 10;
   return use_of(unit_limits(), cell, {least * least + left, -2 * least, 2 * (1 - least)});
 }
 
@@ -92,7 +92,7 @@ TEST(FeedCheck, SeesAStandstillBetweenTwoSamples) {
 TEST(FeedCheck, SeesAFeedThatIsPassedBetweenTwoSamples) {
   FeedCell cell;
   cell.h = 1;
-  for (CellSample& at : cell.at) at.most_b = 0.998;
+  for (CellSample& at : cell.at) at.max_b = 0.998;
   const double top = 4.5 / FeedCell::kSteps;
   const CellLaw law{1 - top * top, 2 * top, 2 * top - 2};
   EXPECT_NEAR(use_of(unit_limits(), cell, law).b, 1 / 0.998, 1e-12);
@@ -104,7 +104,7 @@ TEST(FeedCheck, TakesNoStandstillThatLiesOutsideOfTheCell) {
   }
   FeedCell cell;
   cell.h = 1;
-  for (CellSample& at : cell.at) at.most_b = 10;
+  for (CellSample& at : cell.at) at.max_b = 10;
   const CellLaw falling_faster{1, -0.1, -1.8};  // a top, and 0.05 left at the end
   EXPECT_EQ(use_of(unit_limits(), cell, falling_faster).jerk, 0);
 }
@@ -122,7 +122,7 @@ TEST(FeedCheck, SlowsTheLastResortForATopBetweenSamples) {
       cell.h = 0.1;
       for (int k = 0; k <= FeedCell::kSteps; ++k) {
         CellSample& at = cell.at[static_cast<std::size_t>(k)];
-        at.most_b = 1e6;
+        at.max_b = 1e6;
         at.d1[0] = 1;
         at.d3[0] = has_top && n == 1 && (k == 4 || k == 5) ? 1e5 : 0;  // and 12 % more between
       }

@@ -47,7 +47,7 @@ TEST(JointsAt, KeepsTipAndAxisWhileTurningOnThePole) {
   }
 }
 
-TEST(JointsAt, CrossesThePoleWithoutATurnWhereTheFreeJointIsDriven) {
+TEST(JointsAt, CrossesThePoleWithoutATurnWhereTheRedundantJointIsDriven) {
   const MachineModel model = test::lai_machine();
   PathPiece piece;
   piece.length = 20;

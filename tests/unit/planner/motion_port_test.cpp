@@ -190,7 +190,7 @@ TEST(MotionPort, DropsWhatBelongsToAnotherEpoch) {
   ASSERT_NE(script.reader.piece(), nullptr);
   EXPECT_EQ(script.reader.piece()->sequence, 1000U);
   EXPECT_EQ(script.reader.path()->sequence, 1000U);
-  EXPECT_LE(calls, 2 * 600 / MotionReader::kMostDrops + 2);
+  EXPECT_LE(calls, 2 * 600 / MotionReader::kMaxDrops + 2);
 }
 
 TEST(MotionPort, SaysWhenAWindowWouldNotFit) {

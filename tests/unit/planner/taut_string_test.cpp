@@ -32,8 +32,7 @@ std::vector<StringWindow> drawn(std::mt19937& engine) {
 double step_time(double dt, double by, double speed) { return std::max(dt, std::abs(by) / speed); }
 
 /// The least time through the windows on a grid of `step`, by dynamic programming.
-double least_time(const std::vector<StringWindow>& windows, double begin, double speed,
-                  double step) {
+double min_time(const std::vector<StringWindow>& windows, double begin, double speed, double step) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const int count = static_cast<int>(30 / step);
   const auto value = [&](int i) { return begin + (i - count / 2) * step; };
@@ -69,7 +68,7 @@ TEST(TautString, IsTheFastestThroughDrawnWindowsAtEverySpeed) {
         ASSERT_LE(values[n], windows[n].high);
         time += step_time(windows[n].t - windows[n - 1].t, values[n] - values[n - 1], speed);
       }
-      EXPECT_LE(time, least_time(windows, 0, speed, 0.1) + 1e-9) << "draw " << draw;
+      EXPECT_LE(time, min_time(windows, 0, speed, 0.1) + 1e-9) << "draw " << draw;
     }
   }
 }

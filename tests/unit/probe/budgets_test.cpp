@@ -29,7 +29,7 @@ class TableFile {
   std::filesystem::path path_;
 };
 
-constexpr char kHead[] = "[a]\nwhat=\"w\"\nstatistic=\"p99\"\nunit=\"us\"\njudged=\"j\"\n";
+constexpr char kHead[] = "[a]\nwhat=\"w\"\nstatistic=\"p99\"\nunit=\"us\"\nchecked=\"j\"\n";
 
 TEST(Budgets, AnAbsoluteOneIsItsLimit) {
   const TableFile file(std::string(kHead) + "limit = 60\n");
@@ -57,7 +57,7 @@ TEST(Budgets, RefusesANameThatIsNotInTheTable) {
 TEST(Budgets, OneFromBelowIsKeptByWhatIsNotBelow) {
   const TableFile file(std::string(kHead) + "at_least = 50\n");
   const Budget budget = load_budget("a", file.path());
-  EXPECT_EQ(budget.bound, Bound::kLeast);
+  EXPECT_EQ(budget.bound, Bound::kMin);
   EXPECT_EQ(budget.allowed(), 50);
   EXPECT_TRUE(budget.is_kept(50));
   EXPECT_TRUE(budget.is_kept(1000));
@@ -84,7 +84,7 @@ TEST(Budgets, EveryRowOfTheProjectsTableIsWhole) {
   EXPECT_GT(all.size(), 40U);
   for (const Budget& budget : all) {
     EXPECT_TRUE(std::isfinite(budget.allowed(1))) << budget.name;
-    EXPECT_FALSE(budget.unit.empty() || budget.judged.empty()) << budget.name;
+    EXPECT_FALSE(budget.unit.empty() || budget.checked.empty()) << budget.name;
   }
 }
 

@@ -83,7 +83,7 @@ class Doctor : public testing::Test {
   Rights rights_{
       .has_priority = true, .has_locked_memory = true, .has_dma_latency = true, .cpus = 4};
   int cpu_ = 3;
-  TimeOfDay time_{.is_synchronised = true, .most_error_s = 0.004};
+  TimeOfDay time_{.is_synchronised = true, .max_error_s = 0.004};
 
  private:
   fs::path root_ = fs::temp_directory_path() / ("meridian-host-" + std::to_string(::getpid()));

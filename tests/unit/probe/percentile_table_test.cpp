@@ -91,8 +91,8 @@ TEST(PercentileTable, TellsTheOrderStatisticsOfAnyLatencies) {
           1e-3 * static_cast<double>(samples[std::max<std::size_t>(rank, 1) - 1]);
       EXPECT_GE(line.value_us, exact_us - kPrinted_us) << level;
       EXPECT_LE(line.value_us, exact_us * (1 + 1.0 / 32) + kPrinted_us) << level;
-      const double most_ns = 1e3 * (line.value_us + kPrinted_us);
-      const auto above = std::upper_bound(samples.begin(), samples.end(), most_ns);
+      const double max_ns = 1e3 * (line.value_us + kPrinted_us);
+      const auto above = std::upper_bound(samples.begin(), samples.end(), max_ns);
       EXPECT_EQ(line.count, static_cast<std::uint64_t>(above - samples.begin()))
           << level << ": samples that the printed value does not exceed";
       level += left / 10;

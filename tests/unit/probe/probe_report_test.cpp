@@ -94,7 +94,7 @@ TEST(Probe, IsNotFitWhereTheMachineStopsByItself) {
   EXPECT_NE(to_json(report).find("\"broken_off\": \"cycle 812"), std::string::npos);
 }
 
-TEST(Probe, IsNotFitWhereAJudgedBudgetIsMissed) {
+TEST(Probe, IsNotFitWhereACheckedBudgetIsMissed) {
   EXPECT_FALSE(report_of(measured(60), false).is_fit());
   RateMeasurement losing = measured(25);
   losing.lost.missing = 20;  // of 10 000
@@ -169,9 +169,9 @@ TEST(Probe, ATargetHostNeedsTheRightsThatTheServiceNeeds) {
   EXPECT_TRUE(report.is_fit()) << "in comparison with bare programs that had none either";
 }
 
-TEST(Probe, ATargetHostIsJudgedOverEnoughTurns) {
+TEST(Probe, ATargetHostIsCheckedOverEnoughTurns) {
   const auto verdict_of = [](const RateMeasurement& m) {
-    const auto verdicts = judge(m);
+    const auto verdicts = check(m);
     return *std::find_if(verdicts.begin(), verdicts.end(), [](const Verdict& verdict) {
       return verdict.budget.name == "turns_taken";
     });
@@ -201,7 +201,7 @@ TEST(Probe, ReportedBudgetsNeverDecide) {
   RateMeasurement m = measured(25);
   for (int i = 0; i < 1'000'000; ++i) m.round_trip.record(10'000'000);
   m.cutting_one_way.add(turn_of(10'000, 1'000'000));
-  const auto verdicts = judge(m);
+  const auto verdicts = check(m);
   EXPECT_FALSE(std::all_of(verdicts.begin(), verdicts.end(),
                            [](const Verdict& verdict) { return verdict.is_inside(); }));
   EXPECT_TRUE(report_of(m, true).is_fit());

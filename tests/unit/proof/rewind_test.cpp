@@ -23,8 +23,8 @@ constexpr double kTravel_deg = 200;
 /// A trunnion whose table turns little farther than once.
 MachineModel narrow_machine(UnwindPolicy policy) {
   MachineModel model = test::shipped("trunnion-ac");
-  model.joints[free_joint(model)].is_endless = false;
-  JointLimits& limits = model.joints[free_joint(model)].limits;
+  model.joints[redundant_joint(model)].is_endless = false;
+  JointLimits& limits = model.joints[redundant_joint(model)].limits;
   limits.travel_min = -units::rad_from_deg(kTravel_deg);
   limits.travel_max = units::rad_from_deg(kTravel_deg);
   model.unwind_policy = policy;

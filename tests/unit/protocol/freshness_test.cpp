@@ -24,7 +24,7 @@ class Freshness : public testing::Test {
     request.status_seen = status_seen;
     request.epoch_seen = epoch_seen;
     request.service_id_seen = service_seen;
-    return judge_freshness(request, kService, 3, times_, 10'000 * kMillisecond);
+    return check_freshness(request, kService, 3, times_, 10'000 * kMillisecond);
   }
   StatusTimes times_;
 };
@@ -72,7 +72,7 @@ TEST_F(Freshness, VerbsThatOnlyStopAreNeverStale) {
   }
 }
 
-TEST_F(Freshness, VerbsThatMoveOrSpeedUpAreJudged) {
+TEST_F(Freshness, VerbsThatMoveOrSpeedUpAreChecked) {
   for (const Verb verb :
        {Verb::kEnable, Verb::kStart, Verb::kResume, Verb::kFeedOverride, Verb::kRapidOverride,
         Verb::kSingleBlock, Verb::kOptionalStop, Verb::kDryRun}) {
@@ -95,14 +95,14 @@ TEST(FreshnessOfRests, StartAndResumeThatQuoteOneStatusSendOnOnce) {
     dds::CommandRequest request;
     request.verb = verb;
     request.epoch_seen = 1;
-    const auto judged = [&](std::uint64_t seen, State state, std::uint64_t block) {
+    const auto checked = [&](std::uint64_t seen, State state, std::uint64_t block) {
       request.status_seen = seen;
-      return judge_freshness(request, 1, 1, times, 2, rest_of(state, block));
+      return check_freshness(request, 1, 1, times, 2, rest_of(state, block));
     };
-    EXPECT_EQ(judged(5, State::kStepping, 7), Refusal::kNone);
-    EXPECT_EQ(judged(5, State::kStepping, 8), Refusal::kStale);
-    EXPECT_EQ(judged(6, State::kStepping, 8), Refusal::kStale);
-    EXPECT_EQ(judged(6, State::kHeld, 8), Refusal::kNone);
+    EXPECT_EQ(checked(5, State::kStepping, 7), Refusal::kNone);
+    EXPECT_EQ(checked(5, State::kStepping, 8), Refusal::kStale);
+    EXPECT_EQ(checked(6, State::kStepping, 8), Refusal::kStale);
+    EXPECT_EQ(checked(6, State::kHeld, 8), Refusal::kNone);
   }
 }
 

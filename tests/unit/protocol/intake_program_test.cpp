@@ -28,14 +28,14 @@ TEST_F(Intake, BlocksBeforeARefusedOneStayAndNoneAfterItComes) {
   EXPECT_EQ(accepted_.count, 5u);
   EXPECT_FALSE(send(good_batch(kSession, 5, 8)));
   EXPECT_EQ(accepted_.count, 0u);
-  EXPECT_TRUE(judge_.is_held()) << "its accepted blocks are the machine's to run";
-  EXPECT_TRUE(judge_.is_cut_off()) << "to their end";
+  EXPECT_TRUE(check_.is_held()) << "its accepted blocks are the machine's to run";
+  EXPECT_TRUE(check_.is_cut_off()) << "to their end";
 }
 
 TEST_F(Intake, AProgramRefusedAtItsFirstBlockFreesTheMachine) {
   static_cast<void>(open());
   static_cast<void>(send_spoilt(8, 0, [](ClBlock& block) { block.feed = -1; }));
-  EXPECT_FALSE(judge_.is_held());
+  EXPECT_FALSE(check_.is_held());
   EXPECT_EQ(open(0xdef, "cam-2").verdict, Verdict::kGood);
 }
 
@@ -78,14 +78,14 @@ TEST_F(Intake, AnEmptyProgramIsRefused) {
   const auto answer = send(good_batch(kSession, 0, 0, true));
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->verdict, Verdict::kRefusedProgram);
-  EXPECT_FALSE(judge_.is_held());
+  EXPECT_FALSE(check_.is_held());
 }
 
 TEST_F(Intake, AProgramWithActionsIsRefusedWithoutTheirPeer) {
   around_.actions = {};
   dds::SessionRequest request = open_request();
   request.policies = dds::kPolicyContainsActions;
-  const Credit answer = judge_.on_request(request, around_, 100);
+  const Credit answer = check_.on_request(request, around_, 100);
   EXPECT_EQ(answer.verdict, Verdict::kRefusedProgram);
   EXPECT_NE(answer.text.find("auxiliary = \"ignore\""), std::string::npos);
 }
@@ -93,9 +93,9 @@ TEST_F(Intake, AProgramWithActionsIsRefusedWithoutTheirPeer) {
 TEST_F(Intake, AProgramThatWantsBothTransitionsIsRefused) {
   dds::SessionRequest request = open_request();
   request.policies = dds::kPolicyExactStop | dds::kPolicySmooth;
-  EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kRefusedProgram);
+  EXPECT_EQ(check_.on_request(request, around_, 100).verdict, Verdict::kRefusedProgram);
   request.policies = dds::kPolicySmooth;
-  EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kGood);
+  EXPECT_EQ(check_.on_request(request, around_, 100).verdict, Verdict::kGood);
 }
 
 TEST_F(Intake, AProgramThatBeginsAtJointsOutsideOfTravelIsRefusedByName) {
@@ -103,7 +103,7 @@ TEST_F(Intake, AProgramThatBeginsAtJointsOutsideOfTravelIsRefusedByName) {
     dds::SessionRequest request = open_request(++session_);
     request.policies = dds::kPolicyFirstJoints;
     request.first_joints[joint] = at;
-    return judge_.on_request(request, around_, 100);
+    return check_.on_request(request, around_, 100);
   };
   const Credit beyond = ask(0, 1e4);
   EXPECT_EQ(beyond.verdict, Verdict::kRefusedProgram);
@@ -119,7 +119,7 @@ TEST_F(Intake, AToleranceBelowWhatIsPlannedForIsRefusedByNameAndLeast) {
     request.tip_tolerance_mm = tip_mm;
     request.axis_tolerance_rad = axis_rad;
     request.policies = dds::kPolicySmooth;
-    return judge_.on_request(request, around_, 100);
+    return check_.on_request(request, around_, 100);
   };
   const Credit tip = ask(0.0005, 0);
   EXPECT_EQ(tip.verdict, Verdict::kRefusedProgram);
@@ -136,35 +136,35 @@ TEST_F(Intake, AToleranceBelowWhatIsPlannedForIsRefusedByNameAndLeast) {
     EXPECT_EQ(ask(wrong, 0).verdict, Verdict::kRefusedProgram) << wrong;
     EXPECT_EQ(ask(0, wrong).verdict, Verdict::kRefusedProgram) << wrong;
   }
-  EXPECT_FALSE(judge_.is_held());
+  EXPECT_FALSE(check_.is_held());
   EXPECT_EQ(ask(0.001, 1e-4).verdict, Verdict::kGood);
 }
 
 TEST_F(Intake, AToleranceAboveWhatIsPlannedForIsRefusedWhateverTheTransition) {
   dds::SessionRequest request = open_request();
   request.tip_tolerance_mm = 10.001;
-  const Credit tip = judge_.on_request(request, around_, 100);
+  const Credit tip = check_.on_request(request, around_, 100);
   EXPECT_EQ(tip.verdict, Verdict::kRefusedProgram);
   EXPECT_NE(
       tip.text.find("tip tolerance of the program is 10.001 mm; allowed is more than 0, up to "),
       std::string::npos)
       << tip.text;
   request.policies = dds::kPolicySmooth;
-  request.tip_tolerance_mm = kMostTipTolerance_mm;
+  request.tip_tolerance_mm = kMaxTipTolerance_mm;
   request.axis_tolerance_rad = 0.175;
-  const Credit axis = judge_.on_request(request, around_, 100);
+  const Credit axis = check_.on_request(request, around_, 100);
   EXPECT_EQ(axis.verdict, Verdict::kRefusedProgram);
   EXPECT_NE(axis.text.find("axis tolerance of the program is 0.175 rad"), std::string::npos)
       << axis.text;
-  request.axis_tolerance_rad = kMostAxisTolerance_rad;
-  EXPECT_EQ(judge_.on_request(request, around_, 100).verdict, Verdict::kGood);
+  request.axis_tolerance_rad = kMaxAxisTolerance_rad;
+  EXPECT_EQ(check_.on_request(request, around_, 100).verdict, Verdict::kGood);
 }
 
 TEST_F(Intake, ARefusalTellsAToleranceThatIsLittleBelowTheLeastFromIt) {
   dds::SessionRequest request = open_request();
   request.policies = dds::kPolicySmooth;
   request.tip_tolerance_mm = 0.00099999999;
-  const Credit refused = judge_.on_request(request, around_, 100);
+  const Credit refused = check_.on_request(request, around_, 100);
   EXPECT_NE(refused.text.find("is 0.00099999999 mm; allowed is 0.001 to 10 mm"), std::string::npos)
       << refused.text;
 }
@@ -174,7 +174,7 @@ TEST_F(Intake, FineTolerancesAreRefusedOnlyWhereTheRunIsSmooth) {
     dds::SessionRequest request = open_request(++session_);
     request.tip_tolerance_mm = tip_mm;
     request.policies = policies;
-    const Credit credit = judge_.on_request(request, around_, 100);
+    const Credit credit = check_.on_request(request, around_, 100);
     static_cast<void>(close(session_));
     return credit;
   };
@@ -196,7 +196,7 @@ TEST_F(Intake, ThePlannersVerdictEndsTheSessionWithTheSameWords) {
   static_cast<void>(open());
   static_cast<void>(send(good_batch(kSession, 0, 10)));
   const auto answer =
-      judge_.on_planner_reject({4, 14, RejectCode::kTravelBetween, 3, 13.0}, around_);
+      check_.on_planner_reject({4, 14, RejectCode::kTravelBetween, 3, 13.0}, around_);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->verdict, Verdict::kRefusedBlock);
   EXPECT_EQ(answer->verdict_joint, 3);
@@ -208,7 +208,7 @@ TEST_F(Intake, ThePlannersVerdictEndsTheSessionWithTheSameWords) {
 TEST_F(Intake, TheMachineIsFreeWhenTheProgramRan) {
   static_cast<void>(open());
   static_cast<void>(send(good_batch(kSession, 0, 10, true)));
-  const auto last = judge_.on_program_end(around_);
+  const auto last = check_.on_program_end(around_);
   ASSERT_TRUE(last);
   EXPECT_EQ(last->verdict, Verdict::kRan);
   EXPECT_EQ(open(0xdef, "cam-2").verdict, Verdict::kGood);
@@ -217,18 +217,18 @@ TEST_F(Intake, TheMachineIsFreeWhenTheProgramRan) {
 TEST_F(Intake, AStationThatDiesLeavesItsBlocksAndHoldsTheMachine) {
   static_cast<void>(open());
   static_cast<void>(send(good_batch(kSession, 0, 10)));
-  judge_.on_station_lost(kSession);
+  check_.on_station_lost(kSession);
   const Credit answer = open(0xdef, "cam-2");
   EXPECT_EQ(answer.verdict, Verdict::kRefusedStation);
   EXPECT_NE(answer.text.find("cam-1 with program part.cls, which is gone; enable"),
             std::string::npos)
       << answer.text;
-  EXPECT_FALSE(judge_.is_cut_off()) << "it may come back with more";
+  EXPECT_FALSE(check_.is_cut_off()) << "it may come back with more";
 }
 
 TEST_F(Intake, AStationThatDiesWithoutABlockFreesTheMachine) {
   static_cast<void>(open());
-  judge_.on_station_lost(kSession);
+  check_.on_station_lost(kSession);
   EXPECT_EQ(open(0xdef, "cam-2").verdict, Verdict::kGood);
 }
 
@@ -238,7 +238,7 @@ TEST_F(Intake, ACloseBeforeTheEndAcceptsNothingMore) {
   const Credit answer = close();
   EXPECT_EQ(answer.verdict, Verdict::kClosed);
   EXPECT_NE(answer.text.find("runs the 10 blocks"), std::string::npos) << answer.text;
-  EXPECT_TRUE(judge_.is_cut_off());
+  EXPECT_TRUE(check_.is_cut_off());
   EXPECT_FALSE(send(good_batch(kSession, 10, 10)));
   EXPECT_EQ(accepted_.count, 0u);
 }
@@ -246,8 +246,8 @@ TEST_F(Intake, ACloseBeforeTheEndAcceptsNothingMore) {
 TEST_F(Intake, ACloseWithoutABlockFreesTheMachine) {
   static_cast<void>(open());
   EXPECT_EQ(close().verdict, Verdict::kClosed);
-  EXPECT_FALSE(judge_.is_held());
-  EXPECT_FALSE(judge_.is_cut_off());
+  EXPECT_FALSE(check_.is_held());
+  EXPECT_FALSE(check_.is_cut_off());
 }
 
 }  // namespace

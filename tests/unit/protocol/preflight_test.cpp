@@ -33,7 +33,7 @@ const char* const kHead = "PARTNO/TEST\nUNITS/MM\nFEDRAT/600,MMPM\n";
 
 std::string text_of(const PreflightReport& report) { return to_text(report.findings, "part.apt"); }
 
-PreflightReport judged(const std::string& body, bool has_machine = true) {
+PreflightReport checked(const std::string& body, bool has_machine = true) {
   const TemporaryFile file(kHead + body);
   std::optional<PreflightMachine> machine;
   if (has_machine) machine = PreflightMachine{test::lai_machine(), ToolTable({{3, 100, 5}})};
@@ -42,7 +42,7 @@ PreflightReport judged(const std::string& body, bool has_machine = true) {
 
 TEST(Preflight, PassesAGoodFileAndTellsItsTime) {
   const PreflightReport report =
-      judged("GOTO/0,0,0,0,0,1\nGOTO/30,0,0,0,0,1\nGOTO/30,20,0,0,0,1\nFINI\n");
+      checked("GOTO/0,0,0,0,0,1\nGOTO/30,0,0,0,0,1\nGOTO/30,20,0,0,0,1\nFINI\n");
   EXPECT_FALSE(report.is_refused) << text_of(report);
   EXPECT_EQ(report.blocks, 4u);  // the end counts
   EXPECT_NEAR(report.times.total_s(), 5, 1e-9);
@@ -50,22 +50,22 @@ TEST(Preflight, PassesAGoodFileAndTellsItsTime) {
 }
 
 TEST(Preflight, RefusesABlockOutOfTravelByFileLineAndJoint) {
-  const PreflightReport report = judged("GOTO/0,0,0,0,0,1\nGOTO/0,0,5000,0,0,1\nFINI\n");
+  const PreflightReport report = checked("GOTO/0,0,0,0,0,1\nGOTO/0,0,5000,0,0,1\nFINI\n");
   EXPECT_TRUE(report.is_refused);
   EXPECT_EQ(text_of(report).find("part.apt:5: b4 at "), 0U) << text_of(report);
 }
 
 TEST(Preflight, RefusesAToolThatTheMachineDoesNotHave) {
-  EXPECT_FALSE(judged("LOADTL/3\nGOTO/0,0,0,0,0,1\nFINI\n").is_refused);
-  const PreflightReport report = judged("LOADTL/4\nGOTO/0,0,0,0,0,1\nFINI\n");
+  EXPECT_FALSE(checked("LOADTL/3\nGOTO/0,0,0,0,0,1\nFINI\n").is_refused);
+  const PreflightReport report = checked("LOADTL/4\nGOTO/0,0,0,0,0,1\nFINI\n");
   EXPECT_TRUE(report.is_refused);
   EXPECT_NE(text_of(report).find(":4: tool 4 is not in the tool table; add it"), std::string::npos)
       << text_of(report);
 }
 
 TEST(Preflight, FindsAllThatIsInTheWayOfAFileInOnePass) {
-  const PreflightReport report = judged(
-      "LOADTL/4\nGOTO/0,0,5000,0,0,1\n"                       // 4: unknown; its reach is not judged
+  const PreflightReport report = checked(
+      "LOADTL/4\nGOTO/0,0,5000,0,0,1\n"  // 4: unknown; its reach is not checked
       "LOADTL/3\nGOTO/0,0,6000,0,0,1\nGOTO/0,0,7000,0,0,1\n"  // 7, 8: out of travel
       "LOADTL/4\nWOBBLE/1\nGOTO/0,0,0,0,0,1\nFINI\n");        // 9: as 4; 10: unknown word
   EXPECT_TRUE(report.is_refused);
@@ -77,9 +77,9 @@ TEST(Preflight, FindsAllThatIsInTheWayOfAFileInOnePass) {
   EXPECT_EQ(report.findings[2].line, 10U);
 }
 
-TEST(Preflight, DoesNotJudgeAnArcWhoseBeginWasRefused) {
+TEST(Preflight, DoesNotCheckAnArcWhoseBeginWasRefused) {
   const PreflightReport report =
-      judged("GOTO/0,0,5000,0,0,1\nCIRCLE/10,0,5000,0,0,1\nGOTO/20,0,5000\nGOTO/0,0,0\nFINI\n");
+      checked("GOTO/0,0,5000,0,0,1\nCIRCLE/10,0,5000,0,0,1\nGOTO/20,0,5000\nGOTO/0,0,0\nFINI\n");
   ASSERT_EQ(report.findings.size(), 1U) << text_of(report);
   EXPECT_EQ(report.findings[0].count, 1U);
 }
@@ -90,12 +90,12 @@ TEST(Preflight, NamesTheToolsThatTheTableHasNot) {
 }
 
 TEST(Preflight, SeesActionWords) {
-  EXPECT_TRUE(judged("SPINDL/RPM,8000,CLW\nGOTO/0,0,0,0,0,1\nFINI\n").contains_actions);
+  EXPECT_TRUE(checked("SPINDL/RPM,8000,CLW\nGOTO/0,0,0,0,0,1\nFINI\n").contains_actions);
 }
 
-TEST(Preflight, WithoutAMachineOnlyTheReaderJudges) {
-  EXPECT_FALSE(judged("GOTO/0,0,5000,0,0,1\nFINI\n", false).is_refused);
-  EXPECT_TRUE(judged("GOTO/0,0,nan,0,0,1\nFINI\n", false).is_refused);
+TEST(Preflight, WithoutAMachineOnlyTheReaderChecks) {
+  EXPECT_FALSE(checked("GOTO/0,0,5000,0,0,1\nFINI\n", false).is_refused);
+  EXPECT_TRUE(checked("GOTO/0,0,nan,0,0,1\nFINI\n", false).is_refused);
 }
 
 TEST(Preflight, RefusesAFileThatIsNotThere) {

@@ -14,7 +14,7 @@
 #include "support/machines.hpp"
 #include "support/sample_recording.hpp"
 
-/// What tests of check() judge: recordings made without planner and cycle.
+/// What tests of check() check: recordings made without planner and cycle.
 namespace meridian::test {
 
 /// A path with a corner, a spike of 0.02 mm that runs back on itself, tilts and one feed.
@@ -32,7 +32,7 @@ namespace meridian::test {
   return path;
 }
 
-/// A recording of the sample blocks, to spoil and judge.
+/// A recording of the sample blocks, to spoil and check.
 class Check : public ::testing::Test {
  protected:
   Check() : blocks(sample_blocks()), records(SampleRun(model, blocks).records) {

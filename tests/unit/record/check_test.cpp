@@ -77,14 +77,14 @@ TEST_F(Check, RefusesAJerkSpikeThatNoToleranceSees) {
   EXPECT_NEAR(report.joints[0].jerk.value, wanted, 0.5);
 }
 
-TEST_F(Check, JudgesNoJumpOfDrivesWhoseHomingIsGivenUp) {
+TEST_F(Check, ChecksNoJumpOfDrivesWhoseHomingIsGivenUp) {
   const std::size_t end = records.size();
   for (std::size_t i = end - 5; i < end; ++i) records[i].joints[0] += 0.1;
   EXPECT_TRUE(has(run(), Finding::Kind::kJerk)) << "a jump is one";
   for (std::size_t i = end - 12; i < end; ++i) {
     records[i].state = i < end - 8 ? State::kHoming : State::kAborting;
   }
-  const CheckReport report = run();  // the tip is judged as ever: the jump leaves this path
+  const CheckReport report = run();  // the tip is checked as ever: the jump leaves this path
   EXPECT_FALSE(has(report, Finding::Kind::kJerk)) << to_text(report);
   EXPECT_FALSE(has(report, Finding::Kind::kVelocity)) << to_text(report);
 }
@@ -97,7 +97,7 @@ TEST_F(Check, RefusesVelocityAndAccelerationAboveTheLimit) {
   EXPECT_TRUE(has(run(), Finding::Kind::kAcceleration));
 }
 
-TEST_F(Check, JudgesFaultStopRowsByTheirOwnLimits) {
+TEST_F(Check, ChecksFaultStopRowsByTheirOwnLimits) {
   model.joints[1].limits.acceleration = 100;
   for (CycleRecord& record : records) record.setpoint.flags |= kSetpointFaultStop;
   const CheckReport report = run();
@@ -105,19 +105,19 @@ TEST_F(Check, JudgesFaultStopRowsByTheirOwnLimits) {
   EXPECT_EQ(report.fault_stop_cycles, records.size());
 }
 
-TEST_F(Check, JudgesADryRunAsAnyOtherAndSaysThatItWasOne) {
+TEST_F(Check, ChecksADryRunAsAnyOtherAndSaysThatItWasOne) {
   for (CycleRecord& record : records) record.setpoint.flags = kSetpointDry | kSetpointDryEnabled;
   const CheckReport report = run();
   EXPECT_TRUE(report.passed()) << to_text(report);
   EXPECT_EQ(report.dry_cycles, records.size());
   EXPECT_NE(to_text(report).find("dry run "), std::string::npos);
   EXPECT_EQ(report.dry_cut_cycles, report.end_cycle - report.begin_cycle + 1);
-  EXPECT_NE(to_text(report).find("the cut judged is of a dry run"), std::string::npos);
+  EXPECT_NE(to_text(report).find("the cut checked is of a dry run"), std::string::npos);
   model.joints[1].limits.velocity = 2;
   EXPECT_TRUE(has(run(), Finding::Kind::kVelocity));
 }
 
-TEST_F(Check, RefusesADryRunAndTheCutBehindItInOneRecordingAndJudgesEitherByItself) {
+TEST_F(Check, RefusesADryRunAndTheCutBehindItInOneRecordingAndChecksEitherByItself) {
   const std::vector<CycleRecord> cut = records;
   for (CycleRecord& record : records) record.setpoint.flags = kSetpointDry | kSetpointDryEnabled;
   const std::uint64_t count = records.size();

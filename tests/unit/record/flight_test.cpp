@@ -55,11 +55,11 @@ class Flight : public testing::Test {
  protected:
   Flight() { write(row_at); }
   void write(FlightRow (*row_of)(std::uint64_t, const MachineModel&)) const {
-    const ToldAlarm alarm{Alarm::kFollowingError, 1, 1.9, 12, kAlarmed};
+    const ReportedAlarm alarm{Alarm::kFollowingError, 1, 1.9, 12, kAlarmed};
     auto writer = FlightWriter::create(file_.path(), model_);
     EXPECT_TRUE(writer.has_value());
     for (std::uint64_t cycle = kBegin; cycle < kEnd; ++cycle) {
-      EXPECT_TRUE(writer->write(row_of(cycle, model_), cycle < kAlarmed ? ToldAlarm{} : alarm));
+      EXPECT_TRUE(writer->write(row_of(cycle, model_), cycle < kAlarmed ? ReportedAlarm{} : alarm));
     }
     EXPECT_TRUE(writer->close());
   }
@@ -129,7 +129,7 @@ TEST_F(Flight, ReportTellsAlarmStopFollowingErrorsAndDrives) {
   EXPECT_NEAR(report->stop_s, 0.050, 1e-9);
   EXPECT_NEAR(report->following[1].before, -0.05 * 37, 1e-9);
   EXPECT_NEAR(report->following[1].at_alarm, -0.05 * 38, 1e-9);
-  EXPECT_NEAR(report->following[1].after, -0.05 * 87, 1e-9) << "judged while drives follow";
+  EXPECT_NEAR(report->following[1].after, -0.05 * 87, 1e-9) << "checked while drives follow";
   EXPECT_EQ(report->following[0].after, 0);
   EXPECT_TRUE(report->is_emergency);
   EXPECT_NEAR(report->emergency_at_s, 0.020, 1e-9);

@@ -61,8 +61,8 @@ constexpr Tolerance kTolerance{0.1, 0.05};
 
 /// The smallest factor on the tolerances with a monotone matching: max(cost, min(three before)),
 /// over dense samples of both curves. Knows no free space.
-[[nodiscard]] double least_factor(const std::vector<ToolPose>& path,
-                                  const std::vector<ToolPose>& recording) {
+[[nodiscard]] double min_factor(const std::vector<ToolPose>& path,
+                                const std::vector<ToolPose>& recording) {
   std::vector<double> row;
   for (std::size_t i = 0; i < recording.size(); ++i) {
     std::vector<double> next;
@@ -101,7 +101,7 @@ TEST(PathMatching, IsFoundWhereADynamicProgramFindsOne) {
       pose.tip += noise * any();
       pose.axis = (pose.axis + 0.3 * noise * any()).normalized();
     }
-    const double least = least_factor(along(vertices, 60), along(recording, 8));
+    const double least = min_factor(along(vertices, 60), along(recording, 8));
     SCOPED_TRACE(least);
     const CheckedPath path = path_through(vertices);
     const auto scaled = [](double by) {

@@ -9,7 +9,7 @@
 #include "support/machines.hpp"
 #include "support/sample_recording.hpp"
 
-/// Recordings of a machine with an actuator stage: both joints and drives are written and judged.
+/// Recordings of a machine with an actuator stage: both joints and drives are written and checked.
 namespace meridian::record {
 namespace {
 

@@ -95,8 +95,8 @@ TEST_F(Conversion, TakesFilesOfTheFlightRecorder) {
     row.drives.cycle_seen = cycle - 1;
     row.drives.joint_mask = 0x1F;
     row.drives.statusword.fill(0x1237);
-    const record::ToldAlarm alarm{Alarm::kFollowingError, 0, 1.9, 12, 40};
-    EXPECT_TRUE(writer->write(row, cycle < 40 ? record::ToldAlarm{} : alarm));
+    const record::ReportedAlarm alarm{Alarm::kFollowingError, 0, 1.9, 12, 40};
+    EXPECT_TRUE(writer->write(row, cycle < 40 ? record::ReportedAlarm{} : alarm));
   }
   EXPECT_TRUE(writer->close());
   EXPECT_EQ(refusal(), "");

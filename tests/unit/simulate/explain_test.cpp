@@ -102,7 +102,7 @@ TEST(ExplainSmooth, ChargesACornerWithTheWayDownToItAndUpAgain) {
     EXPECT_GT(block.by_cause[static_cast<std::size_t>(Cause::kBend)], 0.02F);
     EXPECT_GT(block.by_cause[static_cast<std::size_t>(Cause::kRest)], 0.02F);
     EXPECT_LT(block.by_cause[static_cast<std::size_t>(Cause::kPath)], 0.02F);
-    EXPECT_LT(block.least_mm_per_s, 0.5 * block.mean_mm_per_s());
+    EXPECT_LT(block.min_mm_per_s, 0.5 * block.mean_mm_per_s());
     EXPECT_NEAR(block.time_s - block.lost_s, 60.0 / 50, 0.01);
   }
   const ExplainedBlock& dwell = out.at_line(7);

@@ -82,7 +82,7 @@ TEST_F(Move, BeyondTravelIsRefusedByTheJointsName) {
   EXPECT_NE(found.refusal.find("b4"), std::string::npos) << found.refusal;
 }
 
-TEST_F(Move, OnWhoseWayTheFreeJointWouldBeRewoundIsRefused) {
+TEST_F(Move, OnWhoseWayTheRedundantJointWouldBeRewoundIsRefused) {
   model.unwind_policy = UnwindPolicy::kRetract;
   model.unwind_retract_mm = 20;
   joints[3] = model.joints[3].limits.travel_max - units::rad_from_deg(2);

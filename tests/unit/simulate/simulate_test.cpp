@@ -87,7 +87,7 @@ TEST_F(Simulate, EndsWhereTheProgramSwitchesTheMachineOffBehindItsEnd) {
   EXPECT_EQ(run.report.blocks_done, 8U);  // 6 of motion, 2 actions
 }
 
-TEST_F(Simulate, IsJudgedByThePolesToleranceWhichTheVerdictNames) {
+TEST_F(Simulate, IsCheckedByThePolesToleranceWhichTheVerdictNames) {
   MachineModel bench = test::bench_machine();
   bench.tolerances.pole_axis_rad = units::rad_from_deg(1.5);
   const SimulatedRun run = run_simulation(kPart, bench);
@@ -157,7 +157,7 @@ TEST_F(Simulate, SaysWhatTheStopsAtVerticesCostInExactStopAlone) {
   return text + "FINI\n";
 }
 
-TEST_F(Simulate, CutsBlocksInInverseTimeAsCheckJudgesThem) {
+TEST_F(Simulate, CutsBlocksInInverseTimeAsCheckChecksThem) {
   for (JointSpec& joint : model.joints) {
     joint.limits.velocity *= 8;
     joint.limits.acceleration *= 40;
@@ -258,7 +258,7 @@ TEST_F(Simulate, WaitsForActionsAsLongAsTheLiveRunDid) {
 }
 
 TEST_F(Simulate, PlansForOverridesAboveTheFeedAsTheOperatorOrTheFileOfALiveRunSays) {
-  model.most_feed_override = 1.5;
+  model.max_feed_override = 1.5;
   SimulateOptions simulation;
   const SimulatedRun plain = run_simulation(kPart, model);
   simulation.events.verbs = {{-1, Verb::kFeedOverride, 1.4}};

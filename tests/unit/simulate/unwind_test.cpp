@@ -116,7 +116,7 @@ TEST_P(SimulatedUnwinding, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
 }
 
 /// A wire that lost two rows in the very moment in which the tool leaves, and where it comes back.
-TEST_P(SimulatedUnwinding, IsJudgedWhereRowsAreMissingAtItsEnds) {
+TEST_P(SimulatedUnwinding, IsCheckedWhereRowsAreMissingAtItsEnds) {
   const test::SimulatedRun run = test::run_simulation(text, model);
   ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
   const auto is_unwinding = [](const CycleRecord& record) {

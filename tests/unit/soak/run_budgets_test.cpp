@@ -15,7 +15,7 @@
 namespace meridian::soak {
 namespace {
 
-using Verdict = Judgement::Verdict;
+using Verdict = CheckResult::Verdict;
 constexpr std::int64_t kUs = 1000, kMilli = 1'000'000;
 
 [[nodiscard]] Histogram histogram(std::int64_t value_ns, int count) {
@@ -114,18 +114,18 @@ class RunBudgetsTest : public testing::Test {
     }
   }
 
-  [[nodiscard]] Judgement of(const std::string& budget) const {
-    for (const Judgement& one : judge_run(report_)) {
+  [[nodiscard]] CheckResult of(const std::string& budget) const {
+    for (const CheckResult& one : check_run(report_)) {
       if (one.budget.name == budget) return one;
     }
-    ADD_FAILURE() << "no judgement of " << budget;
+    ADD_FAILURE() << "no result of " << budget;
     return {};
   }
   void expect(const std::string& budget, Verdict verdict, const std::string& why = "") const {
-    const Judgement one = of(budget);
+    const CheckResult one = of(budget);
     EXPECT_EQ(one.verdict, verdict) << budget << ": " << one.figure << " " << one.why;
     EXPECT_NE(one.why.find(why), std::string::npos) << one.why;
-    EXPECT_EQ(one.why.empty(), verdict != Verdict::kNotJudged) << "a reason where one is due";
+    EXPECT_EQ(one.why.empty(), verdict != Verdict::kNotChecked) << "a reason where one is due";
   }
 
   /// Of what breaks `budget` the host accounts for `too_few`, then for `enough`; then nobody
@@ -138,7 +138,7 @@ class RunBudgetsTest : public testing::Test {
     expect(budget, Verdict::kKept);
     by_host = 0;
     report_.is_host_watched = false;
-    expect(budget, Verdict::kNotJudged, "not watched");
+    expect(budget, Verdict::kNotChecked, "not watched");
     report_.is_host_watched = true;
   }
 
@@ -146,7 +146,7 @@ class RunBudgetsTest : public testing::Test {
 };
 
 TEST_F(RunBudgetsTest, AreAllKeptWhereAllWasWell) {
-  for (const Judgement& one : judge_run(report_)) {
+  for (const CheckResult& one : check_run(report_)) {
     EXPECT_EQ(one.verdict, Verdict::kKept) << one.budget.name << " " << one.why;
   }
   report_.finished = 1;
@@ -168,19 +168,19 @@ TEST_F(RunBudgetsTest, CountPageFaultsOfCycleAndPublisherFromReadyOn) {
   life.last.threads[0].minor_faults = 1;
   expect("cycle_page_faults", Verdict::kBroken);
   life.last.process.locked_mib = 0;
-  expect("cycle_page_faults", Verdict::kNotJudged, "memory could not be locked");
+  expect("cycle_page_faults", Verdict::kNotChecked, "memory could not be locked");
   life.ready.clear();
-  expect("cycle_page_faults", Verdict::kNotJudged, "never Ready");
+  expect("cycle_page_faults", Verdict::kNotChecked, "never Ready");
 }
 
-TEST_F(RunBudgetsTest, JudgeTheLostPeriodsThatTheHostDoesNotAccountFor) {
+TEST_F(RunBudgetsTest, CheckTheLostPeriodsThatTheHostDoesNotAccountFor) {
   report_.periods_lost = 2000;
   expect_less_what_host_did("soak_periods_lost", report_.periods_lost_to_host, 0, 1800);
   report_.cycles_run = 20'000;
-  expect("soak_periods_lost", Verdict::kNotJudged, "too short");
+  expect("soak_periods_lost", Verdict::kNotChecked, "too short");
 }
 
-TEST_F(RunBudgetsTest, JudgeTheOverrunsThatNoStallWasNear) {
+TEST_F(RunBudgetsTest, CheckTheOverrunsThatNoStallWasNear) {
   report_.overruns = 3;
   report_.host_stalls = 1;
   expect_less_what_host_did("soak_overruns", report_.overruns_by_host, 2, 3);
@@ -199,19 +199,19 @@ TEST_F(RunBudgetsTest, CompareComputationOfTheSameWorkAlone) {
   measure(3, 9 * kUs, 20 * kUs, 10 * kUs);
   cut(0, 40);
   cut(3, 60);
-  expect("soak_computation_drift_p50", Verdict::kNotJudged,
+  expect("soak_computation_drift_p50", Verdict::kNotChecked,
          "40 % of the first quarter cut, 60 % of the last");
   expect("soak_lateness_drift_p50", Verdict::kKept);
 }
 
-TEST_F(RunBudgetsTest, JudgeTheSwitchesOfACycleOfRealTimeClass) {
+TEST_F(RunBudgetsTest, CheckTheSwitchesOfACycleOfRealTimeClass) {
   Life& life = report_.lives[0];
   life.last.threads[0].voluntary_switches = 600'000;
   expect("soak_cycle_switches", Verdict::kBroken);
   life.last.threads[0].policy = SCHED_OTHER;
-  expect("soak_cycle_switches", Verdict::kNotJudged, "no real-time priority");
+  expect("soak_cycle_switches", Verdict::kNotChecked, "no real-time priority");
   life.last.cycles_run = 10'000;
-  expect("soak_cycle_switches", Verdict::kNotJudged, "too short");
+  expect("soak_cycle_switches", Verdict::kNotChecked, "too short");
 }
 
 TEST_F(RunBudgetsTest, FindAComputationThatGrew) {
@@ -219,14 +219,14 @@ TEST_F(RunBudgetsTest, FindAComputationThatGrew) {
   expect("soak_computation_drift_p50", Verdict::kBroken);
   expect("soak_lateness_drift_p50", Verdict::kKept);
   report_.is_host_watched = false;
-  expect("soak_computation_drift_p50", Verdict::kNotJudged, "not watched");
+  expect("soak_computation_drift_p50", Verdict::kNotChecked, "not watched");
 }
 
 TEST_F(RunBudgetsTest, BlameTheHostWhereABareThreadDriftedToo) {
   measure_all(0, 60, 0);
   expect("soak_lateness_drift_p50", Verdict::kBroken);
   measure_all(0, 60, 60);
-  expect("soak_lateness_drift_p50", Verdict::kNotJudged, "a bare thread");
+  expect("soak_lateness_drift_p50", Verdict::kNotChecked, "a bare thread");
 }
 
 TEST_F(RunBudgetsTest, BlameTheHostWhereItTookMoreThanHalfOfTheTail) {
@@ -234,7 +234,7 @@ TEST_F(RunBudgetsTest, BlameTheHostWhereItTookMoreThanHalfOfTheTail) {
   measure(3, 2 * kUs, 5 * kMilli, 20 * kUs, 300);
   expect("soak_lateness_drift_p999", Verdict::kBroken);
   report_.slices.add(420, kBareThread, histogram(300 * kMilli, 1));
-  expect("soak_lateness_drift_p999", Verdict::kNotJudged, "took the processor away for 0.2");
+  expect("soak_lateness_drift_p999", Verdict::kNotChecked, "took the processor away for 0.2");
   expect("soak_lateness_drift_p50", Verdict::kKept);
 }
 
@@ -242,7 +242,7 @@ TEST_F(RunBudgetsTest, SayNothingOfQuartersThatAreTooShort) {
   report_.slices = {};
   measure(0, 2 * kUs, 20 * kUs, 10 * kUs);
   measure(3, 9 * kUs, 20 * kUs, 10 * kUs, 20'000);
-  expect("soak_computation_drift_p50", Verdict::kNotJudged, "fewer samples");
+  expect("soak_computation_drift_p50", Verdict::kNotChecked, "fewer samples");
 }
 
 }  // namespace

@@ -61,20 +61,20 @@ TEST(Chaos, AsksOfTheDrivesWhatTheyUnderstand) {
 
 TEST(AskedOverrides, CountFromTheOneInForceOn) {
   AskedOverrides asked;
-  EXPECT_EQ(asked.most_since(0), 1);
+  EXPECT_EQ(asked.max_since(0), 1);
   asked.announce(1.5, 100);
   asked.announce(0.5, 200);
   asked.announce(1.2, 300);
-  EXPECT_EQ(asked.most_since(50), 1.5);
-  EXPECT_EQ(asked.most_since(150), 1.5);
-  EXPECT_EQ(asked.most_since(200), 1.2);
-  EXPECT_EQ(asked.most_since(400), 1.2);
+  EXPECT_EQ(asked.max_since(50), 1.5);
+  EXPECT_EQ(asked.max_since(150), 1.5);
+  EXPECT_EQ(asked.max_since(200), 1.2);
+  EXPECT_EQ(asked.max_since(400), 1.2);
   asked.forget_before(250);
-  EXPECT_EQ(asked.most_since(250), 1.2);
+  EXPECT_EQ(asked.max_since(250), 1.2);
   asked.announce(0.3, 500);
-  EXPECT_EQ(asked.most_since(600), 1) << "what is slowed down may still be going at full feed";
+  EXPECT_EQ(asked.max_since(600), 1) << "what is slowed down may still be going at full feed";
   asked.forget_before(600);
-  EXPECT_EQ(asked.most_since(600), 1);
+  EXPECT_EQ(asked.max_since(600), 1);
 }
 
 TEST(SentPrograms, AreRemovedOnlyWhereTheyWereMadeAndNobodyAsksForThemAnyMore) {
@@ -191,7 +191,7 @@ SoakReport good_report() {
   life.has_first = true;
   life.first.process = {.resident_mib = 30, .threads = 15, .files = 20};
   life.last = life.first;
-  life.most_resident_mib = 30;
+  life.max_resident_mib = 30;
   report.lives.push_back(life);
   return report;
 }
@@ -200,7 +200,7 @@ TEST(SoakReport, SaysThatAnInterruptedSoakPassedSoFarAndNoMore) {
   SoakReport report = good_report();
   report.is_over = true;
   EXPECT_NE(to_text(report).find("\nPASS: 0 violations"), std::string::npos) << to_text(report);
-  EXPECT_NE(to_text(report).find("; 1 of 8 budgets judged\n"), std::string::npos)
+  EXPECT_NE(to_text(report).find("; 1 of 8 budgets checked\n"), std::string::npos)
       << to_text(report);
   report.is_interrupted = true;
   report.elapsed_s = 120;
@@ -230,7 +230,7 @@ TEST(SoakReport, PassesOnlyWhereNothingWasWrongAndSomethingWasDone) {
   grown.lives[0].last.process.resident_mib = 32;
   EXPECT_FALSE(grown.passed());
   SoakReport large = good_report();
-  large.lives[0].most_resident_mib = 65;
+  large.lives[0].max_resident_mib = 65;
   EXPECT_FALSE(large.passed());
   large.allowed = load_growth_budgets(true);
   EXPECT_TRUE(large.passed()) << "traces take some";

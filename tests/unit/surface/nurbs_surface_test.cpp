@@ -133,15 +133,15 @@ TEST(SurfaceShape, BendsAsPlaneCylinderAndSphereDo) {
       EXPECT_EQ(flat->largest_curvature, 0);
       const auto hollow = shape_at(cylinder, u, v, false), round = shape_at(cylinder, u, v, true);
       EXPECT_NEAR(std::hypot(hollow->at[0], hollow->at[2]), 25, 1e-13);
-      EXPECT_NEAR(hollow->least_curvature, 0, 1e-15);
+      EXPECT_NEAR(hollow->min_curvature, 0, 1e-15);
       EXPECT_NEAR(hollow->largest_curvature, 1.0 / 25, 1e-14);
-      EXPECT_NEAR(round->least_curvature, -1.0 / 25, 1e-14);
+      EXPECT_NEAR(round->min_curvature, -1.0 / 25, 1e-14);
       EXPECT_NEAR(hollow->curvature_along(Vector3::UnitY()), 0, 1e-15);
       EXPECT_NEAR(round->curvature_along(round->tangent_u), -1.0 / 25, 1e-14);
       const auto ball = shape_at(sphere, u, v, true);
       EXPECT_NEAR(ball->at.norm(), 50, 1e-13);
       EXPECT_LT((ball->normal - ball->at / 50).norm(), 1e-14);
-      EXPECT_NEAR(ball->least_curvature, -1.0 / 50, 1e-14);
+      EXPECT_NEAR(ball->min_curvature, -1.0 / 50, 1e-14);
       EXPECT_NEAR(ball->largest_curvature, -1.0 / 50, 1e-14);
     }
   }

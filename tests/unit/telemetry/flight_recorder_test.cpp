@@ -162,16 +162,16 @@ TEST_F(FlightFiles, ThatAreMissingForWantOfTimeAreToldOnce) {
   Flown run;
   run.cycles(recorder, 2000, State::kRunning);
   run.cycles(recorder, 1000, State::kFault);
-  recorder.tell_missed();
+  recorder.report_missed();
   EXPECT_EQ(said_.str(), "");
   for (int i = 0; i < 2; ++i) {
     run.cycles(recorder, 10, State::kOff);
     run.cycles(recorder, 10, State::kFault);
   }
-  recorder.tell_missed();
+  recorder.report_missed();
   EXPECT_NE(said_.str().find("2 faults have no record"), std::string::npos) << said_.str();
   said_.str("");
-  recorder.tell_missed();
+  recorder.report_missed();
   EXPECT_EQ(said_.str(), "");
 }
 

@@ -84,7 +84,7 @@ TEST(ProgramSummary, GivesEachPartItsTimeAndTheyAddUpToTheWhole) {
   EXPECT_FALSE(w.watch.take()) << "told once";
   EXPECT_EQ(describe(*summary, "part.apt", kPeriod_s, 1000),
             "program part.apt ran to its end: 7 blocks in 2.3 s (approach 0.1, cut 0.3, rapid 0.4, "
-            "turns of the free joint 0.1, held 0.3, starved 0.5, single block 0.6)");
+            "turns of the redundant joint 0.1, held 0.3, starved 0.5, single block 0.6)");
 }
 
 TEST(ProgramSummary, SaysInWhichBlockAProgramWasAbortedOrBehindWhich) {

@@ -42,7 +42,7 @@ TEST(ReplyWords, TellTheValueThatIsSet) {
 
 TEST(ReplyWords, TellTheValueThatIsOutOfItsRangeAndTheRange) {
   MachineModel model = test::lai_machine();
-  model.most_feed_override = 1.5;
+  model.max_feed_override = 1.5;
   EXPECT_EQ(describe(Verb::kFeedOverride, Refusal::kOutOfRange, State::kRunning, 2, model),
             "feed_override refused: 200 % is out of range: from 0 to 150 % "
             "(feed_override_max_percent of the machine file)");

@@ -20,7 +20,7 @@ WorkFrames drawn_frames(unsigned seed, int count) {
   WorkFrames frames;
   for (int i = 0; i < count; ++i) {
     WorkFrame row;
-    row.number = static_cast<std::uint8_t>(1 + engine() % WorkFrames::kMost);
+    row.number = static_cast<std::uint8_t>(1 + engine() % WorkFrames::kMax);
     for (double& value : row.origin_mm) value = place(engine);
     for (double& value : row.rotation_deg) value = angle(engine);
     put_text("vice " + std::to_string(i), row.name);
@@ -49,13 +49,13 @@ TEST(SetUpText, OfAFullTableFitsIntoItsFile) {
   WorkFrame row;
   row.origin_mm = row.rotation_deg = {-1.0 / 3.0 * 1e-300, -1.0 / 7.0 * 1e-300, -2.0 / 3.0};
   put_text(std::string(100, 'x'), row.name);
-  for (int number = 1; number <= WorkFrames::kMost; ++number) {
+  for (int number = 1; number <= WorkFrames::kMax; ++number) {
     row.number = static_cast<std::uint8_t>(number);
     ASSERT_EQ(frames.apply({FrameWord::kSet, row}), FrameFault::kNone);
   }
   const std::string text =
       to_text({frames, std::string(dds::kToolFileBytes, 't')}, std::string(64, 'm'));
-  EXPECT_LT(text.size(), kMostSetUpBytes);
+  EXPECT_LT(text.size(), kMaxSetUpBytes);
   EXPECT_TRUE(parse_set_up(text, std::string(64, 'm')));
 }
 

@@ -107,7 +107,7 @@ TEST(Convert, CarriesTheWorkFramesThatThereAre) {
   EXPECT_EQ(back.work_frames, info.work_frames);
   wire.work_frame_count = 1000;
   from_wire(wire, back);
-  EXPECT_EQ(back.work_frames.size(), std::size_t{WorkFrames::kMost});
+  EXPECT_EQ(back.work_frames.size(), std::size_t{WorkFrames::kMax});
 }
 
 TEST(Convert, CutsLongTextsAndEndsEndlessOnes) {

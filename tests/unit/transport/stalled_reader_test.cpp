@@ -107,7 +107,7 @@ TEST(StalledReaders, AreNamedWithTheirProcessAndHoldBackNoWrite) {
   auto longest = Clock::duration::zero();
   for (int n = 0; n < 2000; ++n) {
     const auto before = Clock::now();
-    ASSERT_TRUE(writer.write({.request = 2, .text = std::string(kMostText, 'x')})) << n;
+    ASSERT_TRUE(writer.write({.request = 2, .text = std::string(kMaxText, 'x')})) << n;
     longest = std::max(longest, Clock::now() - before);
   }
   EXPECT_LT(longest, milliseconds(50)) << "a write that waits waits for 100 ms";

@@ -15,14 +15,14 @@ namespace {
 constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
 constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
 constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
-/// Of a joint at the begin: rounding, 1e-10 rad of the free joint 8 µrad from the pole, and of
+/// Of a joint at the begin: rounding, 1e-10 rad of the redundant joint 8 µrad from the pole, and of
 /// slides that make up for it so much of their way to its axis.
 constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
-constexpr double kNoCell_mm = 1e-6;      // of u: an end that is not worth a cell
-constexpr double kLeastSplit_mm = 5e-4;  // of u: below, motion would creep
-constexpr double kMostCells = 2;         // of time, that one takes where it is slowest
-constexpr int kRounds = 16;              // of halving: lengths of a ratio of 60 000
-constexpr double kNone = 1e-12;          // derivative that counts as none
+constexpr double kNoCell_mm = 1e-6;    // of u: an end that is not worth a cell
+constexpr double kMinSplit_mm = 5e-4;  // of u: below, motion would creep
+constexpr double kMaxCells = 2;        // of time, that one takes where it is slowest
+constexpr int kRounds = 16;            // of halving: lengths of a ratio of 60 000
+constexpr double kNone = 1e-12;        // derivative that counts as none
 
 double square(double x) noexcept { return x * x; }
 
@@ -35,7 +35,7 @@ double speed_square(const Vec3<Jet<3>>& x) noexcept {
 /// Share of jerk left beside what rounding of the axis near the pole shows as in third differences.
 double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
                          const Pose<double>& pose) noexcept {
-  if (free_joint(model) < 0) return 1;
+  if (redundant_joint(model) < 0) return 1;
   const double distance = pole_distance(model, pose.axis);
   const double noise = distance > 0 ? kAxisNoise / distance : 0;
   const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
@@ -43,7 +43,7 @@ double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
   for (int i = 0; i < limits.count; ++i) {
     share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
   }
-  return std::max(share, FeedCell::kLeastTight);
+  return std::max(share, FeedCell::kMinTight);
 }
 
 /// The range of the samples, and an eighth of it either side for what lies between.
@@ -127,7 +127,7 @@ PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& re
     for (int i = model_.joint_count; i < limits_.count; ++i) take(i, all[i]);
   }
   if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
-  out.most_b = b;
+  out.max_b = b;
   return {};
 }
 
@@ -135,7 +135,7 @@ double CellGrid::time_per_u(const JointSpan& span, double x) const noexcept {
   JointVector reference = joints_;
   CellSample at;
   if (take_sample(span, x, reference, at).kind != PathFault::Kind::kNone) return 0;
-  double slowest = 1 / std::sqrt(at.most_b);
+  double slowest = 1 / std::sqrt(at.max_b);
   for (int i = 0; i < limits_.count; ++i) {
     slowest = std::max({slowest, std::abs(at.d1[i]) / limits_.velocity[i],
                         kCurvatureShare * std::sqrt(std::abs(at.d2[i]) / limits_.acceleration[i]),
@@ -150,9 +150,9 @@ void CellGrid::draft_cells(const JointSpan& span) noexcept {
   for (int k = 0; k < kProbes; ++k)
     time += time_per_u(span, span.band.length * (k + 0.5) / kProbes);
   time *= span.band.length / kProbes;
-  const double wanted = std::ceil(std::min(time / settings_.cell_s, 1.0 * kMostPerSpan));
+  const double wanted = std::ceil(std::min(time / settings_.cell_s, 1.0 * kMaxPerSpan));
   const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
-  const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMostPerSpan));
+  const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMaxPerSpan));
   const double h = span.band.length / cells;
   for (int k = 0; k < cells; ++k) {
     if (model_.family == MachineFamily::kRobot) {
@@ -166,8 +166,8 @@ void CellGrid::draft_cells(const JointSpan& span) noexcept {
 void CellGrid::draft_graded(const JointSpan& span, double x, double h) noexcept {
   const double slowest =
       std::max({time_per_u(span, x), time_per_u(span, x + 0.5 * h), time_per_u(span, x + h)});
-  const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMostPerSpan;
-  if (slowest * h > kMostCells * settings_.cell_s && h > kLeastSplit_mm && has_room) {
+  const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMaxPerSpan;
+  if (slowest * h > kMaxCells * settings_.cell_s && h > kMinSplit_mm && has_room) {
     draft_graded(span, x, 0.5 * h);
     draft_graded(span, x + 0.5 * h, 0.5 * h);
   } else {
@@ -211,7 +211,7 @@ PathFault CellGrid::finish() noexcept {
   if (fault_.kind != PathFault::Kind::kNone) return fault_;
   is_finished_ = true;
   // A short path: cells enough for a motion to be shaped.
-  while (last_ == 0 && !drafts_.empty() && drafts_.size() < kLeast) {
+  while (last_ == 0 && !drafts_.empty() && drafts_.size() < kMin) {
     halve(std::numeric_limits<double>::infinity(), 0, 1);
   }
   return make_cells();
@@ -263,7 +263,7 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
 /// Beside a singular place of a robot joints turn sharply: into halves, as long as there is room.
 bool CellGrid::split(std::size_t draft) noexcept {
   if (model_.family != MachineFamily::kRobot || drafts_.size() == drafts_.capacity() ||
-      drafts_[draft].h < kLeastSplit_mm) {
+      drafts_[draft].h < kMinSplit_mm) {
     return false;
   }
   Draft half = drafts_[draft];
@@ -277,7 +277,7 @@ PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
   while (used < drafts_.size() && last_ - first_ < kCells) {
     const int behind = waiting_count_ - 1 - drafts_[used].waiting;
-    const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kLeast;
+    const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kMin;
     if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
     fault_ = make_cell(drafts_[used]);
     if (fault_.kind == PathFault::Kind::kJump && split(used)) {
@@ -306,7 +306,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   cell.span = next_span_ + static_cast<std::uint64_t>(draft.waiting);
   cell.x = draft.x;
   cell.h = draft.h;
-  cell.most_b = std::numeric_limits<double>::infinity();
+  cell.max_b = std::numeric_limits<double>::infinity();
   JointVector reference = joints_;
   LimitedVector values{};  // at the sample before
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
@@ -318,7 +318,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
         fault.kind != PathFault::Kind::kNone) {
       return fault;
     }
-    cell.most_b = std::min(cell.most_b, at.most_b);
+    cell.max_b = std::min(cell.max_b, at.max_b);
     if (const int joint = first_joint_outside_travel(model_, reference, kTravelMargin);
         joint >= 0) {
       return {PathFault::Kind::kTravel, joint, limited_value(model_, reference, joint)};
@@ -327,7 +327,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     if (k > 0) {
       const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
       const double step = draft.h / FeedCell::kSteps;
-      PathFault fault = judge_turns(model_, values, last.d1, here, at.d1, step);
+      PathFault fault = check_turns(model_, values, last.d1, here, at.d1, step);
       if (!is_fault(fault)) {
         fault = check_joins(model_, {values, last.d1, last.d2, last.d3},
                             {here, at.d1, at.d2, at.d3}, step);
@@ -351,17 +351,17 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   for (const double x : {draft.x, draft.x + draft.h}) {
     cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.band.c, x)));
   }
-  cell.made_b = cell.most_b;
+  cell.made_b = cell.max_b;
   cell.made_tight = cell.tight;
   last_h_ = cell.h;
   ++last_;
   return {};
 }
 
-double CellGrid::most_b_at(std::int64_t cell) const noexcept {
+double CellGrid::max_b_at(std::int64_t cell) const noexcept {
   double b = std::numeric_limits<double>::infinity();
-  if (cell > first_) b = (*this)[cell - 1].most_b;
-  if (cell < last_) b = std::min(b, (*this)[cell].most_b);
+  if (cell > first_) b = (*this)[cell - 1].max_b;
+  if (cell < last_) b = std::min(b, (*this)[cell].max_b);
   return b;
 }
 

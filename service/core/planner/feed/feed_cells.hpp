@@ -21,7 +21,7 @@ namespace meridian {
 /// the curvature terms of acceleration and jerk allow there.
 struct CellSample {
   LimitedVector d1{}, d2{}, d3{};
-  double most_b = 0;
+  double max_b = 0;
 };
 
 /// Bounds of the derivatives in a cell: that much above zero (`up`) and below (`down`), both >= 0.
@@ -37,14 +37,14 @@ static_assert(CellBound::Values::SizeAtCompileTime >= kMaxLimited);
 
 struct FeedCell {
   static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included
-  static constexpr double kLeastTight = 0.2;
+  static constexpr double kMinTight = 0.2;
 
   std::uint64_t span = 0;  ///< counts spans from 0 since begin()
   double x = 0;            ///< where it begins in its span
   double h = 0;            ///< length
-  double most_b = 0;       ///< least of the samples', lowered where a plan overshot the feed
+  double max_b = 0;        ///< least of the samples', lowered where a plan overshot the feed
   double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot,
-                           ///< but not below kLeastTight
+                           ///< but not below kMinTight
   double made_b = 0, made_tight = 1;  ///< both before any was lowered
   CellBound bound;
   std::array<CellSample, kSteps + 1> at;
@@ -62,7 +62,7 @@ class CellGrid {
  public:
   static constexpr int kCells = 1024;  ///< kept at a time
   static constexpr int kAhead = 4;     ///< spans that bound the cells of the one before them
-  static constexpr int kLeast = 40;    ///< cells of a path, however short
+  static constexpr int kMin = 40;      ///< cells of a path, however short
 
   CellGrid(const MachineModel& model, const FeedLimits& limits, const CellSettings& settings);
 
@@ -97,7 +97,7 @@ class CellGrid {
   void restore_from(std::int64_t cell) noexcept {
     for (; cell < last_; ++cell) {
       FeedCell& here = (*this)[cell];
-      here.most_b = here.made_b;
+      here.max_b = here.made_b;
       here.tight = here.made_tight;
     }
   }
@@ -119,14 +119,14 @@ class CellGrid {
   }
 
   /// Largest u̇² at the boundary before `cell`: what the cells on both sides allow.
-  [[nodiscard]] double most_b_at(std::int64_t cell) const noexcept;
+  [[nodiscard]] double max_b_at(std::int64_t cell) const noexcept;
 
   /// Joints at the end of the last cell.
   [[nodiscard]] const JointVector& joints() const noexcept { return joints_; }
 
  private:
-  static constexpr int kMostPerSpan = 400;
-  static constexpr int kWaiting = kLeast + kAhead + 4;
+  static constexpr int kMaxPerSpan = 400;
+  static constexpr int kWaiting = kMin + kAhead + 4;
   static constexpr int kDrafts = 4096;
 
   /// A cell to be: a piece of a span that waits.

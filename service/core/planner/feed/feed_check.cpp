@@ -55,7 +55,7 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const Cell
   const auto& [v, a, j] = motion;
   FeedUse use;
   Samples share;
-  for (int k = 0; k <= kSteps; ++k) share[k] = b[k] / cell.at[k].most_b;
+  for (int k = 0; k <= kSteps; ++k) share[k] = b[k] / cell.at[k].max_b;
   use.b = peak_of(share);
   for (int i = 0; i < limits.count; ++i) {
     Samples velocity, acceleration, jerk;
@@ -102,7 +102,7 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
 
 void add_use(const FeedLimits& limits, const CellSample& at, double v, double a, double j,
              FeedUse& use) noexcept {
-  use.b = std::max(use.b, v * v / at.most_b);
+  use.b = std::max(use.b, v * v / at.max_b);
   for (int i = 0; i < limits.count; ++i) {
     const double velocity = std::abs(at.d1[i] * v);
     const double acceleration = std::abs(at.d1[i] * a + at.d2[i] * v * v);

@@ -9,7 +9,7 @@
 /// What a motion uses of the limits inside cells. Source: docs/motion.md, section 8.
 namespace meridian {
 
-/// Largest use of each limit; 1 is all of it. `b`: of most_b, which is feed and joint velocity.
+/// Largest use of each limit; 1 is all of it. `b`: of max_b, which is feed and joint velocity.
 struct FeedUse {
   double velocity = 0, acceleration = 0, jerk = 0, b = 0;
 

@@ -45,7 +45,7 @@ void FeedPieces::add(const FeedCell& cell, std::int64_t number, const CellLaw& l
   const double second = (law.slope_end - law.slope) / cell.h;
   const double time = estimate_time(law, second, 0, cell.h);
   int parts = 1;
-  while (parts < kMostParts && 0.5 * std::abs(second) * time * time > 0.9 * parts * parts) {
+  while (parts < kMaxParts && 0.5 * std::abs(second) * time * time > 0.9 * parts * parts) {
     parts *= 2;
   }
   for (int n = 0; n < parts; ++n) {

@@ -22,10 +22,10 @@ struct FeedPiece {
 /// Pieces of a window, in order, in a fixed store.
 class FeedPieces {
  public:
-  static constexpr int kMostParts = 64;  ///< that a cell is cut into
+  static constexpr int kMaxParts = 64;  ///< that a cell is cut into
   /// Of every cell of a window or a crawl as many.
   static constexpr std::size_t kCapacity =
-      static_cast<std::size_t>(JerkStep::kCells + 2) * kMostParts;
+      static_cast<std::size_t>(JerkStep::kCells + 2) * kMaxParts;
 
   FeedPieces() { pieces_.reserve(kCapacity); }
   void clear() noexcept { pieces_.clear(); }

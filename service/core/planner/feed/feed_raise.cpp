@@ -36,7 +36,7 @@ double FeedRaise::find_wanted(double asked) noexcept {
   return replayed_;
 }
 
-FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double least_s) noexcept {
+FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double min_s) noexcept {
   if (!(most_ > 1)) return now_;
   if (sequence > sequence_) {
     sequence_ = sequence;
@@ -48,7 +48,7 @@ FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double least_s
     now_ = {wanted, std::min(now_.planned, wanted)};
   }
   if (is_at_rest_ || lead_s_ <= 0) now_.planned = now_.label;
-  lead_s_ -= least_s / now_.planned;
+  lead_s_ -= min_s / now_.planned;
   is_at_rest_ = false;
   ++span_;
   return now_;

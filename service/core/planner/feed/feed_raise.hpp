@@ -29,7 +29,7 @@ struct FeedFactors {
 class FeedRaise {
  public:
   explicit FeedRaise(const MachineModel& model)
-      : most_(model.most_feed_override), ramp_s_(model.override_ramp_s), told_(kTold) {}
+      : most_(model.max_feed_override), ramp_s_(model.override_ramp_s), told_(kReported) {}
 
   /// From the next begin() on the factors are those of a run before, whatever is asked for. `marks`
   /// must stay.
@@ -49,15 +49,15 @@ class FeedRaise {
   /// The machine rests before the next stretch.
   void rest() noexcept { is_at_rest_ = true; }
 
-  /// Factors of the next stretch, which is of block `sequence` and takes `least_s` or longer at the
+  /// Factors of the next stretch, which is of block `sequence` and takes `min_s` or longer at the
   /// programmed feed. `asked`: the operator's override.
-  [[nodiscard]] FeedFactors next(std::uint64_t sequence, double asked, double least_s) noexcept;
+  [[nodiscard]] FeedFactors next(std::uint64_t sequence, double asked, double min_s) noexcept;
 
   /// Takes the oldest mark of what was planned; false if there is none. At most 256 wait.
   [[nodiscard]] bool take(FeedMark& out) noexcept { return told_.take_oldest(out); }
 
  private:
-  static constexpr std::size_t kTold = 256;
+  static constexpr std::size_t kReported = 256;
 
   [[nodiscard]] double find_wanted(double asked) noexcept;
 

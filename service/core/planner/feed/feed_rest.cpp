@@ -25,7 +25,7 @@ double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t fir
   for (std::int64_t cell = first; cell < last; ++cell) {
     for (int k = 0; k <= FeedCell::kSteps; k += FeedCell::kSteps / 2) {
       const CellSample& at = grid[cell].at[k];
-      most = std::min(most, at.most_b);
+      most = std::min(most, at.max_b);
       for (int i = 0; i < limits.count; ++i) {
         const double d2 = std::max(std::abs(at.d2[i]), kNone);
         const double d3 = std::max(std::abs(at.d3[i]), kNone);
@@ -38,11 +38,11 @@ double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t fir
 }
 
 RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,
-                        double most_b) noexcept {
+                        double max_b) noexcept {
   const double h = cell.h;
   const CellSample& rest = is_start ? cell.at.front() : cell.at.back();
   // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
-  double jerk = std::pow(0.8 * std::max(most_b, kNone), 1.5) / (36 * h * h);
+  double jerk = std::pow(0.8 * std::max(max_b, kNone), 1.5) / (36 * h * h);
   for (int i = 0; i < limits.count; ++i) {
     jerk = std::min(jerk, kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kNone));
   }
@@ -95,7 +95,7 @@ Crawl crawl_over(const CellGrid& grid, const FeedLimits& limits, std::int64_t fi
       const Crawl::Shape shape = Crawl::shape_at(std::min(x, 1.0));
       const double v = crawl.length * shape.v, a = crawl.length * shape.a;
       const CellSample& at = cell.at[k];
-      crawl.duration = std::max(crawl.duration, kCrawlMargin * v / std::sqrt(at.most_b));
+      crawl.duration = std::max(crawl.duration, kCrawlMargin * v / std::sqrt(at.max_b));
       for (const double j : {crawl.length * shape.j, -crawl.length * shape.j}) {
         for (int i = 0; i < limits.count; ++i) {
           const double speed = std::abs(at.d1[i] * v) / limits.velocity[i];

@@ -23,9 +23,9 @@ struct RestCell {
                               std::int64_t last) noexcept;
 
 /// The fastest of a geometric ladder that keeps most of every limit in `cell` and leaves it with
-/// u̇² <= 0.8 `most_b`. Always finds one.
+/// u̇² <= 0.8 `max_b`. Always finds one.
 [[nodiscard]] RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,
-                                      double most_b) noexcept;
+                                      double max_b) noexcept;
 
 /// The last resort, from rest to rest: jerk +J, -J, -J, +J for a quarter of the duration each.
 /// Velocity, acceleration and jerk of every joint scale with 1/T, 1/T², 1/T³, so the T that keeps
@@ -47,7 +47,7 @@ struct Crawl {
 [[nodiscard]] Crawl crawl_over(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
                                int cells) noexcept;
 
-/// The use of `crawl` from cell `first` on, between the samples too; of most_b and every limit.
+/// The use of `crawl` from cell `first` on, between the samples too; of max_b and every limit.
 [[nodiscard]] FeedUse use_of(const FeedLimits& limits, const CellGrid& grid, std::int64_t first,
                              const Crawl& crawl) noexcept;
 

@@ -23,15 +23,15 @@ FilterTerm filter_term(const FeedLimits& limits, double d1, double bar) noexcept
 
 void bound_slope(const FeedLimits& limits, JerkCell& at) noexcept {
   const CellSample& place = at.cell->at[0];
-  at.most_slope = std::numeric_limits<double>::infinity();
+  at.max_slope = std::numeric_limits<double>::infinity();
   for (int j = 0; j < limits.count; ++j) {
     const double d1 = std::abs(place.d1[j]);
     const double left = limits.acceleration[j] * at.accel_share -
                         filter_term(limits, d1, at.bar[0]).fixed +
-                        std::abs(place.d2[j]) * at.most_b[0];
+                        std::abs(place.d2[j]) * at.max_b[0];
     const double most = 2 * left / std::max(d1, kNone);
-    if (most >= at.most_slope) continue;
-    at.most_slope = most;
+    if (most >= at.max_slope) continue;
+    at.max_slope = most;
     at.slope_joint = j;
   }
 }
@@ -53,7 +53,7 @@ void JerkRows::add_acceleration(const FeedLimits& limits, const JerkCell& at) no
     const FilterTerm filter = filter_term(limits, d1, at.bar[0]);
     const double limit = limits.acceleration[j] * at.accel_share - filter.fixed;
     const double most =
-        0.5 * std::abs(d1) * at.most_slope + (std::abs(d2) + filter.per_b) * at.most_b[0];
+        0.5 * std::abs(d1) * at.max_slope + (std::abs(d2) + filter.per_b) * at.max_b[0];
     if (most <= limit && j != at.slope_joint) continue;
     JerkCoefficients value{}, rest{};
     for (std::size_t t = 0; t < 3; ++t) {
@@ -75,27 +75,27 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
       place.slope[t] = at.slope[t] + place.bend[t] * x;
       place.b[t] = at.b[t] + at.slope[t] * x + 0.5 * place.bend[t] * x * x;
     }
-    place.most_b = at.most_b[p];
+    place.max_b = at.max_b[p];
     place.bar = at.bar[p];
     place.at = &at.cell->at[p * FeedCell::kSteps / 2];
   }
-  places[0].most_slope = at.most_slope;
-  places[1].most_slope = std::max(at.most_slope, at.most_end);
-  places[2].most_slope = at.most_end;
+  places[0].max_slope = at.max_slope;
+  places[1].max_slope = std::max(at.max_slope, at.max_end);
+  places[2].max_slope = at.max_end;
 
   // Largest |b''|, which is the same all over the cell, and by which row.
-  double most_bend = std::numeric_limits<double>::infinity();
+  double max_bend = std::numeric_limits<double>::infinity();
   std::size_t bend_place = 0;
   int bend_joint = -1;
   for (std::size_t p = 0; p < 3; ++p) {
     const Place& place = places[p];
     const double per_root = 1.5 * at.jerk_share / std::sqrt(place.bar);
     for (int j = 0; j < limits.count; ++j) {
-      const double most = (limits.jerk[j] * per_root + std::abs(place.at->d3[j]) * place.most_b +
-                           1.5 * std::abs(place.at->d2[j]) * place.most_slope) /
+      const double most = (limits.jerk[j] * per_root + std::abs(place.at->d3[j]) * place.max_b +
+                           1.5 * std::abs(place.at->d2[j]) * place.max_slope) /
                           std::max(0.5 * std::abs(place.at->d1[j]), kNone);
-      if (most >= most_bend) continue;
-      most_bend = most;
+      if (most >= max_bend) continue;
+      max_bend = most;
       bend_place = p;
       bend_joint = j;
     }
@@ -107,8 +107,8 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
       const double jerk = limits.jerk[j] * at.jerk_share;
       const double d1 = place.at->d1[j], d2 = place.at->d2[j], d3 = place.at->d3[j];
       const double limit = 1.5 * jerk / root, per_b = jerk / (2 * place.bar * root);
-      const double most = (std::abs(d3) + per_b) * place.most_b +
-                          1.5 * std::abs(d2) * place.most_slope + 0.5 * std::abs(d1) * most_bend;
+      const double most = (std::abs(d3) + per_b) * place.max_b +
+                          1.5 * std::abs(d2) * place.max_slope + 0.5 * std::abs(d1) * max_bend;
       if (most <= limit && (p != bend_place || j != bend_joint)) continue;
       JerkCoefficients value{}, rest{};
       for (std::size_t t = 0; t < 3; ++t) {
@@ -124,10 +124,10 @@ void JerkRows::find(const FeedLimits& limits, const JerkCell& at) noexcept {
   count_ = 0;
   if (!at.is_first) {
     add_acceleration(limits, at);
-    add(at.b, at.most_b[0]);
+    add(at.b, at.max_b[0]);
   }
   add_jerk(limits, at);
-  add(at.middle, at.most_b[1]);
+  add(at.middle, at.max_b[1]);
 }
 
 }  // namespace meridian

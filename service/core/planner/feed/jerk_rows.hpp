@@ -25,9 +25,9 @@ struct JerkCell {
   JerkCoefficients b{}, slope{}, end{};    ///< b and b' at the begin, b' at the end
   JerkCoefficients middle{};               ///< b in the middle
   std::array<double, 3> bar{};             ///< b around which jerk is linearised
-  std::array<double, 3> most_b{};          ///< that other rows allow, or what is given
+  std::array<double, 3> max_b{};           ///< that other rows allow, or what is given
   double accel_share = 1, jerk_share = 1;  ///< of A at the begin, of J
-  double most_slope = 0, most_end = 0;     ///< largest |b'| at begin and end
+  double max_slope = 0, max_end = 0;       ///< largest |b'| at begin and end
   int slope_joint = -1;                    ///< by the acceleration of which joint, -1: given
 };
 
@@ -39,7 +39,7 @@ void bound_slope(const FeedLimits& limits, JerkCell& at) noexcept;
 /// one, whose rows stay.
 class JerkRows {
  public:
-  static constexpr int kMost = 8 * static_cast<int>(kMaxLimited) + 2;
+  static constexpr int kMax = 8 * static_cast<int>(kMaxLimited) + 2;
 
   void find(const FeedLimits& limits, const JerkCell& at) noexcept;
   [[nodiscard]] int count() const noexcept { return count_; }
@@ -51,7 +51,7 @@ class JerkRows {
   /// b, b' and b'' at a place as combinations of the coefficients, and their largest values.
   struct Place {
     JerkCoefficients b{}, slope{}, bend{};
-    double most_b = 0, most_slope = 0, bar = 0;
+    double max_b = 0, max_slope = 0, bar = 0;
     const CellSample* at = nullptr;
   };
   void add(const JerkCoefficients& a, double limit) noexcept;
@@ -60,7 +60,7 @@ class JerkRows {
   void add_acceleration(const FeedLimits& limits, const JerkCell& at) noexcept;
   void add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept;
 
-  std::array<JerkRow, kMost> rows_;
+  std::array<JerkRow, kMax> rows_;
   int count_ = 0;
 };
 

@@ -7,12 +7,12 @@
 namespace meridian {
 namespace {
 
-constexpr double kLeastSlack = 1e-2;
+constexpr double kMinSlack = 1e-2;
 constexpr double kGapGoal = 1e-4;     // of the time
 constexpr double kPrimalGoal = 1e-7;  // rows are scaled to about 1
 constexpr double kPrimalGood = 1e-5;  // what is accepted when the rounds are over
 constexpr double kToTheWall = 0.995;  // share of the way to the next bound that is gone
-constexpr double kLeastScale = 1e-3;  // of the limit: a row of a joint that hardly moves
+constexpr double kMinScale = 1e-3;    // of the limit: a row of a joint that hardly moves
 constexpr int kStallRounds = 6;       // the primal residual has to halve in them
 
 }  // namespace
@@ -57,7 +57,7 @@ void JerkStep::put_row(int cell, int row, const JerkRow& from) noexcept {
   const JerkCoefficients& a = from.a;
   const double a0 = a[0] * bar_[cell], a1 = a[1] * bar_[cell + 1], a2 = a[2] * bar_[cell + 2];
   const double scale = std::max(
-      {std::abs(a0), std::abs(a1), std::abs(a2), std::abs(from.limit) * kLeastScale, 1e-300});
+      {std::abs(a0), std::abs(a1), std::abs(a2), std::abs(from.limit) * kMinScale, 1e-300});
   CellRows& rows = rows_[cell];
   const int pack = row / kLanes, lane = row % kLanes;
   rows.a0[pack][lane] = a0 / scale;
@@ -79,13 +79,13 @@ JerkCell JerkStep::describe(const JerkProblem& problem, int i) const noexcept {
   }
   at.bar = {problem.bar_knots[i], problem.bar_middles[i], problem.bar_knots[i + 1]};
   const bool is_last = i + 1 == cells_;
-  const double most_begin = grid_.most_b_at(problem.first + i);
-  at.most_b = {at.is_first ? problem.begin.b : most_begin, std::min(most_begin, at.cell->most_b),
-               is_last ? problem.end.b : grid_.most_b_at(problem.first + i + 1)};
+  const double max_begin = grid_.max_b_at(problem.first + i);
+  at.max_b = {at.is_first ? problem.begin.b : max_begin, std::min(max_begin, at.cell->max_b),
+              is_last ? problem.end.b : grid_.max_b_at(problem.first + i + 1)};
   at.accel_share = problem.accel_share[i];
   at.jerk_share = problem.jerk_share[i];
   if (at.is_first) {
-    at.most_slope = std::abs(problem.begin.slope);
+    at.max_slope = std::abs(problem.begin.slope);
   } else {
     bound_slope(limits_, at);
   }
@@ -98,7 +98,7 @@ void JerkStep::set_up_cells(const JerkProblem& problem) noexcept {
   for (int i = 0; i < cells_; ++i) {
     JerkCell next;
     if (i + 1 < cells_) next = describe(problem, i + 1);
-    at.most_end = i + 1 < cells_ ? next.most_slope : std::abs(problem.end.slope);
+    at.max_end = i + 1 < cells_ ? next.max_slope : std::abs(problem.end.slope);
     found_.find(limits_, at);
     const int packs = rows_[i].packs = (found_.count() + kLanes - 1) / kLanes;
     for (int row = 0; row < packs * kLanes; ++row) {
@@ -118,7 +118,7 @@ void JerkStep::start() noexcept {
     CellRows& rows = rows_[i];
     for (int p = 0; p < rows.packs; ++p) {
       const Pack value = rows.a0[p] * c_[i] + rows.a1[p] * c_[i + 1] + rows.a2[p] * c_[i + 2];
-      rows.slack[p] = (rows.limit[p] - value).max(kLeastSlack);
+      rows.slack[p] = (rows.limit[p] - value).max(kMinSlack);
       rows.lambda[p] = centre / rows.slack[p];
       rows.step_slack[p] = rows.step_lambda[p] = Pack::Zero();
     }

@@ -60,7 +60,7 @@ class JerkStep {
 
  private:
   static constexpr int kLanes = 4;
-  static constexpr int kPacks = (JerkRows::kMost + kLanes - 1) / kLanes;
+  static constexpr int kPacks = (JerkRows::kMax + kLanes - 1) / kLanes;
   using Pack = Eigen::Array<double, kLanes, 1>;
   using Values = std::vector<double>;
 

@@ -13,7 +13,7 @@ namespace meridian {
 namespace {
 
 constexpr double kJointNoise_rad = 1e-9;  // of a robot's joint, well off its singular places
-constexpr double kMostOff = 0.01;         // of a joint between samples, of what it bends by
+constexpr double kMaxOff = 0.01;          // of a joint between samples, of what it bends by
 
 /// Joints and drives of the stage, and their derivatives, at one place.
 struct Sample {
@@ -47,7 +47,7 @@ bool take_sample(const MachineModel& model, const PathPiece& piece, double s,
   return true;
 }
 
-PathFault judge_travel(const MachineModel& model, const LimitedVector& q) noexcept {
+PathFault check_travel(const MachineModel& model, const LimitedVector& q) noexcept {
   for (int i = 0; i < limited_count(model); ++i) {
     if (!is_inside_travel(limited_spec(model, i), q[i], kTravelMargin)) {
       return {PathFault::Kind::kTravel, i, q[i]};
@@ -84,7 +84,7 @@ double axis_noise(const MachineModel& model, const PathPiece& piece, double begi
 
 }  // namespace
 
-PathFault judge_turns(const MachineModel& model, const LimitedVector& a, const LimitedVector& da,
+PathFault check_turns(const MachineModel& model, const LimitedVector& a, const LimitedVector& da,
                       const LimitedVector& b, const LimitedVector& db, double h) noexcept {
   for (int i = 0; i < limited_count(model); ++i) {
     if (!(da[i] * db[i] < 0)) continue;
@@ -112,7 +112,7 @@ PathFault check_joins(const MachineModel& model, const JointPlace& a, const Join
         std::abs(b.d1[i] - a.d1[i]) + h * (std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
                                            h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i])));
     const double rate = std::abs(by) / h + std::abs(a.d1[i]) + std::abs(b.d1[i]);
-    if (!(off <= kJointNoise_rad + kMostOff * h * std::min(bend, rate))) {
+    if (!(off <= kJointNoise_rad + kMaxOff * h * std::min(bend, rate))) {
       return {PathFault::Kind::kJump, i, by};
     }
   }
@@ -126,7 +126,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
   if (!take_sample(model, piece, begin, joints, at[2])) {
     return {PathFault::Kind::kUnreachable, -1, 0};
   }
-  if (const auto fault = judge_travel(model, at[2].q); fault.kind != PathFault::Kind::kNone) {
+  if (const auto fault = check_travel(model, at[2].q); fault.kind != PathFault::Kind::kNone) {
     return fault;
   }
   coarseness_ = 1;
@@ -142,8 +142,8 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       if (!take_sample(model, piece, s, at[k - 1].joints, at[k])) {
         return {PathFault::Kind::kUnreachable, -1, 0};
       }
-      PathFault fault = judge_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
-      if (!is_fault(fault)) fault = judge_travel(model, at[k].q);
+      PathFault fault = check_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
+      if (!is_fault(fault)) fault = check_travel(model, at[k].q);
       if (!is_fault(fault)) fault = check_joins(model, at[k - 1].place(), at[k].place(), h / 2);
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }

@@ -21,7 +21,7 @@ inline constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon(
 struct JointCell {
   double begin = 0, end = 0;  ///< s
   double share_rate = 0;      ///< bound of dx/ds, x the share of tip and axis (fraction_at)
-  double noise_rad = 0;       ///< rounding of the free joint beside the pole
+  double noise_rad = 0;       ///< rounding of the redundant joint beside the pole
   LimitedVector d1{}, d2{}, d3{};
 };
 
@@ -55,7 +55,7 @@ class CellTable {
   /// its cell allow, of the last append().
   [[nodiscard]] double coarseness() const noexcept { return coarseness_; }
 
-  /// Appends `cells` equal cells of `piece` from `begin` to `end` and judges the joints on the way,
+  /// Appends `cells` equal cells of `piece` from `begin` to `end` and checks the joints on the way,
   /// extremes between the samples included. `joints` are those at `begin` (within half a turn) and
   /// become those at `end`. Nothing may be read after a fault.
   [[nodiscard]] PathFault append(const MachineModel& model, const PathPiece& piece, double begin,
@@ -69,7 +69,7 @@ class CellTable {
 
 /// Travel at the turning points that joints and drives have between two samples `h` apart, by the
 /// cubic through both: values `a` and `b`, derivatives `da` and `db`.
-[[nodiscard]] PathFault judge_turns(const MachineModel& model, const LimitedVector& a,
+[[nodiscard]] PathFault check_turns(const MachineModel& model, const LimitedVector& a,
                                     const LimitedVector& da, const LimitedVector& b,
                                     const LimitedVector& db, double h) noexcept;
 

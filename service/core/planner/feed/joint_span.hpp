@@ -13,10 +13,11 @@ namespace meridian {
 /// joint driven. Spans of a path follow one another with two continuous derivatives of every joint.
 struct JointSpan {
   BandSpan band;
-  int branch = 0;                 ///< of the inverse kinematics, where not driven
-  bool is_free_driven = false;    ///< the free joint is a quintic of x, the tilt follows
-  FreeQuintic free{};             ///< Bernstein values over [0, length], rad
-  double axis_deviation_rad = 0;  ///< largest angle by which driving the free joint moves the axis
+  int branch = 0;               ///< of the inverse kinematics, where not driven
+  bool is_free_driven = false;  ///< the redundant joint is a quintic of x, the tilt follows
+  FreeQuintic free{};           ///< Bernstein values over [0, length], rad
+  double axis_deviation_rad =
+      0;  ///< largest angle by which driving the redundant joint moves the axis
   EaseReason reason = EaseReason::kBeside;  ///< why, where driven
   double feed_factor = 1;                   ///< FeedFactors::label
   BlockMarks marks{};                       ///< blocks that end on the span

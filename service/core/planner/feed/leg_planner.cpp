@@ -9,7 +9,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
-#include "service/core/planner/feed/authority_table.hpp"
+#include "service/core/planner/feed/stop_margin_table.hpp"
 
 namespace meridian {
 namespace {
@@ -21,19 +21,19 @@ constexpr double kCellTurn_rad = 0.06;
 constexpr double kCellSweep_rad = 0.14;
 constexpr double kCellFree_rad = 0.14;
 constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
-constexpr double kMostCells = 256;
+constexpr double kMaxCells = 256;
 constexpr double kCoarse = 1.12;
-constexpr int kMostRefinements = 3;
-constexpr int kLeastAzimuthCells = 4;  // between two nodes
-/// Rounding of the free joint 8 µrad from the pole is 1e-10, of slides that make up for it so much
-/// of their way to its axis.
+constexpr int kMaxRefinements = 3;
+constexpr int kMinAzimuthCells = 4;  // between two nodes
+/// Rounding of the redundant joint 8 µrad from the pole is 1e-10, of slides that make up for it so
+/// much of their way to its axis.
 constexpr double kLargestJump_rad = 1e-9, kLargestJump_mm = 1e-7;
 /// A motion creeps that takes longer than this, and so many times longer than its length takes at
 /// the programmed feed, and than its joints take from end to end at their velocity.
 constexpr double kCreep_s = 10, kCreepOfFeed = 1000, kCreepOfJoints = 10;
 
 int cells_for(double amount) noexcept {
-  return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMostCells));
+  return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMaxCells));
 }
 
 /// Distance to the pole at `from_nearest` along the great circle.
@@ -139,7 +139,7 @@ PathFault LegPlanner::append_cells(CellTable& table, const PathPiece& path, doub
     const PathFault fault = table.append(model_, path, begin, end, cells, joints);
     const bool is_jump = fault.kind == PathFault::Kind::kJump;
     const bool is_coarse = is_jump || (table.coarseness() > kCoarse && !is_fault(fault));
-    if (!is_coarse || round == kMostRefinements || first + 2 * cells > kMostCells) {
+    if (!is_coarse || round == kMaxRefinements || first + 2 * cells > kMaxCells) {
       return fault;
     }
     table.go_back(first);
@@ -191,7 +191,7 @@ PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
     const PathFault azimuth_fault = append_cells(
         azimuth_cells_, by_azimuth, kAxisLength_mm_per_rad * (a.azimuth - azimuth_from),
         kAxisLength_mm_per_rad * (b.azimuth - azimuth_from),
-        std::max(kLeastAzimuthCells, cells_for((b.azimuth - a.azimuth) / kCellFree_rad)), at);
+        std::max(kMinAzimuthCells, cells_for((b.azimuth - a.azimuth) / kCellFree_rad)), at);
     if (azimuth_fault.kind != PathFault::Kind::kNone) return azimuth_fault;
   }
   nodes_[node_count_ - 1].cell = cells_.size();
@@ -312,11 +312,11 @@ bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const Motio
   time.line = piece.line;
   time.feed_mm_per_s = find_tip_feed(leg);
   time.feed_factor = leg.feed_factor;
-  const AuthorityTable authority(cells, offset, caps_, fault_caps_, choice);
+  const StopMarginTable authority(cells, offset, caps_, fault_caps_, choice);
   const ProfilePhases phases = phases_of(choice.profile, piece.length);
   for (int n = 0; n < phases.count; ++n) {
     const ProfilePhase& phase = phases.phase[n];
-    const AuthorityTable::Cuts cuts = authority.cut(phase);
+    const StopMarginTable::Cuts cuts = authority.cut(phase);
     for (int k = 0; k <= cuts.count; ++k) {
       const double t = k == 0 ? 0 : cuts.time[k - 1];
       time.duration = (k == cuts.count ? phase.duration : cuts.time[k]) - t;

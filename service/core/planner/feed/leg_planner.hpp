@@ -22,7 +22,7 @@ struct Leg {
   std::uint32_t window = 0;
 };
 
-/// Plans one leg: judges its joints, splits it where that is faster, and stages its pieces, each of
+/// Plans one leg: checks its joints, splits it where that is faster, and stages its pieces, each of
 /// them from rest to rest.
 ///
 /// Beside the pole the joints' derivatives grow without bound as the distance shrinks. There the

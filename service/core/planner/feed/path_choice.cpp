@@ -11,8 +11,8 @@ namespace meridian {
 namespace {
 
 constexpr double kAuthority = 0.9;
-constexpr double kMost = 1e12;  // a path along which no joint moves has no limit of its own
-/// Third differences are judged down to this cycle time.
+constexpr double kMax = 1e12;  // a path along which no joint moves has no limit of its own
+/// Third differences are checked down to this cycle time.
 constexpr double kShortestCycle_s = 250e-6;
 
 /// Jerk that 1 rad of noise shows as: a third difference weighs four setpoints by 1, 3, 3, 1.
@@ -26,7 +26,7 @@ void set_noise_gain(const MachineModel& model, double reach_mm, JointCaps& caps)
   for (int i = 0; i < model.joint_count; ++i) {
     if (!model.joints[i].is_rotary) caps.noise_gain[i] = gain * reach_mm;
   }
-  if (const int free = free_joint(model); free >= 0) caps.noise_gain[free] = gain;
+  if (const int free = redundant_joint(model); free >= 0) caps.noise_gain[free] = gain;
   for (int i = model.joint_count; i < limited_count(model); ++i) {
     caps.noise_gain[i] = gain * (reach_mm + stage::lever_mm(model.stage));
   }
@@ -89,7 +89,7 @@ JointCaps fault_caps(const MachineModel& model, double reach_mm) noexcept {
 double find_acceleration(std::span<const JointCell> cells, const JointCaps& caps,
                          double velocity) noexcept {
   const double square = velocity * velocity;
-  double accel = kMost;
+  double accel = kMax;
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {
       const double left = caps.acceleration[i] - cell.d2[i] * square;
@@ -110,7 +110,7 @@ double find_jerk_beside(std::span<const JointCell> cells, const JointCaps& caps,
                         double product) noexcept {
   const double cube = velocity * velocity * velocity;
   const double mixed = 3 * product;
-  double jerk = kMost;
+  double jerk = kMax;
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {
       const double left = caps.jerk[i] - caps.noise_gain[i] * cell.noise_rad - cell.d3[i] * cube -
@@ -129,7 +129,7 @@ MotionChoice choose_motion(std::span<const JointCell> cells, const JointCaps& ca
   const double rest_jerk = find_jerk(cells, caps, 0, 0);
   MotionChoice best;
   if (!(rest_accel > 0) || !(rest_jerk > 0)) return best;
-  double velocity = std::min({feed_velocity, kMost, 0.5 * rest_accel / kRateSlope_per_s,
+  double velocity = std::min({feed_velocity, kMax, 0.5 * rest_accel / kRateSlope_per_s,
                               0.25 * rest_jerk / kRateCurvature_per_s2});
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {

@@ -77,7 +77,7 @@ struct RestToRestPlanner::Workspace {
   void stage_motion(ClBlock block) noexcept;
   void stage_barrier(const ClBlock& block) noexcept;
   void stage_retraction(const ClBlock& block) noexcept;
-  /// Whether `fault` is one that turning the free joint back may help.
+  /// Whether `fault` is one that turning the redundant joint back may help.
   [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
   /// Stages an unwinding from `next`, to a winding that `trial` lets pass, or without one with
   /// `block` behind it; or tells why that cannot be: `fault` of the block without one.
@@ -98,7 +98,7 @@ struct RestToRestPlanner::Workspace {
 
 bool RestToRestPlanner::Workspace::may_unwind(const PathFault& fault) const noexcept {
   return model.unwind_policy == UnwindPolicy::kRetract && fault.kind == PathFault::Kind::kTravel &&
-         fault.joint >= 0 && fault.joint == free_joint(model);
+         fault.joint >= 0 && fault.joint == redundant_joint(model);
 }
 
 PathFault RestToRestPlanner::Workspace::unwind(const ClBlock& block, const PathFault& fault,
@@ -258,7 +258,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.router.set_free_cone(0);
 }
 
-void RestToRestPlanner::ask(PoleForesight* foresight) noexcept {
+void RestToRestPlanner::ask(PoleLookAhead* foresight) noexcept {
   workspace_->router.ask(foresight);
 }
 
@@ -300,7 +300,7 @@ PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const 
     w.staging.clear(w.cursor.path_index);
     w.next = w.cursor;
     w.result = {};
-    PathFault fault{PathFault::Kind::kTravel, free_joint(w.model), beyond};
+    PathFault fault{PathFault::Kind::kTravel, redundant_joint(w.model), beyond};
     if (w.may_unwind(fault)) fault = w.unwind(block, fault, &trial);
     if (fault.kind != PathFault::Kind::kNone) {
       w.refuse(block, code_of(fault.kind), fault.joint, fault.value);

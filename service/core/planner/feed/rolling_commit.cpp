@@ -10,7 +10,7 @@ namespace meridian {
 namespace {
 
 /// Pieces of a tail: the cycle skips all of them in one call, and has places left for paths.
-constexpr std::size_t kMostTail = MotionReader::kMostDrops - 8;
+constexpr std::size_t kMaxTail = MotionReader::kMaxDrops - 8;
 
 }  // namespace
 
@@ -33,8 +33,8 @@ std::size_t RollingFeed::find_tail(std::int64_t first, int& kept) const noexcept
   const auto& pieces = pieces_.all();
   std::size_t tail = pieces.size();
   while (tail > 0 && pieces[tail - 1].cell >= first + kept) --tail;
-  if (pieces.size() - tail <= kMostTail) return tail;
-  tail = pieces.size() - kMostTail;
+  if (pieces.size() - tail <= kMaxTail) return tail;
+  tail = pieces.size() - kMaxTail;
   while (pieces[tail].cell == pieces[tail - 1].cell) ++tail;
   kept = static_cast<int>(pieces[tail].cell - first);
   return tail;

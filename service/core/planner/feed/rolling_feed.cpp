@@ -18,7 +18,7 @@ constexpr double kJerkShare = 0.998;
 /// plan is strictly inside the limits of the next one, which therefore has an interior.
 constexpr double kFunnel = 0.02;
 constexpr int kTightenings = 4;
-constexpr int kLeastCells = 4;        // of a window
+constexpr int kMinCells = 4;          // of a window
 constexpr int kRestReach = 11;        // cells beside a rest whose limits its speed keeps
 constexpr int kHistory = 240;         // cells kept behind the next one: three windows
 constexpr double kOldShare = 0.6;     // of the bound: an old plan above it is worth linearising at
@@ -113,9 +113,9 @@ bool RollingFeed::attempt(const Attempt& how) noexcept {
   if (how.shorter > 0) {
     const bool is_last = grid_.is_complete() && end == grid_.last();
     end -= how.shorter;
-    if (is_last || end < first + kLeastCells + 2) return false;
+    if (is_last || end < first + kMinCells + 2) return false;
   }
-  if (end - first < kLeastCells) return false;
+  if (end - first < kMinCells) return false;
   if (is_at_rest_) {
     const auto reach = std::min(next_ + kRestReach + 1, end);
     start_ = find_rest_cell(planned_, grid_[next_], true,
@@ -163,7 +163,7 @@ bool RollingFeed::refine() noexcept {
       const double funnel = 1 - kFunnel * std::min(1.0, 1.0 * k / settings_.window_cells);
       accel_share_[k] = jerk_share_[k] = funnel * grid_[new_.first + k].tight;
     }
-    if (window_rounds_ >= settings_.most_rounds) break;
+    if (window_rounds_ >= settings_.max_rounds) break;
     ++count_.solves;
     const bool is_solved = solver_.solve({new_.first,
                                           cells,
@@ -175,7 +175,7 @@ bool RollingFeed::refine() noexcept {
                                           jerk_share_.data()});
     count_.rounds += solver_.rounds();
     window_rounds_ += solver_.rounds();
-    count_.most_rounds = std::max(count_.most_rounds, window_rounds_);
+    count_.max_rounds = std::max(count_.max_rounds, window_rounds_);
     if (!is_solved) break;
     take_result();
     if (!check_and_tighten(round < kTightenings)) {
@@ -218,11 +218,11 @@ bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
       for (int n = std::max(0, k - 1); n <= std::min(cells - 1, k + 1); ++n) {
         FeedCell& near = grid_[new_.first + n];
         const double by = n == k ? std::min(worst, 1.5) + 0.004 : 1.002;
-        near.tight = std::max(FeedCell::kLeastTight, near.tight / by);
+        near.tight = std::max(FeedCell::kMinTight, near.tight / by);
       }
     } else if (use.b > kFeedSlack) {
       is_good = false;
-      if (may_tighten) cell.most_b /= std::min(use.b, 1.1) + 0.002;
+      if (may_tighten) cell.max_b /= std::min(use.b, 1.1) + 0.002;
     }
   }
   return is_good;

@@ -21,7 +21,7 @@ struct FeedSettings {
   int window_cells = 120;  ///< planned at a time, to a rest at their end; at most 160
   int commit_cells = 40;   ///< of them kept, and on to twice as many while they yield
   double commit_s = 0.06;  ///< less motion than this
-  int most_rounds = 240;   ///< of the solver per window; then the plan before it stands
+  int max_rounds = 240;    ///< of the solver per window; then the plan before it stands
   /// Convex programmes per window, each around the result of the last. The plan of the window
   /// before is a good place to linearise at: a second one gains little and doubles the work.
   int refinements = 1;
@@ -40,7 +40,7 @@ struct FeedWindow {
 /// What was done, for reports and tests.
 struct FeedCount {
   std::int64_t windows = 0, solves = 0, rounds = 0, kept = 0, stops = 0, crawls = 0, tightened = 0;
-  std::int64_t most_rounds = 0;  ///< of one window
+  std::int64_t max_rounds = 0;  ///< of one window
 };
 
 /// The feed over a stream of spans, window by window, inside velocity, acceleration and jerk of

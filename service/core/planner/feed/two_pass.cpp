@@ -9,7 +9,7 @@ namespace meridian {
 namespace {
 
 constexpr double kNone = 1e-12;  // coefficient that counts as none
-constexpr int kMostRounds = 24;  // of a search that ends after four
+constexpr int kMaxRounds = 24;   // of a search that ends after four
 
 /// p b₁ + r b₀ <= limit
 struct Row {
@@ -48,7 +48,7 @@ double largest_begin(const Rows& rows, double most, double behind) noexcept {
     const Row& row = rows.row[static_cast<std::size_t>(n)];
     if (std::abs(row.p) <= kNone && row.r > kNone) b0 = std::min(b0, row.limit / row.r);
   }
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     Line high{0, behind}, low{0, 0};
     for (int n = 0; n < rows.count; ++n) {
       const Row& row = rows.row[static_cast<std::size_t>(n)];
@@ -76,7 +76,7 @@ void two_pass(const CellGrid& grid, const FeedLimits& limits, std::int64_t first
   backward[n] = 0;
   for (std::size_t k = n; k-- > 0;) {
     const std::int64_t cell = first + static_cast<std::int64_t>(k);
-    backward[k] = largest_begin(Rows(grid[cell], limits), grid.most_b_at(cell), backward[k + 1]);
+    backward[k] = largest_begin(Rows(grid[cell], limits), grid.max_b_at(cell), backward[k + 1]);
   }
   b[0] = std::min(b_begin, backward[0]);
   for (std::size_t k = 0; k < n; ++k) {

@@ -10,7 +10,7 @@
 namespace meridian {
 
 BlockWindow::BlockWindow(const MachineModel& model, bool is_used)
-    : is_used_(is_used), blocks_(is_used ? 2 * kWaiting : 1), look_(model), told_(kTold) {}
+    : is_used_(is_used), blocks_(is_used ? 2 * kWaiting : 1), look_(model), told_(kReported) {}
 
 void BlockWindow::begin(const AheadSlack& slack) noexcept {
   blocks_.clear();
@@ -41,7 +41,7 @@ std::int64_t BlockWindow::find_first(std::uint64_t sequence) const noexcept {
   return low;
 }
 
-std::uint64_t BlockWindow::told_for(std::uint64_t sequence) const noexcept {
+std::uint64_t BlockWindow::reported_for(std::uint64_t sequence) const noexcept {
   const auto is_of_it = [sequence](const FeedMark& mark) {
     return mark.looked_at > 0 && mark.sequence > 0 && mark.sequence == sequence;
   };
@@ -56,8 +56,8 @@ void BlockWindow::ask(const Start& start, std::span<const AheadWay> ways) noexce
   ++questions_;
   asked_ = start;
   follows_ = find_first(start.sequence + (start.is_on_its_way ? 0 : 1));
-  most_ = kMostFollowed;
-  if (const std::uint64_t told = told_for(start.sequence); told > 0) {
+  most_ = kMaxFollowed;
+  if (const std::uint64_t told = reported_for(start.sequence); told > 0) {
     const int followed = static_cast<int>(std::min<std::uint64_t>(told, kWaiting));
     most_ = start.is_on_its_way ? followed : followed - 1;
   }

@@ -10,7 +10,7 @@
 #include "meridian/planner/feed_mark.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/route/ahead_look.hpp"
-#include "service/core/planner/singular/pole_foresight.hpp"
+#include "service/core/planner/singular/pole_look_ahead.hpp"
 
 namespace meridian {
 
@@ -23,7 +23,7 @@ namespace meridian {
 ///
 /// What is told depends on the blocks alone, but where look_no_further() was called: that is
 /// marked. Fixed store. Context: planner thread.
-class BlockWindow : public PoleForesight {
+class BlockWindow : public PoleLookAhead {
  public:
   static constexpr std::size_t kWaiting = 2048;
 
@@ -65,14 +65,14 @@ class BlockWindow : public PoleForesight {
 
  private:
   static constexpr std::int64_t kKept = 2047;
-  static constexpr std::size_t kTold = 64;
+  static constexpr std::size_t kReported = 64;
   /// One of those that wait may be the block at whose end the ways start.
-  static constexpr int kMostFollowed = kWaiting - 1;
+  static constexpr int kMaxFollowed = kWaiting - 1;
 
   /// Where block `sequence` is, or else the oldest one kept behind it.
   [[nodiscard]] std::int64_t find_first(std::uint64_t sequence) const noexcept;
   /// FeedMark::looked_at of a look at `sequence`, if one was told; else 0.
-  [[nodiscard]] std::uint64_t told_for(std::uint64_t sequence) const noexcept;
+  [[nodiscard]] std::uint64_t reported_for(std::uint64_t sequence) const noexcept;
   /// `block` from where the ways start.
   [[nodiscard]] ClBlock rest_of(ClBlock block) const noexcept;
 

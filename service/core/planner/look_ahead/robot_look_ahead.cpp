@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kLongestStep_mm = 5;  // of path length
 constexpr double kShortestStep_mm = 1e-3;
-constexpr double kMostTurn_rad = 0.3;  // of a joint in one step
-constexpr int kMostSteps = 8192;       // of a course
+constexpr double kMaxTurn_rad = 0.3;  // of a joint in one step
+constexpr int kMaxSteps = 8192;       // of a course
 constexpr double kMargin = 1e-9;
 
 class Course {
@@ -37,7 +37,7 @@ class Course {
     const PathPiece path = block.is_arc ? make_arc(at_.pose, end, block) : make_line(at_.pose, end);
     double step = kLongestStep_mm;
     for (double s = 0; s < path.length;) {
-      if (++steps_ > kMostSteps) return false;
+      if (++steps_ > kMaxSteps) return false;
       const double next = std::min(path.length, s + step);
       const bool may_halve = next - s > kShortestStep_mm;
       const Move move = move_to(pose_at(path, next), may_halve);
@@ -88,7 +88,7 @@ class Course {
         branch = over;
       }
     } else if (may_halve && to.status != SolveStatus::kUnreachable &&
-               turn_to(to.q) > kMostTurn_rad) {
+               turn_to(to.q) > kMaxTurn_rad) {
       return Move::kTooFar;
     }
     if (!is_inside(to)) return Move::kEnds;

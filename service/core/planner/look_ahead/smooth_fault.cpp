@@ -54,7 +54,7 @@ void SmoothRun::fail_ahead() noexcept {
   if (at == nullptr && spans_.end_index() > 0) at = &spans_.back().band;
   const PathFault fault = band_.has_failed()
                               ? PathFault{PathFault::Kind::kTooLong, -1, 0}
-                              : PathFault{PathFault::Kind::kBranch, free_joint(model_), 0};
+                              : PathFault{PathFault::Kind::kBranch, redundant_joint(model_), 0};
   fail(fault, at != nullptr ? at->sequence : 0, at != nullptr ? at->line : 0);
 }
 

@@ -25,14 +25,14 @@ FeedSettings feed_settings(const MachineModel& model) noexcept {
 }
 
 /// Least time that a span takes at its programmed feed.
-double least_time(const BandSpan& span) noexcept {
+double min_time(const BandSpan& span) noexcept {
   const double chord = (pose_on(span.c, span.length).tip - pose_on(span.c, 0.0).tip).norm();
   return std::max(chord / span.feed_mm_per_s, span.length / span.u_speed_mm_per_s);
 }
 
 }  // namespace
 
-SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight* foresight)
+SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* foresight)
     : model_(model),
       raise_(raise),
       corridor_(model, foresight),
@@ -54,7 +54,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
                  tolerance.tip_mm});
   begin_feed(start.branch);
   ends_.clear();
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   follows_free_ = model_.unwind_policy == UnwindPolicy::kRetract && free >= 0 &&
                   !model_.joints[free].is_endless;
   is_held_ = is_just_unwound_ = is_easing_ = is_band_finished_ = false;
@@ -181,7 +181,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
 }
 
 void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
-  const FeedFactors factors = raise_.next(span.band.sequence, feed_override, least_time(span.band));
+  const FeedFactors factors = raise_.next(span.band.sequence, feed_override, min_time(span.band));
   spans_.push(span);
   spans_.back().feed_factor = factors.label;
   mark_block_ends(spans_.back());
@@ -203,7 +203,7 @@ void SmoothRun::limit_feed(BandSpan& span) const noexcept {
 
 void SmoothRun::note_block_ends() noexcept {
   for (std::uint32_t n = 0; const auto end = band_.next_block_end(); ++n) {
-    if (n < BlockMarks::kMost) {
+    if (n < BlockMarks::kMax) {
       ends_.push_over_oldest(*end);
     } else {
       ends_.back() = *end;
@@ -227,7 +227,7 @@ bool SmoothRun::follow(const JointSpan& span) noexcept {
   const auto outside = travel_.follow(span);
   if (outside) {
     unwind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween,
-                  free_joint(model_), *outside};
+                  redundant_joint(model_), *outside};
   }
   return !outside;
 }
@@ -316,8 +316,8 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
   return true;
 }
 
-/// On the pole the free joint is held where it came from: it is followed there, as the cycle does,
-/// which rests where the last of its places led.
+/// On the pole the redundant joint is held where it came from: it is followed there, as the cycle
+/// does, which rests where the last of its places led.
 JointVector SmoothRun::joints_at_end(const PathPiece& piece) const noexcept {
   JointVector joints = piece.joints_begin;
   for (double left = 0.1; left > 1e-7; left *= 0.1) {

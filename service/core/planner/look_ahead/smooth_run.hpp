@@ -11,8 +11,8 @@
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/unwinding.hpp"
 #include "service/core/path/index_ring.hpp"
-#include "service/core/planner/feed/feed_authority.hpp"
 #include "service/core/planner/feed/feed_raise.hpp"
+#include "service/core/planner/feed/feed_stop_margin.hpp"
 #include "service/core/planner/feed/rolling_feed.hpp"
 #include "service/core/planner/route/free_travel.hpp"
 #include "service/core/planner/singular/pole_corridor.hpp"
@@ -25,7 +25,8 @@ struct RunStart {
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
   JointVector joints{};
   int branch = 0;
-  /// The axis stays on the pole all the way: the free joint is held, nothing is sought about it.
+  /// The axis stays on the pole all the way: the redundant joint is held, nothing is sought about
+  /// it.
   bool is_on_pole = false;
   double tool_length_mm = 0;
   std::uint16_t epoch = 0;
@@ -43,13 +44,13 @@ class SmoothRun : public WindingTrial {
     kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
                    ///< again
     kDone,         ///< finish() was called and everything is published
-    kUnwind,       ///< published to a rest at which the free joint has to be turned back: see
+    kUnwind,       ///< published to a rest at which the redundant joint has to be turned back: see
                    ///< unwind_at(), then go_on()
     kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
 
   /// `raise` says what the feed is planned with, `foresight` how far ways behind the pole carry.
-  SmoothRun(const MachineModel& model, FeedRaise& raise, PoleForesight* foresight = nullptr);
+  SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* foresight = nullptr);
 
   /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
   void begin(const RunStart& start, const BandTolerance& tolerance,
@@ -74,13 +75,13 @@ class SmoothRun : public WindingTrial {
   /// The block that the fault is on; its code is left to the caller.
   [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
 
-  /// Where the free joint runs out of travel: the block, and `value` outside travel.
+  /// Where the redundant joint runs out of travel: the block, and `value` outside travel.
   [[nodiscard]] const BlockReject& unwind_at() const noexcept { return unwind_at_; }
-  /// Behind kUnwind: whether the span that would have left travel fits with the free joint turned
-  /// by whole `turns`, with the rest of a zone that it lies in.
+  /// Behind kUnwind: whether the span that would have left travel fits with the redundant joint
+  /// turned by whole `turns`, with the rest of a zone that it lies in.
   [[nodiscard]] bool fits(int turns) const noexcept override;
-  /// Behind kUnwind: the free joint was turned by whole `turns`, the machine rests at `joints` in
-  /// the same place; the names are those of what follows.
+  /// Behind kUnwind: the redundant joint was turned by whole `turns`, the machine rests at `joints`
+  /// in the same place; the names are those of what follows.
   void go_on(const JointVector& joints, int turns, std::uint64_t path_index,
              std::uint32_t window) noexcept;
 
@@ -112,7 +113,7 @@ class SmoothRun : public WindingTrial {
   void note_block_ends() noexcept;
   /// Marks the ends of blocks on `span`, the next one.
   void mark_block_ends(JointSpan& span) noexcept;
-  /// Follows the free joint over `span`, the next one. False: it would leave its travel, and
+  /// Follows the redundant joint over `span`, the next one. False: it would leave its travel, and
   /// unwind_at() names where; nothing is followed then.
   [[nodiscard]] bool follow(const JointSpan& span) noexcept;
   /// Starts the feed where the machine rests.
@@ -140,7 +141,7 @@ class SmoothRun : public WindingTrial {
   PoleCorridor corridor_;
   RobotPasses passes_;
   RollingFeed feed_;
-  FeedAuthority authority_;
+  FeedStopMargin authority_;
   FreeTravel travel_;
   IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
   IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
@@ -151,7 +152,7 @@ class SmoothRun : public WindingTrial {
   std::array<OpenWindow, 4> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false, is_feed_finished_ = false;
-  bool follows_free_ = false;     ///< the free joint has travel and may be turned back
+  bool follows_free_ = false;     ///< the redundant joint has travel and may be turned back
   bool is_held_ = false;          ///< held_ waits for an unwinding
   bool is_just_unwound_ = false;  ///< nothing was taken since
   JointSpan held_;

@@ -13,8 +13,8 @@
 namespace meridian {
 namespace {
 
-constexpr double kLingerShare = 0.9;      // of the axis tolerance: the free joint may be anywhere
-constexpr double kBesidePole_rad = 0.05;  // kSameAxis turns the free joint by 2e-12 rad there
+constexpr double kLingerShare = 0.9;  // of the axis tolerance: the redundant joint may be anywhere
+constexpr double kBesidePole_rad = 0.05;  // kSameAxis turns the redundant joint by 2e-12 rad there
 /// Rounding of joints, in their pose. What is farther off would be a step of the setpoints.
 constexpr double kSameTip_mm = 1e-10, kSameAxis = 1e-13;
 
@@ -25,9 +25,9 @@ BandTolerance SmoothPlanner::Workspace::tolerance() const noexcept {
   out.tip_mm = settings.tip_tolerance_mm > 0 ? settings.tip_tolerance_mm : model.tolerances.tip_mm;
   out.axis_rad =
       settings.axis_tolerance_rad > 0 ? settings.axis_tolerance_rad : model.tolerances.axis_rad;
-  out.tip_mm = std::max(out.tip_mm, kLeastTipTolerance_mm);
-  out.axis_rad = std::max(out.axis_rad, kLeastAxisTolerance_rad);
-  const bool eases = free_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
+  out.tip_mm = std::max(out.tip_mm, kMinTipTolerance_mm);
+  out.axis_rad = std::max(out.axis_rad, kMinAxisTolerance_rad);
+  const bool eases = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
   if (eases) out.pole = to_array(pole_direction(model));
   return out;
 }
@@ -42,7 +42,7 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
   if (block.feed_meaning == FeedMeaning::kTip && model.max_feed_mm_per_s > 0) {
     block.feed = std::min(block.feed, model.max_feed_mm_per_s);
   }
-  if (free_joint(model) >= 0 && pole_distance(model, axis) < kPoleEase_rad) {
+  if (redundant_joint(model) >= 0 && pole_distance(model, axis) < kPoleEase_rad) {
     axis = find_nearest_pole(model, axis);
   }
   block.axis = to_array(axis);
@@ -52,7 +52,8 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
     if (!comes_near_singularity(course, pose, block)) return {};
   }
   // Runs go through the pole and linger on it, or stay on it all the way with the axis fixed. What
-  // leads off it from rest, out of the tolerance, is done at rest, where the free joint can turn.
+  // leads off it from rest, out of the tolerance, is done at rest, where the redundant joint can
+  // turn.
   const bool starts_on_pole = is_on_pole(pose.axis);
   const bool may_linger = model.pole_policy == PolePolicy::kEase;
   if (axis == pose.axis) {
@@ -67,7 +68,7 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
 }
 
 bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
-  return free_joint(model) >= 0 &&
+  return redundant_joint(model) >= 0 &&
          pole_distance(model, axis) < kOnPoleTolerances * tolerance().axis_rad;
 }
 
@@ -101,7 +102,7 @@ void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
   start.branch = find_branch(at);
   start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis) && to_vector(cut.axis) == pose.axis;
   BandTolerance path = tolerance();
-  if (!is_smooth()) path.axis_rad = kLeastAxisTolerance_rad;  // of long turns; the tip is exact
+  if (!is_smooth()) path.axis_rad = kMinAxisTolerance_rad;  // of long turns; the tip is exact
   run.begin(start, path, pole_tolerance_rad());
   is_running = true;
 }
@@ -111,9 +112,9 @@ void SmoothPlanner::Workspace::end_run() noexcept {
   at.joints = joints = run.joints();
   // Eased beside the pole, or behind a block too short for a span, the tool is not quite where the
   // last block put it: what follows starts from where it is.
-  // Beside the pole rounding of the axis alone turns the free joint.
+  // Beside the pole rounding of the axis alone turns the redundant joint.
   const ToolPose there = forward(model, at.tool_length_mm, joints);
-  const double from_pole = free_joint(model) >= 0 ? pole_distance(model, pose.axis) : 1;
+  const double from_pole = redundant_joint(model) >= 0 ? pole_distance(model, pose.axis) : 1;
   const bool is_beside_pole = from_pole >= kPoleEase_rad && from_pole < kBesidePole_rad;
   const bool is_same =
       (there.tip - pose.tip).norm() <= kSameTip_mm && (there.axis - pose.axis).norm() <= kSameAxis;

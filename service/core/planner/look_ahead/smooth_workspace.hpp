@@ -20,7 +20,7 @@ namespace meridian {
 
 /// Whether there is a branch to choose.
 [[nodiscard]] inline bool has_branches(const MachineModel& model) noexcept {
-  return free_joint(model) >= 0 || model.family == MachineFamily::kRobot;
+  return redundant_joint(model) >= 0 || model.family == MachineFamily::kRobot;
 }
 
 /// What a smooth planner is made of, and how runs through blocks and motion from rest to rest take
@@ -62,8 +62,8 @@ struct SmoothPlanner::Workspace {
   void end_run() noexcept;
   /// Publishes what is ready of the run.
   [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
-  /// Turns the free joint back at the rest that the run came to; false: no room in the port, or
-  /// refused.
+  /// Turns the redundant joint back at the rest that the run came to; false: no room in the port,
+  /// or refused.
   [[nodiscard]] bool unwind(MotionWriter& writer) noexcept;
   void note(const Unwinding& unwinding) noexcept;
   /// The program begins with what waits; `is_late`: because no more came for too long.

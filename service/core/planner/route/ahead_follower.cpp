@@ -17,17 +17,17 @@
 namespace meridian {
 namespace {
 
-constexpr double kStepShare = 0.3;      // of the distance to the pole, that the axis turns at once
-constexpr double kMostStep_rad = 0.05;  // more would miss where slides turn round
-constexpr double kArcStep_rad = 0.1;    // of an arc
-constexpr double kLeastPole_rad = 1e-3;
-constexpr int kMostSteps = 256;  // per block
+constexpr double kStepShare = 0.3;     // of the distance to the pole, that the axis turns at once
+constexpr double kMaxStep_rad = 0.05;  // more would miss where slides turn round
+constexpr double kArcStep_rad = 0.1;   // of an arc
+constexpr double kMinPole_rad = 1e-3;
+constexpr int kMaxSteps = 256;  // per block
 constexpr double kMargin = 1e-9;
 constexpr double kBend = 1.5;  // of the joints over the slack: it ends well outside of the pole
 
-/// Whether turning the free joint back may help where it runs out of travel.
+/// Whether turning the redundant joint back may help where it runs out of travel.
 bool may_unwind(const MachineModel& model) noexcept {
-  const JointLimits& limits = model.joints[free_joint(model)].limits;
+  const JointLimits& limits = model.joints[redundant_joint(model)].limits;
   return model.unwind_policy == UnwindPolicy::kRetract &&
          limits.travel_max - limits.travel_min >= kTurn_rad;
 }
@@ -44,10 +44,10 @@ AheadFollower::AheadFollower(const MachineModel& model, double tool_length_mm,
       tool_length_mm_(tool_length_mm),
       slack_(slack),
       branch_(branch),
-      free_(free_joint(model)),
+      free_(redundant_joint(model)),
       pole_rad_(
           std::max(kZoneTolerances * std::max(axis_tolerance_beside_pole(model), slack.axis_rad),
-                   kLeastPole_rad)),
+                   kMinPole_rad)),
       pose_(start),
       ways_(ways) {
   const auto at = solve(model_, tool_length_mm_, start, branch_, JointVector{});
@@ -86,12 +86,12 @@ void AheadFollower::run(const ClBlock& block) noexcept {
   double share = 0;
   for (int n = 0; share < 1 && !is_over_; ++n) {
     const double turn = std::min(
-        kMostStep_rad, kStepShare * pole_distance(model_, pose_at(path, share * path.length).axis));
+        kMaxStep_rad, kStepShare * pole_distance(model_, pose_at(path, share * path.length).axis));
     const double by =
         std::min(1 / std::max(1.0, arc_steps), path.axis_turn > turn ? turn / path.axis_turn : 1.0);
     const double next = std::min(1.0, share + by);
     is_over_ =
-        n == kMostSteps || !put_at(pose_at(path, next * path.length), (next - share) * feed_s);
+        n == kMaxSteps || !put_at(pose_at(path, next * path.length), (next - share) * feed_s);
     share = next;
   }
 }
@@ -116,13 +116,13 @@ bool AheadFollower::put_at(const ToolPose& pose, double feed_s) noexcept {
   bool is_any_left = false;
   for (AheadWay& way : ways_) {
     if (way.branch != branch_) continue;
-    if (is_open(way.end)) judge(pose, way);
+    if (is_open(way.end)) check(pose, way);
     is_any_left |= is_open(way.end);
   }
   return is_any_left;
 }
 
-void AheadFollower::judge(const ToolPose& pose, AheadWay& way) const noexcept {
+void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
   JointVector all = joints_;
   all[free_] += way.free - begin_;
   const int joint = first_outside(all);

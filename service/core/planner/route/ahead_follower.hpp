@@ -10,10 +10,10 @@
 
 namespace meridian {
 
-/// One branch, followed over programmed blocks from a start with the free joint anywhere: judges
-/// those of some ways that are on the branch. Tip and axis run on the programmed lines, arcs and
-/// great circles. Behind a tool block, whose length is not known here, rotary joints alone are
-/// judged. It ends where the axis comes so close to the pole that the branch may be chosen anew.
+/// One branch, followed over programmed blocks from a start with the redundant joint anywhere:
+/// checks those of some ways that are on the branch. Tip and axis run on the programmed lines, arcs
+/// and great circles. Behind a tool block, whose length is not known here, rotary joints alone are
+/// checked. It ends where the axis comes so close to the pole that the branch may be chosen anew.
 /// From a start that is so close it is followed out first; from a start on the pole it sees
 /// nothing. Where a run within the slack may leave the branch beside the pole that it begins at, no
 /// way is lost.
@@ -35,7 +35,7 @@ class AheadFollower {
   [[nodiscard]] double feed_time_s(const PathPiece& path, const ClBlock& block) const noexcept;
   /// False: the branch cannot be followed there. `feed_s`: the time that the feed takes there.
   [[nodiscard]] bool put_at(const ToolPose& pose, double feed_s) noexcept;
-  void judge(const ToolPose& pose, AheadWay& way) const noexcept;
+  void check(const ToolPose& pose, AheadWay& way) const noexcept;
   /// Of the joints and drives whose place is known; -1: none.
   [[nodiscard]] int first_outside(const JointVector& all) const noexcept;
   /// How far `joint` may be from where it is at `pose` on a path that keeps to the slack.
@@ -50,7 +50,7 @@ class AheadFollower {
   const ClBlock* block_ = nullptr;  ///< that is followed
   std::span<AheadWay> ways_;
   JointVector joints_{};
-  double begin_ = 0;  ///< of the free joint
+  double begin_ = 0;  ///< of the redundant joint
   double time_s_ = 0;
   bool is_over_ = false;
   bool has_left_pole_ = false;      ///< it was far enough from the pole once

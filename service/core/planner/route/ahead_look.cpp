@@ -7,7 +7,7 @@ namespace meridian {
 
 void AheadLook::begin(double tool_length_mm, const ToolPose& start, const AheadSlack& slack,
                       std::span<const AheadWay> ways) noexcept {
-  count_ = std::min(ways.size(), kMostWays);
+  count_ = std::min(ways.size(), kMaxWays);
   std::copy_n(ways.begin(), count_, ways_.begin());
   followed_ = 0;
   for (int branch = 0; branch < kBranches; ++branch) {

@@ -12,14 +12,14 @@ namespace meridian {
 
 /// How many blocks each of some ways on carries, told block by block, for who waits for them: as
 /// long as no joint and no drive of a stage is outside its travel (AheadFollower follows each
-/// branch). The machine has a free joint. Bounded by the blocks, no memory. Units: mm, rad, s.
+/// branch). The machine has a redundant joint. Bounded by the blocks, no memory. Units: mm, rad, s.
 class AheadLook {
  public:
-  static constexpr std::size_t kMostWays = 24;
+  static constexpr std::size_t kMaxWays = 24;
 
   explicit AheadLook(const MachineModel& model) noexcept : model_(model) {}
 
-  /// `start`: the pose where all ways start; of the machine's ways the first kMostWays are looked
+  /// `start`: the pose where all ways start; of the machine's ways the first kMaxWays are looked
   /// at.
   void begin(double tool_length_mm, const ToolPose& start, const AheadSlack& slack,
              std::span<const AheadWay> ways) noexcept;
@@ -32,10 +32,10 @@ class AheadLook {
   [[nodiscard]] std::span<const AheadWay> ways() const noexcept { return {ways_.data(), count_}; }
 
  private:
-  static constexpr int kBranches = 2;  ///< of a machine with a free joint
+  static constexpr int kBranches = 2;  ///< of a machine with a redundant joint
 
   const MachineModel& model_;
-  std::array<AheadWay, kMostWays> ways_{};
+  std::array<AheadWay, kMaxWays> ways_{};
   std::size_t count_ = 0;
   std::array<std::optional<AheadFollower>, kBranches> followers_;
   int followed_ = 0;

@@ -12,14 +12,14 @@ enum class AheadEnd : std::uint8_t {
   kNone,     ///< all is inside travel
   kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it or
              ///< on a branch that is not certain
-  kUnwinds,  ///< the free joint runs out of travel and may be turned back there
+  kUnwinds,  ///< the redundant joint runs out of travel and may be turned back there
   kLost      ///< something leaves its travel for certain: the program cannot be cut this way
 };
 
 /// A branch and winding at the pose where a way starts, and how far it leads.
 struct AheadWay {
   int branch = 0;
-  double free = 0;    ///< the free joint at the start, rad
+  double free = 0;    ///< the redundant joint at the start, rad
   int carries = 0;    ///< blocks after which all is still inside travel, of those looked at
   double time_s = 0;  ///< of them: by the feed, or by the joint that is slowest
   AheadEnd end = AheadEnd::kNone;

@@ -47,7 +47,7 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
                               double tool_length_mm, double whole_mm) const noexcept {
   if (!(whole_mm > 0)) return 0;
   double share = 1;
-  if (free_joint(model_) < 0) {
+  if (redundant_joint(model_) < 0) {
     // The joints of an arm bend on the way up: as far as the whole way stays in reach and travel.
     constexpr int kSteps = 16;
     for (int n = 1; n <= kSteps; ++n) {
@@ -217,7 +217,7 @@ Router::AheadWays Router::ahead_of(const Ways& ways) const noexcept {
   AheadWays found;
   for (int n = 0; n < ways.count; ++n) {
     found[static_cast<std::size_t>(n)] = {ways.way[n].branch,
-                                          ways.way[n].joints[free_joint(model_)]};
+                                          ways.way[n].joints[redundant_joint(model_)]};
   }
   return found;
 }
@@ -253,7 +253,7 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
                         eased(to_vector(block.axis))};
   Ways ways = find_ways(target, cursor);
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   // Room to turn counts as well: a winding at the end of travel is taken only where no other is.
   if (free >= 0 && !model_.joints[free].is_endless) {
     const JointLimits& limits = model_.joints[free].limits;

@@ -10,10 +10,10 @@ namespace {
 
 constexpr int kRounds = 16;
 constexpr double kGrowth = 0.3;  // of gaps, by u
-constexpr double kLeastGap_mm = 1e-4;
-constexpr std::size_t kLeastPieces = 8;
+constexpr double kMinGap_mm = 1e-4;
+constexpr std::size_t kMinPieces = 8;
 constexpr double kSnapped_mm = 1e-4, kSnappedShare = 0.05,
-                 kMostSnapped = 0.3;  // knots so close to a span's end
+                 kMaxSnapped = 0.3;  // knots so close to a span's end
 
 using Node = PoleWalls::Node;
 
@@ -51,7 +51,7 @@ FreeQuintic as_quintic(const std::array<double, 4>& c) noexcept {
 
 /// `u`, or the end of a span that is so close that the part between would be too short.
 double snapped(const SpanLookup& spans, double u, double gap) noexcept {
-  const double close = std::max(kSnappedShare * gap, std::min(kSnapped_mm, kMostSnapped * gap));
+  const double close = std::max(kSnappedShare * gap, std::min(kSnapped_mm, kMaxSnapped * gap));
   const BandSpan& span = spans.span_at(u);
   if (std::abs(u - span.u0) < close) return span.u0;
   const double end = span.u0 + span.length;
@@ -83,7 +83,7 @@ bool FreeSpline::place_knots(const SpanLookup& spans, std::span<const Node> node
   }
   const double sum = sums_[nodes.size() - 1];
   if (!(sum < static_cast<double>(kPieces))) return false;
-  pieces_ = std::max(kLeastPieces, static_cast<std::size_t>(std::ceil(sum)));
+  pieces_ = std::max(kMinPieces, static_cast<std::size_t>(std::ceil(sum)));
   const double begin = nodes.front().u, end = nodes.back().u;
   std::fill_n(knots_.begin(), kDegree + 1, begin);
   std::size_t at = 0;
@@ -120,8 +120,8 @@ bool FreeSpline::narrow(std::span<const Node> nodes, std::span<const StringWindo
     const bool is_fixed = i < fixed_at_begin_ || i + fixed_at_end_ >= pieces_ + kDegree;
     if (is_fixed || window.high - window.low >= shape.width_share * least) continue;
     for (std::size_t n = first; n <= last; ++n) {
-      if (gaps_[n] <= kLeastGap_mm) continue;
-      gaps_[n] = std::max(0.5 * gaps_[n], kLeastGap_mm);
+      if (gaps_[n] <= kMinGap_mm) continue;
+      gaps_[n] = std::max(0.5 * gaps_[n], kMinGap_mm);
       is_any_narrow = true;
     }
   }
@@ -153,7 +153,7 @@ bool FreeSpline::fit(const SpanLookup& spans, std::span<const Node> nodes,
                      const FreeEnd& end, const Shape& shape) noexcept {
   fixed_at_begin_ = begin.count;
   fixed_at_end_ = end.count;
-  std::fill_n(gaps_.begin(), nodes.size(), shape.most_gap_mm);
+  std::fill_n(gaps_.begin(), nodes.size(), shape.max_gap_mm);
   for (int round = 0;; ++round) {
     grade(nodes);
     if (round == kRounds || !place_knots(spans, nodes)) return false;

@@ -11,13 +11,14 @@
 
 namespace meridian {
 
-/// What the free joint is at an end of a spline, with `count` - 1 derivatives by u; 0: anything.
+/// What the redundant joint is at an end of a spline, with `count` - 1 derivatives by u; 0:
+/// anything.
 struct FreeEnd {
   std::array<double, 3> of{};
   std::size_t count = 0;
 };
 
-/// The smooth way of the free joint through its corridor: a cubic spline by u.
+/// The smooth way of the redundant joint through its corridor: a cubic spline by u.
 ///
 ///     ─┬──────────┬───┬─┬┬┬─┬───┬──────────┬─     knots: as close as the corridor is bent
 ///      every control value inside all windows that its curve has a part in, the string through
@@ -33,7 +34,7 @@ class FreeSpline {
 
   /// How far knots may be apart, and which share of the corridor's width a window has to keep.
   struct Shape {
-    double most_gap_mm = 0;
+    double max_gap_mm = 0;
     double width_share = 0;
     std::size_t bold = 0;  ///< knots at either end of what a control value bears on left out
     int sweeps = 0;        ///< of relaxation: the more the rounder, and the farther from the string

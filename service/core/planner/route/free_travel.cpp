@@ -15,12 +15,12 @@ namespace {
 constexpr int kSteps = 8;
 constexpr double kMargin_rad = 1e-4;
 constexpr double kNoWay_rad = 1e-9;  // a joint at the end of travel that leaves it is inside
-constexpr double kLeastShare = 1e-6;
+constexpr double kMinShare = 1e-6;
 
 }  // namespace
 
 FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   const double length = span.band.length;
   Way way;
   way.end = at_;
@@ -37,7 +37,7 @@ FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcep
     way.is_there = there.status != SolveStatus::kUnreachable;
     if (!way.is_there) return way;
     const double turn = there.q[free] - way.end[free];
-    if (std::abs(turn) > kMostFollowed_rad && step > kLeastShare * length) {
+    if (std::abs(turn) > kMaxFollowed_rad && step > kMinShare * length) {
       step *= 0.5;
       continue;
     }
@@ -57,7 +57,7 @@ FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcep
 }
 
 std::optional<double> FreeTravel::find_outside(const Way& way) const noexcept {
-  const JointLimits& limits = model_.joints[free_joint(model_)].limits;
+  const JointLimits& limits = model_.joints[redundant_joint(model_)].limits;
   const double high = way.high + way.margin, low = way.low - way.margin;
   if (way.high > way.begin + kNoWay_rad && high > limits.travel_max) return high;
   if (way.low < way.begin - kNoWay_rad && low < limits.travel_min) return low;

@@ -8,15 +8,15 @@
 
 namespace meridian {
 
-/// Follows the joints over the spans of a smooth path and tells where the free joint would leave
-/// its travel: at nine places of every span or more, so that no turn is missed. What it may do
-/// between two places counts as well, by how much its slope changes there:
+/// Follows the joints over the spans of a smooth path and tells where the redundant joint would
+/// leave its travel: at nine places of every span or more, so that no turn is missed. What it may
+/// do between two places counts as well, by how much its slope changes there:
 ///
 ///     margin = 10⁻⁴ rad + ½ max |c'ᵢ - c'ᵢ₋₁| hᵢ
 ///
 /// which is twice what a smooth c(x) passes its samples by, h²|c''|/8 with c'' of neighbouring
-/// slopes. The machine has a free joint with travel. Units: mm, rad. Fixed store. Context: planner
-/// thread. Source: docs/motion.md, section 11.
+/// slopes. The machine has a redundant joint with travel. Units: mm, rad. Fixed store. Context:
+/// planner thread. Source: docs/motion.md, section 11.
 class FreeTravel {
  public:
   explicit FreeTravel(const MachineModel& model) noexcept : model_(model) {}
@@ -27,15 +27,15 @@ class FreeTravel {
     tool_length_mm_ = tool_length_mm;
   }
 
-  /// Follows the next span to its end. A value: the free joint would come to it, outside its
+  /// Follows the next span to its end. A value: the redundant joint would come to it, outside its
   /// travel, and nothing is followed.
   [[nodiscard]] std::optional<double> follow(const JointSpan& span) noexcept;
 
-  /// Whether the next span keeps every joint and drive inside travel with the free joint turned by
-  /// `by` before.
+  /// Whether the next span keeps every joint and drive inside travel with the redundant joint
+  /// turned by `by` before.
   [[nodiscard]] bool fits(const JointSpan& span, double by) const noexcept;
 
-  /// The joints at the end of the next span, the free joint turned by `by` before.
+  /// The joints at the end of the next span, the redundant joint turned by `by` before.
   [[nodiscard]] JointVector end_of(const JointSpan& span, double by) const noexcept {
     return walk(span, by).end;
   }
@@ -43,7 +43,7 @@ class FreeTravel {
  private:
   struct Way {
     JointVector end{};
-    double begin = 0, low = 0, high = 0, margin = 0;  ///< of the free joint
+    double begin = 0, low = 0, high = 0, margin = 0;  ///< of the redundant joint
     bool is_inside = true;                            ///< all joints, at the places looked at
     bool is_there = true;                             ///< a pose out of reach ends the walk
   };

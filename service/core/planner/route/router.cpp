@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNoTip_mm = 1e-9;     // shorter ways are no motion
 constexpr double kNoTurn_rad = 1e-12;  // smaller turns of the axis are none
-constexpr int kMostTurns = 4;          // windings tried either way
+constexpr int kMaxTurns = 4;           // windings tried either way
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Vector3 Router::eased(const Vector3& axis) noexcept {
 }
 
 bool Router::is_at_pole(const Vector3& axis) const noexcept {
-  return free_joint(model_) >= 0 && pole_distance(model_, axis) < kPoleEase_rad;
+  return redundant_joint(model_) >= 0 && pole_distance(model_, axis) < kPoleEase_rad;
 }
 
 Router::Job Router::job_of(const ClBlock& block) const noexcept {
@@ -61,7 +61,7 @@ void Router::Ways::sort() noexcept {
 
 Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept {
   Ways ways;
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   const auto add = [&](const JointVector& q, int branch) {
     if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
     double cost = 0;
@@ -79,7 +79,7 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
     if (free < 0) continue;
     if (at.status == SolveStatus::kAtPole) break;
     if (model_.joints[free].is_endless) continue;
-    for (int turns = 1; turns <= kMostTurns; ++turns) {
+    for (int turns = 1; turns <= kMaxTurns; ++turns) {
       for (const int sign : {-1, 1}) {
         JointVector q = at.q;
         q[free] += sign * turns * 2 * std::numbers::pi;
@@ -115,14 +115,14 @@ PathFault Router::run_held(PathPiece path, double free_end, const Job& job, doub
                            PlanCursor& cursor, Staging& out) noexcept {
   if (!(path.length > kNoTip_mm)) return {};
   path.is_free_driven = true;
-  path.free_begin = cursor.joints[free_joint(model_)];
+  path.free_begin = cursor.joints[redundant_joint(model_)];
   path.free_end = free_end;
   return run(path, job, share, cursor, out);
 }
 
 PathFault Router::run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
                            Staging& out) noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   if (free >= 0) return run_held(path, cursor.joints[free], job, 1.0, cursor, out);
   if (job.motion != MotionKind::kApproach || model_.family != MachineFamily::kRobot) {
     return run_solved(path, job, 1.0, cursor, out);
@@ -168,7 +168,7 @@ int Router::branch_of(const ToolPose& pose, const JointVector& joints,
 
 Solution<double> Router::solve_near(const ToolPose& pose, const JointVector& joints,
                                     double tool_length_mm) const noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   if (free >= 0) return solve_held(model_, tool_length_mm, pose, joints[free]);
   return solve(model_, tool_length_mm, pose, branch_of(pose, joints, tool_length_mm), joints);
 }
@@ -191,7 +191,7 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   }
   if (!(path.length > kNoTip_mm)) return {};
   const Job job = job_of(block);
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   PathFault fault;
   if (path.axis_turn == 0) {
     fault = run_lift(path, job, cursor, out);

@@ -13,7 +13,7 @@
 #include "service/core/planner/feed/leg_planner.hpp"
 #include "service/core/planner/route/ahead_way.hpp"
 #include "service/core/planner/route/staging.hpp"
-#include "service/core/planner/singular/pole_foresight.hpp"
+#include "service/core/planner/singular/pole_look_ahead.hpp"
 
 namespace meridian {
 
@@ -30,7 +30,8 @@ struct PlanCursor {
 };
 
 /// Finds the legs of a motion block: which branch and winding, where it stops on the pole, and the
-/// approach of the first block. What it stages is judged; on a fault nothing of the block is meant.
+/// approach of the first block. What it stages is checked; on a fault nothing of the block is
+/// meant.
 class Router {
  public:
   explicit Router(const MachineModel& model) noexcept : model_(model), legs_(model) {}
@@ -51,11 +52,11 @@ class Router {
 
   /// Who tells of blocks behind those that are routed; nullptr: only look_at() does. What it does
   /// not know yet leaves needs_ahead() true: route() is to be called again then.
-  void ask(PoleForesight* foresight) noexcept { foresight_ = foresight; }
+  void ask(PoleLookAhead* foresight) noexcept { foresight_ = foresight; }
   [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
 
-  /// Nearer to the pole than `rad` the free joint may be turned at rest, the axis inside that of
-  /// where it was programmed.
+  /// Nearer to the pole than `rad` the redundant joint may be turned at rest, the axis inside that
+  /// of where it was programmed.
   void set_free_cone(double rad) noexcept { free_cone_rad_ = rad; }
 
   /// Lifts the tool off where the machine rests, along its axis by the clearance as far as travel
@@ -74,9 +75,9 @@ class Router {
   /// The way that the last approach() found.
   [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }
 
-  /// Turns the free joint by whole `turns` off the part and comes back to where the tool rests, as
-  /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
-  /// is no room for it. The machine has a free joint.
+  /// Turns the redundant joint by whole `turns` off the part and comes back to where the tool
+  /// rests, as UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A
+  /// fault: there is no room for it. The machine has a redundant joint.
   [[nodiscard]] PathFault unwind(const ClBlock& block, int turns, PlanCursor& cursor,
                                  Staging& out) noexcept;
 
@@ -92,7 +93,7 @@ class Router {
  private:
   static constexpr int kMaxWays = 24;
 
-  /// A value of the free joint at the end of a way, from one branch and winding.
+  /// A value of the redundant joint at the end of a way, from one branch and winding.
   struct Way {
     JointVector joints{};
     double cost = 0;
@@ -139,12 +140,12 @@ class Router {
                               PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault run_held(PathPiece path, double free_end, const Job& job, double share,
                                    PlanCursor& cursor, Staging& out) noexcept;
-  /// A way with the axis fixed: on the free joint held where it is, or on the branch in force.
+  /// A way with the axis fixed: on the redundant joint held where it is, or on the branch in force.
   [[nodiscard]] PathFault run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
                                    Staging& out) noexcept;
   [[nodiscard]] int branch_of(const ToolPose& pose, const JointVector& joints,
                               double tool_length_mm) const noexcept;
-  /// The joints of `pose` nearest to `joints`, the free joint held where the machine has one.
+  /// The joints of `pose` nearest to `joints`, the redundant joint held where the machine has one.
   [[nodiscard]] Solution<double> solve_near(const ToolPose& pose, const JointVector& joints,
                                             double tool_length_mm) const noexcept;
   [[nodiscard]] PathFault run_solved(PathPiece path, const Job& job, double share,
@@ -152,10 +153,10 @@ class Router {
   /// `path` ends on the pole.
   [[nodiscard]] PathFault enter_pole(const PathPiece& path, const Job& job, double share,
                                      PlanCursor& cursor, Staging& out) noexcept;
-  /// `path` begins on the pole and ends at `end`: turn the free joint at rest, then go.
+  /// `path` begins on the pole and ends at `end`: turn the redundant joint at rest, then go.
   [[nodiscard]] PathFault leave_pole_by(const PathPiece& path, const JointVector& end,
                                         const Job& job, PlanCursor& cursor, Staging& out) noexcept;
-  /// The free joint at `share` of `path`, followed back from the joints at its end.
+  /// The redundant joint at `share` of `path`, followed back from the joints at its end.
   [[nodiscard]] double follow_back(PathPiece path, const JointVector& end, double share,
                                    double tool_length_mm) const noexcept;
   [[nodiscard]] PathFault turn_free(const ToolPose& pose, double free_end, const Job& job,
@@ -164,8 +165,8 @@ class Router {
                                      PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault pass_pole(const PathPiece& path, const ToolPose& end, double share,
                                     const Job& job, PlanCursor& cursor, Staging& out) noexcept;
-  /// `path` begins beside the pole, and the free joint runs out of travel on the branch in force:
-  /// turn it at rest to another branch or winding, then go. `fault`: of the branch in force.
+  /// `path` begins beside the pole, and the redundant joint runs out of travel on the branch in
+  /// force: turn it at rest to another branch or winding, then go. `fault`: of the branch in force.
   [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,
                                           const Job& job, const PathFault& fault,
                                           PlanCursor& cursor, Staging& out) noexcept;
@@ -187,7 +188,7 @@ class Router {
   const MachineModel& model_;
   LegPlanner legs_;
   std::span<const ClBlock> ahead_;
-  PoleForesight* foresight_ = nullptr;
+  PoleLookAhead* foresight_ = nullptr;
   bool needs_ahead_ = false;  ///< of the last route()
   AheadSlack slack_;
   std::optional<BlockReject> lost_;                   ///< of the last approach

@@ -10,7 +10,7 @@
 namespace meridian {
 
 /// Pieces of a block that is being planned: nothing of it is seen outside until all of it is
-/// judged. Fixed store.
+/// checked. Fixed store.
 struct Staging {
   std::array<PathPiece, 512> paths;
   std::array<TimePiece, 4096> times;

@@ -3,15 +3,15 @@
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/route/router.hpp"
 
-/// Whole turns of the free joint off the part. Part of Router.
+/// Whole turns of the redundant joint off the part. Part of Router.
 ///
-///     rest ── off along the tool axis, by the whole declared way ──▶ over ── free joint alone ──▶
-///     over ── back along the tool axis, at approach feed ──▶ rest, the same place
+///     rest ── off along the tool axis, by the whole declared way ──▶ over ── redundant joint alone
+///     ──▶ over ── back along the tool axis, at approach feed ──▶ rest, the same place
 namespace meridian {
 
 PathFault Router::unwind(const ClBlock& block, int turns, PlanCursor& cursor,
                          Staging& out) noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   const double off = model_.unwind_retract_mm;
   const Job job{block, MotionKind::kUnwind, model_.approach_feed_mm_per_s, 0};
   Job rapid = job;

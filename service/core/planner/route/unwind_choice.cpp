@@ -9,11 +9,11 @@
 namespace meridian {
 namespace {
 
-constexpr double kMostTurns = 1000;  // travel is bounded to 1e5 deg
+constexpr double kMaxTurns = 1000;  // travel is bounded to 1e5 deg
 constexpr double kMargin_rad = 1e-9;
 
 int whole_turns_in(double room) noexcept {
-  return static_cast<int>(std::clamp(std::floor(room / kTurn_rad), 0.0, kMostTurns));
+  return static_cast<int>(std::clamp(std::floor(room / kTurn_rad), 0.0, kMaxTurns));
 }
 
 }  // namespace

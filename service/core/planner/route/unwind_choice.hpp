@@ -5,7 +5,7 @@
 
 namespace meridian {
 
-/// Windings that the free joint may turn to where it rests, best first.
+/// Windings that the redundant joint may turn to where it rests, best first.
 ///
 /// A joint that ran out of travel upwards has, as a rule, farther to go upwards: best is the
 /// winding with the most room that way that leaves half a turn behind it, so that a path that

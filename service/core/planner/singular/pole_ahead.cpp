@@ -16,7 +16,7 @@
 namespace meridian {
 namespace {
 
-constexpr std::size_t kMostWays = AheadLook::kMostWays;
+constexpr std::size_t kMaxWays = AheadLook::kMaxWays;
 constexpr double kMargin = 1e-9;
 
 }  // namespace
@@ -53,13 +53,13 @@ bool PoleCorridor::returns_to_pole(const PolePlace& place) const noexcept {
 void PoleCorridor::ask(const PolePlace& place) noexcept {
   const BandSpan& span = probes_.span_at(place.known_end);
   const ToolPose pose = pose_on(span.c, std::clamp(place.known_end - span.u0, 0.0, span.length));
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   const JointLimits& limits = model_.joints[free].limits;
-  std::array<AheadWay, kMostWays> ways;
+  std::array<AheadWay, kMaxWays> ways;
   std::size_t count = 0;
   const auto add = [&](int branch, JointVector at, double value) {
     at[free] = value;
-    if (count == kMostWays || first_joint_outside_travel(model_, at, kMargin) >= 0) return;
+    if (count == kMaxWays || first_joint_outside_travel(model_, at, kMargin) >= 0) return;
     ways[count] = {};
     ways[count].branch = branch;
     ways[count++].free = value;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// How near the pole a path is treated otherwise, in tolerances of its axis, and how its free joint
-/// is followed there. Source: docs/motion.md, section 10.
+/// How near the pole a path is treated otherwise, in tolerances of its axis, and how its redundant
+/// joint is followed there. Source: docs/motion.md, section 10.
 namespace meridian {
 
 /// Nearer, the path counts as on the pole.
@@ -13,9 +13,9 @@ inline constexpr double kZoneTolerances = 2.5;
 /// Nearer, another minimum behind a place decides for itself.
 inline constexpr double kOtherTolerances = 3;
 
-/// Of the free joint between two places at which its winding is followed.
-inline constexpr double kMostFollowed_rad = 0.5;
+/// Of the redundant joint between two places at which its winding is followed.
+inline constexpr double kMaxFollowed_rad = 0.5;
 /// Places are no nearer to each other than that, however far it turns between them.
-inline constexpr double kLeastFollowed_mm = 1e-8;
+inline constexpr double kMinFollowed_mm = 1e-8;
 
 }  // namespace meridian

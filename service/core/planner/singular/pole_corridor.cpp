@@ -13,19 +13,19 @@ namespace meridian {
 namespace {
 
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
-constexpr double kLeastPart_mm = 1e-6;
+constexpr double kMinPart_mm = 1e-6;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
 /// of axis, so a zone beside them still has half of its reach.
 constexpr double kOutOfReach_rad = 0.5 * kPoleReach_mm / kAxisLength_mm_per_rad;
 
-/// By which the free joint goes at the end of a piece.
+/// By which the redundant joint goes at the end of a piece.
 double held_rate_of(const PoleZone& piece) noexcept {
   return 5 * (piece.free[5] - piece.free[4]) / (piece.end - piece.begin);
 }
 
 }  // namespace
 
-PoleCorridor::PoleCorridor(const MachineModel& model, PoleForesight* foresight)
+PoleCorridor::PoleCorridor(const MachineModel& model, PoleLookAhead* foresight)
     : model_(model),
       foresight_(foresight),
       probes_(model),
@@ -33,7 +33,7 @@ PoleCorridor::PoleCorridor(const MachineModel& model, PoleForesight* foresight)
       pending_(kPending) {}
 
 void PoleCorridor::begin(const Start& start) noexcept {
-  has_pole_ = free_joint(model_) >= 0 && !start.is_on_pole;
+  has_pole_ = redundant_joint(model_) >= 0 && !start.is_on_pole;
   tool_length_mm_ = start.tool_length_mm;
   is_exact_ = model_.pole_policy == PolePolicy::kExact;
   tolerance_rad_ = is_exact_ ? kPoleEase_rad : std::max(start.tolerance_rad, kPoleEase_rad);
@@ -58,7 +58,7 @@ void PoleCorridor::add_cut(double u) noexcept {
 }
 
 void PoleCorridor::add_cuts(double nearest) noexcept {
-  // The free joint turns over a width of distance/|d axis/du|.
+  // The redundant joint turns over a width of distance/|d axis/du|.
   const BandSpan& span = probes_.span_at(nearest);
   const auto pose =
       pose_on(span.c, Jet<1>::variable(std::clamp(nearest - span.u0, 0.0, span.length)));
@@ -74,22 +74,22 @@ void PoleCorridor::add_cuts(double nearest) noexcept {
 }
 
 JointVector PoleCorridor::follow_to(double u) const noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   JointVector joints = known_;
   double at = known_u_, step = 0;
   while (at < u) {
     const BandSpan& span = probes_.span_at(at);
-    const double whole = std::max(span.length / PoleProbes::kProbes, kLeastPart_mm);
+    const double whole = std::max(span.length / PoleProbes::kProbes, kMinPart_mm);
     step = std::min(step > 0 ? 2 * step : whole, whole);
-    for (;; step *= 0.5) {  // so short that a turn of the free joint is seen
+    for (;; step *= 0.5) {  // so short that a turn of the redundant joint is seen
       const double next = std::min(u, at + step);
       const BandSpan& there = probes_.span_at(next);
       const auto pose = pose_on(there.c, std::clamp(next - there.u0, 0.0, there.length));
       const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
       const bool is_there = solved.status != SolveStatus::kUnreachable;
       const bool is_turn =
-          is_there && free >= 0 && std::abs(solved.q[free] - joints[free]) > kMostFollowed_rad;
-      if (is_turn && step > kLeastFollowed_mm) continue;
+          is_there && free >= 0 && std::abs(solved.q[free] - joints[free]) > kMaxFollowed_rad;
+      if (is_turn && step > kMinFollowed_mm) continue;
       if (is_there) joints = solved.q;
       at = next;
       break;
@@ -153,7 +153,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   }
 }
 
-/// Whether the free joint is not where the exact way has it at the begin.
+/// Whether the redundant joint is not where the exact way has it at the begin.
 bool PoleCorridor::is_off_exact(const PolePlace& place) const noexcept {
   return place.at_begin == PoleJoin::kHeld || probes_.distance_at(place.begin) < tolerance_rad_;
 }
@@ -176,7 +176,7 @@ void PoleCorridor::know_behind(const PoleZone& piece) noexcept {
   is_held_ = piece.is_held;
   held_rate_ = held_rate_of(piece);
   JointVector reference{};
-  if (const int free = free_joint(model_); free >= 0) reference[free] = piece.free.back();
+  if (const int free = redundant_joint(model_); free >= 0) reference[free] = piece.free.back();
   const BandSpan& span = probes_.span_at(piece.end);
   const auto pose = pose_on(span.c, std::clamp(piece.end - span.u0, 0.0, span.length));
   known_ = is_held_ ? solve_held(model_, tool_length_mm_, pose, piece.free.back()).q
@@ -186,7 +186,7 @@ void PoleCorridor::know_behind(const PoleZone& piece) noexcept {
 bool PoleCorridor::is_in_zone() const noexcept {
   if (pending_.begin_index() == pending_.end_index()) return false;
   const PoleZone& piece = pending_[pending_.begin_index()];
-  return !piece.is_first || piece.begin < emitted_u() - kLeastPart_mm;
+  return !piece.is_first || piece.begin < emitted_u() - kMinPart_mm;
 }
 
 bool PoleCorridor::fits_zone(double by) const noexcept {
@@ -210,7 +210,7 @@ bool PoleCorridor::fits_zone(double by) const noexcept {
 }
 
 void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
-  if (free_joint(model_) < 0) return;
+  if (redundant_joint(model_) < 0) return;
   std::int64_t kept = pending_.begin_index();  // the rest of the stretch that it lies in
   for (bool is_in = is_in_zone(); is_in && kept < pending_.end_index(); ++kept) {
     PoleZone& piece = pending_[kept];
@@ -234,11 +234,11 @@ bool PoleCorridor::may_emit() const noexcept {
   const PoleProbes::Place last = probes_.end_place() - 1, place = stretches_.place();
   if (is_finished_ && place > last) return true;
   const BandSpan& front = probes_.front();
-  const double end = front.u0 + front.length, judged = probes_.u_of(std::min(place, last));
-  if (end > judged) return false;
+  const double end = front.u0 + front.length, checked = probes_.u_of(std::min(place, last));
+  if (end > checked) return false;
   const bool is_out_of_reach =
       probes_.front_distance() > kOutOfReach_rad + front.length / kAxisLength_mm_per_rad;
-  return is_out_of_reach || probes_.is_full() || end <= judged - kPoleReach_mm;
+  return is_out_of_reach || probes_.is_full() || end <= checked - kPoleReach_mm;
 }
 
 void PoleCorridor::emit() noexcept {
@@ -255,11 +255,11 @@ void PoleCorridor::emit() noexcept {
     cut_at(zone.end);
   }
   std::size_t passed = 0;
-  while (passed < cut_count_ && cuts_[passed] < begin + kLeastPart_mm) ++passed;
+  while (passed < cut_count_ && cuts_[passed] < begin + kMinPart_mm) ++passed;
   std::move(cuts_.begin() + static_cast<std::ptrdiff_t>(passed),
             cuts_.begin() + static_cast<std::ptrdiff_t>(cut_count_), cuts_.begin());
   cut_count_ -= passed;
-  if (cut_count_ > 0 && cuts_[0] < end - kLeastPart_mm) cut_at(cuts_[0]);
+  if (cut_count_ > 0 && cuts_[0] < end - kMinPart_mm) cut_at(cuts_[0]);
 
   const bool is_rest = end == last;
   const double length = is_rest ? span.length - emitted_x_ : end - begin;

@@ -6,7 +6,7 @@
 
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed/joint_span.hpp"
-#include "service/core/planner/singular/pole_foresight.hpp"
+#include "service/core/planner/singular/pole_look_ahead.hpp"
 #include "service/core/planner/singular/pole_probes.hpp"
 #include "service/core/planner/singular/pole_stretches.hpp"
 #include "service/core/planner/singular/pole_string.hpp"
@@ -15,24 +15,24 @@
 namespace meridian {
 
 /// From spans of the path to spans that joints follow: finds the places where the path comes close
-/// to the pole, lets the free joint take a shorter way there inside the axis tolerance, and follows
-/// branch and winding behind it.
+/// to the pole, lets the redundant joint take a shorter way there inside the axis tolerance, and
+/// follows branch and winding behind it.
 ///
 ///     push(span) ... finish() ─▶ next() ... next() until it returns nullptr
 ///
 /// Where the axis is within 11.5° of the pole, spans are held back by up to 61 mm of u, until it
 /// is known how close they come, on the pole by up to 101 mm. What comes out depends on the spans
 /// alone, not on when they came.
-/// Where it stays on the pole, however long, the free joint comes to rest and is held until the
-/// path leads off again. A machine without a pole gets its spans as they are. Where no zone helps,
-/// spans are cut about the nearest point, so that cells of the feed are as short as the free
+/// Where it stays on the pole, however long, the redundant joint comes to rest and is held until
+/// the path leads off again. A machine without a pole gets its spans as they are. Where no zone
+/// helps, spans are cut about the nearest point, so that cells of the feed are as short as the free
 /// joint's turn is sharp. Fixed store. Units: mm, rad. Context: planner thread. Source:
 /// docs/motion.md, section 10. Proof: tests/property/planner/smooth_planner_test.cpp and
 /// pole_linger_test.cpp.
 class PoleCorridor {
  public:
   /// `foresight`: blocks behind the spans, nullptr: nothing is known of them.
-  explicit PoleCorridor(const MachineModel& model, PoleForesight* foresight = nullptr);
+  explicit PoleCorridor(const MachineModel& model, PoleLookAhead* foresight = nullptr);
 
   /// Where a path starts, at rest.
   struct Start {
@@ -58,17 +58,17 @@ class PoleCorridor {
   /// Whether next() returned nullptr because the foresight waits for blocks: no span is needed.
   [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
 
-  /// Whether no way on was found from where the free joint rests. What was handed out stays valid,
-  /// nothing comes behind it.
+  /// Whether no way on was found from where the redundant joint rests. What was handed out stays
+  /// valid, nothing comes behind it.
   [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
   /// The first span that is not handed out, or not all of it; nullptr: there is none.
   [[nodiscard]] const BandSpan* first_held() const noexcept {
     return probes_.is_empty() ? nullptr : &probes_.front();
   }
 
-  /// The machine turned its free joint by `by` rad (whole turns) ahead of what next() gave last,
-  /// and will be at `joints` at its end. What next() gave is not touched, a zone that it lies in
-  /// keeps its shape, all zones behind are sought anew on the winding in force now.
+  /// The machine turned its redundant joint by `by` rad (whole turns) ahead of what next() gave
+  /// last, and will be at `joints` at its end. What next() gave is not touched, a zone that it lies
+  /// in keeps its shape, all zones behind are sought anew on the winding in force now.
   void wind(double by, const JointVector& joints) noexcept;
 
   /// Whether what is left of the zone that next() is in, if any, stays inside travel with the free
@@ -88,7 +88,7 @@ class PoleCorridor {
   [[nodiscard]] bool foresee(PolePlace& place) noexcept;
   [[nodiscard]] bool returns_to_pole(const PolePlace& place) const noexcept;
   void ask(const PolePlace& place) noexcept;
-  /// Drives the free joint along the stretch, or cuts the spans there.
+  /// Drives the redundant joint along the stretch, or cuts the spans there.
   void settle(PoleStretch& stretch) noexcept;
   [[nodiscard]] bool is_off_exact(const PolePlace& place) const noexcept;
   [[nodiscard]] bool is_on_pole(const PoleStretch& stretch) const noexcept;
@@ -104,7 +104,7 @@ class PoleCorridor {
   void emit() noexcept;
 
   const MachineModel& model_;
-  PoleForesight* foresight_;
+  PoleLookAhead* foresight_;
   bool has_pole_ = false;  ///< one that matters
   bool is_exact_ = false;  ///< of the policies the one that never eases
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
@@ -121,8 +121,8 @@ class PoleCorridor {
   std::array<double, kCuts> cuts_{};  ///< ascending
   std::size_t cut_count_ = 0;
   bool is_finished_ = false;
-  bool is_held_ = false;      ///< behind all stretches the free joint is not exact, and goes by
-  double held_rate_ = 0;      ///< this by u
+  bool is_held_ = false;  ///< behind all stretches the redundant joint is not exact, and goes by
+  double held_rate_ = 0;  ///< this by u
   bool is_out_held_ = false;  ///< the same where spans are handed out
   double out_held_rate_ = 0;
   bool has_failed_ = false;

@@ -10,13 +10,13 @@
 namespace meridian {
 namespace {
 
-constexpr double kNear_rad = 0.05;     // minima farther off turn the free joint gently
+constexpr double kNear_rad = 0.05;     // minima farther off turn the redundant joint gently
 constexpr double kStayTolerances = 5;  // so far a path that comes back may go meanwhile
 /// A stretch that is longer than this is not waited for: it goes on behind a place in it.
 constexpr double kLongStretch_mm = 4 * kPoleReach_mm;
 constexpr double kAhead_mm = 2 * kPoleReach_mm;  // so much of it is known behind that place
 constexpr double kReachShare = 0.98, kHalf = 0.49;
-constexpr double kLeastReach_mm = 1e-3;
+constexpr double kMinReach_mm = 1e-3;
 constexpr double kSnapped_mm = 1e-4;
 
 }  // namespace
@@ -135,7 +135,7 @@ void PoleStretches::place_begin(PoleStretch& out, double core_begin) const noexc
   }
   const double reach = std::min(kPoleReach_mm, kReachShare * (core_begin - settled_.end));
   place.begin = snapped(core_begin - reach);
-  out.has_room = out.has_room && reach > kLeastReach_mm;
+  out.has_room = out.has_room && reach > kMinReach_mm;
 }
 
 PoleStretches::Answer PoleStretches::decide(PoleStretch& out) noexcept {
@@ -192,7 +192,7 @@ void PoleStretches::place_end(PoleStretch& out, double core_end) const noexcept 
   }
   const double room = find_room_behind(core_end);
   place.end = snapped(core_end + room);
-  out.has_room = out.has_room && room > kLeastReach_mm;
+  out.has_room = out.has_room && room > kMinReach_mm;
 }
 
 }  // namespace meridian

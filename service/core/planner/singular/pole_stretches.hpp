@@ -14,7 +14,7 @@ inline constexpr double kPoleReach_mm = 20;  ///< of a stretch to either side of
 struct SettledPath {
   double end = 0;         ///< u: of the last stretch, or of what was handed out
   bool is_begun = false;  ///< there is a stretch, or something was handed out
-  bool is_held = false;   ///< at the end the free joint is not exact: a stretch goes on there
+  bool is_held = false;   ///< at the end the redundant joint is not exact: a stretch goes on there
   bool is_whole = false;  ///< no more spans come
   int branch = 0;         ///< at the end
 };
@@ -24,11 +24,11 @@ struct PoleStretch {
   PolePlace place;                        ///< all but the joints
   PoleProbes::Place first = 0, last = 0;  ///< of the path close to the pole
   double nearest = 0;                     ///< u: where it comes closest first
-  bool has_room = false;  ///< the free joint may go another way than the exact one there
+  bool has_room = false;  ///< the redundant joint may go another way than the exact one there
 };
 
 /// Looks along the probes of a path for stretches close to the pole, or minima of the distance
-/// farther off, and says where the free joint may leave the exact way about one and be back.
+/// farther off, and says where the redundant joint may leave the exact way about one and be back.
 ///
 ///     find_next() ─▶ decide() ─▶ find_next() ... until false
 ///

@@ -15,10 +15,10 @@ namespace meridian {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kLeastGain_s = 1e-3;  // of the string over the exact way
+constexpr double kMinGain_s = 1e-3;  // of the string over the exact way
 constexpr double kSameWinding_rad = 0.5;
 constexpr double kToleranceShare = 0.998;  // samples are not everywhere
-constexpr int kMostCourses = 2;            // that are tried, of those that lead on
+constexpr int kMaxCourses = 2;             // that are tried, of those that lead on
 constexpr int kRounds = 8;  // of nearer walls where a result leaves the tolerance between nodes
 constexpr FreeSpline::Shape kShapes[] = {{5, 0, 1, 100}, {2, 0, 1, 100},   {5, 0, 0, 0},
                                          {2, 0, 0, 100}, {5, 0.5, 0, 100}, {1, 0.5, 0, 30}};
@@ -38,7 +38,7 @@ PoleString::PoleString()
 std::span<const PoleZone> PoleString::find(const PoleTask& task, const PolePlace& place) noexcept {
   task_ = &task;
   place_ = &place;
-  free_ = free_joint(task.model);
+  free_ = redundant_joint(task.model);
   best_count_ = 0;
   best_time_ = kNever;
   walls_.loosen();
@@ -57,7 +57,7 @@ bool PoleString::is_exact_best() const noexcept { return best_count_ == 0 && bes
 /// Of what leads on to ways that carry farthest, as far as there is such.
 void PoleString::find_best() noexcept {
   int below = std::numeric_limits<int>::max();
-  for (std::size_t level = 0; level + 1 < kMostLevels && best_time_ == kNever; ++level) {
+  for (std::size_t level = 0; level + 1 < kMaxLevels && best_time_ == kNever; ++level) {
     int blocks = 0;
     for (const AheadWay& way : place_->ahead) {
       if (way.carries < below) blocks = std::max(blocks, way.carries);
@@ -73,12 +73,12 @@ void PoleString::find_best() noexcept {
 /// Leaves no pieces where the exact way is the best. False: no way leads on.
 bool PoleString::find_best(const Ahead& ahead) noexcept {
   const bool is_exact_kept = has_exact(ahead);
-  if (is_exact_kept) best_time_ = exact_time() - kLeastGain_s;
+  if (is_exact_kept) best_time_ = exact_time() - kMinGain_s;
   int tried = 0;
   for (const auto& course : walls_.find_courses(place_->joints[free_])) {
     if (!leads_on(course, ahead)) continue;
     try_course(course);
-    if (++tried == kMostCourses) break;
+    if (++tried == kMaxCourses) break;
   }
   return is_exact_kept || tried > 0;
 }

@@ -13,9 +13,9 @@
 
 namespace meridian {
 
-/// Finds how the free joint goes along a stretch beside the pole: the string through its corridor,
-/// smoothed, on the sides of the walls that turn it least of those that lead to a branch and
-/// winding which carries farthest. Where the exact way takes less time, that.
+/// Finds how the redundant joint goes along a stretch beside the pole: the string through its
+/// corridor, smoothed, on the sides of the walls that turn it least of those that lead to a branch
+/// and winding which carries farthest. Where the exact way takes less time, that.
 ///
 /// The time is counted without regard to what lies around: the largest of |P'|/F, |q'|/V,
 /// √(|q''|/A), ∛(|q'''|/J) over all joints. Every result is checked against tolerance and travel
@@ -33,7 +33,7 @@ class PoleString {
   [[nodiscard]] bool is_exact_best() const noexcept;
 
  private:
-  static constexpr std::size_t kMostLevels = 4;
+  static constexpr std::size_t kMaxLevels = 4;
 
   /// What a way behind the stretch has to carry.
   struct Ahead {

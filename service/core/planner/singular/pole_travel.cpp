@@ -11,15 +11,15 @@
 namespace meridian {
 namespace {
 
-constexpr double kMostStep_mm = 0.5;
+constexpr double kMaxStep_mm = 0.5;
 
 }  // namespace
 
 WayBehind follow_behind(const PoleTask& task, const PolePlace& place, double begin,
                         const JointVector& joints, int branch) noexcept {
-  const int free = free_joint(task.model);
+  const int free = redundant_joint(task.model);
   JointVector last = joints;
-  double step = kMostStep_mm;
+  double step = kMaxStep_mm;
   for (double u = begin; u < place.known_end;) {
     const double next = std::min(place.known_end, u + step);
     const BandSpan& span = task.spans.span_at(next);
@@ -30,14 +30,14 @@ WayBehind follow_behind(const PoleTask& task, const PolePlace& place, double beg
     }
     const auto at = solve(task.model, task.tool_length_mm, pose, branch, last);
     if (at.status == SolveStatus::kUnreachable) return {};
-    if (std::abs(at.q[free] - last[free]) > kMostFollowed_rad && step > kLeastFollowed_mm) {
+    if (std::abs(at.q[free] - last[free]) > kMaxFollowed_rad && step > kMinFollowed_mm) {
       step *= 0.5;
       continue;
     }
     if (first_joint_outside_travel(task.model, at.q, kTravelMargin) >= 0) return {};
     last = at.q;
     u = next;
-    step = std::min(2 * step, kMostStep_mm);
+    step = std::min(2 * step, kMaxStep_mm);
   }
   return {true, true, last[free]};
 }

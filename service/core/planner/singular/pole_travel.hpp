@@ -9,12 +9,12 @@ namespace meridian {
 struct WayBehind {
   bool keeps_travel = false;  ///< every joint and drive
   bool is_to_end = false;     ///< it was followed to PolePlace::known_end
-  double free = 0;            ///< the free joint there
+  double free = 0;            ///< the redundant joint there
 };
 
 /// Follows the exact way on `branch` from `begin`, where windings are near `joints`, to
 /// PolePlace::known_end, or to where the path behind the reach comes close to the pole again, where
-/// another zone decides. Steps of at most 0.5 mm, so short that no turn of the free joint is
+/// another zone decides. Steps of at most 0.5 mm, so short that no turn of the redundant joint is
 /// missed. Units: mm, rad. No memory. Context: planner thread.
 [[nodiscard]] WayBehind follow_behind(const PoleTask& task, const PolePlace& place, double begin,
                                       const JointVector& joints, int branch) noexcept;

@@ -15,18 +15,18 @@ namespace meridian {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMostMoved = 0.25;  // of the axis between nodes, of its distance and tolerance
-constexpr double kMostTurned_rad = 0.3;
-constexpr double kLeastStep_mm = 1e-6;
+constexpr double kMaxMoved = 0.25;  // of the axis between nodes, of its distance and tolerance
+constexpr double kMaxTurned_rad = 0.3;
+constexpr double kMinStep_mm = 1e-6;
 constexpr double kUsedShare = 0.995;  // of the tolerance: nodes are not everywhere
 constexpr double kTightened = 0.97;   // of it where that was not enough, each time
 constexpr double kNodesOfSpan = 6;
-constexpr double kLeastBlock_mm = 0.03;    // the end of a shorter block is no place of its own
-constexpr double kLeastTime_s = 1e-9;      // between nodes: times ascend
-constexpr double kProbe_rad = 1e-2;        // of axes that show how the free joint turns
-constexpr double kSmallAxis_rad = 4e-9;    // nearer, the exact free joint is not asked for
+constexpr double kMinBlock_mm = 0.03;      // the end of a shorter block is no place of its own
+constexpr double kMinTime_s = 1e-9;        // between nodes: times ascend
+constexpr double kProbe_rad = 1e-2;        // of axes that show how the redundant joint turns
+constexpr double kSmallAxis_rad = 4e-9;    // nearer, the exact redundant joint is not asked for
 constexpr int kSides = 1, kLastSides = 3;  // beside the nearest that are tried
-constexpr std::int32_t kMostAlike = 8;     // ways past one wall that are kept
+constexpr std::int32_t kMaxAlike = 8;      // ways past one wall that are kept
 
 }  // namespace
 
@@ -59,7 +59,7 @@ bool PoleWalls::see(double u, const Seen& before, Seen& out) const noexcept {
   out.tip = pose.tip;
   const double du = u - before.u;
   const double way = (pose.tip - before.tip).norm();
-  out.t = before.t + std::max({way / span.feed_mm_per_s, du / span.u_speed_mm_per_s, kLeastTime_s});
+  out.t = before.t + std::max({way / span.feed_mm_per_s, du / span.u_speed_mm_per_s, kMinTime_s});
   out.x = pose.axis.dot(across_);
   out.y = pose.axis.dot(along_);
   out.px = out.x;
@@ -118,7 +118,7 @@ double PoleWalls::share_at(double u) const noexcept {
 bool PoleWalls::look(const PoleTask& task, const PolePlace& place) noexcept {
   const double end = place.at_end == PoleJoin::kHeld ? place.seen_end : place.end;
   task_ = &task;
-  free_ = free_joint(task.model);
+  free_ = redundant_joint(task.model);
   const auto& joint = task.model.joints[free_];
   constexpr double kAny = std::numeric_limits<double>::infinity();
   low_ = joint.is_endless ? -kAny : joint.limits.travel_min;
@@ -149,21 +149,21 @@ bool PoleWalls::look(const PoleTask& task, const PolePlace& place) noexcept {
   double step = kAny, block_end = place.begin;
   while (last.u < end) {
     const BandSpan& span = task.spans.span_at(last.u);
-    const double whole = std::max(span.length / kNodesOfSpan, kLeastStep_mm);
+    const double whole = std::max(span.length / kNodesOfSpan, kMinStep_mm);
     step = std::min(2 * step, whole);
-    if (last.u >= block_end) block_end = task.programmed.next_end(last.u + kLeastBlock_mm);
+    if (last.u >= block_end) block_end = task.programmed.next_end(last.u + kMinBlock_mm);
     double stop = std::min(end, block_end);
     if (last.u < place.end) stop = std::min(stop, place.end);
     for (;; step *= 0.5) {
       const bool is_seen = see(std::min(last.u + step, stop), last, next);
-      if (!is_seen && step <= kLeastStep_mm) return false;
-      if (is_seen && step <= kLeastStep_mm) break;
+      if (!is_seen && step <= kMinStep_mm) return false;
+      if (is_seen && step <= kMinStep_mm) break;
       const double moved = std::max(std::hypot(next.x - last.x, next.y - last.y),
                                     std::hypot(next.px - last.px, next.py - last.py));
       const double far = std::hypot(last.px, last.py) + last.allowed;
-      const bool is_near = moved <= kMostMoved * far;
+      const bool is_near = moved <= kMaxMoved * far;
       const bool is_turn = next.node.is_wall && last.node.is_wall &&
-                           std::abs(next.node.middle[0] - last.node.middle[0]) > kMostTurned_rad;
+                           std::abs(next.node.middle[0] - last.node.middle[0]) > kMaxTurned_rad;
       if (is_seen && is_near && !is_turn) break;
     }
     last = next;
@@ -251,7 +251,7 @@ void PoleWalls::prune(Run& run, bool is_last) noexcept {
     return a.turned != b.turned ? a.turned < b.turned : a.side < b.side;
   });
   std::int32_t kept = run.begin;
-  for (auto course = begin; course != end && kept < run.begin + kMostAlike; ++course) {
+  for (auto course = begin; course != end && kept < run.begin + kMaxAlike; ++course) {
     const auto is_beaten = [&](const Course& other) {
       return other.turned + std::abs(other.value - course->value) <= course->turned;
     };

@@ -13,14 +13,15 @@
 
 namespace meridian {
 
-/// The corridor of the free joint along a stretch beside the pole, at places so close that it moves
-/// little from one to the next.
+/// The corridor of the redundant joint along a stretch beside the pole, at places so close that it
+/// moves little from one to the next.
 ///
-///     gate ─ wall ─ gate ─ wall ─┬ side k     walls: the free joint is within `half` of the exact
+///     gate ─ wall ─ gate ─ wall ─┬ side k     walls: the redundant joint is within `half` of the
+///     exact
 ///                                └ side k+1   one, on either branch and winding; gates: anywhere
 ///
 /// With p the smoothed axis and p' the programmed one, both seen along the pole, the axis that the
-/// free joint gives lies on the circle over the pole and p. What of the circle is within the
+/// redundant joint gives lies on the circle over the pole and p. What of the circle is within the
 /// tolerance of p' is the corridor. Fixed store. Units: mm, rad, s. Source: docs/motion.md,
 /// section 10.
 class PoleWalls {
@@ -38,7 +39,7 @@ class PoleWalls {
   };
   /// What the sides of all walls cost, and which way on the last of them leads.
   struct Course {
-    double value = 0;   ///< of the free joint behind its wall, turned no farther than it has to
+    double value = 0;  ///< of the redundant joint behind its wall, turned no farther than it has to
     double turned = 0;  ///< the way there
     int side = 0;       ///< twice the whole turns, and the branch
     std::int32_t before = -1;
@@ -56,14 +57,14 @@ class PoleWalls {
   [[nodiscard]] bool look(const PoleTask& task, const PolePlace& place) noexcept;
 
   /// Finds the ways past all walls, of those that lead to the same side of the last the shortest;
-  /// the shortest first. `value`: the free joint at the begin.
+  /// the shortest first. `value`: the redundant joint at the begin.
   [[nodiscard]] std::span<const Course> find_courses(double value) noexcept;
 
-  /// What the free joint may be at every node on the way `course`: a string's windows.
+  /// What the redundant joint may be at every node on the way `course`: a string's windows.
   [[nodiscard]] std::span<const StringWindow> windows_of(const Course& course) noexcept;
 
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return {nodes_.data(), count_}; }
-  /// The exact free joint of a node on a side.
+  /// The exact redundant joint of a node on a side.
   [[nodiscard]] static double middle_of(const Node& node, int side) noexcept;
 
  private:
@@ -95,8 +96,8 @@ class PoleWalls {
 
   const PoleTask* task_ = nullptr;
   int free_ = 0;
-  double low_ = 0, high_ = 0;  ///< travel of the free joint
-  double turn_sign_ = 1;       ///< of the free joint with the azimuth
+  double low_ = 0, high_ = 0;  ///< travel of the redundant joint
+  double turn_sign_ = 1;       ///< of the redundant joint with the azimuth
   Vector3 pole_ = Vector3::UnitZ(), across_ = Vector3::UnitX(), along_ = Vector3::UnitY();
   std::vector<Node> nodes_;
   std::size_t count_ = 0;

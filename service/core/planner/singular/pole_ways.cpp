@@ -15,13 +15,13 @@ namespace meridian {
 namespace {
 
 constexpr double kSameFree_rad = 1e-9;  // azimuths that differ less need no turn on the pole
-constexpr double kNearPole_rad = 2e-3;  // nearer the free joint is held on oblique ways
+constexpr double kNearPole_rad = 2e-3;  // nearer the redundant joint is held on oblique ways
 
 }  // namespace
 
 PathFault Router::turn_free(const ToolPose& pose, double free_end, const Job& job,
                             PlanCursor& cursor, Staging& out) noexcept {
-  const double free = cursor.joints[free_joint(model_)];
+  const double free = cursor.joints[redundant_joint(model_)];
   if (std::abs(free_end - free) < kSameFree_rad) return {};
   return run(make_turn(pose, free, free_end), job, 0, cursor, out);
 }
@@ -36,16 +36,16 @@ double Router::follow_back(PathPiece path, const JointVector& end, double share,
   for (int n = 1; n <= kSteps; ++n) {
     q = joints_at(model_, path, path.length * (1 - (1 - share) * n / kSteps), q).q;
   }
-  return q[free_joint(model_)];
+  return q[redundant_joint(model_)];
 }
 
-// Orthogonal machines run straight to and from the pole with the free joint at rest. Where the
-// other joint is oblique (nutating machines), the free joint turns on the way. It then follows the
-// path but for the last kNearPole_rad, where holding it leaves the great circle by a quarter of
+// Orthogonal machines run straight to and from the pole with the redundant joint at rest. Where the
+// other joint is oblique (nutating machines), the redundant joint turns on the way. It then follows
+// the path but for the last kNearPole_rad, where holding it leaves the great circle by a quarter of
 // that squared, 1e-6 rad, times the turn per tilt.
 PathFault Router::enter_pole(const PathPiece& path, const Job& job, double share,
                              PlanCursor& cursor, Staging& out) noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   const bool is_near = path.axis_turn <= kNearPole_rad;
   if (is_near || is_straight_passage(path, cursor.joints[free], cursor)) {
     return run_held(path, cursor.joints[free], job, share, cursor, out);
@@ -60,7 +60,7 @@ PathFault Router::enter_pole(const PathPiece& path, const Job& job, double share
 
 PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, const Job& job,
                                 PlanCursor& cursor, Staging& out) noexcept {
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   const ToolPose pole = pose_at(path, 0.0);
   PlanCursor turned = cursor;
   turned.joints[free] = end[free];
@@ -129,7 +129,7 @@ bool Router::is_straight_passage(const PathPiece& path, double free_end,
                                  const PlanCursor& cursor) noexcept {
   PathPiece held = path;
   held.is_free_driven = true;
-  held.free_begin = cursor.joints[free_joint(model_)];
+  held.free_begin = cursor.joints[redundant_joint(model_)];
   held.free_end = free_end;
   held.tool_length_mm = cursor.tool_length_mm;
   constexpr int kSamples = 64;
@@ -149,7 +149,7 @@ PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double s
                             const Job& job, PlanCursor& cursor, Staging& out) noexcept {
   Ways ways = find_ways(end, cursor);
   look_behind(job.block, end, cursor.tool_length_mm, ways);
-  const int free = free_joint(model_);
+  const int free = redundant_joint(model_);
   for (int n = 0; n < ways.count && ways.way[n].carries == ways.way[0].carries; ++n) {
     const double free_end = ways.way[n].joints[free];
     if (!is_straight_passage(path, free_end, cursor)) continue;
@@ -162,7 +162,7 @@ PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double s
     }
     out.go_back(mark);
   }
-  // Over the pole itself, where the free joint may be turned at rest.
+  // Over the pole itself, where the redundant joint may be turned at rest.
   const Vector3 begin_axis = to_vector(path.axis_begin);
   const Vector3 pole = find_nearest_pole(model_, begin_axis);
   deviation_rad_ = std::max(deviation_rad_, find_passage(path, pole).offset);

@@ -12,8 +12,8 @@
 
 namespace meridian {
 
-/// A piece of a stretch beside the pole on which the free joint is driven. Outside such stretches
-/// the joints follow the path exactly.
+/// A piece of a stretch beside the pole on which the redundant joint is driven. Outside such
+/// stretches the joints follow the path exactly.
 struct PoleZone {
   double begin = 0, end = 0;  ///< u
   FreeQuintic free{};         ///< Bernstein values over [begin, end]
@@ -22,7 +22,8 @@ struct PoleZone {
   bool is_through = false;   ///< the stretch comes out on another branch
   bool is_first = false;     ///< of its stretch
   bool is_last = false;      ///< the same
-  bool is_held = false;  ///< the free joint is not exact at its end: another stretch goes on there
+  bool is_held =
+      false;  ///< the redundant joint is not exact at its end: another stretch goes on there
 };
 
 /// Finds spans by u.
@@ -32,7 +33,7 @@ class SpanLookup {
   [[nodiscard]] virtual const BandSpan& span_at(double u) const noexcept = 0;
 };
 
-/// How the free joint comes to an end of a stretch.
+/// How the redundant joint comes to an end of a stretch.
 enum class PoleJoin : std::uint8_t {
   kExact,  ///< with two derivatives to the exact one
   kHeld,   ///< with two derivatives to what is driven on the stretch beside
@@ -46,7 +47,7 @@ struct PolePlace {
   bool is_on_pole = false;  ///< it meets the pole: the exact way has no azimuth there
   int branch = 0;           ///< on the way in
   JointVector joints{};     ///< at the begin
-  double rate = 0;          ///< of the free joint at the begin by u, where that is kHeld
+  double rate = 0;          ///< of the redundant joint at the begin by u, where that is kHeld
   double seen_end = 0;      ///< where the stretch ends, as far as it is known: behind a kHeld end
   double known_end = 0;     ///< how far joints are to keep travel as well
   /// How far branches and windings at known_end carry; empty: all alike, or it is not known.

@@ -11,7 +11,7 @@ namespace meridian {
 namespace {
 
 /// rad/mm. Gentler ones the band rounds by less than a hundredth of any tolerance.
-constexpr double kLeastKink_per_mm = 1e-6;
+constexpr double kMinKink_per_mm = 1e-6;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void ProgrammedAxis::add(double u, const Vector3& axis) noexcept {
   Mark& newest = marks_[static_cast<std::size_t>((last_ - 1) % kCapacity)];
   if (last_ - first_ >= 2) {
     const Mark& before = mark(last_ - 2);
-    if (u - before.u < kLeastGap_mm) {  // the newest moves on, what it was is hidden
+    if (u - before.u < kMinGap_mm) {  // the newest moves on, what it was is hidden
       const Vector3 from = to_vector(before.axis);
       const double off =
           std::max(angle_between(from, to_vector(newest.axis)), angle_between(from, axis));
@@ -80,11 +80,11 @@ std::size_t ProgrammedAxis::find_kinks(double begin, double end,
   const double parts = static_cast<double>(kinks.size()) / (end - begin);
   const double last_part = static_cast<double>(kinks.size()) - 1;  // rounding may find one more
   std::size_t count = 0;
-  double part = -1, sharpest = kLeastKink_per_mm;
+  double part = -1, sharpest = kMinKink_per_mm;
   for (std::int64_t n = mark_before(begin) + 1; n + 1 < last_ && mark(n).u < end; ++n) {
     const double u = mark(n).u, kink = kink_at(n);
     const double here = std::min(std::floor((u - begin) * parts), last_part);
-    if (here > part) sharpest = kLeastKink_per_mm;
+    if (here > part) sharpest = kMinKink_per_mm;
     if (!(kink > sharpest)) continue;
     if (here > part) ++count;
     part = here;

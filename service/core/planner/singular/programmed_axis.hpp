@@ -12,12 +12,12 @@
 namespace meridian {
 
 /// The tool axis that was programmed, as a function of the path parameter u: great circles between
-/// the ends of blocks. Ends closer than kLeastGap are merged, and the largest angle that hides is
+/// the ends of blocks. Ends closer than kMinGap are merged, and the largest angle that hides is
 /// told. Fixed store: what is too long ago is forgotten. Units: mm, rad. Frame: W.
 class ProgrammedAxis {
  public:
   static constexpr int kCapacity = 32768;
-  static constexpr double kLeastGap_mm = 0.01;
+  static constexpr double kMinGap_mm = 0.01;
 
   ProgrammedAxis() : ProgrammedAxis(true) {}
   /// `is_used`: false where nothing will be added, which then has no store.

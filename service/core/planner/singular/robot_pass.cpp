@@ -20,9 +20,9 @@ constexpr double kNarrower = 0.6;
 constexpr int kSamples = 96, kFirstSamples = 12;
 constexpr std::size_t kKinks = 192;
 constexpr double kToleranceShare = 0.998;  // samples are not everywhere
-constexpr double kMostTipError_mm = 1e-7;
-constexpr double kMostBend_rad = 1e3;  // roll'' h² at an end, beyond it the end is no guide
-constexpr double kLeastPart_mm = 1e-4;
+constexpr double kMaxTipError_mm = 1e-7;
+constexpr double kMaxBend_rad = 1e3;  // roll'' h² at an end, beyond it the end is no guide
+constexpr double kMinPart_mm = 1e-4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class Search {
@@ -83,9 +83,9 @@ class Search {
   /// `u`, or the end of a span that is so close that the part between would be none.
   [[nodiscard]] double snapped(double u) const noexcept {
     const BandSpan& span = task_.spans.span_at(u);
-    if (std::abs(u - span.u0) < kLeastPart_mm) return span.u0;
+    if (std::abs(u - span.u0) < kMinPart_mm) return span.u0;
     const double end = span.u0 + span.length;
-    return std::abs(end - u) < kLeastPart_mm ? end : u;
+    return std::abs(end - u) < kMinPart_mm ? end : u;
   }
 
   /// Of the exact way, where a pass of the width `to` is narrower than one of `from`.
@@ -109,7 +109,7 @@ class Search {
   /// The quintic through both ends.
   bool fit(RobotPass& pass) noexcept {
     const double h = pass.end - pass.begin;
-    if (!(h > 2 * kLeastPart_mm)) return false;
+    if (!(h > 2 * kMinPart_mm)) return false;
     JointVector reference = range_.joints;
     double from = reference[joint_], a1 = 0, a2 = 0;  // a start: at rest where it is
     if (range_.at_from == PassEnd::kOnPath) {
@@ -135,7 +135,7 @@ class Search {
       b1 = out.q[joint_].derivative(1) * h;
       b2 = out.q[joint_].derivative(2) * h * h;
     }
-    if (!(std::abs(a2) < kMostBend_rad) || !(std::abs(b2) < kMostBend_rad)) return false;
+    if (!(std::abs(a2) < kMaxBend_rad) || !(std::abs(b2) < kMaxBend_rad)) return false;
     pass.joint = {
         from, from + a1 / 5, from + 0.4 * a1 + a2 / 20, to - 0.4 * b1 + b2 / 20, to - b1 / 5, to};
     reference_ = reference;
@@ -185,7 +185,7 @@ class Search {
     if (range_.at == Singularity::kShoulder) {
       return task_.is_exact ? tip : task_.tips.distance_to(u, there.tip);
     }
-    if (!(tip <= kMostTipError_mm)) return kNever;
+    if (!(tip <= kMaxTipError_mm)) return kNever;
     return task_.is_exact ? angle_between(pose.axis, there.axis)
                           : task_.axes.angle_to(u, there.axis);
   }
@@ -272,10 +272,10 @@ bool is_near_singularity(const PassCourse& course, const ToolPose& pose) noexcep
 
 bool comes_near_singularity(const PassCourse& course, const ToolPose& from,
                             const ClBlock& block) noexcept {
-  constexpr double kStep_mm = 10, kMostSteps = 256;
+  constexpr double kStep_mm = 10, kMaxSteps = 256;
   const ToolPose end{to_vector(block.tip_mm), to_vector(block.axis)};
   const PathPiece path = block.is_arc ? make_arc(from, end, block) : make_line(from, end);
-  const int steps = static_cast<int>(std::clamp(path.length / kStep_mm, 4.0, kMostSteps));
+  const int steps = static_cast<int>(std::clamp(path.length / kStep_mm, 4.0, kMaxSteps));
   for (int k = 0; k <= steps; ++k) {
     if (is_near_singularity(course, pose_at(path, path.length * k / steps))) return true;
   }

@@ -66,7 +66,7 @@ static double unit_of(const struct meridian_hal_setup* setup, int joint) {
   return (setup->rotary_mask >> joint & 1u) != 0 ? kDegree : 1;
 }
 
-static void tell_drives(const struct meridian_hal_setup* setup, const double* feedback) {
+static void report_drives(const struct meridian_hal_setup* setup, const double* feedback) {
   const struct meridian_hal_setpoint* const newest =
       &follow.kept[follow.newest % MERIDIAN_HAL_KEPT];
   for (int i = 0; i < joints; ++i) {
@@ -202,7 +202,7 @@ static void update(void* unused, long period_ns) {
     const enum meridian_hal_phase phase = follow.phase[i];
     if (phase == MERIDIAN_HAL_LOST || phase == MERIDIAN_HAL_RAMPS) report.is_lost = 1;
   }
-  tell_drives(&setup, feedback);
+  report_drives(&setup, feedback);
   work_orders();
   *pins->is_lost = report.is_lost != 0;
   *pins->user_enable_out = follow.newest > 0 && !report.is_lost;

@@ -75,7 +75,7 @@ export class Display {
       Enabling: "drives are switched on", Jogging: "jogging", Homing: "homing", Approaching: "approaches the program",
     };
     if (words[frame.state] && frame.state !== "Approaching") return words[frame.state];
-    if (frame.at_pole) return "the axis is on the pole: the free joint turns";
+    if (frame.at_pole) return "the axis is on the pole: the redundant joint turns";
     if (frame.limiting) return `joint ${frame.limiting} holds the feed back`;
     if (frame.feed_override < 1 && wanted > 0 && frame.feed_achieved > 0.97 * wanted) return "the override";
     if (wanted > 0 && frame.feed_achieved > 0.97 * wanted) return "feed as programmed";

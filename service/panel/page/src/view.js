@@ -87,12 +87,12 @@ export class View {
     this.scene.add(this.floor);
   }
 
-  // The tip, and the cone about the pole in which the free joint has no direction of its own.
+  // The tip, and the cone about the pole in which the redundant joint has no direction of its own.
   drawMarks() {
     const { machine, description } = this;
     const dot = new Mesh(new SphereGeometry(0.022 * machine.size, 20, 14), new MeshBasicMaterial({ color: 0xff5a36 }));
     machine.frames.tip.add(dot);
-    if (description.free_joint < 0) return;
+    if (description.redundant_joint < 0) return;
     this.coneMaterial = new MeshBasicMaterial({ color: 0xf5a524, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false });
     const kHalf = 0.05;
     this.cone = machine.solids.cone(new Vector3(), new Vector3(...description.pole), kHalf, 1.3 * machine.size, this.coneMaterial);

@@ -77,7 +77,7 @@ Outcome BlockPath::arc_to(const ArcPath& told, const Vector3& tip, const Vector3
   if (position_ == Position::kUnknown) {
     return refuse_at(told.line, "an arc before any position", "begin with FROM or GOTO");
   }
-  if (position_ == Position::kTold) {
+  if (position_ == Position::kReported) {
     if (auto done = begin_at_from(told.line); !done) return done;
   }
   const Arc arc = solve_arc(tip_, tip, told.centre, told.normal);
@@ -104,7 +104,7 @@ Outcome BlockPath::arc_to(const ArcPath& told, const Vector3& tip, const Vector3
   check_arc_sense(arc.normal.cross(tip_ - arc.centre).normalized(), told.line);
 
   const double gap = (arc.end - tip).norm();
-  const double rest = !closed && gap > kLeastMove_mm ? gap : 0;  // cut as a line behind the arc
+  const double rest = !closed && gap > kMinMove_mm ? gap : 0;  // cut as a line behind the arc
   ClBlock b;
   b.line = line;
   b.kind = feed.kind;

@@ -57,7 +57,7 @@ void BlockPath::vendor_word(std::string_view text, double value, std::uint32_t l
 
 void BlockPath::set_from(const Vector3& tip, const Vector3& axis, std::uint32_t line) {
   const bool is_there =
-      position_ == Position::kReached && (tip - tip_).norm() <= kLeastMove_mm && axis == axis_;
+      position_ == Position::kReached && (tip - tip_).norm() <= kMinMove_mm && axis == axis_;
   if (is_there) return;
   if (has_moved()) {
     remarks_.warn("FROM", line, [] {
@@ -67,7 +67,7 @@ void BlockPath::set_from(const Vector3& tip, const Vector3& axis, std::uint32_t 
   from_line_ = line;
   tip_ = tip;
   axis_ = axis;
-  position_ = Position::kTold;
+  position_ = Position::kReported;
   direction_.setZero();
 }
 
@@ -88,8 +88,8 @@ Outcome BlockPath::begin_at_from(std::uint32_t line) {
 
 Outcome BlockPath::line_to(const Vector3& tip, const Vector3& axis, const MotionFeed& feed,
                            std::uint32_t line) {
-  if (position_ == Position::kTold && feed.kind != BlockKind::kRapid) {
-    const bool is_there = (tip - tip_).norm() <= kLeastMove_mm && axis == axis_;
+  if (position_ == Position::kReported && feed.kind != BlockKind::kRapid) {
+    const bool is_there = (tip - tip_).norm() <= kMinMove_mm && axis == axis_;
     if (has_moved() || !is_there) {
       if (auto done = begin_at_from(line); !done) return done;
     }
@@ -101,7 +101,7 @@ Outcome BlockPath::line_to(const Vector3& tip, const Vector3& axis, const Motion
   b.feed = feed.feed;
   const Vector3 step = tip - tip_;
   const double length = position_ == Position::kReached ? step.norm() : 0;
-  direction_ = length > kLeastMove_mm ? Vector3(step / length) : Vector3::Zero();
+  direction_ = length > kMinMove_mm ? Vector3(step / length) : Vector3::Zero();
   b.tip_mm = to_array(tip);
   b.axis = to_array(axis);
   emit_motion(b, length);
@@ -153,7 +153,7 @@ void BlockPath::emit_motion(const ClBlock& b, double length) {
   const bool follows = position_ == Position::kReached;
   const bool turns = change != Vector3::Zero();
   if (turns || !follows) account_axis(axis, follows ? change.norm() : 0);
-  const bool moves = follows && (length > kLeastMove_mm || turns);
+  const bool moves = follows && (length > kMinMove_mm || turns);
   if (follows && !moves) ++summary_.zero_length;
   if (b.kind == BlockKind::kRapid) {
     summary_.rapid_length_mm += length;

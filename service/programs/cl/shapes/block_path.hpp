@@ -14,7 +14,7 @@
 
 namespace meridian::cl {
 
-inline constexpr double kLeastMove_mm = 1e-9;  ///< below it a block moves nothing
+inline constexpr double kMinMove_mm = 1e-9;  ///< below it a block moves nothing
 
 /// An arc or helix as a file tells it, in W. Units: mm, rad.
 struct ArcPath {
@@ -38,9 +38,9 @@ class BlockPath {
 
   enum class Position : std::uint8_t {
     kUnknown,
-    kTold,     ///< by FROM: no block ends there
-    kReached,  ///< the last motion block ended there
-    kLost      ///< a motion was refused: the next one is only checked for itself
+    kReported,  ///< by FROM: no block ends there
+    kReached,   ///< the last motion block ended there
+    kLost       ///< a motion was refused: the next one is only checked for itself
   };
   [[nodiscard]] Position position() const noexcept { return position_; }
   [[nodiscard]] const Vector3& tip() const noexcept { return tip_; }

@@ -194,7 +194,7 @@ void StatementReader::cut(std::string_view text, Statement& out) {
     const char* const start = at;
     while (at != end && !is_separator(*at)) ++at;
     after_comma = false;
-    if (out.argument_count == Statement::kMostArguments) {
+    if (out.argument_count == Statement::kMaxArguments) {
       out.has_more_arguments = true;
       return;
     }

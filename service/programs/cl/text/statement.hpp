@@ -23,7 +23,7 @@ struct Argument {
 /// One logical line of a CL file, continuation lines joined: MAJOR / argument, argument ...
 /// All views are good until the next statement is read.
 struct Statement {
-  static constexpr std::size_t kMostArguments = 64;
+  static constexpr std::size_t kMaxArguments = 64;
 
   std::uint32_t line = 0;           ///< of its first physical line
   std::string_view major;           ///< in capitals; empty where it begins with a number or a sign
@@ -31,10 +31,10 @@ struct Statement {
   bool is_comment_data = false;     ///< from `$$->`
   bool is_catia_matrix = false;     ///< `$$*CATIA0`: the twelve numbers of the comments after it
   bool has_empty_argument = false;  ///< a comma with nothing before or behind it
-  bool has_more_arguments = false;  ///< than kMostArguments
+  bool has_more_arguments = false;  ///< than kMaxArguments
   std::size_t argument_count = 0;   ///< none for words whose rest is free text
   std::size_t number_count = 0;     ///< of the arguments
-  std::array<Argument, kMostArguments> arguments;
+  std::array<Argument, kMaxArguments> arguments;
 
   [[nodiscard]] bool all_numbers() const noexcept {
     return number_count == argument_count && !has_empty_argument && !has_more_arguments;

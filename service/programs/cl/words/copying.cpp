@@ -9,7 +9,7 @@
 namespace meridian::cl {
 namespace {
 
-constexpr double kMostTimes = 1e6;
+constexpr double kMaxTimes = 1e6;
 constexpr const char* kForms =
     "COPY/n and TRANSL,x,y,z,times; XYROT, YZROT or ZXROT,degrees,times; SAME,times; MODIFY, "
     "twelve numbers,times are read; else let the CAM system write the repeated motion out";
@@ -24,7 +24,7 @@ tl::unexpected<Refusal> not_understood(const Statement& s) {
 std::uint32_t count_at(const Statement& s, std::size_t at) {
   const Argument& a = s.arguments[at];
   const bool is_count =
-      a.is_number && a.number >= 1 && a.number <= kMostTimes && a.number == std::floor(a.number);
+      a.is_number && a.number >= 1 && a.number <= kMaxTimes && a.number == std::floor(a.number);
   return is_count ? static_cast<std::uint32_t>(a.number) : 0;
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLevelTolerance_mm = 1e-3;  // the last digit that CAM systems write
 
 Outcome rapid_to(Modal& m, const Vector3& tip, const Vector3& axis, std::uint32_t line) {
-  if ((tip - m.path.tip()).norm() <= kLeastMove_mm && axis == m.path.axis()) return {};
+  if ((tip - m.path.tip()).norm() <= kMinMove_mm && axis == m.path.axis()) return {};
   return m.path.line_to(tip, axis, {BlockKind::kRapid, FeedMeaning::kNone, 0}, line);
 }
 

@@ -22,7 +22,7 @@ Outcome load_tool(Modal& m, const Statement& s, std::size_t at) {
   }
   const auto tool = static_cast<std::uint32_t>(number);
   auto& tools = m.summary.tools;
-  if (tools.size() < ClSummary::kMostTools &&
+  if (tools.size() < ClSummary::kMaxTools &&
       std::find(tools.begin(), tools.end(), tool) == tools.end()) {
     tools.push_back(tool);
   }

@@ -19,7 +19,7 @@ Outcome run_spline(Modal& m, const PendingSpline& told, std::uint32_t line) {
   if (auto done = begin_motion(m, line); !done) return done;
   using Position = BlockPath::Position;
   const bool has_begin = m.path.position() == Position::kReached ||
-                         m.path.position() == Position::kTold ||
+                         m.path.position() == Position::kReported ||
                          m.path.position() == Position::kLost;
   if (!has_begin) return refuse_at(told.line, "a spline before any position", "begin with GOTO");
   ClampedCubic spline;

@@ -29,7 +29,7 @@ struct SiemensRow {
 constexpr int kReturn = 0, kReference = 1, kClearance = 2, kDepth = 3, kRelativeDepth = 4;
 /// Of CYCLE83.
 constexpr int kFirstDepth = 5, kFirstRelative = 6, kDecrement = 7, kFirstFeedShare = 10,
-              kVariant = 11, kLeastPeck = 13, kBack = 14;
+              kVariant = 11, kMinPeck = 13, kBack = 14;
 /// Of CYCLE85.
 constexpr int kFeedIn = 6, kFeedOut = 7;
 
@@ -88,8 +88,8 @@ Expected<double, cl::Refusal> depth_of(const Arguments& v, int absolute, int rel
   const double by_plane = v[kReference] - v[absolute];
   if (v[relative] == 0) return by_plane;
   const double depth = std::abs(v[relative]);
-  const bool is_told_twice = v[absolute] != 0 && std::abs(by_plane - depth) > kSameDepth;
-  if (is_told_twice) {
+  const bool is_reported_twice = v[absolute] != 0 && std::abs(by_plane - depth) > kSameDepth;
+  if (is_reported_twice) {
     return refuse(std::string(name) + ": two depths, " + cl::short_number(by_plane) +
                       " by its Z and " + cl::short_number(depth) + " as a length",
                   "tell one of them", std::string(name));
@@ -105,7 +105,7 @@ Expected<std::vector<double>, cl::Refusal> pecks_of(const Arguments& v, double d
   if (!first) return tl::make_unexpected(first.error());
   if (v[kFirstDepth] == 0 && v[kFirstRelative] == 0) *first = depth;
   const double decrement = v[kDecrement];
-  const double least = decrement < 0 ? std::max(v[kLeastPeck], depth * 1e-3) : decrement;
+  const double least = decrement < 0 ? std::max(v[kMinPeck], depth * 1e-3) : decrement;
   std::vector<double> pecks;
   double peck = std::min(*first, depth), left = depth;
   if (!(peck > 0)) return refuse("CYCLE83: its first depth is not below the reference plane");

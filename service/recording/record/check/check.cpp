@@ -10,9 +10,9 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/recording/record/check/joint_judge.hpp"
+#include "service/recording/record/check/joint_check.hpp"
 #include "service/recording/record/check/path_check.hpp"
-#include "service/recording/record/check/unwind_judge.hpp"
+#include "service/recording/record/check/unwind_check.hpp"
 
 namespace meridian::record {
 namespace {
@@ -29,7 +29,7 @@ class Survey {
 
   void add(const RecordingRow& row) {
     if (rows_ == 0) first_cycle_ = row.cycle;
-    if (rows_ > 0) judge_grid(row);
+    if (rows_ > 0) check_grid(row);
     const bool has_moved = rows_ > 0 && row.joints != last_.joints;
     if (!begins_.empty() && !has_moved && begins_.back().cycle == last_.cycle) {
       begins_.back().cycle = row.cycle;  // still at rest there
@@ -102,7 +102,7 @@ class Survey {
   [[nodiscard]] const LimitedVector& largest() const noexcept { return largest_; }
 
  private:
-  void judge_grid(const RecordingRow& row) {
+  void check_grid(const RecordingRow& row) {
     if (row.cycle <= last_.cycle) {
       if (disorders_++ == 0) disorder_ = row.cycle;
       return;
@@ -222,9 +222,9 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   report.cut_s = static_cast<double>(report.end_cycle - report.begin_cycle) * report.cycle_s;
   if (report.rows == 0) return report;
 
-  JointJudge joints(model, survey.largest());
+  JointCheck joints(model, survey.largest());
   PathCheck tool(model, path, options);
-  UnwindJudge unwinding(model, path.begin_tool_length_mm(), options);
+  UnwindCheck unwinding(model, path.begin_tool_length_mm(), options);
   const bool has_cut = survey.has_cut(options);
   std::uint64_t next_cycle = report.begin_cycle, missing = 0;
   read = for_each(recording, options, [&](const RecordingRow& row) {

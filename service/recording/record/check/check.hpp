@@ -31,14 +31,15 @@ struct CheckOptions {
   [[nodiscard]] double max_feed_factor() const noexcept;
 };
 
-/// Judges a recording against the path of its CL file and the limits of the machine, by forward
+/// Checks a recording against the path of its CL file and the limits of the machine, by forward
 /// kinematics and finite differences alone:
 ///
 /// * there is a monotone matching of commanded poses and path, from begin to end, in which every
 ///   pose, at the setpoints and at three points between neighbouring ones (cubic through four), and
 ///   every CL vertex in its turn is within tip and axis tolerance together: nothing is missing,
 ///   nothing more is cut, nothing in another order;
-/// * rows of kind `unwind` leave the path along the tool axis alone, turn the free joint by whole
+/// * rows of kind `unwind` leave the path along the tool axis alone, turn the redundant joint by
+/// whole
 ///   turns off the part, and come back to where they left;
 /// * tip speed never above the programmed feed, times the feed override in force or in force as
 ///   long before as the machine takes to follow; inverse time: tip and axis never faster than the

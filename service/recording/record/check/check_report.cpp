@@ -102,8 +102,8 @@ std::string to_text(const CheckReport& report) {
   } else {
     append(text, "cut        cycles %llu to %llu, %.3f s\n", static_cast<Count>(report.begin_cycle),
            static_cast<Count>(report.end_cycle), report.cut_s);
-    if (report.dry_cut_cycles > 0) text += "           the cut judged is of a dry run\n";
-    if (report.has_later_program) text += "           a later program follows and is not judged\n";
+    if (report.dry_cut_cycles > 0) text += "           the cut checked is of a dry run\n";
+    if (report.has_later_program) text += "           a later program follows and is not checked\n";
     append_deviation(text, "tip", report.tip_mm, report.tip_between_mm, 1e3, "um",
                      report.tip_tolerance_mm);
     text += "\n";
@@ -139,7 +139,7 @@ std::string to_text(const CheckReport& report) {
            report.stage.determinant_mm, report.stage.apart_mm.value);
   }
   if (report.fault_stop_cycles > 0) {
-    append(text, "FaultStop  %llu cycles, judged by the FaultStop limits\n",
+    append(text, "FaultStop  %llu cycles, checked by the FaultStop limits\n",
            static_cast<Count>(report.fault_stop_cycles));
   }
   if (report.dry_cycles > 0) {

@@ -89,7 +89,7 @@ struct CheckReport {
   double cycle_s = 0, span_s = 0;
   std::uint64_t begin_cycle = 0, end_cycle = 0;  ///< first and last of the cut
   double cut_s = 0;
-  bool has_later_program = false;  ///< which is not judged against the path
+  bool has_later_program = false;  ///< which is not checked against the path
   std::uint64_t motion_blocks = 0;
   double tip_length_mm = 0;
   double tip_tolerance_mm = 0, axis_tolerance_rad = 0;
@@ -98,7 +98,7 @@ struct CheckReport {
   Peak tip_between_mm, axis_between_rad;  ///< at three places between neighbouring setpoints
   Peak vertex_mm;                         ///< `line`: of the block that ends there
   std::uint64_t vertices = 0, vertices_in_gaps = 0;
-  std::uint64_t unwindings = 0;  ///< turns of the free joint off the part
+  std::uint64_t unwindings = 0;  ///< turns of the redundant joint off the part
   Peak feed;                     ///< tip speed / programmed feed
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows

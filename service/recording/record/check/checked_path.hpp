@@ -45,7 +45,7 @@ struct PathElement {
   [[nodiscard]] ToolPose slope(double t) const noexcept;
 };
 
-/// The path that a CL file programs, from the end of its first motion block on, as an outside judge
+/// The path that a CL file programs, from the end of its first motion block on, as an outside check
 /// sees it: written from the CL blocks alone, without code of the planner.
 class CheckedPath {
  public:

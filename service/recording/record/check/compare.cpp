@@ -73,7 +73,7 @@ class Comparison {
     ++report_.compared;
     last_a_ = a;
     last_b_ = b;
-    judge(a, b);
+    check(a, b);
   }
 
   /// A row that repeats the plan time matched last: at rest, one waited longer than the other.
@@ -81,11 +81,11 @@ class Comparison {
     return report_.compared > 0 &&
            std::abs(row.plan_time_s - last_a_.plan_time_s) <= kSamePlanTime_s;
   }
-  void rest_of_a(const RecordingRow& row) { judge(row, last_b_); }
-  void rest_of_b(const RecordingRow& row) { judge(last_a_, row); }
+  void rest_of_a(const RecordingRow& row) { check(row, last_b_); }
+  void rest_of_b(const RecordingRow& row) { check(last_a_, row); }
 
  private:
-  void judge(const RecordingRow& a, const RecordingRow& b) {
+  void check(const RecordingRow& a, const RecordingRow& b) {
     bool is_different = false;
     for (int i = 0; i < limited_count(model_); ++i) {
       if (is_same_bits(a.places[i], b.places[i])) continue;

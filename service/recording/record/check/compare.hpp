@@ -30,7 +30,7 @@ struct ComparisonReport {
   }
 };
 
-/// Judges whether two recordings hold the same motion, bit for bit on every cycle that both sent.
+/// Checks whether two recordings hold the same motion, bit for bit on every cycle that both sent.
 ///
 /// Rows are aligned by plan time, from the first cycle in which the joints move; so neither what
 /// went before, nor how long an action was waited for, nor cycles that one of them lost matter.

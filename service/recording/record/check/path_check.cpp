@@ -13,7 +13,7 @@ namespace meridian::record {
 namespace {
 
 constexpr double kNudge = 1e-6;  // mm, rad
-constexpr double kLeastRate = 1e-9;
+constexpr double kMinRate = 1e-9;
 
 /// The path, and where it is one pose alone an element that stands there.
 [[nodiscard]] std::vector<PathElement> elements_of(const CheckedPath& path) {
@@ -62,7 +62,7 @@ PathMatching::Gap PathCheck::gap_before(const Sample& at) const {
   PathMatching::Gap gap;
   gap.time_s = static_cast<double>(at.missing + 1) * static_cast<double>(model_.cycle_ns) * 1e-9;
   gap.factor = options_.max_feed_factor();
-  gap.fastest_mm_per_s = gap.fastest_rad_per_s = kLeastRate;
+  gap.fastest_mm_per_s = gap.fastest_rad_per_s = kMinRate;
   const double length = elements_[matching_.lowest().element].tool_length_mm;
   const ToolPose pose = forward(model_, length, at.joints);
   for (int i = 0; i < model_.joint_count; ++i) {

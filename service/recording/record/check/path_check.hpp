@@ -9,8 +9,8 @@
 #include "service/recording/record/check/check.hpp"
 #include "service/recording/record/check/creep_check.hpp"
 #include "service/recording/record/check/path_matching.hpp"
-#include "service/recording/record/check/speed_judge.hpp"
-#include "service/recording/record/check/time_judge.hpp"
+#include "service/recording/record/check/speed_check.hpp"
+#include "service/recording/record/check/time_check.hpp"
 #include "service/recording/record/check/vertex_check.hpp"
 
 namespace meridian::record {
@@ -61,8 +61,8 @@ class PathCheck {
   std::vector<PathElement> elements_;  ///< of a path that is one pose: one that stands there
   PathMatching matching_;
   VertexCheck vertices_;
-  SpeedJudge speeds_;
-  TimeJudge times_;
+  SpeedCheck speeds_;
+  TimeCheck times_;
   CreepCheck creep_;
   Tolerance tolerance_;              ///< at the last pose
   std::array<Sample, 4> samples_{};  ///< newest last

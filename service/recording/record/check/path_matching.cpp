@@ -23,7 +23,7 @@ constexpr int kEarlyLooks = 1000;
 constexpr double kLongestLookStep_mm = 1;
 
 /// What the element takes at least, s.
-[[nodiscard]] double least_time(const PathElement& element, const PathMatching::Gap& gap) {
+[[nodiscard]] double min_time(const PathElement& element, const PathMatching::Gap& gap) {
   const auto rate = [&gap](double asked, double fastest) {
     return asked > 0 ? std::min(gap.factor * asked, fastest) : fastest;
   };
@@ -100,7 +100,7 @@ bool PathMatching::reach(double factor) {
 /// as the time allows.
 void PathMatching::extend(const Gap& gap, Position from) {
   const Position low = lowest();
-  double left = gap.time_s + from.t * least_time(elements_[from.element], gap);
+  double left = gap.time_s + from.t * min_time(elements_[from.element], gap);
   for (std::size_t i = low.element; i < elements_.size() && left >= 0; ++i) {
     const PathElement& element = elements_[i];
     while (first_ + ahead_.size() <= i) ahead_.push_back(Interval::none());
@@ -108,7 +108,7 @@ void PathMatching::extend(const Gap& gap, Position from) {
     reached = free_on(element, next_.with_tool(element.tool_length_mm), tolerance_);
     if (i == low.element) reached.cut(low.t, 1);
     if (i >= from.element) {
-      const double least = least_time(element, gap);
+      const double least = min_time(element, gap);
       if (least > left) reached.cut(0, left / least);
       left -= least;
     }

@@ -51,7 +51,7 @@ struct RecordingRow {
 /// Needs the columns cycle, due_ns and one `<joint>_mm` or `<joint>_rad` per joint of the machine,
 /// in any order; the other columns of RecordingWriter are taken where they are, unknown ones are
 /// skipped. Of a machine with a stage the columns of its drives do instead of those of the joints
-/// that they carry, as in a recording of the wire. Every number is judged. Not thread-safe.
+/// that they carry, as in a recording of the wire. Every number is checked. Not thread-safe.
 /// Proof: tests/unit/record/recording_test.cpp.
 class RecordingReader {
  public:

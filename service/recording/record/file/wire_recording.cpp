@@ -61,7 +61,7 @@ bool WireWriter::write(const WireRow& seen) noexcept {
   return true;
 }
 
-bool WireBook::judge_order(const Setpoint& setpoint) {
+bool WireBook::check_order(const Setpoint& setpoint) {
   const std::uint64_t cycle = setpoint.cycle;
   if (cycle + kRestart < last_cycle_) {
     ++restarts_;
@@ -77,13 +77,13 @@ bool WireBook::judge_order(const Setpoint& setpoint) {
     missing_ += lost;
     ++gap_count_;
     longest_gap_ = std::max(longest_gap_, lost);
-    if (gaps_.size() < kMostGaps) gaps_.push_back({last_cycle_, lost});
+    if (gaps_.size() < kMaxGaps) gaps_.push_back({last_cycle_, lost});
   }
   return true;
 }
 
 /// Following error: feedback against the setpoint that it had seen.
-void WireBook::judge_following(const WireRow& row) {
+void WireBook::check_following(const WireRow& row) {
   if (row.feedback_cycle == 0 || row.feedback_cycle == last_feedback_cycle_) return;
   last_feedback_cycle_ = row.feedback_cycle;
   ++feedbacks_;
@@ -96,7 +96,7 @@ void WireBook::judge_following(const WireRow& row) {
 
 void WireBook::add(const WireRow& row) {
   const Setpoint& setpoint = row.setpoint;
-  if (received_ == 0 || judge_order(setpoint)) {
+  if (received_ == 0 || check_order(setpoint)) {
     last_cycle_ = setpoint.cycle;
     last_due_ = setpoint.due_ns;
   }
@@ -109,7 +109,7 @@ void WireBook::add(const WireRow& row) {
   oldest_ns_ = std::max(oldest_ns_, age);
   const double octaves = std::log2(std::max(1.0, static_cast<double>(age) / kFirstEdge_ns));
   ++ages_[std::min(ages_.size() - 1, static_cast<std::size_t>(4 * octaves))];
-  judge_following(row);
+  check_following(row);
 }
 
 std::string WireBook::to_text() const {

@@ -64,13 +64,13 @@ class WireBook {
 
  private:
   static constexpr std::size_t kRemembered = 1024;  ///< setpoints that feedback may refer to
-  static constexpr std::size_t kMostGaps = 20;      ///< that are told one by one
+  static constexpr std::size_t kMaxGaps = 20;       ///< that are told one by one
   struct Gap {
     std::uint64_t after = 0, count = 0;
   };
   /// False for a sample that is not newer than the last.
-  [[nodiscard]] bool judge_order(const Setpoint& setpoint);
-  void judge_following(const WireRow& row);
+  [[nodiscard]] bool check_order(const Setpoint& setpoint);
+  void check_following(const WireRow& row);
 
   const MachineModel& model_;
   std::int64_t cycle_ns_;

@@ -19,7 +19,7 @@
 namespace meridian::record {
 namespace {
 
-constexpr std::size_t kMostMoments = 1500;  ///< of a strip: as many as it has pixels, and more
+constexpr std::size_t kMaxMoments = 1500;  ///< of a strip: as many as it has pixels, and more
 constexpr double kNearBefore_s = 0.2, kNearAfter_s = 0.4;
 
 /// Some neighbouring cycles: the last positions, the largest of the rest.
@@ -34,7 +34,7 @@ class Strip {
  public:
   Strip(double begin_s, double end_s, double cycle_s) : begin_s_(begin_s), end_s_(end_s) {
     const double cycles = std::max(1.0, (end_s - begin_s) / cycle_s);
-    moments.resize(static_cast<std::size_t>(std::min<double>(cycles, kMostMoments)) + 1);
+    moments.resize(static_cast<std::size_t>(std::min<double>(cycles, kMaxMoments)) + 1);
   }
 
   void add(const Moment& cycle) {

@@ -102,7 +102,7 @@ class DriveLook {
       const auto n = static_cast<std::size_t>(i);
       const bool is_same = drive_state_word(row.statusword[n]) == drive_state_word(words_[n]) &&
                            row.drive_error[n] == errors_[n];
-      if (has_words_ && !is_same && report_.turns.size() < FlightReport::kMostTurns) {
+      if (has_words_ && !is_same && report_.turns.size() < FlightReport::kMaxTurns) {
         report_.turns.push_back({i, at_s, words_[n], row.statusword[n], row.drive_error[n]});
       }
     }

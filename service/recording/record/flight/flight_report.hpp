@@ -43,7 +43,7 @@ struct FlightReport {
   bool is_emergency = false;
   double oldest_feedback_s = 0, oldest_at_s = 0;
   std::array<Following, kMaxJoints> following;  ///< by drive
-  static constexpr std::size_t kMostTurns = 60;
+  static constexpr std::size_t kMaxTurns = 60;
   std::vector<DriveTurn> turns;  ///< the first of them
 };
 

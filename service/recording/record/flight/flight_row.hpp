@@ -27,7 +27,7 @@ struct FlightRow {
 };
 
 /// An alarm as EventCode::kAlarm tells it.
-struct ToldAlarm {
+struct ReportedAlarm {
   Alarm alarm = Alarm::kNone;
   int joint = 0;  ///< place in limited.hpp; 0 where the alarm is of no joint
   double value = 0;

@@ -24,7 +24,7 @@ Expected<FlightWriter, RecordError> FlightWriter::create(const std::string& path
   return FlightWriter(std::move(*file), model);
 }
 
-bool FlightWriter::write(const FlightRow& seen, const ToldAlarm& alarm) noexcept {
+bool FlightWriter::write(const FlightRow& seen, const ReportedAlarm& alarm) noexcept {
   char* const at = file_.begin_row();
   if (at == nullptr) return false;
   const DriveReport& drives = seen.drives;

@@ -26,7 +26,7 @@ class FlightWriter {
   [[nodiscard]] static Expected<FlightWriter, RecordError> create(const std::string& path,
                                                                   const MachineModel& model);
   /// `alarm`: the one in force in that cycle.
-  bool write(const FlightRow& row, const ToldAlarm& alarm) noexcept;
+  bool write(const FlightRow& row, const ReportedAlarm& alarm) noexcept;
   /// Flushes and closes; false where any row was lost.
   bool close() noexcept { return file_.close(); }
   [[nodiscard]] int error_number() const noexcept { return file_.error_number(); }

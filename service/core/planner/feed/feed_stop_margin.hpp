@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/cycle/stop_law.hpp"
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/planner/time_piece.hpp"
+#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/feed_piece.hpp"
+
+namespace meridian {
+
+/// Authority to stop on a planned feed: with which acceleration and jerk along the path a hold or a
+/// FaultStop keeps every joint's limits all the way, and ends before the plan does. It holds for
+/// every state of the piece, at whatever rate of plan time up to the one that it is granted for.
+///
+/// The stops from both ends of the piece are run through the cells ahead; one that starts slower is
+/// nowhere faster. Every cell has bounds of the joints' derivatives, so the most that stops may use
+/// there is a sum. What they use too much of is lessened until all cells pass; where nothing is
+/// left it is sought for slower rates (docs/motion.md, section 9).
+/// Proof: tests/property/planner/smooth_stop_test.cpp.
+class FeedStopMargin {
+ public:
+  explicit FeedStopMargin(const MachineModel& model) noexcept;
+
+  /// The pieces to come lie in cells of `grid` before `rest_cell`, where the plan rests.
+  void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
+
+  /// Fills in the authority of `time`, made of `piece`: at the full rate or the next one that has
+  /// some, and for slow motions; 0 where there is none. In a tail, which comes to rest anyway, at
+  /// the full rate alone.
+  void grant(const FeedPiece& piece, TimePiece& time) noexcept;
+
+ private:
+  /// One over the limits.
+  struct Caps {
+    CellBound::Values acceleration = CellBound::Values::Zero();
+    CellBound::Values jerk = CellBound::Values::Zero();
+  };
+  /// What stops of one kind may use, and what the piece before got.
+  struct Search {
+    Caps caps;
+    StopMargin last;
+  };
+  /// Bounds of what stops do in a cell: ṡ², ṡ³, s̈ > 0, 3 ṡ|s̈| where s̈ < 0 and where s̈ > 0.
+  struct Motion {
+    double v2 = 0, v3 = 0, rising = 0, sinking_v = 0, rising_v = 0;
+  };
+  /// Largest use of limits by stops: 1 is all.
+  struct Use {
+    double acceleration = 0, jerk = 0;
+    bool is_too_fast = false;  ///< for feed or velocity
+    std::int64_t cell = 0;     ///< where most of the jerk is used, and by what
+    Motion motion;
+    [[nodiscard]] bool is_within() const noexcept {
+      return !is_too_fast && acceleration <= 1 && jerk <= 1;
+    }
+  };
+  /// Shares of the jerk at the worst place: by deceleration on the bend, by the bend alone.
+  struct Cause {
+    double by_depth = 0, by_speed = 0;
+  };
+
+  /// States at both ends of a piece, s counted from the begin of its cell.
+  struct Ends {
+    PathState begin, end;
+  };
+  /// What stops may use that start with no more than `velocity`.
+  struct Grant {
+    StopMargin authority;
+    double velocity = 0;
+  };
+
+  [[nodiscard]] Grant find(Search& search, std::int64_t cell, const Ends& ends,
+                           bool is_slower_good) const noexcept;
+  [[nodiscard]] StopMargin find(const Caps& caps, std::int64_t cell,
+                                const Ends& ends) const noexcept;
+  /// What the cell allows next to rest.
+  [[nodiscard]] StopMargin max_in(const Caps& caps, std::int64_t cell) const noexcept;
+  /// `now` or less of it, that all stops from `from` may use; 0: there is none.
+  [[nodiscard]] StopMargin lessen(const Caps& caps, std::int64_t cell, const Ends& from,
+                                  StopMargin now, const StopMargin& most) const noexcept;
+  /// Whether a stop from `begin` passes the speed that `cell` allows before its s̈ is down to zero.
+  [[nodiscard]] static bool rises_too_far(const FeedCell& cell, const PathState& begin,
+                                          double jerk) noexcept;
+  /// Adds the use of all stops under the one from `begin`. False: it ends behind the plan.
+  [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
+                             const StopMargin& authority, Use& use) const noexcept;
+  void add_use(const Caps& caps, std::int64_t cell, const StopMargin& authority,
+               const Motion& motion, Use& use) const noexcept;
+  [[nodiscard]] Cause cause_of(const Caps& caps, const Use& use) const noexcept;
+
+  int count_ = 0;
+  double slope_ = 0;  ///< of the rate, 1/s
+  Search hold_, fault_;
+  const CellGrid* grid_ = nullptr;
+  std::int64_t rest_cell_ = 0;
+};
+
+}  // namespace meridian

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/route/ahead_way.hpp"
+
+namespace meridian {
+
+/// How many blocks ways behind the pole carry, which may have to wait for blocks.
+///
+///     ask() ─▶ look() ─ false: blocks are missing, again when there are more ─▶ ways()
+class PoleLookAhead {
+ public:
+  virtual ~PoleLookAhead() = default;
+
+  /// Where ways start: at the end of block `sequence`, or on its way.
+  struct Start {
+    std::uint64_t sequence = 0;
+    bool is_on_its_way = false;
+    ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+    double tool_length_mm = 0;
+  };
+  virtual void ask(const Start& start, std::span<const AheadWay> ways) noexcept = 0;
+  /// Whether the answer to what was asked last is known.
+  [[nodiscard]] virtual bool look() noexcept = 0;
+  [[nodiscard]] virtual std::span<const AheadWay> ways() const noexcept = 0;
+};
+
+}  // namespace meridian

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/recording/record/check/check.hpp"
+
+namespace meridian::record {
+
+/// Checks the rows of kind `unwind`, in which the tool is off its path on purpose: it leaves the
+/// part along its axis, the redundant joint alone turns by whole turns when it is off by the whole
+/// declared way, it comes back along the same line to where it left. Anything else is a finding,
+/// also any such row on a machine whose file has no unwinding.
+///
+/// The place where the tool rested is the row before. Where up to kMaxMissing rows are missing
+/// there, it is known to the way that the tool made meanwhile: from rest it grows faster, so less
+/// than the step seen next for every cycle; the same at the other end. Where more are missing the
+/// line alone is checked. Units: mm, rad. Frame: W.
+class UnwindCheck {
+ public:
+  /// Both tolerances of `options` are in force. `tool_length_mm`: any; the tool moves along its
+  /// axis, whatever its length.
+  UnwindCheck(const MachineModel& model, double tool_length_mm, const CheckOptions& options);
+
+  /// Takes every row of the cut, in order. Returns whether it is one of an unwinding.
+  bool add(const RecordingRow& row);
+  void finish(CheckReport& report);
+
+ private:
+  static constexpr std::uint64_t kMaxMissing = 4;
+
+  void begin(const RecordingRow& row);
+  void check(const RecordingRow& row);
+  void end(const RecordingRow& row);
+  void check_turn(double off, const RecordingRow& row);
+  void blame(const char* what, const RecordingRow& row);
+  [[nodiscard]] ToolPose held_pose(const RecordingRow& row) const;
+
+  const MachineModel& model_;
+  double tool_length_;
+  CheckOptions options_;
+  int free_;
+  RecordingRow last_;
+  bool has_last_ = false, is_in_ = false;
+  bool has_rest_ = false;    ///< where the tool left is known, to `slack_`
+  bool has_turned_ = false;  ///< the redundant joint turns or has turned
+  JointVector rest_{};       ///< where the tool left, or the first row
+  ToolPose begin_{Vector3::Zero(), Vector3::UnitZ()};
+  double missing_ = 0;                   ///< rows between rest and the first one
+  double slack_ = 0;                     ///< of the place where the tool left, mm
+  double off_ = 0, step_ = 0, top_ = 0;  ///< of the last row; per cycle; where the joint turns. mm
+  std::uint64_t rows_ = 0;               ///< of this unwinding
+  std::uint64_t count_ = 0, bad_ = 0;
+  const char* what_ = "";
+  std::uint64_t bad_cycle_ = 0;
+  std::uint32_t bad_line_ = 0;
+};
+
+}  // namespace meridian::record
