@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "meridian/geometry/segment.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "service/analysis/simulate/simulate.hpp"
@@ -11,30 +12,16 @@
 #include "service/text/printed.hpp"
 
 namespace meridian::simulate {
-namespace {
-
-/// How far `tip` is from the line between the ends of `move`.
-[[nodiscard]] double distance_from(const stream::StraightMove& move, const Vector3& tip) {
-  const Vector3 along = move.to.tip - move.from.tip;
-  const double square = along.squaredNorm();
-  const double share =
-      square > 0 ? std::clamp((tip - move.from.tip).dot(along) / square, 0.0, 1.0) : 0.0;
-  return (tip - move.from.tip - share * along).norm();
-}
-
-}  // namespace
-
 MoveForecast forecast(const stream::StraightMove& move, const JointVector& joints,
                       const MachineModel& model) {
   MoveForecast found;
-  found.length_mm = (move.to.tip - move.from.tip).norm();
   found.joints = joints;
   double farthest_mm = 0;
   const auto follow = [&](const CycleRecord& record) {
     if (!is_leading(record.setpoint.flags)) return;
     found.joints = record.joints;
     const Vector3 tip = forward(model, model.tool_length_mm, record.joints).tip;
-    farthest_mm = std::max(farthest_mm, distance_from(move, tip));
+    farthest_mm = std::max(farthest_mm, distance_to_segment(tip, move.from.tip, move.to.tip));
   };
   SimulateOptions options;
   options.start = has_stage(model) ? drives_of(model, joints) : joints;

@@ -14,7 +14,6 @@ inline constexpr double kStraight_mm = 1e-6;
 /// What a straight move comes to. Units: mm, s.
 struct MoveForecast {
   std::string refusal;   ///< why it cannot be done from there, one sentence; empty: it can
-  double length_mm = 0;  ///< of the tip's line; of a move of the joints 0
   double time_s = 0;     ///< at overrides of 100 %
   JointVector joints{};  ///< at its end
 };

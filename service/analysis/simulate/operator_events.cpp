@@ -2,12 +2,12 @@
 #include "service/analysis/simulate/operator_events.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "meridian/cycle/state_table.hpp"
 #include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/text/number.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::simulate {
@@ -22,13 +22,6 @@ namespace {
     part.remove_suffix(1);
   }
   return part;
-}
-
-template <class Number>
-[[nodiscard]] bool parse(std::string_view text, Number& value) {
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && rest == end;
 }
 
 [[nodiscard]] std::optional<Verb> find_verb(std::string_view word) {
@@ -68,13 +61,13 @@ struct EventRow {
   const std::string_view cycle = cut(text, ',');
   row.word = cut(text, ',');
   const std::string_view argument = cut(text, ',');
-  if (!parse(cycle, row.event.cycle)) return about(cycle, "is no cycle number");
+  if (!text::read_number(cycle, row.event.cycle)) return about(cycle, "is no cycle number");
   const bool is_loss = is_of_loss(row.word);
   const bool is_of_host = is_loss || row.word == record::kActionAnsweredWord;
   const auto verb = find_verb(row.word);
   if (!verb && !is_of_host) return about(row.word, "is no verb (hold, resume, feed_override, ...)");
   double& value = row.event.argument;
-  if (!argument.empty() && (!parse(argument, value) || !std::isfinite(value))) {
+  if (!argument.empty() && (!text::read_number(argument, value) || !std::isfinite(value))) {
     return about(argument, "is no number");
   }
   if (!text.empty()) return "there is more than cycle, verb and argument";
@@ -122,18 +115,19 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   if (mark.is_begin && row.empty()) return true;  // of before, which did not tell the tool
   if (mark.is_begin) {
     const std::string_view length = cut(row, ',');
-    return row.empty() && parse(length, mark.tool_length_mm) && mark.tool_length_mm >= 0;
+    return row.empty() && text::read_number(length, mark.tool_length_mm) &&
+           mark.tool_length_mm >= 0;
   }
   if (word == record::kPlanLookedWord) {
     const bool is_begin = row.empty();
     const std::string_view from = cut(row, ',');
-    return row.empty() && parse(factor, mark.looked_at) && mark.looked_at > 0 &&
-           (is_begin || (parse(from, mark.sequence) && mark.sequence > 0));
+    return row.empty() && text::read_number(factor, mark.looked_at) && mark.looked_at > 0 &&
+           (is_begin || (text::read_number(from, mark.sequence) && mark.sequence > 0));
   }
   const std::string_view block = cut(row, ','), span = cut(row, ',');
-  return word == record::kFeedPlannedWord && row.empty() && parse(factor, mark.factor) &&
-         mark.factor >= 1 && std::isfinite(mark.factor) && parse(block, mark.sequence) &&
-         parse(span, mark.span);
+  return word == record::kFeedPlannedWord && row.empty() &&
+         text::read_number(factor, mark.factor) && mark.factor >= 1 && std::isfinite(mark.factor) &&
+         text::read_number(block, mark.sequence) && text::read_number(span, mark.span);
 }
 
 /// Of what came before the start, the overrides and switches in force then.

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <string_view>
 
 #include "service/machine/file/config_error.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/text/number.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::cli {
@@ -22,11 +22,6 @@ constexpr std::array<std::string_view, 3> kWords{"set", "select", "clear"};
 [[nodiscard]] bool complain(const std::string& what) {
   std::fprintf(stderr, "meridian: %s\n", what.c_str());
   return false;
-}
-
-[[nodiscard]] bool read_number(const std::string& text, std::uint8_t& number) {
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && rest == text.data() + text.size();
 }
 
 /// Position and name of a row that is set; false, and printed, where they are none.
@@ -55,7 +50,7 @@ std::optional<FrameOrder> frame_order(const std::vector<std::string>& words,
       words.empty() ? kWords.end() : std::find(kWords.begin(), kWords.end(), words.front());
   FrameOrder order;
   bool is_right =
-      word != kWords.end() && words.size() == 2 && read_number(words[1], order.frame.number);
+      word != kWords.end() && words.size() == 2 && text::read_number(words[1], order.frame.number);
   if (!is_right) {
     (void)complain("frame takes set, select or clear and a number, or list");
     return std::nullopt;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "meridian/units.hpp"
 #include "service/cli/commands.hpp"
 #include "service/protocol/jog_hand.hpp"
+#include "service/text/number.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -44,9 +44,7 @@ constexpr std::array<const char*, kToolAxisCount> kToolAxes{"tool-x", "tool-y", 
 
 [[nodiscard]] std::optional<double> find_number(const std::string& text) {
   double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+  if (text::read_finite(text, value)) return value;
   std::fprintf(stderr, "meridian: '%s' is no velocity; give mm/s, or deg/s of a rotary joint\n",
                text.c_str());
   return std::nullopt;

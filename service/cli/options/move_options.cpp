@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -18,6 +17,7 @@
 #include "service/machine/file/positions_file.hpp"
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/move_run.hpp"
+#include "service/text/number.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -44,6 +44,18 @@ void print_joints(const MachineModel& model, const JointVector& joints) {
                 joint.is_rotary ? units::deg_from_rad(joints[i]) : joints[i],
                 joint.is_rotary ? "deg" : "mm");
   }
+}
+
+[[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> words{""};
+  for (const char letter : text) {
+    if (letter == ',') {
+      words.emplace_back();
+    } else {
+      words.back() += letter;
+    }
+  }
+  return words;
 }
 
 /// The joints of the position called `name`.
@@ -112,36 +124,26 @@ std::vector<const CLI::Option*> add_move_options(CLI::App& command, MoveOptions&
 
 std::optional<ToolPose> pose_of(const std::string& text, const ToolPose& now) {
   std::array<double, 6> value{0, 0, 0, now.axis.x(), now.axis.y(), now.axis.z()};
-  std::size_t count = 0;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (count < value.size()) {
-    const auto [rest, error] = std::from_chars(at, end, value[count]);
-    if (error != std::errc() || !std::isfinite(value[count])) return std::nullopt;
-    ++count;
-    at = rest;
-    if (at == end) break;
-    if (*at++ != ',') return std::nullopt;
+  const std::vector<std::string> words = split_at_commas(text);
+  if (words.size() != 3 && words.size() != value.size()) return std::nullopt;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!text::read_finite(words[i], value[i])) return std::nullopt;
   }
-  if (at != end || (count != 3 && count != value.size())) return std::nullopt;
   return ToolPose{{value[0], value[1], value[2]}, {value[3], value[4], value[5]}};
 }
 
 Expected<JointVector, std::string> joints_of(const std::string& text, const MachineModel& model,
                                              const JointVector& now) {
   JointVector joints = now;
-  std::istringstream words(text);
-  for (std::string word; std::getline(words, word, ',');) {
+  for (const std::string& word : split_at_commas(text)) {
     const std::size_t sign = word.find('=');
     const std::string name = word.substr(0, sign);
     const auto begin = model.joints.begin(), end = begin + model.joint_count;
     const auto joint =
         std::find_if(begin, end, [&name](const JointSpec& known) { return known.name == name; });
     double value = 0;
-    const char* const last = word.data() + word.size();
-    const char* const first = sign == std::string::npos ? last : word.data() + sign + 1;
-    const auto [rest, error] = std::from_chars(first, last, value);
-    if (joint == end || error != std::errc() || rest != last || !std::isfinite(value)) {
+    const std::string number = sign == std::string::npos ? "" : word.substr(sign + 1);
+    if (joint == end || !text::read_finite(number, value)) {
       return tl::make_unexpected("'" + word + "': say a joint of machine " + model.name +
                                  " and its value, as " + begin->name + "=12.5");
     }
@@ -159,7 +161,7 @@ int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
     return fail_move("move needs one of --tip, --joints and --to, and --feed", kUsage);
   }
   auto model = reported_machine(machine);
-  if (!model) return fail_move("the machine does not tell its file", kVerdictNo);
+  if (!model) return fail_move("the machine does not publish its file", kVerdictNo);
   if (!link.wait_for_status(peer.timeout())) {
     return fail_move("machine " + machine.name + " does not answer", kNoPeer);
   }

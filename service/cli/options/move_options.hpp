@@ -15,7 +15,7 @@
 
 namespace meridian::cli {
 
-/// What `meridian ctl move` is told.
+/// The options of `meridian ctl move`.
 struct MoveOptions {
   std::string tip;             ///< x,y,z[,i,j,k] in the work frame in force, mm
   std::string joints;          ///< NAME=VALUE[,...] in mm and deg; the others stay
@@ -36,8 +36,8 @@ std::vector<const CLI::Option*> add_move_options(CLI::App& command, MoveOptions&
                                                            const MachineModel& model,
                                                            const JointVector& now);
 
-/// Moves the machine that tells `machine`, tip or joints, straight to where the options say, and
-/// stays until it is there or the user interrupts, which aborts the move. The exit code.
+/// Moves the machine that publishes `machine`, tip or joints, straight to where the options say,
+/// and stays until it is there or the user interrupts, which aborts the move. The exit code.
 [[nodiscard]] int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
                            dds::Participant& participant, stream::OperatorLink& link,
                            const std::string& operator_name, const PeerOptions& peer);

@@ -13,6 +13,7 @@
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/file/tool_names.hpp"
 #include "service/protocol/tools_sum.hpp"
+#include "service/text/number.hpp"
 #include "service/text/printed.hpp"
 #include "service/text/whole_file.hpp"
 
@@ -31,9 +32,7 @@ std::nullopt_t refuse_tool(const std::string& what) {
 
 [[nodiscard]] std::optional<int> tool_number(const std::string& text) {
   int number = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_right = error == std::errc() && rest == text.data() + text.size() && number > 0;
-  return is_right ? std::optional(number) : std::nullopt;
+  return text::read_number(text, number) && number > 0 ? std::optional(number) : std::nullopt;
 }
 
 /// "0,31.5,60,20" as pairs; false where it is none.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +14,7 @@
 #include "service/cli/options/finite_range.hpp"
 #include "service/cli/options/reported_machine.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/text/number.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -32,9 +32,7 @@ int fail_touch_off(const std::string& what, int exit_code = kUsage) {
 
 [[nodiscard]] std::optional<std::uint8_t> number_of(const std::string& text) {
   std::uint8_t number = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_right = error == std::errc() && rest == text.data() + text.size();
-  return is_right ? std::optional(number) : std::nullopt;
+  return text::read_number(text, number) ? std::optional(number) : std::nullopt;
 }
 
 /// Prints the answer of the machine: the exit code.

@@ -2,7 +2,6 @@
 #include "service/panel/serve/page_message.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "meridian/cycle/jog_tool.hpp"
 #include "meridian/cycle/state_table.hpp"
+#include "service/text/number.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -48,12 +48,9 @@ constexpr std::uint64_t kMaxId = 1ULL << 53U;
 [[nodiscard]] std::optional<std::uint64_t> find_long(const json& from, const char* name) {
   const auto at = from.find(name);
   if (at == from.end() || !at->is_string()) return std::nullopt;
-  const auto& text = at->get_ref<const std::string&>();
   std::uint64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end) return std::nullopt;
-  return value;
+  const bool is_number = text::read_number(at->get_ref<const std::string&>(), value);
+  return is_number ? std::optional(value) : std::nullopt;
 }
 
 [[nodiscard]] std::optional<stream::Seen> find_seen(const json& from) {

@@ -6,19 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "meridian/geometry/segment.hpp"
+
 namespace meridian::surface {
 namespace {
 
 constexpr int kChordSamples = 9;  // one of them in the middle, where a parabola has its sagitta
 constexpr double kFlatRadius_mm =
     1e7;  // what stands for a straight cutter: 1 nm of sag over 0.2 mm
-
-double distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b) noexcept {
-  const Vector3 way = b - a;
-  const double length2 = way.squaredNorm();
-  const double share = length2 > 0 ? std::clamp(way.dot(p - a) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - share * way).norm();
-}
 
 /// Radius of the circle that the cutter shows across the feed (eq. 3.2).
 double radius_across(const ContactRule& rule, const Contact& c) noexcept {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <system_error>
 
 #include "meridian/expected.hpp"
+#include "service/text/number.hpp"
 
 /// Small files of `key = value` lines that tell whether they are whole: the first line says what
 /// they are, the last has a CRC-32C of all before it.
@@ -54,8 +54,7 @@ class Lines {
   template <class Number>
   void read(std::string_view key, Number& number) {
     const std::string_view text = value(key);
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    has_failed_ = has_failed_ || error != std::errc() || rest != text.data() + text.size();
+    has_failed_ = !text::read_number(text, number) || has_failed_;
   }
   /// Finds the value among `names`.
   template <class Names>

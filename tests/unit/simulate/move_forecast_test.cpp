@@ -63,11 +63,12 @@ TEST_F(Move, EndsWhereItWasAskedFor) {
   expect_there(by({-25, 30, 5}, {-0.2, 0.2, 0.95}));
 }
 
-TEST_F(Move, TellsLengthAndTime) {
-  const Vector3 axis = forward(model, model.tool_length_mm, joints).axis;
-  const MoveForecast found = forecast_of(by({30, 40, 0}, axis));
+TEST_F(Move, TakesTheTimeOfItsLength) {
+  const ToolPose from = forward(model, model.tool_length_mm, joints);
+  const MoveForecast found = forecast_of(by({30, 40, 0}, from.axis));
   ASSERT_EQ(found.refusal, "");
-  EXPECT_NEAR(found.length_mm, 50, 1e-9);
+  const ToolPose end = forward(model, model.tool_length_mm, found.joints);
+  EXPECT_NEAR((end.tip - from.tip).norm(), 50, kTip_mm);
   EXPECT_GT(found.time_s, 1) << "50 mm at 50 mm/s, from rest to rest";
   EXPECT_LT(found.time_s, 2);
 }

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 
 #include "meridian/cycle/state_table.hpp"
+#include "service/text/number.hpp"
 
 /// Fields and rows of the events beside a recording, for who reads rows of the set-up.
 namespace meridian::record {
@@ -21,10 +21,7 @@ namespace meridian::record {
 
 template <class Number>
 [[nodiscard]] bool read_field(std::string_view& row, Number& value) {
-  const std::string_view field = next_field(row);
-  const char* const end = field.data() + field.size();
-  const auto [rest, error] = std::from_chars(field.data(), end, value);
-  return error == std::errc() && rest == end;
+  return text::read_number(next_field(row), value);
 }
 
 [[nodiscard]] inline bool read_finite(std::string_view& row, double& value) {

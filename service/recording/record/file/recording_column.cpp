@@ -2,28 +2,20 @@
 #include "service/recording/record/file/recording_column.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "service/recording/record/words.hpp"
+#include "service/text/number.hpp"
 
 namespace meridian::record {
 namespace {
 
 template <class Number>
-[[nodiscard]] bool parse_any(std::string_view text, Number& value) noexcept {
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && rest == end;
-}
-
-template <class Number>
 [[nodiscard]] bool parse(std::string_view text, Number& value) noexcept {
-  if (!parse_any(text, value)) return false;
-  if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
-  return true;
+  if constexpr (std::is_floating_point_v<Number>) return text::read_finite(text, value);
+  return text::read_number(text, value);
 }
 
 template <class Word>
@@ -113,7 +105,7 @@ bool read_field(const Column& column, std::string_view text, const std::vector<s
     case Field::kComputation:
       return parse(text, row.computation_ns);
     case Field::kFeedback:
-      return parse_any(text, row.feedback[place]);
+      return text::read_number(text, row.feedback[place]);
     case Field::kFeedbackCycle:
       return parse(text, row.feedback_cycle);
     case Field::kFeedbackAge:
