@@ -105,7 +105,7 @@ int check(Options& options, const MachineModel& model) {
   if (!options.file.empty()) {
     cl::ClReaderOptions reading = reader_options(options.cl, model);
     add_unknown_tools(options.file, reading, options.machine, tools);
-    report_machine(reading, model, tools, load_tool_names(options.machine));
+    describe_machine(reading, model, tools, load_tool_names(options.machine));
     std::vector<cl::ClWarning> warnings;
     const std::string refusal = record::read_path(options.file, reading, tools, path, &warnings);
     print_warnings(options.file, warnings);

@@ -18,7 +18,7 @@ cl::ClReaderOptions reading(const ClFileOptions& file, MachineOptions machine) {
   machine.frame = file.frame;
   const MachineModel model = load_machine(machine);
   cl::ClReaderOptions out = reader_options(file, model);
-  report_machine(out, model, load_tools(machine), load_tool_names(machine));
+  describe_machine(out, model, load_tools(machine), load_tool_names(machine));
   if (out.frame) {
     out.home = [home = out.home, frame = *out.frame](std::optional<std::uint32_t> tool) {
       std::optional<ToolPose> pose = home(tool);

@@ -59,7 +59,7 @@ int place(const Options& options, const MachineModel& model) {
   ToolTable tools = load_tools(options.machine);
   cl::ClReaderOptions reading = reader_options(options.cl, model);
   add_unknown_tools(options.program, reading, options.machine, tools);
-  report_machine(reading, model, tools, load_tool_names(options.machine));
+  describe_machine(reading, model, tools, load_tool_names(options.machine));
   std::ifstream file;
   std::istream* const input = open_cl_file(options.program, file);
   if (input == nullptr) return refuse(options.program + ": cannot be opened");

@@ -128,8 +128,8 @@ int run_stream_command(StreamCommandOptions& options) {
     reader.default_unit = cl::LengthUnit::kInch;
   }
   if (checked_for) {
-    report_machine(reader, checked_for->model, checked_for->tools.value_or(ToolTable()),
-                   named_tools(options, *machine));
+    describe_machine(reader, checked_for->model, checked_for->tools.value_or(ToolTable()),
+                     named_tools(options, *machine));
   }
   const bool is_read_first = !options.has_no_preflight && options.stream.file != "-";
   if (is_read_first && !pass_preflight(options, checked_for)) return kInputRefused;

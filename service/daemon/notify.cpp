@@ -45,9 +45,9 @@ void ServiceManager::is_stopping() noexcept { tell("STOPPING=1"); }
 
 void ServiceManager::beat(std::uint64_t cycles,
                           std::chrono::steady_clock::time_point now) noexcept {
-  if (!watchdog_ || cycles == cycles_ || now - told_ < *watchdog_ / 2) return;
+  if (!watchdog_ || cycles == cycles_ || now - reported_ < *watchdog_ / 2) return;
   cycles_ = cycles;
-  told_ = now;
+  reported_ = now;
   tell("WATCHDOG=1");
 }
 

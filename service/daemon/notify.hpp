@@ -31,7 +31,7 @@ class ServiceManager {
   int socket_ = -1;
   std::string address_;
   std::optional<std::chrono::microseconds> watchdog_;
-  std::chrono::steady_clock::time_point told_{};
+  std::chrono::steady_clock::time_point reported_{};
   std::uint64_t cycles_ = 0;
 };
 

@@ -258,7 +258,7 @@ std::string Service::reported_tools(const telemetry::SetUp& set_up) const {
 }
 
 void Service::report_set_up() {
-  if (!supervisor_.has_set_up_to_tell()) return;
+  if (!supervisor_.has_set_up_to_report()) return;
   const telemetry::SetUp& set_up = supervisor_.set_up();
   lease_.set_up(set_up.frames, supervisor_.in_force(), reported_tools(set_up), true);
   supervisor_.set_up_reported();

@@ -41,9 +41,9 @@ void append_shares(std::string& text, const LimitShares& shares, const MachineMo
 }
 
 void append_unwindings(std::string& text, const SimulateReport& report, const MachineModel& model) {
-  constexpr std::size_t kMaxTold = 12;
+  constexpr std::size_t kMaxReported = 12;
   append(text, "unwinding  %llu times\n", static_cast<Count>(report.unwinding_count));
-  const std::size_t told = std::min(kMaxTold, report.unwindings.size());
+  const std::size_t told = std::min(kMaxReported, report.unwindings.size());
   for (std::size_t n = 0; n < told; ++n) {
     const Unwinding& one = report.unwindings[n];
     append(text, "  line %u: %s would leave its travel; from %.3f deg by %+d turns, %.6g mm off\n",
@@ -57,15 +57,15 @@ void append_unwindings(std::string& text, const SimulateReport& report, const Ma
 
 /// The stretches that were eased, the farthest first where there are many.
 void append_eases(std::string& text, const SimulateReport& report) {
-  constexpr std::size_t kMaxTold = 12;
+  constexpr std::size_t kMaxReported = 12;
   append(text, "pole       axis eased in %llu stretches, at most %.4f deg\n",
          static_cast<Count>(report.ease_count), units::deg_from_rad(report.largest_ease_rad));
   std::vector<PoleEase> told = report.eases;
-  if (told.size() > kMaxTold) {
+  if (told.size() > kMaxReported) {
     std::stable_sort(told.begin(), told.end(), [](const PoleEase& a, const PoleEase& b) {
       return a.deviation_rad > b.deviation_rad;
     });
-    told.resize(kMaxTold);
+    told.resize(kMaxReported);
   }
   for (const PoleEase& ease : told) {
     append(text, "  lines %u to %u: %.4f deg, %s\n", ease.first_line, ease.last_line,

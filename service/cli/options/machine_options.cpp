@@ -83,17 +83,17 @@ void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reade
   tools = ToolTable(std::move(all));
 }
 
-void report_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools,
-                    nc::NamedTools named) {
+void describe_machine(cl::ClReaderOptions& reader, const MachineModel& model,
+                      const ToolTable& tools, nc::NamedTools named) {
   reader.nc = nc::reader_of_programs(model, tools, std::move(named));
   reader.home = stream::home_pose(model, tools);
 }
 
 bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,
                const MachineModel& model, ToolTable& tools) {
-  report_machine(reader, model, tools, load_tool_names(options));
+  describe_machine(reader, model, tools, load_tool_names(options));
   add_unknown_tools(file, reader, options, tools);
-  report_machine(reader, model, tools, load_tool_names(options));
+  describe_machine(reader, model, tools, load_tool_names(options));
   if (!can_be_read_twice(file)) return true;
   const stream::PreflightReport report = stream::preflight(
       file, reader,

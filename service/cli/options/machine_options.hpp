@@ -34,10 +34,10 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
 /// Empty where no table is named. Throws config::ConfigError.
 [[nodiscard]] ToolTable load_tools(const MachineOptions& options);
 
-/// Tells a reader where GOHOME leads: tip and axis of the machine's home with the tool in the
+/// Gives a reader where GOHOME leads: tip and axis of the machine's home with the tool in the
 /// spindle; and what the axis words of NC programs do.
-void report_machine(cl::ClReaderOptions& reader, const MachineModel& model, const ToolTable& tools,
-                    nc::NamedTools named = {});
+void describe_machine(cl::ClReaderOptions& reader, const MachineModel& model,
+                      const ToolTable& tools, nc::NamedTools named = {});
 /// The tools of the table that have names. Throws config::ConfigError.
 [[nodiscard]] nc::NamedTools load_tool_names(const MachineOptions& options);
 

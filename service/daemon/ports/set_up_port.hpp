@@ -61,8 +61,8 @@ struct SetUpPorts {
   LatestValue<SetUpInForce> for_planner, for_intake, for_telemetry;
   Mailbox<ToolTable> planner_tools, intake_tools, telemetry_tools;
   ProgramClaim claim;
-  std::atomic<std::uint64_t> status{0};  ///< the first status that told of the newest set-up
-  std::atomic<std::uint32_t> told{0};    ///< its change; stored behind `status`
+  std::atomic<std::uint64_t> status{0};    ///< the first status with the newest set-up
+  std::atomic<std::uint32_t> reported{0};  ///< its change; stored after `status`
 };
 
 }  // namespace meridian::interpolator

@@ -131,7 +131,7 @@ void Supervisor::take_events() {
       ports_.events_overrun.fetch_add(1, std::memory_order_relaxed);
     }
   }
-  if (has_session_event && report_intake_) report_intake_(has_action_peer_);
+  if (has_session_event && notify_intake_) notify_intake_(has_action_peer_);
 }
 
 void Supervisor::publish_action(const Event& event) {
@@ -214,8 +214,8 @@ void Supervisor::look_for_action_peer() {
   looked_ns_ = monotonic_ns();
   const bool is_there =
       is_dry_run_ || (actions_.matched_readers() > 0 && actions_done_.matched_writers() > 0);
-  if (std::exchange(has_action_peer_, is_there) != is_there && report_intake_)
-    report_intake_(is_there);
+  if (std::exchange(has_action_peer_, is_there) != is_there && notify_intake_)
+    notify_intake_(is_there);
 }
 
 /// Asks for the next step to Off, where there is one to ask for: a machine that is on its way there

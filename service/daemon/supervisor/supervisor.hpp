@@ -67,10 +67,10 @@ class Supervisor {
   /// Any thread: bring the machine to rest and to Off, then has_switched_off().
   void switch_off() noexcept;
   [[nodiscard]] bool has_switched_off() const noexcept { return is_off_.load(); }
-  /// Before run(): `report_intake` is called when there is something in a ring for intake, or when
+  /// Before run(): `notify_intake` is called when there is something in a ring for intake, or when
   /// an action peer came or went.
-  void on_session_event(std::function<void(bool has_action_peer)> report_intake) {
-    report_intake_ = std::move(report_intake);
+  void on_session_event(std::function<void(bool has_action_peer)> notify_intake) {
+    notify_intake_ = std::move(notify_intake);
   }
   /// Before run(): the set-up that `file` holds, and what is in force by it. Without it every
   /// change of work frames and tools is refused.
@@ -78,12 +78,12 @@ class Supervisor {
                    const ToolTable& tools, const SetUpInForce& in_force);
   /// Main thread: whether the set-up is another one than it was told of; then set_up() and
   /// in_force() stay as they are until set_up_reported().
-  [[nodiscard]] bool has_set_up_to_tell() const noexcept {
-    return has_set_up_to_tell_.load(std::memory_order_acquire);
+  [[nodiscard]] bool has_set_up_to_report() const noexcept {
+    return has_set_up_to_report_.load(std::memory_order_acquire);
   }
   [[nodiscard]] const telemetry::SetUp& set_up() const noexcept { return set_up_; }
   [[nodiscard]] const SetUpInForce& in_force() const noexcept { return in_force_; }
-  void set_up_reported() noexcept { has_set_up_to_tell_.store(false, std::memory_order_release); }
+  void set_up_reported() noexcept { has_set_up_to_report_.store(false, std::memory_order_release); }
 
  private:
   struct Pending {
@@ -197,7 +197,7 @@ class Supervisor {
   ParticipantQuota quota_{200, 400};  ///< of commands
   JogIntake jog_intake_;
   dds::Waitset waitset_;
-  std::function<void(bool)> report_intake_;
+  std::function<void(bool)> notify_intake_;
 
   CycleView view_;
   State reported_state_ = State::kOff;  ///< by the events so far
@@ -249,7 +249,7 @@ class Supervisor {
   Refusal set_up_refusal_ = Refusal::kNone;  ///< what it will be answered
   std::string set_up_text_;
   std::uint64_t set_up_status_ = 0;  ///< the first status that told of what is in force
-  std::atomic<bool> has_set_up_to_tell_{false};
+  std::atomic<bool> has_set_up_to_report_{false};
 };
 
 }  // namespace meridian::interpolator

@@ -39,7 +39,7 @@ void Supervisor::keep_set_up(telemetry::SetUpFile& file, const telemetry::SetUp&
   set_up_ = next_set_up_ = set_up;
   tools_ = tools;
   in_force_ = in_force;
-  ports_.set_up.told.store(in_force.change, std::memory_order_relaxed);
+  ports_.set_up.reported.store(in_force.change, std::memory_order_relaxed);
 }
 
 FrameOrder Supervisor::read_frame_order(std::uint64_t key) noexcept {
@@ -157,8 +157,8 @@ void Supervisor::work_on_set_up_change() {
       return pass_set_up_on();
     case SetUpPhase::kReported: {
       const bool is_in_status =
-          ports_.set_up.told.load(std::memory_order_acquire) == in_force_.change;
-      if (!is_in_status || has_set_up_to_tell()) return;
+          ports_.set_up.reported.load(std::memory_order_acquire) == in_force_.change;
+      if (!is_in_status || has_set_up_to_report()) return;
       set_up_status_ = ports_.set_up.status.load(std::memory_order_relaxed);
       return end_set_up_change();
     }
@@ -223,7 +223,7 @@ void Supervisor::pass_set_up_on() {
   ports_.set_up.for_planner.store(in_force_);
   ports_.set_up.for_intake.store(in_force_);
   ports_.set_up.for_telemetry.store(in_force_);
-  has_set_up_to_tell_.store(true, std::memory_order_release);
+  has_set_up_to_report_.store(true, std::memory_order_release);
   set_up_phase_ = SetUpPhase::kReported;
 }
 

@@ -32,7 +32,7 @@ bool PlannerThread::work() noexcept {
   if (!look.is_in_step) return look.is_emptied;
   if (look.front == nullptr) {
     if (has_begun_) advance();
-    report_of_plan();
+    report_plan();
     return false;
   }
   const bool is_cut_off = look.front->is_cut_off;
@@ -55,7 +55,7 @@ bool PlannerThread::work() noexcept {
     writer_.forget_ahead();  // in Ready all that was published has run or is void
     published_before_s_ = writer_.published_s();
     tell(Approach{});
-    report_of_plan();  // that it begins, before anything of it can be started
+    report_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
     look_ = 0;
   }
@@ -104,7 +104,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
     (void)ports_.plan_times.try_push(narrow_ns(planning_ns_));
     planning_ns_ = 0;
   }
-  report_of_plan();
+  report_plan();
   switch (result.status) {
     case PlanStatus::kNoRoom:
       return false;
@@ -119,7 +119,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
   return true;
 }
 
-void PlannerThread::report_of_plan() noexcept {
+void PlannerThread::report_plan() noexcept {
   ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
   if (Approach approach; planner_.take_approach(approach)) tell(approach);
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);

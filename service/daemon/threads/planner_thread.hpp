@@ -34,7 +34,7 @@ class PlannerThread {
   [[nodiscard]] bool plan(const QueuedBlock& queued) noexcept;
   void refuse(const BlockReject& reject) noexcept;
   /// What others want to know of what was planned.
-  void report_of_plan() noexcept;
+  void report_plan() noexcept;
   /// How the program is approached; of one that begins nothing is known yet.
   void tell(const Approach& approach) noexcept;
   /// Goes on with what is there while no block comes.

@@ -37,10 +37,10 @@ void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
   }
 }
 
-void TelemetryThread::report_set_up_reported() noexcept {
-  if (ports_.set_up.told.load(std::memory_order_relaxed) == in_force_.change) return;
+void TelemetryThread::confirm_set_up() noexcept {
+  if (ports_.set_up.reported.load(std::memory_order_relaxed) == in_force_.change) return;
   ports_.set_up.status.store(status_.status_sequence, std::memory_order_relaxed);
-  ports_.set_up.told.store(in_force_.change, std::memory_order_release);
+  ports_.set_up.reported.store(in_force_.change, std::memory_order_release);
 }
 
 }  // namespace meridian::interpolator

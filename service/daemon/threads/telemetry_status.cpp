@@ -142,7 +142,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   // The clock first: a verb that quotes this status may be here before write() returns.
   status_clock_.published(status, now_ns);
   (void)statuses_.write(status);
-  report_set_up_reported();
+  confirm_set_up();
   status_ns_ = now_ns;
   has_news_ = false;
   motion_.reset();

@@ -73,7 +73,7 @@ class TelemetryThread {
   void record_frame(std::uint64_t cycle) noexcept;
   void record_tools(std::uint64_t cycle) noexcept;
   /// Lets the commands thread know that the newest status tells of the newest set-up.
-  void report_set_up_reported() noexcept;
+  void confirm_set_up() noexcept;
   /// Tells how the program went that is over; false: none is.
   bool report_program();
   void tell(const Event& event);

@@ -63,7 +63,7 @@ void RunWatch::look(pid_t service, double now_s) {
   health_.look(service, now_s, newest_ ? &*newest_ : nullptr);
 }
 
-void RunWatch::report_of_host() {
+void RunWatch::report_host() {
   report_.is_host_watched = host_.is_watching();
   report_.host_stalls = host_.stalls();
   report_.host_longest_s = host_.longest_s();

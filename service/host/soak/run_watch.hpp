@@ -42,7 +42,7 @@ class RunWatch {
   /// Once a second while process `service` runs.
   void look(pid_t service, double now_s);
   /// What the host did until now, into the report.
-  void report_of_host();
+  void report_host();
 
  private:
   void count(const dds::Status& status, double now_s);

@@ -191,7 +191,7 @@ void SoakRun::tell() {
   if (!options_.trace.empty()) {
     report_.traces = probe::examine_traces(options_.trace).front().found;
   }
-  watch_.report_of_host();
+  watch_.report_host();
   check_.collect(report_);
   if (options_.report.empty()) return;
   if (!text::write_whole(options_.report, to_json(report_)) ||

@@ -62,7 +62,7 @@ class Copies {
     std::uint32_t number = 0, line = 0;
     Start start;
     std::size_t begin = 0;           ///< of its records
-    std::optional<std::size_t> end;  ///< told by NOMORE; nothing: at the COPY
+    std::optional<std::size_t> end;  ///< named by NOMORE; nothing: at the COPY
     bool is_lost = false;
   };
   struct Pass {

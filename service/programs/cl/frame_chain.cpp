@@ -19,7 +19,7 @@ FrameChain::FrameChain(const std::optional<Frame>& caller) : caller_(caller) {
   is_plain_ = is_identity(now_);
 }
 
-void FrameChain::report_csys_axis() {
+void FrameChain::follow_csys_axis() {
   if (!written_ || kind_ != Kind::kCsys) return;
   csys_axis_ = is_world_ ? Vector3(written_->rotation.col(2)) : Vector3(Vector3::UnitZ());
 }
@@ -27,13 +27,13 @@ void FrameChain::report_csys_axis() {
 void FrameChain::set_frame(const Frame& frame, Kind kind) {
   written_ = frame;
   kind_ = kind;
-  report_csys_axis();
+  follow_csys_axis();
   is_resolved_ = false;
 }
 
 void FrameChain::set_world(bool is_world) {
   is_world_ = is_world;
-  report_csys_axis();
+  follow_csys_axis();
   is_resolved_ = false;
 }
 

@@ -41,7 +41,7 @@ class FrameChain {
   [[nodiscard]] const std::optional<Vector3>& csys_axis() const noexcept { return csys_axis_; }
 
  private:
-  void report_csys_axis();
+  void follow_csys_axis();
   [[nodiscard]] Frame in_force(double to_mm) const;
 
   std::optional<Frame> caller_, written_, shift_, copy_, cut_;

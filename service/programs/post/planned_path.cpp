@@ -90,8 +90,8 @@ ClBlock PlannedPath::inside_travel(ClBlock block) const {
   return block;
 }
 
-Expected<std::vector<WayPiece>, PostError> PlannedPath::plan(const ClBlock& told) {
-  const ClBlock block = inside_travel(told);
+Expected<std::vector<WayPiece>, PostError> PlannedPath::plan(const ClBlock& programmed) {
+  const ClBlock block = inside_travel(programmed);
   const PlanResult result = planner_.plan(block, writer_);
   if (result.status != PlanStatus::kOk) {
     return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});

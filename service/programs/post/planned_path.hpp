@@ -32,7 +32,7 @@ class PlannedPath {
   PlannedPath(const MachineModel& model, ToolTable tools, BlockMotion motion);
 
   /// The pieces of `block` in order; empty where it does not move.
-  [[nodiscard]] Expected<std::vector<WayPiece>, PostError> plan(const ClBlock& told);
+  [[nodiscard]] Expected<std::vector<WayPiece>, PostError> plan(const ClBlock& programmed);
 
   /// The next motion block is approached anew: after a tool change nobody knows the way there.
   void begin_again();

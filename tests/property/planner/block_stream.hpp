@@ -43,7 +43,7 @@ struct BlockStream {
         break;
       }
     }
-    take_reported();
+    pop_reported();
     return outcome.trace.last.status == PlanStatus::kOk;
   }
   bool offer(const ClBlock& block, bool runs_dry = false) {
@@ -60,12 +60,12 @@ struct BlockStream {
 
   /// Runs what is planned to its end.
   [[nodiscard]] StreamOutcome end() {
-    take_reported();
+    pop_reported();
     read(true);
     return std::move(outcome);
   }
 
-  void take_reported() {
+  void pop_reported() {
     for (FeedMark mark; planner.take_feed_mark(mark);) outcome.marks.push_back(mark);
     for (Unwinding one; planner.take_unwinding(one);) outcome.trace.unwindings.push_back(one);
     for (PoleEase one; planner.take_ease(one);) outcome.trace.eases.push_back(one);

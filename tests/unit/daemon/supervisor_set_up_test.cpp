@@ -66,11 +66,11 @@ class SupervisorSetUp : public SupervisorTest {
     ASSERT_TRUE(ports_->events.try_push(event));
   }
   /// Status and machine topic tell of what is in force.
-  void report_everybody() {
-    ASSERT_TRUE(comes([this] { return supervisor_.has_set_up_to_tell(); }));
+  void publish_in_force() {
+    ASSERT_TRUE(comes([this] { return supervisor_.has_set_up_to_report(); }));
     publish_status();
     ports_->set_up.status = status_;
-    ports_->set_up.told = supervisor_.in_force().change;
+    ports_->set_up.reported = supervisor_.in_force().change;
     supervisor_.set_up_reported();
   }
   [[nodiscard]] bool is_answered() {
@@ -105,7 +105,7 @@ class SupervisorSetUp : public SupervisorTest {
     const auto command = write_and_take(verb);
     ASSERT_TRUE(command);
     tell(EventCode::kAccepted, command->request, verb);
-    report_everybody();
+    publish_in_force();
     EXPECT_TRUE(has_reply(verb, Refusal::kNone));
   }
 
@@ -129,7 +129,7 @@ TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndToldBeforeTheyAreAcknowledged)
   EXPECT_FALSE(is_answered());
   report_accepted(*command);
   EXPECT_FALSE(is_answered()) << "nobody was told";
-  report_everybody();
+  publish_in_force();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
 
   say(FrameWord::kSelect, 3);
@@ -139,7 +139,7 @@ TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndToldBeforeTheyAreAcknowledged)
   ASSERT_TRUE(ports_->set_up.for_cycle.refresh());
   EXPECT_EQ(ports_->set_up.for_cycle.latest().origin_mm, (Array3{12, 0, 0}));
   report_accepted(*command);
-  report_everybody();
+  publish_in_force();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
   ASSERT_TRUE(ports_->set_up.for_planner.refresh() && ports_->set_up.for_intake.refresh());
   EXPECT_EQ(ports_->set_up.for_planner.latest().number, 3);
@@ -197,7 +197,7 @@ TEST_F(SupervisorSetUp, AreAskedForOnceMoreWhereTheCyclesAnswerWasLost) {
   const auto again = take(Verb::kFrame);
   ASSERT_TRUE(again);
   report_accepted(*again);
-  report_everybody();
+  publish_in_force();
   EXPECT_TRUE(has_reply(Verb::kSingleBlock, Refusal::kNone));
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
 }
@@ -210,7 +210,7 @@ TEST_F(SupervisorSetUp, AreSetOneAtATimeAndByWhoHasSeenTheLast) {
   const auto command = write_and_take();
   ASSERT_TRUE(command);
   report_accepted(*command);
-  report_everybody();
+  publish_in_force();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
   --status_;  // what was published before
   say(FrameWord::kSet, 3, 14);

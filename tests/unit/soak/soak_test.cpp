@@ -143,45 +143,45 @@ class SegmentsTest : public testing::Test {
 
   static constexpr const char* kHeader = "cycle,due_ns,x_mm,state,epoch\n";
   process::ScratchFolder folder_;
-  std::vector<Segment> told_;
-  Segments segments_{folder_.path(), [this](const Segment& one) { told_.push_back(one); }};
+  std::vector<Segment> reported_;
+  Segments segments_{folder_.path(), [this](const Segment& one) { reported_.push_back(one); }};
 };
 
 TEST_F(SegmentsTest, EndWhereTheMachineRestsBehindAProgram) {
   const std::string first =
       rows("ready", 0, 100) + rows("running", 100, 30) + rows("ready", 130, 50);
   feed(kHeader + first + rows("ready", 180, 20));
-  ASSERT_EQ(told_.size(), 1U);
-  EXPECT_TRUE(told_[0].has_run);
-  EXPECT_FALSE(told_[0].is_aborted);
-  EXPECT_EQ(told_[0].rows, 180U);
-  EXPECT_EQ(told_[0].begin_ns, 100'000);
-  EXPECT_EQ(text_of(told_[0]), kHeader + first);
+  ASSERT_EQ(reported_.size(), 1U);
+  EXPECT_TRUE(reported_[0].has_run);
+  EXPECT_FALSE(reported_[0].is_aborted);
+  EXPECT_EQ(reported_[0].rows, 180U);
+  EXPECT_EQ(reported_[0].begin_ns, 100'000);
+  EXPECT_EQ(text_of(reported_[0]), kHeader + first);
   feed(rows("running", 200, 5) + rows("fault_stop", 205, 5) + rows("fault", 210, 50));
-  ASSERT_EQ(told_.size(), 2U);
-  EXPECT_TRUE(told_[1].is_aborted);
-  EXPECT_NE(told_[1].file, told_[0].file);
-  EXPECT_EQ(told_[1].rows, 80U);
+  ASSERT_EQ(reported_.size(), 2U);
+  EXPECT_TRUE(reported_[1].is_aborted);
+  EXPECT_NE(reported_[1].file, reported_[0].file);
+  EXPECT_EQ(reported_[1].rows, 80U);
 }
 
 TEST_F(SegmentsTest, AreAbortedWhereTheMachineRestsInTheNextEpoch) {
   feed(kHeader + rows("ready", 0, 10) + rows("running", 10, 30) + rows("ready", 40, 60, 2));
   feed(rows("running", 100, 30, 2) + rows("ready", 130, 60, 2));
-  ASSERT_EQ(told_.size(), 2U);
-  EXPECT_TRUE(told_[0].is_aborted) << "an abort at rest takes no cycle";
-  EXPECT_FALSE(told_[1].is_aborted);
+  ASSERT_EQ(reported_.size(), 2U);
+  EXPECT_TRUE(reported_[0].is_aborted) << "an abort at rest takes no cycle";
+  EXPECT_FALSE(reported_[1].is_aborted);
 }
 
 TEST_F(SegmentsTest, EndWithTheServiceWithoutTheRowThatWasBeingWritten) {
   feed(kHeader + rows("running", 0, 10) + "10,100");
   segments_.cut_off();
-  ASSERT_EQ(told_.size(), 1U);
-  EXPECT_TRUE(told_[0].is_aborted);
-  EXPECT_EQ(told_[0].rows, 10U);
+  ASSERT_EQ(reported_.size(), 1U);
+  EXPECT_TRUE(reported_[0].is_aborted);
+  EXPECT_EQ(reported_[0].rows, 10U);
   feed(kHeader + rows("off", 0, 10));
   segments_.cut_off();
-  ASSERT_EQ(told_.size(), 2U);
-  EXPECT_FALSE(told_[1].has_run);
+  ASSERT_EQ(reported_.size(), 2U);
+  EXPECT_FALSE(reported_[1].has_run);
 }
 
 SoakReport good_report() {

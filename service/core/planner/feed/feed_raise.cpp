@@ -21,7 +21,7 @@ void FeedRaise::begin(double tool_length_mm) noexcept {
   next_mark_ = 0;
   replayed_ = 1;
   if (!is_replay_) {
-    told_.push_over_oldest({.is_begin = true, .tool_length_mm = tool_length_mm});
+    reported_.push_over_oldest({.is_begin = true, .tool_length_mm = tool_length_mm});
   }
 }
 
@@ -43,7 +43,7 @@ FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double min_s) 
     span_ = 0;
   }
   if (const double wanted = find_wanted(asked); wanted != now_.label) {
-    if (!is_replay_) told_.push_over_oldest({false, sequence_, span_, wanted});
+    if (!is_replay_) reported_.push_over_oldest({false, sequence_, span_, wanted});
     if (wanted > now_.label) lead_s_ = ramp_s_ * (1 - now_.planned / wanted) + kSettle_s;
     now_ = {wanted, std::min(now_.planned, wanted)};
   }

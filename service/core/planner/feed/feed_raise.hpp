@@ -29,7 +29,7 @@ struct FeedFactors {
 class FeedRaise {
  public:
   explicit FeedRaise(const MachineModel& model)
-      : most_(model.max_feed_override), ramp_s_(model.override_ramp_s), told_(kReported) {}
+      : most_(model.max_feed_override), ramp_s_(model.override_ramp_s), reported_(kReported) {}
 
   /// From the next begin() on the factors are those of a run before, whatever is asked for. `marks`
   /// must stay.
@@ -43,7 +43,7 @@ class FeedRaise {
 
   /// What a look ahead went over (FeedMark::looked_at).
   void note_look(const FeedMark& look) noexcept {
-    if (!is_replay_) told_.push_over_oldest(look);
+    if (!is_replay_) reported_.push_over_oldest(look);
   }
 
   /// The machine rests before the next stretch.
@@ -54,7 +54,7 @@ class FeedRaise {
   [[nodiscard]] FeedFactors next(std::uint64_t sequence, double asked, double min_s) noexcept;
 
   /// Takes the oldest mark of what was planned; false if there is none. At most 256 wait.
-  [[nodiscard]] bool take(FeedMark& out) noexcept { return told_.take_oldest(out); }
+  [[nodiscard]] bool take(FeedMark& out) noexcept { return reported_.take_oldest(out); }
 
  private:
   static constexpr std::size_t kReported = 256;
@@ -71,7 +71,7 @@ class FeedRaise {
   std::span<const FeedMark> marks_;
   std::size_t next_mark_ = 0;
   double replayed_ = 1;
-  IndexRing<FeedMark> told_;
+  IndexRing<FeedMark> reported_;
 };
 
 }  // namespace meridian

@@ -10,7 +10,7 @@
 namespace meridian {
 
 BlockWindow::BlockWindow(const MachineModel& model, bool is_used)
-    : is_used_(is_used), blocks_(is_used ? 2 * kWaiting : 1), look_(model), told_(kReported) {}
+    : is_used_(is_used), blocks_(is_used ? 2 * kWaiting : 1), look_(model), reported_(kReported) {}
 
 void BlockWindow::begin(const AheadSlack& slack) noexcept {
   blocks_.clear();
@@ -18,7 +18,7 @@ void BlockWindow::begin(const AheadSlack& slack) noexcept {
   is_whole_ = false;
   questions_ = 0;
   slack_ = slack;
-  told_.clear();
+  reported_.clear();
 }
 
 void BlockWindow::keep(const ClBlock& block) noexcept {
@@ -45,8 +45,8 @@ std::uint64_t BlockWindow::reported_for(std::uint64_t sequence) const noexcept {
   const auto is_of_it = [sequence](const FeedMark& mark) {
     return mark.looked_at > 0 && mark.sequence > 0 && mark.sequence == sequence;
   };
-  for (std::int64_t n = told_.end_index(); n-- > told_.begin_index();) {
-    if (is_of_it(told_[n])) return told_[n].looked_at;
+  for (std::int64_t n = reported_.end_index(); n-- > reported_.begin_index();) {
+    if (is_of_it(reported_[n])) return reported_[n].looked_at;
   }
   const auto mark = std::find_if(marks_.rbegin(), marks_.rend(), is_of_it);
   return mark != marks_.rend() ? mark->looked_at : 0;
@@ -99,7 +99,7 @@ std::optional<FeedMark> BlockWindow::look_no_further() noexcept {
   const FeedMark mark{.sequence = asked_.sequence,
                       .looked_at = static_cast<std::uint64_t>(looked_at),
                       .is_late = true};
-  told_.push_over_oldest(mark);
+  reported_.push_over_oldest(mark);
   return mark;
 }
 

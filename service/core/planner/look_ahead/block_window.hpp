@@ -86,8 +86,8 @@ class BlockWindow : public PoleLookAhead {
   std::uint64_t questions_ = 0;
   Start asked_;
   std::int64_t follows_ = 0;
-  int most_ = 0;              ///< that are followed
-  IndexRing<FeedMark> told_;  ///< what is asked again is answered the same
+  int most_ = 0;                  ///< that are followed
+  IndexRing<FeedMark> reported_;  ///< what is asked again is answered the same
 };
 
 }  // namespace meridian

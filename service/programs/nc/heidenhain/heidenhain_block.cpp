@@ -255,7 +255,7 @@ cl::Outcome run_words(State& s, const Line& line) {
 }
 
 /// A new speed of a spindle that turns holds from the next line on, which often tells its sense.
-void report_speed(State& s, const Line& line) {
+void act_on_speed(State& s, const Line& line) {
   if (!s.modes.has_new_speed) return;
   s.modes.has_new_speed = false;
   const bool tells_sense = std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
@@ -290,7 +290,7 @@ cl::Outcome call_tool(State& s, const Line& line) {
 
 cl::Outcome run_heidenhain(State& s, const Line& line) {
   const std::string_view statement = line.names.front().name;
-  report_speed(s, line);
+  act_on_speed(s, line);
   if (statement == "Q") return take_cycle_parameters(s, line.names.front().arguments);
   s.modes.open = OpenDefinition::kNone;
   if (statement == "BEGIN PGM") return begin_program(s, line);
