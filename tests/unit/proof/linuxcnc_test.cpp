@@ -60,12 +60,14 @@ class LinuxCnc : public testing::TestWithParam<const char*> {
     if (!folder_.empty()) fs::remove_all(folder_);
   }
 
-  /// Exit code of the interpreter over `program`; its canonical calls are in calls().
+  /// Exit code of the interpreter over `program`; its canonical calls are in calls(). One at a time
+  /// on a host: all of them map the same file of tools (/tmp/.tool.mmap).
   [[nodiscard]] int interpret(const std::string& program) const {
     std::ofstream(folder_ / "program.nc") << program;
-    const std::string command = "cd '" + folder_.string() +
-                                "' && rs274 -i machine.ini -t tools.tbl -v machine.var -g "
-                                "program.nc calls.txt </dev/null >log.txt 2>&1";
+    const std::string command =
+        "cd '" + folder_.string() +
+        "' && flock ../meridian-rs274.lock rs274 -i machine.ini -t tools.tbl -v machine.var -g "
+        "program.nc calls.txt </dev/null >log.txt 2>&1";
     return std::system(command.c_str());
   }
   [[nodiscard]] fs::path calls() const { return folder_ / "calls.txt"; }
