@@ -23,6 +23,7 @@
 #include "service/recording/record/file/operator_events_writer.hpp"
 #include "service/recording/record/file/read_path.hpp"
 #include "service/recording/record/file/recorded_frame.hpp"
+#include "service/recording/record/file/recorded_limits.hpp"
 #include "service/recording/record/file/recorded_tools.hpp"
 #include "service/recording/record/picture/picture.hpp"
 
@@ -212,8 +213,8 @@ int check_program(const Options& options, const MachineModel& model) {
   return report.passed() ? kFine : kVerdictNo;
 }
 
-/// Where the workpiece lay and with which tools it was cut, as the recorder wrote it beside the
-/// recording; --frame and --tools go first.
+/// Where the workpiece lay, under which soft limits and with which tools it was cut, as the
+/// recorder wrote it beside the recording; --frame and --tools go first.
 void find_set_up(Options& options, MachineModel& model) {
   if (options.recording.empty()) return;
   std::ifstream file(record::operator_events_path(options.recording), std::ios::binary);
@@ -222,6 +223,7 @@ void find_set_up(Options& options, MachineModel& model) {
       frame && options.machine.frame.empty()) {
     stream::place_frame(model, frame->rotation, frame->origin_mm);
   }
+  options.check.soft_limits = record::find_all_limits(text);
   if (!options.machine.tools.empty()) return;
   options.tools = record::find_recorded_tools(text);
   if (const auto length_mm = record::find_recorded_tool_length(text)) {

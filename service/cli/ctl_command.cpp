@@ -14,6 +14,7 @@
 #include "service/cli/options/finite_range.hpp"
 #include "service/cli/options/frame_options.hpp"
 #include "service/cli/options/hand_options.hpp"
+#include "service/cli/options/limits_options.hpp"
 #include "service/cli/options/move_options.hpp"
 #include "service/cli/options/peer_options.hpp"
 #include "service/cli/options/tool_options.hpp"
@@ -64,7 +65,8 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"optional-stop", Verb::kOptionalStop},
                                                   {"dry-run", Verb::kDryRun},
                                                   {"frame", Verb::kFrame},
-                                                  {"tool", Verb::kTool}};
+                                                  {"tool", Verb::kTool},
+                                                  {"limits", Verb::kLimits}};
   return kVerbs;
 }
 
@@ -123,8 +125,7 @@ std::optional<double> argument_of(Verb verb, const CtlOptions& options) {
       verb == Verb::kSingleBlock || verb == Verb::kOptionalStop || verb == Verb::kDryRun;
   if (is_switch) return switch_of(options);
   const bool is_override = verb == Verb::kFeedOverride || verb == Verb::kRapidOverride;
-  const bool has_joints =
-      verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kFrame || verb == Verb::kTool;
+  const bool has_joints = verb == Verb::kJog || verb == Verb::kHome || is_set_up(verb);
   double percent = 0;
   bool is_right = has_joints || options.values.size() == (is_override ? 1U : 0U);
   if (is_right && is_override) {
@@ -181,7 +182,8 @@ int run_ctl(CtlOptions& options) {
     return kUsage;
   }
   std::optional<FrameOrder> order;
-  const bool is_list = verb == Verb::kFrame && options.values == std::vector<std::string>{"list"};
+  const bool is_list = (verb == Verb::kFrame || verb == Verb::kLimits) &&
+                       options.values == std::vector<std::string>{"list"};
   if (verb == Verb::kFrame && !is_list) {
     order = frame_order(options.values, options.frame);
     if (!order) return kUsage;
@@ -190,12 +192,15 @@ int run_ctl(CtlOptions& options) {
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
   if (is_list) {
-    std::fputs(frames_text(*machine).c_str(), stdout);
+    const bool is_frame = verb == Verb::kFrame;
+    std::fputs((is_frame ? frames_text(*machine) : limits_text(*machine)).c_str(), stdout);
     return kFine;
   }
   if (verb == Verb::kHome && (*argument = home_argument(*machine, options.values)) < 0) {
     return kUsage;
   }
+  std::optional<LimitsOrder> limits;
+  if (verb == Verb::kLimits && !(limits = limits_order(options.values, *machine))) return kUsage;
   dds::Participant participant({.domain = options.peer.domain, .machine = options.peer.machine});
   stream::OperatorLink link(participant, options.operator_name);
   if (verb == Verb::kTool && is_tool_question(options.values)) {
@@ -210,9 +215,10 @@ int run_ctl(CtlOptions& options) {
     return run_jog(participant, link, *machine, options.values, options.jog, options.peer);
   }
   const auto timeout = options.peer.timeout();
-  const auto reply = order   ? link.ask(*order, timeout)
-                     : tools ? link.ask_for_tools(tools->file, tools->tools_seen, timeout)
-                             : link.ask(verb, *argument, timeout);
+  const auto reply = order    ? link.ask(*order, timeout)
+                     : limits ? link.ask(*limits, timeout)
+                     : tools  ? link.ask_for_tools(tools->file, tools->tools_seen, timeout)
+                              : link.ask(verb, *argument, timeout);
   warn_of_others(link, options.peer.machine);
   if (!reply) {
     std::fprintf(stderr, "meridian: machine %s does not answer\n", options.peer.machine.c_str());
@@ -247,7 +253,8 @@ void add(CLI::App& app, int& exit_code) {
           "velocity in mm/s or deg/s; home: "
           "joints, default all; single-block, optional-stop, dry-run: on or off; frame: set, "
           "select or clear and a number, or list; tool: set or clear and a number, load or save "
-          "and a file, or list; touch-off: touch, frame and a number, or tool and a number; move: "
+          "and a file, or list; limits: set, a joint and both ends in mm or deg, clear and a joint "
+          "or all, or list; touch-off: touch, frame and a number, or tool and a number; move: "
           "none")
       ->type_name("VALUE");
   CLI::Option* const time =

@@ -167,6 +167,7 @@ int run(const Options& options) {
     if (frame && options.machine.frame.empty()) {
       stream::place_frame(model, frame->rotation, frame->origin_mm);
     }
+    if (simulation.events.limits) shrink_travel(model, *simulation.events.limits);
     take_recorded_tools(options, simulation.events, model, tools);
   }
   if (!options.start_from.empty()) {

@@ -92,6 +92,40 @@ void append_frame(std::string& text, const dds::Status& status, const dds::Machi
   text += "\n";
 }
 
+/// Calls `report` with every joint that has soft limits, and with them.
+template <class Report>
+void each_soft_limit(const dds::MachineInfo& machine, const Report& report) {
+  for (std::size_t i = 0; i < joint_count(machine); ++i) {
+    const SoftLimits::Row& row = machine.soft_limits.rows()[i];
+    if (row.is_set) report(machine.joints[i], row);
+  }
+}
+
+/// "limits    b3 -40 to 42.5 mm, b4 -10 to 10 deg": the soft limits.
+void append_limits(std::string& text, const dds::MachineInfo& machine) {
+  const char* begin = "limits   ";
+  each_soft_limit(machine, [&](const dds::JointInfo& joint, const SoftLimits::Row& row) {
+    const auto shown = [&joint](double value) {
+      return joint.is_rotary ? units::deg_from_rad(value) : value;
+    };
+    append(text, "%s %s %.10g to %.10g %s", begin, joint.name.c_str(), shown(row.min),
+           shown(row.max), joint.is_rotary ? "deg" : "mm");
+    begin = ",";
+  });
+  if (!machine.soft_limits.empty()) text += "\n";
+}
+
+/// "{"b3_mm":[-40,42.5],"b4_rad":[-0.1,0.1]}".
+std::string limits_json(const dds::MachineInfo& machine) {
+  std::string text;
+  each_soft_limit(machine, [&](const dds::JointInfo& joint, const SoftLimits::Row& row) {
+    if (!text.empty()) text += ",";
+    text += json_quoted(joint.name + (joint.is_rotary ? "_rad" : "_mm")) + ":[" +
+            json_number("%.17g", row.min) + "," + json_number("%.17g", row.max) + "]";
+  });
+  return "{" + text + "}";
+}
+
 }  // namespace
 
 const char* text_of(State state) {
@@ -157,6 +191,7 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
     append(text, "held by   %s\n", held.c_str());
   }
   append_frame(text, status, machine);
+  append_limits(text, machine);
   append(text, "buffer    %u blocks, %u pieces, %.2f s planned; starved %llu times\n",
          status.blocks_queued, status.pieces_queued, status.planned_s, Count{status.starvations});
   append(text, "joints   ");
@@ -202,6 +237,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          json_quoted(alarm_joint(status, machine)).c_str(),
          status.alarm != Alarm::kNone ? status.alarm_line : 0);
   append(text, "\"work_frame\":%u,\"tool\":%u,", status.work_frame, status.tool);
+  text += "\"soft_limits\":" + limits_json(machine) + ",";
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

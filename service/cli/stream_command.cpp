@@ -19,6 +19,7 @@
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/file/tool_names.hpp"
 #include "service/protocol/frame_sum.hpp"
+#include "service/protocol/limits_sum.hpp"
 #include "service/protocol/stream_run.hpp"
 #include "service/protocol/tools_sum.hpp"
 #include "service/text/printable.hpp"
@@ -120,6 +121,8 @@ int run_stream_command(StreamCommandOptions& options) {
                              : stream::frame_sum(machine->frame_rotation, machine->frame_origin_mm);
   if (checked_for && checked_for->tools)
     options.stream.tools = stream::tools_sum(*checked_for->tools);
+  const bool is_of_file = !options.machine_file.empty();
+  options.stream.limits = stream::limits_sum(is_of_file ? SoftLimits() : machine->soft_limits);
   cl::ClReaderOptions& reader = options.stream.reader;
   reader.max_feed_mm_per_s = units::per_s_from_per_min(machine->max_feed_mm_per_min);
   if (checked_for && checked_for->model.default_unit_mm) {

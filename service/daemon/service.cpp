@@ -127,7 +127,7 @@ namespace {
 
 StartError unreadable(const std::filesystem::path& set_up, const std::string& why) {
   return StartError("the set-up " + set_up.string() + " " + why +
-                    "; put it right, or remove it and set work frames and tools anew");
+                    "; put it right, or remove it and set work frames, tools and soft limits anew");
 }
 
 StartError served_already(const dds::MachineInfo& holder) {
@@ -234,6 +234,11 @@ void Service::read_set_up() {
       throw unreadable(set_up_.path(), error.what());
     }
   }
+  if (set_up->limits.find_fault(parts_.model) != LimitsFault::kNone) {
+    throw unreadable(set_up_.path(), "holds " +
+                                         telemetry::limits_text(set_up->limits, parts_.model) +
+                                         ", not inside the travel of the machine file");
+  }
   const SetUpInForce in_force = in_force_by(*set_up, parts_.model, tools, 0);
   intake_.set_up(in_force, tools);
   planner_.set_up(in_force, tools);
@@ -244,6 +249,11 @@ void Service::read_set_up() {
   if (in_force.number != 0) {
     log_->info("work frame {} of the set-up is in force, in the place of the machine file's",
                in_force.number);
+  }
+  if (!set_up->limits.empty()) {
+    log_->info(
+        "{} in force, as they were set; meridian ctl limits clear gives the whole travel again",
+        telemetry::limits_text(set_up->limits, parts_.model));
   }
   if (set_up->tools) {
     log_->info(

@@ -21,7 +21,8 @@ constexpr std::chrono::milliseconds kSilent{1500};
 [[nodiscard]] bool is_same_machine(const dds::MachineInfo& a, const dds::MachineInfo& b) {
   return a.machine_file == b.machine_file && a.tool_file == b.tool_file &&
          a.frame_rotation == b.frame_rotation && a.frame_origin_mm == b.frame_origin_mm &&
-         a.tool_length_mm == b.tool_length_mm && a.service_id == b.service_id;
+         a.soft_limits == b.soft_limits && a.tool_length_mm == b.tool_length_mm &&
+         a.service_id == b.service_id;
 }
 
 }  // namespace

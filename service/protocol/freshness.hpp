@@ -30,6 +30,7 @@ inline constexpr std::int64_t kFreshness_ns = 500'000'000;
     case Verb::kHome:
     case Verb::kFrame:
     case Verb::kTool:
+    case Verb::kLimits:
       return true;
     case Verb::kSingleBlock:
     case Verb::kOptionalStop:

@@ -26,6 +26,7 @@ dds::SessionRequest request_of(const MoveOrder& order) {
   request.policies = dds::kPolicyMove | dds::kPolicyExactStop;
   request.frame = order.frame;
   request.tools = order.tools;
+  request.limits = order.limits;
   if (order.move.joints) {
     request.policies |= dds::kPolicyFirstJoints;
     request.first_joints = *order.move.joints;

@@ -17,9 +17,10 @@ struct MoveOrder {
   StraightMove move;
   JointVector joints{};  ///< where the machine stands
   double tool_length_mm = 0;
-  std::string station;      ///< who asks, for messages
-  std::uint64_t frame = 0;  ///< frame_sum()
-  std::uint64_t tools = 0;  ///< tools_sum(); 0: of none
+  std::string station;       ///< who asks, for messages
+  std::uint64_t frame = 0;   ///< frame_sum()
+  std::uint64_t tools = 0;   ///< tools_sum(); 0: of none
+  std::uint64_t limits = 0;  ///< limits_sum()
 };
 
 enum class MoveEnd : std::uint8_t {

@@ -153,6 +153,13 @@ std::optional<dds::Reply> OperatorLink::ask(const FrameOrder& order, Millisecond
   return ask(std::move(request), timeout, std::nullopt);
 }
 
+std::optional<dds::Reply> OperatorLink::ask(const LimitsOrder& order, Milliseconds timeout) {
+  dds::CommandRequest request;
+  request.verb = Verb::kLimits;
+  request.limits = order;
+  return ask(std::move(request), timeout, std::nullopt);
+}
+
 std::optional<dds::Reply> OperatorLink::ask_for_tools(std::string text, std::uint64_t tools_seen,
                                                       Milliseconds timeout) {
   dds::CommandRequest request;

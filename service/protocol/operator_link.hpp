@@ -58,6 +58,7 @@ class OperatorLink {
                                               const std::optional<Seen>& seen = std::nullopt);
   /// Asks for a change of the set-up.
   [[nodiscard]] std::optional<dds::Reply> ask(const FrameOrder& order, Milliseconds timeout);
+  [[nodiscard]] std::optional<dds::Reply> ask(const LimitsOrder& order, Milliseconds timeout);
   /// Asks for another tool table, as the text of its file; empty: the service's own file. It was
   /// made from the one that is known by `tools_seen`, 0: from none.
   [[nodiscard]] std::optional<dds::Reply> ask_for_tools(std::string text, std::uint64_t tools_seen,

@@ -14,6 +14,7 @@ MachineModel served_model(const dds::MachineInfo& info) {
     }
     model.frame_origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
   }
+  shrink_travel(model, info.soft_limits);
   model.tool_length_mm = info.tool_length_mm;
   model.bridge_cycles = static_cast<int>(info.bridge_cycles);
   return model;

@@ -61,6 +61,7 @@ dds::SessionRequest request_of(const StreamOptions& options) {
   request.from_line = options.reader.first_line;
   request.frame = options.frame;
   request.tools = options.tools;
+  request.limits = options.limits;
   if (options.preflight) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;

@@ -25,6 +25,7 @@ struct StreamOptions {
   std::uint32_t policies = 0;                ///< dds::SessionPolicy, beside what the file says
   std::uint64_t frame = 0;                   ///< frame_sum() that it was checked under; 0: none
   std::uint64_t tools = 0;                   ///< tools_sum() that it was checked with; 0: none
+  std::uint64_t limits = 0;                  ///< limits_sum() that it was checked under; 0: none
   std::string options;                       ///< what asked for this, for who goes on with it
 };
 

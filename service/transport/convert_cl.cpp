@@ -52,6 +52,7 @@ void session_request_fields(Way way, Message& message, Wire& wire) {
   way(message.from_line, wire.from_line);
   way(message.frame, wire.frame);
   way(message.tools, wire.tools);
+  way(message.limits, wire.limits);
   way(message.first_joints, wire.first_joints);
 }
 

@@ -22,6 +22,10 @@ void command_request_fields(Way way, Message& message, Wire& wire) {
   way(message.frame.frame.rotation_deg, wire.frame_rotation_deg);
   way(message.tools_seen, wire.tools_seen);
   way.whole(message.tool_file, wire.tool_file);
+  way(message.limits.word, wire.limits_word);
+  way(message.limits.joint, wire.limits_joint);
+  way(message.limits.min, wire.limits_min);
+  way(message.limits.max, wire.limits_max);
 }
 
 template <class Way, class Message, class Wire>

@@ -52,6 +52,7 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.work_frame, wire.work_frame);
   way(message.frame, wire.frame);
   way(message.tools, wire.tools);
+  way(message.limits, wire.limits);
   way(message.tool, wire.tool);
   way(message.tool_length_mm, wire.tool_length_mm);
   way(message.rate, wire.rate);
@@ -137,6 +138,24 @@ void machine_info_fields(Way way, Message& message, Wire& wire) {
   way.whole(message.tool_file, wire.tool_file);
 }
 
+void soft_limits_to_wire(const SoftLimits& limits, meridian_wire_Machine& wire) noexcept {
+  wire.soft_limits_mask = 0;
+  for (std::size_t i = 0; i < limits.rows().size(); ++i) {
+    const SoftLimits::Row& row = limits.rows()[i];
+    if (row.is_set) wire.soft_limits_mask |= 1U << i;
+    wire.soft_limits_min[i] = row.min;
+    wire.soft_limits_max[i] = row.max;
+  }
+}
+
+void soft_limits_from_wire(const meridian_wire_Machine& wire, SoftLimits& limits) noexcept {
+  limits = {};
+  for (std::size_t i = 0; i < limits.rows().size(); ++i) {
+    const bool is_set = (wire.soft_limits_mask >> i & 1U) != 0;
+    if (is_set) limits.put(i, wire.soft_limits_min[i], wire.soft_limits_max[i]);
+  }
+}
+
 /// "number:count number:count ..." of the buckets that are not empty. What does not fit is left
 /// out, the fewest counts being at the far end.
 template <std::size_t N>
@@ -206,6 +225,7 @@ void to_wire(const MachineInfo& message, meridian_wire_Machine& wire) noexcept {
   for (std::size_t i = 0; i < WorkFrames::kMax; ++i) {
     work_frame_fields(ToWire(), i < count ? message.work_frames[i] : kNoFrame, wire.work_frames[i]);
   }
+  soft_limits_to_wire(message.soft_limits, wire);
 }
 
 void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
@@ -216,6 +236,7 @@ void from_wire(const meridian_wire_Machine& wire, MachineInfo& message) {
   for (std::size_t i = 0; i < message.work_frames.size(); ++i) {
     work_frame_fields(FromWire(), message.work_frames[i], wire.work_frames[i]);
   }
+  soft_limits_from_wire(wire, message.soft_limits);
 }
 
 void to_wire(const Latency& message, meridian_wire_Latency& wire) noexcept {

@@ -9,6 +9,7 @@
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/cycle/histogram.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/soft_limits.hpp"
 #include "meridian/kinematics/work_frame.hpp"
 #include "meridian/path/cl_block.hpp"
 
@@ -65,6 +66,7 @@ struct SessionRequest {
   std::uint32_t from_line = 0;      ///< the program begins with this line; 0: with its first
   std::uint64_t frame = 0;     ///< stream::frame_sum() that it was checked under; 0: under none
   std::uint64_t tools = 0;     ///< stream::tools_sum() that it was checked with; 0: with none
+  std::uint64_t limits = 0;    ///< stream::limits_sum() that it was checked under; 0: under none
   JointVector first_joints{};  ///< with kPolicyFirstJoints
 };
 
@@ -110,6 +112,7 @@ struct CommandRequest {
   FrameOrder frame{};            ///< of Verb::kFrame
   std::uint64_t tools_seen = 0;  ///< of Verb::kTool: stream::tools_sum() of the table before
   std::string tool_file{};  ///< of Verb::kTool, at most kToolFileBytes; empty: the service's own
+  LimitsOrder limits{};     ///< of Verb::kLimits
 };
 
 /// `reply`
@@ -260,6 +263,7 @@ struct Status {
   std::uint8_t work_frame = 0;  ///< number of the one in force; 0: the machine file's
   std::uint64_t frame = 0;      ///< its stream::frame_sum()
   std::uint64_t tools = 0;      ///< stream::tools_sum() of the tool table in force
+  std::uint64_t limits = 0;     ///< stream::limits_sum() of the soft limits in force
   std::uint32_t tool = 0;       ///< number of the tool in the spindle; 0: that of the machine file
   double tool_length_mm = 0;    ///< gauge line to its tip
   double rate = 1;
@@ -324,6 +328,7 @@ struct MachineInfo {
   Array3 frame_origin_mm{};
   std::uint8_t work_frame = 0;           ///< number of the one in force; 0: the machine file's
   std::vector<WorkFrame> work_frames{};  ///< the set-up, at most WorkFrames::kMax rows
+  SoftLimits soft_limits{};              ///< in force; the limits of `joints` are the machine's own
   std::string machine_file{};  ///< its text; empty where it is longer than kMachineFileBytes
   std::string tool_file{};     ///< text of the tool table; empty: none, or longer than fits
 };

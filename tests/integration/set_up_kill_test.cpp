@@ -30,6 +30,7 @@ void expect_reported(const dds::MachineInfo& told, const telemetry::SetUp& ackno
                          frames.rows().end()));
   EXPECT_EQ(told.work_frame, frames.active());
   EXPECT_EQ(told.tool_file, acknowledged.tools.value_or(""));
+  EXPECT_EQ(told.soft_limits, acknowledged.limits);
 }
 
 TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
@@ -46,13 +47,17 @@ TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
     ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.cycles_run > 0; }))
         << plant.service().said();
     expect_reported(reported_by(plant), acknowledged);
-    // A word for the table, one for the row in force, one for the tools, in turns.
-    const int number = 1 + n / 3 % 3;
-    const bool is_select = n % 3 == 1 && acknowledged.frames.find(number) != nullptr;
+    // A word for the table, one for the row in force, one for tools, one for limits, in turns.
+    const int number = 1 + n / 4 % 3;
+    const bool is_select = n % 4 == 1 && acknowledged.frames.find(number) != nullptr;
     const FrameOrder order = order_of(is_select ? FrameWord::kSelect : FrameWord::kSet, number, n);
     SetUpOperator anna(plant, 100 + static_cast<std::uint64_t>(n));
     telemetry::SetUp asked = acknowledged;
-    if (n % 3 == 2) {
+    if (n % 4 == 3) {
+      const LimitsOrder shrink{LimitsWord::kSet, static_cast<std::uint8_t>(n % 5), -1, 1e-3 * n};
+      ASSERT_TRUE(asked.limits.put(shrink.joint, shrink.min, shrink.max));
+      anna.say(shrink, plant.status());
+    } else if (n % 4 == 2) {
       asked.tools = tools_of(n);
       anna.say(*asked.tools, plant.status());
     } else {

@@ -49,6 +49,13 @@ class SetUpOperator {
     request_.tools_seen = seen.tools;
     send(seen);
   }
+  /// The same of soft limits.
+  void say(const LimitsOrder& order, const dds::Status& seen) {
+    request_ = {};
+    request_.verb = Verb::kLimits;
+    request_.limits = order;
+    send(seen);
+  }
   /// The same once more, to the letter.
   void repeat() { (void)commands_.write(request_); }
   /// The answer to what was said last.
@@ -146,14 +153,19 @@ class SetUpStation {
         [&] { return requests_.matched_readers() > 0 && credits_.matched_writers() > 0; },
         kToolPatience);
   }
-  /// What the service answers to a session with this `frame` and `tools` (sums; 0: not named).
-  [[nodiscard]] dds::Credit open(std::uint64_t session, std::uint64_t frame, std::uint64_t tools) {
+  /// What a session names of its set-up, as sums; 0: not named.
+  struct Checked {
+    std::uint64_t frame = 0, tools = 0, limits = 0;
+  };
+  /// What the service answers to a session that was checked so.
+  [[nodiscard]] dds::Credit open(std::uint64_t session, const Checked& checked) {
     dds::SessionRequest request;
     request.session = session;
     request.station = "cam";
     request.program = "part.apt";
-    request.frame = frame;
-    request.tools = tools;
+    request.frame = checked.frame;
+    request.tools = checked.tools;
+    request.limits = checked.limits;
     (void)requests_.write(request);
     dds::Credit credit;
     EXPECT_TRUE(eventually([&] { return credits_.take(credit) && credit.session == session; }));

@@ -192,11 +192,11 @@ TEST_F(SetUp, RefusesAProgramThatWasCheckedUnderAnotherFrame) {
   ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 2; }));
   SetUpStation station(plant);
   ASSERT_TRUE(station.is_connected());
-  const dds::Credit stale = station.open(51, old_sum, 0);
+  const dds::Credit stale = station.open(51, {.frame = old_sum});
   EXPECT_EQ(stale.verdict, dds::Verdict::kRefusedProgram);
   EXPECT_NE(stale.text.find("stale: "), std::string::npos) << stale.text;
   EXPECT_EQ(plant.status().session, 0U);
-  EXPECT_EQ(station.open(52, plant.status().frame, 0).verdict, dds::Verdict::kGood);
+  EXPECT_EQ(station.open(52, {.frame = plant.status().frame}).verdict, dds::Verdict::kGood);
 }
 
 TEST_F(SetUp, LetsAProgramInOrAFrameAndNeverBoth) {

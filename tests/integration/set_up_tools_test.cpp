@@ -147,10 +147,10 @@ TEST(SetUpTools, RefuseAProgramThatWasCheckedWithOthers) {
   ASSERT_TRUE(plant.runs_until([&](const dds::Status& status) { return status.tools != old_sum; }));
   SetUpStation station(plant);
   ASSERT_TRUE(station.is_connected());
-  const dds::Credit stale = station.open(51, 0, old_sum);
+  const dds::Credit stale = station.open(51, {.tools = old_sum});
   EXPECT_EQ(stale.verdict, dds::Verdict::kRefusedProgram);
   EXPECT_NE(stale.text.find("stale: "), std::string::npos) << stale.text;
-  EXPECT_EQ(station.open(52, 0, plant.status().tools).verdict, dds::Verdict::kGood);
+  EXPECT_EQ(station.open(52, {.tools = plant.status().tools}).verdict, dds::Verdict::kGood);
 }
 
 }  // namespace

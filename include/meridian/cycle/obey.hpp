@@ -133,7 +133,8 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
     case Verb::kHome:
       return condition_of_hand(c, command);
     case Verb::kFrame:
-    case Verb::kTool:  // what a station sends was checked where the workpiece lies now
+    case Verb::kTool:
+    case Verb::kLimits:  // what a station sends was checked with the set-up of now
       return c.in.session != 0 ? Refusal::kProgramPresent : Refusal::kNone;
     default:
       return Refusal::kNone;

@@ -45,7 +45,8 @@ enum class Verb : std::uint8_t {
   kDryRun,         ///< argument: 1 on, 0 off
   kFrame,          ///< argument: number of the work frame that is in force from here on
   kTool,           ///< another tool table is in force from here on
+  kLimits,         ///< other soft limits are in force from here on
 };
-inline constexpr int kVerbCount = 16;
+inline constexpr int kVerbCount = 17;
 
 }  // namespace meridian

@@ -47,24 +47,24 @@ inline constexpr VerbEffect kEna = go(State::kEnabling), kDis = go(State::kDisab
 /// that a table cannot hold (feedback there, joints referenced, fault gone, argument in range) are
 /// checked after it, in cycle/obey.hpp, and can only refuse more.
 inline constexpr std::array<Row, kStateCount> kTable{{
-    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional dry     frame   tool
-    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kValue, kValue, kValue},
-    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue, kNo, kValue, kValue},
-    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken, kTaken},
-    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken, kTaken},
-    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken, kTaken},
-    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken, kBroken, kBroken},
-    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken, kBroken, kBroken},
-    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo, kNo, kNo},
-    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue, kNo, kTaken, kTaken},
+    //            enable   disable  start                    hold              resume  abort    reset            overrides      jog      home     single  optional dry     frame   tool    limits
+    /* Off     */ {kEna,    kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kValue, kValue, kValue, kValue},
+    /* Enabling*/ {kSame,   kDis,    kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Ready   */ {kSame,   kDis,    kEmpty,                  kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kJog,   kHom,    kValue, kValue, kNo, kValue, kValue, kValue},
+    /* Loaded  */ {kSame,   kDis,    go(State::kApproaching), kNo,              kNo,    kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken, kTaken, kTaken},
+    /* Approach*/ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Running */ {kSame,   kNo,     kSame,                   kHol,             kSame,  kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Holding */ {kSame,   kNo,     kNo,                     kSame,            kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Held    */ {kSame,   kDis,    kNo,                     kSame,            kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken, kTaken, kTaken},
+    /* Starving*/ {kSame,   kNo,     kNo,                     kHol,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Starved */ {kSame,   kDis,    kNo,                     go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken,  kValue, kValue, kNo, kTaken, kTaken, kTaken},
+    /* Aborting*/ {kSame,   kNo,     kNo,                     kSame,            kNo,    kSame,   kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Disablin*/ {kNo,     kSame,   kNo,                     kNo,              kNo,    kNo,     kSame,           kValue, kValue, kNo,    kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* FaultSto*/ {kBroken, kBroken, kBroken,                 kSame,            kNo,    kSame,   kNo,             kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken, kBroken, kBroken, kBroken},
+    /* Fault   */ {kBroken, kSame,   kBroken,                 kNo,              kNo,    kSame,   go(State::kOff), kValue, kValue, kBroken, kBroken, kValue, kValue, kBroken, kBroken, kBroken, kBroken},
+    /* Jogging */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Homing  */ {kSame,   kNo,     kNo,                     kAbo,             kNo,    kAbo,    kSame,           kValue, kValue, kNo,     kNo,     kValue, kValue, kNo, kNo, kNo, kNo},
+    /* Stepping*/ {kSame,   kDis,    kRun,                    go(State::kHeld), kRun,   kAbo,    kSame,           kValue, kValue, kTaken, kTaken, kValue, kValue, kNo, kTaken, kTaken, kTaken},
 }};
 // clang-format on
 
@@ -87,7 +87,7 @@ inline constexpr std::array<Row, kStateCount> kTable{{
   constexpr std::array<const char*, kVerbCount> kNames{
       "enable",        "disable",       "start",          "hold", "resume", "abort",
       "reset",         "feed_override", "rapid_override", "jog",  "home",   "single_block",
-      "optional_stop", "dry_run",       "frame",          "tool"};
+      "optional_stop", "dry_run",       "frame",          "tool", "limits"};
   return kNames[static_cast<std::size_t>(verb)];
 }
 
@@ -119,6 +119,11 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 /// Whether `verb` may be said for a dry run alone, by an argument of 1: it leads to motion.
 [[nodiscard]] constexpr bool may_be_dry(Verb verb) noexcept {
   return verb == Verb::kEnable || verb == Verb::kStart;
+}
+
+/// Whether `verb` changes the set-up.
+[[nodiscard]] constexpr bool is_set_up(Verb verb) noexcept {
+  return verb == Verb::kFrame || verb == Verb::kTool || verb == Verb::kLimits;
 }
 
 /// Whether `verb` only ever stops: it goes past what was said before it.

@@ -164,6 +164,10 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
       if (record::read_tool(part)) continue;
       return tl::make_unexpected(name + ":" + std::to_string(line) + ": holds no tool");
     }
+    if (record::is_limits_row(part)) {
+      if (record::read_limits(part)) continue;
+      return tl::make_unexpected(name + ":" + std::to_string(line) + ": holds no soft limits");
+    }
     if (FeedMark mark; read_mark(part, mark)) {
       if (mark.is_begin) is_first_program = !start;
       if (mark.is_begin && is_first_program) events.feed_marks.clear();
@@ -184,6 +188,7 @@ Expected<OperatorEvents, std::string> read_operator_events(std::string_view text
   }
   events.frame = record::find_recorded_frame(all);
   events.tools = record::find_recorded_tools(all);
+  events.limits = record::find_recorded_limits(all);
   if (start) keep_settings(rows, *start, events.verbs);
   for (const EventRow& row : rows) keep(row, start.value_or(0), events);
   return events;

@@ -11,6 +11,7 @@
 #include "meridian/expected.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "service/recording/record/file/recorded_frame.hpp"
+#include "service/recording/record/file/recorded_limits.hpp"
 #include "service/recording/record/file/recorded_tools.hpp"
 
 namespace meridian::simulate {
@@ -47,6 +48,8 @@ struct OperatorEvents {
   std::optional<record::RecordedFrame> frame;
   /// With which tools; nothing: that is not told.
   std::optional<ToolTable> tools;
+  /// Under which soft limits; nothing: that is not told.
+  std::optional<SoftLimits> limits;
 };
 
 /// Reads operator events: a row `cycle,verb[,argument]` each, in the order of cycles; the header
@@ -58,9 +61,9 @@ struct OperatorEvents {
 /// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
 /// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun,1[,length of the
 /// tool]`, `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. Rows `frame`
-/// (RecordedFrame) and `tool` (RecordedTool) stand anywhere. A row `incomplete`, by which
-/// a recorder says that it lost events, is refused. The error is a message with name and line.
-/// Proof: tests/unit/simulate/operator_events_test.cpp.
+/// (RecordedFrame), `tool` (RecordedTool) and `limits` (RecordedLimits) stand anywhere. A row
+/// `incomplete`, by which a recorder says that it lost events, is refused. The error is a message
+/// with name and line. Proof: tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                                          const std::string& name,
                                                                          double max_feed = 1.0);

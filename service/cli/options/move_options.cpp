@@ -16,6 +16,7 @@
 #include "service/cli/options/reported_machine.hpp"
 #include "service/machine/file/positions_file.hpp"
 #include "service/protocol/frame_sum.hpp"
+#include "service/protocol/limits_sum.hpp"
 #include "service/protocol/move_run.hpp"
 #include "service/text/number.hpp"
 
@@ -181,9 +182,13 @@ int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
   std::printf("%.2f s at 100 %%\n", forecast.time_s);
   std::fflush(stdout);
   watch_for_stop();
-  const stream::MoveOrder order{
-      *move,       status.joints, status.tool_length_mm, operator_name, stream::frame_sum(*model),
-      status.tools};
+  const stream::MoveOrder order{*move,
+                                status.joints,
+                                status.tool_length_mm,
+                                operator_name,
+                                stream::frame_sum(*model),
+                                status.tools,
+                                stream::limits_sum(machine.soft_limits)};
   const auto result = stream::run_move(participant, link, order, stop_flag(), peer.timeout());
   const int exit_code = exit_code_of(result);
   if (exit_code == kFine) std::printf("there\n");

@@ -47,6 +47,7 @@ void CommandListener::on_data(dds::Reader<dds::CommandRequest>& reader) noexcept
     }
     if (request_.verb == Verb::kFrame) (void)ports_.set_up.orders.try_push({key, request_.frame});
     if (request_.verb == Verb::kTool) pass_tools(key);
+    if (request_.verb == Verb::kLimits) (void)ports_.set_up.limits.try_push({key, request_.limits});
     if (!ports_.arrivals.try_push(arrival_of(request_, key, info.source))) {
       ports_.commands_dropped.fetch_add(1, std::memory_order_relaxed);
     }

@@ -163,6 +163,10 @@ bool Intake::may_open(const dds::SessionRequest& request) {
     stale =
         "stale: the program was checked with another tool table than the one that is in force "
         "now; stream it again";
+  } else if (request.limits != 0 && request.limits != in_force_.limits) {
+    stale =
+        "stale: the program was checked under other soft limits than those that are in force now; "
+        "stream it again";
   }
   if (!stale.empty()) publish(check_.refuse_program(request, stale));
   return stale.empty();

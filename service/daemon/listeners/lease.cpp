@@ -31,6 +31,7 @@ void Lease::set_up(const WorkFrames& frames, const SetUpInForce& in_force,
   claim_.frame_origin_mm = in_force.origin_mm;
   claim_.work_frame = in_force.number;
   claim_.work_frames.assign(frames.rows().begin(), frames.rows().end());
+  claim_.soft_limits = in_force.soft_limits;
   claim_.tool_file = tool_file;
   if (is_reported) say();
 }

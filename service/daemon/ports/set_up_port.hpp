@@ -10,6 +10,7 @@
 #include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/soft_limits.hpp"
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/kinematics/work_frame.hpp"
 #include "service/daemon/ports/mailbox.hpp"
@@ -18,24 +19,29 @@
 
 namespace meridian::interpolator {
 
-/// The set-up that is in force, for who moves by it: the work frame, and by which sum the tool
-/// table is known; the tools themselves pass through mailboxes.
+/// The set-up that is in force, for who moves by it: the work frame, the soft limits, and by which
+/// sum the tool table is known; the tools themselves pass through mailboxes.
 struct SetUpInForce {
   std::uint32_t change = 0;  ///< counts what was put in force; 0: what the service was started with
   std::uint8_t number = 0;   ///< of the work frame
   std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< of the work frame, row by row
   Array3 origin_mm{};
-  std::uint64_t sum = 0;    ///< stream::frame_sum()
-  std::uint64_t tools = 0;  ///< stream::tools_sum()
+  std::uint64_t sum = 0;     ///< stream::frame_sum()
+  std::uint64_t tools = 0;   ///< stream::tools_sum()
+  SoftLimits soft_limits{};  ///< as they were set
+  SoftLimits travel{};       ///< travel_under() them
+  std::uint64_t limits = 0;  ///< stream::limits_sum()
 };
 static_assert(std::is_trivially_copyable_v<SetUpInForce>);
 
-/// Puts the workpiece of `model` where `frame` says. RT: cycle.
-inline void place(MachineModel& model, const SetUpInForce& frame) noexcept {
+/// Puts the workpiece of `model` where `set_up` says, and gives its joints the travel of it.
+/// RT: cycle.
+inline void place(MachineModel& model, const SetUpInForce& set_up) noexcept {
   for (int i = 0; i < 9; ++i) {
-    model.frame_rotation(i / 3, i % 3) = frame.rotation[static_cast<std::size_t>(i)];
+    model.frame_rotation(i / 3, i % 3) = set_up.rotation[static_cast<std::size_t>(i)];
   }
-  model.frame_origin_mm = to_vector(frame.origin_mm);
+  model.frame_origin_mm = to_vector(set_up.origin_mm);
+  shrink_travel(model, set_up.travel);
 }
 
 /// What a command of verb `frame` says beside its Arrival.
@@ -51,12 +57,19 @@ struct ToolArrival {
   std::array<char, dds::kToolFileBytes + 1> file{};  ///< zero-terminated
 };
 
+/// What a command of verb `limits` says beside its Arrival.
+struct LimitsArrival {
+  std::uint64_t key = 0;  ///< of the Arrival
+  LimitsOrder order{};
+};
+
 /// The paths of the set-up. The commands thread stores it for the cycle, then tells that; when the
 /// cycle has accepted it, for the others, and waits until the status says so. Everybody has a
 /// machine model and tools of its own, and changes them itself, between two programs.
 struct SetUpPorts {
   SpscRing<FrameArrival, 16> orders;    ///< receive thread to commands
   SpscRing<ToolArrival, 4> tool_files;  ///< receive thread to commands
+  SpscRing<LimitsArrival, 16> limits;   ///< receive thread to commands
   LatestValue<SetUpInForce> for_cycle;  ///< the cycle looks where it accepts the verb
   LatestValue<SetUpInForce> for_planner, for_intake, for_telemetry;
   Mailbox<ToolTable> planner_tools, intake_tools, telemetry_tools;

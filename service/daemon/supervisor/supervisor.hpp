@@ -36,11 +36,6 @@ namespace meridian::interpolator {
 [[nodiscard]] SetUpInForce in_force_by(const telemetry::SetUp& set_up, const MachineModel& machine,
                                        const ToolTable& tools, std::uint32_t change);
 
-/// Whether `verb` changes the set-up.
-[[nodiscard]] constexpr bool is_set_up(Verb verb) noexcept {
-  return verb == Verb::kFrame || verb == Verb::kTool;
-}
-
 /// The commands thread: operators' commands and jogs to the cycle and its answers back, actions out
 /// and in, events on to who wants them, and the orderly end of the service. Stops reach the cycle
 /// without it (CommandListener); it answers them. It waits for no peer: replies are written by a
@@ -73,7 +68,7 @@ class Supervisor {
     notify_intake_ = std::move(notify_intake);
   }
   /// Before run(): the set-up that `file` holds, and what is in force by it. Without it every
-  /// change of work frames and tools is refused.
+  /// change of work frames, tools and soft limits is refused.
   void keep_set_up(telemetry::SetUpFile& file, const telemetry::SetUp& set_up,
                    const ToolTable& tools, const SetUpInForce& in_force);
   /// Main thread: whether the set-up is another one than it was told of; then set_up() and
@@ -123,6 +118,8 @@ class Supervisor {
   void delay_reset(const Pending& command);
   /// What a command of verb `frame` says; an unknown word where that was lost.
   [[nodiscard]] FrameOrder read_frame_order(std::uint64_t key) noexcept;
+  /// The same of verb `limits`.
+  [[nodiscard]] LimitsOrder read_limits_order(std::uint64_t key) noexcept;
   /// The text of a command of verb `tool`, and which table it was made from; nothing where that was
   /// lost.
   [[nodiscard]] std::optional<std::string> read_tool_file(std::uint64_t key, std::uint64_t& seen);
@@ -132,6 +129,7 @@ class Supervisor {
   /// Makes the next set-up of the one in force; false, and answered, where that cannot be.
   [[nodiscard]] bool change_frames(const Pending& command);
   [[nodiscard]] bool change_tools(const Pending& command);
+  [[nodiscard]] bool change_limits(const Pending& command);
   void work_on_set_up_change();
   void ask_cycle_for_set_up();
   void answer_set_up(bool is_accepted, Refusal refusal);
@@ -140,6 +138,7 @@ class Supervisor {
   void end_set_up_change();
   [[nodiscard]] std::string words_of_frames() const;
   [[nodiscard]] std::string words_of_tools() const;
+  [[nodiscard]] std::string words_of_limits() const;
   [[nodiscard]] SpindleTool in_spindle() const noexcept;
   void put_in_spindle(const SpindleTool& tool) noexcept;
   /// The same tool, as long as the table in force says.

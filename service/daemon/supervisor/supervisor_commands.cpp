@@ -47,8 +47,10 @@ void Supervisor::take_command(const Arrival& arrival) {
                      .argument = arrival.argument,
                      .frame = {},
                      .tools_seen = 0,
-                     .tool_file = {}};
+                     .tool_file = {},
+                     .limits = {}};
   if (arrival.verb == Verb::kFrame) command.request.frame = read_frame_order(arrival.key);
+  if (arrival.verb == Verb::kLimits) command.request.limits = read_limits_order(arrival.key);
   if (arrival.verb == Verb::kTool) {
     tool_file_ = read_tool_file(arrival.key, command.request.tools_seen);
     command.tools = text::checksum_of(tool_file_.value_or(""));
@@ -154,7 +156,7 @@ bool Supervisor::is_repetition(const Pending& command) {
     return other.participant == command.participant && a.operator_id == b.operator_id &&
            a.request == b.request && a.verb == b.verb && a.argument == b.argument &&
            a.status_seen == b.status_seen && a.epoch_seen == b.epoch_seen && a.frame == b.frame &&
-           a.tools_seen == b.tools_seen && other.tools == command.tools;
+           a.tools_seen == b.tools_seen && other.tools == command.tools && a.limits == b.limits;
   };
   if (command.request.operator_id == 0) return false;
   const auto answered =

@@ -6,14 +6,15 @@
 #include "service/machine/file/config_error.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/protocol/frame_sum.hpp"
+#include "service/protocol/limits_sum.hpp"
 #include "service/protocol/tools_sum.hpp"
 #include "service/recording/telemetry/reply_words.hpp"
 #include "service/recording/telemetry/set_up_text.hpp"
 #include "service/recording/telemetry/words.hpp"
 
-/// The set-up: a change of work frames or tools is written to disk, then told to the cycle, which
-/// may still refuse it, then to everybody, and answered last. One at a time, and none beside a
-/// program.
+/// The set-up: a change of work frames, tools or soft limits is written to disk, then told to the
+/// cycle, which may still refuse it, then to everybody, and answered last. One at a time, and none
+/// beside a program.
 namespace meridian::interpolator {
 
 SetUpInForce in_force_by(const telemetry::SetUp& set_up, const MachineModel& machine,
@@ -30,6 +31,9 @@ SetUpInForce in_force_by(const telemetry::SetUp& set_up, const MachineModel& mac
   out.origin_mm = to_array(frame.origin_mm);
   out.sum = stream::frame_sum(out.rotation, out.origin_mm);
   out.tools = stream::tools_sum(tools);
+  out.soft_limits = set_up.limits;
+  out.travel = travel_under(set_up.limits, machine);
+  out.limits = stream::limits_sum(set_up.limits);
   return out;
 }
 
@@ -89,7 +93,9 @@ void Supervisor::begin_set_up_change(const Pending& command) {
   if (set_up_file_ == nullptr || !set_up_file_->is_kept()) return refuse(Refusal::kNotJournalled);
   next_set_up_ = set_up_;
   next_tools_ = tools_;
-  const bool is_understood = verb == Verb::kFrame ? change_frames(command) : change_tools(command);
+  const bool is_understood = verb == Verb::kFrame  ? change_frames(command)
+                             : verb == Verb::kTool ? change_tools(command)
+                                                   : change_limits(command);
   if (!is_understood) return;
   if (!ports_.set_up.claim.try_take(ProgramClaim::Holder::kSetUp)) {
     return refuse(Refusal::kProgramPresent);
@@ -208,7 +214,9 @@ void Supervisor::answer_set_up(bool is_accepted, Refusal refusal) {
   put_in_spindle(measured(in_spindle()));
   tool_before_ = measured(tool_before_);
   set_up_refusal_ = Refusal::kNone;
-  set_up_text_ = verb == Verb::kFrame ? words_of_frames() : words_of_tools();
+  set_up_text_ = verb == Verb::kFrame  ? words_of_frames()
+                 : verb == Verb::kTool ? words_of_tools()
+                                       : words_of_limits();
   set_up_phase_ = SetUpPhase::kAccepted;
   pass_set_up_on();
 }

@@ -75,9 +75,8 @@ void CycleThread::hand_over() noexcept {
   push_or_count(ports_.records, output_.record, ports_.records_overrun);
   for (std::size_t i = 0; i < output_.event_count; ++i) {
     const Event& event = output_.events[i];
-    const bool is_set_up = event.b == static_cast<std::uint64_t>(Verb::kFrame) ||
-                           event.b == static_cast<std::uint64_t>(Verb::kTool);
-    if (event.code == EventCode::kAccepted && is_set_up) take_frame();
+    const bool is_accepted = event.code == EventCode::kAccepted;
+    if (is_accepted && is_set_up(static_cast<Verb>(event.b))) take_set_up();
     push_or_count(ports_.events, event, ports_.events_overrun);
   }
   ports_.events_overrun.fetch_add(output_.events_dropped, std::memory_order_relaxed);
@@ -87,8 +86,8 @@ void CycleThread::hand_over() noexcept {
                                  .lost = inputs_.lost_periods});
 }
 
-/// Between two programs: nothing that is planned by the frame before runs any more.
-void CycleThread::take_frame() noexcept {
+/// Between two programs: nothing that is planned by the set-up before runs any more.
+void CycleThread::take_set_up() noexcept {
   if (ports_.set_up.for_cycle.refresh()) place(model_, ports_.set_up.for_cycle.latest());
 }
 

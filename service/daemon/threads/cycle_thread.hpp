@@ -23,7 +23,7 @@ class CycleThread {
 
  private:
   /// Takes over the work frame that an accepted word puts in force, from the next period on.
-  void take_frame() noexcept;
+  void take_set_up() noexcept;
   void gather(const Period& period, std::int64_t now_ns) noexcept;
   void hand_over() noexcept;
   void show() noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work frame and tools as they are put in force: into the status and the recording.
+// Work frame, tools and soft limits as they are put in force: into the status and the recording.
 #include "service/daemon/threads/telemetry_thread.hpp"
 
 namespace meridian::interpolator {
@@ -19,6 +19,7 @@ void TelemetryThread::put_in_force(const SetUpInForce& in_force) noexcept {
   status_.work_frame = in_force.number;
   status_.frame = in_force.sum;
   status_.tools = in_force.tools;
+  status_.limits = in_force.limits;
 }
 
 void TelemetryThread::record_frame(std::uint64_t cycle) noexcept {
@@ -35,6 +36,21 @@ void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
     recorder_.take(
         record::RecordedTool{cycle, tool.number, tool.tip_length_mm(), tool.cutting_radius_mm()});
   }
+}
+
+void TelemetryThread::record_limits(std::uint64_t cycle) noexcept {
+  const SoftLimits& limits = in_force_.soft_limits;
+  if (limits.empty()) recorder_.take(record::RecordedLimits{cycle, 0, 0, 0});
+  for (std::uint32_t i = 0; i < kMaxJoints; ++i) {
+    const SoftLimits::Row& row = limits.rows()[i];
+    if (row.is_set) recorder_.take(record::RecordedLimits{cycle, i + 1, row.min, row.max});
+  }
+}
+
+void TelemetryThread::record_set_up(Verb verb, std::uint64_t cycle) noexcept {
+  if (verb == Verb::kFrame) record_frame(cycle);
+  if (verb == Verb::kTool) record_tools(cycle);
+  if (verb == Verb::kLimits) record_limits(cycle);
 }
 
 void TelemetryThread::confirm_set_up() noexcept {

@@ -63,6 +63,7 @@ void TelemetryThread::run() noexcept {
   if (service_.optional_stop) recorder_.take(optional_stop_on());
   if (in_force_.sum != 0) record_frame(0);
   if (!tools_.tools().empty()) record_tools(0);
+  if (!in_force_.soft_limits.empty()) record_limits(0);
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
     // At once: behind actions that are done at once, in a dry run, the way is begun as soon as it
@@ -137,13 +138,10 @@ void TelemetryThread::drain() {
   while (ports_.told.try_pop(event)) {
     recorder_.take(event);
     flight_.take(event);
-    const bool is_set_up =
-        event.code == EventCode::kAccepted &&
-        (static_cast<Verb>(event.b) == Verb::kFrame || static_cast<Verb>(event.b) == Verb::kTool);
-    if (is_set_up) {
+    const auto verb = static_cast<Verb>(event.b);
+    if (event.code == EventCode::kAccepted && is_set_up(verb)) {
       has_news_ = take_set_up() || has_news_;
-      const bool is_frame = static_cast<Verb>(event.b) == Verb::kFrame;
-      is_frame ? record_frame(event.cycle) : record_tools(event.cycle);
+      record_set_up(verb, event.cycle);
     }
     tell(event);
     keeper_.see(event, alarm_message_);

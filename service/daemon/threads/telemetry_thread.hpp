@@ -72,6 +72,9 @@ class TelemetryThread {
   void put_in_force(const SetUpInForce& in_force) noexcept;
   void record_frame(std::uint64_t cycle) noexcept;
   void record_tools(std::uint64_t cycle) noexcept;
+  void record_limits(std::uint64_t cycle) noexcept;
+  /// What an accepted `verb` has put in force.
+  void record_set_up(Verb verb, std::uint64_t cycle) noexcept;
   /// Lets the commands thread know that the newest status tells of the newest set-up.
   void confirm_set_up() noexcept;
   /// Tells how the program went that is over; false: none is.

@@ -9,6 +9,7 @@
 #include "service/machine/file/config_error.hpp"
 #include "service/panel/program_text.hpp"
 #include "service/protocol/frame_sum.hpp"
+#include "service/protocol/limits_sum.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -100,6 +101,9 @@ Outcome ProgramDesk::load() {
   if (frame_of(*machine) != frame_) {
     return {false, "the work frame is another one than at the check: check the program again"};
   }
+  if (stream::limits_sum(machine->soft_limits) != limits_) {
+    return {false, "the soft limits are others than at the check: check the program again"};
+  }
   stream::StreamOptions options;
   options.file = folder_.file();
   options.station = view_.station;
@@ -107,6 +111,7 @@ Outcome ProgramDesk::load() {
   options.preflight = view_.preflight;
   options.is_waiting_for_end = true;
   options.frame = frame_;
+  options.limits = limits_;
   if (view_.first_line > 0) options.policies |= dds::kPolicyRetractFirst;
   if (stream_.joinable()) stream_.join();
   is_unloading_ = false;
@@ -185,6 +190,7 @@ void ProgramDesk::run_check(const Job& job) {
     view.is_simulating = !is_refused;
     reader_ = reader;
     frame_ = frame_of(*info);
+    limits_ = stream::limits_sum(info->soft_limits);
   });
   if (is_overtaken(job)) return;
   if (is_refused) {

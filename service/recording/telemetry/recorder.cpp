@@ -41,6 +41,11 @@ void Recorder::take(const record::RecordedTool& tool) noexcept {
   events_lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
+void Recorder::take(const record::RecordedLimits& limits) noexcept {
+  if (!writer_ || limits_.try_push(limits)) return;
+  events_lost_.fetch_add(1, std::memory_order_relaxed);
+}
+
 void Recorder::run() noexcept {
   if (!writer_) return;
   // What a service that is killed loses at most, and what the next look adds to it.
@@ -50,6 +55,7 @@ void Recorder::run() noexcept {
   Event event;
   record::RecordedFrame frame;
   record::RecordedTool tool;
+  record::RecordedLimits limits;
   for (bool is_last = false; !is_last;) {
     is_last = is_stopping_.load();
     while (ring_.try_pop(row)) {
@@ -60,6 +66,9 @@ void Recorder::run() noexcept {
     }
     while (tools_.try_pop(tool)) {
       if (!events_writer_->write(tool)) events_lost_.fetch_add(1, std::memory_order_relaxed);
+    }
+    while (limits_.try_pop(limits)) {
+      if (!events_writer_->write(limits)) events_lost_.fetch_add(1, std::memory_order_relaxed);
     }
     while (events_.try_pop(event)) {
       if (!events_writer_->write(event)) events_lost_.fetch_add(1, std::memory_order_relaxed);

@@ -31,6 +31,8 @@ class Recorder {
   void take(const record::RecordedFrame& frame) noexcept;
   /// Telemetry thread: so does a tool of the table that is in force from a cycle on.
   void take(const record::RecordedTool& tool) noexcept;
+  /// Telemetry thread: so do soft limits that are in force from a cycle on.
+  void take(const record::RecordedLimits& limits) noexcept;
   /// Telemetry thread: `count` events, ever, were lost before they came here. What they were nobody
   /// knows, so that the file of verbs counts as incomplete.
   void miss_events(std::uint64_t count) noexcept { events_missed_ = count; }
@@ -50,6 +52,7 @@ class Recorder {
   SpscRing<Event, 256> events_;
   SpscRing<record::RecordedFrame, 16> frames_;
   SpscRing<record::RecordedTool, 512> tools_;
+  SpscRing<record::RecordedLimits, 32> limits_;
   SpscRing<CycleRecord, 8192> ring_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::uint64_t> rows_lost_{0}, events_lost_{0}, events_missed_{0};

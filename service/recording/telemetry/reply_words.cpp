@@ -22,6 +22,7 @@ namespace {
   if (verb == Verb::kJog || verb == Verb::kHome) return "the machine has no such joint";
   if (verb == Verb::kFrame) return "that is no work frame";
   if (verb == Verb::kTool) return "that is no tool table";
+  if (verb == Verb::kLimits) return "those are no soft limits";
   if (is_override(verb)) {
     const bool is_feed = verb == Verb::kFeedOverride;
     return fmt::format("{:.6g} % is out of range: from 0 to {:.6g} %{}", 100 * argument,
@@ -37,7 +38,7 @@ namespace {
 [[nodiscard]] std::string remedy_for_wrong_state(Verb verb, State state) {
   const bool is_by_hand = verb == Verb::kJog || verb == Verb::kHome;
   if (verb == Verb::kDryRun) return "it begins and ends in Off alone; disable first";
-  if (verb == Verb::kFrame || verb == Verb::kTool) {
+  if (is_set_up(verb)) {
     return "the set-up is changed in Off or Ready alone; end what it does first";
   }
   switch (state) {

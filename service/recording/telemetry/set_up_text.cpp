@@ -3,8 +3,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 
+#include "meridian/units.hpp"
 #include "service/recording/telemetry/journal_entry.hpp"
 #include "service/recording/telemetry/sealed_text.hpp"
 #include "service/transport/messages.hpp"
@@ -12,7 +15,9 @@
 namespace meridian::telemetry {
 namespace {
 
-constexpr std::string_view kSetUpHead = "meridian set-up 2", kHeadBefore = "meridian set-up 1";
+/// Newest first.
+constexpr std::array<std::string_view, 3> kSetUpHeads{"meridian set-up 3", "meridian set-up 2",
+                                                      "meridian set-up 1"};
 
 /// Takes the number at the begin of `text` and the space behind it; false where there is none.
 template <class Number>
@@ -33,24 +38,58 @@ template <class Number>
   return is_right;
 }
 
+/// The soft limits that the next lines hold; false where they hold anything else.
+[[nodiscard]] bool read_limits(Lines& lines, SoftLimits& limits) {
+  std::size_t count = 0;
+  lines.read("limits", count);
+  bool is_right = count <= limits.rows().size();
+  for (std::size_t i = 0; is_right && i < count; ++i) {
+    const std::string text = std::string(lines.value("limit")) + ' ';
+    std::string_view rest = text;
+    std::size_t joint = 0;
+    double min = 0, max = 0;
+    is_right = take_number(rest, joint) && take_number(rest, min) && take_number(rest, max) &&
+               rest.empty() && joint > 0 && limits.put(joint - 1, min, max);
+  }
+  return is_right && !lines.has_failed();
+}
+
+/// "-10 to 200 mm".
+[[nodiscard]] std::string range_text(double min, double max, bool is_rotary) {
+  const auto shown = [is_rotary](double value) {
+    return is_rotary ? units::deg_from_rad(value) : value;
+  };
+  return fmt::format("{:.10g} to {:.10g} {}", shown(min), shown(max), is_rotary ? "deg" : "mm");
+}
+
 }  // namespace
 
 std::string to_text(const SetUp& set_up, std::string_view machine) {
   const WorkFrames& frames = set_up.frames;
-  std::string text = fmt::format("{}\nmachine = {}\nactive = {}\nframes = {}\n", kSetUpHead,
+  std::string text = fmt::format("{}\nmachine = {}\nactive = {}\nframes = {}\n", kSetUpHeads[0],
                                  machine, frames.active(), frames.rows().size());
   for (const WorkFrame& row : frames.rows()) {
     text += fmt::format("frame = {} {} {} {} {} {} {} {}\n", row.number, row.origin_mm[0],
                         row.origin_mm[1], row.origin_mm[2], row.rotation_deg[0],
                         row.rotation_deg[1], row.rotation_deg[2], row.name.data());
   }
+  const auto& rows = set_up.limits.rows();
+  const auto is_set = [](const SoftLimits::Row& row) { return row.is_set; };
+  text += fmt::format("limits = {}\n", std::count_if(rows.begin(), rows.end(), is_set));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].is_set) text += fmt::format("limit = {} {} {}\n", i + 1, rows[i].min, rows[i].max);
+  }
   if (set_up.tools) text += fmt::format("tools = {}\n{}\n", set_up.tools->size(), *set_up.tools);
   return seal(text);
 }
 
 Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_view machine) {
-  const bool is_before = text.starts_with(fmt::format("{}\n", kHeadBefore));
-  if (const auto damage = find_damage(text, is_before ? kHeadBefore : kSetUpHead, "set-up")) {
+  const auto head = std::find_if(
+      kSetUpHeads.begin(), kSetUpHeads.end(),
+      [text](std::string_view known) { return text.starts_with(fmt::format("{}\n", known)); });
+  const bool is_newest = head == kSetUpHeads.begin();
+  if (const auto damage =
+          find_damage(text, head != kSetUpHeads.end() ? *head : kSetUpHeads[0], "set-up")) {
     return tl::make_unexpected(*damage);
   }
   Lines lines(text);
@@ -72,6 +111,7 @@ Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_vie
   }
   is_right = is_right && !lines.has_failed() && frames.rows().size() == count &&
              frames.apply(select) == FrameFault::kNone;
+  is_right = is_right && (!is_newest || read_limits(lines, out.limits));
   if (is_right && lines.rest().starts_with("tools = ")) {
     std::size_t size = 0;
     lines.read("tools", size);
@@ -90,6 +130,43 @@ std::string frame_name(int number, const char* name) {
 std::string tool_name(std::uint32_t number, double length_mm) {
   return number == 0 ? fmt::format("the machine file's tool, {:.10g} mm long", length_mm)
                      : fmt::format("tool {}, {:.10g} mm long", number, length_mm);
+}
+
+std::string limits_text(const SoftLimits& limits, const MachineModel& model) {
+  std::string text;
+  for (std::size_t i = 0; i < limits.rows().size(); ++i) {
+    const SoftLimits::Row& row = limits.rows()[i];
+    if (!row.is_set) continue;
+    const JointSpec& joint = model.joints[i];
+    const bool has_joint = i < static_cast<std::size_t>(model.joint_count);
+    const std::string name = has_joint ? joint.name : fmt::format("joint {}", i + 1);
+    text += fmt::format("{} {} {}", text.empty() ? "soft limits" : ",", name,
+                        range_text(row.min, row.max, joint.is_rotary));
+  }
+  return text.empty() ? "no soft limits" : text;
+}
+
+std::string describe(LimitsFault fault, std::uint8_t joint, const MachineModel& model) {
+  const bool has_joint = joint < model.joint_count;
+  const JointSpec& spec = model.joints[has_joint ? joint : 0];
+  switch (fault) {
+    case LimitsFault::kNone:
+      return "";
+    case LimitsFault::kWord:
+      return "no such word; set or clear";
+    case LimitsFault::kJoint:
+      return fmt::format("the machine has no joint number {}", joint + 1);
+    case LimitsFault::kEndless:
+      return fmt::format("{} is endless, it has no travel to shrink", spec.name);
+    case LimitsFault::kValue:
+      return fmt::format("those of {} are no minimum below a maximum; swap the two numbers",
+                         spec.name);
+    case LimitsFault::kTravel:
+      return fmt::format(
+          "{} has a travel of {}, which soft limits only shrink", spec.name,
+          range_text(spec.limits.travel_min, spec.limits.travel_max, spec.is_rotary));
+  }
+  return "";
 }
 
 std::string describe(FrameFault fault, int number) {

@@ -96,6 +96,7 @@ std::string describe(const Event& event, const MachineModel& model) {
         return fmt::format("work frame {:.0f} in force", event.x);
       }
       if (static_cast<Verb>(event.b) == Verb::kTool) return "another tool table in force";
+      if (static_cast<Verb>(event.b) == Verb::kLimits) return "other soft limits in force";
       return fmt::format("{} accepted", name_of(static_cast<Verb>(event.b)));
     case EventCode::kRefused:
       return fmt::format("{} refused: {}", name_of(static_cast<Verb>(event.b)),

@@ -68,6 +68,23 @@ TEST(StatusText, TellsWhatHoldsTheFeedAndWhereTheToolIs) {
       << text;
 }
 
+TEST(StatusText, ReportsTheSoftLimits) {
+  dds::MachineInfo machine = machine_of_a_stage();
+  machine.joints[1].is_rotary = true;
+  EXPECT_EQ(describe({}, machine).find("limits "), std::string::npos);
+  EXPECT_NE(to_json({}, machine).find(",\"soft_limits\":{},"), std::string::npos);
+  machine.soft_limits.put(1, 0, 0.5);
+  EXPECT_NE(describe({}, machine).find("\nlimits    b2 0 to 28.64788976 deg\n"), std::string::npos);
+  machine.soft_limits.put(0, -40, 42.5);
+  EXPECT_NE(describe({}, machine).find("\nlimits    b3 -40 to 42.5 mm, b2 0 to 28.64788976 deg\n"),
+            std::string::npos)
+      << describe({}, machine);
+  EXPECT_NE(
+      to_json({}, machine).find(",\"soft_limits\":{\"b3_mm\":[-40,42.5],\"b2_rad\":[0,0.5]},"),
+      std::string::npos)
+      << to_json({}, machine);
+}
+
 TEST(StatusText, TellsTheTimeToGo) {
   const dds::MachineInfo machine = machine_of_a_stage();
   dds::Status status;

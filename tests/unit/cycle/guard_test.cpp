@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "meridian/kinematics/soft_limits.hpp"
+
 namespace meridian {
 namespace {
 
@@ -52,6 +54,24 @@ TEST(Guard, StopsASetpointOutsideTravel) {
   EXPECT_EQ(verdict.alarm, Alarm::kTravel);
   EXPECT_EQ(verdict.joint, 1);
   EXPECT_EQ(verdict.value, 100.001);
+}
+
+TEST(Guard, StopsASetpointOutsideASoftLimitInsideTheTravelOfTheMachine) {
+  const MachineModel own = machine_under_guard();
+  SoftLimits limits;
+  ASSERT_EQ(limits.apply({LimitsWord::kSet, 1, -20, 35.5}, own), LimitsFault::kNone);
+  MachineModel machine = own;
+  shrink_travel(machine, travel_under(limits, own));
+  JointVector last{}, next{};
+  last[1] = 35.49;
+  next[1] = 35.501;
+  EXPECT_EQ(check(own, next, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  const GuardVerdict verdict = check(machine, next, {}, last, kPeriod_s);
+  EXPECT_EQ(verdict.alarm, Alarm::kTravel);
+  EXPECT_EQ(verdict.joint, 1);
+  last[1] = -19.99;
+  next[1] = -20.001;
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s).alarm, Alarm::kTravel);
 }
 
 TEST(Guard, WhoStandsOutsideMayStandAndComeBackButGoNoFarther) {

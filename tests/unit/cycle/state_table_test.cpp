@@ -67,7 +67,7 @@ TEST(StateTable, ChangesTheSetUpInOffAndReadyAlone) {
   for (int s = 0; s < kStateCount; ++s) {
     const auto state = static_cast<State>(s);
     const bool may = state == State::kOff || state == State::kReady;
-    for (const Verb verb : {Verb::kFrame, Verb::kTool}) {
+    for (const Verb verb : {Verb::kFrame, Verb::kTool, Verb::kLimits}) {
       EXPECT_EQ(effect_of(state, verb).effect == Effect::kSet, may) << name_of(state);
     }
   }

@@ -100,6 +100,16 @@ class SupervisorSetUp : public SupervisorTest {
     request.tool_file = text;
     (void)commands_.write(request);
   }
+  void say_limits(const LimitsOrder& order) {
+    dds::CommandRequest request;
+    request.operator_id = 9;
+    request.request = ++request_;
+    request.verb = Verb::kLimits;
+    request.epoch_seen = 1;
+    request.status_seen = status_;
+    request.limits = order;
+    (void)commands_.write(request);
+  }
   /// The disk, the cycle and everybody do what the newest word asks for.
   void do_it(Verb verb) {
     const auto command = write_and_take(verb);
@@ -251,6 +261,40 @@ TEST_F(SupervisorSetUp, TakesTheServicesOwnToolsAgain) {
   do_it(Verb::kTool);
   EXPECT_FALSE(on_disk().tools);
   EXPECT_EQ(supervisor_.in_force().tools, stream::tools_sum(tools_));
+}
+
+TEST_F(SupervisorSetUp, ShrinksTheTravelOfEverybodyAndGivesItBack) {
+  const JointLimits whole = model_.joints[0].limits;
+  say_limits({LimitsWord::kSet, 0, whole.travel_min / 2, whole.travel_max / 2});
+  const auto command = write_and_take(Verb::kLimits);
+  ASSERT_TRUE(command);
+  ASSERT_TRUE(ports_->set_up.for_cycle.refresh());
+  MachineModel cycles = model_;
+  place(cycles, ports_->set_up.for_cycle.latest());
+  EXPECT_EQ(cycles.joints[0].limits.travel_max, whole.travel_max / 2);
+  EXPECT_EQ(cycles.joints[1].limits.travel_max, model_.joints[1].limits.travel_max);
+  tell(EventCode::kAccepted, command->request, Verb::kLimits);
+  publish_in_force();
+  EXPECT_TRUE(has_reply(Verb::kLimits, Refusal::kNone));
+  EXPECT_TRUE(on_disk().limits.rows()[0].is_set);
+  ASSERT_TRUE(ports_->set_up.for_planner.refresh() && ports_->set_up.for_intake.refresh() &&
+              ports_->set_up.for_telemetry.refresh());
+  EXPECT_EQ(ports_->set_up.for_planner.latest().travel, ports_->set_up.for_cycle.latest().travel);
+  EXPECT_EQ(ports_->set_up.for_intake.latest().limits, supervisor_.in_force().limits);
+  say_limits({LimitsWord::kClear, LimitsOrder::kAllJoints});
+  do_it(Verb::kLimits);
+  ASSERT_TRUE(ports_->set_up.for_cycle.refresh());
+  place(cycles, ports_->set_up.for_cycle.latest());
+  EXPECT_EQ(cycles.joints[0].limits.travel_min, whole.travel_min);
+  EXPECT_EQ(cycles.joints[0].limits.travel_max, whole.travel_max);
+  EXPECT_TRUE(on_disk().limits.empty());
+}
+
+TEST_F(SupervisorSetUp, RefusesLimitsThatWidenTravel) {
+  say_limits({LimitsWord::kSet, 0, 0, 2 * model_.joints[0].limits.travel_max});
+  EXPECT_TRUE(has_reply(Verb::kLimits, Refusal::kOutOfRange));
+  Command command;
+  EXPECT_FALSE(ports_->commands.try_pop(command));
 }
 
 TEST_F(SupervisorSetUp, MeasuresTheToolInTheSpindleAnew) {

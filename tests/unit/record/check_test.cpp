@@ -275,6 +275,21 @@ TEST_F(Check, RefusesAJointOutsideItsTravel) {
   EXPECT_NE(report.findings[0].text.find("theta2"), std::string::npos);
 }
 
+TEST_F(Check, HoldsEveryCycleAgainstTheSoftLimitsOfItsTime) {
+  SoftLimits narrow;
+  narrow.put(4, -1, 0.34);
+  const std::uint64_t end = records.back().setpoint.cycle;
+  options.soft_limits = {{0, narrow}};
+  expect_only(run(), Finding::Kind::kTravel);
+  options.soft_limits = {{end + 1, narrow}};
+  EXPECT_TRUE(run().passed()) << "they came later";
+  options.soft_limits = {{0, narrow}, {1, SoftLimits()}};
+  EXPECT_TRUE(run().passed()) << "they were cleared";
+  narrow.put(4, 3, 4);
+  options.soft_limits = {{end - 3, narrow}};
+  EXPECT_TRUE(run().passed()) << "it rests outside, and goes no farther out";
+}
+
 TEST_F(Check, RefusesASentVelocityThatIsNotThatOfThePositions) {
   records[middle_of(2)].setpoint.velocity[0] *= 1.01;
   expect_only(run(), Finding::Kind::kSentVelocity);

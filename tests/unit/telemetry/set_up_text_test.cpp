@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "meridian/units.hpp"
 #include "service/recording/telemetry/journal_entry.hpp"
 #include "service/recording/telemetry/sealed_text.hpp"
 #include "service/transport/messages.hpp"
@@ -35,7 +36,8 @@ WorkFrames drawn_frames(unsigned seed, int count) {
 TEST(SetUpText, ComesBackBitForBit) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    telemetry::SetUp set_up{drawn_frames(seed, static_cast<int>(seed % 60)), {}};
+    telemetry::SetUp set_up{drawn_frames(seed, static_cast<int>(seed % 60)), {}, {}};
+    for (std::size_t i = 0; i < seed % 7; ++i) set_up.limits.put(i, -1.0 / (3 + seed), 1e5 / 7);
     if (seed % 3 == 1) set_up.tools = std::string(seed * 40, 'x') + "\n# crc32c = 12345678\n";
     if (seed % 3 == 2) set_up.tools = "";
     const auto read = parse_set_up(to_text(set_up, "lai"), "lai");
@@ -53,14 +55,16 @@ TEST(SetUpText, OfAFullTableFitsIntoItsFile) {
     row.number = static_cast<std::uint8_t>(number);
     ASSERT_EQ(frames.apply({FrameWord::kSet, row}), FrameFault::kNone);
   }
+  SoftLimits limits;
+  for (std::size_t i = 0; i < kMaxJoints; ++i) limits.put(i, -1.0 / 3.0 * 1e-300, 2.0 / 3.0);
   const std::string text =
-      to_text({frames, std::string(dds::kToolFileBytes, 't')}, std::string(64, 'm'));
+      to_text({frames, std::string(dds::kToolFileBytes, 't'), limits}, std::string(64, 'm'));
   EXPECT_LT(text.size(), kMaxSetUpBytes);
   EXPECT_TRUE(parse_set_up(text, std::string(64, 'm')));
 }
 
 TEST(SetUpText, ThatIsTornOrChangedIsRefused) {
-  const std::string text = to_text({drawn_frames(1, 5), "[[tool]]\nnumber = 4\n"}, "lai");
+  const std::string text = to_text({drawn_frames(1, 5), "[[tool]]\nnumber = 4\n", {}}, "lai");
   for (std::size_t size = 0; size < text.size(); ++size) {
     EXPECT_FALSE(parse_set_up(text.substr(0, size), "lai")) << size;
   }
@@ -82,6 +86,39 @@ TEST(SetUpText, OfToolsThatAreCutShortIsRefused) {
   EXPECT_TRUE(parse_set_up(seal(head + "tools = 3\nabc\n"), "lai"));
   EXPECT_FALSE(parse_set_up(seal(head + "tools = 300\nabc\n"), "lai"));
   EXPECT_FALSE(parse_set_up(seal(head + "tools = abc\n"), "lai"));
+}
+
+TEST(SetUpText, OfLimitsThatAreNoneIsRefused) {
+  const std::string head = "meridian set-up 3\nmachine = lai\nactive = 0\nframes = 0\n";
+  EXPECT_TRUE(parse_set_up(seal(head + "limits = 0\n"), "lai"));
+  const auto read = parse_set_up(seal(head + "limits = 1\nlimit = 2 -1.5 3\n"), "lai");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->limits.rows()[1], (SoftLimits::Row{true, -1.5, 3}));
+  for (const char* rest : {"", "limits = 2\nlimit = 2 -1.5 3\n", "limits = 7\n", "limits = x\n",
+                           "limits = 1\nlimit = 0 -1.5 3\n", "limits = 1\nlimit = 7 -1.5 3\n",
+                           "limits = 1\nlimit = 2 -1.5\n", "limits = 1\nlimit = 2 -1.5 3 4\n"}) {
+    EXPECT_FALSE(parse_set_up(seal(head + rest), "lai")) << rest;
+  }
+}
+
+TEST(SetUpText, SaysOfLimitsWhatTheyAreAndWhatIsWrong) {
+  MachineModel model;
+  model.joint_count = 2;
+  model.joints[0].name = "X";
+  model.joints[0].limits.travel_min = -600;
+  model.joints[0].limits.travel_max = 600;
+  model.joints[1].name = "C";
+  model.joints[1].is_rotary = model.joints[1].is_endless = true;
+  SoftLimits limits;
+  EXPECT_EQ(limits_text(limits, model), "no soft limits");
+  limits.put(0, -40, 42.5);
+  limits.put(1, 0, units::rad_from_deg(30));
+  EXPECT_EQ(limits_text(limits, model), "soft limits X -40 to 42.5 mm, C 0 to 30 deg");
+  EXPECT_EQ(describe(LimitsFault::kTravel, 0, model),
+            "X has a travel of -600 to 600 mm, which soft limits only shrink");
+  EXPECT_EQ(describe(LimitsFault::kEndless, 1, model), "C is endless, it has no travel to shrink");
+  EXPECT_EQ(describe(LimitsFault::kJoint, 4, model), "the machine has no joint number 5");
+  EXPECT_NE(describe(LimitsFault::kValue, 0, model).find("swap"), std::string::npos);
 }
 
 TEST(SetUpText, ThatSelectsWhatItHasNotIsRefused) {

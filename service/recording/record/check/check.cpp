@@ -222,7 +222,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   report.cut_s = static_cast<double>(report.end_cycle - report.begin_cycle) * report.cycle_s;
   if (report.rows == 0) return report;
 
-  JointCheck joints(model, survey.largest());
+  JointCheck joints(model, survey.largest(), options.soft_limits);
   PathCheck tool(model, path, options);
   UnwindCheck unwinding(model, path.begin_tool_length_mm(), options);
   const bool has_cut = survey.has_cut(options);

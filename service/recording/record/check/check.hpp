@@ -12,6 +12,7 @@
 #include "service/recording/record/check/check_report.hpp"
 #include "service/recording/record/check/checked_path.hpp"
 #include "service/recording/record/check/feed_overrides.hpp"
+#include "service/recording/record/file/recorded_limits.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 
 namespace meridian::record {
@@ -24,6 +25,7 @@ struct CheckOptions {
   double feed_factor = 1;         ///< highest feed override in the run, where `overrides` is empty
   std::vector<FeedOverride> overrides;  ///< those of the run: each holds when and as long as it did
   bool allow_unfinished = false;        ///< the run was ended before the path was
+  std::vector<LimitsFrom> soft_limits;  ///< those of the run, each until the next
   std::uint64_t from_cycle = 0;         ///< rows before are not looked at
   std::uint64_t to_cycle = std::numeric_limits<std::uint64_t>::max();
 
@@ -46,7 +48,8 @@ struct CheckOptions {
 ///   fastest block within 5 mm asks for, and no block in less than its time;
 /// * the machine does not creep while it runs (creep_check.hpp);
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
-///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel;
+///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel, and
+///   soft limits, outside of which a joint may only come back;
 /// * not a dry run and a run that drives followed in one recording, of which the first alone would
 ///   be held against the path;
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.

@@ -14,6 +14,7 @@ namespace {
 constexpr double kRelative = 1e-6;
 constexpr double kRoundings = 8;
 constexpr double kTravelMargin = 1e-9;
+constexpr double kOutside = 1e-11;     // rounding of a joint that stands outside its soft limits
 constexpr double kStageFit_mm = 1e-9;  // rounding there and back is 1e-12
 constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
 
@@ -23,8 +24,11 @@ constexpr const char* kRateNames[] = {"velocity", "acceleration", "jerk"};
 
 }  // namespace
 
-JointCheck::JointCheck(const MachineModel& model, const LimitedVector& largest)
-    : model_(model), period_(static_cast<double>(model.cycle_ns) * 1e-9) {
+JointCheck::JointCheck(const MachineModel& model, const LimitedVector& largest,
+                       std::span<const LimitsFrom> soft_limits)
+    : model_(model),
+      soft_limits_(soft_limits),
+      period_(static_cast<double>(model.cycle_ns) * 1e-9) {
   for (int i = 0; i < limited_count(model); ++i) ulp_[i] = spacing(std::abs(largest[i]));
 }
 
@@ -58,6 +62,22 @@ void JointCheck::check_rates(int joint) {
     peak.raise(rate / limit, rows_.back().cycle, rows_.back().line);
     note(over_[joint][order - 1], rate / limit, rate > allowed);
   }
+}
+
+/// Inside the travel of the machine, and inside the soft limits of this cycle or no farther out
+/// than the cycle before.
+void JointCheck::check_travel(int joint) {
+  const double q = rows_.back().places[joint];
+  const JointLimits& whole = limited_spec(model_, joint).limits;
+  const double beyond = std::max(whole.travel_min - q, q - whole.travel_max);
+  if (beyond > kTravelMargin) return note(outside_[joint], beyond, true);
+  const bool is_joint = joint < model_.joint_count;
+  if (!is_joint || soft_limits_.empty() || soft_limits_.front().cycle > rows_.back().cycle) return;
+  const SoftLimits::Row& soft = soft_limits_.front().limits.rows()[static_cast<std::size_t>(joint)];
+  if (!soft.is_set || run_ < 2) return;
+  const auto outside = [&soft](double at) { return std::max(soft.min - at, at - soft.max); };
+  const double before = outside(rows_[kDepth - 2].places[joint]);
+  note(outside_[joint], outside(q), outside(q) > std::max(kTravelMargin, before + kOutside));
 }
 
 /// Over three consecutive cycles the sent velocity of the middle one differs from the central
@@ -104,6 +124,9 @@ void JointCheck::add(const RecordingRow& row, bool has_velocity) {
   const bool is_enabled = is_leading(row.flags) && !is_homing_;
   std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
   rows_.back() = row;
+  while (soft_limits_.size() > 1 && soft_limits_[1].cycle <= row.cycle) {
+    soft_limits_ = soft_limits_.subspan(1);
+  }
   run_ = !is_enabled ? 0 : is_next ? std::min(run_ + 1, kDepth) : 1;
   if ((row.flags & kSetpointFaultStop) != 0) ++fault_rows_;
   if ((row.flags & kSetpointDryEnabled) != 0) ++dry_rows_;
@@ -113,10 +136,7 @@ void JointCheck::add(const RecordingRow& row, bool has_velocity) {
     const JointSpec& spec = limited_spec(model_, i);
     use_[i].low = has_row_ ? std::min(use_[i].low, q) : q;
     use_[i].high = has_row_ ? std::max(use_[i].high, q) : q;
-    if (!spec.is_endless && is_enabled) {
-      const double beyond = std::max(spec.limits.travel_min - q, q - spec.limits.travel_max);
-      note(outside_[i], beyond, beyond > kTravelMargin);
-    }
+    if (!spec.is_endless && is_enabled) check_travel(i);
     check_rates(i);
     if (has_velocity) check_velocity(i);
   }

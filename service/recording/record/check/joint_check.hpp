@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "meridian/kinematics/limited.hpp"
 #include "service/recording/record/check/check_report.hpp"
+#include "service/recording/record/file/recorded_limits.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 
 namespace meridian::record {
@@ -15,7 +17,9 @@ namespace meridian::record {
 class JointCheck {
  public:
   /// `largest`: the largest |position| of each joint and drive in the recording, for its rounding.
-  JointCheck(const MachineModel& model, const LimitedVector& largest);
+  /// `soft_limits`, in the order of their cycles, outlive it.
+  JointCheck(const MachineModel& model, const LimitedVector& largest,
+             std::span<const LimitsFrom> soft_limits);
 
   void add(const RecordingRow& row, bool has_velocity);
   /// Adds what was found to the report.
@@ -24,11 +28,13 @@ class JointCheck {
  private:
   void check_rates(int joint);
   void check_velocity(int joint);
+  void check_travel(int joint);
   void check_stage(const RecordingRow& row);
   void note(Excess& excess, double use, bool is_over) const;
 
   static constexpr int kDepth = 4;  ///< rows of a third difference
   const MachineModel& model_;
+  std::span<const LimitsFrom> soft_limits_;  ///< the first of them is in force, or the next
   double period_;
   LimitedVector ulp_{};
   std::array<RecordingRow, kDepth> rows_{};  ///< newest last

@@ -24,7 +24,7 @@ bool is_replayed(const Event& event) noexcept {
   const auto verb = static_cast<Verb>(event.b);
   // No program is there then.
   const bool is_outside = verb == Verb::kJog || verb == Verb::kHome || verb == Verb::kDryRun ||
-                          verb == Verb::kFrame || verb == Verb::kTool;  // have rows of their own
+                          is_set_up(verb);  // has rows of its own
   return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_outside) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
          event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned ||
@@ -73,6 +73,16 @@ bool OperatorEventsWriter::write(const RecordedTool& tool) noexcept {
   CsvRow row(at);
   row.put_integer(tool.cycle).put(',').put(kToolWord).put(',').put_integer(tool.number);
   row.put(',').put_real(tool.length_mm).put(',').put_real(tool.radius_mm);
+  file_.end_row(row.put('\n').end());
+  return file_.flush();
+}
+
+bool OperatorEventsWriter::write(const RecordedLimits& limits) noexcept {
+  char* const at = file_.begin_row();
+  if (at == nullptr) return false;
+  CsvRow row(at);
+  row.put_integer(limits.cycle).put(',').put(kLimitsWord).put(',').put_integer(limits.joint);
+  row.put(',').put_real(limits.min).put(',').put_real(limits.max);
   file_.end_row(row.put('\n').end());
   return file_.flush();
 }

@@ -10,6 +10,7 @@
 #include "service/recording/record/file/csv_file.hpp"
 #include "service/recording/record/file/record_error.hpp"
 #include "service/recording/record/file/recorded_frame.hpp"
+#include "service/recording/record/file/recorded_limits.hpp"
 #include "service/recording/record/file/recorded_tools.hpp"
 
 namespace meridian::record {
@@ -51,6 +52,8 @@ class OperatorEventsWriter {
   bool write(const RecordedFrame& frame) noexcept;
   /// Adds a tool of the table that is in force from a cycle on. False once a write failed.
   bool write(const RecordedTool& tool) noexcept;
+  /// Adds soft limits of a joint that are in force from a cycle on. False once a write failed.
+  bool write(const RecordedLimits& limits) noexcept;
   /// Says in the file that events are missing, once: `meridian simulate --events` refuses it then.
   void mark_incomplete() noexcept;
   /// Flushes and closes; false where anything was lost.

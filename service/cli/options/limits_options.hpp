@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/soft_limits.hpp"
+#include "service/transport/messages.hpp"
+
+namespace meridian::cli {
+
+/// The order of `words` (set, a joint and both ends in mm or degrees; clear and a joint, or clear
+/// alone) for the joints that `machine` names; or prints what is wrong.
+[[nodiscard]] std::optional<LimitsOrder> limits_order(const std::vector<std::string>& words,
+                                                      const dds::MachineInfo& machine);
+
+/// A line for each joint with its travel in force, in mm or degrees, as `set` takes it; * before
+/// those that are shrunk, their whole travel behind.
+/// Proof: tests/unit/cli/limits_options_test.cpp.
+[[nodiscard]] std::string limits_text(const dds::MachineInfo& machine);
+
+}  // namespace meridian::cli

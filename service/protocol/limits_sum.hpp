@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "meridian/kinematics/soft_limits.hpp"
+#include "service/text/checksum.hpp"
+
+namespace meridian::stream {
+
+/// By which station and service know that they mean the same soft limits: FNV-1a, 64 bit, of joint,
+/// minimum and maximum of every pair, as doubles, as they lie in memory. Never 0.
+/// Proof: tests/unit/protocol/limits_sum_test.cpp.
+[[nodiscard]] inline std::uint64_t limits_sum(const SoftLimits& limits) noexcept {
+  text::Checksum sum;
+  const auto add = [&sum](double value) {
+    sum.add({reinterpret_cast<const char*>(&value), sizeof value});
+  };
+  for (std::size_t joint = 0; joint < limits.rows().size(); ++joint) {
+    const SoftLimits::Row& row = limits.rows()[joint];
+    if (!row.is_set) continue;
+    add(static_cast<double>(joint));
+    add(row.min);
+    add(row.max);
+  }
+  return sum.sum();
+}
+
+}  // namespace meridian::stream

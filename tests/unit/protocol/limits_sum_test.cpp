@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/protocol/limits_sum.hpp"
+
+#include <gtest/gtest.h>
+
+namespace meridian::stream {
+namespace {
+
+SoftLimits limits_of(std::size_t joint, double min, double max) {
+  SoftLimits limits;
+  EXPECT_TRUE(limits.put(joint, min, max));
+  return limits;
+}
+
+TEST(LimitsSum, TellsLimitsApartByAllThatTheySay) {
+  const std::uint64_t sum = limits_sum(limits_of(1, -5, 5));
+  EXPECT_EQ(limits_sum(limits_of(1, -5, 5)), sum);
+  EXPECT_NE(limits_sum(SoftLimits()), 0U);
+  EXPECT_NE(limits_sum(SoftLimits()), sum);
+  EXPECT_NE(limits_sum(limits_of(2, -5, 5)), sum);
+  EXPECT_NE(limits_sum(limits_of(1, -5 - 1e-12, 5)), sum);
+  EXPECT_NE(limits_sum(limits_of(1, -5, 5 + 1e-12)), sum);
+  SoftLimits both = limits_of(1, -5, 5);
+  both.put(0, -5, 5);
+  EXPECT_NE(limits_sum(both), sum);
+}
+
+}  // namespace
+}  // namespace meridian::stream
