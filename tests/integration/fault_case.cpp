@@ -15,8 +15,10 @@
 #include <utility>
 
 #include "integration/live_run.hpp"
+#include "integration/set_up_words.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "support/alarm_letter.hpp"
+#include "support/text_file.hpp"
 
 namespace meridian::test {
 namespace {
@@ -131,6 +133,9 @@ void FaultCase::set_up() {
   plant_->start_service(service_words_);
   plant_->start_drives({"--action-delay", "1"}, &console_);
   ASSERT_TRUE(plant_->enable()) << story();
+  if (fault_.how == How::kSetUp) {
+    set_up_words_ = std::make_unique<SetUpWords>(*plant_, read_text(tools));
+  }
 }
 
 void FaultCase::start_station(std::uint32_t from_line) {

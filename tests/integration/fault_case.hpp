@@ -15,6 +15,8 @@
 
 namespace meridian::test {
 
+class SetUpWords;
+
 /// One fault in one phase, done to station, service and drives as processes: what comes of it, the
 /// way back, the rest of the program, and the verdict on what was recorded.
 class FaultCase {
@@ -75,6 +77,7 @@ class FaultCase {
   std::unique_ptr<Plant> plant_;
   std::unique_ptr<Witness> witness_;
   std::unique_ptr<dds::Reader<dds::Action>> actions_;
+  std::unique_ptr<SetUpWords> set_up_words_;
   InputPipe console_;
   std::unique_ptr<InputPipe> source_;
   std::unique_ptr<Process> station_, attacker_;

@@ -29,7 +29,7 @@ constexpr std::array<Phase, 12> kPhases{{
 constexpr const char* kAllBlocked = "blocked:b3\nblocked:b2\nblocked:b4\nblocked:theta1\n";
 
 // The service bridges 100 ms and waits 300 ms for feedback (service_file() of live_run.hpp).
-const std::array<LiveFault, 33> kFaults{{
+const std::array<LiveFault, 34> kFaults{{
     {"station killed", How::kStationDies, "", "S", "S"},
     {"station stopped", How::kStationStops, "", "S", "S"},
     {"service killed", How::kServiceDies, "", "X", "X"},
@@ -54,6 +54,7 @@ const std::array<LiveFault, 33> kFaults{{
     {"`stale`, 20 ms", How::kConsole, "stale=10", "·", "·"},
     {"`doubled`", How::kConsole, "doubled", "·", "·"},
     {"`swapped`", How::kConsole, "swapped", "·", "·"},
+    {"set-up words", How::kSetUp, "", "·", "·"},
     {"a stranger's rubbish", How::kRubbish, "", "·", "·"},
     {"stuck participant", How::kStuck, "stick --topics all --max-samples 1 --lease 600", "·", "·"},
     {"forged sender", How::kAttacker,

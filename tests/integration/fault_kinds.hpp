@@ -19,6 +19,7 @@ struct LiveFault {
     kServiceDies,   ///< SIGKILL
     kDrivesDie,     ///< SIGKILL
     kStall,         ///< SIGSTOP of the service for `milliseconds`
+    kSetUp,         ///< operators change the set-up; where a program is, all of them are refused
     kRubbish,       ///< somebody sends what nobody asked for on every topic that moves machines
     kAttacker,      ///< `line` is the command line of tests/attack's attacker
     kStuck,         ///< the same, and it is stopped (SIGSTOP) as soon as it is there

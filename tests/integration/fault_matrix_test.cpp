@@ -30,11 +30,12 @@ void PrintTo(const Pair& pair, std::ostream* out) {
 }
 
 /// The slice: each phase, and each way in which faults are provoked.
-constexpr std::array<std::pair<const char*, const char*>, 16> kSlice{{
+constexpr std::array<std::pair<const char*, const char*>, 17> kSlice{{
     {"drives killed", "Ready"},
     {"service stopped, 700 ms", "Approaching"},
     {"station stopped", "in a cut, smooth"},
     {"service killed", "in a cut, exact stop"},
+    {"set-up words", "in a cut, smooth"},
     {"a stranger's rubbish", "in a rapid"},
     {"wire: 5 % lost", "on the pole"},
     {"`deaf`, 600 ms", "Holding"},

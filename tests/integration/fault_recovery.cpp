@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "integration/fault_case.hpp"
+#include "integration/set_up_words.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/transport/writer.hpp"
@@ -67,6 +68,9 @@ void FaultCase::provoke() {
       plant_->service().send_signal(SIGSTOP);
       std::this_thread::sleep_for(milliseconds(fault_.milliseconds));
       return plant_->service().send_signal(SIGCONT);
+    case How::kSetUp:
+      return phase_.where == Where::kReady ? set_up_words_->expect_accepted()
+                                           : set_up_words_->expect_refused();
     case How::kRubbish:
       return send_rubbish();
     case How::kWire:
