@@ -47,8 +47,9 @@ void MachineWatch::adopt(const dds::MachineInfo& info) {
     model_ = std::make_unique<MachineModel>(stream::served_model(info));
     motion_ = std::make_unique<Motion>(*model_);
     const bool has_tools = !info.tool_file.empty();
-    scene = describe_scene(*model_,
-                           has_tools ? config::parse_tools(info.tool_file, "tools") : ToolTable());
+    scene = describe_scene(stream::whole_model(info),
+                           has_tools ? config::parse_tools(info.tool_file, "tools") : ToolTable(),
+                           info.soft_limits);
   } catch (const config::ConfigError&) {
     // Its file does not fit the topic, or another version wrote it: shown without a picture.
   }

@@ -76,11 +76,14 @@ using nlohmann::json;
 
 }  // namespace
 
-std::string describe_scene(const MachineModel& model, const ToolTable& tools) {
+std::string describe_scene(const MachineModel& model, const ToolTable& tools,
+                           const SoftLimits& soft_limits) {
   const scene::LinkTree tree = scene::link_tree(model);
   json joints = json::array(), table = json::array();
-  for (int i = 0; i < model.joint_count; ++i) {
-    joints.push_back(to_json(model.joints[static_cast<std::size_t>(i)]));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
+    const SoftLimits::Row& row = soft_limits.rows()[i];
+    joints.push_back(to_json(model.joints[i]));
+    if (row.is_set) joints.back()["soft_limits"] = {row.min, row.max};
   }
   for (const Tool& tool : tools.tools()) {
     table.push_back({{"number", tool.number},

@@ -5,7 +5,7 @@
 
 namespace meridian::stream {
 
-MachineModel served_model(const dds::MachineInfo& info) {
+MachineModel whole_model(const dds::MachineInfo& info) {
   MachineModel model = config::parse_machine(info.machine_file, info.name);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -14,9 +14,14 @@ MachineModel served_model(const dds::MachineInfo& info) {
     }
     model.frame_origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
   }
-  shrink_travel(model, info.soft_limits);
   model.tool_length_mm = info.tool_length_mm;
   model.bridge_cycles = static_cast<int>(info.bridge_cycles);
+  return model;
+}
+
+MachineModel served_model(const dds::MachineInfo& info) {
+  MachineModel model = whole_model(info);
+  shrink_travel(model, info.soft_limits);
   return model;
 }
 

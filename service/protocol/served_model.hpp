@@ -6,8 +6,12 @@
 
 namespace meridian::stream {
 
-/// The machine as its service has it: the file that it tells, with the frame and the tool in force.
+/// The machine as its service has it: the file that it publishes, with the frame and the tool in
+/// force, and the travel of that file.
 /// Throws config::ConfigError where the file did not fit the topic, or another version wrote it.
+[[nodiscard]] MachineModel whole_model(const dds::MachineInfo& info);
+
+/// The same with the travel that soft limits leave it, by which programs are checked.
 [[nodiscard]] MachineModel served_model(const dds::MachineInfo& info);
 
 }  // namespace meridian::stream

@@ -89,7 +89,7 @@ export class Display {
       const joint = this.scene.joints[i];
       const value = frame.joints[i];
       setText(one.value, fixed(shown(joint, value), joint.rotary ? 4 : 3));
-      const [low, high] = joint.endless ? [-Math.PI, Math.PI] : joint.travel;
+      const [low, high] = joint.endless ? [-Math.PI, Math.PI] : joint.soft_limits ?? joint.travel;
       const turned = joint.endless ? Math.atan2(Math.sin(value), Math.cos(value)) : value;
       const at = Math.min(Math.max((turned - low) / (high - low), 0), 1);
       one.mark.style.left = `${100 * at}%`;
