@@ -44,7 +44,8 @@ TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
   for (int n = 1; n <= kills; ++n) {
     SCOPED_TRACE(testing::Message() << "kill " << n);
     plant.start_service();
-    ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.cycles_run > 0; }))
+    ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.cycles_run > 0; },
+                                 milliseconds(20'000)))
         << plant.service().said();
     expect_reported(reported_by(plant), acknowledged);
     // A word for the table, one for the row in force, one for tools, one for limits, in turns.

@@ -112,7 +112,7 @@ class SetUpOperator {
 /// What the machine topic tells now.
 [[nodiscard]] inline dds::MachineInfo reported_by(const Plant& plant) {
   const auto found = stream::find_machines(static_cast<std::uint32_t>(std::stoul(plant.domain())),
-                                           "lai", milliseconds(5000));
+                                           "lai", milliseconds(15'000));
   EXPECT_EQ(found.size(), 1U);
   return found.empty() ? dds::MachineInfo{} : found.front();
 }
