@@ -130,6 +130,13 @@ StartError unreadable(const std::filesystem::path& set_up, const std::string& wh
                     "; put it right, or remove it and set work frames, tools and soft limits anew");
 }
 
+StartError outside_travel(const std::filesystem::path& set_up, const std::string& limits) {
+  return StartError("the set-up " + set_up.string() + " holds " + limits +
+                    ", not inside the travel of the machine file; start with the machine file of "
+                    "before and say meridian ctl limits clear, or remove the set-up and set work "
+                    "frames, tools and soft limits anew");
+}
+
 StartError served_already(const dds::MachineInfo& holder) {
   return StartError("machine '" + holder.name + "' is served already by meridiand on host " +
                     holder.host + ", process " + std::to_string(holder.pid) +
@@ -235,9 +242,7 @@ void Service::read_set_up() {
     }
   }
   if (set_up->limits.find_fault(parts_.model) != LimitsFault::kNone) {
-    throw unreadable(set_up_.path(), "holds " +
-                                         telemetry::limits_text(set_up->limits, parts_.model) +
-                                         ", not inside the travel of the machine file");
+    throw outside_travel(set_up_.path(), telemetry::limits_text(set_up->limits, parts_.model));
   }
   const SetUpInForce in_force = in_force_by(*set_up, parts_.model, tools, 0);
   intake_.set_up(in_force, tools);

@@ -12,7 +12,7 @@
 #include "service/recording/telemetry/set_up_file.hpp"
 #include "support/draws.hpp"
 
-/// A service that is killed while it changes its set-up. MERIDIAN_SETUP_KILLS=100 in the
+/// A service that is killed while it changes its set-up. MERIDIAN_SETUP_KILLS=500 in the
 /// environment for more of it, MERIDIAN_SETUP_SEED for others.
 namespace meridian::test {
 namespace {

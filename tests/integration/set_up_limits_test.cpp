@@ -110,6 +110,21 @@ TEST(SetUpLimits, SurviveTheServiceAndAreListed) {
             "limits refused: b3 has a travel of -600 to 600 mm, which soft limits only shrink");
 }
 
+TEST(SetUpLimits, ThatTheMachineFileHoldsNoMoreKeepTheServiceFromStarting) {
+  Plant plant;
+  plant.start_service();
+  ASSERT_NO_FATAL_FAILURE(say_limits(plant, {"set", "b3", "-40", "42.5"}));
+  ASSERT_NO_FATAL_FAILURE(end_service(plant));
+  plant.change_machine({{R"((\[joints\.b3\][^\[]*travel_mm = )\[[^\]]*\])", "$1[-39, 600]"}});
+  constexpr int kCannotStart = 1;
+  EXPECT_EQ(plant.start_service().wait(kToolPatience), kCannotStart);
+  EXPECT_NE(plant.service().said().find(
+                "lai.setup holds soft limits b3 -40 to 42.5 mm, not inside "
+                "the travel of the machine file; start with the machine file of before"),
+            std::string::npos)
+      << plant.service().said();
+}
+
 TEST(SetUpLimits, StayAsTheyAreWhileAProgramIsThereOrTheMachineMoves) {
   Plant plant;
   SetUpOperator anna(plant, 100);
@@ -134,6 +149,29 @@ TEST(SetUpLimits, StayAsTheyAreWhileAProgramIsThereOrTheMachineMoves) {
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kHold));
   ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
   expect_refused(Refusal::kProgramPresent);
+}
+
+TEST(SetUpLimits, AreThoseOfOneOfTwoOperatorsWhoSawTheSame) {
+  Plant plant;
+  SetUpOperator anna(plant, 100), bert(plant, 101);
+  plant.start_service();
+  int decided = 0;
+  for (int round = 1; round <= 5; ++round) {
+    SCOPED_TRACE(round);
+    const dds::Status seen = plant.status();
+    anna.say(LimitsOrder{LimitsWord::kSet, 0, -1.0 * round, 10}, seen);
+    bert.say(LimitsOrder{LimitsWord::kSet, 0, -1.0 * round, 20}, seen);
+    const auto a = anna.answer(), b = bert.answer();
+    ASSERT_TRUE(a && b) << plant.standing();
+    if (!a->is_accepted && !b->is_accepted) continue;  // the host was slow: both saw an old status
+    ASSERT_NE(a->is_accepted, b->is_accepted) << a->text << "\n" << b->text;
+    EXPECT_EQ((a->is_accepted ? b : a)->refusal, Refusal::kStale);
+    SoftLimits wanted;
+    wanted.put(0, -round, a->is_accepted ? 10 : 20);
+    EXPECT_EQ(reported_by(plant).soft_limits, wanted);
+    ++decided;
+  }
+  EXPECT_GT(decided, 0);
 }
 
 TEST(SetUpLimits, RefuseAProgramThatWasCheckedUnderOthers) {
