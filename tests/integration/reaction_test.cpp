@@ -239,7 +239,9 @@ TEST_F(LiveReaction, OfAStationThatIsKilledIsStarvingNoLaterThanTheFirstSlowerSe
       one.ahead_mm = left_mm;
       one.cruise = speed;
     }
-    constexpr double kSlower = 1e-5;  // of the speed: the jerk takes 1e-4 of it in one cycle
+    // Of the speed: windows of a plan differ by 4e-5 of it, and the jerk of a stop takes 1e-4 of it
+    // in its first cycle.
+    constexpr double kSlower = 1e-4;
     const bool is_slower = speed < (1 - kSlower) * one.cruise;
     if (is_slower && one.slower_row < 0) one.slower_row = row_number - row_of_kill;
     if (row.state == State::kStarving && one.time_ms < 0) {

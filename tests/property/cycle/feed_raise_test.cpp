@@ -207,7 +207,7 @@ TEST(FeedRaise, IsReplayedBitForBitFromItsMarksHoweverFarAheadThePlanIs) {
     SmoothRunning live(machine, blocks, joints_of(machine, blocks[0]));
     ASSERT_TRUE(live.is_started());
     for (int n = 0; n < 12; ++n) {
-      for (int k = 0; k < 350; ++k) live.run();
+      for (int k = 0; k < 200; ++k) live.run();
       const double factor = random.uniform(0.8, 1.5);
       said.push_back({live.world.records.size(), factor});
       live.command(Verb::kFeedOverride, factor);

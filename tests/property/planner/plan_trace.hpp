@@ -37,6 +37,11 @@ struct Trace {
   }
 };
 
+/// Whether the feed planner shaped a motion; constant bounds give its stops by velocity.
+[[nodiscard]] inline bool is_by_feed_planner(const TimePiece& time) {
+  return !(time.authority_velocity > 0);
+}
+
 /// Runs `blocks` through a planner, emptying the port as the cycle would.
 inline Trace plan_program(RestToRestPlanner& planner, MotionPort& port,
                           const std::vector<ClBlock>& blocks) {

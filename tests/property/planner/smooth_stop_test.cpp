@@ -87,7 +87,7 @@ class PathsAhead {
     while (s - passed_ > path().length + 1e-12) {
       std::size_t next = piece_;
       while (is_move(trace_, next) && trace_.paths[next].index == path().index) ++next;
-      if (!is_move(trace_, next)) {
+      if (!is_move(trace_, next) || rests_before(next)) {
         is_on_path = s - passed_ <= path().length + 1e-6;
         break;
       }
@@ -106,6 +106,10 @@ class PathsAhead {
 
  private:
   [[nodiscard]] const PathPiece& path() const { return trace_.paths[piece_]; }
+  [[nodiscard]] bool rests_before(std::size_t next) const {
+    const TimePiece& time = trace_.times[next];
+    return time.is_from_rest && time.window != trace_.times[next - 1].window;
+  }
 
   const Trace& trace_;
   std::size_t piece_;
@@ -211,9 +215,8 @@ void stop_from(const MachineModel& model, const Trace& trace, OnPlan at, StopKin
   stops.ratios.push_back(std::max(0.0, time - 2e-3) / least);
 }
 
-/// A longer run: MERIDIAN_STOP_SEED=100 MERIDIAN_STOP_PROGRAMS=200
-/// build/release/bin/smooth_property_test --gtest_filter='SmoothStop*'
-TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
+/// Stops drawn on what the feed planner plans of hostile programs.
+void expect_stops_inside_limits(Transition transition) {
   const int first = number_of("MERIDIAN_STOP_SEED", 1);
   const int programs = number_of("MERIDIAN_STOP_PROGRAMS", kPrograms);
   Stops holds, faults;
@@ -221,10 +224,10 @@ TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
     RandomPrograms random(static_cast<std::uint64_t>(seed));
     MachineModel model = seed % 2 == 0 ? bench_machine() : lai_machine();
     const auto blocks = hostile(static_cast<std::uint32_t>(seed));
-    const auto trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+    const auto trace = plan_smooth(model, blocks, joints_of(model, blocks[0]), {transition});
     ASSERT_EQ(trace.last.status, PlanStatus::kOk) << "seed " << seed;
     for (std::size_t n = 0; n < trace.times.size(); ++n) {
-      if (!is_move(trace, n) || trace.paths[n].kind != PathKind::kSpline) continue;
+      if (!is_move(trace, n) || !is_by_feed_planner(trace.times[n])) continue;
       if (!random.chance(0.1)) continue;
       stop_from(model, trace, draw_state(random, trace, n), StopKind::kHold, holds);
       stop_from(model, trace, draw_state(random, trace, n), StopKind::kFault, faults);
@@ -238,6 +241,16 @@ TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
   EXPECT_LT(holds.longest_wait, 0.5);
   EXPECT_LT(holds.ratios[holds.ratios.size() / 2], 1.05);
   EXPECT_LT(faults.ratios[faults.ratios.size() * 3 / 4], 1.1);
+}
+
+/// A longer run: MERIDIAN_STOP_SEED=100 MERIDIAN_STOP_PROGRAMS=200
+/// build/release/bin/smooth_property_test --gtest_filter='SmoothStop*'
+TEST(SmoothStop, KeepsItsLimitsFromAnyInstantAtAnyRate) {
+  expect_stops_inside_limits(Transition::kSmooth);
+}
+
+TEST(SmoothStop, KeepsItsLimitsOnLegsFromRestToRest) {
+  expect_stops_inside_limits(Transition::kExactStop);
 }
 
 ClBlock cut_to(const Vector3& tip, const Vector3& axis, double feed_mm_per_s) {

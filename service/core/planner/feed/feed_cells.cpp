@@ -6,15 +6,12 @@
 #include <limits>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "meridian/path/pose_at.hpp"
-#include "service/core/planner/feed/path_choice.hpp"
 
 namespace meridian {
 namespace {
 
-constexpr double kRatio = 2.5;           // of the lengths of neighbouring cells
-constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
-constexpr double kLargestJump = 1.0;     // rad between two samples: another branch, no path
+constexpr double kRatio = 2.5;        // of the lengths of neighbouring cells
+constexpr double kLargestJump = 1.0;  // rad between two samples: another branch, no path
 /// Of a joint at the begin: rounding, 1e-10 rad of the redundant joint 8 µrad from the pole, and of
 /// slides that make up for it so much of their way to its axis.
 constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
@@ -22,29 +19,6 @@ constexpr double kNoCell_mm = 1e-6;    // of u: an end that is not worth a cell
 constexpr double kMinSplit_mm = 5e-4;  // of u: below, motion would creep
 constexpr double kMaxCells = 2;        // of time, that one takes where it is slowest
 constexpr int kRounds = 16;            // of halving: lengths of a ratio of 60 000
-constexpr double kNone = 1e-12;        // derivative that counts as none
-
-double square(double x) noexcept { return x * x; }
-
-double speed_square(const Vec3<Jet<3>>& x) noexcept {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) sum += square(x[i].derivative(1));
-  return sum;
-}
-
-/// Share of jerk left beside what rounding of the axis near the pole shows as in third differences.
-double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
-                         const Pose<double>& pose) noexcept {
-  if (redundant_joint(model) < 0) return 1;
-  const double distance = pole_distance(model, pose.axis);
-  const double noise = distance > 0 ? kAxisNoise / distance : 0;
-  const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
-  double share = 1;
-  for (int i = 0; i < limits.count; ++i) {
-    share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
-  }
-  return std::max(share, FeedCell::kMinTight);
-}
 
 /// The range of the samples, and an eighth of it either side for what lies between.
 CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexcept {
@@ -74,7 +48,10 @@ CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexc
 
 CellGrid::CellGrid(const MachineModel& model, const FeedLimits& limits,
                    const CellSettings& settings)
-    : model_(model), limits_(limits), settings_(settings), cells_(kCells) {
+    : model_(model),
+      limits_(limits),
+      settings_(settings),
+      cells_(static_cast<std::size_t>(settings.kept_cells)) {
   drafts_.reserve(kDrafts);
   finer_.reserve(kDrafts);
 }
@@ -91,81 +68,40 @@ void CellGrid::begin(const JointVector& joints, double tool_length_mm) noexcept 
   fault_ = {};
 }
 
-PathFault CellGrid::take_sample(const JointSpan& span, double x, JointVector& reference,
-                                CellSample& out) const noexcept {
-  const auto pose = pose_on(span.band.c, Jet<3>::variable(x));
-  const auto at = span.is_free_driven
-                      ? solve_driven(model_, tool_length_mm_, pose,
-                                     quintic_at(span.free, Jet<3>::variable(x) / span.band.length),
-                                     span.branch, reference)
-                      : solve(model_, tool_length_mm_, pose, span.branch, reference);
-  if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
-  const double tip_speed = speed_square(pose.tip);
-  const double share = square(settings_.feed_share);
-  double b = std::min(1 / kNone, share * square(span.band.u_speed_mm_per_s));
-  b = std::min(b, share * square(span.band.feed_mm_per_s) / std::max(tip_speed, square(kNone)));
-  if (std::isfinite(span.band.turn_rad_per_s)) {
-    const double turn_speed =
-        speed_square(span.is_free_driven ? forward(model_, tool_length_mm_, at.q).axis : pose.axis);
-    b = std::min(b, share * square(span.band.turn_rad_per_s) / std::max(turn_speed, square(kNone)));
-  }
-  const auto take = [&](int i, const Jet<3>& q) {
-    const double d1 = out.d1[i] = q.derivative(1);
-    const double d2 = out.d2[i] = q.derivative(2);
-    const double d3 = out.d3[i] = q.derivative(3);
-    b = std::min(b, square(limits_.velocity[i] / std::max(std::abs(d1), kNone)));
-    b = std::min(b, limits_.acceleration[i] / std::max(std::abs(d2), kNone));
-    // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
-    b = std::min(b, 4 * std::pow(limits_.jerk[i] / std::max(std::abs(d3), kNone), 2.0 / 3.0));
-  };
-  for (int i = 0; i < model_.joint_count; ++i) {
-    reference[i] = value_of(at.q[i]);
-    take(i, at.q[i]);
-  }
-  if (has_stage(model_)) {
-    const Limited<Jet<3>> all = limited_of(model_, at.q);
-    for (int i = model_.joint_count; i < limits_.count; ++i) take(i, all[i]);
-  }
-  if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
-  out.max_b = b;
-  return {};
-}
-
-double CellGrid::time_per_u(const JointSpan& span, double x) const noexcept {
+double CellGrid::time_at(const FeedSpan& span, double x) const noexcept {
   JointVector reference = joints_;
   CellSample at;
-  if (take_sample(span, x, reference, at).kind != PathFault::Kind::kNone) return 0;
-  double slowest = 1 / std::sqrt(at.max_b);
-  for (int i = 0; i < limits_.count; ++i) {
-    slowest = std::max({slowest, std::abs(at.d1[i]) / limits_.velocity[i],
-                        kCurvatureShare * std::sqrt(std::abs(at.d2[i]) / limits_.acceleration[i]),
-                        kCurvatureShare * std::cbrt(std::abs(at.d3[i]) / limits_.jerk[i])});
-  }
-  return slowest;
+  return is_fault(sample(span, x, reference, at)) ? 0 : time_per_u(limits_, at);
 }
 
-void CellGrid::draft_cells(const JointSpan& span) noexcept {
+int CellGrid::cells_of(const FeedSpan& span) const noexcept {
+  if (span.cells > 0) return span.cells;
   constexpr int kProbes = 4;
   double time = 0;
   for (int k = 0; k < kProbes; ++k)
-    time += time_per_u(span, span.band.length * (k + 0.5) / kProbes);
-  time *= span.band.length / kProbes;
-  const double wanted = std::ceil(std::min(time / settings_.cell_s, 1.0 * kMaxPerSpan));
+    time += time_at(span, span.begin + span.length * (k + 0.5) / kProbes);
+  time *= span.length / kProbes;
+  return static_cast<int>(std::ceil(std::min(time / settings_.cell_s, 1.0 * kMaxPerSpan)));
+}
+
+void CellGrid::draft_cells(const FeedSpan& span) noexcept {
   const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
-  const int cells = std::clamp(static_cast<int>(wanted), 1, std::clamp(room, 1, kMaxPerSpan));
-  const double h = span.band.length / cells;
+  const int cells = std::clamp(cells_of(span), 1, std::clamp(room, 1, kMaxPerSpan));
+  const double h = span.length / cells;
+  // A span that says how many cells it becomes is graded already.
+  const bool is_graded = model_.family == MachineFamily::kRobot && span.cells == 0;
   for (int k = 0; k < cells; ++k) {
-    if (model_.family == MachineFamily::kRobot) {
-      draft_graded(span, k * h, h);
+    if (is_graded) {
+      draft_graded(span, span.begin + k * h, h);
     } else {
-      drafts_.push_back({waiting_count_ - 1, k * h, h});
+      drafts_.push_back({waiting_count_ - 1, span.begin + k * h, h});
     }
   }
 }
 
-void CellGrid::draft_graded(const JointSpan& span, double x, double h) noexcept {
+void CellGrid::draft_graded(const FeedSpan& span, double x, double h) noexcept {
   const double slowest =
-      std::max({time_per_u(span, x), time_per_u(span, x + 0.5 * h), time_per_u(span, x + h)});
+      std::max({time_at(span, x), time_at(span, x + 0.5 * h), time_at(span, x + h)});
   const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMaxPerSpan;
   if (slowest * h > kMaxCells * settings_.cell_s && h > kMinSplit_mm && has_room) {
     draft_graded(span, x, 0.5 * h);
@@ -198,9 +134,9 @@ void CellGrid::halve(double left, double ratio, int rounds) noexcept {
   }
 }
 
-PathFault CellGrid::push(const JointSpan& span) noexcept {
+PathFault CellGrid::push(const FeedSpan& span) noexcept {
   if (fault_.kind != PathFault::Kind::kNone) return fault_;
-  if (!(span.band.length > 0)) return {};
+  if (!(span.length > 0)) return {};
   waiting_[static_cast<std::size_t>(waiting_count_++)] = span;
   draft_cells(span);
   halve(last_ > 0 ? last_h_ : std::numeric_limits<double>::infinity(), kRatio, kRounds);
@@ -251,7 +187,7 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
       --last_;
     }
   }
-  waiting_[0] = span;
+  waiting_[0] = make_feed_span(span, tool_length_mm_);
   waiting_count_ = 1;
   next_span_ = number;
   drafts_.push_back({0, begin, x - begin});
@@ -275,7 +211,7 @@ bool CellGrid::split(std::size_t draft) noexcept {
 
 PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
-  while (used < drafts_.size() && last_ - first_ < kCells) {
+  while (used < drafts_.size() && last_ - first_ < settings_.kept_cells) {
     const int behind = waiting_count_ - 1 - drafts_[used].waiting;
     const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kMin;
     if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
@@ -293,7 +229,7 @@ PathFault CellGrid::make_cells() noexcept {
   if (used == 0) return fault_;
   drafts_.erase(drafts_.begin(), drafts_.begin() + static_cast<std::ptrdiff_t>(used));
   const int gone = drafts_.empty() ? waiting_count_ : drafts_.front().waiting;
-  for (int n = gone; n < waiting_count_; ++n) waiting_[n - gone] = waiting_[n];
+  for (int n = gone; gone > 0 && n < waiting_count_; ++n) waiting_[n - gone] = waiting_[n];
   for (Draft& draft : drafts_) draft.waiting -= gone;
   waiting_count_ -= gone;
   next_span_ += static_cast<std::uint64_t>(gone);
@@ -301,7 +237,7 @@ PathFault CellGrid::make_cells() noexcept {
 }
 
 PathFault CellGrid::make_cell(const Draft& draft) noexcept {
-  const JointSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
+  const FeedSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
   FeedCell& cell = (*this)[last_];
   cell.span = next_span_ + static_cast<std::uint64_t>(draft.waiting);
   cell.x = draft.x;
@@ -314,10 +250,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     const double x = draft.x + draft.h * k / FeedCell::kSteps;
     faulty_x_ = x;
     const JointVector before = reference;
-    if (const auto fault = take_sample(span, x, reference, at);
-        fault.kind != PathFault::Kind::kNone) {
-      return fault;
-    }
+    if (const auto fault = sample(span, x, reference, at); is_fault(fault)) return fault;
     cell.max_b = std::min(cell.max_b, at.max_b);
     if (const int joint = first_joint_outside_travel(model_, reference, kTravelMargin);
         joint >= 0) {
@@ -349,7 +282,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   cell.bound = bound_of(cell.at);
   cell.tight = 1;
   for (const double x : {draft.x, draft.x + draft.h}) {
-    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, pose_on(span.band.c, x)));
+    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, span.path, x));
   }
   cell.made_b = cell.max_b;
   cell.made_tight = cell.tight;

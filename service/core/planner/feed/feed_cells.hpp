@@ -9,20 +9,14 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/core/planner/feed/feed_limits.hpp"
+#include "service/core/planner/feed/feed_sample.hpp"
+#include "service/core/planner/feed/feed_span.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
-#include "service/core/planner/feed/joint_span.hpp"
 
 /// The grid of the feed planner: short cells of the path with the joints' derivatives by the path
 /// parameter u. Cell boundaries lie on every end of a span, so that derivatives are smooth inside a
 /// cell. Units: mm, rad, s. Source: docs/motion.md, section 8.
 namespace meridian {
-
-/// Derivatives of joints and drives by u at one place, and the largest u̇² that feed, velocity, and
-/// the curvature terms of acceleration and jerk allow there.
-struct CellSample {
-  LimitedVector d1{}, d2{}, d3{};
-  double max_b = 0;
-};
 
 /// Bounds of the derivatives in a cell: that much above zero (`up`) and below (`down`), both >= 0.
 struct CellBound {
@@ -37,10 +31,9 @@ static_assert(CellBound::Values::SizeAtCompileTime >= kMaxLimited);
 
 struct FeedCell {
   static constexpr int kSteps = 8;  ///< samples lie kSteps + 1 to a cell, both ends included
-  static constexpr double kMinTight = 0.2;
 
   std::uint64_t span = 0;  ///< counts spans from 0 since begin()
-  double x = 0;            ///< where it begins in its span
+  double x = 0;            ///< where it begins on the path of its span
   double h = 0;            ///< length
   double max_b = 0;        ///< least of the samples', lowered where a plan overshot the feed
   double tight = 1;        ///< share of A and J that plans may use, lowered where one overshot,
@@ -54,15 +47,15 @@ struct FeedCell {
 struct CellSettings {
   double cell_s = 0.004;       ///< time that a cell takes at full speed, about
   double feed_share = 0.9985;  ///< of the programmed feed that is planned
+  int kept_cells = 512;        ///< at a time; a power of two
 };
 
 /// Makes cells of spans as they come, in a fixed store. What a cell is depends on the spans up to
 /// kAhead behind its own and on nothing else. Cells are named by their number since begin().
 class CellGrid {
  public:
-  static constexpr int kCells = 1024;  ///< kept at a time
-  static constexpr int kAhead = 4;     ///< spans that bound the cells of the one before them
-  static constexpr int kMin = 40;      ///< cells of a path, however short
+  static constexpr int kAhead = 4;  ///< spans that bound the cells of the one before them
+  static constexpr int kMin = 40;   ///< cells of a path, however short
 
   CellGrid(const MachineModel& model, const FeedLimits& limits, const CellSettings& settings);
 
@@ -75,7 +68,10 @@ class CellGrid {
   }
 
   /// Takes the next span; a fault ends the path, cells before it stay valid.
-  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const FeedSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept {
+    return push(make_feed_span(span, tool_length_mm_));
+  }
 
   /// No more spans: makes the last cells, as far as there is room for them.
   [[nodiscard]] PathFault finish() noexcept;
@@ -112,10 +108,10 @@ class CellGrid {
   [[nodiscard]] double faulty_x() const noexcept { return faulty_x_; }
 
   [[nodiscard]] const FeedCell& operator[](std::int64_t cell) const noexcept {
-    return cells_[static_cast<std::size_t>(cell % kCells)];
+    return cells_[static_cast<std::size_t>(cell) & (cells_.size() - 1)];
   }
   [[nodiscard]] FeedCell& operator[](std::int64_t cell) noexcept {
-    return cells_[static_cast<std::size_t>(cell % kCells)];
+    return cells_[static_cast<std::size_t>(cell) & (cells_.size() - 1)];
   }
 
   /// Largest u̇² at the boundary before `cell`: what the cells on both sides allow.
@@ -135,13 +131,18 @@ class CellGrid {
     double x = 0, h = 0;
   };
 
-  [[nodiscard]] PathFault take_sample(const JointSpan& span, double x, JointVector& reference,
-                                      CellSample& out) const noexcept;
-  [[nodiscard]] double time_per_u(const JointSpan& span, double x) const noexcept;
-  void draft_cells(const JointSpan& span) noexcept;
+  [[nodiscard]] PathFault sample(const FeedSpan& span, double x, JointVector& reference,
+                                 CellSample& out) const noexcept {
+    return take_sample(model_, limits_, settings_.feed_share, span, x, reference, out);
+  }
+  /// Time per u at `x`; 0: there is no such pose.
+  [[nodiscard]] double time_at(const FeedSpan& span, double x) const noexcept;
+  /// How many cells `span` is worth.
+  [[nodiscard]] int cells_of(const FeedSpan& span) const noexcept;
+  void draft_cells(const FeedSpan& span) noexcept;
   /// Beside a singular place of a robot the time per u changes manifold inside of a span: halves
   /// the cell at `x` as long as it takes too long where it is slowest.
-  void draft_graded(const JointSpan& span, double x, double h) noexcept;
+  void draft_graded(const FeedSpan& span, double x, double h) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] bool split(std::size_t draft) noexcept;
@@ -151,7 +152,7 @@ class CellGrid {
   FeedLimits limits_;
   CellSettings settings_;
   std::vector<FeedCell> cells_;
-  std::array<JointSpan, kWaiting> waiting_;
+  std::array<FeedSpan, kWaiting> waiting_;
   int waiting_count_ = 0;
   std::vector<Draft> drafts_, finer_;
   std::uint64_t next_span_ = 0;  ///< number of waiting_[0]

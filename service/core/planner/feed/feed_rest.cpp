@@ -14,6 +14,7 @@ constexpr double kCurvatureShare = 0.7;
 constexpr double kRestShare = 0.92;  // of the limits in a first or last cell
 constexpr double kRestStep = 0.7;    // of the ladder
 constexpr int kRestSteps = 120;
+constexpr int kRestHalvings = 4;       // of its last step
 constexpr double kCrawlMargin = 1.02;  // on the duration: limits between samples
 constexpr double kNone = 1e-12;
 
@@ -41,12 +42,7 @@ RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_
                         double max_b) noexcept {
   const double h = cell.h;
   const CellSample& rest = is_start ? cell.at.front() : cell.at.back();
-  // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
-  double jerk = std::pow(0.8 * std::max(max_b, kNone), 1.5) / (36 * h * h);
-  for (int i = 0; i < limits.count; ++i) {
-    jerk = std::min(jerk, kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kNone));
-  }
-  for (int n = 0; n < kRestSteps; ++n) {
+  const auto is_within = [&](double jerk) {
     FeedUse use;
     for (int k = 0; k <= FeedCell::kSteps; ++k) {
       const double x = h * k / FeedCell::kSteps;
@@ -55,8 +51,21 @@ RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_
       const int sample = is_start ? k : FeedCell::kSteps - k;
       add_use(limits, cell.at[sample], 0.5 * jerk * t * t, a, jerk, use);
     }
-    if (use.worst() < kRestShare * cell.tight && use.b < kRestShare) break;
+    return use.worst() < kRestShare * cell.tight && use.b < kRestShare;
+  };
+  // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
+  double jerk = std::pow(0.8 * std::max(max_b, kNone), 1.5) / (36 * h * h);
+  for (int i = 0; i < limits.count; ++i) {
+    jerk = std::min(jerk, kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kNone));
+  }
+  double too_much = 0;
+  for (int n = 0; n < kRestSteps && !is_within(jerk); ++n) {
+    too_much = jerk;
     jerk *= kRestStep;
+  }
+  for (int n = 0; n < kRestHalvings && too_much > 0; ++n) {
+    const double between = std::sqrt(jerk * too_much);
+    (is_within(between) ? jerk : too_much) = between;
   }
   const double t = std::cbrt(6 * h / jerk), v = 0.5 * jerk * t * t;
   return {{v * v, 2 * jerk * t}, t, jerk};

@@ -22,8 +22,8 @@ struct RestCell {
 [[nodiscard]] double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
                               std::int64_t last) noexcept;
 
-/// The fastest of a geometric ladder that keeps most of every limit in `cell` and leaves it with
-/// u̇² <= 0.8 `max_b`. Always finds one.
+/// The fastest, to a fortieth of its jerk, that keeps most of every limit in `cell` and leaves it
+/// with u̇² <= 0.8 `max_b`. Always finds one.
 [[nodiscard]] RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,
                                       double max_b) noexcept;
 

@@ -2,6 +2,7 @@
 #include "service/core/planner/feed/feed_stop_margin.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "meridian/planner/rate_limits.hpp"
@@ -58,21 +59,30 @@ void FeedStopMargin::begin(const CellGrid& grid, std::int64_t rest_cell) noexcep
   hold_.last = fault_.last = {};  // what is granted follows from the window alone
 }
 
+FeedStopMargin::Ends FeedStopMargin::Ends::at_rate(double rate) const noexcept {
+  Ends out{slowed(begin, rate), slowed(end, rate), {}};
+  for (std::size_t n = 0; n < between.size(); ++n) out.between[n] = slowed(between[n], rate);
+  return out;
+}
+
 void FeedStopMargin::grant(const FeedPiece& piece, TimePiece& time) noexcept {
-  PathState begin = state_at(time, 0), end = state_at(time, time.duration);
-  begin.s -= (*grid_)[piece.cell].x;
-  end.s -= (*grid_)[piece.cell].x;
-  const Grant hold = find(hold_, piece.cell, {begin, end}, !time.is_tail);
+  const auto state = [&](double share) {
+    PathState at = state_at(time, share * time.duration);
+    at.s -= (*grid_)[piece.cell].x;
+    return at;
+  };
+  const Ends ends{state(0), state(1), {state(0.25), state(0.5), state(0.75)}};
+  const Grant hold = find(hold_, piece.cell, ends, !time.is_tail);
   time.stop_accel = hold.authority.accel;
   time.stop_jerk = hold.authority.jerk;
   time.stop_velocity = hold.velocity;
-  const Grant fault = find(fault_, piece.cell, {begin, end}, !time.is_tail);
+  const Grant fault = find(fault_, piece.cell, ends, !time.is_tail);
   time.fault_accel = fault.authority.accel;
   time.fault_jerk = fault.authority.jerk;
   time.fault_velocity = fault.velocity;
-  time.slow_velocity = kSlow * std::min(begin.ds, end.ds);
+  time.slow_velocity = kSlow * std::min(ends.begin.ds, ends.end.ds);
   if (time.is_tail) return;
-  const Ends slow{slowed(begin, kSlow), slowed(end, kSlow)};
+  const Ends slow = ends.at_rate(kSlow);
   const StopMargin slow_hold = find(hold_.caps, piece.cell, slow);
   time.slow_stop_accel = slow_hold.accel;
   time.slow_stop_jerk = slow_hold.jerk;
@@ -107,7 +117,7 @@ FeedStopMargin::Grant FeedStopMargin::find(Search& search, std::int64_t cell, co
   if (got.jerk > 0) return {got, kAnyVelocity};
   if (!is_slower_good) return {};
   for (const double rate : kRates) {
-    const Ends slower{slowed(ends.begin, rate), slowed(ends.end, rate)};
+    const Ends slower = ends.at_rate(rate);
     got = lessen(search.caps, cell, slower, most, most);
     if (got.jerk > 0) return {got, std::min(slower.begin.ds, slower.end.ds)};
   }
@@ -122,7 +132,10 @@ StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const End
     Use use;
     if (!add_use(caps, cell, from.begin, now, use)) break;
     if (use.is_within() && !add_use(caps, cell, from.end, now, use)) break;
-    if (use.is_within()) return now;
+    if (use.is_within()) {
+      const bool is_close = use.farthest + 2 >= rest_cell_;
+      return !is_close || ends_before_plan(cell, from, now) ? now : StopMargin{};
+    }
     if (use.is_too_fast) break;
     if (use.acceleration > 1) now.accel *= kLess / std::min(use.acceleration, 2.0);
     if (use.jerk > 1) {
@@ -137,6 +150,22 @@ StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const End
     if (now.accel < kEasing * std::max(-from.begin.dds, -from.end.dds)) break;
   }
   return {};
+}
+
+bool FeedStopMargin::ends_before_plan(std::int64_t cell, const Ends& from,
+                                      const StopMargin& authority) const noexcept {
+  double end = 0;
+  for (std::int64_t k = cell; k < rest_cell_; ++k) end += (*grid_)[k].h;
+  const auto rest = [&](const PathState& p) { return p.s + StopLaw(p, authority).distance(); };
+  const std::array<double, 5> rests = {rest(from.begin), rest(from.between[0]),
+                                       rest(from.between[1]), rest(from.between[2]),
+                                       rest(from.end)};
+  double farthest = std::max(rests[0], rests[4]), bend = 0;
+  for (std::size_t n = 1; n + 1 < rests.size(); ++n) {
+    farthest = std::max(farthest, rests[n]);
+    bend = std::max(bend, std::abs(rests[n - 1] - 2 * rests[n] + rests[n + 1]));
+  }
+  return farthest + bend / 4 <= end + kRounding_mm;
 }
 
 bool FeedStopMargin::rises_too_far(const FeedCell& cell, const PathState& begin,
@@ -187,6 +216,7 @@ bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathStat
         3 * std::min(most, speed * std::max(authority.accel, by_rate - from.dds));
     add_use(caps, k, authority, {v2, v3, rising, sinking, 3 * speed * rising}, use);
     s += here.h;
+    use.farthest = std::max(use.farthest, k);
   }
   return true;
 }

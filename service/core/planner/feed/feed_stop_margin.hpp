@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "meridian/cycle/stop_law.hpp"
@@ -50,8 +51,9 @@ class FeedStopMargin {
   /// Largest use of limits by stops: 1 is all.
   struct Use {
     double acceleration = 0, jerk = 0;
-    bool is_too_fast = false;  ///< for feed or velocity
-    std::int64_t cell = 0;     ///< where most of the jerk is used, and by what
+    bool is_too_fast = false;   ///< for feed or velocity
+    std::int64_t farthest = 0;  ///< cell that a stop ends in
+    std::int64_t cell = 0;      ///< where most of the jerk is used, and by what
     Motion motion;
     [[nodiscard]] bool is_within() const noexcept {
       return !is_too_fast && acceleration <= 1 && jerk <= 1;
@@ -62,9 +64,11 @@ class FeedStopMargin {
     double by_depth = 0, by_speed = 0;
   };
 
-  /// States at both ends of a piece, s counted from the begin of its cell.
+  /// States at both ends of a piece and between, s counted from the begin of its cell.
   struct Ends {
     PathState begin, end;
+    std::array<PathState, 3> between;
+    [[nodiscard]] Ends at_rate(double rate) const noexcept;
   };
   /// What stops may use that start with no more than `velocity`.
   struct Grant {
@@ -84,6 +88,10 @@ class FeedStopMargin {
   /// Whether a stop from `begin` passes the speed that `cell` allows before its s̈ is down to zero.
   [[nodiscard]] static bool rises_too_far(const FeedCell& cell, const PathState& begin,
                                           double jerk) noexcept;
+  /// Whether stops from between the ends of a piece end before the plan does, where those from its
+  /// ends do: they may go farther where the plan brakes harder than they.
+  [[nodiscard]] bool ends_before_plan(std::int64_t cell, const Ends& from,
+                                      const StopMargin& authority) const noexcept;
   /// Adds the use of all stops under the one from `begin`. False: it ends behind the plan.
   [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                              const StopMargin& authority, Use& use) const noexcept;

@@ -17,13 +17,15 @@ constexpr int kStallRounds = 6;       // the primal residual has to halve in the
 
 }  // namespace
 
-JerkStep::JerkStep(const CellGrid& grid, const FeedLimits& limits) : grid_(grid), limits_(limits) {
+JerkStep::JerkStep(const CellGrid& grid, const FeedLimits& limits, int max_cells)
+    : grid_(grid), limits_(limits) {
+  const auto cells = static_cast<std::size_t>(max_cells);
   for (Values* v : {&h_, &left_, &right_, &rise_, &bar_, &c_, &step_, &gradient_, &pull_,
                     &diagonal_, &first_off_, &second_off_}) {
-    v->resize(kCells + 2);
+    v->resize(cells + 2);
   }
-  middle_.resize(kCells);
-  rows_.resize(kCells);
+  middle_.resize(cells);
+  rows_.resize(cells);
 }
 
 void JerkStep::set_up(const JerkProblem& problem) noexcept {

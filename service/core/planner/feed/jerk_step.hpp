@@ -36,15 +36,16 @@ struct JerkProblem {
 /// b^-½ is replaced by the tangent of b^-½ at `bar`, which lies below: what it returns keeps jerk
 /// at both ends and the middle of every cell.
 ///
-/// Fixed store, at most kRounds rounds, no clock: the same problem gives the same bits.
+/// Fixed store for `max_cells` of a problem, at most kRounds rounds, no clock: the same problem
+/// gives the same bits.
 class JerkStep {
  public:
-  static constexpr int kCells = 160;
+  static constexpr int kCells = 160;  ///< no store is for more
   static constexpr int kRounds = 45;
 
-  JerkStep(const CellGrid& grid, const FeedLimits& limits);
+  JerkStep(const CellGrid& grid, const FeedLimits& limits, int max_cells);
 
-  /// Whether a plan was found, which b(), slope() and middle() then tell. Cells in [2, kCells].
+  /// Whether a plan was found, which b(), slope() and middle() then tell. Cells in [2, max_cells].
   [[nodiscard]] bool solve(const JerkProblem& problem) noexcept;
 
   [[nodiscard]] double b(int knot) const noexcept {

@@ -22,6 +22,7 @@ constexpr double kCellSweep_rad = 0.14;
 constexpr double kCellFree_rad = 0.14;
 constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
 constexpr double kMaxCells = 256;
+constexpr double kGain = 1.02;  // over the least time, that constant bounds may lose
 constexpr double kCoarse = 1.12;
 constexpr int kMaxRefinements = 3;
 constexpr int kMinAzimuthCells = 4;  // between two nodes
@@ -66,7 +67,7 @@ Vector3 find_nearest_pole(const MachineModel& model, const Vector3& axis) noexce
   return pole.dot(axis) < 0 ? Vector3(-pole) : pole;
 }
 
-LegPlanner::LegPlanner(const MachineModel& model) noexcept : model_(model) {}
+LegPlanner::LegPlanner(const MachineModel& model) : model_(model), feed_(model) {}
 
 PathFault LegPlanner::plan(const Leg& leg, Staging& out, JointVector& joints) noexcept {
   const double reach =
@@ -74,11 +75,29 @@ PathFault LegPlanner::plan(const Leg& leg, Staging& out, JointVector& joints) no
                pose_in_machine(model_, pose_at(leg.path, leg.path.length)).tip.norm());
   caps_ = planned_caps(model_, reach);
   fault_caps_ = fault_caps(model_, reach);
-  tip_length_ = tip_length(leg.path);
   place_nodes(leg.path);
   JointVector at_end = joints;
   if (const auto fault = measure(leg, at_end); fault.kind != PathFault::Kind::kNone) return fault;
-  find_fastest_runs(leg, caps_);
+  find_fastest_runs(leg);
+  return plan_feed(leg, out, joints) ? PathFault{} : stage_runs(leg, out, joints);
+}
+
+bool LegPlanner::plan_feed(const Leg& leg, Staging& out, JointVector& joints) noexcept {
+  const double fastest = nodes_[node_count_ - 1].fastest;
+  if (fastest <= kGain * min_leg_time(leg, cells_.all(), caps_)) return false;
+  const Staging::Mark mark = out.mark();
+  JointVector at_end = joints;
+  const double duration = feed_.plan(leg, cells_.all(), fastest, out, at_end);
+  if (!(duration > 0)) return false;
+  if (creeps(model_, out.paths[mark.paths], duration, leg.tip_feed())) {
+    out.go_back(mark);
+    return false;
+  }
+  joints = at_end;
+  return true;
+}
+
+PathFault LegPlanner::stage_runs(const Leg& leg, Staging& out, JointVector& joints) noexcept {
   // The way back gives the runs last to first: turn it round in place.
   int runs = 0;
   std::array<int, kMaxNodes> way;
@@ -86,7 +105,7 @@ PathFault LegPlanner::plan(const Leg& leg, Staging& out, JointVector& joints) no
   for (int n = runs - 1; n >= 0; --n) {
     const Node& to = nodes_[way[n]];
     const PathFault fault = stage_run(leg, nodes_[to.from], to, out, joints);
-    if (fault.kind != PathFault::Kind::kNone) return fault;
+    if (is_fault(fault)) return fault;
   }
   return {};
 }
@@ -199,27 +218,14 @@ PathFault LegPlanner::measure(const Leg& leg, JointVector& joints) noexcept {
   return {};
 }
 
-double LegPlanner::find_feed_velocity(const Leg& leg, double share_rate) const noexcept {
-  constexpr double kBelow = 1 - 1e-7;  // never above the feed, whatever rounding does
-  double velocity = std::numeric_limits<double>::max();
-  const double tip_rate = tip_length_ * share_rate;
-  const bool is_inverse = leg.share_per_s > 0;
-  const double feed = is_inverse ? leg.feed_mm_per_s : leg.feed_factor * leg.feed_mm_per_s;
-  if (feed > 0 && tip_rate > 0) velocity = kBelow * feed / tip_rate;
-  if (is_inverse && share_rate > 0) {
-    velocity = std::min(velocity, kBelow * leg.feed_factor * leg.share_per_s / share_rate);
-  }
-  return velocity;
+MotionChoice LegPlanner::choose(const Leg& leg, std::span<const JointCell> cells,
+                                double length) const noexcept {
+  double share_rate = 0;
+  for (const JointCell& cell : cells) share_rate = std::max(share_rate, cell.share_rate);
+  return choose_motion(cells, caps_, length, leg.max_velocity(share_rate));
 }
 
-double LegPlanner::find_tip_feed(const Leg& leg) const noexcept {
-  if (!(leg.share_per_s > 0)) return leg.feed_mm_per_s;
-  const double feed = leg.share_per_s * tip_length_;
-  return leg.feed_mm_per_s > 0 ? std::min(feed, leg.feed_mm_per_s) : feed;
-}
-
-void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg,
-                            const JointCaps& caps) noexcept {
+void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg) noexcept {
   const CellTable& table = by_azimuth ? azimuth_cells_ : cells_;
   JointCell whole{};
   bool is_begun = false;
@@ -233,8 +239,7 @@ void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg,
       whole = is_begun ? merged(whole, cell) : cell;
       is_begun = true;
     }
-    const MotionChoice choice = choose_motion({&whole, 1}, caps, whole.end - whole.begin,
-                                              find_feed_velocity(leg, whole.share_rate));
+    const MotionChoice choice = choose(leg, {&whole, 1}, whole.end - whole.begin);
     if (choice.profile.jerk == 0) break;
     const double time = choice.profile.duration();
     if (nodes_[first].fastest + time < to.fastest) {
@@ -247,17 +252,21 @@ void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg,
   }
 }
 
-void LegPlanner::find_fastest_runs(const Leg& leg, const JointCaps& caps) noexcept {
+void LegPlanner::find_fastest_runs(const Leg& leg) noexcept {
   for (int n = 1; n < node_count_; ++n) {
     nodes_[n].fastest = kNever;
     nodes_[n].from = n - 1;
     nodes_[n].by_azimuth = false;
   }
   nodes_[0].fastest = 0;
-  if (node_count_ == 2) return;
+  if (node_count_ == 2) {
+    whole_ = choose(leg, cells_.all(), leg.path.length);
+    if (whole_.profile.jerk > 0) nodes_[1].fastest = whole_.profile.duration();
+    return;
+  }
   for (int n = 0; n + 1 < node_count_; ++n) {
-    relax_from(n, false, leg, caps);
-    if (nodes_[n].has_azimuth) relax_from(n, true, leg, caps);
+    relax_from(n, false, leg);
+    if (nodes_[n].has_azimuth) relax_from(n, true, leg);
   }
 }
 
@@ -274,10 +283,7 @@ PathFault LegPlanner::stage_run(const Leg& leg, const Node& from, const Node& to
   }
   const auto cells = to.by_azimuth ? azimuth_cells_.range(from.azimuth_cell, to.azimuth_cell)
                                    : cells_.range(from.cell, to.cell);
-  double share_rate = 0;
-  for (const JointCell& cell : cells) share_rate = std::max(share_rate, cell.share_rate);
-  const MotionChoice choice =
-      choose_motion(cells, caps_, piece.length, find_feed_velocity(leg, share_rate));
+  const MotionChoice choice = is_whole ? whole_ : choose(leg, cells, piece.length);
   if (choice.profile.jerk == 0) return {PathFault::Kind::kTooLong, -1, 0};
   const auto begin = joints_at(model_, piece, 0.0, joints);
   const auto end = joints_at(model_, piece, 0.5 * piece.length, begin.q);
@@ -288,7 +294,7 @@ PathFault LegPlanner::stage_run(const Leg& leg, const Node& from, const Node& to
   }
   piece.joints_begin = begin.q;
   piece.joints_end = joints_at(model_, piece, piece.length, end.q).q;
-  if (creeps(model_, piece, choice.profile.duration(), find_tip_feed(leg))) {
+  if (creeps(model_, piece, choice.profile.duration(), leg.tip_feed())) {
     return {PathFault::Kind::kJump, -1, 0};
   }
   piece.index = out.first_index + static_cast<std::uint64_t>(out.path_count);
@@ -302,16 +308,7 @@ PathFault LegPlanner::stage_run(const Leg& leg, const Node& from, const Node& to
 bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const MotionChoice& choice,
                              std::span<const JointCell> cells, double offset,
                              Staging& out) const noexcept {
-  TimePiece time;
-  time.kind = TimeKind::kMove;
-  time.is_from_rest = true;
-  time.epoch = piece.epoch;
-  time.window = leg.window;
-  time.path_index = piece.index;
-  time.sequence = piece.sequence;
-  time.line = piece.line;
-  time.feed_mm_per_s = find_tip_feed(leg);
-  time.feed_factor = leg.feed_factor;
+  TimePiece time = leg.time_on(piece);
   const StopMarginTable authority(cells, offset, caps_, fault_caps_, choice);
   const ProfilePhases phases = phases_of(choice.profile, piece.length);
   for (int n = 0; n < phases.count; ++n) {

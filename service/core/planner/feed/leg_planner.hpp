@@ -8,29 +8,24 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/path_piece.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/feed/leg.hpp"
+#include "service/core/planner/feed/leg_feed.hpp"
 #include "service/core/planner/feed/path_choice.hpp"
 #include "service/core/planner/route/staging.hpp"
 
 namespace meridian {
 
-/// A smooth stretch of a block: one path piece as a whole, and how fast it may be run.
-struct Leg {
-  PathPiece path;            ///< names, kind and joints_begin filled in
-  double feed_mm_per_s = 0;  ///< programmed tip feed; 0: limited by the joints alone
-  double share_per_s = 0;    ///< inverse time: largest d(share of the leg)/dt; 0: none
-  double feed_factor = 1;    ///< on what is programmed: `share_per_s`, without one `feed_mm_per_s`
-  std::uint32_t window = 0;
-};
-
-/// Plans one leg: checks its joints, splits it where that is faster, and stages its pieces, each of
-/// them from rest to rest.
+/// Plans one leg: checks its joints and stages its pieces, each of them from rest to rest.
+///
+/// Where the joints follow the leg evenly the motion of constant bounds is the fastest. Where they
+/// do not, the feed planner shapes it along the true derivatives (LegFeed).
 ///
 /// Beside the pole the joints' derivatives grow without bound as the distance shrinks. There the
 /// leg is cut at places graded by the distance to the pole; every run between two of them can be
 /// one piece, in path length or in azimuth, and a shortest path through the runs picks the fastest.
 class LegPlanner {
  public:
-  explicit LegPlanner(const MachineModel& model) noexcept;
+  explicit LegPlanner(const MachineModel& model);
 
   /// Stages the pieces of `leg` from `joints`, which become the joints at its end.
   [[nodiscard]] PathFault plan(const Leg& leg, Staging& out, JointVector& joints) noexcept;
@@ -55,11 +50,13 @@ class LegPlanner {
   [[nodiscard]] PathFault append_cells(CellTable& table, const PathPiece& path, double begin,
                                        double end, int cells, JointVector& joints) noexcept;
   [[nodiscard]] PathFault measure(const Leg& leg, JointVector& joints) noexcept;
-  void find_fastest_runs(const Leg& leg, const JointCaps& caps) noexcept;
-  void relax_from(int first, bool by_azimuth, const Leg& leg, const JointCaps& caps) noexcept;
-  /// The tip feed that is programmed, also by inverse time.
-  [[nodiscard]] double find_tip_feed(const Leg& leg) const noexcept;
-  [[nodiscard]] double find_feed_velocity(const Leg& leg, double share_rate) const noexcept;
+  void find_fastest_runs(const Leg& leg) noexcept;
+  void relax_from(int first, bool by_azimuth, const Leg& leg) noexcept;
+  /// Stages `leg` as the feed planner has it. False: that gains nothing.
+  [[nodiscard]] bool plan_feed(const Leg& leg, Staging& out, JointVector& joints) noexcept;
+  [[nodiscard]] PathFault stage_runs(const Leg& leg, Staging& out, JointVector& joints) noexcept;
+  [[nodiscard]] MotionChoice choose(const Leg& leg, std::span<const JointCell> cells,
+                                    double length) const noexcept;
   [[nodiscard]] PathFault stage_run(const Leg& leg, const Node& from, const Node& to, Staging& out,
                                     JointVector& joints) noexcept;
   [[nodiscard]] bool stage_times(const Leg& leg, const PathPiece& piece, const MotionChoice& choice,
@@ -69,10 +66,11 @@ class LegPlanner {
   const MachineModel& model_;
   JointCaps caps_, fault_caps_;  ///< of the leg being planned
   PolePassage passage_;
-  double tip_length_ = 0;
   std::array<Node, kMaxNodes> nodes_;
   int node_count_ = 0;
+  MotionChoice whole_;  ///< of the leg that is not cut
   CellTable cells_, azimuth_cells_;
+  LegFeed feed_;
 };
 
 /// Unit vector of the pole (W) that is nearest to `axis`.

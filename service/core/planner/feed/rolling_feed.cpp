@@ -20,7 +20,8 @@ constexpr double kFunnel = 0.02;
 constexpr int kTightenings = 4;
 constexpr int kMinCells = 4;          // of a window
 constexpr int kRestReach = 11;        // cells beside a rest whose limits its speed keeps
-constexpr int kHistory = 240;         // cells kept behind the next one: three windows
+constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
+constexpr int kSpare = 8;             // cells of the store
 constexpr double kOldShare = 0.6;     // of the bound: an old plan above it is worth linearising at
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
 
@@ -33,17 +34,33 @@ struct RollingFeed::Attempt {
   int shorter;         ///< cells that the window is shortened by
 };
 
+namespace {
+
+int window_of(const FeedSettings& settings) noexcept {
+  return std::clamp(settings.window_cells, 20, JerkStep::kCells);
+}
+
+}  // namespace
+
+FeedSettings feed_settings(const MachineModel& model) noexcept {
+  const RateLimits rates = rate_limits(model.override_ramp_s);
+  FeedSettings settings;
+  settings.reserve = {rates.slope_per_s, rates.curvature_per_s2};
+  return settings;
+}
+
 RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings)
     : settings_(settings),
       limits_(make_feed_limits(model, settings.reserve)),
       planned_(limits_.scaled(kVelocityShare, kAccelShare, kJerkShare)),
       grid_(model, planned_, settings.cells),
-      solver_(grid_, planned_) {
-  settings_.window_cells = std::clamp(settings.window_cells, 20, JerkStep::kCells);
+      solver_(grid_, planned_, window_of(settings)) {
+  settings_.window_cells = window_of(settings);
+  history_ = std::min(kHistory, settings.cells.kept_cells - settings_.window_cells - kSpare);
   settings_.commit_cells = std::clamp(settings.commit_cells, 1, settings_.window_cells - 10);
   for (auto* v : {&backward_, &bound_, &bar_knots_, &bar_middles_, &accel_share_, &jerk_share_,
                   &old_.b, &old_.slope, &new_.b, &new_.slope, &best_.b, &best_.slope}) {
-    v->resize(JerkStep::kCells + 2);
+    v->resize(static_cast<std::size_t>(settings_.window_cells) + 2);
   }
 }
 
@@ -55,8 +72,6 @@ void RollingFeed::begin(const JointVector& joints, int branch, double tool_lengt
   old_.first = old_.end = 0;
   window_ = {};
 }
-
-PathFault RollingFeed::push(const JointSpan& span) noexcept { return grid_.push(span); }
 
 PathFault RollingFeed::finish() noexcept { return grid_.finish(); }
 
@@ -82,7 +97,7 @@ void RollingFeed::resume_from(std::int64_t cell) noexcept {
 }
 
 bool RollingFeed::try_plan() noexcept {
-  grid_.drop_before(next_ - kHistory);
+  grid_.drop_before(next_ - history_);
   (void)grid_.make_cells();  // fault() tells
   if (is_done() || grid_.last() < window_end()) return false;
   ++count_.windows;
@@ -218,7 +233,7 @@ bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
       for (int n = std::max(0, k - 1); n <= std::min(cells - 1, k + 1); ++n) {
         FeedCell& near = grid_[new_.first + n];
         const double by = n == k ? std::min(worst, 1.5) + 0.004 : 1.002;
-        near.tight = std::max(FeedCell::kMinTight, near.tight / by);
+        near.tight = std::max(kMinTight, near.tight / by);
       }
     } else if (use.b > kFeedSlack) {
       is_good = false;

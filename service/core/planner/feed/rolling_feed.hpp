@@ -18,7 +18,7 @@ namespace meridian {
 struct FeedSettings {
   CellSettings cells;
   RateReserve reserve;
-  int window_cells = 120;  ///< planned at a time, to a rest at their end; at most 160
+  int window_cells = 120;  ///< planned at a time, to a rest at their end; 20 to 160
   int commit_cells = 40;   ///< of them kept, and on to twice as many while they yield
   double commit_s = 0.06;  ///< less motion than this
   int max_rounds = 240;    ///< of the solver per window; then the plan before it stands
@@ -28,6 +28,9 @@ struct FeedSettings {
   /// Share of the windows that are declared to have no plan: for tests of what then happens.
   double failing_share = 0;
 };
+
+/// The settings that leave to the rate filter what the cycle of `model` may take.
+[[nodiscard]] FeedSettings feed_settings(const MachineModel& model) noexcept;
 
 /// A planned window: pieces that stand, then the rest of its plan up to rest, which a later window
 /// may replace. The last window of a path and every crawl have no tail.
@@ -64,7 +67,8 @@ class RollingFeed {
   /// Whether push() would take another span.
   [[nodiscard]] bool has_room() const noexcept { return grid_.has_room(); }
   /// Takes the next span. A fault (travel, reach) ends the path: nothing of the span is planned.
-  [[nodiscard]] PathFault push(const JointSpan& span) noexcept;
+  [[nodiscard]] PathFault push(const JointSpan& span) noexcept { return grid_.push(span); }
+  [[nodiscard]] PathFault push(const FeedSpan& span) noexcept { return grid_.push(span); }
   /// A span on the branch of begin().
   [[nodiscard]] PathFault push(const BandSpan& span) noexcept {
     JointSpan on_branch;
@@ -132,6 +136,7 @@ class RollingFeed {
   CellGrid grid_;
   int branch_ = 0;
   JerkStep solver_;
+  int history_ = 0;        ///< cells kept behind next_
   std::int64_t next_ = 0;  ///< first cell that is not committed
   bool is_at_rest_ = true;
   FeedState state_;  ///< at the boundary before next_, where not at rest

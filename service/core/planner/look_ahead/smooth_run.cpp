@@ -16,14 +16,6 @@ constexpr std::size_t kEases = 256;  // that wait to be taken; the oldest go
 constexpr std::size_t kBlockEnds = 8192;
 constexpr double kSamePlace_mm = 1e-9;  // of u, where spans were cut
 
-/// What the feed leaves to the rate filter of this machine's cycle.
-FeedSettings feed_settings(const MachineModel& model) noexcept {
-  const RateLimits rates = rate_limits(model.override_ramp_s);
-  FeedSettings settings;
-  settings.reserve = {rates.slope_per_s, rates.curvature_per_s2};
-  return settings;
-}
-
 /// Least time that a span takes at its programmed feed.
 double min_time(const BandSpan& span) noexcept {
   const double chord = (pose_on(span.c, span.length).tip - pose_on(span.c, 0.0).tip).norm();

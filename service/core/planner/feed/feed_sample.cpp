@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/feed_sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/joints_at.hpp"
+#include "service/core/planner/feed/path_choice.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
+constexpr double kNone = 1e-12;          // derivative that counts as none
+
+double square(double x) noexcept { return x * x; }
+
+double speed_square(const Vec3<Jet<3>>& x) noexcept {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) sum += square(x[i].derivative(1));
+  return sum;
+}
+
+/// The joints at one place and how fast tip and axis are there, by u.
+struct Place {
+  Solution<Jet<3>> joints;
+  double tip_square = 0, turn_square = 0;
+};
+
+Place place_on_spline(const MachineModel& model, const FeedSpan& span, double x,
+                      const JointVector& reference) noexcept {
+  const PathPiece& path = span.path;
+  const auto pose = pose_on(path.spline, Jet<3>::variable(x));
+  Place out;
+  out.joints = path.is_free_driven
+                   ? solve_driven(model, path.tool_length_mm, pose,
+                                  quintic_at(path.free_quintic, Jet<3>::variable(x) / path.length),
+                                  path.branch, reference)
+                   : solve(model, path.tool_length_mm, pose, path.branch, reference);
+  out.tip_square = speed_square(pose.tip);
+  if (std::isfinite(span.turn_rad_per_s) && out.joints.status != SolveStatus::kUnreachable) {
+    out.turn_square = speed_square(
+        path.is_free_driven ? forward(model, path.tool_length_mm, out.joints.q).axis : pose.axis);
+  }
+  return out;
+}
+
+Place place_on(const MachineModel& model, const FeedSpan& span, double x,
+               const JointVector& reference) noexcept {
+  const PathPiece& path = span.path;
+  if (path.kind == PathKind::kSpline) return place_on_spline(model, span, x, reference);
+  const double share_rate = fraction_at(path, Jet<1>::variable(x)).derivative(1);
+  return {joints_at(model, path, Jet<3>::variable(x), reference),
+          square(tip_length(path) * share_rate), square(path.axis_turn * share_rate)};
+}
+
+}  // namespace
+
+PathFault take_sample(const MachineModel& model, const FeedLimits& limits, double feed_share,
+                      const FeedSpan& span, double x, JointVector& reference,
+                      CellSample& out) noexcept {
+  const auto [at, tip_square, turn_square] = place_on(model, span, x, reference);
+  if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
+  const double share = square(feed_share);
+  double b = std::min(1 / kNone, share * square(span.u_speed_mm_per_s));
+  b = std::min(b, share * square(span.feed_mm_per_s) / std::max(tip_square, square(kNone)));
+  if (std::isfinite(span.turn_rad_per_s)) {
+    b = std::min(b, share * square(span.turn_rad_per_s) / std::max(turn_square, square(kNone)));
+  }
+  const auto take = [&](int i, const Jet<3>& q) {
+    const double d1 = out.d1[i] = q.derivative(1);
+    const double d2 = out.d2[i] = q.derivative(2);
+    const double d3 = out.d3[i] = q.derivative(3);
+    b = std::min(b, square(limits.velocity[i] / std::max(std::abs(d1), kNone)));
+    b = std::min(b, limits.acceleration[i] / std::max(std::abs(d2), kNone));
+    // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
+    b = std::min(b, 4 * std::pow(limits.jerk[i] / std::max(std::abs(d3), kNone), 2.0 / 3.0));
+  };
+  for (int i = 0; i < model.joint_count; ++i) {
+    reference[i] = value_of(at.q[i]);
+    take(i, at.q[i]);
+  }
+  if (has_stage(model)) {
+    const Limited<Jet<3>> all = limited_of(model, at.q);
+    for (int i = model.joint_count; i < limits.count; ++i) take(i, all[i]);
+  }
+  if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
+  out.max_b = b;
+  return {};
+}
+
+double time_per_u(const FeedLimits& limits, const CellSample& at) noexcept {
+  double slowest = 1 / std::sqrt(at.max_b);
+  for (int i = 0; i < limits.count; ++i) {
+    slowest = std::max({slowest, std::abs(at.d1[i]) / limits.velocity[i],
+                        kCurvatureShare * std::sqrt(std::abs(at.d2[i]) / limits.acceleration[i]),
+                        kCurvatureShare * std::cbrt(std::abs(at.d3[i]) / limits.jerk[i])});
+  }
+  return slowest;
+}
+
+double share_beside_pole(const MachineModel& model, const FeedLimits& limits, const PathPiece& path,
+                         double x) noexcept {
+  const bool is_solved = path.kind == PathKind::kLine || path.kind == PathKind::kArc;
+  const bool shows = path.kind == PathKind::kSpline || (is_solved && !path.is_free_driven);
+  if (!shows || redundant_joint(model) < 0) return 1;
+  const auto pose = pose_at(path, x);
+  const double distance = pole_distance(model, pose.axis);
+  const double noise = distance > 0 ? kAxisNoise / distance : 0;
+  const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
+  double share = 1;
+  for (int i = 0; i < limits.count; ++i) {
+    share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
+  }
+  return std::max(share, kMinTight);
+}
+
+}  // namespace meridian

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/leg_feed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meridian/planner/joints_at.hpp"
+
+namespace meridian {
+namespace {
+
+constexpr double kCell_s = 0.004;  // at full speed, next to rest and as long as they are few
+constexpr double kMin = CellGrid::kMin, kMax = 240;  // cells away from rest
+constexpr double kGrowth = 1.25;                     // of cells, away from rest
+constexpr std::size_t kMaxGrowing = 64;              // of them, next to a rest
+constexpr std::size_t kEnds = 512;
+constexpr int kKeptCells = 256;  // at a time: a window, and what stands before and behind it
+constexpr int kMaxRounds = 60;   // of the solver in a window: what needs more finds no plan
+constexpr double kCurvatureShare = 0.7;  // as in the cells of the feed
+
+FeedSettings leg_settings(const MachineModel& model) noexcept {
+  FeedSettings settings = feed_settings(model);
+  settings.window_cells = JerkStep::kCells;
+  settings.cells.kept_cells = kKeptCells;
+  settings.max_rounds = kMaxRounds;
+  return settings;
+}
+
+}  // namespace
+
+LegFeed::LegFeed(const MachineModel& model)
+    : model_(model), feed_(model, leg_settings(model)), authority_(model) {
+  ends_.reserve(kEnds);
+}
+
+double LegFeed::plan(const Leg& leg, std::span<const JointCell> cells, double less_than_s,
+                     Staging& out, JointVector& joints) noexcept {
+  PathPiece piece = leg.path;
+  piece.joints_begin = joints_at(model_, piece, 0.0, joints).q;
+  place_cells(leg, cells);
+  feed_.begin(joints, piece.branch, piece.tool_length_mm);
+  const Staging::Mark mark = out.mark();
+  piece.index = out.first_index + static_cast<std::uint64_t>(out.path_count);
+  Times times{leg.time_on(piece), less_than_s, 0};
+  if (!push_cells(leg, times, out) || !stage_windows(times, out) || !feed_.is_done()) {
+    out.go_back(mark);
+    return 0;
+  }
+  piece.joints_end = joints_at(model_, piece, piece.length, feed_.grid().joints()).q;
+  if (!out.add(piece)) {
+    out.go_back(mark);
+    return 0;
+  }
+  joints = piece.joints_end;
+  return times.duration;
+}
+
+double LegFeed::time_over(const Leg& leg, const JointCell& cell) const noexcept {
+  const FeedLimits& limits = feed_.limits();
+  double slowest = 1 / leg.max_velocity(cell.share_rate);
+  for (int i = 0; i < limits.count; ++i) {
+    slowest = std::max({slowest, cell.d1[i] / limits.velocity[i],
+                        kCurvatureShare * std::sqrt(cell.d2[i] / limits.acceleration[i]),
+                        kCurvatureShare * std::cbrt(cell.d3[i] / limits.jerk[i])});
+  }
+  return slowest * (cell.end - cell.begin);
+}
+
+void LegFeed::place_cells(const Leg& leg, std::span<const JointCell> cells) noexcept {
+  double whole = 0;
+  for (const JointCell& cell : cells) whole += time_over(leg, cell);
+  const double step = std::clamp(kCell_s, whole / kMax, whole / kMin);
+  // Ends by time: growing up to a step, evenly, and shrinking again.
+  ends_.clear();
+  double ramp = 0;
+  for (double by = kCell_s; by < step && ramp + by < 0.5 * whole && ends_.size() < kMaxGrowing;
+       by *= kGrowth) {
+    ends_.push_back(ramp += by);
+  }
+  const std::size_t growing = ends_.size();
+  const double even = whole - 2 * ramp;
+  const auto steps = static_cast<int>(std::ceil(even / step));
+  for (int n = 1; n <= steps; ++n) ends_.push_back(ramp + even * n / steps);
+  for (std::size_t n = growing; n-- > 1;) ends_.push_back(whole - ends_[n - 1]);
+  if (growing > 0) ends_.push_back(whole);
+  // To path length, through the cells.
+  double time = 0;
+  std::size_t next = 0;
+  for (const JointCell& cell : cells) {
+    const double by = time_over(leg, cell);
+    for (; next < ends_.size() && ends_[next] <= time + by; ++next) {
+      ends_[next] = cell.begin + (cell.end - cell.begin) * (ends_[next] - time) / by;
+    }
+    time += by;
+  }
+  ends_.resize(std::min(next + 1, ends_.size()));
+  ends_.back() = leg.path.length;
+}
+
+bool LegFeed::push_cells(const Leg& leg, Times& times, Staging& out) noexcept {
+  FeedSpan span;
+  span.path = leg.path;
+  span.feed_mm_per_s = leg.max_tip_speed();
+  if (leg.share_per_s > 0) {
+    span.u_speed_mm_per_s = leg.feed_factor * leg.share_per_s * leg.path.length;
+  }
+  span.cells = 1;
+  for (const double end : ends_) {
+    span.length = end - span.begin;
+    if (!feed_.has_room() && !stage_windows(times, out)) return false;
+    if (!feed_.has_room() || is_fault(feed_.push(span))) return false;
+    span.begin = end;
+  }
+  return !is_fault(feed_.finish());
+}
+
+bool LegFeed::stage_windows(Times& times, Staging& out) noexcept {
+  const std::int64_t crawls = feed_.count().crawls;
+  while (feed_.try_plan()) {
+    if (feed_.count().crawls > crawls) return false;  // constant bounds do better
+    const FeedWindow& window = feed_.window();
+    authority_.begin(feed_.grid(), feed_.grid().last());
+    for (const FeedPiece& piece : window.committed) {
+      TimePiece time = times.names;
+      time.duration = piece.duration;
+      time.s0 = piece.s0;
+      time.v = piece.v;
+      time.a = piece.a;
+      time.j = piece.j;
+      time.k = piece.k;
+      authority_.grant(piece, time);
+      times.duration += time.duration;
+      if (!(times.duration < times.less_than_s) || !out.add(time)) return false;
+    }
+  }
+  return !is_fault(feed_.fault());
+}
+
+double min_leg_time(const Leg& leg, std::span<const JointCell> cells,
+                    const JointCaps& caps) noexcept {
+  PathLimits easiest;
+  double at_speed = 0;
+  for (const JointCell& cell : cells) {
+    double per_s = 1 / leg.max_velocity(cell.share_rate);
+    for (int i = 0; i < caps.count; ++i) per_s = std::max(per_s, cell.d1[i] / caps.velocity[i]);
+    at_speed += per_s * (cell.end - cell.begin);
+    easiest.acceleration = std::max(easiest.acceleration, find_acceleration({&cell, 1}, caps, 0));
+    easiest.jerk = std::max(easiest.jerk, find_jerk({&cell, 1}, caps, 0, 0));
+  }
+  easiest.velocity = leg.path.length / at_speed;
+  const Profile profile = rest_to_rest_with_reserve(leg.path.length, easiest);
+  return profile.jerk > 0 ? std::max(profile.duration(), at_speed) : at_speed;
+}
+
+}  // namespace meridian
