@@ -29,8 +29,8 @@ MachineModel raising(MachineModel machine, Transition transition = Transition::k
 }
 
 /// One feed that the joints can follow for most of the way, also half as fast again.
-std::vector<ClBlock> hostile(std::uint32_t seed, double feed) {
-  auto blocks = HostilePath(seed).make_program(6);
+std::vector<ClBlock> hostile(std::uint32_t seed, double feed, int sections = 6) {
+  auto blocks = HostilePath(seed).make_program(sections);
   for (ClBlock& block : blocks) block.feed = feed;
   return blocks;
 }
@@ -197,7 +197,7 @@ TEST(FeedRaise, LoweredIsInForceAtOnce) {
 TEST(FeedRaise, IsReplayedBitForBitFromItsMarksHoweverFarAheadThePlanIs) {
   for (const auto transition : {Transition::kSmooth, Transition::kExactStop}) {
     const MachineModel machine = raising(lai_machine(), transition);
-    const auto blocks = hostile(3, 20);
+    const auto blocks = hostile(3, 20, 12);
     struct Said {
       std::size_t cycle;
       double factor;
@@ -207,7 +207,7 @@ TEST(FeedRaise, IsReplayedBitForBitFromItsMarksHoweverFarAheadThePlanIs) {
     SmoothRunning live(machine, blocks, joints_of(machine, blocks[0]));
     ASSERT_TRUE(live.is_started());
     for (int n = 0; n < 12; ++n) {
-      for (int k = 0; k < 200; ++k) live.run();
+      for (int k = 0; k < 500; ++k) live.run();
       const double factor = random.uniform(0.8, 1.5);
       said.push_back({live.world.records.size(), factor});
       live.command(Verb::kFeedOverride, factor);

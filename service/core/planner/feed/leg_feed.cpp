@@ -14,13 +14,15 @@ constexpr double kMin = CellGrid::kMin, kMax = 240;  // cells away from rest
 constexpr double kGrowth = 1.25;                     // of cells, away from rest
 constexpr std::size_t kMaxGrowing = 64;              // of them, next to a rest
 constexpr std::size_t kEnds = 512;
-constexpr int kKeptCells = 256;  // at a time: a window, and what stands before and behind it
-constexpr int kMaxRounds = 60;   // of the solver in a window: what needs more finds no plan
+constexpr int kKeptCells = 256;   // at a time: a window, and what stands before and behind it
+constexpr int kCommitCells = 80;  // of a window: all cells are there, so fewer windows do
+constexpr int kMaxRounds = 40;    // of the solver in a window: what needs more finds no plan
 constexpr double kCurvatureShare = 0.7;  // as in the cells of the feed
 
 FeedSettings leg_settings(const MachineModel& model) noexcept {
   FeedSettings settings = feed_settings(model);
   settings.window_cells = JerkStep::kCells;
+  settings.commit_cells = kCommitCells;
   settings.cells.kept_cells = kKeptCells;
   settings.max_rounds = kMaxRounds;
   return settings;
