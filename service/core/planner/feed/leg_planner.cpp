@@ -22,7 +22,8 @@ constexpr double kCellSweep_rad = 0.14;
 constexpr double kCellFree_rad = 0.14;
 constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
 constexpr double kMaxCells = 256;
-constexpr double kGain = 1.02;  // over the least time, that constant bounds may lose
+constexpr double kGain = 1.02;      // over the least time, that constant bounds may lose
+constexpr double kRests_s = 0.004;  // and what the feed planner loses beside rests
 constexpr double kCoarse = 1.12;
 constexpr int kMaxRefinements = 3;
 constexpr int kMinAzimuthCells = 4;  // between two nodes
@@ -84,7 +85,7 @@ PathFault LegPlanner::plan(const Leg& leg, Staging& out, JointVector& joints) no
 
 bool LegPlanner::plan_feed(const Leg& leg, Staging& out, JointVector& joints) noexcept {
   const double fastest = nodes_[node_count_ - 1].fastest;
-  if (fastest <= kGain * min_leg_time(leg, cells_.all(), caps_)) return false;
+  if (fastest <= kGain * min_leg_time(leg, cells_.all(), caps_) + kRests_s) return false;
   const Staging::Mark mark = out.mark();
   JointVector at_end = joints;
   const double duration = feed_.plan(leg, cells_.all(), fastest, out, at_end);
