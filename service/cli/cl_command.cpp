@@ -13,12 +13,16 @@ namespace meridian::cli::cl_command {
 namespace {
 
 /// What the reader is told; poses come out in the frame around the workpiece.
-cl::ClReaderOptions reading(const ClFileOptions& file, MachineOptions machine) {
+cl::ClReaderOptions reading(const std::string& program, const ClFileOptions& file,
+                            MachineOptions machine) {
   if (machine.machine.empty()) return reader_options(file);
   machine.frame = file.frame;
   const MachineModel model = load_machine(machine);
   cl::ClReaderOptions out = reader_options(file, model);
-  describe_machine(out, model, load_tools(machine), load_tool_names(machine));
+  ToolTable tools = load_tools(machine);
+  describe_machine(out, model, tools, load_tool_names(machine));
+  add_unknown_tools(program, out, machine, tools);
+  describe_machine(out, model, tools, load_tool_names(machine));
   if (out.frame) {
     out.home = [home = out.home, frame = *out.frame](std::optional<std::uint32_t> tool) {
       std::optional<ToolPose> pose = home(tool);
@@ -70,10 +74,11 @@ void add(CLI::App& app, int& exit_code) {
       ->add_option("--tools", options->machine.tools,
                    "Tool table (TOML): lengths for moves to the machine's own places")
       ->needs(machine);
+  add_unknown_tool_option(*command, options->machine)->needs(machine);
   add_cl_file_options(*command, options->file);
   add_frame_option(*command, options->file);
   command->callback([options, &exit_code] {
-    options->run.reader = reading(options->file, options->machine);
+    options->run.reader = reading(options->run.file, options->file, options->machine);
     if (options->is_summary) options->run.what = cl::RunOptions::Output::kSummary;
     if (options->is_json) options->run.what = cl::RunOptions::Output::kJson;
     exit_code = cl::run_cl(options->run, std::cout, std::cerr);

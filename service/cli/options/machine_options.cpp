@@ -36,7 +36,11 @@ void add_machine_options(CLI::App& command, MachineOptions& options, bool has_wo
   command.add_option("-m,--machine", options.machine, "Machine file (TOML)")->required();
   if (!has_workpiece) return;
   add_workpiece_options(command, options);
-  command
+  add_unknown_tool_option(command, options);
+}
+
+CLI::Option* add_unknown_tool_option(CLI::App& command, MachineOptions& options) {
+  return command
       .add_option("--unknown-tool-length", options.unknown_tool_length_mm,
                   "Length of every tool that the program calls and the table has not, mm")
       ->check(finite_range(0.0, 1e4));

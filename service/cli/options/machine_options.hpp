@@ -29,6 +29,8 @@ void add_workpiece_options(CLI::App& command, MachineOptions& options);
 /// --unknown-tool-length.
 void add_machine_options(CLI::App& command, MachineOptions& options, bool has_workpiece);
 
+CLI::Option* add_unknown_tool_option(CLI::App& command, MachineOptions& options);
+
 /// The machine with its workpiece in place and its tool in the spindle. Throws config::ConfigError.
 [[nodiscard]] MachineModel load_machine(const MachineOptions& options);
 /// Empty where no table is named. Throws config::ConfigError.

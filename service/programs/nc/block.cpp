@@ -104,8 +104,15 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
       shot.kind = OneShot::Kind::kPlaneFollow;
       break;
     case GKind::kPlaneOff:
-      if (s.frames.tilt == Tilt::kNone) s.cl.summary.skip("G69", line.number);
+      if (s.frames.tilt == Tilt::kNone || s.modes.has_dynamic_offset) {
+        s.cl.summary.skip("G69", line.number);
+        break;
+      }
       set_plane(s, line, {}, Tilt::kNone);
+      break;
+    case GKind::kDynamicOffset:
+      if (row.value != 0) return begin_dynamic_offset(s, line);
+      end_dynamic_offset(s, line);
       break;
     case GKind::kLocalZero:
       shot.kind = OneShot::Kind::kLocalZero;

@@ -92,6 +92,8 @@ constexpr std::array kG = std::to_array<GRow>({
     {684, kRefused, 0, kTilted, kByAngles},
     {690, kPlaneOff},
     {691, kNothing},
+    {700, kUnit, 1},  // DIN 66025, of many postprocessors
+    {710, kUnit, 0},
     {730, kCycle, 73},
     {800, kCycle, 0},
     {810, kCycle, 81},
@@ -114,6 +116,8 @@ constexpr std::array kG = std::to_array<GRow>({
     {990, kReturn, 1},
     {1870, kSetting},
     {2340, kControl, of(Control::kRotary)},  // Haas
+    {2540, kDynamicOffset, 1},               // Haas
+    {2550, kDynamicOffset, 0},
 });
 
 constexpr std::string_view kSubprogram = "a subprogram, which is not run here";

@@ -26,6 +26,7 @@ enum class GKind : std::uint8_t {
   kPlaneFollow,   ///< G53.1: the rotary axes follow it
   kPlaneOff,      ///< G69
   kLocalZero,     ///< G52
+  kDynamicOffset,  ///< of Haas; `value`: 1 for G254, 0 for G255
   kNothing,       ///< says what holds anyway, or how the control smooths
   kSetting,       ///< the same, with words of its own (G5.1 Q1)
   kRefused

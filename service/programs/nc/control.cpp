@@ -34,6 +34,9 @@ cl::Outcome take_offset(State& s, int offset) {
 }  // namespace
 
 cl::Outcome set_control(State& s, const Line& line, Control control) {
+  if (holds_tip(control) && s.modes.has_dynamic_offset) {
+    return refuse("tool-centre control under G254", "write G255 before it");
+  }
   const Control before = s.modes.control;
   s.modes.control = control;
   if (before == control) return {};

@@ -115,7 +115,7 @@ void turn_to_plane(State& s, const Line& line) {
 
 bool is_across_plane(const State& s, const Place& place) {
   const ProgramFrames& frames = s.frames;
-  if (frames.tilt == Tilt::kTurned) return true;
+  if (frames.tilt == Tilt::kTurned || s.modes.has_dynamic_offset) return true;
   if (frames.tilt == Tilt::kNone) return false;
   const Vector3 wanted = tool_of_plane(s);
   if (!place.is_turned()) return is_along(wanted, Vector3::UnitZ());
@@ -160,6 +160,7 @@ cl::Outcome define_plane(State& s, const Line& line) {
                   "output G68.2 with X Y Z and the angles I J K", "G68.2 P");
   }
   if (s.modes.is_incremental) return refuse("G68.2 under G91", "write G90 before it");
+  if (s.modes.has_dynamic_offset) return refuse("G68.2 under G254", "write G255 before it");
   if (holds_tip(s.modes.control)) {
     return refuse("G68.2 while tool-centre control is on", "write G49 before it");
   }

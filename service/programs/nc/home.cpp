@@ -55,6 +55,11 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_pl
     targets.push_back(target);
   }
   if (targets.empty()) return refuse(std::string(code) + " without axis words");
+  const bool turns = std::any_of(line.words.begin(), line.words.end(),
+                                 [](const Word& word) { return word.may_be_rotary(); });
+  if (turns && s.modes.has_dynamic_offset) {
+    return refuse(std::string(code) + " with rotary words under G254", "write G255 before it");
+  }
   if (!is_machine_place) {
     if (auto done = check_intermediate(s, line); !done) return done;
   } else if (s.modes.is_incremental || s.modes.motion > Motion::kLine) {
@@ -83,8 +88,6 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_pl
   const auto pose = in_path(s, {written, reached->pose.axis.normalized()});
   if (!pose) return tl::make_unexpected(pose.error());
   s.in_w = reached->pose;
-  const bool turns = std::any_of(line.words.begin(), line.words.end(),
-                                 [](const Word& word) { return word.may_be_rotary(); });
   s.place.rotary = reached->rotary;
   s.place.is_by_control = false;
   if (turns) note_rotary_words(s, s.place);

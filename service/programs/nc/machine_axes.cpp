@@ -2,6 +2,7 @@
 #include "service/programs/nc/machine_axes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -50,6 +51,19 @@ JointVector MachineAxes::joints(const std::vector<RotaryAt>& rotary) const {
 
 Vector3 MachineAxes::axis(const std::vector<RotaryAt>& rotary) const {
   return forward(model_, model_.tool_length_mm, joints(rotary)).axis.normalized();
+}
+
+std::optional<Eigen::Matrix3d> MachineAxes::linear_axes(const std::vector<RotaryAt>& rotary) const {
+  Eigen::Matrix3d out;
+  if (!words_) return std::nullopt;
+  const auto tip_by_joint = jacobian(model_, model_.tool_length_mm, joints(rotary));
+  constexpr std::array<std::string_view, 3> kAxes = {"X", "Y", "Z"};
+  for (std::size_t k = 0; k < kAxes.size(); ++k) {
+    const int i = words_->find(kAxes[k]);
+    if (i < 0 || words_->is_rotary(i)) return std::nullopt;
+    out.col(static_cast<Eigen::Index>(k)) = words_->sign(i) * tip_by_joint.col(i).head<3>();
+  }
+  return out;
 }
 
 /// Of all solutions the one whose rotary joints are nearest to `near`.

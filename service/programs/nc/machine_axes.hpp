@@ -32,6 +32,10 @@ class MachineAxes {
 
   /// Tool axis in W with the rotary axes there; those of which nothing is told stand at zero.
   [[nodiscard]] Vector3 axis(const std::vector<RotaryAt>& rotary) const;
+  /// Where X, Y and Z of the machine lead in W with the rotary axes there, as columns; nothing: it
+  /// has no such axes.
+  [[nodiscard]] std::optional<Eigen::Matrix3d> linear_axes(
+      const std::vector<RotaryAt>& rotary) const;
   /// How far the tool axis of a block may lie from where evenly turning joints put it.
   [[nodiscard]] double axis_tolerance_rad() const noexcept { return model_.tolerances.axis_rad; }
 

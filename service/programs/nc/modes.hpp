@@ -78,6 +78,7 @@ struct Modes {
   bool is_oriented = false;       ///< TRAORI: vectors or rotary words, as each block has them
   bool turns_evenly = true;       ///< rotary joints between two blocks; else the axis: great circle
   bool has_machine_axes = false;  ///< ORIMKS: directions are the machine's
+  bool has_dynamic_offset = false;  ///< G254: the plane is that of the rotary words
 };
 
 /// A rotary axis as the program has turned it, deg as written; nothing: by the control, unknown.

@@ -223,6 +223,9 @@ cl::Outcome move(State& s, const Line& line) {
   Target to{s.place, Vector3::UnitZ(), false};
   if (auto done = take_tip(s, line, to); !done) return done;
   if (auto done = take_rotary(s, line, to); !done) return done;
+  if (s.modes.has_dynamic_offset && to.turns) {
+    if (auto done = turn_with_table(s, line, to); !done) return done;
+  }
   if (s.modes.control == Control::kVector && !is_arc) {
     if (auto done = take_vector(s, line, to); !done) return done;
   }

@@ -53,6 +53,14 @@ void note_rotary_words(State& s, Place& to);
 [[nodiscard]] cl::Outcome follow_plane(State& s, const Line& line);
 [[nodiscard]] cl::Outcome set_local_zero(State& s, const Line& line);
 
+// dynamic_offset.cpp
+/// G254: from here on the zero of the program goes with the table; G255 ends it.
+[[nodiscard]] cl::Outcome begin_dynamic_offset(State& s, const Line& line);
+void end_dynamic_offset(State& s, const Line& line);
+struct Target;
+/// A block with rotary words under G254: its points count along the axes as it leaves the table.
+[[nodiscard]] cl::Outcome turn_with_table(State& s, const Line& line, Target& to);
+
 // points.cpp
 /// The words of a line that move: its points by the motion in force.
 [[nodiscard]] cl::Outcome move(State& s, const Line& line);

@@ -97,7 +97,7 @@ TEST(Refusal, OfWordsThatMoveTheMachineBehindOurBack) {
   for (const char* line :
        {"CYCLE/DRILL,10,MMPM,100,5", "CYCLE/TAP,10,OFF,2", "CYCLE/DEEP2,12.5,IPM,5,.1", "GOHOME",
         "ROTABL/90,CLW", "COPY/1,TRANSL,10,0,0,3", "CALL/SUB1", "MODE/INCR", "SET/MODE,INCR",
-        "SPINDL/SFM,200", "THREAD/TURN"}) {
+        "SPINDL/SFM,200", "THREAD/TURN", "HEAD/2"}) {
     EXPECT_EQ(read_body("GOTO/1,2,3\n" + std::string(line) + "\nGOTO/1,2,4\n").error_line, 4U)
         << line;
   }

@@ -38,6 +38,17 @@ TEST(NcMotion, ReadsInchesInMillimetres) {
   EXPECT_DOUBLE_EQ(motion[1].feed, 254.0 / 60);
 }
 
+TEST(NcMotion, HasTheUnitWordsOfDin66025) {
+  for (const auto& [unit, x_mm] : std::vector<std::pair<const char*, double>>{{"G70", 50.8},
+                                                                             {"G71", 2.0}}) {
+    const ReadText read = cl::read_text(
+        "%\nO1\n" + std::string(unit) + " G90\nG0 X1. Y0. Z0.\nX2.\nM30\n%\n", without_machine());
+    ASSERT_EQ(read.error, "") << unit;
+    EXPECT_DOUBLE_EQ(read.motion().back().tip_mm[0], x_mm) << unit;
+  }
+  EXPECT_NE(read_nc("G0 X0. Y0. Z0.\nG70 I5. J15. L12\n").error, "") << "holes on a circle";
+}
+
 TEST(NcMotion, KnowsThreeKindsOfFeed) {
   const ReadText read =
       read_nc("G0 X0. Y0. Z0.\nG93 G1 X1. F30.\nG95 S1000 M3\nG1 X2. F0.1\nG94 G1 X3. F300.\n");

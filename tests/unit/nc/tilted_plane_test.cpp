@@ -2,6 +2,8 @@
 // G68.2, G53.1, G69 and G52: points in tilted planes, worked out by hand.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <numbers>
 
 #include "meridian/units.hpp"
@@ -90,6 +92,57 @@ TEST(TiltedPlane, RefusesWhatItCannotRead) {
            {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG52 X5.\n", "G52 in a tilted plane"}}) {
     EXPECT_NE(read_nc(body).error.find(says), std::string::npos) << body << read_nc(body).error;
   }
+}
+
+/// What a trunnion about y with a table about z, at B and C in degrees, does to a point of the part.
+Vector3 on_table(double b_deg, double c_deg, const Vector3& machine) {
+  const double b = units::rad_from_deg(b_deg), c = units::rad_from_deg(c_deg);
+  const Eigen::Matrix3d table = (Eigen::AngleAxisd(b, Vector3::UnitY()) *
+                                 Eigen::AngleAxisd(c, Vector3::UnitZ())).toRotationMatrix();
+  return table.transpose() * machine;
+}
+
+TEST(DynamicOffset, ReadsPointsAlongTheMachinesAxesFromTheZeroOnTheTable) {
+  const MachineModel machine = shipped("trunnion-bc");
+  const ReadText read = read_nc(
+      "G0 B-30. C90.\nG254\nG0 X10. Y5.\nG43 H1 Z20.\nG1 Z2.\nX12.\nG0 Z50.\n"
+      "G0 X1. Y2. Z60. B20. C0.\nG1 Z3.\nG255\nG0 B0. C0.\nG0 X0. Y0. Z90.\nG1 Z80.\n",
+      on(machine));
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 8U);
+  const Vector3 first = on_table(-30, 90, {10, 5, 20}), last = on_table(20, 0, {1, 2, 3});
+  EXPECT_LT((tip(motion[0]) - first).norm(), kTiny) << tip(motion[0]).transpose();
+  EXPECT_LT((axis(motion[0]) - on_table(-30, 90, Vector3::UnitZ())).norm(), kTiny);
+  EXPECT_LT((tip(motion[5]) - last).norm(), kTiny);
+  EXPECT_LT((axis(motion[5]) - on_table(20, 0, Vector3::UnitZ())).norm(), kTiny);
+  EXPECT_EQ(tip(motion[7]), Vector3(0, 0, 80)) << "G255 ends it";
+  EXPECT_TRUE(read.warned_of("the table turns under G254"));
+}
+
+TEST(DynamicOffset, DoesNotKnowWhereAnAxisIsThatTheTurningBlockLeavesOut) {
+  const ReadText read = read_nc(
+      "G43 H1\nG254\nG0 X0. Y0. Z9.\nG0 X1. Y1. B20.\nG1 X2.\n", on(shipped("trunnion-bc")));
+  EXPECT_EQ(read.error_line, 8U) << read.error;
+  EXPECT_NE(read.error.find("is not known here"), std::string::npos) << read.error;
+}
+
+TEST(DynamicOffset, IsRefusedWhereItsPointsAreNotThoseOfTheTip) {
+  const auto trunnion = on(shipped("trunnion-bc"));
+  for (const auto& [body, says] : std::vector<std::pair<const char*, const char*>>{
+           {"G43 H1\nG254\nG0 X0. Y0. Z9.\nG1 X1. B20.\n", "a cut in which rotary axes turn"},
+           {"G254\nG43.4 H1\n", "tool-centre control under G254"},
+           {"G43.4 H1\nG254\n", "tool-centre control is on"},
+           {"G254\nG68.2 X0. Y0. Z0. I0. J9. K0.\n", "G68.2 under G254"},
+           {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG254\n", "G254 in a tilted plane"},
+           {"G43 H1\nG254\nG0 X0. Y0. Z9.\nG91 G28 B0.\n", "rotary words under G254"},
+           {"G254\nG91 G0 B20.\n", "G91"}}) {
+    EXPECT_NE(read_nc(body, trunnion).error.find(says), std::string::npos)
+        << body << read_nc(body, trunnion).error;
+  }
+  EXPECT_NE(read_nc("G254\n").error.find("--machine FILE"), std::string::npos);
+  EXPECT_NE(read_nc("G0 B20. C0.\nG254\n", on(shipped("fork-cb"))).error.find("turn the tool"),
+            std::string::npos);
 }
 
 TEST(LocalZero, MovesThePointsBehindIt) {

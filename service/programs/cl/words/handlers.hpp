@@ -76,5 +76,7 @@ Outcome read_note(Modal& m, const Statement& s);
 Outcome skip(Modal& m, const Statement& s);          ///< counted
 Outcome skip_flagged(Modal& m, const Statement& s);  ///< counted, with the row's note as a remark
 Outcome refuse_word(Modal& m, const Statement& s);   ///< with the row's note as the reason
+Outcome refuse_unless_off(Modal& m, const Statement& s);    ///< WORD/OFF is skipped
+Outcome refuse_unless_first(Modal& m, const Statement& s);  ///< WORD/1 is skipped
 
 }  // namespace meridian::cl
