@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/machine/inspect/rotary_centres.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "service/machine/inspect/least_squares.hpp"
 #include "service/machine/inspect/printed.hpp"
 
 namespace meridian::inspect {
@@ -102,12 +103,12 @@ class Sphere {
   Eigen::MatrixX3d balls;
   if (!sphere.find_balls(x, balls)) return false;
   const Eigen::RowVector3d mean = balls.colwise().mean();
-  Eigen::MatrixX4d lines(balls.rows(), 4);
+  Eigen::MatrixXd lines(balls.rows(), 4);
   lines << 2 * (balls.rowwise() - mean), Eigen::VectorXd::Ones(balls.rows());
-  const auto solver = lines.colPivHouseholderQr();
-  if (solver.rank() < 4) return false;
-  const Eigen::Vector4d found =
-      solver.solve((balls.rowwise() - mean).rowwise().squaredNorm().eval());
+  const LeastSquares solved =
+      solve_least_squares(lines, (balls.rowwise() - mean).rowwise().squaredNorm());
+  if (solved.rank < 4) return false;
+  const Eigen::Vector4d found = solved.x;
   x.segment<3>(kMiddle) = mean.transpose() + found.head<3>();
   const double whole = std::sqrt(std::max(0.0, found[3] + found.head<3>().squaredNorm()));
   if (x.size() > kRadius) x[kRadius] = whole - touches.front().radius_mm;
@@ -142,17 +143,14 @@ Expected<RotaryCentres, std::string> find_rotary_centres(const MachineModel& mac
   if (!guess(sphere, touches, x)) return refuse("the touches lie on no sphere");
   Eigen::VectorXd off;
   Eigen::MatrixXd slopes;
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd;
+  LeastSquares solved;
   for (int step = 0; step < 50; ++step) {
     if (!sphere.evaluate(x, off) || !sphere.find_slopes(x, slopes)) {
       return refuse("the touches lead to axes that make no machine");
     }
-    svd.compute(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const double least = kOpen * std::sqrt(static_cast<double>(count));
-    svd.setThreshold(std::min(1.0, least / svd.singularValues()[0]));
-    const Eigen::VectorXd move = svd.solve(off);
-    x -= move;
-    if (move.norm() < kDone_mm) break;
+    solved = solve_least_squares(slopes, off, kOpen * std::sqrt(static_cast<double>(count)));
+    x -= solved.x;
+    if (solved.x.norm() < kDone_mm) break;
   }
   if (!sphere.evaluate(x, off)) return refuse("the touches lead to axes that make no machine");
 
@@ -164,7 +162,7 @@ Expected<RotaryCentres, std::string> find_rotary_centres(const MachineModel& mac
   found.largest_mm = off.cwiseAbs().maxCoeff(&farthest);
   found.farthest = static_cast<std::size_t>(farthest);
   const double variance = off.squaredNorm() / static_cast<double>(count - unknowns);
-  const Eigen::MatrixXd& v = svd.matrixV();
+  const Eigen::MatrixXd& v = solved.directions;
   for (std::size_t k = 0; k < 2; ++k) {
     RotaryCentre& centre = found.centres[k];
     centre.joint = machine.joints[static_cast<std::size_t>(sphere.joint(k).joint)].name;
@@ -174,8 +172,8 @@ Expected<RotaryCentres, std::string> find_rotary_centres(const MachineModel& mac
          {static_cast<Eigen::Index>(2 * k), static_cast<Eigen::Index>(2 * k + 1)}) {
       double sum = 0;
       for (Eigen::Index i = 0; i < unknowns; ++i) {
-        if (i < svd.rank()) {
-          sum += variance * std::pow(v(row, i) / svd.singularValues()[i], 2);
+        if (i < solved.rank) {
+          sum += variance * std::pow(v(row, i) / solved.singular_values[i], 2);
         } else if (std::abs(v(row, i)) > kPart) {
           centre.is_determined = false;
         }

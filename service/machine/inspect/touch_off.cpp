@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/machine/inspect/touch_off.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
+#include "service/machine/inspect/least_squares.hpp"
 #include "service/machine/inspect/printed.hpp"
 
 namespace meridian::inspect {
@@ -188,23 +189,23 @@ void turn(Search& search, int axis, const Vector3& normal, int kept = -1) {
     search.arithmetic += printed("tip %.4f %.4f %.4f mm\n", tip.x(), tip.y(), tip.z());
   }
   const Eigen::RowVector2d middle = points.colwise().mean();
-  Eigen::MatrixX3d lines(count, 3);
+  Eigen::MatrixXd lines(count, 3);
   lines << 2 * (points.rowwise() - middle), Eigen::VectorXd::Ones(count);
   const Eigen::VectorXd squares = (points.rowwise() - middle).rowwise().squaredNorm();
-  const auto solver = lines.colPivHouseholderQr();
-  if (solver.rank() < 3) return "the touches lie on one line";
-  const Eigen::Vector3d guess = solver.solve(squares);
+  const LeastSquares solved = solve_least_squares(lines, squares);
+  if (solved.rank < 3) return "the touches lie on one line";
+  const Eigen::Vector3d guess = solved.x;
   Eigen::Vector3d circle(guess[0] + middle[0], guess[1] + middle[1],
                          std::sqrt(std::max(0.0, guess[2] + guess.head<2>().squaredNorm())));
   Eigen::VectorXd off(count);
   for (int step = 0; step < 20; ++step) {
-    Eigen::MatrixX3d slopes(count, 3);
+    Eigen::MatrixXd slopes(count, 3);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Vector2d from = points.row(i).transpose() - circle.head<2>();
       off[i] = from.norm() - circle[2];
       slopes.row(i) << -from.normalized().transpose(), -1;
     }
-    circle -= slopes.colPivHouseholderQr().solve(off);
+    circle -= solve_least_squares(slopes, off).x;
   }
   residual_mm = off.cwiseAbs().maxCoeff();
   search.origin += search.rotation.leftCols<2>() * circle.head<2>();

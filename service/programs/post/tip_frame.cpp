@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/programs/post/tip_frame.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <array>
 #include <string>
 
@@ -40,7 +40,7 @@ Expected<JointVector, PostError> find_program_zero(const MachineModel& model,
                      " of the part: check nc_word of joint " + model.joints[joints[k]].name));
     }
   }
-  const Vector3 by = by_words.colPivHouseholderQr().solve(Vector3(-at_zero.tip));
+  const Vector3 by = by_words.inverse() * -at_zero.tip;
   JointVector out{};
   for (int k = 0; k < 3; ++k) out[joints[k]] = words.sign(joints[k]) * by[k];
   return out;
