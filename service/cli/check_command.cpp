@@ -104,7 +104,7 @@ int check(Options& options, const MachineModel& model) {
   ToolTable tools = options.tools ? *options.tools : load_tools(options.machine);
   record::CheckedPath path(model.tool_length_mm, model.max_feed_mm_per_s);
   if (!options.file.empty()) {
-    cl::ClReaderOptions reading = reader_options(options.cl, model);
+    cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
     add_unknown_tools(options.file, reading, options.machine, tools);
     describe_machine(reading, model, tools, load_tool_names(options.machine));
     std::vector<cl::ClWarning> warnings;
@@ -180,7 +180,7 @@ using Steps = Expected<std::vector<proof::ProgramStep>, std::string>;
 /// An empty message: pass_file() has said on standard error why.
 [[nodiscard]] Steps steps_of_tip_words(const Options& options, cl::Dialect dialect,
                                        const MachineModel& model, ToolTable& tools) {
-  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
   reading.dialect = dialect;
   MachineModel fine = model;
   fine.tolerances.axis_rad *= proof::kFinerTurns;
@@ -196,7 +196,7 @@ using Steps = Expected<std::vector<proof::ProgramStep>, std::string>;
 int check_program(const Options& options, const MachineModel& model) {
   if (options.file.empty()) return refuse("meridian check: name the CL file of the program");
   ToolTable tools = load_tools(options.machine);
-  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
   if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
   const Blocks blocks = blocks_of(options.file, reading);
   if (!blocks) return refuse(blocks.error());

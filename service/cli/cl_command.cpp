@@ -18,7 +18,7 @@ cl::ClReaderOptions reading(const std::string& program, const ClFileOptions& fil
   if (machine.machine.empty()) return reader_options(file);
   machine.frame = file.frame;
   const MachineModel model = load_machine(machine);
-  cl::ClReaderOptions out = reader_options(file, model);
+  cl::ClReaderOptions out = reader_options(file, machine, model);
   ToolTable tools = load_tools(machine);
   describe_machine(out, model, tools, load_tool_names(machine));
   add_unknown_tools(program, out, machine, tools);

@@ -57,7 +57,7 @@ inspect::PlacingBox read_box(const std::string& text) {
 /// Looks for a frame in which the whole program fits.
 int place(const Options& options, const MachineModel& model) {
   ToolTable tools = load_tools(options.machine);
-  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
   add_unknown_tools(options.program, reading, options.machine, tools);
   describe_machine(reading, model, tools, load_tool_names(options.machine));
   std::ifstream file;

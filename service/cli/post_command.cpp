@@ -72,7 +72,7 @@ int run(Options options) {
   std::ifstream file;
   std::istream* const input = open_cl_file(options.file, file);
   if (input == nullptr) return refuse(options.file + ": cannot be opened");
-  cl::ClReaderOptions reading = reader_options(options.cl, model);
+  cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
   if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
   cl::ClReader reader(*input, options.file, reading);
   const auto program = post::write_nc(reader, options.file, model, tools, options.post);

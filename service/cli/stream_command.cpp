@@ -17,8 +17,10 @@
 #include "service/cli/options/reported_machine.hpp"
 #include "service/cli/progress_text.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/machine/file/positions_file.hpp"
 #include "service/machine/file/tool_names.hpp"
 #include "service/protocol/frame_sum.hpp"
+#include "service/protocol/served_model.hpp"
 #include "service/protocol/limits_sum.hpp"
 #include "service/protocol/stream_run.hpp"
 #include "service/protocol/tools_sum.hpp"
@@ -64,6 +66,13 @@ nc::NamedTools named_tools(const StreamCommandOptions& options, const dds::Machi
   return info.tool_file.empty()
              ? nc::NamedTools()
              : config::parse_tool_names(info.tool_file, "tool table of the service");
+}
+
+config::PositionsByName positions_of(const StreamCommandOptions& options,
+                                     const dds::MachineInfo& info) {
+  return options.machine_file.empty()
+             ? config::positions_by_name(info.machine_file, "machine file of the service")
+             : config::load_positions(options.machine_file);
 }
 
 /// Returns the machine that the file is checked for: the one that the service tells, unless files
@@ -117,8 +126,9 @@ int run_stream_command(StreamCommandOptions& options) {
   if (!machine) return exit_code;
   const auto checked_for = preflight_machine(options, *machine);
   options.stream.frame = checked_for
-                             ? stream::frame_sum(checked_for->model)
-                             : stream::frame_sum(machine->frame_rotation, machine->frame_origin_mm);
+                             ? stream::frame_sum(checked_for->model, machine->work_frames)
+                             : stream::frame_sum(machine->frame_rotation, machine->frame_origin_mm,
+                                                 machine->work_frames);
   if (checked_for && checked_for->tools)
     options.stream.tools = stream::tools_sum(*checked_for->tools);
   const bool is_of_file = !options.machine_file.empty();
@@ -130,7 +140,9 @@ int run_stream_command(StreamCommandOptions& options) {
   } else if (checked_for && checked_for->model.default_unit_inch) {
     reader.default_unit = cl::LengthUnit::kInch;
   }
+  for (const auto& zero : stream::served_work_zeros(*machine)) reader.work_offsets.insert(zero);
   if (checked_for) {
+    reader.positions = positions_of(options, *machine);
     describe_machine(reader, checked_for->model, checked_for->tools.value_or(ToolTable()),
                      named_tools(options, *machine));
   }

@@ -5,6 +5,7 @@
 
 #include "service/analysis/simulate/simulate.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/machine/file/positions_file.hpp"
 #include "service/machine/inspect/placing.hpp"
 #include "service/panel/program_path.hpp"
 #include "service/programs/cl/cl_reader.hpp"
@@ -38,6 +39,8 @@ stream::PreflightMachine reported_machine(const dds::MachineInfo& info) {
   if (!info.tool_file.empty()) {
     machine.tools = config::parse_tools(info.tool_file, "tool table of the service");
   }
+  machine.work_zeros = stream::served_work_zeros(info);
+  machine.positions = config::positions_by_name(info.machine_file, info.name);
   return machine;
 }
 
@@ -49,6 +52,8 @@ cl::ClReaderOptions reader_for(const stream::PreflightMachine& machine, std::uin
   if (model.default_unit_mm) reader.default_unit = cl::LengthUnit::kMillimetre;
   if (model.default_unit_inch) reader.default_unit = cl::LengthUnit::kInch;
   reader.nc = nc::reader_of_programs(model, tools);
+  reader.work_offsets = machine.work_zeros;
+  reader.positions = machine.positions;
   reader.home = stream::home_pose(model, tools);
   reader.first_line = first_line;
   return reader;

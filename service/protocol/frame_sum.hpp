@@ -5,24 +5,33 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/work_frame.hpp"
 #include "service/text/checksum.hpp"
 
 namespace meridian::stream {
 
-/// By which station and service know that they mean the same work frame: FNV-1a, 64 bit, of its
-/// rotation, row by row, and its origin, as they lie in memory. Never 0.
+/// By which station and service know that they mean the same work frames: FNV-1a, 64 bit, of the one
+/// in force, its rotation row by row and its origin, as they lie in memory, and of the rows of the
+/// table, which NC programs may call, but for their names. Never 0.
 /// Proof: tests/unit/protocol/frame_sum_test.cpp.
 [[nodiscard]] inline std::uint64_t frame_sum(const std::array<double, 9>& rotation,
-                                             const Array3& origin_mm) noexcept {
+                                             const Array3& origin_mm,
+                                             std::span<const WorkFrame> rows) noexcept {
   text::Checksum sum;
   const auto add = [&sum](double value) {
     sum.add({reinterpret_cast<const char*>(&value), sizeof value});
   };
   for (const double value : rotation) add(value);
   for (const double value : origin_mm) add(value);
+  for (const WorkFrame& row : rows) {
+    add(row.number);
+    for (const double value : row.origin_mm) add(value);
+    for (const double value : row.rotation_deg) add(value);
+  }
   return sum.sum();
 }
 
@@ -33,8 +42,9 @@ namespace meridian::stream {
   return rows;
 }
 
-[[nodiscard]] inline std::uint64_t frame_sum(const MachineModel& model) noexcept {
-  return frame_sum(rows_of(model.frame_rotation), to_array(model.frame_origin_mm));
+[[nodiscard]] inline std::uint64_t frame_sum(const MachineModel& model,
+                                             std::span<const WorkFrame> rows) noexcept {
+  return frame_sum(rows_of(model.frame_rotation), to_array(model.frame_origin_mm), rows);
 }
 
 /// The inverse of rows_of() and to_array(): puts the workpiece of `model` there, bit for bit.

@@ -25,4 +25,10 @@ MachineModel served_model(const dds::MachineInfo& info) {
   return model;
 }
 
+std::map<int, Vector3> served_work_zeros(const dds::MachineInfo& info) {
+  std::map<int, Vector3> zeros;
+  for (const WorkFrame& row : info.work_frames) zeros[row.number] = to_vector(row.origin_mm);
+  return zeros;
+}
+
 }  // namespace meridian::stream

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/transport/messages.hpp"
 
@@ -13,5 +15,8 @@ namespace meridian::stream {
 
 /// The same with the travel that soft limits leave it, by which programs are checked.
 [[nodiscard]] MachineModel served_model(const dds::MachineInfo& info);
+
+/// Where the zeros of its work frames lie in the frame of the kinematics, mm, by their numbers.
+[[nodiscard]] std::map<int, Vector3> served_work_zeros(const dds::MachineInfo& info);
 
 }  // namespace meridian::stream

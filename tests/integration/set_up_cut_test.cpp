@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
 #include <string>
 
 #include "integration/live_run.hpp"
@@ -78,6 +79,26 @@ TEST(SetUpCut, FollowsTheFrameFromProgramToProgram) {
   }
   EXPECT_GT(moved, 1) << "mm, of a frame that lies 10 mm farther";
   EXPECT_LT(back, 0.1) << "mm: feedback of drives at rest";
+}
+
+TEST(SetUpCut, GoesWithAProgramFromOneWorkOffsetToTheOther) {
+  Plant plant;
+  const std::string part = plant.folder() / "two_vices.nc";
+  std::ofstream(part) << "%\nO1\nG21 G90 G94\nF2000\nG54\nG43.4 H1\n"
+                         "G0 X5. Y5. Z20. B10. C0.\nG1 X9. B12.\nG55\nG0 X-5. Y5.\n"
+                         "G1 X-1. B11.\nM30\n%\n";
+  plant.start_service({"--service", service_file(plant)});
+  plant.start_drives();
+  SetUpOperator anna(plant, 100);
+  ASSERT_TRUE(anna.ask(order_of(FrameWord::kSet, 1, 4)).is_accepted);
+  ASSERT_TRUE(anna.ask(order_of(FrameWord::kSet, 2, 34)).is_accepted);
+  ASSERT_TRUE(anna.ask(order_of(FrameWord::kSelect, 1)).is_accepted);
+  ASSERT_NO_FATAL_FAILURE(cut(plant, part));
+  ASSERT_NO_FATAL_FAILURE(end_service(plant));
+  LiveRun framed;
+  framed.simulate = {"--frame", "4,0,0"};
+  const std::vector<std::string> zeros = {"--work-zero", "1=4,0,0", "--work-zero", "2=34,0,0"};
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, simulate_part(plant, part, framed, zeros)));
 }
 
 }  // namespace

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cli/options/cl_options.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "meridian/units.hpp"
 #include "service/cli/options/finite_range.hpp"
+#include "service/machine/file/config_error.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/file/range.hpp"
 #include "service/programs/nc/nc_reader.hpp"
+#include "service/text/number.hpp"
 #include "service/text/printable.hpp"
 #include "service/text/printed.hpp"
 #include "service/transport/messages.hpp"
@@ -77,6 +81,12 @@ void add_cl_file_options(CLI::App& command, ClFileOptions& options, const char* 
       ->check(CLI::IsMember({"form", "right", "left"}))
       ->capture_default_str();
   command
+      .add_option("--work-zero", options.work_zeros,
+                  "Where a work offset of an NC program lies, N=X,Y,Z in mm, in the frame of the "
+                  "kinematics: 1 is G54, 2 G55, 7 G54.1 P1; may be repeated")
+      ->type_name("N=X,Y,Z")
+      ->allow_extra_args(false);
+  command
       .add_option("--from-line", options.first_line,
                   "Begin with the first block from this line on; tool, spindle and coolant are set "
                   "and the place before it is approached first")
@@ -121,6 +131,7 @@ std::string options_text(const ClFileOptions& file, const JoinOptions& join) {
   add("--units", file.units);
   add("--feed", number(file.feed_mm_per_min.value_or(0)));
   for (const std::string& word : file.allow_unknown) add("--allow-unknown", word);
+  for (const std::string& zero : file.work_zeros) add("--work-zero", zero);
   if (file.allow_no_end) text += text.empty() ? "--allow-no-end" : " --allow-no-end";
   add("--arc-sense", file.arc_sense == "form" ? "" : file.arc_sense);
   add("--transition", join.transition);
@@ -134,6 +145,34 @@ void add_frame_option(CLI::App& command, ClFileOptions& options) {
                      "Workpiece frame x,y,z[,a,b,c] in mm and deg (Rz(c) Ry(b) Rx(a)): poses are "
                      "put out in the frame around it");
 }
+
+namespace {
+
+/// "2=100,0,0": where the zero of G55 lies.
+std::pair<const int, Vector3> parse_work_zero(const std::string& option) {
+  const auto refuse = [&option] {
+    throw config::ConfigError({.key = "--work-zero",
+                               .value = option,
+                               .allowed = "N=X,Y,Z: a number from 1 to 999, mm within 1e5",
+                               .remedy = "1 is G54, 2 G55, 7 G54.1 P1: --work-zero 2=100,0,0"});
+  };
+  constexpr double kMax_mm = 1e5;
+  int number = 0;
+  Vector3 zero;
+  std::string_view rest = option;
+  const std::size_t equals = std::min(rest.find('='), rest.size());
+  if (!text::read_number(rest.substr(0, equals), number) || number < 1 || number > 999) refuse();
+  rest.remove_prefix(std::min(equals + 1, rest.size()));
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t comma = k < 2 ? std::min(rest.find(','), rest.size()) : rest.size();
+    const bool is_number = text::read_finite(rest.substr(0, comma), zero[k]);
+    if (!is_number || std::abs(zero[k]) > kMax_mm) refuse();
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return {number, zero};
+}
+
+}  // namespace
 
 cl::ClReaderOptions reader_options(const ClFileOptions& options) {
   cl::ClReaderOptions out;
@@ -149,6 +188,7 @@ cl::ClReaderOptions reader_options(const ClFileOptions& options) {
   out.allowed_words = options.allow_unknown;
   out.allow_no_end = options.allow_no_end;
   out.first_line = options.first_line;
+  for (const std::string& zero : options.work_zeros) out.work_offsets.insert(parse_work_zero(zero));
   if (!options.frame.empty()) {
     const config::Frame frame = config::parse_frame(options.frame);
     out.frame = cl::Frame{frame.rotation, frame.origin_mm};

@@ -21,6 +21,7 @@ struct ClFileOptions {
   std::string frame;
   std::optional<double> feed_mm_per_min;
   std::vector<std::string> allow_unknown;
+  std::vector<std::string> work_zeros;
   bool allow_no_end = false;
   std::uint32_t first_line = 0;
 };

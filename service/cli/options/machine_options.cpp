@@ -11,6 +11,7 @@
 #include "service/cli/options/finite_range.hpp"
 #include "service/machine/file/config_error.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/machine/file/positions_file.hpp"
 #include "service/machine/file/tool_names.hpp"
 #include "service/programs/nc/nc_reader.hpp"
 #include "service/protocol/home_pose.hpp"
@@ -106,11 +107,13 @@ bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const Machi
   return !report.is_refused;
 }
 
-cl::ClReaderOptions reader_options(const ClFileOptions& file, const MachineModel& model) {
+cl::ClReaderOptions reader_options(const ClFileOptions& file, const MachineOptions& machine,
+                                   const MachineModel& model) {
   cl::ClReaderOptions out = reader_options(file);
   if (model.default_unit_mm) out.default_unit = cl::LengthUnit::kMillimetre;
   if (model.default_unit_inch) out.default_unit = cl::LengthUnit::kInch;
   out.max_feed_mm_per_s = model.max_feed_mm_per_s;
+  out.positions = config::load_positions(machine.machine);
   out.nc = nc::reader_of_programs(model, ToolTable());
   return out;
 }

@@ -59,6 +59,7 @@ void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reade
 
 /// What a reader is told about a CL file that is cut on this machine.
 [[nodiscard]] cl::ClReaderOptions reader_options(const ClFileOptions& file,
+                                                 const MachineOptions& machine,
                                                  const MachineModel& model);
 
 }  // namespace meridian::cli

@@ -61,11 +61,10 @@ void print_joints(const MachineModel& model, const JointVector& joints) {
 
 /// The joints of the position called `name`.
 [[nodiscard]] Expected<JointVector, std::string> position_of(const std::string& name,
-                                                             const dds::MachineInfo& machine,
-                                                             const MachineModel& model) {
+                                                             const dds::MachineInfo& machine) {
   std::string names;
   for (const config::NamedPosition& position :
-       config::parse_positions(machine.machine_file, "machine file of the service", model)) {
+       config::parse_positions(machine.machine_file, "machine file of the service")) {
     if (position.name == name) return position.joints;
     names += " " + position.name;
   }
@@ -84,7 +83,7 @@ void print_joints(const MachineModel& model, const JointVector& joints) {
     if (to) return stream::StraightMove{from, *to, *options.feed, {}};
     return tl::make_unexpected("--tip '" + options.tip + "': say x,y,z or x,y,z,i,j,k");
   }
-  const auto joints = options.joints.empty() ? position_of(options.position, machine, model)
+  const auto joints = options.joints.empty() ? position_of(options.position, machine)
                                              : joints_of(options.joints, model, now);
   if (!joints) return tl::make_unexpected(joints.error());
   const ToolPose end = forward(model, model.tool_length_mm, *joints);
@@ -186,7 +185,7 @@ int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
                                 status.joints,
                                 status.tool_length_mm,
                                 operator_name,
-                                stream::frame_sum(*model),
+                                stream::frame_sum(*model, machine.work_frames),
                                 status.tools,
                                 stream::limits_sum(machine.soft_limits)};
   const auto result = stream::run_move(participant, link, order, stop_flag(), peer.timeout());

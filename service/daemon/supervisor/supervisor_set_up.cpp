@@ -29,7 +29,7 @@ SetUpInForce in_force_by(const telemetry::SetUp& set_up, const MachineModel& mac
   out.number = static_cast<std::uint8_t>(frames.active());
   out.rotation = stream::rows_of(frame.rotation);
   out.origin_mm = to_array(frame.origin_mm);
-  out.sum = stream::frame_sum(out.rotation, out.origin_mm);
+  out.sum = stream::frame_sum(out.rotation, out.origin_mm, frames.rows());
   out.tools = stream::tools_sum(tools);
   out.soft_limits = set_up.limits;
   out.travel = travel_under(set_up.limits, machine);

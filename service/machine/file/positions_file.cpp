@@ -5,6 +5,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
+#include "service/machine/file/machine_file.hpp"
 
 namespace meridian::config {
 namespace {
@@ -47,15 +48,44 @@ std::vector<NamedPosition> read_positions(Section& file, const MachineModel& mod
   return positions;
 }
 
-std::vector<NamedPosition> parse_positions(std::string_view text, const std::string& name,
-                                           const MachineModel& model) {
-  const toml::table table = parse_text(text, name);
+namespace {
+
+/// Those of a table, home first.
+[[nodiscard]] std::vector<NamedPosition> positions_of(const toml::table& table,
+                                                      const std::string& name,
+                                                      const MachineModel& model) {
   Section file(name, table);
   std::vector<NamedPosition> positions = read_positions(file, model);
   NamedPosition home{kHome, {}};
   for (int i = 0; i < model.joint_count; ++i) home.joints[i] = model.joints[i].home;
   positions.insert(positions.begin(), home);
   return positions;
+}
+
+[[nodiscard]] PositionsByName by_name(const std::vector<NamedPosition>& positions,
+                                      const MachineModel& model) {
+  PositionsByName out;
+  for (const NamedPosition& position : positions) {
+    const auto* const first = position.joints.data();
+    out[position.name] = {first, first + model.joint_count};
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<NamedPosition> parse_positions(std::string_view text, const std::string& name) {
+  return positions_of(parse_text(text, name), name, parse_machine(text, name));
+}
+
+PositionsByName positions_by_name(std::string_view text, const std::string& name) {
+  const MachineModel model = parse_machine(text, name);
+  return by_name(positions_of(parse_text(text, name), name, model), model);
+}
+
+PositionsByName load_positions(const std::filesystem::path& path) {
+  const MachineModel model = load_machine(path);
+  return by_name(positions_of(parse_file(path), path.string(), model), model);
 }
 
 }  // namespace meridian::config

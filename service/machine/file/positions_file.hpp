@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +26,12 @@ struct NamedPosition {
 /// The same from the text of a machine file that parse_machine() has taken; the first position is
 /// `home`, that of the joints.
 [[nodiscard]] std::vector<NamedPosition> parse_positions(std::string_view text,
-                                                         const std::string& name,
-                                                         const MachineModel& model);
+                                                         const std::string& name);
+
+/// By their names, every joint in machine order, mm and rad.
+using PositionsByName = std::map<std::string, std::vector<double>>;
+[[nodiscard]] PositionsByName positions_by_name(std::string_view text, const std::string& name);
+/// The same of the machine file at `path`, which load_machine() has taken.
+[[nodiscard]] PositionsByName load_positions(const std::filesystem::path& path);
 
 }  // namespace meridian::config

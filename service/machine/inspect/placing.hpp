@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/machine/inspect/program_poses.hpp"
 

@@ -21,7 +21,7 @@ void run_at_lowest_priority() {
 }
 
 [[nodiscard]] std::uint64_t frame_of(const dds::MachineInfo& info) {
-  return stream::frame_sum(info.frame_rotation, info.frame_origin_mm);
+  return stream::frame_sum(info.frame_rotation, info.frame_origin_mm, info.work_frames);
 }
 
 constexpr const char* kStreams = "a program is streamed: abort it, or end the stream, first";

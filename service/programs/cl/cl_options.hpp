@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,12 @@ struct ClReaderOptions {
   /// Where the home of the machine puts tip and axis, in W, with this tool in the spindle (nothing:
   /// the one before any tool change). Empty: the machine is not known, and GOHOME is refused.
   std::function<std::optional<ToolPose>(std::optional<std::uint32_t>)> home;
+  /// `--work-zero`, or the work frames of the machine: where the zeros of G54 and its kin lie in
+  /// the frame of the kinematics, mm, by their numbers (1: G54). NC programs alone look here.
+  std::map<int, Vector3> work_offsets;
+  /// Positions of the machine by their names, in machine order, mm and rad: what G30 of an NC
+  /// program leads to.
+  std::map<std::string, std::vector<double>> positions;
   /// Makes the reader of an NC program: from its lines, its name, these options and why it is taken
   /// for one (nc::reader_of, which may know the machine). Empty: NC programs are refused.
   std::function<std::unique_ptr<ProgramSource>(LineSource&, const std::string&,

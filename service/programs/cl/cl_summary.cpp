@@ -54,8 +54,10 @@ void append_points(std::string& text, const ClSummary& s) {
   }
   append(text, "points         %llu with tool-centre control, %llu without; %llu of zero length\n",
          Count{s.goto_six}, Count{s.goto_three}, Count{s.zero_length});
-  append(text, "work offset    %s: where the part lies, as the machine file or --frame says\n",
-         s.nc.work_offset.empty() ? "none" : s.nc.work_offset.c_str());
+  append(text, "work offset    %s: where the part lies, as %s\n",
+         s.nc.work_offset.empty() ? "none" : s.nc.work_offset.c_str(),
+         s.nc.has_work_zero ? "the machine's work frames or --work-zero say"
+                            : "the machine file or --frame says");
   if (s.nc.axis_tolerance_rad > 0) {
     append(text,
            "rotary words   %llu blocks cut into %llu, so that the tool axis stays within %.3g deg "

@@ -137,6 +137,7 @@ struct Lines {
   std::size_t cl = 0;
   bool percent = false;
   bool o_number = false;
+  bool begins_with_number = false;  ///< of a program: O1001, :1001, or <NAME> behind %
   std::string_view siemens;
 
   explicit Lines(std::string_view rest) {
@@ -155,6 +156,17 @@ struct Lines {
  private:
   static constexpr std::size_t kMax = 400;
 
+  /// And nothing behind it that LinuxCNC would have there (O100 sub).
+  [[nodiscard]] bool is_program_number(std::string_view line) const {
+    if (line.front() == '<') return percent && line.find('>') != std::string_view::npos;
+    if (line.front() != 'O' && line.front() != ':') return false;
+    line.remove_prefix(1);
+    const std::size_t digits = std::min(line.find_first_not_of("0123456789"), line.size());
+    line.remove_prefix(digits);
+    skip_blanks(line);
+    return digits > 0 && (line.empty() || line.front() == '(' || is_address_line(line));
+  }
+
   void take(std::string_view line) {
     if (siemens.empty() && !is_cl_line(line)) siemens = siemens_word(line);
     if (line.front() == '%') {
@@ -162,6 +174,7 @@ struct Lines {
       return;
     }
     ++all;
+    if (all == 1) begins_with_number = is_program_number(line);
     cl += is_cl_line(line) ? 1 : 0;
     o_number |= line.size() > 1 && line.front() == 'O' &&
                 std::isdigit(static_cast<unsigned char>(line[1])) != 0;
@@ -179,10 +192,11 @@ std::string name_of(const std::string& text, const Lines& lines) {
   for (const std::string_view word : {"M428", "M429", "O<", "#<", "G43.1"}) {
     if (has(text, word)) return "a LinuxCNC NC program (" + std::string(word) + ")";
   }
-  for (const std::string_view word : {"G43.4", "G43.5", "G54.1", "G54.2", "G05.1", "G68.2"}) {
+  for (const std::string_view word : {"G43.4", "G43.5", "G54.1", "G54.2", "G05.1", "G68.2", "G234", "G254"}) {
     if (has(text, word)) return "a Fanuc NC program (" + std::string(word) + ")";
   }
   if (lines.percent && lines.o_number) return "a Fanuc NC program (% and O number)";
+  if (lines.begins_with_number) return "a Fanuc NC program (program number)";
   if (has(text, "G93") || lines.percent) return "an NC program (G code, LinuxCNC or its like)";
   return "an NC program (G code)";
 }

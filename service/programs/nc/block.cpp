@@ -22,6 +22,7 @@ struct OneShot {
     kMove,
     kDwell,
     kHome,
+    kReference,
     kMachinePlace,
     kPlaneTilt,
     kPlaneFollow,
@@ -94,6 +95,9 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
     case GKind::kHome:
       shot.kind = OneShot::Kind::kHome;
       break;
+    case GKind::kReference:
+      shot.kind = OneShot::Kind::kReference;
+      break;
     case GKind::kMachinePlace:
       shot.kind = OneShot::Kind::kMachinePlace;
       break;
@@ -135,6 +139,7 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
   if (is_seen) return refuse("two G codes of one group in a block");
   is_seen = true;
   const bool is_shot = row.kind == GKind::kDwell || row.kind == GKind::kHome ||
+                       row.kind == GKind::kReference ||
                        row.kind == GKind::kPlaneTilt || row.kind == GKind::kPlaneFollow ||
                        row.kind == GKind::kLocalZero;
   if (is_shot && motion_kind) return refuse("two G codes of one group in a block");
@@ -173,14 +178,23 @@ bool moves(const Line& line) {
   });
 }
 
+bool has_axis_word(const Line& line) {
+  return std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
+    constexpr std::string_view kAxes = "XYZUVW";
+    return word.may_be_rotary() || kAxes.find(word.address.front()) != std::string_view::npos;
+  });
+}
+
 cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
   switch (shot.kind) {
     case OneShot::Kind::kDwell:
       return dwell(s, line);
     case OneShot::Kind::kHome:
-      return move_to_machine_place(s, line, false);
+      return move_to_machine_place(s, line, MachinePlace::kHome);
+    case OneShot::Kind::kReference:
+      return move_to_machine_place(s, line, MachinePlace::kReference);
     case OneShot::Kind::kMachinePlace:
-      return move_to_machine_place(s, line, true);
+      return move_to_machine_place(s, line, MachinePlace::kAsWritten);
     case OneShot::Kind::kPlaneTilt:
       return define_plane(s, line);
     case OneShot::Kind::kPlaneFollow:
@@ -195,6 +209,7 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
       break;
   }
   if (!moves(line)) return {};
+  if (shot.kind == OneShot::Kind::kSetting && !has_axis_word(line)) return {};
   if (s.modes.cycle.code != 0) return run_cycle(s, line);
   if (shot.kind == OneShot::Kind::kSetting) {
     s.cl.remarks.warn("setting", line.number, [] {

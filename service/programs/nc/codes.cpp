@@ -46,7 +46,7 @@ constexpr std::array kG = std::to_array<GRow>({
     {200, kUnit, 1},
     {210, kUnit, 0},
     {280, kHome},
-    {300, kRefused, 0, "a reference place that only the control knows", "G91 G28 with axis words"},
+    {300, kReference},
     {310, kRefused, 0, "probing: where it ends only the machine knows", "leave it out"},
     {382, kRefused, 0, "probing: where it ends only the machine knows", "leave it out"},
     {383, kRefused, 0, "probing: where it ends only the machine knows", "leave it out"},
@@ -114,6 +114,7 @@ constexpr std::array kG = std::to_array<GRow>({
     {970, kNothing},
     {980, kReturn, 0},
     {990, kReturn, 1},
+    {1030, kSetting},  // Haas: how far it looks ahead
     {1870, kSetting},
     {2340, kControl, of(Control::kRotary)},  // Haas
     {2540, kDynamicOffset, 1},               // Haas

@@ -21,6 +21,7 @@ enum class GKind : std::uint8_t {
   kReturn,      ///< of cycles; `value`: 1 to R
   kDwell,
   kHome,          ///< G28
+  kReference,     ///< G30: a position of the machine file
   kMachinePlace,  ///< G53
   kPlaneTilt,     ///< G68.2
   kPlaneFollow,   ///< G53.1: the rotary axes follow it

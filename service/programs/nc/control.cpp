@@ -9,6 +9,19 @@ using cl::refuse;
 
 constexpr int kPerRow = 10000, kPreset = 2470;
 
+/// Its number among the work frames of the machine: G54 to G59 and G59.1 to G59.3 are 1 to 9, G54.1
+/// P1 is 7; G505 of Siemens is 5, a preset of Klartext has its own. 0: none.
+int frame_of(int offset) {
+  constexpr int kFirst = 540, kOfTable = 541, kTenthsPerCode = 10;
+  const int row = offset / kPerRow, code = offset % kPerRow;
+  if (code == kPreset) return row;
+  if (code == kOfTable) return 6 + row;
+  if (code > 590 && code <= 593) return 6 + (code - 590);
+  if (code >= kFirst && code <= 590) return 1 + (code - kFirst) / kTenthsPerCode;
+  if (code > 5000 && code <= 5990) return (code - 5000) / kTenthsPerCode;
+  return 0;
+}
+
 /// "G54", "G59.3", "G54.1 P12", "CYCL DEF 247 Q339=2".
 std::string name_of(int offset) {
   const int code = offset % kPerRow;
@@ -19,15 +32,39 @@ std::string name_of(int offset) {
   return name;
 }
 
-cl::Outcome take_offset(State& s, int offset) {
-  if (s.modes.work_offset != 0 && s.modes.work_offset != offset && s.cl.path.has_moved()) {
-    return refuse("a second work offset (" + name_of(offset) + " behind " +
-                      name_of(s.modes.work_offset) +
-                      "): how far the two are apart only the control knows",
-                  "split the program: one for each", "second offset");
+void note_offset(State& s, const std::string& name) {
+  std::string& all = s.cl.summary.nc.work_offset;
+  if (!s.cl.path.has_moved()) all.clear();
+  const bool is_there = (", " + all + ",").find(", " + name + ",") != std::string::npos;
+  if (!is_there) all += (all.empty() ? "" : ", ") + name;
+}
+
+/// Where its zero lies, from that of the station's frame; nothing: only the control knows.
+std::optional<Vector3> zero_of(const State& s, int offset) {
+  const auto& known = s.cl.options.work_offsets;
+  const auto at = known.find(frame_of(offset));
+  if (!s.axes || at == known.end()) return std::nullopt;
+  return Vector3(at->second - s.axes->zero_mm());
+}
+
+/// One that is not known is the station's frame, and has to be the only one.
+cl::Outcome take_offset(State& s, const Line& line, int offset) {
+  const int before = s.modes.work_offset;
+  if (before == offset) return {};
+  const bool is_second = before != 0 && s.cl.path.has_moved();
+  const auto zero_mm = zero_of(s, offset);
+  if (is_second && (!zero_mm || !zero_of(s, before))) {
+    const int missing = zero_mm ? before : offset;
+    return refuse("a second work offset (" + name_of(offset) + " behind " + name_of(before) +
+                      "): where " + name_of(missing) + " lies only the control knows",
+                  "--work-zero " + std::to_string(frame_of(missing)) +
+                      "=X,Y,Z, or ctl frame set; or split the program: one for each",
+                  "second offset");
   }
   s.modes.work_offset = offset;
-  s.cl.summary.nc.work_offset = name_of(offset);
+  note_offset(s, name_of(offset));
+  s.cl.summary.nc.has_work_zero = zero_mm.has_value();
+  set_zero(s, line, zero_mm.value_or(Vector3::Zero()));
   return {};
 }
 
@@ -64,10 +101,12 @@ cl::Outcome set_work_offset(State& s, const Line& line, int tenths) {
     if (!is_whole) return refuse("G54.1 needs its number, such as P1");
     offset += kPerRow * static_cast<int>(p->number);
   }
-  return take_offset(s, offset);
+  return take_offset(s, line, offset);
 }
 
-cl::Outcome set_preset(State& s, int row) { return take_offset(s, kPreset + kPerRow * row); }
+cl::Outcome set_preset(State& s, const Line& line, int row) {
+  return take_offset(s, line, kPreset + kPerRow * row);
+}
 
 cl::Outcome set_unit(State& s, cl::LengthUnit unit) {
   if (s.cl.units.in_force && *s.cl.units.in_force != unit && !s.cl.options.unit) {

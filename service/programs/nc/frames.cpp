@@ -136,15 +136,34 @@ void note_rotary_words(State& s, Place& to) {
   if (are_all_reported(s, to)) to.is_by_control = false;
 }
 
-Vector3 in_program(const State& s, const Vector3& written) { return s.frames.now.point(written); }
+Vector3 in_program(const State& s, const Vector3& written) {
+  return s.frames.now.point(written) + s.frames.zero_mm / s.cl.units.to_mm;
+}
 
 Vector3 as_written(const State& s, const Vector3& p_w) {
-  const Vector3 program = (s.axes ? Vector3(s.axes->to_program() * p_w) : p_w) / s.cl.units.to_mm;
+  const Vector3 from_zero = s.axes ? Vector3(s.axes->to_program() * p_w) : p_w;
+  const Vector3 program = (from_zero - s.frames.zero_mm) / s.cl.units.to_mm;
   return cl::relative(s.frames.now, moved_by(program)).origin;
 }
 
 Vector3 direction_in_w(const State& s, const Vector3& program) {
   return s.axes ? Vector3(s.axes->to_program().transpose() * program) : program;
+}
+
+void set_zero(State& s, const Line& line, const Vector3& zero_mm) {
+  if (zero_mm == s.frames.zero_mm) return;
+  const Vector3 back = (s.frames.zero_mm - zero_mm) / s.cl.units.to_mm;
+  s.frames.zero_mm = zero_mm;
+  const cl::Frame& now = s.frames.now;
+  restate_place(s, moved_by(now.rotation.transpose() * back));
+  begin_cycle(s, 0);
+  s.modes.pole = {};
+  if (!s.cl.path.has_moved()) return;
+  ++s.cl.summary.frame_changes;
+  s.cl.remarks.warn("zero", line.number, [] {
+    return std::string("another work offset: the next motion goes straight there from the point "
+                       "before; see that nothing is in the way");
+  });
 }
 
 /// G68.2 X Y Z I J K: the origin, and turns about z, the new x and the new z.

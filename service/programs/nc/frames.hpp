@@ -21,6 +21,7 @@ struct ProgramFrames {
   cl::Frame plane;  ///< G68.2, CYCLE800, PLANE SPATIAL
   cl::Frame now;    ///< both together: program = now * written
   Tilt tilt = Tilt::kNone;
+  Vector3 zero_mm = Vector3::Zero();  ///< of the work offset, from the zero of the station's frame
 };
 
 /// A turn by `deg` about x, y or z (0, 1, 2).

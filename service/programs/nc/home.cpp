@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// G28 and G53: single axes go to places of the machine itself.
+// G28, G30 and G53: single axes go to places of the machine itself.
 #include <algorithm>
 #include <array>
 
@@ -29,39 +29,67 @@ void move_unseen(State& s, const Line& line) {
   }
 }
 
-cl::Outcome check_intermediate(const State& s, const Line& line) {
+cl::Outcome check_intermediate(const State& s, const Line& line, const char* code) {
   for (const Word& word : line.words) {
     if (!is_axis_word(word) || (s.modes.is_incremental && word.number == 0)) continue;
-    return refuse("G28 by way of a point between", "write G91 G28 with zeros, such as G91 G28 Z0.");
+    return refuse(std::string(code) + " by way of a point between",
+                  std::string("write G91 ") + code + " with zeros, such as G91 " + code + " Z0.");
   }
+  return {};
+}
+
+/// "G30", "G30 P3": how the machine file calls the position.
+std::string name_of_reference(const Line& line) {
+  const Word* const p = line.find("P");
+  const bool is_second = p == nullptr || p->number == 2;
+  return is_second ? "G30" : "G30 P" + std::string(p->digits);
+}
+
+const char* code_of(const State& s, MachinePlace place) {
+  if (place == MachinePlace::kHome) return "G28";
+  if (place == MachinePlace::kReference) return "G30";
+  if (s.modes.language == Language::kSiemens) return "SUPA";
+  return s.modes.language == Language::kHeidenhain ? "M91" : "G53";
+}
+
+std::vector<MachineAxes::Target> targets_of(const State& s, const Line& line, bool is_as_written) {
+  std::vector<MachineAxes::Target> targets;
+  for (const Word& word : line.words) {
+    if (!is_axis_word(word)) continue;
+    MachineAxes::Target target{word.address, std::nullopt, nullptr};
+    if (is_as_written) target.value = word.number * (is_linear(word) ? s.cl.units.to_mm : 1);
+    targets.push_back(target);
+  }
+  return targets;
+}
+
+cl::Outcome lead_to_reference(const State& s, const Line& line,
+                              std::vector<MachineAxes::Target>& targets) {
+  const std::string name = name_of_reference(line);
+  const auto at = s.cl.options.positions.find(name);
+  if (at == s.cl.options.positions.end()) {
+    return refuse("G30: a reference position that the machine file does not have",
+                  "[[position]] with name = \"" + name + "\"", "G30");
+  }
+  for (MachineAxes::Target& target : targets) target.position = &at->second;
   return {};
 }
 
 }  // namespace
 
-cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place) {
-  const bool is_siemens = s.modes.language == Language::kSiemens;
-  const bool is_klartext = s.modes.language == Language::kHeidenhain;
-  const char* const code = !is_machine_place ? "G28"
-                           : is_siemens      ? "SUPA"
-                           : is_klartext     ? "M91"
-                                             : "G53";
-  std::vector<MachineAxes::Target> targets;
+cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place) {
+  const bool is_as_written = place == MachinePlace::kAsWritten;
+  const char* const code = code_of(s, place);
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
-  for (const Word& word : line.words) {
-    if (!is_axis_word(word)) continue;
-    MachineAxes::Target target{word.address, std::nullopt};
-    if (is_machine_place) target.value = word.number * (is_linear(word) ? s.cl.units.to_mm : 1);
-    targets.push_back(target);
-  }
+  std::vector<MachineAxes::Target> targets = targets_of(s, line, is_as_written);
   if (targets.empty()) return refuse(std::string(code) + " without axis words");
   const bool turns = std::any_of(line.words.begin(), line.words.end(),
                                  [](const Word& word) { return word.may_be_rotary(); });
   if (turns && s.modes.has_dynamic_offset) {
     return refuse(std::string(code) + " with rotary words under G254", "write G255 before it");
   }
-  if (!is_machine_place) {
-    if (auto done = check_intermediate(s, line); !done) return done;
+  if (!is_as_written) {
+    if (auto done = check_intermediate(s, line, code); !done) return done;
   } else if (s.modes.is_incremental || s.modes.motion > Motion::kLine) {
     return refuse(std::string(code) + " needs G90, and G0 or G1");
   }
@@ -72,6 +100,9 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_pl
   if (!s.axes) {
     return refuse(std::string(code) + " moves to a place of the machine, which is not known here",
                   "--machine FILE", "machine");
+  }
+  if (place == MachinePlace::kReference) {
+    if (auto done = lead_to_reference(s, line, targets); !done) return done;
   }
   if (s.cl.path.position() == cl::BlockPath::Position::kLost) {
     s.place.forget();

@@ -42,10 +42,14 @@ class MachineAxes {
   /// Axes of W, seen along the machine's: program coordinates are `to_program() * w`.
   [[nodiscard]] const Eigen::Matrix3d& to_program() const noexcept { return model_.frame_rotation; }
 
+  /// Where the zero of the station's frame lies in the frame of the kinematics.
+  [[nodiscard]] const Vector3& zero_mm() const noexcept { return model_.frame_origin_mm; }
+
   /// One axis of a move to the machine's own places.
   struct Target {
     std::string_view address;
     std::optional<double> value;  ///< mm or deg as the word says it; nothing: home
+    const std::vector<double>* position = nullptr;  ///< where its joint goes then; null: home
   };
   /// Where the tool comes from `from` when these axes go there, and rotary words with it.
   struct Reached {

@@ -56,6 +56,7 @@ class Cutter {
       rest_ = {};
       return {};
     }
+    if (c == '<' && line_.words.empty()) return take_name();
     if (c == '/' && line_.words.empty()) {
       line_.has_block_delete = true;
       rest_.remove_prefix(!has_letter_behind() ? 2 : 1);
@@ -63,6 +64,17 @@ class Cutter {
     }
     if (cl::is_letter(c) || c == ':') return cut_word();
     return refuse_sign(c);
+  }
+
+  /// `<PART-1>` in a line of its own: the program's name.
+  cl::Outcome take_name() {
+    const std::size_t stop = rest_.find('>');
+    if (stop == std::string_view::npos || rest_.find_first_not_of(" \t", stop + 1) < rest_.size()) {
+      return refuse("a name in < > with words beside it");
+    }
+    take_comment(rest_.substr(1, stop - 1));
+    rest_ = {};
+    return {};
   }
 
   /// `/2 X1.`: the number of the switch stands behind the sign.

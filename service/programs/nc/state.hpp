@@ -34,6 +34,8 @@ struct State {
 // frames.cpp
 /// Puts another frame between points and zero; the place of the tool is told in it from here on.
 void set_shift(State& s, const Line& line, const cl::Frame& shift);
+/// Another work offset: its zero, from that of the station's frame.
+void set_zero(State& s, const Line& line, const Vector3& zero_mm);
 void set_plane(State& s, const Line& line, const cl::Frame& plane, Tilt tilt);
 /// The control turns the tool across the plane in force: where the tip is then is not known.
 void turn_to_plane(State& s, const Line& line);
@@ -107,14 +109,18 @@ void begin_cycle(State& s, int code);
 [[nodiscard]] cl::Outcome run_cycle(State& s, const Line& line);
 
 // home.cpp
-/// G28, and G53 with `is_machine_place`.
-[[nodiscard]] cl::Outcome move_to_machine_place(State& s, const Line& line, bool is_machine_place);
+enum class MachinePlace : std::uint8_t {
+  kHome,       ///< G28
+  kReference,  ///< G30: the position G30 of the machine file, or G30 P3, G30 P4
+  kAsWritten   ///< G53, SUPA, M91
+};
+[[nodiscard]] cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place);
 
 // control.cpp
 [[nodiscard]] cl::Outcome set_control(State& s, const Line& line, Control control);
 [[nodiscard]] cl::Outcome set_work_offset(State& s, const Line& line, int tenths);
 /// CYCL DEF 247 of Klartext: a row of the preset table.
-[[nodiscard]] cl::Outcome set_preset(State& s, int row);
+[[nodiscard]] cl::Outcome set_preset(State& s, const Line& line, int row);
 [[nodiscard]] cl::Outcome set_unit(State& s, cl::LengthUnit unit);
 
 // actions.cpp

@@ -19,7 +19,7 @@ namespace {
 }
 
 [[nodiscard]] std::vector<NamedPosition> positions_of(const std::string& text) {
-  return parse_positions(text, "lai", parse_machine(text, "lai"));
+  return parse_positions(text, "lai");
 }
 
 [[nodiscard]] std::string refusal_of(const std::string& more) {

@@ -53,6 +53,14 @@ TEST(NcActions, PassOtherCodesToTheMachine) {
   EXPECT_STREQ(blocks[0].text, "M88");
 }
 
+TEST(NcActions, PassOverSettingsOfTheControlWithTheirWords) {
+  const ReadText read = read_nc(
+      "G05.1 Q1 R5\nG0 X0. Y0. Z0.\nG103 P1\nG187 P3 E0.01\nG05 P10000\nG1 X1.\nG05 P0\nG103\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_TRUE(read.warnings.empty() || !read.warned_of("taken as motion"));
+  EXPECT_EQ(read.motion().size(), 2U);
+}
+
 TEST(NcActions, DwellInSecondsAndMilliseconds) {
   const auto blocks = actions("G4 X1.5\nG4 P250\nG4 P0.5\n");
   ASSERT_EQ(blocks.size(), 3U);

@@ -42,6 +42,28 @@ TEST(NcMachinePlaces, LiftTheToolToTheHomeOfItsAxis) {
   EXPECT_NEAR(motion[2].tip_mm[2], height, kNear_mm);
 }
 
+TEST(NcMachinePlaces, OfG30AreTheMachineFilesPositions) {
+  const MachineModel model = shipped("trunnion-ac");
+  const auto words = post::AxisWords::of(model);
+  ASSERT_TRUE(words);
+  ClReaderOptions options = on(model);
+  std::vector<double> change(static_cast<std::size_t>(model.joint_count));
+  change[static_cast<std::size_t>(words->find("Z"))] = words->axis(words->find("Z"), -25);
+  options.positions = {{"G30", change}};
+  const ReadText named = read_nc("G0 X1. Y2. Z5.\nG91 G30 Z0.\nG91 G30 P2 Z0.\n", options);
+  const ReadText told = read_nc("G0 X1. Y2. Z5.\nG53 G0 Z-25.\nG53 Z-25.\n", on(model));
+  ASSERT_EQ(named.error, "");
+  ASSERT_EQ(named.motion().size(), told.motion().size());
+  EXPECT_LT((tip(named.motion()[1]) - tip(told.motion()[1])).norm(), kTiny);
+  EXPECT_EQ(read_nc("G91 G30 Z0.\nG90 G0 X1. Y2. Z5.\n", on(model)).error, "") << "nothing moved yet";
+  for (const auto& [body, says] : std::vector<std::pair<const char*, const char*>>{
+           {"G0 X1. Y2. Z5.\nG91 G30 P3 Z0.\n", "[[position]] with name = \"G30 P3\""},
+           {"G0 X1. Y2. Z5.\nG30 Z0.\n", "write G91 G30 with zeros"}}) {
+    const std::string error = read_nc(body, options).error;
+    EXPECT_NE(error.find(says), std::string::npos) << error;
+  }
+}
+
 TEST(NcMachinePlaces, OfG53AreJointPositions) {
   const MachineModel model = shipped("trunnion-ac");
   const auto words = post::AxisWords::of(model);

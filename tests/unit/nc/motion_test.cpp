@@ -38,6 +38,50 @@ TEST(NcMotion, ReadsInchesInMillimetres) {
   EXPECT_DOUBLE_EQ(motion[1].feed, 254.0 / 60);
 }
 
+TEST(WorkOffsets, LieWhereTheMachineHasThem) {
+  MachineModel machine = shipped("trunnion-ac");
+  machine.frame_origin_mm = {10, 20, 30};
+  ClReaderOptions options = on(machine);
+  options.work_offsets = {{1, {110, 20, 30}}, {2, {10, 220, 30}}, {8, {10, 20, 330}}};
+  const ReadText read = read_nc(
+      "G54\nG43 H1\nG0 X1. Y2. Z3.\nG55\nG0 X5. Y6. Z7.\nG1 X6.\nG54.1 P2\nG0 Z9.\nG1 X0. Y0.\n"
+      "G54\nG0 X0. Y0. Z0.\n",
+      options);
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 6U);
+  EXPECT_EQ(tip(motion[0]), Vector3(101, 2, 3));
+  EXPECT_EQ(tip(motion[2]), Vector3(6, 206, 7));
+  EXPECT_EQ(tip(motion[3]), Vector3(6, 206, 309)) << "X and Y stand where they stood";
+  EXPECT_EQ(tip(motion[4]), Vector3(0, 0, 309));
+  EXPECT_EQ(tip(motion[5]), Vector3(100, 0, 0));
+  EXPECT_EQ(read.summary.nc.work_offset, "G54, G55, G54.1 P2");
+  EXPECT_TRUE(read.warned_of("another work offset"));
+}
+
+TEST(WorkOffsets, CountInTheUnitOfTheProgramAndTurnWithItsFrames) {
+  ClReaderOptions options = on(shipped("trunnion-ac"));
+  options.work_offsets = {{1, {0, 0, 0}}, {2, {25.4, 0, 0}}};
+  const ReadText read = read_nc(
+      "G20\nG54\nG43 H1\nG68.2 X0. Y0. Z0. I90. J0. K0.\nG53.1\nG0 X1. Y2. Z3.\nG55\nX2.\n", options);
+  ASSERT_EQ(read.error, "");
+  EXPECT_LT((tip(read.motion()[0]) - 25.4 * Vector3(-2, 1, 3)).norm(), kTiny);
+  EXPECT_LT((tip(read.motion()[1]) - 25.4 * Vector3(-2, 2, 3)).norm(), kTiny)
+      << "Y of the plane stands where it stood";
+}
+
+TEST(WorkOffsets, AreRefusedWhereOneOfTwoIsNotKnown) {
+  ClReaderOptions options = on(shipped("trunnion-ac"));
+  options.work_offsets = {{2, {0, 0, 0}}};
+  const std::string first = read_nc("G54\nG43 H1\nG0 X0. Y0. Z9.\nG55\nX1.\n", options).error;
+  EXPECT_NE(first.find("where G54 lies only the control knows; --work-zero 1=X,Y,Z"),
+            std::string::npos) << first;
+  const std::string second = read_nc("G55\nG43 H1\nG0 X0. Y0. Z9.\nG59.1\nX1.\n", options).error;
+  EXPECT_NE(second.find("where G59.1 lies"), std::string::npos) << second;
+  options.nc = reader_of_programs();
+  EXPECT_NE(read_nc("G55\nG43 H1\nG0 X0. Y0. Z9.\nG54\n", options).error, "") << "no machine";
+}
+
 TEST(NcMotion, HasTheUnitWordsOfDin66025) {
   for (const auto& [unit, x_mm] : std::vector<std::pair<const char*, double>>{{"G70", 50.8},
                                                                              {"G71", 2.0}}) {

@@ -29,6 +29,15 @@ TEST(NcPrograms, AreKnownByMarkAndNumber) {
   EXPECT_EQ(read.summary.dialect_reason, "% and O number");
 }
 
+TEST(NcPrograms, AreKnownByTheirNumberOrName) {
+  for (const char* head : {"O1001 (BLADE)\n", ":1001\n", "O7 G17\n", "%\n<BLADE-1>\n"}) {
+    const ReadText read = cl::read_text(head + std::string(kPlain), untold());
+    EXPECT_EQ(read.error, "") << head;
+    EXPECT_EQ(read.blocks.size(), 3U) << head;
+  }
+  EXPECT_NE(cl::read_text("o100 sub\n" + std::string(kPlain) + "o100 endsub\n", untold()).error, "");
+}
+
 TEST(NcPrograms, OfSiemensAreKnownByTheirNames) {
   const ReadText read =
       cl::read_text("TRAORI\nG54 G710\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\nM30\n", untold());

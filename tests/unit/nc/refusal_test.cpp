@@ -48,7 +48,7 @@ TEST(NcRefusal, NamesWhatTheControlKeepsForItself) {
                          {"G42 D1", "G42: radius compensation"},
                          {"G92 X1.", "G92: changes offsets"},
                          {"G10 L2 P1 X0.", "G10: changes offsets"},
-                         {"G30 Z0.", "G30: a reference place"},
+                         {"G91 G30 Z0.", "--machine FILE"},
                          {"G16", "G16: polar"},
                          {"G51 P2.", "G51: scaling"},
                          {"G96 S100", "G96: surface speed"},

@@ -15,12 +15,27 @@ MachineModel placed(const char* frame) {
 }
 
 TEST(FrameSum, TellsFramesApartByEveryOneOfTheirNumbers) {
-  const std::uint64_t sum = frame_sum(placed("1,2,3,4,5,6"));
+  const std::uint64_t sum = frame_sum(placed("1,2,3,4,5,6"), {});
   EXPECT_NE(sum, 0U);
-  EXPECT_EQ(frame_sum(placed("1,2,3,4,5,6")), sum);
+  EXPECT_EQ(frame_sum(placed("1,2,3,4,5,6"), {}), sum);
   for (const char* other : {"1.0000000000000002,2,3,4,5,6", "1,2.1,3,4,5,6", "1,2,3.1,4,5,6",
                             "1,2,3,4.1,5,6", "1,2,3,4,5.1,6", "1,2,3,4,5,6.1"}) {
-    EXPECT_NE(frame_sum(placed(other)), sum) << other;
+    EXPECT_NE(frame_sum(placed(other), {}), sum) << other;
+  }
+}
+
+TEST(FrameSum, TellsTablesApartThatProgramsMayCallFor) {
+  const MachineModel model = placed("1,2,3,4,5,6");
+  WorkFrame row{.number = 2, .origin_mm = {7, 8, 9}, .rotation_deg = {1, 2, 3}};
+  const auto sum_of = [&model](const WorkFrame& one) { return frame_sum(model, {&one, 1}); };
+  const std::uint64_t sum = sum_of(row);
+  EXPECT_NE(sum, frame_sum(model, {}));
+  row.name[0] = 'v';
+  EXPECT_EQ(sum_of(row), sum) << "a name moves nothing";
+  for (const WorkFrame& other : {WorkFrame{.number = 3, .origin_mm = {7, 8, 9}},
+                                 WorkFrame{.number = 2, .origin_mm = {7, 8, 9.1}},
+                                 WorkFrame{.number = 2, .origin_mm = {7, 8, 9}}}) {
+    EXPECT_NE(sum_of(other), sum);
   }
 }
 
@@ -30,7 +45,7 @@ TEST(FrameSum, IsThatOfTheFrameThatCameOverTheWire) {
   place_frame(other, rows_of(model.frame_rotation), to_array(model.frame_origin_mm));
   EXPECT_EQ(other.frame_rotation, model.frame_rotation);
   EXPECT_EQ(other.frame_origin_mm, model.frame_origin_mm);
-  EXPECT_EQ(frame_sum(other), frame_sum(model));
+  EXPECT_EQ(frame_sum(other, {}), frame_sum(model, {}));
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ cl::Outcome run_cycle_definition(State& s, const Line& line) {
   if (number == "9.1" && cl::parse_number(text.substr(text.rfind(' ') + 1), seconds)) {
     return rest(s, line, seconds);
   }
-  return define_cycle(s, number, text.substr(number.size()));
+  return define_cycle(s, line, number, text.substr(number.size()));
 }
 
 /// CYCL CALL, with FMAX at most.
@@ -244,7 +244,9 @@ cl::Outcome run_words(State& s, const Line& line) {
     if (auto taken = take_plane_angles(s, iso); !taken) return taken;
     const bool goes_on = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
     if (!goes_on) return act_behind(s, iso);
-    auto done = translated.is_machine_place ? move_to_machine_place(s, iso, true) : move(s, iso);
+    auto done = translated.is_machine_place
+                    ? move_to_machine_place(s, iso, MachinePlace::kAsWritten)
+                    : move(s, iso);
     if (!done) return done;
   }
   const bool is_modal = s.modes.definition && s.modes.definition->runs_at_every_point;
@@ -291,7 +293,7 @@ cl::Outcome call_tool(State& s, const Line& line) {
 cl::Outcome run_heidenhain(State& s, const Line& line) {
   const std::string_view statement = line.names.front().name;
   act_on_speed(s, line);
-  if (statement == "Q") return take_cycle_parameters(s, line.names.front().arguments);
+  if (statement == "Q") return take_cycle_parameters(s, line, line.names.front().arguments);
   s.modes.open = OpenDefinition::kNone;
   if (statement == "BEGIN PGM") return begin_program(s, line);
   if (statement == "END PGM") {

@@ -154,7 +154,7 @@ bool take_parameter(std::string_view& text, int& parameter, double& value) {
 
 }  // namespace
 
-cl::Outcome take_cycle_parameters(State& s, std::string_view text) {
+cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view text) {
   const auto skip = [&text] {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '~')) {
       text.remove_prefix(1);
@@ -172,13 +172,14 @@ cl::Outcome take_cycle_parameters(State& s, std::string_view text) {
     } else if (parameter == kQPreset) {
       const bool is_row = value >= 0 && value < 1000 && value == std::floor(value);
       if (!is_row) return refuse("CYCL DEF 247 with Q339 that is no row of a table");
-      if (auto done = set_preset(s, static_cast<int>(value)); !done) return done;
+      if (auto done = set_preset(s, line, static_cast<int>(value)); !done) return done;
     }
   }
   return {};
 }
 
-cl::Outcome define_cycle(State& s, std::string_view number, std::string_view text) {
+cl::Outcome define_cycle(State& s, const Line& line, std::string_view number,
+                         std::string_view text) {
   double value = 0;
   const bool is_number = cl::parse_number(number, value) && value > 0 && value < 1000;
   const bool is_preset = is_number && value == kPreset247;
@@ -193,7 +194,7 @@ cl::Outcome define_cycle(State& s, std::string_view number, std::string_view tex
   if (is_drilling) s.modes.definition = CycleDefinition{static_cast<int>(value), {}};
   const std::size_t first = text.find(" Q");
   if (first == std::string_view::npos) return {};
-  return take_cycle_parameters(s, text.substr(first));
+  return take_cycle_parameters(s, line, text.substr(first));
 }
 
 cl::Outcome call_cycle(State& s, const Line& line) {
