@@ -19,15 +19,16 @@ struct FeedPiece {
   double s0 = 0, v = 0, a = 0, j = 0, k = 0;
 };
 
-/// Pieces of a window, in order, in a fixed store.
+/// Pieces of a window of at most so many cells, in order, in a fixed store.
 class FeedPieces {
  public:
   static constexpr int kMaxParts = 64;  ///< that a cell is cut into
-  /// Of every cell of a window or a crawl as many.
-  static constexpr std::size_t kCapacity =
-      static_cast<std::size_t>(JerkStep::kCells + 2) * kMaxParts;
 
-  FeedPieces() { pieces_.reserve(kCapacity); }
+  /// Of every cell of a window or a crawl as many.
+  explicit FeedPieces(int max_cells)
+      : capacity_(static_cast<std::size_t>(max_cells + 2) * kMaxParts) {
+    pieces_.reserve(capacity_);
+  }
   void clear() noexcept { pieces_.clear(); }
   [[nodiscard]] const std::vector<FeedPiece>& all() const noexcept { return pieces_; }
 
@@ -41,8 +42,9 @@ class FeedPieces {
 
  private:
   void add(const FeedPiece& piece) noexcept {
-    if (pieces_.size() < kCapacity) pieces_.push_back(piece);
+    if (pieces_.size() < capacity_) pieces_.push_back(piece);
   }
+  std::size_t capacity_;
   std::vector<FeedPiece> pieces_;
 };
 

@@ -54,7 +54,8 @@ RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings
       limits_(make_feed_limits(model, settings.reserve)),
       planned_(limits_.scaled(kVelocityShare, kAccelShare, kJerkShare)),
       grid_(model, planned_, settings.cells),
-      solver_(grid_, planned_, window_of(settings)) {
+      solver_(grid_, planned_, window_of(settings)),
+      pieces_(window_of(settings)) {
   settings_.window_cells = window_of(settings);
   history_ = std::min(kHistory, settings.cells.kept_cells - settings_.window_cells - kSpare);
   settings_.commit_cells = std::clamp(settings.commit_cells, 1, settings_.window_cells - 10);
