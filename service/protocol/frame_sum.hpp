@@ -14,10 +14,10 @@
 
 namespace meridian::stream {
 
-/// By which station and service know that they mean the same work frames: FNV-1a, 64 bit, of the one
-/// in force, its rotation row by row and its origin, as they lie in memory, and of the rows of the
-/// table, which NC programs may call, but for their names. Never 0.
-/// Proof: tests/unit/protocol/frame_sum_test.cpp.
+/// By which station and service know that they mean the same work frames: FNV-1a, 64 bit, of the
+/// one in force, its rotation row by row and its origin, as they lie in memory, and of the rows of
+/// the table, which NC programs may call, but for their names. Never 0. Proof:
+/// tests/unit/protocol/frame_sum_test.cpp.
 [[nodiscard]] inline std::uint64_t frame_sum(const std::array<double, 9>& rotation,
                                              const Array3& origin_mm,
                                              std::span<const WorkFrame> rows) noexcept {

@@ -21,7 +21,8 @@ struct PreflightMachine {
   std::optional<ToolTable> tools;  ///< nothing: not known here, the service checks tools
   std::string tool_remedy = "add it to the tool table of the service";  ///< for unknown tools
   std::map<int, Vector3> work_zeros{};  ///< of its work frames (cl::ClReaderOptions::work_offsets)
-  std::map<std::string, std::vector<double>> positions{};  ///< by name (cl::ClReaderOptions::positions)
+  std::map<std::string, std::vector<double>>
+      positions{};  ///< by name (cl::ClReaderOptions::positions)
 };
 
 /// What is known about a CL file after it was read once.

@@ -66,7 +66,8 @@ TEST_F(SetUp, IsToldByTheMachineTopicAndTheStatusAsSoonAsItIsAcknowledged) {
   EXPECT_EQ(told.work_frame, 3);
   EXPECT_EQ(told.frame_origin_mm, (Array3{12.5, 0, 0}));
   ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 3; }));
-  EXPECT_EQ(plant.status().frame, stream::frame_sum(told.frame_rotation, told.frame_origin_mm, told.work_frames));
+  EXPECT_EQ(plant.status().frame,
+            stream::frame_sum(told.frame_rotation, told.frame_origin_mm, told.work_frames));
   reply = anna.ask(order_of(FrameWord::kSet, 3, 7));  // the one in force
   ASSERT_TRUE(reply.is_accepted) << reply.text;
   EXPECT_EQ(reported_by(plant).frame_origin_mm, (Array3{7, 0, 0}));

@@ -192,7 +192,8 @@ std::string name_of(const std::string& text, const Lines& lines) {
   for (const std::string_view word : {"M428", "M429", "O<", "#<", "G43.1"}) {
     if (has(text, word)) return "a LinuxCNC NC program (" + std::string(word) + ")";
   }
-  for (const std::string_view word : {"G43.4", "G43.5", "G54.1", "G54.2", "G05.1", "G68.2", "G234", "G254"}) {
+  for (const std::string_view word :
+       {"G43.4", "G43.5", "G54.1", "G54.2", "G05.1", "G68.2", "G234", "G254"}) {
     if (has(text, word)) return "a Fanuc NC program (" + std::string(word) + ")";
   }
   if (lines.percent && lines.o_number) return "a Fanuc NC program (% and O number)";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Codes that change what points mean: tool-centre control, work offset, unit.
+#include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
@@ -47,6 +48,16 @@ std::optional<Vector3> zero_of(const State& s, int offset) {
   return Vector3(at->second - s.axes->zero_mm());
 }
 
+/// A program of G54 under frame 2 is not cut where the operator may expect it.
+void warn_of_other_frame(State& s, const Line& line, int offset, const Vector3& zero_mm) {
+  if (zero_mm.isZero(0)) return;
+  s.cl.remarks.warn(name_of(offset), line.number, [&] {
+    return name_of(offset) + " is not the work frame in force: its points lie " +
+           cl::short_number(zero_mm.x()) + ", " + cl::short_number(zero_mm.y()) + ", " +
+           cl::short_number(zero_mm.z()) + " mm (X, Y, Z) from there";
+  });
+}
+
 /// One that is not known is the station's frame, and has to be the only one.
 cl::Outcome take_offset(State& s, const Line& line, int offset) {
   const int before = s.modes.work_offset;
@@ -64,6 +75,7 @@ cl::Outcome take_offset(State& s, const Line& line, int offset) {
   s.modes.work_offset = offset;
   note_offset(s, name_of(offset));
   s.cl.summary.nc.has_work_zero = zero_mm.has_value();
+  if (zero_mm) warn_of_other_frame(s, line, offset, *zero_mm);
   set_zero(s, line, zero_mm.value_or(Vector3::Zero()));
   return {};
 }

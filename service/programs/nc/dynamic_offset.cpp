@@ -13,9 +13,10 @@ constexpr double kSameTool = 1e-6;  // of the distance between two unit vectors
 /// The plane across the tool with the rotary axes there.
 Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& place) {
   if (!s.axes) {
-    return refuse("G254 needs the machine that it is written for: which axes turn the table is in "
-                  "its machine file",
-                  "--machine FILE", "machine");
+    return refuse(
+        "G254 needs the machine that it is written for: which axes turn the table is in "
+        "its machine file",
+        "--machine FILE", "machine");
   }
   if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
   if (place.is_by_control) {
@@ -28,9 +29,10 @@ Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& pla
   plane.rotation = s.axes->to_program() * *axes_in_w;
   const Vector3 tool = s.axes->to_program() * s.axes->axis(place.rotary);
   if ((plane.rotation.col(2) - tool).norm() > kSameTool) {
-    return refuse("G254 on a machine whose rotary axes turn the tool: X Y Z are not those of its "
-                  "tip",
-                  "output G234, or G43.4", "G254");
+    return refuse(
+        "G254 on a machine whose rotary axes turn the tool: X Y Z are not those of its "
+        "tip",
+        "output G234, or G43.4", "G254");
   }
   return plane;
 }

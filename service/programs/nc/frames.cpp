@@ -161,8 +161,9 @@ void set_zero(State& s, const Line& line, const Vector3& zero_mm) {
   if (!s.cl.path.has_moved()) return;
   ++s.cl.summary.frame_changes;
   s.cl.remarks.warn("zero", line.number, [] {
-    return std::string("another work offset: the next motion goes straight there from the point "
-                       "before; see that nothing is in the way");
+    return std::string(
+        "another work offset: the next motion goes straight there from the point "
+        "before; see that nothing is in the way");
   });
 }
 

@@ -108,8 +108,9 @@ Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
     if (i < 0) {
       return refuse("machine " + model_.name + " has no axis " + std::string(target.address));
     }
-    const double named =
-        target.position != nullptr ? (*target.position)[static_cast<std::size_t>(i)] : model_.joints[i].home;
+    const double named = target.position != nullptr
+                             ? (*target.position)[static_cast<std::size_t>(i)]
+                             : model_.joints[i].home;
     (*q)[i] = target.value ? words_->axis(i, *target.value) : named;
   }
   Reached out;

@@ -176,7 +176,8 @@ TEST(Words, OfVendorsThatDoNotShapeThePathAreSkipped) {
   const auto read = read_body(
       "CSI_SET_FLUTE_LENGTH/20\nCSI_SET_FLUTE_LENGTH/30\nCSI_STOCK/\"a b\"\nINSERT/(Bohren) [T1] "
       "\"x\"\n"
-      "CUTCOM/LEFT\nCUTCOM/OFF\nTHREAD/OFF\nHEAD/1\nCYCLE/INIT\nCYCLE/OFF\nMULTAX\nMULTAX/ON\nSET/MODE,ABSOL\n"
+      "CUTCOM/LEFT\nCUTCOM/OFF\nTHREAD/OFF\nHEAD/1\nCYCLE/INIT\nCYCLE/OFF\nMULTAX\nMULTAX/ON\nSET/"
+      "MODE,ABSOL\n"
       "REMARK free $ text\nORIGIN/0,0,0\nGOTO/0,0,0\n");
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.blocks.size(), 2U);

@@ -93,8 +93,8 @@ TEST_F(NcCommands, PutPointsOutInTheFrameAroundThePart) {
 }
 
 TEST_F(NcCommands, GoFromOneWorkOffsetToTheOtherWhereTheirZerosAreTold) {
-  const TextFile nc{
-      "%\nO1\nG21 G90\nG54\nG43 H1\nG0 X1. Y2. Z3.\nG55\nG0 X1. Y2. Z3.\nM30\n%\n", ".nc"};
+  const TextFile nc{"%\nO1\nG21 G90\nG54\nG43 H1\nG0 X1. Y2. Z3.\nG55\nG0 X1. Y2. Z3.\nM30\n%\n",
+                    ".nc"};
   const std::string line = "cl " + nc.path().string() + kMachine;
   const CommandOutput untold = run_tool(line);
   EXPECT_EQ(untold.exit_code, 3);

@@ -55,7 +55,8 @@ TEST(NcMachinePlaces, OfG30AreTheMachineFilesPositions) {
   ASSERT_EQ(named.error, "");
   ASSERT_EQ(named.motion().size(), told.motion().size());
   EXPECT_LT((tip(named.motion()[1]) - tip(told.motion()[1])).norm(), kTiny);
-  EXPECT_EQ(read_nc("G91 G30 Z0.\nG90 G0 X1. Y2. Z5.\n", on(model)).error, "") << "nothing moved yet";
+  EXPECT_EQ(read_nc("G91 G30 Z0.\nG90 G0 X1. Y2. Z5.\n", on(model)).error, "")
+      << "nothing moved yet";
   for (const auto& [body, says] : std::vector<std::pair<const char*, const char*>>{
            {"G0 X1. Y2. Z5.\nG91 G30 P3 Z0.\n", "[[position]] with name = \"G30 P3\""},
            {"G0 X1. Y2. Z5.\nG30 Z0.\n", "write G91 G30 with zeros"}}) {

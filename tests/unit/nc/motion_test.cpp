@@ -57,13 +57,15 @@ TEST(WorkOffsets, LieWhereTheMachineHasThem) {
   EXPECT_EQ(tip(motion[5]), Vector3(100, 0, 0));
   EXPECT_EQ(read.summary.nc.work_offset, "G54, G55, G54.1 P2");
   EXPECT_TRUE(read.warned_of("another work offset"));
+  EXPECT_TRUE(read.warned_of("G55 is not the work frame in force: its points lie 0, 200, 0 mm"));
 }
 
 TEST(WorkOffsets, CountInTheUnitOfTheProgramAndTurnWithItsFrames) {
   ClReaderOptions options = on(shipped("trunnion-ac"));
   options.work_offsets = {{1, {0, 0, 0}}, {2, {25.4, 0, 0}}};
-  const ReadText read = read_nc(
-      "G20\nG54\nG43 H1\nG68.2 X0. Y0. Z0. I90. J0. K0.\nG53.1\nG0 X1. Y2. Z3.\nG55\nX2.\n", options);
+  const ReadText read =
+      read_nc("G20\nG54\nG43 H1\nG68.2 X0. Y0. Z0. I90. J0. K0.\nG53.1\nG0 X1. Y2. Z3.\nG55\nX2.\n",
+              options);
   ASSERT_EQ(read.error, "");
   EXPECT_LT((tip(read.motion()[0]) - 25.4 * Vector3(-2, 1, 3)).norm(), kTiny);
   EXPECT_LT((tip(read.motion()[1]) - 25.4 * Vector3(-2, 2, 3)).norm(), kTiny)
@@ -75,7 +77,8 @@ TEST(WorkOffsets, AreRefusedWhereOneOfTwoIsNotKnown) {
   options.work_offsets = {{2, {0, 0, 0}}};
   const std::string first = read_nc("G54\nG43 H1\nG0 X0. Y0. Z9.\nG55\nX1.\n", options).error;
   EXPECT_NE(first.find("where G54 lies only the control knows; --work-zero 1=X,Y,Z"),
-            std::string::npos) << first;
+            std::string::npos)
+      << first;
   const std::string second = read_nc("G55\nG43 H1\nG0 X0. Y0. Z9.\nG59.1\nX1.\n", options).error;
   EXPECT_NE(second.find("where G59.1 lies"), std::string::npos) << second;
   options.nc = reader_of_programs();
@@ -83,8 +86,8 @@ TEST(WorkOffsets, AreRefusedWhereOneOfTwoIsNotKnown) {
 }
 
 TEST(NcMotion, HasTheUnitWordsOfDin66025) {
-  for (const auto& [unit, x_mm] : std::vector<std::pair<const char*, double>>{{"G70", 50.8},
-                                                                             {"G71", 2.0}}) {
+  for (const auto& [unit, x_mm] :
+       std::vector<std::pair<const char*, double>>{{"G70", 50.8}, {"G71", 2.0}}) {
     const ReadText read = cl::read_text(
         "%\nO1\n" + std::string(unit) + " G90\nG0 X1. Y0. Z0.\nX2.\nM30\n%\n", without_machine());
     ASSERT_EQ(read.error, "") << unit;

@@ -35,7 +35,8 @@ TEST(NcPrograms, AreKnownByTheirNumberOrName) {
     EXPECT_EQ(read.error, "") << head;
     EXPECT_EQ(read.blocks.size(), 3U) << head;
   }
-  EXPECT_NE(cl::read_text("o100 sub\n" + std::string(kPlain) + "o100 endsub\n", untold()).error, "");
+  EXPECT_NE(cl::read_text("o100 sub\n" + std::string(kPlain) + "o100 endsub\n", untold()).error,
+            "");
 }
 
 TEST(NcPrograms, OfSiemensAreKnownByTheirNames) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <numbers>
 
 #include "meridian/units.hpp"
@@ -94,11 +93,13 @@ TEST(TiltedPlane, RefusesWhatItCannotRead) {
   }
 }
 
-/// What a trunnion about y with a table about z, at B and C in degrees, does to a point of the part.
+/// What a trunnion about y with a table about z, at B and C in degrees, does to a point of the
+/// part.
 Vector3 on_table(double b_deg, double c_deg, const Vector3& machine) {
   const double b = units::rad_from_deg(b_deg), c = units::rad_from_deg(c_deg);
-  const Eigen::Matrix3d table = (Eigen::AngleAxisd(b, Vector3::UnitY()) *
-                                 Eigen::AngleAxisd(c, Vector3::UnitZ())).toRotationMatrix();
+  const Eigen::Matrix3d table =
+      (Eigen::AngleAxisd(b, Vector3::UnitY()) * Eigen::AngleAxisd(c, Vector3::UnitZ()))
+          .toRotationMatrix();
   return table.transpose() * machine;
 }
 
@@ -121,8 +122,8 @@ TEST(DynamicOffset, ReadsPointsAlongTheMachinesAxesFromTheZeroOnTheTable) {
 }
 
 TEST(DynamicOffset, DoesNotKnowWhereAnAxisIsThatTheTurningBlockLeavesOut) {
-  const ReadText read = read_nc(
-      "G43 H1\nG254\nG0 X0. Y0. Z9.\nG0 X1. Y1. B20.\nG1 X2.\n", on(shipped("trunnion-bc")));
+  const ReadText read = read_nc("G43 H1\nG254\nG0 X0. Y0. Z9.\nG0 X1. Y1. B20.\nG1 X2.\n",
+                                on(shipped("trunnion-bc")));
   EXPECT_EQ(read.error_line, 8U) << read.error;
   EXPECT_NE(read.error.find("is not known here"), std::string::npos) << read.error;
 }

@@ -95,7 +95,8 @@ Outcome refuse_unless_off(Modal& m, const Statement& s) {
 }
 
 Outcome refuse_unless_first(Modal& m, const Statement& s) {
-  const bool is_first = s.argument_count == 1 && s.arguments[0].is_number && s.arguments[0].number == 1;
+  const bool is_first =
+      s.argument_count == 1 && s.arguments[0].is_number && s.arguments[0].number == 1;
   return is_first ? skip(m, s) : refuse_word(m, s);
 }
 

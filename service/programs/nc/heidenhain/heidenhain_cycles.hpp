@@ -12,8 +12,7 @@ namespace meridian::nc {
                                        std::string_view text);
 
 /// Q201=-20 in a line of its own: a parameter of the cycle that is being defined.
-[[nodiscard]] cl::Outcome take_cycle_parameters(State& s, const Line& line,
-                                                std::string_view text);
+[[nodiscard]] cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view text);
 
 /// CYCL CALL, M99 and M89: the hole of the cycle in force, where the tool stands. Proof:
 /// tests/unit/nc/heidenhain_cycle_test.cpp.
