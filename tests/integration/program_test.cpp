@@ -29,10 +29,13 @@ class Program : public testing::Test {
 
 TEST_F(Program, RunsFromEnableToEndAndRecordsEveryCycleThatWasSent) {
   const auto blocks = small_program(20, 3000);
-  ASSERT_TRUE(plant.stream(blocks,
-                           [&](const Station& station) {
-                             return is_complete(station) && plant.status().state == State::kLoaded;
-                           }))
+  ASSERT_TRUE(plant.stream(
+      blocks,
+      [&](const Station& station) {
+        const dds::Status status = plant.status();
+        const bool is_declared = status.message.find("approach to line") != std::string::npos;
+        return is_complete(station) && status.state == State::kLoaded && is_declared;
+      }))
       << plant.station().message() << plant.service().said();
   const auto start = plant.say(Verb::kStart);
   ASSERT_TRUE(start && start->is_accepted) << (start ? start->text : "no reply");
