@@ -151,7 +151,11 @@ async function aProgramIsCheckedAsAWhole({ page }) {
   await picture(page, "panel-placing");
 }
 
-async function aProgramGoesOnAtALine({ page }) {
+const aProgramGoesOnAtALine = ({ page }) => afterStalls(page, () => oneProgramFromALine(page));
+
+async function oneProgramFromALine(page) {
+  if ((await stateOf(page)) === "Off") await click(page, "enable");
+  await inState(page, "Ready");
   await page.click("#tab-program");
   await page.setInputFiles("#program-file", part());
   // The program before this one may still be the one that is ready.
