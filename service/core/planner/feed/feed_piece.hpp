@@ -22,14 +22,19 @@ struct FeedPiece {
 /// Pieces of a window of at most so many cells, in order, in a fixed store.
 class FeedPieces {
  public:
-  static constexpr int kMaxParts = 64;  ///< that a cell is cut into
+  static constexpr int kMaxParts = 64;   ///< that a cell is cut into
+  static constexpr int kMeanParts = 32;  ///< that there is room for; a cell has hardly ever four
 
-  /// Of every cell of a window or a crawl as many.
   explicit FeedPieces(int max_cells)
-      : capacity_(static_cast<std::size_t>(max_cells + 2) * kMaxParts) {
+      : capacity_(static_cast<std::size_t>(max_cells + 2) * kMeanParts) {
     pieces_.reserve(capacity_);
   }
-  void clear() noexcept { pieces_.clear(); }
+  void clear() noexcept {
+    pieces_.clear();
+    is_cut_short_ = false;
+  }
+  /// Whether a piece found no room since clear(): the window has to be planned otherwise.
+  [[nodiscard]] bool is_cut_short() const noexcept { return is_cut_short_; }
   [[nodiscard]] const std::vector<FeedPiece>& all() const noexcept { return pieces_; }
 
   /// ṡ² quadratic in the cell: j = 0, k = b''/2. Cut so that |k| t² <= 1, where the series of the
@@ -42,9 +47,11 @@ class FeedPieces {
 
  private:
   void add(const FeedPiece& piece) noexcept {
-    if (pieces_.size() < capacity_) pieces_.push_back(piece);
+    is_cut_short_ = is_cut_short_ || pieces_.size() == capacity_;
+    if (!is_cut_short_) pieces_.push_back(piece);
   }
   std::size_t capacity_;
+  bool is_cut_short_ = false;
   std::vector<FeedPiece> pieces_;
 };
 

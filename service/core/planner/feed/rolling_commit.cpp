@@ -60,6 +60,12 @@ void RollingFeed::commit(bool is_new) noexcept {
     pieces_.add(grid_[number], number, {plan.b[k], plan.slope[k], plan.slope[k + 1]});
   }
   pieces_.add(grid_[plan.end - 1], plan.end - 1, plan.stop, false);
+  // Of the plan before there was room for all, and a crawl has few.
+  if (is_new && pieces_.is_cut_short()) {
+    if (is_at_rest_) return commit_crawl();
+    ++count_.kept;
+    return commit(false);
+  }
   const std::span<const FeedPiece> all = pieces_.all();
   int kept = is_whole ? cells : cells_to_keep(plan);
   const std::size_t tail = is_whole ? all.size() : find_tail(plan.first, kept);
