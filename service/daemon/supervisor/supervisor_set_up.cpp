@@ -12,7 +12,7 @@
 #include "service/recording/telemetry/set_up_text.hpp"
 #include "service/recording/telemetry/words.hpp"
 
-/// The set-up: a change of work frames, tools or soft limits is written to disk, then told to the
+/// The set-up: a change of work frames, tools or soft limits is written to disk, then passed to the
 /// cycle, which may still refuse it, then to everybody, and answered last. One at a time, and none
 /// beside a program.
 namespace meridian::interpolator {
