@@ -44,7 +44,7 @@ struct OperatorEvents {
   /// What the live planner told of feed overrides above 100 % and of its look at the begin; empty:
   /// it is planned as a service would that waits for no block.
   std::vector<FeedMark> feed_marks;
-  /// Where the workpiece lay; nothing: that is not told.
+  /// Where the workpiece lay; nothing: that is not known.
   std::optional<record::RecordedFrame> frame;
   /// With which tools; nothing: that is not told.
   std::optional<ToolTable> tools;

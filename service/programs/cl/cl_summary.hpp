@@ -33,7 +33,7 @@ struct SkippedWord {
 struct NcSummary {
   bool is_nc = false;
   std::string work_offset;          ///< as written, every one once; empty: none was
-  bool has_work_zero = false;       ///< where it lies was told; else it is the station's frame
+  bool has_work_zero = false;       ///< where it lies is known; else it is the station's frame
   std::uint64_t turned_blocks = 0;  ///< with rotary words, cut to follow joints that turn evenly
   std::uint64_t turned_pieces = 0;  ///< what became of them
   double axis_tolerance_rad = 0;    ///< by which they are cut; 0: no machine is known

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // G254 of Haas, the dynamic work offset: the zero of the program goes with the table, X Y Z stay
-// along the machine's axes. It is a tilted plane that the rotary words tell.
+// along the machine's axes. It is a tilted plane that the rotary words define.
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
@@ -20,7 +20,7 @@ Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& pla
   }
   if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
   if (place.is_by_control) {
-    return refuse("G254, but no word tells where the control turned the rotary axes (G53.1)",
+    return refuse("G254, but no word says where the control turned the rotary axes (G53.1)",
                   "write all rotary words before it", "not told");
   }
   const auto axes_in_w = s.axes->linear_axes(place.rotary);

@@ -45,7 +45,7 @@ class JerkStep {
 
   JerkStep(const CellGrid& grid, const FeedLimits& limits, int max_cells);
 
-  /// Whether a plan was found, which b(), slope() and middle() then tell. Cells in [2, max_cells].
+  /// Whether a plan was found, which b(), slope() and middle() then give. Cells in [2, max_cells].
   [[nodiscard]] bool solve(const JerkProblem& problem) noexcept;
 
   [[nodiscard]] double b(int knot) const noexcept {

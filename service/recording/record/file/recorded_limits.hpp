@@ -33,11 +33,11 @@ struct LimitsFrom {
   SoftLimits limits{};
 };
 
-/// All soft limits that these events tell of, in the order of their cycles.
+/// All soft limits that these events hold, in the order of their cycles.
 [[nodiscard]] std::vector<LimitsFrom> find_all_limits(std::string_view events);
 
 /// The soft limits that were in force when the first program of these events was started, or at
-/// their end where none was; nothing where no row tells of any.
+/// their end where none was; nothing where no row holds any.
 /// Proof: tests/unit/record/recorded_limits_test.cpp.
 [[nodiscard]] std::optional<SoftLimits> find_recorded_limits(std::string_view events);
 
