@@ -22,15 +22,12 @@ namespace meridian::stream {
                                              const Array3& origin_mm,
                                              std::span<const WorkFrame> rows) noexcept {
   text::Checksum sum;
-  const auto add = [&sum](double value) {
-    sum.add({reinterpret_cast<const char*>(&value), sizeof value});
-  };
-  for (const double value : rotation) add(value);
-  for (const double value : origin_mm) add(value);
+  for (const double value : rotation) sum.add(value);
+  for (const double value : origin_mm) sum.add(value);
   for (const WorkFrame& row : rows) {
-    add(row.number);
-    for (const double value : row.origin_mm) add(value);
-    for (const double value : row.rotation_deg) add(value);
+    sum.add(static_cast<double>(row.number));
+    for (const double value : row.origin_mm) sum.add(value);
+    for (const double value : row.rotation_deg) sum.add(value);
   }
   return sum.sum();
 }

@@ -13,15 +13,12 @@ namespace meridian::stream {
 /// Proof: tests/unit/protocol/limits_sum_test.cpp.
 [[nodiscard]] inline std::uint64_t limits_sum(const SoftLimits& limits) noexcept {
   text::Checksum sum;
-  const auto add = [&sum](double value) {
-    sum.add({reinterpret_cast<const char*>(&value), sizeof value});
-  };
   for (std::size_t joint = 0; joint < limits.rows().size(); ++joint) {
     const SoftLimits::Row& row = limits.rows()[joint];
     if (!row.is_set) continue;
-    add(static_cast<double>(joint));
-    add(row.min);
-    add(row.max);
+    sum.add(static_cast<double>(joint));
+    sum.add(row.min);
+    sum.add(row.max);
   }
   return sum.sum();
 }

@@ -13,19 +13,16 @@ namespace meridian::stream {
 /// Proof: tests/unit/protocol/tools_sum_test.cpp.
 [[nodiscard]] inline std::uint64_t tools_sum(const ToolTable& tools) noexcept {
   text::Checksum sum;
-  const auto add = [&sum](double value) {
-    sum.add({reinterpret_cast<const char*>(&value), sizeof value});
-  };
   for (const Tool& tool : tools.tools()) {
-    add(tool.number);
-    add(tool.length_mm);
-    add(tool.radius_mm);
-    add(tool.corner_radius_mm);
-    add(tool.length_wear_mm);
-    add(tool.radius_wear_mm);
-    add(static_cast<double>(tool.holder_mm.size()));
+    sum.add(static_cast<double>(tool.number));
+    sum.add(tool.length_mm);
+    sum.add(tool.radius_mm);
+    sum.add(tool.corner_radius_mm);
+    sum.add(tool.length_wear_mm);
+    sum.add(tool.radius_wear_mm);
+    sum.add(static_cast<double>(tool.holder_mm.size()));
     for (const auto& corner : tool.holder_mm) {
-      for (const double value : corner) add(value);
+      for (const double value : corner) sum.add(value);
     }
   }
   return sum.sum();

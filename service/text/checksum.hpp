@@ -13,6 +13,8 @@ class Checksum {
   void add(std::string_view bytes) noexcept {
     for (const char c : bytes) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
   }
+  /// The bytes of the number, as they lie in memory.
+  void add(double value) noexcept { add({reinterpret_cast<const char*>(&value), sizeof value}); }
   [[nodiscard]] std::uint64_t sum() const noexcept { return hash_ != 0 ? hash_ : 1; }
 
  private:
