@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "meridian/planner/time_piece.hpp"
 #include "service/core/planner/feed/feed_cells.hpp"
 #include "service/core/planner/feed/feed_check.hpp"
 #include "service/core/planner/feed/feed_rest.hpp"
@@ -18,6 +19,16 @@ struct FeedPiece {
   double duration = 0;
   double s0 = 0, v = 0, a = 0, j = 0, k = 0;
 };
+
+/// Its law, from its begin on.
+inline void put_law(const FeedPiece& piece, TimePiece& time) noexcept {
+  time.duration = piece.duration;
+  time.s0 = piece.s0;
+  time.v = piece.v;
+  time.a = piece.a;
+  time.j = piece.j;
+  time.k = piece.k;
+}
 
 /// Pieces of a window of at most so many cells, in order, in a fixed store.
 class FeedPieces {

@@ -124,12 +124,7 @@ bool LegFeed::stage_windows(Times& times, Staging& out) noexcept {
     authority_.begin(feed_.grid(), feed_.grid().last());
     for (const FeedPiece& piece : window.committed) {
       TimePiece time = times.names;
-      time.duration = piece.duration;
-      time.s0 = piece.s0;
-      time.v = piece.v;
-      time.a = piece.a;
-      time.j = piece.j;
-      time.k = piece.k;
+      put_law(piece, time);
       authority_.grant(piece, time);
       times.duration += time.duration;
       if (!(times.duration < times.less_than_s) || !out.add(time)) return false;

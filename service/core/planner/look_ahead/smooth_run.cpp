@@ -346,12 +346,7 @@ bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool i
   time.path_index = start_.path_index + piece.span;
   time.sequence = span.sequence;
   time.line = span.line;
-  time.duration = piece.duration;
-  time.s0 = piece.s0;
-  time.v = piece.v;
-  time.a = piece.a;
-  time.j = piece.j;
-  time.k = piece.k;
+  put_law(piece, time);
   time.feed_mm_per_s = std::isfinite(span.feed_mm_per_s) ? span.feed_mm_per_s : 0;
   time.feed_factor = joint_span.feed_factor;
   authority_.grant(piece, time);
