@@ -125,6 +125,26 @@ class SetUpOperator {
   return Process(words, plant.folder() / ("tool" + std::to_string(++count) + ".log"));
 }
 
+/// `refused` asks for a change of the set-up that has to be refused for that reason: here while a
+/// program is loaded, running and held.
+template <class Refused>
+void expect_refused_beside_a_program(Plant& plant, const Refused& refused) {
+  plant.start_service();
+  plant.start_drives();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  ASSERT_TRUE(plant.stream(small_program(60, 600, 5), [&](const stream::Station& station) {
+    return station.state() == stream::StationState::kComplete &&
+           plant.status().state == State::kLoaded;
+  })) << plant.station().message();
+  refused(Refusal::kProgramPresent);
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
+  ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.standing();
+  refused(Refusal::kWrongState);
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kHold));
+  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
+  refused(Refusal::kProgramPresent);
+}
+
 /// The part, enabled, streamed, cut to its end.
 inline void cut(Plant& plant, const std::string& part) {
   ASSERT_TRUE(plant.enable()) << plant.service().said();

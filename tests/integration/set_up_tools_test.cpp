@@ -115,9 +115,6 @@ TEST(SetUpTools, AreThoseOfOneOfTwoOperatorsWhoSawTheSame) {
 TEST(SetUpTools, StayAsTheyAreWhileAProgramIsThereOrTheMachineMoves) {
   Plant plant;
   SetUpOperator anna(plant, 100);
-  plant.start_service();
-  plant.start_drives();
-  ASSERT_TRUE(plant.enable()) << plant.service().said();
   const auto expect_refused = [&](Refusal why) {
     const std::uint64_t before = plant.status().tools;
     const dds::Reply reply = anna.ask(tools_of(120));
@@ -125,17 +122,7 @@ TEST(SetUpTools, StayAsTheyAreWhileAProgramIsThereOrTheMachineMoves) {
     EXPECT_EQ(reply.refusal, why) << reply.text;
     EXPECT_EQ(plant.status().tools, before);
   };
-  ASSERT_TRUE(plant.stream(small_program(60, 600, 5), [&](const stream::Station& station) {
-    return station.state() == stream::StationState::kComplete &&
-           plant.status().state == State::kLoaded;
-  })) << plant.station().message();
-  expect_refused(Refusal::kProgramPresent);
-  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
-  ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.standing();
-  expect_refused(Refusal::kWrongState);
-  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kHold));
-  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
-  expect_refused(Refusal::kProgramPresent);
+  expect_refused_beside_a_program(plant, expect_refused);
 }
 
 TEST(SetUpTools, RefuseAProgramThatWasCheckedWithOthers) {
