@@ -31,7 +31,7 @@ FeedSettings leg_settings(const MachineModel& model) noexcept {
 }  // namespace
 
 LegFeed::LegFeed(const MachineModel& model)
-    : model_(model), feed_(model, leg_settings(model)), authority_(model) {
+    : model_(model), feed_(model, leg_settings(model)), stop_margin_(model) {
   ends_.reserve(kEnds);
 }
 
@@ -121,11 +121,11 @@ bool LegFeed::stage_windows(Times& times, Staging& out) noexcept {
   while (feed_.try_plan()) {
     if (feed_.count().crawls > crawls) return false;  // constant bounds do better
     const FeedWindow& window = feed_.window();
-    authority_.begin(feed_.grid(), feed_.grid().last());
+    stop_margin_.begin(feed_.grid(), feed_.grid().last());
     for (const FeedPiece& piece : window.committed) {
       TimePiece time = times.names;
       put_law(piece, time);
-      authority_.grant(piece, time);
+      stop_margin_.grant(piece, time);
       times.duration += time.duration;
       if (!(times.duration < times.less_than_s) || !out.add(time)) return false;
     }

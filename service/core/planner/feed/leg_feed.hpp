@@ -50,11 +50,11 @@ class LegFeed {
 
   const MachineModel& model_;
   RollingFeed feed_;
-  FeedStopMargin authority_;
+  FeedStopMargin stop_margin_;
   std::vector<double> ends_;  ///< of the cells, by path length
 };
 
-/// A time that no motion on a leg with such `cells` falls much below: `limits` where they are
+/// A time that no motion on a leg with such `cells` falls much below: `caps` where they are
 /// easiest, and everywhere the velocity that there is.
 [[nodiscard]] double min_leg_time(const Leg& leg, std::span<const JointCell> cells,
                                   const JointCaps& caps) noexcept;

@@ -310,11 +310,11 @@ bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const Motio
                              std::span<const JointCell> cells, double offset,
                              Staging& out) const noexcept {
   TimePiece time = leg.time_on(piece);
-  const StopMarginTable authority(cells, offset, caps_, fault_caps_, choice);
+  const StopMarginTable margin(cells, offset, caps_, fault_caps_, choice);
   const ProfilePhases phases = phases_of(choice.profile, piece.length);
   for (int n = 0; n < phases.count; ++n) {
     const ProfilePhase& phase = phases.phase[n];
-    const StopMarginTable::Cuts cuts = authority.cut(phase);
+    const StopMarginTable::Cuts cuts = margin.cut(phase);
     for (int k = 0; k <= cuts.count; ++k) {
       const double t = k == 0 ? 0 : cuts.time[k - 1];
       time.duration = (k == cuts.count ? phase.duration : cuts.time[k]) - t;
@@ -322,7 +322,7 @@ bool LegPlanner::stage_times(const Leg& leg, const PathPiece& piece, const Motio
       time.v = phase.v + t * (phase.a + t * phase.j / 2);
       time.a = phase.a + t * phase.j;
       time.j = phase.j;
-      authority.grant(time);
+      margin.grant(time);
       if (!out.add(time)) return false;
     }
   }

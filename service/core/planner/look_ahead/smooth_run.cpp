@@ -30,7 +30,7 @@ SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead*
       corridor_(model, foresight),
       passes_(model),
       feed_(model, feed_settings(model)),
-      authority_(model),
+      stop_margin_(model),
       travel_(model),
       spans_(kSpans),
       ends_(kBlockEnds),
@@ -295,7 +295,7 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
     return false;
   }
   bool is_written = stage_spans(writer, until);
-  authority_.begin(feed_.grid(), window.rest_cell);
+  stop_margin_.begin(feed_.grid(), window.rest_cell);
   for (const FeedPiece& piece : window.committed) is_written &= stage_piece(writer, piece, false);
   for (const FeedPiece& piece : window.tail) is_written &= stage_piece(writer, piece, true);
   if (!is_written) {
@@ -349,7 +349,7 @@ bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool i
   put_law(piece, time);
   time.feed_mm_per_s = std::isfinite(span.feed_mm_per_s) ? span.feed_mm_per_s : 0;
   time.feed_factor = joint_span.feed_factor;
-  authority_.grant(piece, time);
+  stop_margin_.grant(piece, time);
   return writer.stage(time);
 }
 

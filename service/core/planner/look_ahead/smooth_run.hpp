@@ -141,7 +141,7 @@ class SmoothRun : public WindingTrial {
   PoleCorridor corridor_;
   RobotPasses passes_;
   RollingFeed feed_;
-  FeedStopMargin authority_;
+  FeedStopMargin stop_margin_;
   FreeTravel travel_;
   IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
   IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
