@@ -104,6 +104,8 @@ cl::Outcome change_tool(State& s, const Line& line) {
   s.cl.tool = tool;
   s.cl.path.act(BlockKind::kTool, ActionKind::kToolChange, tool, line.number);
   if (s.modes.control == Control::kNone) s.place.tip[2].reset();
+  const bool is_siemens = s.modes.language == Language::kSiemens;  // a new tool comes with its D1
+  if (is_siemens && s.modes.control == Control::kNone) s.modes.control = Control::kLength;
   return {};
 }
 
@@ -153,7 +155,7 @@ cl::Outcome act(State& s, const Line& line, const Word& word, const MRow* row) {
       break;
   }
   return refuse("M" + std::string(word.digits) + ": " + std::string(row->note),
-                "let the CAM system write one program without it", "M" + std::string(word.digits));
+                std::string(row->remedy), "M" + std::string(word.digits));
 }
 
 /// D0 takes the length of the tool out of force, D1 and its kin put it in; a tool change too.

@@ -108,6 +108,7 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
       shot.kind = OneShot::Kind::kPlaneFollow;
       break;
     case GKind::kPlaneOff:
+      s.frames.parts = {};
       if (s.frames.tilt == Tilt::kNone || s.modes.has_dynamic_offset) {
         s.cl.summary.skip("G69", line.number);
         break;
@@ -185,6 +186,9 @@ bool has_axis_word(const Line& line) {
 }
 
 cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
+  if (shot.kind != OneShot::Kind::kPlaneTilt && moves(line)) {
+    if (auto done = check_plane_is_whole(s); !done) return done;
+  }
   switch (shot.kind) {
     case OneShot::Kind::kDwell:
       return dwell(s, line);

@@ -57,6 +57,7 @@ struct MRow {
   MKind kind;
   std::uint8_t value = 0;
   std::string_view note = {};
+  std::string_view remedy = "let the CAM system write one program without it";
 };
 
 [[nodiscard]] std::span<const GRow> g_rows();

@@ -58,26 +58,16 @@ void warn_of_other_frame(State& s, const Line& line, int offset, const Vector3& 
   });
 }
 
-/// One that is not known is the station's frame, and has to be the only one.
-cl::Outcome take_offset(State& s, const Line& line, int offset) {
-  const int before = s.modes.work_offset;
-  if (before == offset) return {};
-  const bool is_second = before != 0 && s.cl.path.has_moved();
-  const auto zero_mm = zero_of(s, offset);
-  if (is_second && (!zero_mm || !zero_of(s, before))) {
-    const int missing = zero_mm ? before : offset;
-    return refuse("a second work offset (" + name_of(offset) + " behind " + name_of(before) +
-                      "): where " + name_of(missing) + " lies only the control knows",
-                  "--work-zero " + std::to_string(frame_of(missing)) +
-                      "=X,Y,Z, or ctl frame set; or split the program: one for each",
-                  "second offset");
-  }
+/// It holds from the next motion on. One that is not known is the station's frame.
+void take_offset(State& s, const Line& line, int offset) {
+  if (s.modes.work_offset == offset) return;
   s.modes.work_offset = offset;
-  note_offset(s, name_of(offset));
+  const auto zero_mm = zero_of(s, offset);
   s.cl.summary.nc.has_work_zero = zero_mm.has_value();
+  if (!s.cl.path.has_moved()) note_offset(s, name_of(offset));
+  if (!zero_mm && s.cl.path.has_moved()) return;
   if (zero_mm) warn_of_other_frame(s, line, offset, *zero_mm);
   set_zero(s, line, zero_mm.value_or(Vector3::Zero()));
-  return {};
 }
 
 }  // namespace
@@ -113,11 +103,43 @@ cl::Outcome set_work_offset(State& s, const Line& line, int tenths) {
     if (!is_whole) return refuse("G54.1 needs its number, such as P1");
     offset += kPerRow * static_cast<int>(p->number);
   }
-  return take_offset(s, line, offset);
+  take_offset(s, line, offset);
+  return {};
 }
 
-cl::Outcome set_preset(State& s, const Line& line, int row) {
-  return take_offset(s, line, kPreset + kPerRow * row);
+void set_preset(State& s, const Line& line, int row) {
+  take_offset(s, line, kPreset + kPerRow * row);
+}
+
+cl::Outcome check_work_offset(State& s, const Line& line) {
+  const int from = s.modes.moved_offset, to = s.modes.work_offset;
+  if (from == to || !s.cl.path.has_moved()) {
+    s.modes.moved_offset = to;
+    return {};
+  }
+  constexpr int kFirst = 540;
+  if (from == 0 && !(to == kFirst && s.modes.language == Language::kFanuc)) {
+    return refuse(name_of(to) +
+                      " behind motion without a work offset: where that was only the "
+                      "control knows",
+                  "name the work offset before the first motion", "second offset");
+  }
+  if (from == 0) {
+    s.cl.remarks.warn("late offset", line.number, [] {
+      return std::string(
+          "G54 behind motion without a work offset: that is taken to lie in G54 too");
+    });
+  } else if (!zero_of(s, to) || !zero_of(s, from)) {
+    const int missing = zero_of(s, to) ? from : to;
+    return refuse("a second work offset (" + name_of(to) + " behind " + name_of(from) +
+                      "): where " + name_of(missing) + " lies only the control knows",
+                  "--work-zero " + std::to_string(frame_of(missing)) +
+                      "=X,Y,Z, or ctl frame set; or split the program: one for each",
+                  "second offset");
+  }
+  note_offset(s, name_of(to));
+  s.modes.moved_offset = to;
+  return {};
 }
 
 cl::Outcome set_unit(State& s, cl::LengthUnit unit) {

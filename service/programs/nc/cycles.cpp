@@ -100,6 +100,10 @@ cl::Outcome run_cycle(State& s, const Line& line) {
   for (const char* const address : {"K", "L"}) {
     const Word* const repeats = line.find(address);
     if (repeats == nullptr || repeats->number == 1) continue;
+    if (repeats->number == 0 && (line.find("X") != nullptr || line.find("Y") != nullptr)) {
+      return refuse(std::string(address) + "0 beside X or Y: whether the tool goes there differs",
+                    "write the cycle without X and Y, and every hole as a block", "cycle K0");
+    }
     if (repeats->number == 0) return {};  // the cycle is only told
     return refuse(std::string(address) + std::string(repeats->digits) + " repeats of a cycle",
                   "write every hole as a block");

@@ -51,6 +51,7 @@ cl::Outcome check_hole(const State& s) {
 cl::Outcome drill(State& s, const Line& line, const Drilling& drilling) {
   const cl::HoleCycle& hole = drilling.hole;
   if (auto done = check_hole(s); !done) return done;
+  if (auto done = check_work_offset(s, line); !done) return done;
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   if (auto done = check_feed(s, line, hole); !done) return done;
   const Vector3 up = direction_in_w(s, tool_axis(s));

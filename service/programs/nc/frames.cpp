@@ -167,31 +167,9 @@ void set_zero(State& s, const Line& line, const Vector3& zero_mm) {
   });
 }
 
-/// G68.2 X Y Z I J K: the origin, and turns about z, the new x and the new z.
-cl::Outcome define_plane(State& s, const Line& line) {
-  std::array<double, 6> v{};
-  constexpr std::array<std::string_view, 6> kAddresses = {"X", "Y", "Z", "I", "J", "K"};
-  for (std::size_t k = 0; k < v.size(); ++k) {
-    if (const Word* const word = line.find(kAddresses[k]); word != nullptr) v[k] = word->number;
-  }
-  const Word* const form = line.find("P");
-  if (form != nullptr && form->number != 0) {
-    return refuse("G68.2 P" + std::string(form->digits) + ": a plane that is not told by angles",
-                  "output G68.2 with X Y Z and the angles I J K", "G68.2 P");
-  }
-  if (s.modes.is_incremental) return refuse("G68.2 under G91", "write G90 before it");
-  if (s.modes.has_dynamic_offset) return refuse("G68.2 under G254", "write G255 before it");
-  if (holds_tip(s.modes.control)) {
-    return refuse("G68.2 while tool-centre control is on", "write G49 before it");
-  }
-  const cl::Frame plane =
-      cl::compose(moved_by({v[0], v[1], v[2]}), turned({{2, v[3]}, {0, v[4]}, {2, v[5]}}));
-  set_plane(s, line, plane, Tilt::kDefined);
-  return {};
-}
-
 /// G53.1: the rotary axes turn the tool across the plane.
 cl::Outcome follow_plane(State& s, const Line& line) {
+  if (auto done = check_plane_is_whole(s); !done) return done;
   if (s.frames.tilt == Tilt::kNone) return refuse("G53.1, but no G68.2 tells a plane");
   turn_to_plane(s, line);
   return {};

@@ -15,12 +15,21 @@ enum class Tilt : std::uint8_t {
   kTurned    ///< the control has turned them: the tool axis is z of the plane
 };
 
+/// G68.2 P2 and P3 tell a plane in several blocks, Q1 and on: what was told so far.
+struct PlaneInParts {
+  int form = 0;                                                ///< of P; 0: none has begun
+  int last = 0;                                                ///< Q of the last block
+  Vector3 origin = Vector3::Zero(), second = Vector3::Zero();  ///< the two points of P2
+  Vector3 x_axis = Vector3::UnitX();                           ///< of P3
+};
+
 /// What lies between the points of a program and its zero. Lengths in the unit of the program.
 struct ProgramFrames {
   cl::Frame shift;  ///< TRANS, ROT and their kin, datum shift, G52
   cl::Frame plane;  ///< G68.2, CYCLE800, PLANE SPATIAL
   cl::Frame now;    ///< both together: program = now * written
   Tilt tilt = Tilt::kNone;
+  PlaneInParts parts;
   Vector3 zero_mm = Vector3::Zero();  ///< of the work offset, from the zero of the station's frame
 };
 

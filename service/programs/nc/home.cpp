@@ -82,7 +82,12 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place
   const char* const code = code_of(s, place);
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   std::vector<MachineAxes::Target> targets = targets_of(s, line, is_as_written);
-  if (targets.empty()) return refuse(std::string(code) + " without axis words");
+  if (targets.empty()) {
+    return refuse(std::string(code) +
+                      " without axis words moves all axes on some controls and "
+                      "none on others",
+                  std::string("write which, such as G91 ") + code + " Z0.", code);
+  }
   const bool turns = std::any_of(line.words.begin(), line.words.end(),
                                  [](const Word& word) { return word.may_be_rotary(); });
   if (turns && s.modes.has_dynamic_offset) {

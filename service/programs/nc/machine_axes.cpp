@@ -87,21 +87,47 @@ std::optional<JointVector> MachineAxes::solve_near(const ToolPose& pose, double 
   return best;
 }
 
+Expected<double, cl::Refusal> MachineAxes::length_mm(std::optional<std::uint32_t> tool) const {
+  if (!words_) return refuse(refusal_);
+  if (!tool) return model_.tool_length_mm;
+  const Tool* const row = tools_.find(static_cast<int>(*tool));
+  if (row != nullptr) return row->tip_length_mm();
+  return refuse("a move to a place of the machine needs the length of tool " +
+                    std::to_string(*tool) + ", which is not in the tool table",
+                "give --tools FILE or --unknown-tool-length MM");
+}
+
+Expected<double, cl::Refusal> MachineAxes::way_out(const ToolPose& from,
+                                                   const std::vector<RotaryAt>& rotary,
+                                                   std::optional<std::uint32_t> tool) const {
+  const auto length = length_mm(tool);
+  if (!length) return tl::make_unexpected(length.error());
+  constexpr double kSameTurn_rad = 1e-9, kAtRest = 1e-9;
+  const auto begin = solve_near(from, *length, joints(rotary));
+  const auto end = begin ? solve_near({from.tip + from.axis, from.axis}, *length, *begin)
+                         : std::optional<JointVector>();
+  if (!end) return refuse("the machine does not reach the place where this move begins");
+  double way = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < model_.joint_count; ++i) {
+    const double step = (*end)[i] - (*begin)[i];
+    if (words_->is_rotary(i)) {
+      if (std::abs(step) < kSameTurn_rad) continue;
+      return refuse("rotary axes of machine " + model_.name + " turn along the tool axis");
+    }
+    if (std::abs(step) < kAtRest || model_.joints[i].is_endless) continue;
+    const JointLimits& limits = model_.joints[i].limits;
+    way = std::min(way, ((step > 0 ? limits.travel_max : limits.travel_min) - (*begin)[i]) / step);
+  }
+  if (!std::isfinite(way)) return refuse("no travel of machine " + model_.name + " ends there");
+  return std::max(way, 0.0);
+}
+
 Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
     const ToolPose& from, const std::vector<RotaryAt>& rotary, std::optional<std::uint32_t> tool,
     const std::vector<Target>& targets) const {
-  if (!words_) return refuse(refusal_);
-  double length_mm = model_.tool_length_mm;
-  if (tool) {
-    const Tool* const row = tools_.find(static_cast<int>(*tool));
-    if (row == nullptr) {
-      return refuse("a move to a place of the machine needs the length of tool " +
-                        std::to_string(*tool) + ", which is not in the tool table",
-                    "give --tools FILE or --unknown-tool-length MM");
-    }
-    length_mm = row->tip_length_mm();
-  }
-  auto q = solve_near(from, length_mm, joints(rotary));
+  const auto length = length_mm(tool);
+  if (!length) return tl::make_unexpected(length.error());
+  auto q = solve_near(from, *length, joints(rotary));
   if (!q) return refuse("the machine does not reach the place where this move begins");
   for (const Target& target : targets) {
     const int i = words_->find(target.address);
@@ -114,7 +140,7 @@ Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
     (*q)[i] = target.value ? words_->axis(i, *target.value) : named;
   }
   Reached out;
-  out.pose = forward(model_, length_mm, *q);
+  out.pose = forward(model_, *length, *q);
   for (int i = 0; i < words_->count(); ++i) {
     if (words_->is_rotary(i)) out.rotary.push_back({words_->address(i), words_->value(i, (*q)[i])});
   }

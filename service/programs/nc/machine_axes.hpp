@@ -61,7 +61,14 @@ class MachineAxes {
                                                     std::optional<std::uint32_t> tool,
                                                     const std::vector<Target>& targets) const;
 
+  /// How far the tool can leave `from` along its axis until a linear joint is at the end of its
+  /// travel, mm. Refused where rotary joints would turn on the way.
+  [[nodiscard]] Expected<double, cl::Refusal> way_out(const ToolPose& from,
+                                                      const std::vector<RotaryAt>& rotary,
+                                                      std::optional<std::uint32_t> tool) const;
+
  private:
+  [[nodiscard]] Expected<double, cl::Refusal> length_mm(std::optional<std::uint32_t> tool) const;
   [[nodiscard]] JointVector joints(const std::vector<RotaryAt>& rotary) const;
   [[nodiscard]] std::optional<JointVector> solve_near(const ToolPose& pose, double tool_length_mm,
                                                       const JointVector& near) const;

@@ -69,7 +69,8 @@ struct Modes {
   std::optional<Drilling> at_every_point;     ///< MCALL of Siemens
   std::optional<CycleDefinition> definition;  ///< CYCL DEF of Klartext
   OpenDefinition open = OpenDefinition::kNone;
-  int work_offset = 0;  ///< code in tenths, with P of G54.1 in thousands; 0: none told
+  int work_offset = 0;   ///< code in tenths, with P of G54.1 in thousands; 0: none told
+  int moved_offset = 0;  ///< the one under which the tool has moved last
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;
   std::array<std::optional<double>, 2> pole;  ///< CC of Klartext

@@ -150,13 +150,14 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
   return {};
 }
 
-/// A cut of words of Fanuc without G43: its Z may be that of the spindle.
+/// A cut without G43, or under D0 of Siemens: its Z may be that of the spindle.
 void warn_of_no_length(State& s, const Line& line) {
-  const bool is_bare = s.modes.control == Control::kNone && s.modes.language == Language::kFanuc;
-  if (!is_bare || s.modes.motion == Motion::kRapid) return;
-  s.cl.remarks.warn("no length", line.number, [] {
-    return "a cut without G43 or G43.4: Z is read as that of the tip; where it means the spindle, "
-           "the tool cuts off by its length";
+  if (s.modes.control != Control::kNone || s.modes.motion == Motion::kRapid) return;
+  const bool is_siemens = s.modes.language == Language::kSiemens;
+  s.cl.remarks.warn("no length", line.number, [is_siemens] {
+    return std::string("a cut ") + (is_siemens ? "under D0" : "without G43 or G43.4") +
+           ": Z is read as that of the tip; where it means the spindle, the tool cuts off by its "
+           "length";
   });
 }
 
@@ -188,12 +189,7 @@ cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
     return refuse("a cut without tool-centre control while a rotary axis is not at zero",
                   "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
   }
-  if (s.cl.path.has_moved())
-    s.cl.remarks.warn("no tip", line.number, [] {
-      return "rapids behind which the tip is not known (rotary axes turned without tool-centre "
-             "control, or not all of X Y Z told) are no part of the path: the next motion goes "
-             "straight from the point before them; see that nothing is in the way";
-    });
+  if (s.cl.path.has_moved()) warn_of_unseen_rapid(s, line);
   s.place = to.place;
   if (!is_of_tip(s, to)) s.place.forget();
   return {};
@@ -205,6 +201,14 @@ bool Place::is_turned() const noexcept {
   return is_by_control || std::any_of(rotary.begin(), rotary.end(), [](const RotaryAt& at) {
            return !at.deg || std::fmod(*at.deg, 360.0) != 0;
          });
+}
+
+void warn_of_unseen_rapid(State& s, const Line& line) {
+  s.cl.remarks.warn("no tip", line.number, [] {
+    return "rapids behind which the tip is not known (rotary axes turned without tool-centre "
+           "control, or not all of X Y Z told) are no part of the path: the next motion goes "
+           "straight from the point before them; see that nothing is in the way";
+  });
 }
 
 Vector3 in_w(const State& s, const Vector3& written) {
@@ -219,6 +223,7 @@ cl::Outcome move(State& s, const Line& line) {
       s.modes.motion == Motion::kClockwise || s.modes.motion == Motion::kCounterClockwise;
   if (auto done = check_words(s, line, is_arc); !done) return done;
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
+  if (auto done = check_work_offset(s, line); !done) return done;
   if (auto done = choose_orientation(s, line); !done) return done;
   Target to{s.place, Vector3::UnitZ(), false};
   if (auto done = take_tip(s, line, to); !done) return done;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "service/programs/cl/modal.hpp"
@@ -50,8 +51,11 @@ void note_rotary_words(State& s, Place& to);
 [[nodiscard]] Vector3 as_written(const State& s, const Vector3& p_w);
 /// A direction along the axes of the program's zero, in W without --frame.
 [[nodiscard]] Vector3 direction_in_w(const State& s, const Vector3& program);
-/// G68.2, G53.1 and G52.
+/// tilted_plane.cpp: G68.2, by angles, three points or two vectors.
 [[nodiscard]] cl::Outcome define_plane(State& s, const Line& line);
+/// A plane of several blocks has to be whole before anything else is done.
+[[nodiscard]] cl::Outcome check_plane_is_whole(const State& s);
+/// G53.1 and G52.
 [[nodiscard]] cl::Outcome follow_plane(State& s, const Line& line);
 [[nodiscard]] cl::Outcome set_local_zero(State& s, const Line& line);
 
@@ -66,6 +70,8 @@ struct Target;
 // points.cpp
 /// The words of a line that move: its points by the motion in force.
 [[nodiscard]] cl::Outcome move(State& s, const Line& line);
+/// A rapid that is no part of the path, since where it ends is not known.
+void warn_of_unseen_rapid(State& s, const Line& line);
 /// A point of the program, in its unit, in W without --frame, in mm.
 [[nodiscard]] Vector3 in_w(const State& s, const Vector3& written);
 
@@ -116,11 +122,18 @@ enum class MachinePlace : std::uint8_t {
 };
 [[nodiscard]] cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place);
 
+// retract.cpp
+/// Along the tool axis off the part, `distance` in the unit of the program, or to the end of
+/// travel.
+[[nodiscard]] cl::Outcome retract(State& s, const Line& line, std::optional<double> distance);
+
 // control.cpp
 [[nodiscard]] cl::Outcome set_control(State& s, const Line& line, Control control);
 [[nodiscard]] cl::Outcome set_work_offset(State& s, const Line& line, int tenths);
 /// CYCL DEF 247 of Klartext: a row of the preset table.
-[[nodiscard]] cl::Outcome set_preset(State& s, const Line& line, int row);
+void set_preset(State& s, const Line& line, int row);
+/// Before every motion: one under another offset than the last needs the places of both.
+[[nodiscard]] cl::Outcome check_work_offset(State& s, const Line& line);
 [[nodiscard]] cl::Outcome set_unit(State& s, cl::LengthUnit unit);
 
 // actions.cpp

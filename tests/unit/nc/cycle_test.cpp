@@ -70,5 +70,14 @@ TEST(NcCycles, AreRefusedByName) {
   }
 }
 
+TEST(NcCycle, ToldWithoutAHoleNamesNoPlaceBeside) {
+  const std::string head = "G43 H1\nG0 X0. Y0. Z20.\nG99 ";
+  const ReadText read = read_nc(head + "G81 Z-5. R2. F100. K0\nX1. Y2.\nG80\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.holes, 1U);
+  EXPECT_NE(read_nc(head + "G81 X1. Z-5. R2. F100. L0\nY2.\nG80\n").error.find("L0 beside X or Y"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace meridian::nc

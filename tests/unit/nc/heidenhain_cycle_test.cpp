@@ -83,7 +83,7 @@ TEST(KlartextCycles, NameTheRowOfThePresetTableThatIsTheFrameOfTheStation) {
   ASSERT_EQ(read.error, "");
   EXPECT_EQ(read.summary.nc.work_offset, "CYCL DEF 247 Q339=1");
   EXPECT_EQ(read.summary.holes, 1U) << "the cycle in force stays";
-  EXPECT_NE(read_klartext(preset + kAbove + "CYCL DEF 247 DATUM SETTING Q339=2\n")
+  EXPECT_NE(read_klartext(preset + kAbove + "CYCL DEF 247 DATUM SETTING Q339=2\nL X+1\n")
                 .error.find("a second work offset (CYCL DEF 247 Q339=2"),
             std::string::npos);
 }

@@ -50,6 +50,100 @@ TEST(Klartext, TurnsArcs) {
   EXPECT_EQ(tip(motion[4]), Vector3(-5, 0, -1));
 }
 
+TEST(Klartext, TurnsArcsByTheirAngle) {
+  const ReadText read = read_klartext(
+      "2 L X+10 Y+0 Z+0 R0 FMAX\n3 CC X+0 Y+0\n4 CP IPA+90 DR+ F600\n5 CP PA+180 DR+\n"
+      "6 CP IPA-810 IZ-9 DR-\n7 CP IPA+720 IZ+2 DR+\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 8U) << "a helix of two turns and a quarter has three blocks";
+  EXPECT_LT((tip(motion[1]) - Vector3(0, 10, 0)).norm(), kTiny);
+  EXPECT_LT((tip(motion[2]) - Vector3(-10, 0, 0)).norm(), kTiny);
+  double sweep = 0;
+  for (std::size_t n = 3; n < 6; ++n) {
+    sweep += motion[n].sweep_rad;
+    EXPECT_LT((to_vector(motion[n].normal) + Vector3::UnitZ()).norm(), kTiny);
+  }
+  EXPECT_NEAR(sweep, 4.5 * std::numbers::pi, kTiny);
+  EXPECT_LT((tip(motion[3]) - Vector3(-10, 0, -4)).norm(), kTiny) << "it falls evenly";
+  EXPECT_LT((tip(motion[5]) - Vector3(0, 10, -9)).norm(), kTiny);
+  EXPECT_LT((tip(motion[6]) - Vector3(0, 10, -8)).norm(), kTiny);
+  EXPECT_LT((tip(motion[7]) - Vector3(0, 10, -7)).norm(), kTiny);
+  for (const char* const arc : {"CP IPA-90 DR+", "CP IPA+0 DR+", "CP DR+", "CP X+1 IPA+90 DR+"}) {
+    EXPECT_NE(
+        read_klartext("2 L X+9 Y+0 Z+0 FMAX\n3 CC X+0 Y+0\n4 " + std::string(arc) + "\n").error, "")
+        << arc;
+  }
+}
+
+TEST(Klartext, LeavesThePartAlongTheToolAxis) {
+  const std::string head =
+      "1 PLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN FMAX\n2 L X+0 Y+0 Z+5 R0 FMAX\n3 L Z+0 F600\n";
+  const ReadText read = read_klartext(head + "4 L M140 MB50\n5 L X+1\n6 L M140 MB2 F300\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 5U);
+  EXPECT_EQ(motion[2].kind, BlockKind::kRapid);
+  EXPECT_LT((tip(motion[2]) - 50 * Vector3(kHalfRoot, 0, kHalfRoot)).norm(), kTiny);
+  EXPECT_LT((tip(motion[3]) - tip(motion[2]) - Vector3(kHalfRoot, 0, -kHalfRoot)).norm(), kTiny)
+      << "Z of the plane is where it went";
+  EXPECT_EQ(motion[4].kind, BlockKind::kCut);
+  EXPECT_DOUBLE_EQ(motion[4].feed, 5);
+  EXPECT_EQ(read_klartext("1 L M140 MB MAX\n2 L X+0 Y+0 Z+0 FMAX\n").error, "")
+      << "before the first motion nothing has to be known";
+}
+
+TEST(Klartext, LeavesThePartToTheEndOfTravel) {
+  const MachineModel machine = shipped("trunnion-ac");
+  const ReadText read = read_klartext("1 TOOL CALL 1 Z\n2 L X+0 Y+0 Z+5 R0 FMAX\n3 L M140 MB MAX\n",
+                                      klartext(on(machine)));
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 2U);
+  EXPECT_EQ(axis(motion[1]), Vector3::UnitZ());
+  EXPECT_GT(tip(motion[1])[2], 5);
+  const auto solved =
+      solve(machine, machine.tool_length_mm, Pose<double>{tip(motion[1]), axis(motion[1])}, 0, {});
+  double nearest = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const JointLimits& limits = machine.joints[i].limits;
+    nearest = std::min({nearest, std::abs(solved.q[i] - limits.travel_max),
+                        std::abs(solved.q[i] - limits.travel_min)});
+  }
+  EXPECT_LT(nearest, 1e-6);
+}
+
+TEST(Klartext, LeavesTheFeedOfM128ToM128) {
+  const ReadText read = read_klartext(
+      "2 L X+0 Y+0 Z+0 F600 M128 F5000\n3 LN X+1 Y+0 Z+0 TX+0 TY+0 TZ+1\n4 M128 F4000\n5 L X+2\n");
+  ASSERT_EQ(read.error, "");
+  for (const ClBlock& block : read.motion()) EXPECT_DOUBLE_EQ(block.feed, 10);
+}
+
+TEST(Klartext, CountsRotaryAxesWithinATurnBehindM94) {
+  const std::string head =
+      "2 L A+30 C+350 R0 FMAX\n3 M128\n4 L X+0 Y+0 Z+50 FMAX\n5 L C+370 F600\n";
+  const auto options = klartext(on(shipped("trunnion-ac")));
+  const std::size_t before = read_klartext(head, options).motion().size();
+  const ReadText without = read_klartext(head + "6 L C+10\n", options);
+  EXPECT_GT(without.motion().size(), before + 4) << "a whole turn back";
+  const ReadText with = read_klartext(head + "6 M94\n7 L C+10\n", options);
+  EXPECT_EQ(with.motion().size(), before + 1);
+}
+
+TEST(Klartext, SkipsWhatEndsFramesThatNobodySet) {
+  const ReadText read = read_klartext(
+      "2 CYCL DEF 10.0 ROTATION\n3 CYCL DEF 10.1 ROT+0\n4 CYCL DEF 8.0 MIRROR IMAGE\n5 CYCL DEF "
+      "8.1\n"
+      "6 CYCL DEF 11.0 SCALING\n7 CYCL DEF 11.1 SCL 1\n8 CYCL DEF 19.0 WORKING PLANE\n"
+      "9 CYCL DEF 19.1 A+0 B+0 C+0\n10 CYCL DEF 19.0 WORKING PLANE\n11 CYCL DEF 19.1\n"
+      "12 TRANS DATUM AXIS X+10 Y+5\n13 FUNCTION MODE MILL\n14 L X+0 Y+0 Z+0 FMAX M120 LA5\n"
+      "15 TRANS DATUM RESET\n16 L X+0 F600\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(tip(read.motion()[0]), Vector3(10, 5, 0));
+  EXPECT_EQ(tip(read.motion()[1]), Vector3(0, 5, 0)) << "Y stays where it stands";
+}
+
 TEST(Klartext, Acts) {
   const ReadText read = read_klartext(
       "2 TOOL CALL 5 Z S6000 F200\n3 L X+0 Y+0 Z+0 R0 FMAX M13\n4 TOOL CALL S300\n"
@@ -88,8 +182,20 @@ TEST(Klartext, RefusesByName) {
       {"LN X+1 TX+0 TY+0 TZ+1 F5", "TX, TY, TZ without tool-centre control"},
       {"FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", "angles in space"},
       {"FUNCTION TCPM F TCP AXIS POS REFPNT CENTER-CENTER", "the ball's centre"},
-      {"L X+1 F5 M140", "M140 is not run here"},
-      {"M140 MB MAX", "M140 is not run here"},
+      {"L X+1 F5 M140 MB5", "M140 beside coordinates"},
+      {"L M140", "M140 needs MB"},
+      {"L M140 MB MAX", "--machine FILE"},
+      {"L M140 MB-5", "M140 into the part"},
+      {"L X+1 M130", "M130 is not run here"},
+      {"L M118 X1 Y1 Z1", "M118 is not run here"},
+      {"M103 F20", "M103 is not run here"},
+      {"M144", "M144 is not run here"},
+      {"CYCL DEF 19.1 A+0 B+45 C+0", "CYCL DEF 19.1 B+45: whether its angles"},
+      {"CYCL DEF 10.1 ROT+30", "CYCL DEF 10.1 ROT+30: mirroring"},
+      {"CYCL DEF 11.1 SCL 0.99", "CYCL DEF 11.1 SCL: mirroring"},
+      {"CYCL DEF 8.1 X", "CYCL DEF 8.1 X: mirroring"},
+      {"TRANS DATUM TABLE", "TRANS DATUM TABLE, which only the control knows"},
+      {"CP IPA+90 DR+", "an arc (CP) before any CC"},
       {"L X+1 X+2", "word X twice"}};
   for (const auto& [line, says] : cases) {
     const ReadText read = read_klartext("2 L X+0 Y+0 Z+0 R0 FMAX\n3 " + std::string(line) + "\n");

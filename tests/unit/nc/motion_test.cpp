@@ -82,7 +82,24 @@ TEST(WorkOffsets, AreRefusedWhereOneOfTwoIsNotKnown) {
   const std::string second = read_nc("G55\nG43 H1\nG0 X0. Y0. Z9.\nG59.1\nX1.\n", options).error;
   EXPECT_NE(second.find("where G59.1 lies"), std::string::npos) << second;
   options.nc = reader_of_programs();
-  EXPECT_NE(read_nc("G55\nG43 H1\nG0 X0. Y0. Z9.\nG54\n", options).error, "") << "no machine";
+  EXPECT_NE(read_nc("G55\nG43 H1\nG0 X0. Y0. Z9.\nG54\nX1.\n", options).error, "") << "no machine";
+}
+
+TEST(WorkOffsets, HoldFromTheNextMotionOn) {
+  const ReadText read = read_nc("G54\nG43 H1\nG0 X0. Y0. Z9.\nG55\nG54\nG1 X1.\n");
+  ASSERT_EQ(read.error, "") << "G55 is not moved in";
+  EXPECT_EQ(read.summary.nc.work_offset, "G54");
+}
+
+TEST(WorkOffsets, BehindMotionWithoutOneAreG54OrRefused) {
+  const std::string head = "G43 H1\nG0 X0. Y0. Z9.\n";
+  const ReadText read = read_nc(head + "G54\nX1.\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_TRUE(read.warned_of("taken to lie in G54 too"));
+  EXPECT_NE(read_nc(head + "G55\nX1.\n").error.find("behind motion without a work offset"),
+            std::string::npos);
+  EXPECT_NE(read_siemens("G0 X0 Y0 Z9\nG54\nX1\n").error.find("behind motion without"),
+            std::string::npos);
 }
 
 TEST(NcMotion, HasTheUnitWordsOfDin66025) {

@@ -28,7 +28,8 @@ TEST(NcRefusal, NamesWhatOnlyAControlCanRun) {
                                          {"G65 P9010", "G65: a macro call"},
                                          {"G66 P9010", "G66: a macro call"},
                                          {"M98 P1000", "M98: a subprogram"},
-                                         {"M99", "M99: a subprogram"},
+                                         {"M99", "end a main program with M30"},
+                                         {"G28", "moves all axes on some controls"},
                                          {"O1\nO2", "a second program number"},
                                          {"G31 Z-5. F100.", "G31: probing"},
                                          {"G38.2 Z-5. F100.", "G38.2: probing"}}) {
@@ -40,7 +41,8 @@ TEST(NcRefusal, NamesWhatOnlyAControlCanRun) {
 
 TEST(NcRefusal, NamesWhatTheControlKeepsForItself) {
   for (const Case& c :
-       std::vector<Case>{{"G68.2 P1 X0. Y0. Z0. I0. J0. K0.", "not told by angles"},
+       std::vector<Case>{{"G68.2 P1 X0. Y0. Z0. I10. J20. K0.", "has two readings"},
+                         {"G68.2 P4 X0. Y0. Z0. I0. J0. K0.", "angles of its projections"},
                          {"G68.3", "G68.3: a tilted plane"},
                          {"G53.1", "G53.1, but no G68.2"},
                          {"G68 R30.", "G68: a rotation"},
@@ -56,7 +58,7 @@ TEST(NcRefusal, NamesWhatTheControlKeepsForItself) {
                          {"G123", "G123 is not known here; --allow-unknown G123"}}) {
     expect_refused(c);
   }
-  const ReadText read = read_nc("G54\nG0 X0. Y0. Z0.\nG55\n");
+  const ReadText read = read_nc("G54\nG0 X0. Y0. Z0.\nG55\nX1.\n");
   EXPECT_NE(read.error.find("a second work offset (G55 behind G54)"), std::string::npos);
 }
 

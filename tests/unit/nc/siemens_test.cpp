@@ -120,7 +120,8 @@ TEST(SiemensProgram, RefusesByName) {
       {"G70", "G70: inch for lengths"},
       {"G55 G0 X1", "a second work offset"},
       {"M17", "the end of a subprogram"},
-      {"START:", "what begins with ':'"},
+      {"ACC[X 50", "ACC[ without its closing bracket"},
+      {"CTOL=", "CTOL= without a number"},
       {"$AC_TIMER", "a variable of the control"},
       {"MSG(\"open", "without its closing bracket"},
       {"L10 P2", "L10: a subprogram"},
@@ -130,6 +131,27 @@ TEST(SiemensProgram, RefusesByName) {
     EXPECT_EQ(read.error_line, 5U) << c.line << ": " << read.error;
     EXPECT_NE(read.error.find(c.says), std::string::npos) << c.line << ": " << read.error;
   }
+}
+
+TEST(SiemensProgram, SkipsLabelsAndWhatSaysHowTheControlSmooths) {
+  const ReadText read = read_siemens(
+      "START:\nTRAORI\nG642 ADIS=0.05 ADISPOS=0.1\nFGROUP(X,Y,Z,A,C)\nFGREF[A]=10 FGREF[C]=R5\n"
+      "R5=3 CTOL=0.01 OTOL=0.5\nFGREF[C]=R5 FIFOCTRL DYNFINISH ACC[X]=80\n"
+      "GROUP_BEGIN(0,\"OP1\",0,0)\nG0 X0 Y0 Z0 A3=0 B3=0 C3=1\nG1 X1\nTRAFOOF\n");
+  EXPECT_EQ(read.error_line, 8U) << "R5 has no number yet: " << read.error;
+  const ReadText whole = read_siemens(
+      "START:\nTRAORI\nG642 ADIS=0.05 ADISPOS=0.1\nFGROUP(X,Y,Z,A,C)\nR5=3 FGREF[A]=10 "
+      "FGREF[C]=R5\n"
+      "CTOL=0.01 OTOL=0.5 FIFOCTRL DYNFINISH ACC[X]=80\nGROUP_BEGIN(0,\"OP1\",0,0)\n"
+      "G0 X0 Y0 Z0 A3=0 B3=0 C3=1\nG1 X1\nTRAFOOF\n");
+  ASSERT_EQ(whole.error, "");
+  EXPECT_EQ(whole.motion().size(), 2U);
+}
+
+TEST(SiemensProgram, SaysWhereACutIsUnderD0) {
+  EXPECT_TRUE(read_siemens("G0 X0 Y0 Z0 D0\nG1 X1\n").warned_of("a cut under D0"));
+  EXPECT_FALSE(read_siemens("D0\nT1 M6\nG0 X0 Y0 Z0\nG1 X1\n").warned_of("a cut under D0"))
+      << "a new tool comes with its D1";
 }
 
 TEST(SiemensProgram, ClearsFramesThatNobodySet) {

@@ -41,6 +41,72 @@ TEST(TiltedPlane, TurnsArcsAndHolesWithIt) {
   EXPECT_LT((axis(motion[6]) - Vector3(0, -1, 0)).norm(), kTiny);
 }
 
+/// z and x of the plane that these blocks define, and its origin, by three points in it.
+struct Plane {
+  Vector3 origin, x, z;
+};
+Plane plane_of(const std::string& blocks) {
+  const ReadText read =
+      read_nc("G43 H1\n" + blocks + "G53.1\nG0 X0. Y0. Z0.\nG1 X1.\nX0. Z1.\nG69\n");
+  EXPECT_EQ(read.error, "") << blocks;
+  const auto motion = read.motion();
+  if (motion.size() != 3) return {};
+  EXPECT_LT((axis(motion[1]) - (tip(motion[2]) - tip(motion[0]))).norm(), kTiny)
+      << "the tool stands across it";
+  return {tip(motion[0]), tip(motion[1]) - tip(motion[0]), tip(motion[2]) - tip(motion[0])};
+}
+
+TEST(TiltedPlane, OfOneRollPitchOrYawTurnsAboutThatAxis) {
+  const Plane roll = plane_of("G68.2 P1 Q123 X1. Y2. Z3. I90. J0. K0.\n");
+  EXPECT_LT((roll.origin - Vector3(1, 2, 3)).norm(), kTiny);
+  EXPECT_LT((roll.x - Vector3(1, 0, 0)).norm() + (roll.z - Vector3(0, -1, 0)).norm(), kTiny);
+  const Plane pitch = plane_of("G68.2 P1 X0. Y0. Z0. J90.\n");
+  EXPECT_LT((pitch.x - Vector3(0, 0, -1)).norm() + (pitch.z - Vector3(1, 0, 0)).norm(), kTiny);
+  const Plane yaw = plane_of("G68.2 P1 Q321. X0. Y0. Z0. K90.\n");
+  EXPECT_LT((yaw.x - Vector3(0, 1, 0)).norm() + (yaw.z - Vector3(0, 0, 1)).norm(), kTiny);
+}
+
+TEST(TiltedPlane, OfThreePointsHasItsXFromTheFirstToTheSecond) {
+  // x is straight up, the third point lies towards -x: z is -y.
+  const Plane plane = plane_of(
+      "G68.2 P2 Q0 X0. Y0. Z0. R0.\nG68.2 P2 Q1 X10. Y20. Z30.\nG68.2 P2 Q2 X10. Y20. Z80.\n"
+      "G68.2 P2 Q3 X5. Y20. Z99.\n");
+  EXPECT_LT((plane.origin - Vector3(10, 20, 30)).norm(), kTiny);
+  EXPECT_LT((plane.x - Vector3(0, 0, 1)).norm() + (plane.z - Vector3(0, -1, 0)).norm(), kTiny);
+}
+
+TEST(TiltedPlane, OfTwoVectorsHasThemAsItsXAndZ) {
+  const Plane plane = plane_of("G68.2 P3 Q1 X1. Y2. Z3. I0. J2. K0.\nG68.2 P3 Q2 I5. J0. K5.\n");
+  EXPECT_LT((plane.origin - Vector3(1, 2, 3)).norm(), kTiny);
+  EXPECT_LT((plane.x - Vector3(0, 1, 0)).norm(), kTiny);
+  EXPECT_LT((plane.z - Vector3(kHalfRoot, 0, kHalfRoot)).norm(), kTiny);
+}
+
+TEST(TiltedPlane, OfSeveralBlocksIsRefusedWhereItIsNotWhole) {
+  const std::string first = "G68.2 P2 Q1 X0. Y0. Z0.\n", second = "G68.2 P2 Q2 X9. Y0. Z0.\n";
+  for (const auto& [body, says] : std::vector<std::pair<std::string, const char*>>{
+           {first + "G53.1\n", "G68.2 P2 without its Q2"},
+           {first + second + "G0 X0. Y0. Z0.\n", "G68.2 P2 without its Q3"},
+           {first + "G68.2 X0. Y0. Z0. I0. J0. K0.\n", "without its Q2"},
+           {first + "G68.2 P3 Q2 I0. J0. K1.\n", "out of its order"},
+           {second, "out of its order"},
+           {first + "G68.2 P2 Q3 X0. Y9. Z0.\n", "out of its order"},
+           {"G68.2 P2 Q0 X5. Y0. Z0.\n", "Q0 with a shift"},
+           {"G68.2 P2 X5. Y0. Z0.\n", "needs Q0 to Q3"},
+           {first + second + "G68.2 P2 Q3 X4. Y0. Z0.\n", "lie on a line"},
+           {"G68.2 P3 Q1 X0. Y0. Z0. I1. J0. K0.\nG68.2 P3 Q2 I1. J0. K1.\n",
+            "do not stand square"},
+           {"G68.2 P3 Q1 X0. Y0. Z0.\n", "no direction"},
+           {"G68.2 P1 Q122 X0. Y0. Z0. I9.\n", "no order of three axes"},
+           {"G68.2 Q123 X0. Y0. Z0. I9. J0. K0.\n", "other axes than Z X Z"},
+           {"G68.2 X0. Y0. Z0. I9. J0. K0. R5.\n", "G68.2 with R"}}) {
+    EXPECT_NE(read_nc("G43 H1\n" + body).error.find(says), std::string::npos)
+        << body << read_nc("G43 H1\n" + body).error;
+  }
+  EXPECT_EQ(read_nc("G43 H1\n" + first + "G69\nG0 X0. Y0. Z0.\nG1 X1.\n").error, "")
+      << "G69 ends it";
+}
+
 TEST(TiltedPlane, IsNotCutInBeforeTheToolStandsAcrossIt) {
   const ReadText read = read_nc("G43 H1\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG0 X0. Y0. Z5.\nG1 Z0.\n");
   EXPECT_EQ(read.error_line, 7U) << read.error;

@@ -2,10 +2,13 @@
 // Klartext: every statement becomes the words of ISO that say the same.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/nc/block.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_arcs.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_cycles.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
 #include "service/programs/nc/remedy.hpp"
@@ -16,7 +19,10 @@ namespace {
 using cl::refuse;
 
 /// M codes of the control that say how it moves and nothing about where.
-constexpr std::array kSilent = {107, 108, 116, 117, 120, 124, 126, 127, 138, 141};
+constexpr std::array kSilent = {90,  101, 102, 107, 108, 109, 110, 111, 112, 115, 116,
+                                117, 120, 124, 126, 127, 137, 138, 141, 145, 148, 149};
+/// Those that put points elsewhere, or whose words are neither coordinates nor a feed.
+constexpr std::array kCodesNotRun = {92, 103, 114, 118, 130, 136, 143, 144};
 
 bool has_name(const Line& line, std::string_view name) {
   return std::any_of(line.names.begin(), line.names.end(),
@@ -54,6 +60,10 @@ cl::Outcome switch_off(State& s, const Line& line) {
 cl::Outcome run_function(State& s, const Line& line) {
   const std::string_view text = line.names.front().arguments;
   if (mentions(text, "RESET TCPM")) return switch_off(s, line);
+  if (text == " MODE MILL") {
+    s.cl.summary.skip("FUNCTION MODE MILL", line.number);
+    return {};
+  }
   if (!mentions(text, "TCPM")) {
     return refuse("FUNCTION" + std::string(text.substr(0, 24)) + " is not run here", kMovesByCam,
                   "FUNCTION");
@@ -86,6 +96,7 @@ cl::Outcome run_cycle_definition(State& s, const Line& line) {
     s.cl.summary.skip("CYCL DEF " + number, line.number);
     return {};
   }
+  if (is_frame_cycle(number)) return reset_frame_cycle(s, line, number, text.substr(number.size()));
   double seconds = 0;
   if (number == "9.1" && cl::parse_number(text.substr(text.rfind(' ') + 1), seconds)) {
     return rest(s, line, seconds);
@@ -116,19 +127,40 @@ struct Translated {
   Line iso;
   bool is_machine_place = false;
   bool calls_cycle = false;  ///< M99, M89
+  bool retracts = false;     ///< M140
 };
+
+bool is_code(const Word& word, int code) { return word.is('M') && word.number == code; }
+
+/// M128 F5000 tells the feed of the linear axes that follow a turn, which is none of the path.
+bool is_feed_of_m128(const Line& line, std::size_t at) {
+  return at > 0 && line.words[at].is('F') && is_code(line.words[at - 1], 128);
+}
+
+/// M94: rotary positions are shown, and count, within a turn from here on.
+void reduce_rotary(State& s) {
+  for (RotaryAt& at : s.place.rotary) {
+    if (at.deg) at.deg = *at.deg - 360 * std::floor(*at.deg / 360);
+  }
+}
 
 /// The words of a line under their addresses in ISO. M13 and M14 start spindle and coolant.
 cl::Outcome translate(State& s, const Line& line, Translated& out) {
   Line& iso = out.iso;
   iso.number = line.number;
   const bool is_radius_arc = line.names.front().name == "CR";
-  for (const Word& word : line.words) {
+  for (std::size_t n = 0; n < line.words.size(); ++n) {
+    const Word& word = line.words[n];
+    if (is_feed_of_m128(line, n)) continue;
     const bool is_m = word.is('M');
     const int code =
         is_m && word.number >= 0 && word.number < 1e6 ? static_cast<int>(word.number) : -1;
     if (std::find(kSilent.begin(), kSilent.end(), code) != kSilent.end()) {
       s.cl.summary.skip("M" + std::string(word.digits), line.number);
+    } else if (code == 94) {
+      reduce_rotary(s);
+    } else if (code == 140) {
+      out.retracts = true;
     } else if (code == 91) {
       out.is_machine_place = true;
     } else if (code == 128 || code == 129) {
@@ -137,7 +169,7 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
     } else if (code == 89 || code == 99) {
       out.calls_cycle = true;
       if (s.modes.definition) s.modes.definition->runs_at_every_point = code == 89;
-    } else if (code == 92 || code == 136 || code == 140) {
+    } else if (std::find(kCodesNotRun.begin(), kCodesNotRun.end(), code) != kCodesNotRun.end()) {
       return refuse("M" + std::string(word.digits) + " is not run here", kMovesByCam,
                     "M" + std::string(word.digits));
     } else if (code == 13 || code == 14) {
@@ -148,7 +180,8 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
       move_word(iso, start, "M");
     } else if (word.is('R') && !is_radius_arc) {
       if (word.number != 0) return refuse("R beside a straight line", kMovesByCam);
-    } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ") {
+    } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ" ||
+               word.address == "LA") {
       s.cl.summary.skip(word.address, line.number);
     } else if (word.address == "DL" || word.address == "DR") {
       if (word.number != 0) {
@@ -162,18 +195,6 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
   return {};
 }
 
-/// The pole of arcs, in the plane across the tool.
-cl::Outcome set_pole(State& s, const Line& line) {
-  for (std::size_t k = 0; k < 2; ++k) {
-    const Word* const word = line.find(k == 0 ? "X" : "Y");
-    if (word == nullptr) continue;
-    const bool is_relative = word->way == Word::Way::kIncremental;
-    if (is_relative && !s.place.tip[k]) return refuse("CC from a place that is not known here");
-    s.modes.pole[k] = is_relative ? *s.place.tip[k] + word->number : word->number;
-  }
-  return {};
-}
-
 cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
   const std::string_view statement = line.names.front().name;
   const bool is_rapid = has_name(line, "FMAX");
@@ -181,19 +202,8 @@ cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
     return refuse("radius compensation (RL, RR)", "output the path of the tool's centre (R0)");
   }
   s.modes.motion = is_rapid ? Motion::kRapid : Motion::kLine;
-  if (statement != "C" && statement != "CR") return {};
-  const bool is_left = has_name(line, "DR+");
-  if (!is_left && !has_name(line, "DR-")) return refuse("an arc without DR+ or DR-");
-  s.modes.motion = is_left ? Motion::kCounterClockwise : Motion::kClockwise;
-  if (statement == "CR") return {};
-  if (!s.modes.pole[0] || !s.modes.pole[1]) return refuse("an arc (C) before any CC");
-  Word centre;
-  centre.way = Word::Way::kAbsolute;
-  for (std::size_t k = 0; k < 2; ++k) {
-    centre.number = *s.modes.pole[k];
-    move_word(iso, centre, k == 0 ? "I" : "J");
-  }
-  return {};
+  const bool is_arc = statement == "C" || statement == "CR" || statement == "CP";
+  return is_arc ? prepare_arc(s, line, iso) : cl::Outcome();
 }
 
 bool is_of_motion(const Word& word) {
@@ -228,7 +238,20 @@ cl::Outcome take_auto_feed(State& s, const Line& line) {
   return {};
 }
 
-/// L, LN, C, CR: what moves, with the actions of its line.
+/// M140 MB50, M140 MB MAX.
+cl::Outcome run_retract(State& s, const Line& line, const Line& iso) {
+  const Word* const by = iso.find("MB");
+  const auto others = std::count_if(iso.words.begin(), iso.words.end(), is_of_motion);
+  if (others != (by != nullptr ? 1 : 0)) {
+    return refuse("M140 beside coordinates", "write it in a block of its own", "M140");
+  }
+  if (by == nullptr && !has_name(line, "MB MAX")) {
+    return refuse("M140 needs MB with a length, or MB MAX", {}, "M140");
+  }
+  return retract(s, iso, by != nullptr ? std::optional(by->number) : std::nullopt);
+}
+
+/// L, LN, C, CR, CP: what moves, with the actions of its line.
 cl::Outcome run_words(State& s, const Line& line) {
   Translated translated;
   const std::string_view statement = line.names.front().name;
@@ -237,6 +260,10 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (auto done = prepare_motion(s, line, iso); !done) return done;
   if (auto done = take_auto_feed(s, line); !done) return done;
   if (auto done = act_before(s, iso); !done) return done;
+  if (translated.retracts) {
+    if (auto done = run_retract(s, line, iso); !done) return done;
+    return act_behind(s, iso);
+  }
   const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
   const bool is_motion = statement != "STOP" && statement != "M" && statement != "TOOL CALL";
   if (moves && !is_motion) return refuse(std::string(statement) + " with coordinates");
@@ -305,6 +332,7 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   if (statement == "CYCL DEF") return run_cycle_definition(s, line);
   if (statement == "CYCL CALL") return run_cycle_call(s, line);
   if (statement == "CC") return set_pole(s, line);
+  if (statement == "TRANS DATUM") return move_datum(s, line, line.names.front().arguments);
   if (statement == "PLANE") return set_klartext_plane(s, line, line.names.front().arguments);
   const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF";
   if (is_nothing) {
@@ -312,7 +340,8 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
     return {};
   }
   const bool has_words = statement == "L" || statement == "LN" || statement == "C" ||
-                         statement == "CR" || statement == "M" || statement == "STOP";
+                         statement == "CR" || statement == "CP" || statement == "M" ||
+                         statement == "STOP";
   if (!has_words) {
     return refuse(std::string(statement) + ": this word of Klartext is not run here", kMovesByCam,
                   std::string(statement));

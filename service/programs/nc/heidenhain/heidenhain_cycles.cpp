@@ -172,7 +172,7 @@ cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view t
     } else if (parameter == kQPreset) {
       const bool is_row = value >= 0 && value < 1000 && value == std::floor(value);
       if (!is_row) return refuse("CYCL DEF 247 with Q339 that is no row of a table");
-      if (auto done = set_preset(s, line, static_cast<int>(value)); !done) return done;
+      set_preset(s, line, static_cast<int>(value));
     }
   }
   return {};

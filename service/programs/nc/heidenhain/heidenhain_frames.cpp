@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -55,6 +56,41 @@ Expected<PlaneWords, cl::Refusal> plane_words(std::string_view text) {
   return out;
 }
 
+/// X+10: which axis, and its number, which may stand behind a blank.
+struct DatumWord {
+  std::size_t axis = 0;
+  double number = 0;
+  bool is_incremental = false;
+};
+
+Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const std::string& title) {
+  std::string_view word = take_word(text);
+  DatumWord out;
+  out.is_incremental = word.starts_with('I');
+  if (out.is_incremental) word.remove_prefix(1);
+  constexpr std::string_view kAxes = "XYZ";
+  out.axis = word.empty() ? kAxes.npos : kAxes.find(word.front());
+  if (out.axis == kAxes.npos) {
+    return refuse(title + " by " + cl::quoted(word) + ", which only the control knows",
+                  "output the shift as X, Y and Z", title);
+  }
+  const std::string_view behind = word.size() > 1 ? word.substr(1) : take_word(text);
+  if (!is_number(behind, out.number)) {
+    return refuse(title + ": " + cl::quoted(behind) + " is no number", kNumbersByCam, title);
+  }
+  return out;
+}
+
+/// Puts a datum there where nothing is tilted; where it lies already that says nothing.
+cl::Outcome put_datum(State& s, const Line& line, const cl::Frame& shift,
+                      const std::string& title) {
+  if (s.frames.tilt != Tilt::kNone && shift.origin != s.frames.shift.origin) {
+    return refuse(title + " in a tilted plane", "write it before PLANE", title);
+  }
+  set_shift(s, line, shift);
+  return {};
+}
+
 }  // namespace
 
 cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text) {
@@ -85,29 +121,61 @@ cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text
 }
 
 cl::Outcome shift_datum(State& s, const Line& line, std::string_view text) {
-  std::string_view word = take_word(text);
-  const bool is_incremental = word.starts_with('I');
-  if (is_incremental) word.remove_prefix(1);
-  constexpr std::string_view kAxes = "XYZ";
-  const std::size_t k = word.empty() ? kAxes.npos : kAxes.find(word.front());
-  if (k == kAxes.npos) {
-    return refuse("CYCL DEF 7 by " + cl::quoted(word) + ", which only the control knows",
-                  "output the shift as X, Y and Z", "CYCL DEF 7");
-  }
-  double number = 0;
-  const std::string_view behind = word.size() > 1 ? word.substr(1) : take_word(text);
-  if (!is_number(behind, number)) {
-    return refuse("CYCL DEF 7: " + cl::quoted(behind) + " is no number", kNumbersByCam,
-                  "CYCL DEF 7");
+  const auto word = datum_word(text, "CYCL DEF 7");
+  if (!word) return tl::make_unexpected(word.error());
+  cl::Frame shift = s.frames.shift;
+  double& at = shift.origin[static_cast<Eigen::Index>(word->axis)];
+  at = word->is_incremental ? at + word->number : word->number;
+  return put_datum(s, line, shift, "CYCL DEF 7");
+}
+
+cl::Outcome move_datum(State& s, const Line& line, std::string_view text) {
+  const std::string title = "TRANS DATUM";
+  const std::string_view kind = take_word(text);
+  if (kind == "RESET") return put_datum(s, line, {}, title);
+  if (kind != "AXIS") {
+    return refuse(title + " " + std::string(kind.substr(0, 16)) + ", which only the control knows",
+                  "output TRANS DATUM AXIS with X, Y and Z", title);
   }
   cl::Frame shift = s.frames.shift;
-  double& at = shift.origin[static_cast<Eigen::Index>(k)];
-  const double to = is_incremental ? at + number : number;
-  if (s.frames.tilt != Tilt::kNone && to != at) {
-    return refuse("CYCL DEF 7 in a tilted plane", "write it before PLANE", "CYCL DEF 7");
+  while (text.find_first_not_of(" \t") != std::string_view::npos) {
+    const auto word = datum_word(text, title);
+    if (!word) return tl::make_unexpected(word.error());
+    if (word->is_incremental) return refuse(title + " with I", "output absolute values", title);
+    shift.origin[static_cast<Eigen::Index>(word->axis)] = word->number;
   }
-  at = to;
-  set_shift(s, line, shift);
+  return put_datum(s, line, shift, title);
+}
+
+bool is_frame_cycle(std::string_view number) {
+  constexpr std::array<std::string_view, 4> kCycles = {"8.", "10.", "11.", "19."};
+  return std::any_of(kCycles.begin(), kCycles.end(), [number](std::string_view cycle) {
+    return number.size() == cycle.size() + 1 && number.starts_with(cycle);
+  });
+}
+
+cl::Outcome reset_frame_cycle(State& s, const Line& line, std::string_view number,
+                              std::string_view text) {
+  const std::string title = "CYCL DEF " + std::string(number);
+  if (!number.ends_with(".0")) {
+    const bool is_plane = number.starts_with("19.");
+    for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
+      const bool is_scale = word.starts_with("SCL");
+      const std::size_t letters = is_scale || word.starts_with("ROT") ? 3 : 1;
+      const std::string_view behind =
+          word.size() > letters ? word.substr(letters) : take_word(text);
+      double value = 0;
+      if (!is_number(behind, value) || value != (is_scale ? 1 : 0)) {
+        return refuse(title + " " + std::string(word.substr(0, 16)) +
+                          (is_plane ? ": whether its angles are those of the axes depends on the "
+                                      "machine"
+                                    : ": mirroring, scaling or a rotation of the control's"),
+                      is_plane ? kByAngles : kMovesByCam, title);
+      }
+    }
+    if (is_plane) set_plane(s, line, {}, Tilt::kNone);
+  }
+  s.cl.summary.skip(title, line.number);
   return {};
 }
 

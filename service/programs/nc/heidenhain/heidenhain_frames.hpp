@@ -11,5 +11,13 @@ namespace meridian::nc {
 
 /// CYCL DEF 7.1 X+10: the datum of one axis; `text` is what stands behind the number of the line.
 [[nodiscard]] cl::Outcome shift_datum(State& s, const Line& line, std::string_view text);
+/// TRANS DATUM AXIS X+10 Y+5, TRANS DATUM RESET.
+[[nodiscard]] cl::Outcome move_datum(State& s, const Line& line, std::string_view text);
+
+/// Cycles 8, 10, 11 and 19: mirror, turn, scale and tilt. Only what ends them is run: CYCL DEF 10.1
+/// ROT+0; 19.1 without angles, or with zeros, ends the tilted plane.
+[[nodiscard]] bool is_frame_cycle(std::string_view number);
+[[nodiscard]] cl::Outcome reset_frame_cycle(State& s, const Line& line, std::string_view number,
+                                            std::string_view text);
 
 }  // namespace meridian::nc

@@ -18,12 +18,14 @@ constexpr bool is_space(char c) { return c == ' ' || c == '\t'; }
 constexpr bool is_numeral(char c) { return c >= '0' && c <= '9'; }
 
 /// Statements of more words than one, and those whose words are no coordinates.
-constexpr std::array<std::string_view, 14> kStatements = {
-    "BEGIN PGM", "END PGM",  "TOOL CALL", "TOOL DEF", "CYCL DEF", "CYCL CALL", "BLK FORM",
-    "FUNCTION",  "CALL PGM", "CALL LBL",  "LBL",      "PLANE",    "TCH PROBE", "FN"};
+constexpr std::array<std::string_view, 15> kStatements = {
+    "BEGIN PGM", "END PGM",  "TOOL CALL", "TOOL DEF", "CYCL DEF",
+    "CYCL CALL", "BLK FORM", "FUNCTION",  "CALL PGM", "CALL LBL",
+    "LBL",       "PLANE",    "TCH PROBE", "FN",       "TRANS DATUM"};
 
 /// Statements whose words are cut.
-constexpr std::array<std::string_view, 7> kMotions = {"L", "LN", "CC", "CR", "C", "STOP", "M"};
+constexpr std::array<std::string_view, 8> kMotions = {"L",  "LN", "CC",   "CR",
+                                                      "CP", "C",  "STOP", "M"};
 
 bool begins_with(std::string_view text, std::string_view word) {
   return text.starts_with(word) && (text.size() == word.size() || is_space(text[word.size()]));
@@ -181,6 +183,13 @@ class KlartextCutter {
     return {};
   }
 
+  /// M128 may have an F of its own.
+  [[nodiscard]] bool is_of_m128(const Word& word) const {
+    if (!word.is('F') || line_.words.empty()) return false;
+    const Word& before = line_.words.back();
+    return before.is('M') && before.number == 128;
+  }
+
   /// The decimal point may be a comma.
   cl::Outcome cut_number(Word& word) {
     std::size_t stop = 0;
@@ -198,7 +207,7 @@ class KlartextCutter {
                     " without a number behind it");
     }
     rest_.remove_prefix(stop);
-    if (!word.is('M') && line_.find(word.address) != nullptr) {
+    if (!word.is('M') && !is_of_m128(word) && line_.find(word.address) != nullptr) {
       return refuse("word " + std::string(word.address) + " twice in one block");
     }
     line_.words.push_back(word);

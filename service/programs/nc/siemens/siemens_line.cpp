@@ -2,6 +2,7 @@
 #include "service/programs/nc/siemens/siemens_line.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "service/programs/cl/text/letters.hpp"
 #include "service/programs/cl/text/number.hpp"
@@ -16,6 +17,15 @@ using cl::refuse;
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr bool is_name_sign(char c) { return cl::is_letter(c) || is_digit(c) || c == '_'; }
+
+/// Values that say how exactly and how hard the control moves: tolerances, jerk, what F refers to.
+constexpr std::array<std::string_view, 12> kSettings = {"ACC",  "ADIS",  "ADISPOS", "ATOL",
+                                                        "CTOL", "FGREF", "FIFOLEN", "JERKLIM",
+                                                        "LIMS", "OTOL",  "STOLF",   "VELOLIM"};
+
+bool is_setting(std::string_view name) {
+  return std::find(kSettings.begin(), kSettings.end(), name) != kSettings.end();
+}
 
 class SiemensCutter {
  public:
@@ -96,6 +106,8 @@ class SiemensCutter {
       rest_.remove_prefix(text.size());
       return variables_.declare(text);
     }
+    if (is_at_begin() && take(':')) return {};  // a label
+    if (is_setting(name.name)) return cut_setting(name);
     if (take('=')) {
       if (variables_.has(name.name)) return cut_assignment(name.name);
       Word word;
@@ -114,6 +126,23 @@ class SiemensCutter {
       }
       name.arguments = rest_.substr(0, stop);
       rest_.remove_prefix(stop + 1);
+    }
+    line_.names.push_back(name);
+    return {};
+  }
+
+  /// CTOL=0.01, FGREF[A]=10, ACC[X]=80.
+  cl::Outcome cut_setting(const Line::Name& name) {
+    if (take('[')) {
+      const std::size_t stop = rest_.find(']');
+      if (stop == std::string_view::npos) {
+        return refuse(std::string(name.name) + "[ without its closing bracket");
+      }
+      rest_.remove_prefix(stop + 1);
+    }
+    if (take('=')) {
+      const auto number = take_number_or_name(name.name);
+      if (!number) return tl::make_unexpected(number.error());
     }
     line_.names.push_back(name);
     return {};

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "service/programs/nc/state.hpp"
+
+namespace meridian::nc {
+
+/// CC: the pole of arcs, in the plane across the tool.
+[[nodiscard]] cl::Outcome set_pole(State& s, const Line& line);
+
+/// C, CR and CP with DR+ or DR-: the sense of the arc is the motion in force, and `iso` has its
+/// centre and its end as ISO says them. CP IPA+720 IZ-4 is a helix. Refused: an arc without sense
+/// or pole, an angle against its sense. Proof: tests/unit/nc/heidenhain_test.cpp.
+[[nodiscard]] cl::Outcome prepare_arc(State& s, const Line& line, Line& iso);
+
+}  // namespace meridian::nc
