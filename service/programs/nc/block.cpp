@@ -147,6 +147,19 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
   return {};
 }
 
+/// G54.2 P0 and G54.4 P0 of Fanuc end what is refused otherwise.
+bool ends_offset(const GRow& row, const Line& line) {
+  const Word* const p = line.find("P");
+  return (row.tenths == 542 || row.tenths == 544) && p != nullptr && p->number == 0;
+}
+
+/// G15 ends polar coordinates; with H it is a work offset of Okuma controls.
+cl::Outcome check_foreign_offset(const GRow& row, const Line& line) {
+  if (row.tenths != 150 || line.find("H") == nullptr) return {};
+  return refuse("G15 H" + std::string(line.find("H")->digits) + ": a work offset of Okuma controls",
+                "output words of Fanuc", "G15 H");
+}
+
 cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
   std::optional<GKind> motion_kind;
   std::array<bool, 32> seen{};
@@ -156,6 +169,11 @@ cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
     const GRow* const row = is_siemens ? find_siemens_g(word.number) : find_g(word.number);
     if (row == nullptr) {
       if (auto done = take_unknown(s, line, word); !done) return done;
+      continue;
+    }
+    if (auto done = check_foreign_offset(*row, line); !done) return done;
+    if (!is_siemens && ends_offset(*row, line)) {
+      s.cl.summary.skip(code_of(word) + " P0", line.number);
       continue;
     }
     if (row->kind == GKind::kRefused) {

@@ -55,7 +55,8 @@ TEST(NcActions, PassOtherCodesToTheMachine) {
 
 TEST(NcActions, PassOverSettingsOfTheControlWithTheirWords) {
   const ReadText read = read_nc(
-      "G05.1 Q1 R5\nG0 X0. Y0. Z0.\nG103 P1\nG187 P3 E0.01\nG05 P10000\nG1 X1.\nG05 P0\nG103\n");
+      "G13.1\nG23\nG25\nG40.1\nG50.2\nG15\nG54.2 P0\nG54.4 P0\nG05.1 Q1 R5\nG0 X0. Y0. Z0.\nG103 "
+      "P1\nG187 P3 E0.01\nG05 P10000\nG1 X1.\nG05 P0\nG103\n");
   EXPECT_EQ(read.error, "");
   EXPECT_TRUE(read.warnings.empty() || !read.warned_of("taken as motion"));
   EXPECT_EQ(read.motion().size(), 2U);
