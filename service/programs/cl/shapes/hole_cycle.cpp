@@ -12,13 +12,6 @@
 namespace meridian::cl {
 namespace {
 
-/// One row for every type of cycle: what it does, or why it is refused.
-struct TypeRow {
-  std::string_view word;
-  HoleKind kind;
-  std::string_view refusal;  ///< empty: it runs
-};
-
 constexpr auto kRefused = HoleKind::kDrill;
 constexpr std::string_view kTapping = "is tapping, which needs a spindle that turns with the feed";
 constexpr std::string_view kOrient = "stops the spindle in a certain angle before it moves out";
@@ -26,7 +19,7 @@ constexpr std::string_view kByHand = "waits for an operator who moves the spindl
 constexpr std::string_view kControl = "is known to the control alone";
 constexpr std::string_view kLathe = "is a cycle of a lathe";
 
-constexpr std::array kTypes = std::to_array<TypeRow>({
+constexpr std::array kTypes = std::to_array<HoleType>({
     {"DRILL", HoleKind::kDrill, {}},
     {"FACE", HoleKind::kDrill, {}},
     {"SPOT", HoleKind::kDrill, {}},
@@ -68,7 +61,7 @@ double sink_depth(double diameter, double angle_deg) {
   return diameter / 2 / std::tan(units::rad_from_deg(angle_deg) / 2);
 }
 
-Outcome set_depth(const CycleWords& words, const TypeRow& type, CycleStatement& out,
+Outcome set_depth(const CycleWords& words, const HoleType& type, CycleStatement& out,
                   const DialectTraits& traits) {
   const bool is_sink = type.word == "CSINK" || words.has("CSINK") || !words.sink.empty();
   if (words.feed_to.size() == 2 && is_sink) {
@@ -139,7 +132,7 @@ Outcome set_pecks(const CycleWords& words, HoleCycle& cycle) {
 }
 
 /// What words behind the type make of it: DRILL,DEEP and BORE,DRAG.
-Outcome set_kind(const CycleWords& words, const TypeRow& type, HoleCycle& cycle) {
+Outcome set_kind(const CycleWords& words, const HoleType& type, HoleCycle& cycle) {
   cycle.kind = type.kind;
   cycle.ends_behind_one = type.word == "MILL";
   if (words.has("DEEP")) cycle.kind = HoleKind::kDeep;
@@ -180,6 +173,8 @@ Outcome spread_positions(CycleWords& words, const DialectFinder& dialect) {
 
 }  // namespace
 
+std::span<const HoleType> hole_types() { return kTypes; }
+
 Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFinder& dialect) {
   CycleStatement out;
   const auto error = [](const Refusal& refusal) { return tl::make_unexpected(refusal); };
@@ -201,7 +196,7 @@ Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFi
     return out;
   }
   const auto type = std::find_if(kTypes.begin(), kTypes.end(),
-                                 [&](const TypeRow& row) { return is_type(row.word); });
+                                 [&](const HoleType& row) { return is_type(row.word); });
   if (type == kTypes.end() || !type->refusal.empty()) {
     return refuse("CYCLE/" + std::string(out.type) + " " +
                       std::string(type == kTypes.end() ? kControl : type->refusal),

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -47,6 +48,15 @@ struct HoleCycle {
   WrittenFeed feed;             ///< kNone: the one in force
   WrittenFeed feed_out;         ///< kNone: as `kind` says, at rapid or at `feed`
 };
+
+/// One row for every type of cycle: what it does, or why it is refused.
+struct HoleType {
+  std::string_view word;
+  HoleKind kind;
+  std::string_view refusal;  ///< empty: it runs
+};
+/// All types that stand behind CYCLE. Proof: tests/unit/cl/word_samples_test.cpp.
+[[nodiscard]] std::span<const HoleType> hole_types();
 
 /// What a CYCLE statement says.
 struct CycleStatement {
