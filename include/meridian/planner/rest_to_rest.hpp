@@ -90,6 +90,12 @@ class RestToRestPlanner {
   /// the axis inside `rad` (PlanResult::axis_deviation_rad). 0, which begin() sets: never.
   void set_free_cone(double rad) noexcept;
 
+  /// Axes of blocks nearer to the pole than nearly all of `rad` are taken for the pole, and blocks
+  /// that pass it so near run through it, where that leads anywhere
+  /// (PlanResult::axis_deviation_rad). Never less than kPoleEase_rad, which begin() sets. Proof:
+  /// tests/property/planner/pole_rest_test.cpp.
+  void set_pole_tolerance(double rad) noexcept;
+
   /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's
   /// highest feed bounds it.
   void set_feed_factor(double factor) noexcept;

@@ -29,6 +29,7 @@ struct SmoothSettings {
   double axis_tolerance_rad = 0;              ///< 0: the machine's
   bool retracts_first = false;                ///< as RestToRestPlanner::begin() says
   std::optional<JointVector> first_joints{};  ///< the same
+  bool ends_exactly = false;  ///< exact stop: on the programmed axis, be it beside the pole
 };
 
 /// The planner that runs on through blocks: cuts become a band spline, the rolling feed moves along

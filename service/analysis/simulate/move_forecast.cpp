@@ -27,6 +27,7 @@ MoveForecast forecast(const stream::StraightMove& move, const JointVector& joint
   options.start = has_stage(model) ? drives_of(model, joints) : joints;
   options.settings.transition = Transition::kExactStop;
   options.settings.first_joints = move.joints;
+  options.settings.ends_exactly = true;
   const std::string text = program_of(move);
   cl::ClReader reader(std::string_view(text), "move");
   const SimulateReport report = simulate(reader, "move", model, {}, options, follow);

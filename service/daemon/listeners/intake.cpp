@@ -21,6 +21,7 @@ SmoothSettings settings_of(const dds::SessionRequest& request) {
   settings.tip_tolerance_mm = request.tip_tolerance_mm;
   settings.axis_tolerance_rad = request.axis_tolerance_rad;
   settings.retracts_first = (request.policies & dds::kPolicyRetractFirst) != 0;
+  settings.ends_exactly = (request.policies & dds::kPolicyMove) != 0;
   if ((request.policies & dds::kPolicyFirstJoints) != 0) {
     settings.first_joints = request.first_joints;
   }

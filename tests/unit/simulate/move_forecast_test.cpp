@@ -63,6 +63,19 @@ TEST_F(Move, EndsWhereItWasAskedFor) {
   expect_there(by({-25, 30, 5}, {-0.2, 0.2, 0.95}));
 }
 
+TEST_F(Move, BesideThePoleTakesNoneOfTheAxisTolerance) {
+  ASSERT_EQ(model.pole_policy, PolePolicy::kEase);
+  const double off_rad = 0.5 * model.tolerances.axis_rad;
+  expect_there(by({40, 10, -20}, {std::sin(off_rad), 0, std::cos(off_rad)}));
+  joints[4] = off_rad;
+  expect_there(by({40, 10, -20}, {0, 0.4, 0.9}));
+  JointVector to = joints;
+  to[0] += 10;
+  to[4] = -off_rad;
+  const ToolPose end = forward(model, model.tool_length_mm, to);
+  expect_there({end, end, 3000, to});
+}
+
 TEST_F(Move, TakesTheTimeOfItsLength) {
   const ToolPose from = forward(model, model.tool_length_mm, joints);
   const MoveForecast found = forecast_of(by({30, 40, 0}, from.axis));

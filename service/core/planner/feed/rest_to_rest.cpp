@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meridian/planner/rest_to_rest.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -15,6 +16,8 @@
 
 namespace meridian {
 namespace {
+
+constexpr double kToleranceShare = 0.95;  // of the axis tolerance about the pole
 
 TimeKind barrier_of(BlockKind kind) noexcept {
   switch (kind) {
@@ -60,6 +63,7 @@ struct RestToRestPlanner::Workspace {
   std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
   bool retracts_first = false;
   std::optional<JointVector> first_joints;
+  double on_pole_rad = kPoleEase_rad;  ///< what begin() or set_pole_tolerance() said
   bool is_staged = false;
   bool is_refused = false;
   bool needs_ahead = false;  ///< nothing is staged: the foresight waits for blocks
@@ -72,9 +76,18 @@ struct RestToRestPlanner::Workspace {
     refuse({block.sequence, block.line, code, joint, value});
   }
 
+  /// Nothing is staged behind `cursor`.
+  void clear_stage() noexcept {
+    staging.clear(cursor.path_index);
+    next = cursor;
+    result = {};
+    needs_ahead = false;
+  }
   /// Stages the whole of `block` behind `cursor`, or refuses it.
   void stage(const ClBlock& block) noexcept;
   void stage_motion(ClBlock block) noexcept;
+  /// The same without the axis tolerance about the pole, instead of what stage_motion() refused.
+  void stage_as_programmed(const ClBlock& block) noexcept;
   void stage_barrier(const ClBlock& block) noexcept;
   void stage_retraction(const ClBlock& block) noexcept;
   /// Whether `fault` is one that turning the redundant joint back may help.
@@ -126,17 +139,26 @@ PathFault RestToRestPlanner::Workspace::unwind(const ClBlock& block, const PathF
 }
 
 void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
-  staging.clear(cursor.path_index);
-  next = cursor;
-  result = {};
-  needs_ahead = false;
+  clear_stage();
   if (!is_finite(block)) return refuse(block, RejectCode::kNotFinite, -1, 0);
   if (is_motion(block.kind)) {
     stage_motion(block);
+    if (is_refused && on_pole_rad > kPoleEase_rad) stage_as_programmed(block);
   } else {
     stage_barrier(block);
   }
   if (!is_refused && !needs_ahead) finish_staging();
+}
+
+void RestToRestPlanner::Workspace::stage_as_programmed(const ClBlock& block) noexcept {
+  const PlanResult refusal = result;
+  clear_stage();
+  is_refused = false;
+  staged_approach = std::nullopt;
+  router.set_pole_tolerance(kPoleEase_rad);
+  stage_motion(block);
+  router.set_pole_tolerance(on_pole_rad);
+  if (is_refused) result = refusal;
 }
 
 void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
@@ -256,6 +278,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.is_refused = w.needs_ahead = false;
   w.router.set_feed_factor(1);
   w.router.set_free_cone(0);
+  set_pole_tolerance(0);
 }
 
 void RestToRestPlanner::ask(PoleLookAhead* foresight) noexcept {
@@ -266,6 +289,12 @@ bool RestToRestPlanner::needs_ahead() const noexcept { return workspace_->needs_
 
 void RestToRestPlanner::set_free_cone(double rad) noexcept {
   workspace_->router.set_free_cone(rad);
+}
+
+void RestToRestPlanner::set_pole_tolerance(double rad) noexcept {
+  Workspace& w = *workspace_;
+  w.on_pole_rad = std::max(kPoleEase_rad, kToleranceShare * rad);
+  w.router.set_pole_tolerance(w.on_pole_rad);
 }
 
 void RestToRestPlanner::set_feed_factor(double factor) noexcept {

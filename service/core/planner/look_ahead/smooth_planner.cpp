@@ -22,12 +22,14 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (w.is_running) w.end_run();  // no index comes twice
   w.plain.begin(at_rest, tool_length_mm, epoch, settings.retracts_first, settings.first_joints);
   w.settings = settings;
-  const bool may_ease = w.is_smooth() && w.model.pole_policy == PolePolicy::kEase;
-  if (may_ease) w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
+  if (w.is_smooth() && w.model.pole_policy == PolePolicy::kEase) {
+    w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
+  } else if (!w.is_smooth()) {
+    w.plain.set_pole_tolerance(w.slack().axis_rad);
+  }
   w.raise.begin(tool_length_mm);
   w.is_refused = w.is_for_plain = w.has_factor = w.is_ending = false;
-  w.window.begin(w.is_smooth() ? AheadSlack{w.tolerance().tip_mm, w.pole_tolerance_rad()}
-                               : AheadSlack{});
+  w.window.begin(w.slack());
   w.looked_at = 0;
   w.is_looking = has_branches(w.model);
   w.pose = w.plain.junction().pose;
@@ -59,11 +61,7 @@ bool SmoothPlanner::plan_what_waits(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.window.waiting() == 0) return true;
   const auto begin = w.window.first(w.looked_at);
-  if (w.is_smooth()) {
-    w.plain.look_at(begin, w.tolerance().tip_mm, w.pole_tolerance_rad());
-  } else {
-    w.plain.look_at(begin);
-  }
+  w.plain.look_at(begin, w.slack().tip_mm, w.slack().axis_rad);
   while (w.window.waiting() > 0) {
     if (plan_one(w.window.front(), writer).status != PlanStatus::kOk) return false;
     w.window.pop();

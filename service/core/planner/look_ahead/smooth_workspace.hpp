@@ -49,6 +49,15 @@ struct SmoothPlanner::Workspace {
                                            : std::max(axis_rad, model.tolerances.pole_axis_rad);
   }
 
+  /// How far the blocks may be cut from where they are programmed.
+  [[nodiscard]] AheadSlack slack() const noexcept {
+    if (is_smooth()) return {tolerance().tip_mm, pole_tolerance_rad()};
+    const bool eases = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
+    if (!eases || settings.ends_exactly) return {};
+    const double asked_rad = settings.axis_tolerance_rad;
+    return {0, asked_rad > 0 ? asked_rad : model.tolerances.axis_beside_pole_rad()};
+  }
+
   [[nodiscard]] bool is_smooth() const noexcept {
     return settings.transition.value_or(model.transition) == Transition::kSmooth;
   }

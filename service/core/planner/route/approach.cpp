@@ -251,7 +251,7 @@ PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, P
 PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
-                        eased(to_vector(block.axis))};
+                        eased(to_vector(block.axis), kPoleEase_rad)};
   Ways ways = find_ways(target, cursor);
   const int free = redundant_joint(model_);
   // Room to turn counts as well: a winding at the end of travel is taken only where no other is.
@@ -265,7 +265,9 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
     ways.sort();
   }
   if (free >= 0) {
-    look_along(block, target, cursor.tool_length_mm, ways);
+    // Inside the tolerance about the pole the joint is free: nothing follows from where it begins.
+    const bool is_free = pole_distance(model_, target.axis) < on_pole_rad_;
+    if (!is_free) look_along(block, target, cursor.tool_length_mm, ways);
   } else if (model_.family == MachineFamily::kRobot) {
     look_along_arm(block, target, cursor.tool_length_mm, ways);
   }

@@ -12,7 +12,6 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
-#include "meridian/planner/rest_to_rest.hpp"
 #include "service/core/planner/singular/robot_pass.hpp"
 
 namespace meridian {
@@ -21,12 +20,14 @@ namespace {
 constexpr double kNoTip_mm = 1e-9;     // shorter ways are no motion
 constexpr double kNoTurn_rad = 1e-12;  // smaller turns of the axis are none
 constexpr int kMaxTurns = 4;           // windings tried either way
+/// In inverse time a block counts for a tolerance of the axis on so much of its way.
+constexpr double kSpeedReach_mm = 5;
 
 }  // namespace
 
-Vector3 Router::eased(const Vector3& axis) noexcept {
+Vector3 Router::eased(const Vector3& axis, double within_rad) noexcept {
   const double distance = pole_distance(model_, axis);
-  if (!(distance < kPoleEase_rad)) return axis;
+  if (!(distance < within_rad)) return axis;
   deviation_rad_ = std::max(deviation_rad_, distance);
   return find_nearest_pole(model_, axis);
 }
@@ -48,6 +49,13 @@ Router::Job Router::job_of(const ClBlock& block) const noexcept {
     if (most > 0) job.feed_factor = std::min(feed_factor_, most / job.feed_mm_per_s);
   }
   return job;
+}
+
+double Router::share_of_turn(const PathPiece& path, double programmed_rad) const noexcept {
+  const double tolerance_rad = std::min(on_pole_rad_, model_.tolerances.axis_rad);
+  const double least = tolerance_rad * tip_length(path) / kSpeedReach_mm;
+  const double allowed_rad = std::max(programmed_rad, least);
+  return allowed_rad < path.axis_turn ? allowed_rad / path.axis_turn : 1.0;
 }
 
 void Router::Ways::sort() noexcept {
@@ -183,14 +191,22 @@ PathFault Router::run_solved(PathPiece path, const Job& job, double share, PlanC
 PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
   needs_ahead_ = false;
-  const ToolPose end{to_vector(block.tip_mm), eased(to_vector(block.axis))};
+  Job job = job_of(block);
+  const bool is_timed = job.share_per_s > 0;
+  const Vector3 programmed = to_vector(block.axis);
+  const bool is_fixed = angle_between(cursor.pose.axis, programmed) < kNoTurn_rad;
+  if (!is_fixed && (!is_timed || is_at_pole(cursor.pose.axis))) job.on_pole_rad = on_pole_rad_;
+  const ToolPose end{to_vector(block.tip_mm), eased(programmed, job.on_pole_rad)};
   PathPiece path = block.is_arc ? make_arc(cursor.pose, end, block) : make_line(cursor.pose, end);
   if (path.axis_turn < kNoTurn_rad) {
     path = with_axes(path, cursor.pose.axis, cursor.pose.axis);
     path.axis_turn = 0;
   }
+  if (is_timed && cursor.eased_from) {
+    job.share_per_s *= share_of_turn(path, angle_between(*cursor.eased_from, programmed));
+  }
+  cursor.eased_from = deviation_rad_ > 0 ? std::optional(programmed) : std::nullopt;
   if (!(path.length > kNoTip_mm)) return {};
-  const Job job = job_of(block);
   const int free = redundant_joint(model_);
   PathFault fault;
   if (path.axis_turn == 0) {
@@ -207,7 +223,7 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   } else {
     const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
     const double share = passage.nearest_turn / path.axis_turn;
-    const bool passes = passage.offset < kPoleEase_rad && share > 0 && share < 1;
+    const bool passes = passage.offset < job.on_pole_rad && share > 0 && share < 1;
     const PlanCursor rest = cursor;
     const Staging::Mark mark = out.mark();
     fault = passes ? pass_pole(path, end, share, job, cursor, out)

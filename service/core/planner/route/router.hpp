@@ -10,6 +10,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/approach.hpp"
+#include "meridian/planner/rest_to_rest.hpp"
 #include "service/core/planner/feed/leg_planner.hpp"
 #include "service/core/planner/route/ahead_way.hpp"
 #include "service/core/planner/route/staging.hpp"
@@ -26,7 +27,8 @@ struct PlanCursor {
   std::uint64_t path_index = 0;
   std::uint32_t window = 0;
   std::uint16_t epoch = 0;
-  bool has_retracted = false;  ///< the approach goes on from where retract() led
+  bool has_retracted = false;           ///< the approach goes on from where retract() led
+  std::optional<Vector3> eased_from{};  ///< where the pose's axis was programmed, if not there
 };
 
 /// Finds the legs of a motion block: which branch and winding, where it stops on the pole, and the
@@ -54,6 +56,10 @@ class Router {
   /// not know yet leaves needs_ahead() true: route() is to be called again then.
   void ask(PoleLookAhead* foresight) noexcept { foresight_ = foresight; }
   [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
+
+  /// Axes nearer to the pole than `rad` count as on it, and blocks that pass it nearer run through.
+  /// Blocks in inverse time, which bounds how fast the axis turns, only stay there.
+  void set_pole_tolerance(double rad) noexcept { on_pole_rad_ = rad; }
 
   /// Nearer to the pole than `rad` the redundant joint may be turned at rest, the axis inside that
   /// of where it was programmed.
@@ -87,8 +93,8 @@ class Router {
   /// Largest ease of the axis in the last route().
   [[nodiscard]] double axis_deviation_rad() const noexcept { return deviation_rad_; }
 
-  /// `axis`, or the pole itself where `axis` is eased onto it.
-  [[nodiscard]] Vector3 eased(const Vector3& axis) noexcept;
+  /// `axis`, or the pole itself where that is nearer than `within_rad`.
+  [[nodiscard]] Vector3 eased(const Vector3& axis, double within_rad) noexcept;
 
  private:
   static constexpr int kMaxWays = 24;
@@ -117,9 +123,13 @@ class Router {
     double feed_mm_per_s = 0;
     double share_per_s = 0;
     double feed_factor = 1;
+    double on_pole_rad = kPoleEase_rad;  ///< axes nearer to the pole count as on it
   };
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
+  /// The axis may turn farther along `path` than the `programmed_rad` that its block asks for: the
+  /// share of the rate that inverse time asks for at which it is no faster.
+  [[nodiscard]] double share_of_turn(const PathPiece& path, double programmed_rad) const noexcept;
   [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
   /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it: of the
   /// program's begin.
@@ -170,8 +180,10 @@ class Router {
   [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,
                                           const Job& job, const PathFault& fault,
                                           PlanCursor& cursor, Staging& out) noexcept;
+  /// Whether the axis stays within `tolerance_rad` of `path` where the redundant joint turns evenly
+  /// to `free_end`.
   [[nodiscard]] bool is_straight_passage(const PathPiece& path, double free_end,
-                                         const PlanCursor& cursor) noexcept;
+                                         const PlanCursor& cursor, double tolerance_rad) noexcept;
   [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
                                       PlanCursor& cursor, Staging& out) noexcept;
   /// Lifts a tool that is longer than the one that retract() led off the part as far as that was.
@@ -197,6 +209,7 @@ class Router {
   ToolPose left_{Vector3::Zero(), Vector3::UnitZ()};  ///< where the last retract() began
   double feed_factor_ = 1;
   double free_cone_rad_ = 0;
+  double on_pole_rad_ = kPoleEase_rad;
   double deviation_rad_ = 0;
 };
 

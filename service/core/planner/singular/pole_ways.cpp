@@ -47,14 +47,15 @@ PathFault Router::enter_pole(const PathPiece& path, const Job& job, double share
                              PlanCursor& cursor, Staging& out) noexcept {
   const int free = redundant_joint(model_);
   const bool is_near = path.axis_turn <= kNearPole_rad;
-  if (is_near || is_straight_passage(path, cursor.joints[free], cursor)) {
+  if (is_near || is_straight_passage(path, cursor.joints[free], cursor, kPoleEase_rad)) {
     return run_held(path, cursor.joints[free], job, share, cursor, out);
   }
   const double far = 1 - kNearPole_rad / path.axis_turn;
   PathFault fault = run_solved(cut_piece(path, 0, far), job, share * far, cursor, out);
   if (is_fault(fault)) return fault;
   const PathPiece last = cut_piece(path, far, 1);
-  (void)is_straight_passage(last, cursor.joints[free], cursor);  // keeps account of the ease
+  // Keeps account of the ease.
+  (void)is_straight_passage(last, cursor.joints[free], cursor, kPoleEase_rad);
   return run_held(last, cursor.joints[free], job, share * (1 - far), cursor, out);
 }
 
@@ -64,7 +65,8 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
   const ToolPose pole = pose_at(path, 0.0);
   PlanCursor turned = cursor;
   turned.joints[free] = end[free];
-  if (path.axis_turn <= kNearPole_rad || is_straight_passage(path, end[free], turned)) {
+  const bool is_near = path.axis_turn <= kNearPole_rad;
+  if (is_near || is_straight_passage(path, end[free], turned, kPoleEase_rad)) {
     const PathFault fault = turn_free(pole, end[free], job, cursor, out);
     return is_fault(fault) ? fault : run_held(path, cursor.joints[free], job, 1.0, cursor, out);
   }
@@ -73,7 +75,7 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
   PathFault fault = turn_free(pole, limit, job, cursor, out);
   if (is_fault(fault)) return fault;
   const PathPiece first = cut_piece(path, 0, near);
-  (void)is_straight_passage(first, cursor.joints[free], cursor);
+  (void)is_straight_passage(first, cursor.joints[free], cursor, kPoleEase_rad);
   fault = run_held(first, cursor.joints[free], job, near, cursor, out);
   if (is_fault(fault)) return fault;
   return run_solved(cut_piece(path, near, 1), job, 1 - near, cursor, out);
@@ -125,8 +127,8 @@ PathFault Router::leave_otherwise(const PathPiece& path, const ToolPose& end, co
   return fault;
 }
 
-bool Router::is_straight_passage(const PathPiece& path, double free_end,
-                                 const PlanCursor& cursor) noexcept {
+bool Router::is_straight_passage(const PathPiece& path, double free_end, const PlanCursor& cursor,
+                                 double tolerance_rad) noexcept {
   PathPiece held = path;
   held.is_free_driven = true;
   held.free_begin = cursor.joints[redundant_joint(model_)];
@@ -140,7 +142,7 @@ bool Router::is_straight_passage(const PathPiece& path, double free_end,
     const Vector3 axis = forward(model_, held.tool_length_mm, at.q).axis;
     largest = std::max(largest, angle_between(axis, pose_at(held, s).axis));
   }
-  if (largest > kPoleEase_rad) return false;
+  if (largest > tolerance_rad) return false;
   deviation_rad_ = std::max(deviation_rad_, largest);
   return true;
 }
@@ -152,7 +154,7 @@ PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double s
   const int free = redundant_joint(model_);
   for (int n = 0; n < ways.count && ways.way[n].carries == ways.way[0].carries; ++n) {
     const double free_end = ways.way[n].joints[free];
-    if (!is_straight_passage(path, free_end, cursor)) continue;
+    if (!is_straight_passage(path, free_end, cursor, job.on_pole_rad)) continue;
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();
     const PathFault fault = run_held(path, free_end, job, 1.0, trial, out);
