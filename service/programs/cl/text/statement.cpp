@@ -2,6 +2,7 @@
 #include "service/programs/cl/text/statement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "service/programs/cl/text/letters.hpp"
@@ -12,14 +13,27 @@ namespace {
 
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
 
-constexpr bool is_word_character(char c) noexcept {
-  const char up = capital(c);
-  return (up >= 'A' && up <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-}
+/// Look-ups, as every character of a file is asked.
+using CharacterSet = std::array<bool, 256>;
+constexpr CharacterSet kSeparators = [] {
+  CharacterSet set{};
+  for (const char c : {' ', '\t', ',', '/', '(', ')', '='})
+    set[static_cast<unsigned char>(c)] = true;
+  return set;
+}();
+constexpr CharacterSet kWordCharacters = [] {
+  CharacterSet set{};
+  for (int c = 0; c < 128; ++c) {
+    const char sign = static_cast<char>(c);
+    set[static_cast<std::size_t>(c)] =
+        is_letter(sign) || (sign >= '0' && sign <= '9') || sign == '_' || sign == '-';
+  }
+  return set;
+}();
 
-constexpr bool is_separator(char c) noexcept {
-  return is_blank(c) || c == ',' || c == '/' || c == '(' || c == ')' || c == '=';
-}
+bool is_word_character(char c) noexcept { return kWordCharacters[static_cast<unsigned char>(c)]; }
+
+bool is_separator(char c) noexcept { return kSeparators[static_cast<unsigned char>(c)]; }
 
 std::string_view trimmed(std::string_view text) noexcept {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
@@ -230,7 +244,8 @@ StatementReader::Outcome StatementReader::next(Statement& statement) {
     statement.line = lines_.line_number();
     if (data) line.remove_prefix(4);
     std::string_view whole = line;
-    if (data || !takes_free_text(first_word(without_number(line)))) {
+    const bool is_point = capital(line.front()) == 'G' || starts_number(line.front());
+    if (data || is_point || !takes_free_text(first_word(without_number(line)))) {
       const Outcome joined = join(line, whole);
       if (joined != Outcome::kStatement) return joined;
     }
