@@ -65,7 +65,17 @@ Seeds nc_seeds() {
       "1,-1)\nG0 X0 Y0 Z5\nG1 Z-1\nMIRROR\nCYCLE800()\nT0 M6\nM30\n",
       "0 BEGIN PGM B MM\n1 TOOL CALL \"MILL\" Z S500\n2 CYCL DEF 7.0 DATUM SHIFT\n3 CYCL DEF 7.1 "
       "X+10\n4 CYCL DEF 7.2 IY 2,5\n5 PLANE SPATIAL SPA+0 SPB+45,5 SPC-10 STAY\n6 L B+Q121 C+Q122 "
-      "R0 FMAX\n7 L X+0 Y+0 Z+5 FMAX\n8 L Z+0 F600\n9 PLANE RESET TURN FMAX\n10 M30\n"};
+      "R0 FMAX\n7 L X+0 Y+0 Z+5 FMAX\n8 L Z+0 F600\n9 PLANE RESET TURN FMAX\n10 M30\n",
+      "%\nO4\nG21 G90 F100.\nG43 H1\nG68.2 P2 Q1 X1. Y2. Z3.\nG68.2 P2 Q2 X9. Y2. Z3.\nG68.2 P2 Q3 "
+      "X1. Y9. Z5.\nG53.1\nG0 X0. Y0. Z5.\nG1 Z0.\nG69\nG68.2 P3 Q1 X0. I1. J0. K0.\nG68.2 P3 Q2 "
+      "K1.\nG53.1\nG0 X0. Y0. Z5.\nG69\nG68.2 P1 Q321 K45.\nG54.2 P0\nG15\nG55\nG54\nM30\n%\n",
+      "0 BEGIN PGM C MM\n1 TOOL CALL 1 Z S500\n2 CYCL DEF 19.0 PLANE\n3 CYCL DEF 19.1 A+0\n4 TRANS "
+      "DATUM AXIS X+1 Y 2\n5 CYCL DEF 10.1 ROT+0\n6 L X+10 Y+0 Z+5 FMAX M120 LA5\n7 CC X+0 Y+0\n8 "
+      "CP IPA+810 IZ-4 DR+ F600\n9 CP PA+90 DR-\n10 L M140 MB5\n11 L M140 MB MAX\n12 M128 "
+      "F5000\n13 "
+      "L C+370\n14 L M94\n15 TRANS DATUM RESET\n16 FUNCTION MODE MILL\n17 M30\n",
+      "%_N_C_MPF\nSTART:\nR5=3 CTOL=0.01 FGREF[C]=R5 ACC[X]=80\nG642 ADIS=0.05\nG500\nSUPA G0 Z0 "
+      "D0\nG54\nG0 X0 Y0 Z9\nG1 X1 F9\nM30\n"};
   Seeds seeds;
   for (const std::string_view program : kPrograms) {
     seeds.emplace_back(program.begin(), program.end());
