@@ -20,6 +20,7 @@
 #include "service/protocol/smooth_tolerances.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 #include "service/recording/record/file/recording_writer.hpp"
+#include "service/text/printed.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::simulate_command {
@@ -30,6 +31,7 @@ struct Options {
   std::string explain_table, picture, html;
   double override_ramp_s = 0;
   bool stops_at_optional = false, is_explained = false, is_certified = false;
+  bool gives_findings = false;
   MachineOptions machine;
   JoinOptions join;
   ClFileOptions cl;
@@ -119,6 +121,18 @@ class Explaining {
   std::optional<simulate::Explainer> explainer_;
 };
 
+/// What is in the way of a file, as JSON; it is not run.
+int print_findings(const Options& options, cl::ClReaderOptions& reading, const MachineModel& model,
+                   ToolTable& tools) {
+  if (!can_be_read_twice(options.file)) return refuse("--json needs a file, not a pipe");
+  const stream::PreflightReport report =
+      read_through(options.file, reading, options.machine, model, tools);
+  std::cout << "{\"file\": " << text::json_quoted(options.file)
+            << ", \"is_refused\": " << (report.is_refused ? "true" : "false")
+            << ",\n\"findings\": " << to_json(report.findings) << "}\n";
+  return report.is_refused ? kInputRefused : kFine;
+}
+
 int exit_code_of(simulate::Outcome outcome) {
   switch (outcome) {
     case simulate::Outcome::kDone:
@@ -179,6 +193,7 @@ int run(const Options& options) {
   std::istream* const input = open_cl_file(options.file, file);
   if (input == nullptr) return refuse(options.file + ": cannot be opened");
   cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
+  if (options.gives_findings) return print_findings(options, reading, model, tools);
   if (!pass_file(options.file, reading, options.machine, model, tools)) return kInputRefused;
   cl::ClReader reader(*input, options.file, reading);
   std::optional<record::RecordingWriter> writer;
@@ -259,6 +274,9 @@ void add(CLI::App& app, int& exit_code) {
       ->add_option("--override-ramp-s", options->override_ramp_s,
                    "Instead of the machine file's: time of the override from 100 % to 0")
       ->check(finite_range(1.0, 1000.0));
+  command->add_flag("--json", options->gives_findings,
+                    "Print what is in the way of the file as JSON (words, tools, reach, travel), "
+                    "and do not run it");
   command->add_flag("--optional-stops", options->stops_at_optional, "Optional stops stop");
   add_cl_file_options(*command, options->cl);
   command->callback([options, &exit_code] { exit_code = run(*options); });

@@ -15,7 +15,6 @@
 #include "service/machine/file/tool_names.hpp"
 #include "service/programs/nc/nc_reader.hpp"
 #include "service/protocol/home_pose.hpp"
-#include "service/protocol/preflight.hpp"
 
 namespace meridian::cli {
 
@@ -94,15 +93,21 @@ void describe_machine(cl::ClReaderOptions& reader, const MachineModel& model,
   reader.home = stream::home_pose(model, tools);
 }
 
-bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,
-               const MachineModel& model, ToolTable& tools) {
+stream::PreflightReport read_through(const std::string& file, cl::ClReaderOptions& reader,
+                                     const MachineOptions& options, const MachineModel& model,
+                                     ToolTable& tools) {
   describe_machine(reader, model, tools, load_tool_names(options));
   add_unknown_tools(file, reader, options, tools);
   describe_machine(reader, model, tools, load_tool_names(options));
-  if (!can_be_read_twice(file)) return true;
-  const stream::PreflightReport report = stream::preflight(
+  if (!can_be_read_twice(file)) return {};
+  return stream::preflight(
       file, reader,
       stream::PreflightMachine{model, tools, "give --tools FILE or --unknown-tool-length MM"});
+}
+
+bool pass_file(const std::string& file, cl::ClReaderOptions& reader, const MachineOptions& options,
+               const MachineModel& model, ToolTable& tools) {
+  const stream::PreflightReport report = read_through(file, reader, options, model, tools);
   std::cerr << to_text(report.findings, file);
   return !report.is_refused;
 }

@@ -10,6 +10,7 @@
 #include "service/cli/options/cl_options.hpp"
 #include "service/programs/cl/cl_options.hpp"
 #include "service/programs/nc/tool_names.hpp"
+#include "service/protocol/preflight.hpp"
 
 namespace meridian::cli {
 
@@ -50,9 +51,14 @@ void describe_machine(cl::ClReaderOptions& reader, const MachineModel& model,
 void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reader,
                        const MachineOptions& options, ToolTable& tools);
 
-/// Reads the whole file first and says everything that is in the way of it on this machine, and
-/// what is odd; false where it is refused. A pipe passes: what is wrong there is found on
-/// the way. Adds unknown tools and tells the reader the machine's home.
+/// Reads the whole file first: everything that is in the way of it on this machine, and what is
+/// odd. A pipe passes: what is wrong there is found on the way. Adds unknown tools and tells the
+/// reader the machine's home.
+[[nodiscard]] stream::PreflightReport read_through(const std::string& file,
+                                                   cl::ClReaderOptions& reader,
+                                                   const MachineOptions& options,
+                                                   const MachineModel& model, ToolTable& tools);
+/// The same, and says it on standard error; false where the file is refused.
 [[nodiscard]] bool pass_file(const std::string& file, cl::ClReaderOptions& reader,
                              const MachineOptions& options, const MachineModel& model,
                              ToolTable& tools);

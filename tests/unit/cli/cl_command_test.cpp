@@ -59,6 +59,28 @@ TEST(ClCommand, ReadsAFileWithoutAUnitInMillimetreAndSaysSo) {
   EXPECT_NE(outcome.output.find("warning: NO UNIT WORD"), std::string::npos) << outcome.output;
 }
 
+TEST(SimulateCommand, GivesWordsToolsAndTravelTogetherAsJson) {
+  const std::string machine = std::string(" --json -m ") + MERIDIAN_SOURCE_DIR
+                              "/deploy/machines/trunnion-ac.toml --tools " MERIDIAN_SOURCE_DIR
+                              "/deploy/tools.toml";
+  const TextFile wrong(
+      "UNITS/MM\nFEDRAT/600\nLOADTL/77\nFOO/1\nRETRCT\nLOADTL/1\nGOTO/9000,0,0\nFINI\n", ".apt");
+  const CommandOutput refused = run_tool("simulate " + wrong.path().string() + machine);
+  EXPECT_EQ(refused.exit_code, 3) << refused.output;
+  for (const char* part :
+       {"\"is_refused\": true",
+        "\"line\": 3, \"severity\": \"refusal\", \"count\": 1, \"message\": "
+        "\"tool 77 is not in the tool table\"",
+        "unknown word 'FOO'", "RETRCT retracts", "\"line\": 7", "leaves travel"}) {
+    EXPECT_NE(refused.output.find(part), std::string::npos) << part << "\n" << refused.output;
+  }
+  const CommandOutput fine = run_tool("simulate " + kPart + machine);
+  EXPECT_EQ(fine.exit_code, 0) << fine.output;
+  EXPECT_NE(fine.output.find("\"is_refused\": false"), std::string::npos) << fine.output;
+  EXPECT_EQ(fine.output.find("DONE"), std::string::npos) << "it is not run";
+  EXPECT_EQ(run_tool("simulate -" + machine, "printf 'UNITS/MM\\n'").exit_code, 3) << "a pipe";
+}
+
 TEST(ClCommand, GivesEverythingThatIsWrongWithAFileAtOnceAsTextAndAsJson) {
   const std::string program =
       "printf 'UNITS/MM\\nFOO/1\\nGOTO/1,2,3\\nFEDRAT/-1\\nFOO/2\\nGOTO/1,2\\nFINI\\n'";
