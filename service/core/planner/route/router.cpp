@@ -20,8 +20,9 @@ namespace {
 constexpr double kNoTip_mm = 1e-9;     // shorter ways are no motion
 constexpr double kNoTurn_rad = 1e-12;  // smaller turns of the axis are none
 constexpr int kMaxTurns = 4;           // windings tried either way
-/// In inverse time a block counts for a tolerance of the axis on so much of its way.
+/// In inverse time blocks within this way bound the axis, and count for a tolerance of it on it.
 constexpr double kSpeedReach_mm = 5;
+constexpr double kInside = 0.98;  // of the reach, all of a block for certain
 
 }  // namespace
 
@@ -51,11 +52,16 @@ Router::Job Router::job_of(const ClBlock& block) const noexcept {
   return job;
 }
 
-double Router::share_of_turn(const PathPiece& path, double programmed_rad) const noexcept {
+double Router::bound_turn(const PathPiece& path, double programmed_rad, double before_mm_per_s,
+                          double share_per_s) const noexcept {
   const double tolerance_rad = std::min(on_pole_rad_, model_.tolerances.axis_rad);
-  const double least = tolerance_rad * tip_length(path) / kSpeedReach_mm;
-  const double allowed_rad = std::max(programmed_rad, least);
-  return allowed_rad < path.axis_turn ? allowed_rad / path.axis_turn : 1.0;
+  const double tip_mm = tip_length(path);
+  const double way_mm = std::hypot(tip_mm, kAxisLength_mm_per_rad * programmed_rad);
+  const bool is_near = way_mm < kInside * kSpeedReach_mm;
+  const double tip_mm_per_s = std::max(share_per_s * tip_mm, is_near ? before_mm_per_s : 0.0);
+  const double rad_per_s =
+      std::max(share_per_s * programmed_rad, tolerance_rad * tip_mm_per_s / kSpeedReach_mm);
+  return path.axis_turn > 0 ? std::min(share_per_s, rad_per_s / path.axis_turn) : share_per_s;
 }
 
 void Router::Ways::sort() noexcept {
@@ -202,8 +208,13 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
     path = with_axes(path, cursor.pose.axis, cursor.pose.axis);
     path.axis_turn = 0;
   }
+  const double before_mm_per_s = cursor.cut_mm_per_s;
+  cursor.cut_mm_per_s = is_timed                         ? job.share_per_s * tip_length(path)
+                        : job.motion == MotionKind::kCut ? job.feed_mm_per_s
+                                                         : 0;
   if (is_timed && cursor.eased_from) {
-    job.share_per_s *= share_of_turn(path, angle_between(*cursor.eased_from, programmed));
+    job.share_per_s = bound_turn(path, angle_between(*cursor.eased_from, programmed),
+                                 before_mm_per_s, job.share_per_s);
   }
   cursor.eased_from = deviation_rad_ > 0 ? std::optional(programmed) : std::nullopt;
   if (!(path.length > kNoTip_mm)) return {};

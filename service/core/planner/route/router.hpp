@@ -28,6 +28,7 @@ struct PlanCursor {
   std::uint32_t window = 0;
   std::uint16_t epoch = 0;
   bool has_retracted = false;           ///< the approach goes on from where retract() led
+  double cut_mm_per_s = 0;              ///< that the cut that ended there asks for; 0: none did
   std::optional<Vector3> eased_from{};  ///< where the pose's axis was programmed, if not there
 };
 
@@ -127,9 +128,11 @@ class Router {
   };
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
-  /// The axis may turn farther along `path` than the `programmed_rad` that its block asks for: the
-  /// share of the rate that inverse time asks for at which it is no faster.
-  [[nodiscard]] double share_of_turn(const PathPiece& path, double programmed_rad) const noexcept;
+  /// From where it was eased to, the axis turns farther along `path` than the `programmed_rad` that
+  /// its block in inverse time asks for: no faster than (1.6) of docs/motion.md, behind a cut
+  /// that asks for `before_mm_per_s`. What is left of `share_per_s`.
+  [[nodiscard]] double bound_turn(const PathPiece& path, double programmed_rad,
+                                  double before_mm_per_s, double share_per_s) const noexcept;
   [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
   /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it: of the
   /// program's begin.
