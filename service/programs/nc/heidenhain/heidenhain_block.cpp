@@ -2,7 +2,6 @@
 // Klartext: every statement becomes the words of ISO that say the same.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "service/programs/cl/text/number.hpp"
@@ -11,18 +10,13 @@
 #include "service/programs/nc/heidenhain/heidenhain_arcs.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_cycles.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_words.hpp"
 #include "service/programs/nc/remedy.hpp"
 
 namespace meridian::nc {
 namespace {
 
 using cl::refuse;
-
-/// M codes of the control that say how it moves and nothing about where.
-constexpr std::array kSilent = {90,  101, 102, 107, 108, 109, 110, 111, 112, 115, 116,
-                                117, 120, 124, 126, 127, 137, 138, 141, 145, 148, 149};
-/// Those that put points elsewhere, or whose words are neither coordinates nor a feed.
-constexpr std::array kCodesNotRun = {92, 103, 114, 118, 130, 136, 143, 144};
 
 bool has_name(const Line& line, std::string_view name) {
   return std::any_of(line.names.begin(), line.names.end(),
@@ -43,17 +37,6 @@ cl::Outcome begin_program(State& s, const Line& line) {
     s.cl.summary.program = std::string(text.substr(begin, text.find(' ', begin) - begin));
   }
   return set_unit(s, cl::LengthUnit::kMillimetre);
-}
-
-cl::Outcome switch_on(State& s, const Line& line, bool turns_evenly) {
-  s.modes.is_oriented = true;
-  s.modes.turns_evenly = turns_evenly;
-  return set_control(s, line, s.axes ? Control::kRotary : Control::kVector);
-}
-
-cl::Outcome switch_off(State& s, const Line& line) {
-  s.modes.is_oriented = false;
-  return set_control(s, line, Control::kLength);
 }
 
 /// FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR, FUNCTION RESET TCPM.
@@ -114,85 +97,6 @@ cl::Outcome run_cycle_call(State& s, const Line& line) {
                   "CYCL CALL");
   }
   return call_cycle(s, line);
-}
-
-void move_word(Line& to, const Word& word, std::string_view address) {
-  Word copy = word;
-  copy.address = address;
-  to.words.push_back(copy);
-}
-
-/// A line of Klartext as ISO says it.
-struct Translated {
-  Line iso;
-  bool is_machine_place = false;
-  bool calls_cycle = false;  ///< M99, M89
-  bool retracts = false;     ///< M140
-};
-
-bool is_code(const Word& word, int code) { return word.is('M') && word.number == code; }
-
-/// M128 F5000 tells the feed of the linear axes that follow a turn, which is none of the path.
-bool is_feed_of_m128(const Line& line, std::size_t at) {
-  return at > 0 && line.words[at].is('F') && is_code(line.words[at - 1], 128);
-}
-
-/// M94: rotary positions are shown, and count, within a turn from here on.
-void reduce_rotary(State& s) {
-  for (RotaryAt& at : s.place.rotary) {
-    if (at.deg) at.deg = *at.deg - 360 * std::floor(*at.deg / 360);
-  }
-}
-
-/// The words of a line under their addresses in ISO. M13 and M14 start spindle and coolant.
-cl::Outcome translate(State& s, const Line& line, Translated& out) {
-  Line& iso = out.iso;
-  iso.number = line.number;
-  const bool is_radius_arc = line.names.front().name == "CR";
-  for (std::size_t n = 0; n < line.words.size(); ++n) {
-    const Word& word = line.words[n];
-    if (is_feed_of_m128(line, n)) continue;
-    const bool is_m = word.is('M');
-    const int code =
-        is_m && word.number >= 0 && word.number < 1e6 ? static_cast<int>(word.number) : -1;
-    if (std::find(kSilent.begin(), kSilent.end(), code) != kSilent.end()) {
-      s.cl.summary.skip("M" + std::string(word.digits), line.number);
-    } else if (code == 94) {
-      reduce_rotary(s);
-    } else if (code == 140) {
-      out.retracts = true;
-    } else if (code == 91) {
-      out.is_machine_place = true;
-    } else if (code == 128 || code == 129) {
-      auto done = code == 128 ? switch_on(s, line, true) : switch_off(s, line);
-      if (!done) return done;
-    } else if (code == 89 || code == 99) {
-      out.calls_cycle = true;
-      if (s.modes.definition) s.modes.definition->runs_at_every_point = code == 89;
-    } else if (std::find(kCodesNotRun.begin(), kCodesNotRun.end(), code) != kCodesNotRun.end()) {
-      return refuse("M" + std::string(word.digits) + " is not run here", kMovesByCam,
-                    "M" + std::string(word.digits));
-    } else if (code == 13 || code == 14) {
-      Word start = word;
-      start.number = code == 13 ? 3 : 4;
-      move_word(iso, start, "M");
-      start.number = 8;
-      move_word(iso, start, "M");
-    } else if (word.is('R') && !is_radius_arc) {
-      if (word.number != 0) return refuse("R beside a straight line", kMovesByCam);
-    } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ" ||
-               word.address == "LA") {
-      s.cl.summary.skip(word.address, line.number);
-    } else if (word.address == "DL" || word.address == "DR") {
-      if (word.number != 0) {
-        s.cl.remarks.warn("delta", line.number,
-                          [] { return std::string("DL and DR of TOOL CALL are not applied"); });
-      }
-    } else {
-      move_word(iso, word, word.address);
-    }
-  }
-  return {};
 }
 
 cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
