@@ -18,7 +18,7 @@ constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
 constexpr double kNoCell_mm = 1e-6;    // of u: an end that is not worth a cell
 constexpr double kMinSplit_mm = 5e-4;  // of u: below, motion would creep
 constexpr double kMaxCells = 2;        // of time, that one takes where it is slowest
-constexpr int kRounds = 16;            // of halving: lengths of a ratio of 60 000
+constexpr int kHalvings = 16;          // of halving: lengths of a ratio of 60 000
 
 /// The range of the samples, and an eighth of it either side for what lies between.
 CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexcept {
@@ -139,7 +139,7 @@ PathFault CellGrid::push(const FeedSpan& span) noexcept {
   if (!(span.length > 0)) return {};
   waiting_[static_cast<std::size_t>(waiting_count_++)] = span;
   draft_cells(span);
-  halve(last_ > 0 ? last_h_ : std::numeric_limits<double>::infinity(), kRatio, kRounds);
+  halve(last_ > 0 ? last_h_ : std::numeric_limits<double>::infinity(), kRatio, kHalvings);
   return make_cells();
 }
 

@@ -10,9 +10,9 @@
 namespace meridian {
 namespace {
 
-constexpr int kSteps = FeedCell::kSteps;
+constexpr int kCellSteps = FeedCell::kSteps;
 constexpr double kNoBound = 1e9;
-using Samples = std::array<double, kSteps + 1>;
+using Samples = std::array<double, kCellSteps + 1>;
 
 /// A cubic leaves the parabola through three of its samples by no more than that of its third
 /// difference: 1 / (9 √3), about.
@@ -23,7 +23,7 @@ double rise_above(const Samples& f, int k) noexcept {
   const auto third = [&f](int n) {
     return std::abs(f[n + 3] - 3 * f[n + 2] + 3 * f[n + 1] - f[n]);
   };
-  return kOfThird * std::min(third(std::max(k - 2, 0)), third(std::min(k - 1, kSteps - 3)));
+  return kOfThird * std::min(third(std::max(k - 2, 0)), third(std::min(k - 1, kCellSteps - 3)));
 }
 
 /// Largest |f| of a smooth function from its samples: between them a peak rises to about the top of
@@ -31,11 +31,11 @@ double rise_above(const Samples& f, int k) noexcept {
 /// three there.
 double peak_of(const Samples& f) noexcept {
   double most = 0;
-  for (int k = 0; k <= kSteps; ++k) most = std::max(most, std::abs(f[k]));
-  for (int k = 1; k < kSteps; ++k) {
+  for (int k = 0; k <= kCellSteps; ++k) most = std::max(most, std::abs(f[k]));
+  for (int k = 1; k < kCellSteps; ++k) {
     const double sign = f[k] < 0 ? -1 : 1;
     const Parabola about(sign * f[k - 1], sign * f[k], sign * f[k + 1]);
-    const double before = k == 1 ? 2 : 1, behind = k == kSteps - 1 ? 2 : 1;  // half samples
+    const double before = k == 1 ? 2 : 1, behind = k == kCellSteps - 1 ? 2 : 1;  // half samples
     const bool has_top = about.bend > 0 && !(-about.slope > before * about.bend) &&
                          !(about.slope > behind * about.bend);
     if (has_top) most = std::max(most, about.top() + rise_above(f, k));
@@ -55,11 +55,11 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const Cell
   const auto& [v, a, j] = motion;
   FeedUse use;
   Samples share;
-  for (int k = 0; k <= kSteps; ++k) share[k] = b[k] / cell.at[k].max_b;
+  for (int k = 0; k <= kCellSteps; ++k) share[k] = b[k] / cell.at[k].max_b;
   use.b = peak_of(share);
   for (int i = 0; i < limits.count; ++i) {
     Samples velocity, acceleration, jerk;
-    for (int k = 0; k <= kSteps; ++k) {
+    for (int k = 0; k <= kCellSteps; ++k) {
       const CellSample& at = cell.at[k];
       velocity[k] = at.d1[i] * v[k];
       acceleration[k] =
@@ -82,8 +82,8 @@ FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& la
   if (comes_to_rest(law, second, cell.h)) return none;
   CellMotion motion;
   Samples b;
-  for (int k = 0; k <= kSteps; ++k) {
-    const double x = cell.h * k / kSteps;
+  for (int k = 0; k <= kCellSteps; ++k) {
+    const double x = cell.h * k / kCellSteps;
     b[k] = law.b + x * (law.slope + 0.5 * second * x);
     if (!(b[k] > 0)) return none;
     motion.v[k] = std::sqrt(b[k]);
@@ -96,7 +96,7 @@ FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& la
 FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
                       const CellMotion& motion) noexcept {
   Samples b;
-  for (int k = 0; k <= kSteps; ++k) b[k] = motion.v[k] * motion.v[k];
+  for (int k = 0; k <= kCellSteps; ++k) b[k] = motion.v[k] * motion.v[k];
   return use_of_motion(limits, cell, motion, b);
 }
 

@@ -28,15 +28,15 @@ double time_over(const FeedPiece& piece, double length, double guess) noexcept {
 
 /// ∫ dx/√b by Simpson's rule.
 double estimate_time(const CellLaw& law, double second, double x, double length) noexcept {
-  constexpr int kSteps = 8;
+  constexpr int kIntervals = 8;
   double sum = 0;
-  for (int k = 0; k <= kSteps; ++k) {
-    const double at = x + length * k / kSteps;
+  for (int k = 0; k <= kIntervals; ++k) {
+    const double at = x + length * k / kIntervals;
     const double b = law.b + at * (law.slope + 0.5 * second * at);
-    const double weight = k == 0 || k == kSteps ? 1 : (k % 2 == 1 ? 4 : 2);
+    const double weight = k == 0 || k == kIntervals ? 1 : (k % 2 == 1 ? 4 : 2);
     sum += weight / std::sqrt(std::max(b, 1e-300));
   }
-  return sum * length / (3 * kSteps);
+  return sum * length / (3 * kIntervals);
 }
 
 }  // namespace

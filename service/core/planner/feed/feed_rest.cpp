@@ -10,13 +10,11 @@
 namespace meridian {
 namespace {
 
-constexpr double kCurvatureShare = 0.7;
 constexpr double kRestShare = 0.92;  // of the limits in a first or last cell
 constexpr double kRestStep = 0.7;    // of the ladder
 constexpr int kRestSteps = 120;
 constexpr int kRestHalvings = 4;       // of its last step
 constexpr double kCrawlMargin = 1.02;  // on the duration: limits between samples
-constexpr double kNone = 1e-12;
 
 }  // namespace
 
@@ -28,8 +26,8 @@ double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t fir
       const CellSample& at = grid[cell].at[k];
       most = std::min(most, at.max_b);
       for (int i = 0; i < limits.count; ++i) {
-        const double d2 = std::max(std::abs(at.d2[i]), kNone);
-        const double d3 = std::max(std::abs(at.d3[i]), kNone);
+        const double d2 = std::max(std::abs(at.d2[i]), kZeroDerivative);
+        const double d3 = std::max(std::abs(at.d3[i]), kZeroDerivative);
         most = std::min({most, kCurvatureShare * limits.acceleration[i] / d2,
                          kCurvatureShare * std::pow(limits.jerk[i] / d3, 2.0 / 3.0)});
       }
@@ -54,9 +52,10 @@ RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_
     return use.worst() < kRestShare * cell.tight && use.b < kRestShare;
   };
   // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
-  double jerk = std::pow(0.8 * std::max(max_b, kNone), 1.5) / (36 * h * h);
+  double jerk = std::pow(0.8 * std::max(max_b, kZeroDerivative), 1.5) / (36 * h * h);
   for (int i = 0; i < limits.count; ++i) {
-    jerk = std::min(jerk, kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kNone));
+    jerk = std::min(jerk,
+                    kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kZeroDerivative));
   }
   double too_much = 0;
   for (int n = 0; n < kRestSteps && !is_within(jerk); ++n) {

@@ -13,11 +13,6 @@
 namespace meridian {
 namespace {
 
-constexpr double kCurvatureShare = 0.7;  // of a limit that a cell's length allows for curvature
-constexpr double kNone = 1e-12;          // derivative that counts as none
-
-double square(double x) noexcept { return x * x; }
-
 double speed_square(const Vec3<Jet<3>>& x) noexcept {
   double sum = 0;
   for (int i = 0; i < 3; ++i) sum += square(x[i].derivative(1));
@@ -65,19 +60,22 @@ PathFault take_sample(const MachineModel& model, const FeedLimits& limits, doubl
   const auto [at, tip_square, turn_square] = place_on(model, span, x, reference);
   if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
   const double share = square(feed_share);
-  double b = std::min(1 / kNone, share * square(span.u_speed_mm_per_s));
-  b = std::min(b, share * square(span.feed_mm_per_s) / std::max(tip_square, square(kNone)));
+  double b = std::min(1 / kZeroDerivative, share * square(span.u_speed_mm_per_s));
+  b = std::min(b,
+               share * square(span.feed_mm_per_s) / std::max(tip_square, square(kZeroDerivative)));
   if (std::isfinite(span.turn_rad_per_s)) {
-    b = std::min(b, share * square(span.turn_rad_per_s) / std::max(turn_square, square(kNone)));
+    b = std::min(
+        b, share * square(span.turn_rad_per_s) / std::max(turn_square, square(kZeroDerivative)));
   }
   const auto take = [&](int i, const Jet<3>& q) {
     const double d1 = out.d1[i] = q.derivative(1);
     const double d2 = out.d2[i] = q.derivative(2);
     const double d3 = out.d3[i] = q.derivative(3);
-    b = std::min(b, square(limits.velocity[i] / std::max(std::abs(d1), kNone)));
-    b = std::min(b, limits.acceleration[i] / std::max(std::abs(d2), kNone));
+    b = std::min(b, square(limits.velocity[i] / std::max(std::abs(d1), kZeroDerivative)));
+    b = std::min(b, limits.acceleration[i] / std::max(std::abs(d2), kZeroDerivative));
     // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
-    b = std::min(b, 4 * std::pow(limits.jerk[i] / std::max(std::abs(d3), kNone), 2.0 / 3.0));
+    b = std::min(b,
+                 4 * std::pow(limits.jerk[i] / std::max(std::abs(d3), kZeroDerivative), 2.0 / 3.0));
   };
   for (int i = 0; i < model.joint_count; ++i) {
     reference[i] = value_of(at.q[i]);

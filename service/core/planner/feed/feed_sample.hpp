@@ -10,7 +10,11 @@
 /// section 8.
 namespace meridian {
 
-inline constexpr double kMinTight = 0.2;  ///< share of A and J that is never taken away
+inline constexpr double kCurvatureShare = 0.7;    ///< of a limit, allowed for curvature in a cell
+inline constexpr double kZeroDerivative = 1e-12;  ///< a derivative that counts as zero
+inline constexpr double kMinTight = 0.2;          ///< share of A and J that is never taken away
+
+[[nodiscard]] constexpr double square(double x) noexcept { return x * x; }
 
 /// Derivatives of joints and drives by u at one place, and the largest u̇² that feed, velocity, and
 /// the curvature terms of acceleration and jerk allow there.

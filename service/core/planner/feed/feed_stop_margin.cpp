@@ -12,22 +12,20 @@
 namespace meridian {
 namespace {
 
-constexpr double kShare = 0.99;     // of the limits
-constexpr double kGrowth = 1.25;    // of the authority from piece to piece, at most
-constexpr double kLess = 0.98;      // of what would just do
-constexpr int kRounds = 8;          // of lessening
-constexpr double kHopeless = 0.02;  // of what the piece's own cell allows
-constexpr double kEasing = 0.9;     // of the deceleration that there is: a stop may ease off to it
+constexpr double kShare = 0.99;      // of the limits
+constexpr double kMaxGrowth = 1.25;  // of the authority from piece to piece, at most
+constexpr double kLess = 0.98;       // of what would just do
+constexpr int kMarginRounds = 8;     // of lessening
+constexpr double kHopeless = 0.02;   // of what the piece's own cell allows
+constexpr double kEasing = 0.9;      // of the deceleration that there is: a stop may ease off to it
 constexpr double kRounding_mm = 1e-9;
 constexpr double kTiny = 1e-12;
-constexpr int kSteps = 24;          // of a stop
-constexpr double kBetween = 1.002;  // on ṡ² between the steps
-constexpr double kFast = 1.0002;    // on ṡ² that feed and velocity allow: what a plan may use
-constexpr double kSlow = 0.6;       // rate of plan time below which slow_* may be used
+constexpr int kStopSteps = 24;           // of a stop
+constexpr double kBetweenSteps = 1.002;  // on ṡ² between the steps
+constexpr double kFast = 1.0002;  // on ṡ² that feed and velocity allow: what a plan may use
+constexpr double kSlow = 0.6;     // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
 constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
-
-double square(double x) noexcept { return x * x; }
 
 /// The plan's state at another rate of plan time.
 PathState slowed(const PathState& p, double rate) noexcept {
@@ -108,8 +106,8 @@ FeedStopMargin::Grant FeedStopMargin::find(Search& search, std::int64_t cell, co
   const StopMargin most = max_in(search.caps, cell);
   StopMargin got;
   if (search.last.jerk > 0) {
-    const StopMargin start{std::min(most.accel, kGrowth * search.last.accel),
-                           std::min(most.jerk, kGrowth * search.last.jerk)};
+    const StopMargin start{std::min(most.accel, kMaxGrowth * search.last.accel),
+                           std::min(most.jerk, kMaxGrowth * search.last.jerk)};
     got = lessen(search.caps, cell, ends, start, most);
   }
   if (!(got.jerk > 0)) got = lessen(search.caps, cell, ends, most, most);
@@ -126,7 +124,7 @@ FeedStopMargin::Grant FeedStopMargin::find(Search& search, std::int64_t cell, co
 
 StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const Ends& from,
                                   StopMargin now, const StopMargin& most) const noexcept {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMarginRounds; ++round) {
     const double depth = std::max(depth_of(from.begin, now.jerk), depth_of(from.end, now.jerk));
     now.accel = std::min(now.accel, 1.02 * depth);
     Use use;
@@ -194,19 +192,20 @@ bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathStat
   for (std::int64_t k = cell; s + kRounding_mm < rest; ++k) {
     if (k >= rest_cell_) return false;
     const FeedCell& here = (*grid_)[k];
-    while (to.s <= s && n < kSteps) {
+    while (to.s <= s && n < kStopSteps) {
       from = to;
-      to = law.at(law.duration() * ++n / kSteps);
+      to = law.at(law.duration() * ++n / kStopSteps);
     }
     const double x = to.s > from.s ? std::clamp((s - from.s) / (to.s - from.s), 0.0, 1.0) : 0.0;
-    double v2 = kBetween * (from.ds * from.ds + x * (to.ds * to.ds - from.ds * from.ds));
+    double v2 = kBetweenSteps * (from.ds * from.ds + x * (to.ds * to.ds - from.ds * from.ds));
     const double by_rate = k == cell ? slope_ * from.ds : 0;  // of slower states
     const double rising = std::max(from.dds, 0.0) + by_rate;
     if (from.dds > 0) {
-      v2 = std::max(v2, kBetween * square(from.ds + 0.5 * from.dds * from.dds / authority.jerk));
+      v2 = std::max(v2,
+                    kBetweenSteps * square(from.ds + 0.5 * from.dds * from.dds / authority.jerk));
     }
-    const bool is_too_fast =
-        k > cell ? v2 > kBetween * kFast * here.max_b : rises_too_far(here, begin, authority.jerk);
+    const bool is_too_fast = k > cell ? v2 > kBetweenSteps * kFast * here.max_b
+                                      : rises_too_far(here, begin, authority.jerk);
     if (is_too_fast) {
       use.is_too_fast = true;
       return true;

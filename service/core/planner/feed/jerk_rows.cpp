@@ -8,7 +8,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kNone = 1e-300;
+constexpr double kTiniest = 1e-300;
 
 /// What the rate filter adds to an acceleration, (8.6): at b = 0, and per b.
 struct FilterTerm {
@@ -29,7 +29,7 @@ void bound_slope(const FeedLimits& limits, JerkCell& at) noexcept {
     const double left = limits.acceleration[j] * at.accel_share -
                         filter_term(limits, d1, at.bar[0]).fixed +
                         std::abs(place.d2[j]) * at.max_b[0];
-    const double most = 2 * left / std::max(d1, kNone);
+    const double most = 2 * left / std::max(d1, kTiniest);
     if (most >= at.max_slope) continue;
     at.max_slope = most;
     at.slope_joint = j;
@@ -93,7 +93,7 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
     for (int j = 0; j < limits.count; ++j) {
       const double most = (limits.jerk[j] * per_root + std::abs(place.at->d3[j]) * place.max_b +
                            1.5 * std::abs(place.at->d2[j]) * place.max_slope) /
-                          std::max(0.5 * std::abs(place.at->d1[j]), kNone);
+                          std::max(0.5 * std::abs(place.at->d1[j]), kTiniest);
       if (most >= max_bend) continue;
       max_bend = most;
       bend_place = p;

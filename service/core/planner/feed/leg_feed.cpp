@@ -10,14 +10,13 @@ namespace meridian {
 namespace {
 
 constexpr double kCell_s = 0.004;  // at full speed, next to rest and as long as they are few
-constexpr double kMin = CellGrid::kMin, kMax = 240;  // cells away from rest
-constexpr double kGrowth = 1.25;                     // of cells, away from rest
-constexpr std::size_t kMaxGrowing = 64;              // of them, next to a rest
+constexpr double kMinLegCells = CellGrid::kMin, kMaxFeedCells = 240;  // cells away from rest
+constexpr double kCellGrowth = 1.25;                                  // of cells, away from rest
+constexpr std::size_t kMaxGrowing = 64;                               // of them, next to a rest
 constexpr std::size_t kEnds = 512;
 constexpr int kKeptCells = 256;   // at a time: a window, and what stands before and behind it
 constexpr int kCommitCells = 80;  // of a window: all cells are there, so fewer windows do
 constexpr int kMaxRounds = 40;    // of the solver in a window: what needs more finds no plan
-constexpr double kCurvatureShare = 0.7;  // as in the cells of the feed
 
 FeedSettings leg_settings(const MachineModel& model) noexcept {
   FeedSettings settings = feed_settings(model);
@@ -71,12 +70,12 @@ double LegFeed::time_over(const Leg& leg, const JointCell& cell) const noexcept 
 void LegFeed::place_cells(const Leg& leg, std::span<const JointCell> cells) noexcept {
   double whole = 0;
   for (const JointCell& cell : cells) whole += time_over(leg, cell);
-  const double step = std::clamp(kCell_s, whole / kMax, whole / kMin);
+  const double step = std::clamp(kCell_s, whole / kMaxFeedCells, whole / kMinLegCells);
   // Ends by time: growing up to a step, evenly, and shrinking again.
   ends_.clear();
   double ramp = 0;
   for (double by = kCell_s; by < step && ramp + by < 0.5 * whole && ends_.size() < kMaxGrowing;
-       by *= kGrowth) {
+       by *= kCellGrowth) {
     ends_.push_back(ramp += by);
   }
   const std::size_t growing = ends_.size();

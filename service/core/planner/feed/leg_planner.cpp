@@ -14,14 +14,14 @@
 namespace meridian {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kGrading = 0.7;      // step between nodes, in distances to the pole
 constexpr double kCellGrading = 0.1;  // step between cells
 constexpr double kCellTurn_rad = 0.06;
 constexpr double kCellSweep_rad = 0.14;
 constexpr double kCellFree_rad = 0.14;
 constexpr double kLargestAzimuth_rad = 1.565;  // 5.8 mrad short of a quarter turn
-constexpr double kMaxCells = 256;
+constexpr double kMaxLegCells = 256;
 constexpr double kGain = 1.02;      // over the least time, that constant bounds may lose
 constexpr double kRests_s = 0.004;  // and what the feed planner loses beside rests
 constexpr double kCoarse = 1.12;
@@ -35,7 +35,7 @@ constexpr double kLargestJump_rad = 1e-9, kLargestJump_mm = 1e-7;
 constexpr double kCreep_s = 10, kCreepOfFeed = 1000, kCreepOfJoints = 10;
 
 int cells_for(double amount) noexcept {
-  return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMaxCells));
+  return static_cast<int>(std::clamp(std::ceil(amount), 1.0, kMaxLegCells));
 }
 
 /// Distance to the pole at `from_nearest` along the great circle.
@@ -159,7 +159,7 @@ PathFault LegPlanner::append_cells(CellTable& table, const PathPiece& path, doub
     const PathFault fault = table.append(model_, path, begin, end, cells, joints);
     const bool is_jump = fault.kind == PathFault::Kind::kJump;
     const bool is_coarse = is_jump || (table.coarseness() > kCoarse && !is_fault(fault));
-    if (!is_coarse || round == kMaxRefinements || first + 2 * cells > kMaxCells) {
+    if (!is_coarse || round == kMaxRefinements || first + 2 * cells > kMaxLegCells) {
       return fault;
     }
     table.go_back(first);
@@ -255,7 +255,7 @@ void LegPlanner::relax_from(int first, bool by_azimuth, const Leg& leg) noexcept
 
 void LegPlanner::find_fastest_runs(const Leg& leg) noexcept {
   for (int n = 1; n < node_count_; ++n) {
-    nodes_[n].fastest = kNever;
+    nodes_[n].fastest = kUnbounded;
     nodes_[n].from = n - 1;
     nodes_[n].by_azimuth = false;
   }

@@ -11,7 +11,7 @@ namespace meridian {
 namespace {
 
 constexpr double kAuthority = 0.9;
-constexpr double kMax = 1e12;  // a path along which no joint moves has no limit of its own
+constexpr double kUnlimited = 1e12;  // a path along which no joint moves has no limit of its own
 /// Third differences are checked down to this cycle time.
 constexpr double kShortestCycle_s = 250e-6;
 
@@ -89,7 +89,7 @@ JointCaps fault_caps(const MachineModel& model, double reach_mm) noexcept {
 double find_acceleration(std::span<const JointCell> cells, const JointCaps& caps,
                          double velocity) noexcept {
   const double square = velocity * velocity;
-  double accel = kMax;
+  double accel = kUnlimited;
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {
       const double left = caps.acceleration[i] - cell.d2[i] * square;
@@ -110,7 +110,7 @@ double find_jerk_beside(std::span<const JointCell> cells, const JointCaps& caps,
                         double product) noexcept {
   const double cube = velocity * velocity * velocity;
   const double mixed = 3 * product;
-  double jerk = kMax;
+  double jerk = kUnlimited;
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {
       const double left = caps.jerk[i] - caps.noise_gain[i] * cell.noise_rad - cell.d3[i] * cube -
@@ -129,7 +129,7 @@ MotionChoice choose_motion(std::span<const JointCell> cells, const JointCaps& ca
   const double rest_jerk = find_jerk(cells, caps, 0, 0);
   MotionChoice best;
   if (!(rest_accel > 0) || !(rest_jerk > 0)) return best;
-  double velocity = std::min({feed_velocity, kMax, 0.5 * rest_accel / kRateSlope_per_s,
+  double velocity = std::min({feed_velocity, kUnlimited, 0.5 * rest_accel / kRateSlope_per_s,
                               0.25 * rest_jerk / kRateCurvature_per_s2});
   for (const JointCell& cell : cells) {
     for (int i = 0; i < caps.count; ++i) {

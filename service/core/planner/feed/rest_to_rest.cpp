@@ -17,7 +17,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kToleranceShare = 0.95;  // of the axis tolerance about the pole
+constexpr double kLegToleranceShare = 0.95;  // of the axis tolerance about the pole
 
 TimeKind barrier_of(BlockKind kind) noexcept {
   switch (kind) {
@@ -293,7 +293,7 @@ void RestToRestPlanner::set_free_cone(double rad) noexcept {
 
 void RestToRestPlanner::set_pole_tolerance(double rad) noexcept {
   Workspace& w = *workspace_;
-  w.on_pole_rad = std::max(kPoleEase_rad, kToleranceShare * rad);
+  w.on_pole_rad = std::max(kPoleEase_rad, kLegToleranceShare * rad);
   w.router.set_pole_tolerance(w.on_pole_rad);
 }
 

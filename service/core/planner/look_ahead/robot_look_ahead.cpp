@@ -9,6 +9,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "service/core/planner/feed/joint_cells.hpp"
 #include "service/core/planner/singular/robot_pass.hpp"
 
 namespace meridian {
@@ -18,7 +19,6 @@ constexpr double kLongestStep_mm = 5;  // of path length
 constexpr double kShortestStep_mm = 1e-3;
 constexpr double kMaxTurn_rad = 0.3;  // of a joint in one step
 constexpr int kMaxSteps = 8192;       // of a course
-constexpr double kMargin = 1e-9;
 
 class Course {
  public:
@@ -101,7 +101,7 @@ class Course {
   }
   [[nodiscard]] bool is_inside(const Solution<double>& to) const noexcept {
     return to.status != SolveStatus::kUnreachable &&
-           first_joint_outside_travel(model_, to.q, kMargin) < 0;
+           first_joint_outside_travel(model_, to.q, kTravelMargin) < 0;
   }
   [[nodiscard]] double turn_to(const JointVector& q) const noexcept {
     double most = 0;

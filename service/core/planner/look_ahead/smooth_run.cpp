@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kSpans = 2048;
 constexpr std::size_t kEases = 256;  // that wait to be taken; the oldest go
 constexpr std::size_t kBlockEnds = 8192;
-constexpr double kSamePlace_mm = 1e-9;  // of u, where spans were cut
+constexpr double kSameCut_mm = 1e-9;  // of u, where spans were cut
 
 /// Least time that a span takes at its programmed feed.
 double min_time(const BandSpan& span) noexcept {
@@ -208,7 +208,7 @@ void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
   span.marks = {};
   for (std::int64_t i = ends_.begin_index(); i < ends_.end_index(); ++i) {
     const BlockEnd& end = ends_[i];
-    if (end.u > band.u0 + band.length + kSamePlace_mm) break;
+    if (end.u > band.u0 + band.length + kSameCut_mm) break;
     const auto ahead = static_cast<std::uint32_t>(end.sequence - band.sequence);
     span.marks.add({std::clamp(end.u - band.u0, 0.0, band.length), ahead, end.line});
     ends_.drop_before(i + 1);

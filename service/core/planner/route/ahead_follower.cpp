@@ -12,6 +12,7 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/feed/joint_cells.hpp"
 #include "service/core/planner/singular/pole_bounds.hpp"
 
 namespace meridian {
@@ -22,8 +23,7 @@ constexpr double kMaxStep_rad = 0.05;  // more would miss where slides turn roun
 constexpr double kArcStep_rad = 0.1;   // of an arc
 constexpr double kMinPole_rad = 1e-3;
 constexpr int kMaxSteps = 256;  // per block
-constexpr double kMargin = 1e-9;
-constexpr double kBend = 1.5;  // of the joints over the slack: it ends well outside of the pole
+constexpr double kBend = 1.5;   // of the joints over the slack: it ends well outside of the pole
 
 /// Whether turning the redundant joint back may help where it runs out of travel.
 bool may_unwind(const MachineModel& model) noexcept {
@@ -138,9 +138,9 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
 }
 
 int AheadFollower::first_outside(const JointVector& all) const noexcept {
-  if (is_tool_known_) return first_joint_outside_travel(model_, all, kMargin);
+  if (is_tool_known_) return first_joint_outside_travel(model_, all, kTravelMargin);
   for (int i = 0; i < model_.joint_count; ++i) {
-    if (model_.joints[i].is_rotary && !is_inside_travel(model_.joints[i], all[i], kMargin))
+    if (model_.joints[i].is_rotary && !is_inside_travel(model_.joints[i], all[i], kTravelMargin))
       return i;
   }
   return -1;

@@ -8,8 +8,8 @@
 namespace meridian {
 namespace {
 
-constexpr int kRounds = 16;
-constexpr double kGrowth = 0.3;  // of gaps, by u
+constexpr int kSplineRounds = 16;
+constexpr double kGapGrowth = 0.3;  // of gaps, by u
 constexpr double kMinGap_mm = 1e-4;
 constexpr std::size_t kMinPieces = 8;
 constexpr double kSnapped_mm = 1e-4, kSnappedShare = 0.05,
@@ -69,10 +69,10 @@ FreeSpline::FreeSpline()
 
 void FreeSpline::grade(std::span<const Node> nodes) noexcept {
   for (std::size_t n = 1; n < nodes.size(); ++n) {
-    gaps_[n] = std::min(gaps_[n], gaps_[n - 1] + kGrowth * (nodes[n].u - nodes[n - 1].u));
+    gaps_[n] = std::min(gaps_[n], gaps_[n - 1] + kGapGrowth * (nodes[n].u - nodes[n - 1].u));
   }
   for (std::size_t n = nodes.size() - 1; n-- > 0;) {
-    gaps_[n] = std::min(gaps_[n], gaps_[n + 1] + kGrowth * (nodes[n + 1].u - nodes[n].u));
+    gaps_[n] = std::min(gaps_[n], gaps_[n + 1] + kGapGrowth * (nodes[n + 1].u - nodes[n].u));
   }
 }
 
@@ -156,7 +156,7 @@ bool FreeSpline::fit(const SpanLookup& spans, std::span<const Node> nodes,
   std::fill_n(gaps_.begin(), nodes.size(), shape.max_gap_mm);
   for (int round = 0;; ++round) {
     grade(nodes);
-    if (round == kRounds || !place_knots(spans, nodes)) return false;
+    if (round == kSplineRounds || !place_knots(spans, nodes)) return false;
     if (!narrow(nodes, windows, shape)) break;
   }
   fix_ends(begin, end);

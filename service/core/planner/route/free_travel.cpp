@@ -12,7 +12,7 @@
 namespace meridian {
 namespace {
 
-constexpr int kSteps = 8;
+constexpr int kTravelSteps = 8;
 constexpr double kMargin_rad = 1e-4;
 constexpr double kNoWay_rad = 1e-9;  // a joint at the end of travel that leaves it is inside
 constexpr double kMinShare = 1e-6;
@@ -26,7 +26,7 @@ FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcep
   way.end = at_;
   way.end[free] += by;
   way.begin = way.low = way.high = way.end[free];
-  double step = length / kSteps, last_step = 0, last_slope = 0, bend = 0;
+  double step = length / kTravelSteps, last_step = 0, last_slope = 0, bend = 0;
   for (double x = 0; x < length;) {
     const double next = std::min(length, x + step);
     const ToolPose pose = pose_on(span.band.c, next);
@@ -50,7 +50,7 @@ FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcep
     x = next;
     last_slope = slope;
     last_step = step;
-    step = std::min(2 * step, length / kSteps);
+    step = std::min(2 * step, length / kTravelSteps);
   }
   way.margin = kMargin_rad + 0.5 * bend;
   return way;

@@ -17,7 +17,6 @@ namespace meridian {
 namespace {
 
 constexpr std::size_t kMaxWays = AheadLook::kMaxWays;
-constexpr double kMargin = 1e-9;
 
 }  // namespace
 
@@ -59,7 +58,7 @@ void PoleCorridor::ask(const PolePlace& place) noexcept {
   std::size_t count = 0;
   const auto add = [&](int branch, JointVector at, double value) {
     at[free] = value;
-    if (count == kMaxWays || first_joint_outside_travel(model_, at, kMargin) >= 0) return;
+    if (count == kMaxWays || first_joint_outside_travel(model_, at, kTravelMargin) >= 0) return;
     ways[count] = {};
     ways[count].branch = branch;
     ways[count++].free = value;

@@ -14,12 +14,12 @@
 namespace meridian {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNoTime = std::numeric_limits<double>::infinity();
 constexpr double kMinGain_s = 1e-3;  // of the string over the exact way
 constexpr double kSameWinding_rad = 0.5;
 constexpr double kToleranceShare = 0.998;  // samples are not everywhere
 constexpr int kMaxCourses = 2;             // that are tried, of those that lead on
-constexpr int kRounds = 8;  // of nearer walls where a result leaves the tolerance between nodes
+constexpr int kWallRounds = 8;  // of nearer walls where a result leaves the tolerance between nodes
 constexpr FreeSpline::Shape kShapes[] = {{5, 0, 1, 100}, {2, 0, 1, 100},   {5, 0, 0, 0},
                                          {2, 0, 0, 100}, {5, 0.5, 0, 100}, {1, 0.5, 0, 30}};
 
@@ -40,24 +40,24 @@ std::span<const PoleZone> PoleString::find(const PoleTask& task, const PolePlace
   place_ = &place;
   free_ = redundant_joint(task.model);
   best_count_ = 0;
-  best_time_ = kNever;
+  best_time_ = kNoTime;
   walls_.loosen();
-  for (round_ = 0; round_ < kRounds; ++round_) {
+  for (round_ = 0; round_ < kWallRounds; ++round_) {
     is_any_off_ = false;
     if (!walls_.look(task, place)) return {};
     find_best();
-    if (best_time_ < kNever) return {best_.data(), best_count_};
+    if (best_time_ < kNoTime) return {best_.data(), best_count_};
     if (!is_any_off_) return {};
   }
   return {};
 }
 
-bool PoleString::is_exact_best() const noexcept { return best_count_ == 0 && best_time_ < kNever; }
+bool PoleString::is_exact_best() const noexcept { return best_count_ == 0 && best_time_ < kNoTime; }
 
 /// Of what leads on to ways that carry farthest, as far as there is such.
 void PoleString::find_best() noexcept {
   int below = std::numeric_limits<int>::max();
-  for (std::size_t level = 0; level + 1 < kMaxLevels && best_time_ == kNever; ++level) {
+  for (std::size_t level = 0; level + 1 < kMaxLevels && best_time_ == kNoTime; ++level) {
     int blocks = 0;
     for (const AheadWay& way : place_->ahead) {
       if (way.carries < below) blocks = std::max(blocks, way.carries);
@@ -66,7 +66,7 @@ void PoleString::find_best() noexcept {
     below = blocks;
     (void)find_best({true, blocks});
   }
-  if (best_time_ < kNever) return;
+  if (best_time_ < kNoTime) return;
   if (!find_best({true, 0})) (void)find_best({});  // an unwinding may help
 }
 
@@ -204,8 +204,8 @@ double PoleString::off_at(double u, double free) const noexcept {
   const MachineModel& model = task_->model;
   const ToolPose pose = pose_of<double>(*task_, u);
   const auto at = solve_held(model, task_->tool_length_mm, pose, free);
-  if (at.status == SolveStatus::kUnreachable) return kNever;
-  if (first_joint_outside_travel(model, at.q, kTravelMargin) >= 0) return kNever;
+  if (at.status == SolveStatus::kUnreachable) return kNoTime;
+  if (first_joint_outside_travel(model, at.q, kTravelMargin) >= 0) return kNoTime;
   const Vector3 axis = forward(model, task_->tool_length_mm, at.q).axis;
   return task_->is_exact ? angle_between(pose.axis, axis) : task_->programmed.angle_to(u, axis);
 }
@@ -215,7 +215,7 @@ double PoleString::off_at(double u, double free) const noexcept {
 bool PoleString::is_within(const PoleZone& piece, double off) noexcept {
   deviation_rad_ = std::max(deviation_rad_, off);
   if (off <= kToleranceShare * task_->tolerance_rad) return true;
-  const bool is_known = off < kNever && walls_.tighten(piece.begin, piece.end, round_);
+  const bool is_known = off < kNoTime && walls_.tighten(piece.begin, piece.end, round_);
   is_any_off_ = is_any_off_ || is_known;
   return false;
 }
@@ -230,7 +230,7 @@ bool PoleString::is_inside() noexcept {
     for (std::size_t k = 0; k <= kSteps; ++k) {
       const double t = static_cast<double>(k) / kSteps;
       off[k] = off_at(piece.begin + t * (piece.end - piece.begin), quintic_at(piece.free, t));
-      if (off[k] == kNever) return false;
+      if (off[k] == kNoTime) return false;
       const double top = k < 2 ? off[k] : std::max(off[k], top_of(off[k - 2], off[k - 1], off[k]));
       is_inside = is_within(piece, top) && is_inside;
     }

@@ -19,10 +19,10 @@ constexpr int kWidths = 18;
 constexpr double kNarrower = 0.6;
 constexpr int kSamples = 96, kFirstSamples = 12;
 constexpr std::size_t kKinks = 192;
-constexpr double kToleranceShare = 0.998;  // samples are not everywhere
+constexpr double kPassToleranceShare = 0.998;  // samples are not everywhere
 constexpr double kMaxTipError_mm = 1e-7;
 constexpr double kMaxBend_rad = 1e3;  // roll'' h² at an end, beyond it the end is no guide
-constexpr double kMinPart_mm = 1e-4;
+constexpr double kSamePoint_mm = 1e-4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 class Search {
@@ -83,9 +83,9 @@ class Search {
   /// `u`, or the end of a span that is so close that the part between would be none.
   [[nodiscard]] double snapped(double u) const noexcept {
     const BandSpan& span = task_.spans.span_at(u);
-    if (std::abs(u - span.u0) < kMinPart_mm) return span.u0;
+    if (std::abs(u - span.u0) < kSamePoint_mm) return span.u0;
     const double end = span.u0 + span.length;
-    return std::abs(end - u) < kMinPart_mm ? end : u;
+    return std::abs(end - u) < kSamePoint_mm ? end : u;
   }
 
   /// Of the exact way, where a pass of the width `to` is narrower than one of `from`.
@@ -109,7 +109,7 @@ class Search {
   /// The quintic through both ends.
   bool fit(RobotPass& pass) noexcept {
     const double h = pass.end - pass.begin;
-    if (!(h > 2 * kMinPart_mm)) return false;
+    if (!(h > 2 * kSamePoint_mm)) return false;
     JointVector reference = range_.joints;
     double from = reference[joint_], a1 = 0, a2 = 0;  // a start: at rest where it is
     if (range_.at_from == PassEnd::kOnPath) {
@@ -197,7 +197,7 @@ class Search {
   bool is_within(RobotPass& pass, double u) const noexcept {
     const double off = off_at(pass, u);
     pass.deviation = std::max(pass.deviation, off);
-    return off <= kToleranceShare * tolerance();
+    return off <= kPassToleranceShare * tolerance();
   }
   bool is_inside(RobotPass& pass, int samples) const noexcept {
     for (int k = 0; k <= samples; ++k) {

@@ -15,9 +15,9 @@ namespace meridian {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kMinPart_mm = 1e-6;
+constexpr double kMinPassPart_mm = 1e-6;
 /// Spans farther off than this are not held back.
-constexpr double kOutOfReach_rad = 0.6, kOutOfReach_mm = 100;
+constexpr double kPassOutOfReach_rad = 0.6, kPassOutOfReach_mm = 100;
 /// Of the tip, where nothing may give: kPoleEase_rad at the end of a tool.
 constexpr double kExactTip_mm = 1e-3;
 constexpr Singularity kPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
@@ -211,8 +211,8 @@ bool RobotPasses::is_out_of_reach(const Held& held) const noexcept {
     const auto& distance = held.distance[index_of(at)];
     return *std::min_element(distance.begin(), distance.end());
   };
-  return least(Singularity::kWrist) > kOutOfReach_rad &&
-         least(Singularity::kShoulder) > kOutOfReach_mm;
+  return least(Singularity::kWrist) > kPassOutOfReach_rad &&
+         least(Singularity::kShoulder) > kPassOutOfReach_mm;
 }
 
 void RobotPasses::emit() noexcept {
@@ -221,7 +221,7 @@ void RobotPasses::emit() noexcept {
   const double begin = span.u0 + emitted_x_, last = span.u0 + span.length;
   double end = last;
   const auto cut_at = [&](double u) {
-    if (has_pass_ && u > begin + kMinPart_mm && u < end - kMinPart_mm) end = u;
+    if (has_pass_ && u > begin + kMinPassPart_mm && u < end - kMinPassPart_mm) end = u;
   };
   cut_at(pass_.begin);
   cut_at(pass_.end);
@@ -248,7 +248,7 @@ void RobotPasses::emit() noexcept {
     joints = follow_to(end);
   }
   known_ = joints;
-  if (has_pass_ && end >= pass_.end - kMinPart_mm) {
+  if (has_pass_ && end >= pass_.end - kMinPassPart_mm) {
     branch_ = pass_.branch_after;
     has_pass_ = false;
     if (pass_.branch_after != pass_.branch_before) {  // the arm may stand otherwise
