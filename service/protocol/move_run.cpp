@@ -15,7 +15,7 @@
 namespace meridian::stream {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{10};
+constexpr std::chrono::milliseconds kMoveLook{10};
 constexpr std::chrono::milliseconds kNoWait{0};
 
 dds::SessionRequest request_of(const MoveOrder& order) {
@@ -97,7 +97,7 @@ class MoveRun {
 
   /// Sends and hears; whether the service said anything.
   bool look() {
-    const bool has_credit = wire_.work(kLook);
+    const bool has_credit = wire_.work(kMoveLook);
     while (wire_.take_status()) continue;  // the operator's link follows them
     return operator_.wait_for_status(kNoWait) || has_credit;
   }
@@ -105,7 +105,7 @@ class MoveRun {
   /// Nothing moved, nor will it: the machine is freed where this move holds it.
   [[nodiscard]] MoveResult give_up(std::string why) {
     wire_.close();
-    (void)operator_.wait_for_status(kLook);
+    (void)operator_.wait_for_status(kMoveLook);
     const auto& status = operator_.status();
     if (status && status->session == request_.session) {
       (void)operator_.ask(Verb::kAbort, 0, timeout_);

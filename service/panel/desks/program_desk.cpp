@@ -25,7 +25,7 @@ void run_at_lowest_priority() {
 }
 
 constexpr const char* kStreams = "a program is streamed: abort it, or end the stream, first";
-constexpr const char* kSilent = "the machine is silent";
+constexpr const char* kMachineIsSilent = "the machine is silent";
 
 }  // namespace
 
@@ -93,7 +93,7 @@ void ProgramDesk::begin_check(std::uint32_t first_line) {
 
 Outcome ProgramDesk::load() {
   const auto machine = machine_();
-  if (!machine) return {false, kSilent};
+  if (!machine) return {false, kMachineIsSilent};
   const std::lock_guard lock(mutex_);
   if (view_.phase == Phase::kStreaming) return {false, kStreams};
   if (view_.phase != Phase::kReady)
@@ -174,7 +174,7 @@ void ProgramDesk::run_check(const Job& job) {
     });
   };
   const auto info = machine_();
-  if (!info) return refuse(kSilent);
+  if (!info) return refuse(kMachineIsSilent);
   stream::PreflightMachine machine;
   try {
     machine = reported_machine(*info);

@@ -11,10 +11,9 @@
 namespace meridian::nc {
 namespace {
 
+using cl::is_blank;
+using cl::is_digit;
 using cl::refuse;
-
-constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
-constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The text of one line from left to right.
 class Cutter {

@@ -3,7 +3,7 @@
 
 namespace meridian::cl {
 
-/// Of the letters that words of CL files have: ASCII, whatever the locale.
+/// Signs of CL and NC files: ASCII, whatever the locale.
 [[nodiscard]] constexpr char capital(char c) noexcept {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
@@ -11,5 +11,9 @@ namespace meridian::cl {
 [[nodiscard]] constexpr bool is_letter(char c) noexcept {
   return capital(c) >= 'A' && capital(c) <= 'Z';
 }
+
+[[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
+[[nodiscard]] constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
 
 }  // namespace meridian::cl

@@ -11,8 +11,6 @@
 namespace meridian::cl {
 namespace {
 
-constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
-
 /// Look-ups, as every character of a file is asked.
 using CharacterSet = std::array<bool, 256>;
 constexpr CharacterSet kSeparators = [] {
@@ -26,7 +24,7 @@ constexpr CharacterSet kWordCharacters = [] {
   for (int c = 0; c < 128; ++c) {
     const char sign = static_cast<char>(c);
     set[static_cast<std::size_t>(c)] =
-        is_letter(sign) || (sign >= '0' && sign <= '9') || sign == '_' || sign == '-';
+        is_letter(sign) || is_digit(sign) || sign == '_' || sign == '-';
   }
   return set;
 }();

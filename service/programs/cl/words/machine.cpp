@@ -201,7 +201,8 @@ Outcome pass_on(Modal& m, const Statement& s) {
   constexpr std::size_t kMax = sizeof(ClBlock::text) - 1;
   if (text.size() > kMax) {
     m.remarks.warn("vendor:" + std::string(s.major), s.line, [&text] {
-      return "vendor word " + quoted(text) + " is cut to " + std::to_string(kMax) + " characters";
+      return "vendor word " + cl::quoted(text) + " is cut to " + std::to_string(kMax) +
+             " characters";
     });
   }
   double value = 0;

@@ -14,7 +14,7 @@ namespace {
 
 using cl::refuse;
 
-constexpr const char* kByAngles = "output PLANE SPATIAL with SPA, SPB and SPC";
+constexpr const char* kBySpatialAngles = "output PLANE SPATIAL with SPA, SPB and SPC";
 
 /// The next word of `text`, without the blanks around it.
 std::string_view take_word(std::string_view& text) {
@@ -99,7 +99,7 @@ cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text
     return refuse("PLANE " + std::string(kind.substr(0, 16)) +
                       ": a plane that is not told by SPA, "
                       "SPB and SPC",
-                  kByAngles, "PLANE");
+                  kBySpatialAngles, "PLANE");
   }
   if (holds_tip(s.modes.control)) {
     return refuse("PLANE while tool-centre control is on", "write FUNCTION RESET TCPM before it",
@@ -170,7 +170,7 @@ cl::Outcome reset_frame_cycle(State& s, const Line& line, std::string_view numbe
                           (is_plane ? ": whether its angles are those of the axes depends on the "
                                       "machine"
                                     : ": mirroring, scaling or a rotation of the control's"),
-                      is_plane ? kByAngles : kMovesByCam, title);
+                      is_plane ? kBySpatialAngles : kMovesByCam, title);
       }
     }
     if (is_plane) set_plane(s, line, {}, Tilt::kNone);

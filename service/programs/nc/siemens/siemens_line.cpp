@@ -12,10 +12,10 @@
 namespace meridian::nc {
 namespace {
 
+using cl::is_blank;
+using cl::is_digit;
 using cl::refuse;
 
-constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
-constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr bool is_name_sign(char c) { return cl::is_letter(c) || is_digit(c) || c == '_'; }
 
 /// Values that say how exactly and how hard the control moves: tolerances, jerk, what F refers to.
