@@ -200,8 +200,10 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   Job job = job_of(block);
   const bool is_timed = job.share_per_s > 0;
   const Vector3 programmed = to_vector(block.axis);
-  const bool is_fixed = angle_between(cursor.pose.axis, programmed) < kNoTurn_rad;
-  if (!is_fixed && (!is_timed || is_at_pole(cursor.pose.axis))) job.on_pole_rad = on_pole_rad_;
+  if (on_pole_rad_ > kPoleEase_rad && (!is_timed || is_at_pole(cursor.pose.axis))) {
+    const bool is_fixed = angle_between(cursor.pose.axis, programmed) < kNoTurn_rad;
+    if (!is_fixed) job.on_pole_rad = on_pole_rad_;
+  }
   const ToolPose end{to_vector(block.tip_mm), eased(programmed, job.on_pole_rad)};
   PathPiece path = block.is_arc ? make_arc(cursor.pose, end, block) : make_line(cursor.pose, end);
   if (path.axis_turn < kNoTurn_rad) {
