@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "integration/plant.hpp"
 
 namespace meridian::test {
@@ -16,14 +21,26 @@ class CheckOfDrives : public testing::Test {
         {"meridian", "drives", "--check", "--machine", plant.machine(), "--domain", plant.domain()},
         plant.folder() / "check.log");
   }
+  /// Again where the host, which other tests share, was too busy for a rule: as its last line says.
+  std::pair<std::optional<int>, std::string> check_on_a_quiet_host() {
+    constexpr int kTries = 3;
+    for (int n = 1;; ++n) {
+      std::filesystem::remove(plant.folder() / "check.log");  // a process adds to it
+      Process checked = check();
+      const std::optional<int> code = checked.wait(kLong);
+      const std::string said = checked.said();
+      const bool was_busy = said.find("this host was busy, try again") != std::string::npos;
+      if (!was_busy || n == kTries) return {code, said};
+    }
+  }
   Plant plant;
 };
 
 TEST_F(CheckOfDrives, SimulatedDrivesBreakNoRuleOnTheWire) {
   plant.start_drives();
-  Process checked = check();
-  EXPECT_EQ(checked.wait(kLong), 0) << checked.said();
-  EXPECT_NE(checked.said().find("PASS: "), std::string::npos) << checked.said();
+  const auto [code, said] = check_on_a_quiet_host();
+  EXPECT_EQ(code, 0) << said;
+  EXPECT_NE(said.find("PASS: "), std::string::npos) << said;
 }
 
 TEST_F(CheckOfDrives, ADriveThatDoesNotMoveIsNamedWithTheRuleAndItsPage) {
