@@ -6,9 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
 #include "interpolator_version.hpp"
 #include "service/daemon/notify.hpp"
@@ -17,6 +15,7 @@
 #include "service/machine/file/service_file.hpp"
 #include "service/recording/telemetry/flight_recorder.hpp"
 #include "service/recording/telemetry/log.hpp"
+#include "service/text/whole_file.hpp"
 #include "service/transport/dds_log.hpp"
 
 namespace meridian::interpolator {
@@ -41,13 +40,6 @@ void make_stacks_small() {
   return signals;
 }
 
-[[nodiscard]] std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 /// The folder for what outlives the service: as asked for, or the one that systemd made.
 [[nodiscard]] std::filesystem::path state_folder(const std::string& option,
                                                  const config::ServiceConfig& service) {
@@ -68,13 +60,13 @@ void make_stacks_small() {
   if (machine.empty()) throw StartError("no machine: give --machine FILE or name it in --service");
   parts.model = config::load_machine(machine);
   parts.homing = config::load_homing(machine, parts.model.joint_count);
-  parts.machine_file = text_of(machine);
+  parts.machine_file = text::read_whole(machine).value_or("");
   if (!options.frame.empty()) {
     config::place_workpiece(parts.model, config::parse_frame(options.frame));
   }
   if (!parts.service.tools.empty()) {
     parts.tools = config::load_tools(parts.service.tools);
-    parts.tool_file = text_of(parts.service.tools);
+    parts.tool_file = text::read_whole(parts.service.tools).value_or("");
   }
   parts.model.bridge_cycles = config::find_bridge_cycles(parts.service, parts.model);
   parts.domain =

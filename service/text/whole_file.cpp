@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -69,6 +70,14 @@ bool WholeFile::commit() {
   if (std::rename(written_.c_str(), name_.c_str()) != 0) return false;
   written_.clear();
   return true;
+}
+
+std::optional<std::string> read_whole(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
 }
 
 bool write_whole(const std::string& name, const std::string& content) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,10 @@ class WholeFile {
   std::string name_, written_;
   std::ofstream file_;
 };
+
+/// All bytes of the file `path`, or nothing where it cannot be opened.
+/// Proof: tests/unit/text/whole_file_test.cpp.
+[[nodiscard]] std::optional<std::string> read_whole(const std::filesystem::path& path);
 
 /// All of `content` in a file of that name, or what was there before and false.
 [[nodiscard]] bool write_whole(const std::string& name, const std::string& content);

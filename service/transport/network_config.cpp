@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include "service/text/whole_file.hpp"
 
 namespace meridian::dds {
 namespace {
@@ -84,11 +85,7 @@ std::size_t read_attributes(std::string_view xml, std::size_t at, Tag& tag) {
 [[nodiscard]] std::optional<std::string> read_part(std::string part) {
   constexpr std::string_view kScheme = "file://";
   if (part.starts_with(kScheme)) part.erase(0, kScheme.size());
-  std::ifstream file(part, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return text::read_whole(part);
 }
 
 }  // namespace

@@ -47,13 +47,13 @@ void describe_machine(cl::ClReaderOptions& reader, const MachineModel& model,
 /// Whether the file can be read a second time: no pipe.
 [[nodiscard]] bool can_be_read_twice(const std::string& file);
 
-/// Tools that the file calls and the table has not join it where the options tell their length.
+/// Tools that the file calls and the table has not join it where the options give their length.
 void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reader,
                        const MachineOptions& options, ToolTable& tools);
 
 /// Reads the whole file first: everything that is in the way of it on this machine, and what is
-/// odd. A pipe passes: what is wrong there is found on the way. Adds unknown tools and tells the
-/// reader the machine's home.
+/// odd. A pipe passes: what is wrong there is found on the way. Adds unknown tools and
+/// the machine's home to `reader`.
 [[nodiscard]] stream::PreflightReport read_through(const std::string& file,
                                                    cl::ClReaderOptions& reader,
                                                    const MachineOptions& options,
@@ -63,7 +63,7 @@ void add_unknown_tools(const std::string& file, const cl::ClReaderOptions& reade
                              const MachineOptions& options, const MachineModel& model,
                              ToolTable& tools);
 
-/// What a reader is told about a CL file that is cut on this machine.
+/// What a reader knows of a CL file that is cut on this machine.
 [[nodiscard]] cl::ClReaderOptions reader_options(const ClFileOptions& file,
                                                  const MachineOptions& machine,
                                                  const MachineModel& model);

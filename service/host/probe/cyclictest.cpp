@@ -4,13 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <vector>
 
 #include "service/host/probe/waiting.hpp"
 #include "service/host/process/child_process.hpp"
 #include "service/host/process/programs.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::probe {
 namespace {
@@ -53,10 +53,7 @@ std::optional<Histogram> run_cyclictest(int cpu, std::int64_t period_ns, double 
       {.error_file = "/dev/null", .output_file = output, .has_own_group = true});
   const auto patience = std::chrono::milliseconds(std::llround(seconds * 1000) + 20'000);
   if (wait_for_exit(cyclictest, patience, is_stopping) != 0) return std::nullopt;
-  std::ifstream file(output);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return parse_cyclictest(text.str());
+  return parse_cyclictest(text::read_whole(output).value_or(""));
 }
 
 }  // namespace meridian::probe

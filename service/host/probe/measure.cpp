@@ -10,7 +10,6 @@
 #include <fstream>
 #include <memory>
 #include <regex>
-#include <sstream>
 #include <stdexcept>
 
 #include "service/host/probe/bare_reference.hpp"
@@ -24,6 +23,7 @@
 #include "service/host/process/processors.hpp"
 #include "service/host/process/programs.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::probe {
 namespace {
@@ -82,10 +82,8 @@ void cut(const ServiceSetup& setup, int seconds, const std::atomic<bool>& is_sto
                      .machine = (folder.path() / "machine.toml").string(),
                      .period_ns = 1'000'000 / rate_hz * 1000,  // whole microseconds, as in the file
                      .realtime = options.realtime};
-  std::ifstream file(options.machine);
-  std::ostringstream text;
-  text << file.rdbuf();
-  std::ofstream(setup.machine) << with_cycle_us(text.str(), setup.period_ns / 1000);
+  std::ofstream(setup.machine) << with_cycle_us(text::read_whole(options.machine).value_or(""),
+                                                setup.period_ns / 1000);
   setup.name = config::load_machine(setup.machine).name;
   const double stolen_before_ms = stolen_ms();
   try {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "service/host/probe/waiting.hpp"
 #include "service/host/process/child_process.hpp"
 #include "service/host/process/programs.hpp"
+#include "service/text/whole_file.hpp"
 #include "service/transport/messages.hpp"
 #include "service/transport/reader.hpp"
 
@@ -28,13 +28,6 @@ namespace fs = std::filesystem;
 using process::ChildProcess;
 using std::chrono::milliseconds;
 using Words = std::vector<std::string>;
-
-[[nodiscard]] std::string text_of(const fs::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// A program whose words go to `log`, what it prints nowhere.
 [[nodiscard]] ChildProcess::Options quiet(const fs::path& log) {
@@ -56,7 +49,8 @@ class Tool {
       if (wait_for_exit(tool, milliseconds(40'000), is_stopping_) == 0) return;
       std::this_thread::sleep_for(milliseconds(200));
     }
-    throw std::runtime_error("meridian " + words.front() + " failed: " + text_of(log_));
+    throw std::runtime_error("meridian " + words.front() +
+                             " failed: " + text::read_whole(log_).value_or(""));
   }
 
  private:
@@ -101,7 +95,8 @@ class Tool {
                                              quiet(log));
     tool.run({"ctl", "start", "--domain", in}, 50);  // refused until the program is loaded
     const milliseconds most(std::llround(seconds * 1000));
-    if (wait_for_exit(*station, most, is_stopping).value_or(0) != 0) return text_of(log);
+    if (wait_for_exit(*station, most, is_stopping).value_or(0) != 0)
+      return text::read_whole(log).value_or("");
   } catch (const Interrupted&) {
     throw;
   } catch (const std::runtime_error& error) {
@@ -142,7 +137,7 @@ WorkResult run_work(const ServiceSetup& setup, double seconds,
   result.wake = wake_of(latencies);
   service.send_signal(SIGTERM);
   if (service.wait_for_exit(milliseconds(12'000)) != 0) {
-    throw std::runtime_error("meridiand: " + text_of(log));
+    throw std::runtime_error("meridiand: " + text::read_whole(log).value_or(""));
   }
   const auto times = read_times(recording, setup.period_ns);
   const auto arrivals = listener.arrivals();
@@ -150,7 +145,7 @@ WorkResult run_work(const ServiceSetup& setup, double seconds,
     add_turn(turn, setup.period_ns, times, arrivals, result.turns);
   }
   if (result.turns.moving == 0 && result.broken_off.empty()) {
-    throw std::runtime_error("the program never ran: " + text_of(log));
+    throw std::runtime_error("the program never ran: " + text::read_whole(log).value_or(""));
   }
   return result;
 }

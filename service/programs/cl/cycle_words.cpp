@@ -105,7 +105,7 @@ class CycleArguments {
     const std::vector<double> n = numbers();
     if (n.empty() && !words.positions.empty()) return {};  // numbers by their place
     // Behind the unit its feed; of positions another number: the clearance.
-    if (n.empty() || !(n[0] > 0)) return refuse("CYCLE tells a unit of feed without a feed");
+    if (n.empty() || !(n[0] > 0)) return refuse("CYCLE gives a unit of feed without a feed");
     words.feeds.push_back({n[0], unit});
     words.positions.insert(words.positions.end(), n.begin() + 1, n.end());
     return {};
@@ -136,7 +136,7 @@ class CycleArguments {
     std::vector<double>* const list = list_of(key, words);
     if (list == nullptr) return {};
     if (!list->empty() && key != Key::kStep) {
-      return refuse("CYCLE tells " + std::string(word) + " twice");
+      return refuse("CYCLE gives " + std::string(word) + " twice");
     }
     list->insert(list->end(), n.begin(), n.end());
     return {};

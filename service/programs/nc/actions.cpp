@@ -48,7 +48,7 @@ cl::Outcome take_speed(State& s, const Line& line, bool starts) {
 }
 
 cl::Outcome turn_spindle(State& s, const Line& line, ActionKind sense) {
-  if (!(s.cl.spindle.speed_rpm > 0)) return refuse("the spindle starts, but no S told its speed");
+  if (!(s.cl.spindle.speed_rpm > 0)) return refuse("the spindle starts, but no S gave its speed");
   s.cl.feed.reset();
   s.cl.spindle.sense = s.cl.spindle.state = sense;
   start_spindle(s, line);
@@ -90,7 +90,7 @@ cl::Outcome take_tool(State& s, const Line& line) {
 }
 
 cl::Outcome change_tool(State& s, const Line& line) {
-  if (!s.modes.next_tool) return refuse("M6, but no T told the tool");
+  if (!s.modes.next_tool) return refuse("M6, but no T named the tool");
   const std::uint32_t tool = *s.modes.next_tool;
   if (tool == 0) {  // the spindle is emptied
     s.cl.summary.skip("T0", line.number);

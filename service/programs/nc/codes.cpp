@@ -19,7 +19,7 @@ constexpr std::uint8_t of(E value) {
 }
 
 constexpr std::string_view kByCam = "let the CAM system write the moves themselves";
-constexpr std::string_view kTilted = "a tilted plane that is not told by its angles";
+constexpr std::string_view kTilted = "a tilted plane that is not defined by its angles";
 constexpr std::string_view kByAngles = "output G68.2 with X Y Z I J K, and G53.1";
 constexpr std::string_view kOffsets = "changes offsets, which are the station's frame here";
 constexpr std::string_view kCompensation =

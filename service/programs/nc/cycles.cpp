@@ -104,7 +104,7 @@ cl::Outcome run_cycle(State& s, const Line& line) {
       return refuse(std::string(address) + "0 beside X or Y: whether the tool goes there differs",
                     "write the cycle without X and Y, and every hole as a block", "cycle K0");
     }
-    if (repeats->number == 0) return {};  // the cycle is only told
+    if (repeats->number == 0) return {};  // the cycle is only defined
     return refuse(std::string(address) + std::string(repeats->digits) + " repeats of a cycle",
                   "write every hole as a block");
   }

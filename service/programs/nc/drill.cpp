@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hole of a canned cycle, in whatever language it is told.
+// One hole of a canned cycle, in whatever language it is written.
 #include <algorithm>
 
 #include "service/programs/cl/text/written_text.hpp"

@@ -15,7 +15,7 @@ enum class Tilt : std::uint8_t {
   kTurned    ///< the control has turned them: the tool axis is z of the plane
 };
 
-/// G68.2 P2 and P3 tell a plane in several blocks, Q1 and on: what was told so far.
+/// G68.2 P2 and P3 define a plane in several blocks, Q1 and on: what is defined so far.
 struct PlaneInParts {
   int form = 0;                                                ///< of P; 0: none has begun
   int last = 0;                                                ///< Q of the last block

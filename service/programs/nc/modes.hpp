@@ -37,7 +37,7 @@ struct Cycle {
   double dwell_s = 0;
 };
 
-/// Holes along Z of the program as their cycle tells them. Lengths in the unit of the program.
+/// Holes along Z of the program as their cycle defines them. Lengths in the unit of the program.
 struct Drilling {
   cl::HoleCycle hole;
   double top = 0;  ///< Z of what the levels of `hole` count from
@@ -69,7 +69,7 @@ struct Modes {
   std::optional<Drilling> at_every_point;     ///< MCALL of Siemens
   std::optional<CycleDefinition> definition;  ///< CYCL DEF of Klartext
   OpenDefinition open = OpenDefinition::kNone;
-  int work_offset = 0;   ///< code in tenths, with P of G54.1 in thousands; 0: none told
+  int work_offset = 0;   ///< code in tenths, with P of G54.1 in thousands; 0: none given
   int moved_offset = 0;  ///< the one under which the tool has moved last
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;
@@ -91,10 +91,10 @@ struct RotaryAt {
 /// Where the program has put the tool. Lengths in the unit of the program, from its zero.
 struct Place {
   std::array<std::optional<double>, 3> tip;  ///< nothing: not known here
-  std::vector<RotaryAt> rotary;              ///< of every axis that was told
+  std::vector<RotaryAt> rotary;              ///< of every axis that was programmed
   std::array<double, 3> vector{0, 0, 1};     ///< of G43.5, unit
   bool has_vector = false;
-  bool is_by_control = false;  ///< the control has turned rotary axes, to where is not told
+  bool is_by_control = false;  ///< the control has turned rotary axes, to where is not known
 
   [[nodiscard]] bool is_known() const noexcept { return tip[0] && tip[1] && tip[2]; }
   void forget() noexcept { tip = {}; }

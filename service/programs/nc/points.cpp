@@ -104,7 +104,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
     if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
     if (to.place.is_by_control) {
       return refuse(
-          "the control turned the rotary axes (G53.1 and its kin), and no word tells to "
+          "the control turned the rotary axes (G53.1 and its kin), and no word says to "
           "where",
           "write all rotary words into the first block with tool-centre control", "not told");
     }
@@ -116,7 +116,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
   if (is_bare && is_across_plane(s, to.place)) axis = tool_of_plane(s);
   if (s.modes.control == Control::kVector) {
     if (!to.place.has_vector && to.place.is_turned()) {
-      return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not told",
+      return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not known",
                     "write the tool axis into the first block with tool-centre control");
     }
     const bool is_tilted = !s.frames.now.rotation.isIdentity();
@@ -206,7 +206,7 @@ bool Place::is_turned() const noexcept {
 void warn_of_unseen_rapid(State& s, const Line& line) {
   s.cl.remarks.warn("no tip", line.number, [] {
     return "rapids behind which the tip is not known (rotary axes turned without tool-centre "
-           "control, or not all of X Y Z told) are no part of the path: the next motion goes "
+           "control, or not all of X Y Z given) are no part of the path: the next motion goes "
            "straight from the point before them; see that nothing is in the way";
   });
 }

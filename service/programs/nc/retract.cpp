@@ -10,11 +10,11 @@ namespace {
 
 using cl::refuse;
 
-/// How far, in mm: as told, or to the end of travel.
-Expected<double, cl::Refusal> length_of(State& s, const Line& line, std::optional<double> told) {
-  if (told) {
-    if (!(*told >= 0)) return refuse("M140 into the part: MB is below zero");
-    return *told * s.cl.units.to_mm;
+/// How far, in mm: as given, or to the end of travel.
+Expected<double, cl::Refusal> length_of(State& s, const Line& line, std::optional<double> given) {
+  if (given) {
+    if (!(*given >= 0)) return refuse("M140 into the part: MB is below zero");
+    return *given * s.cl.units.to_mm;
   }
   if (!s.axes) {
     return refuse("M140 MB MAX goes to the end of travel of the machine, which is not known here",

@@ -63,7 +63,7 @@ Expected<std::array<std::size_t, 3>, cl::Refusal> order_of(const Line& line) {
     const bool is_axis = c >= '1' && c <= '3' && !seen[static_cast<std::size_t>(c - '1')];
     if (!is_axis || digits.find_first_not_of("123.") != std::string_view::npos) {
       return refuse("G68.2 P1 with Q" + std::string(digits) + ", which is no order of three axes",
-                    "Q123 and its kin", "G68.2 Q");
+                    "Q123 or another order of 1, 2 and 3", "G68.2 Q");
     }
     order[k] = static_cast<std::size_t>(c - '1');
     seen[order[k]] = true;

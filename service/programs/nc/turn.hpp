@@ -11,7 +11,7 @@ namespace meridian::nc {
 inline constexpr double kMaxTurn_deg = 36000;  ///< of one block: a hundred turns
 inline constexpr int kMaxPieces = 4096;        ///< of one block
 
-/// The rotary words `share` of the way from `from` to `to`; what `from` does not tell was at zero.
+/// The rotary words `share` of the way from `from` to `to`; what `from` does not have was at zero.
 [[nodiscard]] std::vector<RotaryAt> between(const std::vector<RotaryAt>& from,
                                             const std::vector<RotaryAt>& to, double share);
 

@@ -58,15 +58,21 @@ std::string program_of(const GRow& row) {
   }
 }
 
+/// By its name, with the reason and the remedy of its `row`.
+template <class Row>
+void expect_refused(const ReadText& read, const std::string& code, const Row& row) {
+  EXPECT_NE(read.error.find(code + ": " + std::string(row.note)), std::string::npos)
+      << code << ": " << read.error;
+  EXPECT_NE(read.error.find(row.remedy), std::string::npos) << code << ": " << read.error;
+}
+
 TEST(CodeRows, OfFanucRunWhereTheyMayStandOrAreRefused) {
   const ClReaderOptions options = on(shipped("trunnion-ac"));
   for (const GRow& row : g_rows()) {
     const std::string code = name_of_row(row), body = program_of(row);
     const ReadText read = read_nc(body, options);
     if (row.kind == GKind::kRefused) {
-      EXPECT_NE(read.error.find(code + ": " + std::string(row.note)), std::string::npos)
-          << code << ": " << read.error;
-      EXPECT_NE(read.error.find(row.remedy), std::string::npos) << read.error;
+      expect_refused(read, code, row);
       continue;
     }
     EXPECT_EQ(read.error, "") << body;
@@ -100,7 +106,7 @@ TEST(CodeRows, OfSiemensRunWhereTheyMayStandOrAreRefused) {
             ? cl::read_text("G17 G90 G94 F60\n" + code + "\n" + body + "M30\n", siemens())
             : read_siemens(body);
     if (row->kind == GKind::kRefused) {
-      EXPECT_NE(read.error.find(code + ": " + std::string(row->note)), std::string::npos) << code;
+      expect_refused(read, code, *row);
       continue;
     }
     EXPECT_EQ(read.error, "") << body;
@@ -118,8 +124,7 @@ TEST(CodeRows, OfMActOrAreRefused) {
     const std::string code = "M" + std::to_string(number);
     const ReadText read = read_nc("G0 X0. Y0. Z0.\nS100 T1 " + code + "\nG1 X9.\n");
     if (row->kind == MKind::kRefused) {
-      EXPECT_NE(read.error.find(code + ": " + std::string(row->note)), std::string::npos) << code;
-      EXPECT_NE(read.error.find(row->remedy), std::string::npos) << read.error;
+      expect_refused(read, code, *row);
       continue;
     }
     EXPECT_EQ(read.motion().size(), row->kind == MKind::kEnd    ? 1U

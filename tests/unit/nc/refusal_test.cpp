@@ -84,8 +84,8 @@ TEST(NcRefusal, NamesWhatIsWrongWithAMotion) {
                          {"G1 X1. F0.", "F0. is no feed"},
                          {"G4", "G4 needs one time"},
                          {"G20", "the unit changes"},
-                         {"M3", "no S told its speed"},
-                         {"M6", "no T told the tool"},
+                         {"M3", "no S gave its speed"},
+                         {"M6", "no T named the tool"},
                          {"T1.5", "is not a whole number"},
                          {"Q1 Z1. $", "no NC word"}}) {
     expect_refused(c);

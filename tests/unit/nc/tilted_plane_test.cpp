@@ -131,7 +131,7 @@ TEST(TiltedPlane, LeavesTheRotaryAxesWhereNoWordTells) {
   EXPECT_NE(read_nc(head + "G0 X1. Y1. Z9.\nG1 Z0.\n").error.find("is not known here"),
             std::string::npos);
   EXPECT_NE(read_nc(head + "G43.4 H1\nG1 X1. Y1. Z9.\n", on(shipped("trunnion-ac")))
-                .error.find("no word tells to where"),
+                .error.find("no word says to where"),
             std::string::npos);
   EXPECT_EQ(read_nc(head + "G0 A0. C0.\nG0 X1. Y1. Z9.\nG1 Z0.\n").error, "");
 }

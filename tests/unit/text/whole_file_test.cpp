@@ -37,6 +37,15 @@ TEST_F(WrittenFile, IsReplacedInOneStep) {
   EXPECT_FALSE(write_whole(nowhere_, "x"));
 }
 
+TEST_F(WrittenFile, IsReadByteForByte) {
+  const std::string content("two\r\nlines\0and a zero\n", 22);
+  ASSERT_TRUE(write_whole(file_, content));
+  EXPECT_EQ(read_whole(file_), content);
+  ASSERT_TRUE(write_whole(other_, ""));
+  EXPECT_EQ(read_whole(other_), "");
+  EXPECT_FALSE(read_whole(nowhere_ / "file"));
+}
+
 TEST_F(WrittenFile, IsANewOneWhateverLiesThere) {
   for (const Sync sync : {Sync::kLater, Sync::kNow}) {
     std::ofstream(other_) << "not ours";

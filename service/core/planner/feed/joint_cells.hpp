@@ -13,6 +13,8 @@
 namespace meridian {
 
 inline constexpr double kTravelMargin = 1e-9;  ///< rounding of a travel end that is reached exactly
+/// Of a tolerance, for what is found at samples: they are not everywhere.
+inline constexpr double kSampledShare = 0.998;
 /// Rounding of a component of the tool axis.
 inline constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
 

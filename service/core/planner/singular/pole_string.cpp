@@ -17,8 +17,7 @@ namespace {
 constexpr double kNoTime = std::numeric_limits<double>::infinity();
 constexpr double kMinGain_s = 1e-3;  // of the string over the exact way
 constexpr double kSameWinding_rad = 0.5;
-constexpr double kToleranceShare = 0.998;  // samples are not everywhere
-constexpr int kMaxCourses = 2;             // that are tried, of those that lead on
+constexpr int kMaxCourses = 2;  // that are tried, of those that lead on
 constexpr int kWallRounds = 8;  // of nearer walls where a result leaves the tolerance between nodes
 constexpr FreeSpline::Shape kShapes[] = {{5, 0, 1, 100}, {2, 0, 1, 100},   {5, 0, 0, 0},
                                          {2, 0, 0, 100}, {5, 0.5, 0, 100}, {1, 0.5, 0, 30}};
@@ -214,7 +213,7 @@ double PoleString::off_at(double u, double free) const noexcept {
 /// about the piece.
 bool PoleString::is_within(const PoleZone& piece, double off) noexcept {
   deviation_rad_ = std::max(deviation_rad_, off);
-  if (off <= kToleranceShare * task_->tolerance_rad) return true;
+  if (off <= kSampledShare * task_->tolerance_rad) return true;
   const bool is_known = off < kNoTime && walls_.tighten(piece.begin, piece.end, round_);
   is_any_off_ = is_any_off_ || is_known;
   return false;

@@ -19,7 +19,6 @@ constexpr int kWidths = 18;
 constexpr double kNarrower = 0.6;
 constexpr int kSamples = 96, kFirstSamples = 12;
 constexpr std::size_t kKinks = 192;
-constexpr double kPassToleranceShare = 0.998;  // samples are not everywhere
 constexpr double kMaxTipError_mm = 1e-7;
 constexpr double kMaxBend_rad = 1e3;  // roll'' h² at an end, beyond it the end is no guide
 constexpr double kSamePoint_mm = 1e-4;
@@ -197,7 +196,7 @@ class Search {
   bool is_within(RobotPass& pass, double u) const noexcept {
     const double off = off_at(pass, u);
     pass.deviation = std::max(pass.deviation, off);
-    return off <= kPassToleranceShare * tolerance();
+    return off <= kSampledShare * tolerance();
   }
   bool is_inside(RobotPass& pass, int samples) const noexcept {
     for (int k = 0; k <= samples; ++k) {

@@ -25,7 +25,7 @@ struct HoleLevels {
 /// From the rapid level's side down into the hole and out to the retract level. The tool stands on
 /// the axis of the hole, not below its rapid level. Between pecks it comes back down at rapid to
 /// kPeckGap_mm above where it was, or half a peck where that is less; a chip is broken by going
-/// back kChipBack_mm where the cycle does not tell how far. CYCLE/MILL stays at the bottom. Proof:
+/// back kChipBack_mm where the cycle does not say how far. CYCLE/MILL stays at the bottom. Proof:
 /// tests/unit/cl/hole_test.cpp.
 [[nodiscard]] std::vector<HoleMove> moves_of(const HoleCycle& cycle, const HoleLevels& levels);
 

@@ -46,7 +46,7 @@ constexpr std::array kTypes = std::to_array<HoleType>({
     {"MANUAL", kRefused, kByHand},
     {"THREAD", kRefused, kLathe},
     {"TURN", kRefused, kLathe},
-    {"THRU", kRefused, "feeds through several plates that the file does not tell"},
+    {"THRU", kRefused, "feeds through several plates that the file does not give"},
     {"PROBE", kRefused, "is probing"},
     {"CIRCUL", kRefused, kControl},
     {"AVOID", kRefused, kControl},
@@ -75,7 +75,7 @@ Outcome set_depth(const CycleWords& words, const HoleType& type, CycleStatement&
   } else if (words.sink.size() >= 2) {
     out.cycle.depth = sink_depth(words.sink[0], words.sink[1]);
   } else {
-    return refuse("CYCLE tells no depth", "FEDTO or DEPTH with one number");
+    return refuse("CYCLE gives no depth", "FEDTO or DEPTH with one number");
   }
   if (!(out.cycle.depth >= 0 && out.cycle.depth <= kLargest)) {
     return refuse("CYCLE: a depth of " + short_number(out.cycle.depth) + " makes no sense");
@@ -98,7 +98,7 @@ Outcome set_levels(const CycleWords& words, CycleStatement& out) {
   } else if (!words.rapid_to.empty()) {
     cycle.rapid_level = words.rapid_to[0];
   } else {
-    return refuse("CYCLE tells no level down to which the tool may move at rapid",
+    return refuse("CYCLE gives no level down to which the tool may move at rapid",
                   "RAPTO or CLEAR with one number");
   }
   if (!words.retract_to.empty()) retract = words.retract_to[0];
@@ -120,7 +120,7 @@ Outcome set_pecks(const CycleWords& words, HoleCycle& cycle) {
   const bool needs = cycle.kind == HoleKind::kDeep || cycle.kind == HoleKind::kChipBreak;
   if (!needs) cycle.pecks.clear();
   if (needs && cycle.pecks.empty()) {
-    return refuse("CYCLE drills in pecks and tells no peck", "STEP, INCR or 1STPECK");
+    return refuse("CYCLE drills in pecks and gives no peck", "STEP, INCR or 1STPECK");
   }
   const bool sound = std::all_of(cycle.pecks.begin(), cycle.pecks.end(),
                                  [&](double p) { return p > 0 && p >= cycle.depth * 1e-3; });
@@ -156,7 +156,7 @@ Outcome spread_positions(CycleWords& words, const DialectFinder& dialect) {
   if (words.positions.empty()) return {};
   if (dialect.traits().cycle_numbers != CycleNumbers::kDepthUnitFeed) {
     return refuse(
-        "CYCLE tells numbers by their place: what they mean stands in the table of a "
+        "CYCLE gives numbers by their place: what they mean stands in the table of a "
         "post-processor",
         "let the CAM system write keywords (FEDTO, RAPTO) or motion; --dialect hsm reads them as "
         "depth, feed, clearance above the bottom");
@@ -205,7 +205,7 @@ Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFi
   auto words = read_cycle_words(s);
   if (!words) return error(words.error());
   if (auto done = spread_positions(*words, dialect); !done) return error(done.error());
-  if (words->feeds.size() > 1) return refuse("CYCLE tells several feeds");
+  if (words->feeds.size() > 1) return refuse("CYCLE gives several feeds");
   if (!words->feeds.empty()) out.cycle.feed = words->feeds[0];
   out.cycle.dwell_s = words->dwell_s;
   out.cycle.dwell_revolutions = words->dwell_revolutions;

@@ -25,8 +25,8 @@ enum class HoleKind : std::uint8_t {
 
 /// Where the tool goes behind a hole.
 enum class CycleReturn : std::uint8_t {
-  kToRetract,     ///< to the retract level that the cycle tells; else to its rapid level
-  kToRapidLevel,  ///< to the rapid level, whatever else is told (CYCLE/CLEAR)
+  kToRetract,     ///< to the retract level that the cycle gives; else to its rapid level
+  kToRapidLevel,  ///< to the rapid level, whatever else is given (CYCLE/CLEAR)
   kToBefore       ///< to the level that the tool had before the cycle (RTRCTO,AUTO)
 };
 
@@ -40,7 +40,7 @@ struct HoleCycle {
   double rapid_level = 0;
   double retract_level = 0;   ///< not below rapid_level
   std::vector<double> pecks;  ///< in order, the last repeats; empty: in one go
-  double back = 0;            ///< of chip breaking; 0: not told
+  double back = 0;            ///< of chip breaking; 0: not given
   int pecks_to_retract = 0;   ///< chip breaking: out of the hole behind so many; 0: never
   double dwell_s = 0;
   double dwell_revolutions = 0;

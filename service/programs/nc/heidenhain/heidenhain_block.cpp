@@ -133,10 +133,10 @@ cl::Outcome take_plane_angles(State& s, Line& iso) {
   return {};
 }
 
-/// FAUTO: the feed of the last TOOL CALL that told one.
+/// FAUTO: the feed of the last TOOL CALL that gave one.
 cl::Outcome take_auto_feed(State& s, const Line& line) {
   if (!has_name(line, "FAUTO")) return {};
-  if (!(s.modes.auto_feed > 0)) return refuse("FAUTO, but no TOOL CALL before it tells F");
+  if (!(s.modes.auto_feed > 0)) return refuse("FAUTO, but no TOOL CALL before it gives F");
   s.cl.written_feed = {s.modes.auto_feed, s.modes.feed_unit};
   s.cl.feed.reset();
   return {};
@@ -187,7 +187,7 @@ cl::Outcome run_words(State& s, const Line& line) {
   return act_behind(s, iso);
 }
 
-/// A new speed of a spindle that turns holds from the next line on, which often tells its sense.
+/// A new speed of a spindle that turns holds from the next line on, which often gives its sense.
 void act_on_speed(State& s, const Line& line) {
   if (!s.modes.has_new_speed) return;
   s.modes.has_new_speed = false;

@@ -97,7 +97,7 @@ cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text
   const std::string_view kind = take_word(text);
   if (kind != "SPATIAL" && kind != "RESET") {
     return refuse("PLANE " + std::string(kind.substr(0, 16)) +
-                      ": a plane that is not told by SPA, "
+                      ": a plane that is not defined by SPA, "
                       "SPB and SPC",
                   kBySpatialAngles, "PLANE");
   }

@@ -20,7 +20,7 @@ constexpr std::array kCodesNotRun = {92, 103, 114, 118, 130, 136, 143, 144};
 
 bool is_code(const Word& word, int code) { return word.is('M') && word.number == code; }
 
-/// M128 F5000 tells the feed of the linear axes that follow a turn, which is none of the path.
+/// M128 F5000 sets the feed of the linear axes that follow a turn: it is no feed of the path.
 bool is_feed_of_m128(const Line& line, std::size_t at) {
   return at > 0 && line.words[at].is('F') && is_code(line.words[at - 1], 128);
 }
