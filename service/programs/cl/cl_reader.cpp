@@ -116,12 +116,17 @@ class ClReader::Impl {
       return {};
     }
     if (what.foreign.empty()) return {};
-    return final_error(
-        0, "this is " + what.foreign + ", not a CL file",
-        what.is_nc && options_.nc
-            ? "--dialect fanuc, siemens or heidenhain reads NC programs of their words; else "
-              "output APT or CLDATA text from the CAM system"
-            : "output APT or CLDATA text from the CAM system");
+    return final_error(0, "this is " + what.foreign + ", not a CL file", remedy_of(what));
+  }
+
+  [[nodiscard]] std::string remedy_of(const Recognised& what) const {
+    const std::string by_cam = "output APT or CLDATA text from the CAM system";
+    if (!what.is_nc || !options_.nc) return by_cam;
+    const bool is_fanuc = !what.like_fanuc.empty();
+    return (is_fanuc ? "--dialect fanuc reads it where " + what.like_fanuc + " is a word of Fanuc's"
+                     : std::string("--dialect fanuc, siemens or heidenhain reads NC programs of "
+                                   "their words")) +
+           "; else " + by_cam;
   }
 
   ProgramSource::Result read_statement() {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 
+#include "service/programs/cl/fanuc_codes.hpp"
 #include "service/programs/cl/text/statement.hpp"
 #include "service/programs/cl/words/word_table.hpp"
 
@@ -192,9 +193,8 @@ std::string name_of(const std::string& text, const Lines& lines) {
   for (const std::string_view word : {"M428", "M429", "O<", "#<", "G43.1"}) {
     if (has(text, word)) return "a LinuxCNC NC program (" + std::string(word) + ")";
   }
-  for (const std::string_view word :
-       {"G43.4", "G43.5", "G54.1", "G54.2", "G05.1", "G68.2", "G234", "G254"}) {
-    if (has(text, word)) return "a Fanuc NC program (" + std::string(word) + ")";
+  if (const std::string code = code_of_fanuc(text); !code.empty()) {
+    return "a Fanuc NC program (" + code + ")";
   }
   if (lines.percent && lines.o_number) return "a Fanuc NC program (% and O number)";
   if (lines.begins_with_number) return "a Fanuc NC program (program number)";
@@ -208,7 +208,7 @@ Recognised recognise_foreign(std::string_view head) {
   constexpr std::size_t kEnoughLines = 32;
   for (const Magic& magic : kMagics) {
     if (head.starts_with(magic.bytes)) {
-      return {std::string(magic.name), true, false, Dialect::kUnknown, {}};
+      return {std::string(magic.name), true, false, Dialect::kUnknown, {}, {}};
     }
   }
   const auto control = std::count_if(head.begin(), head.end(), [](unsigned char c) {
@@ -216,13 +216,13 @@ Recognised recognise_foreign(std::string_view head) {
   });
   if (control > 0 && (head.find('\0') != std::string_view::npos ||
                       control * 20 > static_cast<std::ptrdiff_t>(head.size()))) {
-    return {"binary data", true, false, Dialect::kUnknown, {}};
+    return {"binary data", true, false, Dialect::kUnknown, {}, {}};
   }
   const std::string text = in_capitals(head);
   const Lines lines(text);
-  if (lines.cl > 0) return {{}, true, false, Dialect::kUnknown, {}};
+  if (lines.cl > 0) return {{}, true, false, Dialect::kUnknown, {}, {}};
   if (has(text, "BEGIN PGM")) {
-    return {std::string(kHeidenhain), true, true, Dialect::kHeidenhain, "BEGIN PGM"};
+    return {std::string(kHeidenhain), true, true, Dialect::kHeidenhain, "BEGIN PGM", {}};
   }
   if (lines.all == 0 && lines.siemens.empty()) return {};
   const std::string name = name_of(text, lines);
@@ -234,12 +234,13 @@ Recognised recognise_foreign(std::string_view head) {
   Recognised out;
   out.is_certain = is_enough;
   if (!is_gcode) return out;
-  out = {name, is_named || is_enough, true, Dialect::kUnknown, {}};
+  out = {name, is_named || is_enough, true, Dialect::kUnknown, {}, {}};
   const auto take = [&](std::string_view begin, Dialect program) {
     if (!name.starts_with(begin)) return;
     out.program = program;
     out.shown_by = name.substr(begin.size(), name.size() - begin.size() - 1);
   };
+  out.like_fanuc = code_like_fanuc(text);
   take("a Fanuc NC program (", Dialect::kFanuc);
   take("a Siemens NC program (", Dialect::kSiemens);
   return out;

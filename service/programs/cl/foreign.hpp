@@ -17,6 +17,7 @@ struct Recognised {
   bool is_nc = false;                   ///< it is an NC program
   Dialect program = Dialect::kUnknown;  ///< of an NC program whose words tell it for certain
   std::string shown_by;                 ///< what tells it: "G43.4"
+  std::string like_fanuc;               ///< a code of Fanuc that LinuxCNC has too: "G43"
 };
 
 /// `head` is the first 64 KiB or less.

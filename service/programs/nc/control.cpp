@@ -48,6 +48,17 @@ std::optional<Vector3> zero_of(const State& s, int offset) {
   return Vector3(at->second - s.axes->zero_mm());
 }
 
+/// G500 of Siemens takes every offset out of force: no frame of the machine has its zero.
+std::string remedy_of_unknown(int offset) {
+  const int frame = frame_of(offset);
+  if (frame == 0) {
+    return "write " + name_of(offset) +
+           " behind the last motion alone; for a place of the machine SUPA with axis words";
+  }
+  return "--work-zero " + std::to_string(frame) +
+         "=X,Y,Z, or ctl frame set; or split the program: one for each";
+}
+
 /// A program of G54 under frame 2 is not cut where the operator may expect it.
 void warn_of_other_frame(State& s, const Line& line, int offset, const Vector3& zero_mm) {
   if (zero_mm.isZero(0)) return;
@@ -133,9 +144,7 @@ cl::Outcome check_work_offset(State& s, const Line& line) {
     const int missing = zero_of(s, to) ? from : to;
     return refuse("a second work offset (" + name_of(to) + " behind " + name_of(from) +
                       "): where " + name_of(missing) + " lies only the control knows",
-                  "--work-zero " + std::to_string(frame_of(missing)) +
-                      "=X,Y,Z, or ctl frame set; or split the program: one for each",
-                  "second offset");
+                  remedy_of_unknown(missing), "second offset");
   }
   note_offset(s, name_of(to));
   s.modes.moved_offset = to;

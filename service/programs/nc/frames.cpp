@@ -89,6 +89,20 @@ cl::Frame turned(std::initializer_list<Turn> turns) {
   return out;
 }
 
+cl::Frame frame_along(const Vector3& origin, const Vector3& x, const Vector3& z) {
+  cl::Frame out;
+  out.rotation.col(2) = z.normalized();
+  out.rotation.col(1) = z.cross(x).normalized();
+  out.rotation.col(0) = out.rotation.col(1).cross(out.rotation.col(2));
+  out.origin = origin;
+  return out;
+}
+
+bool are_square(const Vector3& a, const Vector3& b) {
+  constexpr double kCosine = 1e-3;
+  return std::abs(a.normalized().dot(b.normalized())) <= kCosine;
+}
+
 void set_shift(State& s, const Line& line, const cl::Frame& shift) {
   set_frames(s, line, shift, s.frames.plane);
 }

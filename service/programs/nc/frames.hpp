@@ -44,4 +44,9 @@ struct Turn {
 };
 [[nodiscard]] cl::Frame turned(std::initializer_list<Turn> turns);
 
+/// The frame of an origin, a direction along its x, and its z; lengths do not matter.
+[[nodiscard]] cl::Frame frame_along(const Vector3& origin, const Vector3& x, const Vector3& z);
+/// Whether two directions stand square on each other, within 0.06 degrees.
+[[nodiscard]] bool are_square(const Vector3& a, const Vector3& b);
+
 }  // namespace meridian::nc

@@ -130,7 +130,14 @@ class Cutter {
   cl::Outcome add(const Word& word) {
     if (word.is('N')) return {};
     if (!word.is('G') && !word.is('M') && line_.find(word.address) != nullptr) {
-      return refuse("address " + std::string(word.address) + " twice in one block");
+      if (word.is('T')) {
+        return refuse(
+            "two tools in one block: on some controls the first is changed and the second comes "
+            "next, on others the last one counts",
+            "write the tool for M6 alone, and the next one in a block behind it", "T");
+      }
+      return refuse("address " + std::string(word.address) + " twice in one block",
+                    "write one block for each");
     }
     line_.words.push_back(word);
     return {};

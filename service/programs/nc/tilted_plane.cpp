@@ -15,7 +15,6 @@ using cl::refuse;
 
 constexpr const char* kByEuler = "output G68.2 with X Y Z and the angles I J K, without P";
 constexpr double kApart_mm = 1e-3;  ///< points that are nearer have no direction between them
-constexpr double kSquare = 1e-3;    ///< cosine between two vectors that stand square
 
 using Form = Expected<cl::Frame, cl::Refusal>;
 
@@ -30,16 +29,6 @@ Vector3 point_of(const Line& line) {
 
 Vector3 vector_of(const Line& line) {
   return {number_of(line, "I"), number_of(line, "J"), number_of(line, "K")};
-}
-
-/// The frame of an origin, a direction along its x, and its z.
-cl::Frame frame_of(const Vector3& origin, const Vector3& x, const Vector3& z) {
-  cl::Frame out;
-  out.rotation.col(2) = z.normalized();
-  out.rotation.col(1) = z.cross(x).normalized();
-  out.rotation.col(0) = out.rotation.col(1).cross(out.rotation.col(2));
-  out.origin = origin;
-  return out;
 }
 
 /// Turns about z by I, about the new x by J, about the new z by K.
@@ -127,7 +116,7 @@ Expected<std::optional<cl::Frame>, cl::Refusal> by_three_points(State& s, const 
   if (!(width > apart && area > apart * width)) {
     return refuse("G68.2 P2: its three points lie on a line", {}, "G68.2 P2");
   }
-  return frame_of(parts.origin, x, x.cross(side));
+  return frame_along(parts.origin, x, x.cross(side));
 }
 
 /// Q1 is the origin and the direction of x, Q2 that of z.
@@ -142,10 +131,10 @@ Expected<std::optional<cl::Frame>, cl::Refusal> by_two_vectors(State& s, const L
     parts.x_axis = way.normalized();
     return std::nullopt;
   }
-  if (std::abs(parts.x_axis.dot(way.normalized())) > kSquare) {
+  if (!are_square(parts.x_axis, way)) {
     return refuse("G68.2 P3: its two vectors do not stand square on each other", {}, "G68.2 P3");
   }
-  return frame_of(parts.origin, parts.x_axis, way);
+  return frame_along(parts.origin, parts.x_axis, way);
 }
 
 cl::Outcome define_part(State& s, const Line& line, int form) {

@@ -21,6 +21,42 @@ TEST(KlartextPlane, TurnsAboutTheFixedAxesXThenYThenZ) {
   EXPECT_LT((tip(motion[2]) - Vector3(10, 20.5 + kHalfRoot, -kHalfRoot)).norm(), kTiny);
 }
 
+/// A point and a cut in a plane.
+ReadText read_plane(const std::string& plane) {
+  return read_klartext("1 PLANE " + plane + " TURN FMAX\n2 L X+1 Y+2 Z+5 R0 FMAX\n3 L Z+0 F600\n");
+}
+
+TEST(KlartextPlane, TurnsByEulersAnglesAboutZTheNewXAndTheNewZ) {
+  // About z by 90: x is +y. About that x by 90: z is +x, y is +z. About that z by 90: x is +z.
+  const ReadText read = read_plane("EULER EULPR+90 EULNU90 EULROT90");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  EXPECT_LT((axis(motion[1]) - Vector3(1, 0, 0)).norm(), kTiny);
+  EXPECT_LT((tip(motion[0]) - Vector3(5, -2, 1)).norm(), kTiny);
+  EXPECT_NE(read_plane("EULER EULPR+90 EULNU90").error.find("without EULROT"), std::string::npos);
+}
+
+TEST(KlartextPlane, LiesByItsVectors) {
+  // x along +y, the normal along +x: y is +z.
+  const ReadText read = read_plane("VECTOR BX+0 BY+2 BZ+0 NX+0,5 NY0 NZ0");
+  ASSERT_EQ(read.error, "");
+  EXPECT_LT((axis(read.motion()[1]) - Vector3(1, 0, 0)).norm(), kTiny);
+  EXPECT_LT((tip(read.motion()[0]) - Vector3(5, 1, 2)).norm(), kTiny);
+  for (const char* askew : {"VECTOR BX1 BY0 BZ1 NX0 NY0 NZ1", "VECTOR BX0 BY0 BZ0 NX0 NY0 NZ1"}) {
+    EXPECT_NE(read_plane(askew).error.find("do not stand square"), std::string::npos) << askew;
+  }
+}
+
+TEST(KlartextPlane, IsRefusedByNameInItsOtherForms) {
+  for (const char* form : {"AXIAL B-45", "RELATIV SPB+45", "PROJECTED PROPR0 PROMIN20 ROT30",
+                           "POINTS P1X0 P1Y0 P1Z0 P2X1 P2Y0 P2Z0 P3X0 P3Y1 P3Z0"}) {
+    const ReadText read = read_plane(form);
+    const std::string kind(form, std::string_view(form).find(' '));
+    EXPECT_NE(read.error.find("PLANE " + kind + ": a plane"), std::string::npos) << read.error;
+    EXPECT_NE(read.error.find("output PLANE SPATIAL"), std::string::npos) << read.error;
+  }
+}
+
 TEST(KlartextPlane, WaitsForTheRotaryAxesUnderStay) {
   const std::string plane = "1 PLANE SPATIAL SPA+0 SPB+45 SPC+0 STAY\n";
   const std::string cut = "3 L X+0 Y+0 Z+5 FMAX\n4 L Z+0 F600\n";

@@ -39,6 +39,28 @@ TEST(NcPrograms, AreKnownByTheirNumberOrName) {
             "");
 }
 
+TEST(NcPrograms, AreKnownByCodesThatNoOtherControlHas) {
+  for (const char* head : {"G05.1 Q1", "G5.1Q1", "G05 P10000", "G08P1", "N10G43.4H1",
+                           "N10 G17 G68.2 X0. Y0. Z0. I0. J0. K0.\nG69"}) {
+    const ReadText read =
+        cl::read_text("%\n" + std::string(head) + "\n" + std::string(kPlain), untold());
+    EXPECT_EQ(read.summary.dialect, "NC program, Fanuc and ISO words") << head << read.error;
+  }
+  for (const char* head : {"G5.1 X1. Y1. I1. J0.", "G05 X1. Y1. I0. J3. P0. Q-3.", "G8", "(G68.2)",
+                           "G43.45", "; G43.4"}) {
+    const ReadText read =
+        cl::read_text("%\n" + std::string(head) + "\n" + std::string(kPlain), untold());
+    EXPECT_NE(read.error.find("this is an NC program"), std::string::npos) << head << read.error;
+  }
+}
+
+TEST(NcPrograms, OfTwoControlsAreReadAsFanucsWhereTheCallerSaysIt) {
+  const ReadText read = cl::read_text("%\nG43 H1\n" + std::string(kPlain), untold());
+  EXPECT_NE(read.error.find("--dialect fanuc reads it where G43 is a word of Fanuc's"),
+            std::string::npos)
+      << read.error;
+}
+
 TEST(NcPrograms, OfSiemensAreKnownByTheirNames) {
   const ReadText read =
       cl::read_text("TRAORI\nG54 G710\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\nM30\n", untold());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 #include "service/programs/cl/text/number.hpp"
@@ -34,26 +35,69 @@ bool is_number(std::string_view text, double& number) {
 
 enum class Follow : std::uint8_t { kStay, kTurn };
 
-/// What stands behind PLANE: the angles, and whether the rotary axes follow.
+/// A form of PLANE, and the words that it has numbers for.
+struct PlaneForm {
+  std::string_view name;
+  std::array<std::string_view, 6> addresses;
+};
+constexpr std::array kPlaneForms = std::to_array<PlaneForm>({
+    {"RESET", {}},
+    {"SPATIAL", {"SPA", "SPB", "SPC"}},
+    {"EULER", {"EULPR", "EULNU", "EULROT"}},
+    {"VECTOR", {"BX", "BY", "BZ", "NX", "NY", "NZ"}},
+});
+
+/// What stands behind PLANE: its numbers, and whether the rotary axes follow.
 struct PlaneWords {
-  std::array<double, 3> deg{};
+  std::array<std::optional<double>, 6> numbers;
   Follow follow = Follow::kStay;
+
+  [[nodiscard]] double number(std::size_t k) const { return numbers[k].value_or(0); }
+  [[nodiscard]] Vector3 vector(std::size_t first) const {
+    return {number(first), number(first + 1), number(first + 2)};
+  }
 };
 
-Expected<PlaneWords, cl::Refusal> plane_words(std::string_view text) {
+Expected<PlaneWords, cl::Refusal> plane_words(const PlaneForm& form, std::string_view text) {
   PlaneWords out;
-  constexpr std::array<std::string_view, 3> kAngles = {"SPA", "SPB", "SPC"};
+  const std::string title = "PLANE " + std::string(form.name);
   for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
     if (word == "TURN" || word == "MOVE") out.follow = Follow::kTurn;
-    for (std::size_t k = 0; k < kAngles.size(); ++k) {
-      if (!word.starts_with(kAngles[k])) continue;
-      if (!is_number(word.substr(kAngles[k].size()), out.deg[k])) {
-        return refuse("PLANE SPATIAL: " + cl::quoted(word) + " is no angle", kNumbersByCam,
-                      "PLANE");
+    for (std::size_t k = 0; k < form.addresses.size(); ++k) {
+      const std::string_view address = form.addresses[k];
+      if (address.empty() || !word.starts_with(address)) continue;
+      double number = 0;
+      if (!is_number(word.substr(address.size()), number)) {
+        return refuse(title + ": " + cl::quoted(word) + " has no number", kNumbersByCam, "PLANE");
       }
+      out.numbers[k] = number;
     }
   }
+  for (std::size_t k = 0; k < form.addresses.size() && form.name != "SPATIAL"; ++k) {
+    if (form.addresses[k].empty() || out.numbers[k]) continue;
+    return refuse(title + " without " + std::string(form.addresses[k]),
+                  "output all of its numbers, zeros too", "PLANE");
+  }
   return out;
+}
+
+/// About the fixed X, Y and Z one after the other; about Z, the new X and the new Z; or of a vector
+/// along x and the normal.
+Expected<cl::Frame, cl::Refusal> plane_of(const PlaneForm& form, const PlaneWords& words) {
+  if (form.name == "SPATIAL") {
+    return turned({{2, words.number(2)}, {1, words.number(1)}, {0, words.number(0)}});
+  }
+  if (form.name == "EULER") {
+    return turned({{2, words.number(0)}, {0, words.number(1)}, {2, words.number(2)}});
+  }
+  if (form.name == "RESET") return cl::Frame();
+  const Vector3 base = words.vector(0), normal = words.vector(3);
+  constexpr double kShortest = 1e-6;
+  if (!(base.norm() > kShortest && normal.norm() > kShortest) || !are_square(base, normal)) {
+    return refuse("PLANE VECTOR: BX BY BZ do not stand square on NX NY NZ",
+                  "output a base vector that lies in the plane", "PLANE");
+  }
+  return frame_along(Vector3::Zero(), base, normal);
 }
 
 /// X+10: which axis, and its number, which may stand behind a blank.
@@ -95,28 +139,24 @@ cl::Outcome put_datum(State& s, const Line& line, const cl::Frame& shift,
 
 cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text) {
   const std::string_view kind = take_word(text);
-  if (kind != "SPATIAL" && kind != "RESET") {
+  const auto form = std::find_if(kPlaneForms.begin(), kPlaneForms.end(),
+                                 [kind](const PlaneForm& row) { return row.name == kind; });
+  if (form == kPlaneForms.end()) {
     return refuse("PLANE " + std::string(kind.substr(0, 16)) +
-                      ": a plane that is not defined by SPA, "
-                      "SPB and SPC",
+                      ": a plane that is not defined by angles in space, by Euler's or by vectors",
                   kBySpatialAngles, "PLANE");
   }
   if (holds_tip(s.modes.control)) {
     return refuse("PLANE while tool-centre control is on", "write FUNCTION RESET TCPM before it",
                   "PLANE");
   }
-  const auto words = plane_words(text);
+  const auto words = plane_words(*form, text);
   if (!words) return tl::make_unexpected(words.error());
-  const bool follows = words->follow == Follow::kTurn;
-  if (kind == "RESET") {
-    set_plane(s, line, {}, follows ? Tilt::kTurned : Tilt::kNone);
-    if (follows) s.frames.tilt = Tilt::kNone;
-    return {};
-  }
-  // About the fixed axes X, Y and Z one after the other.
-  const auto& deg = words->deg;
-  const cl::Frame plane = turned({{2, deg[2]}, {1, deg[1]}, {0, deg[0]}});
-  set_plane(s, line, plane, follows ? Tilt::kTurned : Tilt::kDefined);
+  const auto plane = plane_of(*form, *words);
+  if (!plane) return tl::make_unexpected(plane.error());
+  const bool follows = words->follow == Follow::kTurn, ends = form->name == "RESET";
+  set_plane(s, line, *plane, follows ? Tilt::kTurned : ends ? Tilt::kNone : Tilt::kDefined);
+  if (ends) s.frames.tilt = Tilt::kNone;
   return {};
 }
 

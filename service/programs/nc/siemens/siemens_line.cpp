@@ -311,6 +311,8 @@ class SiemensCutter {
 
 }  // namespace
 
+std::span<const std::string_view> setting_names() noexcept { return kSettings; }
+
 cl::Outcome cut_siemens(std::string_view text, std::uint32_t number, Line& line,
                         Variables& variables) {
   line.begin(text, number);

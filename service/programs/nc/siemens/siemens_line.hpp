@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "service/programs/cl/refusal.hpp"
@@ -9,6 +10,9 @@
 #include "service/programs/nc/variables.hpp"
 
 namespace meridian::nc {
+
+/// Names with a value that says how exactly and how hard the control moves: CTOL=0.01.
+[[nodiscard]] std::span<const std::string_view> setting_names() noexcept;
 
 /// Cuts a line of a Siemens program into `line`: addresses with `=` or without, `X=IC(2.)`, names
 /// with their arguments (TRAORI(1)). DEF and assignments go to `variables`, and names that stand

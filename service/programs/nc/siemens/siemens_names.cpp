@@ -13,154 +13,134 @@ namespace {
 
 using cl::refuse;
 
-enum class What : std::uint8_t {
-  kOn,           ///< TRAORI
-  kOff,          ///< TRAFOOF
-  kGreatCircle,  ///< ORIVECT
-  kEvenJoints,   ///< ORIAXES
-  kPart,         ///< ORIWKS: directions of the part
-  kMachine,      ///< ORIMKS
-  kMachinePlace,
-  kNothing,
-  kFrame,
-  kModalCall,  ///< MCALL
-  kRefused
-};
-
-struct NameRow {
-  std::string_view name;
-  What what;
-  std::string_view note = {};
-};
-
 constexpr std::string_view kMacro = "variables, jumps and subprograms are not run here";
 constexpr std::string_view kCone = "a way of the tool axis that is no great circle";
 constexpr std::string_view kCurve = "a spline of the control";
 
 constexpr std::array kNames = std::to_array<NameRow>({
-    {"TRAORI", What::kOn},
-    {"TRAFOOF", What::kOff},
-    {"ORIVECT", What::kGreatCircle},
-    {"ORIPLANE", What::kGreatCircle},
-    {"ORIAXES", What::kEvenJoints},
-    {"ORIWKS", What::kPart},
-    {"ORIWCS", What::kPart},
-    {"ORIMKS", What::kMachine},
-    {"ORIMCS", What::kMachine},
-    {"SUPA", What::kMachinePlace},
-    {"ACC", What::kNothing},
-    {"ADIS", What::kNothing},
-    {"ADISPOS", What::kNothing},
-    {"ATOL", What::kNothing},
-    {"BRISK", What::kNothing},
-    {"CDOF", What::kNothing},
-    {"CDOF2", What::kNothing},
-    {"CDON", What::kNothing},
-    {"CFC", What::kNothing},
-    {"CFIN", What::kNothing},
-    {"CFTCP", What::kNothing},
-    {"COMPCAD", What::kNothing},
-    {"COMPCURV", What::kNothing},
-    {"COMPOF", What::kNothing},
-    {"COMPON", What::kNothing},
-    {"COMPSURF", What::kNothing},
-    {"CPRECOF", What::kNothing},
-    {"CPRECON", What::kNothing},
-    {"CTOL", What::kNothing},
-    {"CUT2D", What::kNothing},
-    {"CUT2DF", What::kNothing},
-    {"CUT3DC", What::kNothing},
-    {"CUT3DF", What::kNothing},
-    {"CYCLE832", What::kNothing},
-    {"DIAMOF", What::kNothing},
-    {"DRIVE", What::kNothing},
-    {"DYNFINISH", What::kNothing},
-    {"DYNNORM", What::kNothing},
-    {"DYNPOS", What::kNothing},
-    {"DYNPREC", What::kNothing},
-    {"DYNROUGH", What::kNothing},
-    {"DYNSEMIFIN", What::kNothing},
-    {"FFWOF", What::kNothing},
-    {"FFWON", What::kNothing},
-    {"FGREF", What::kNothing},
-    {"FGROUP", What::kNothing},
-    {"FIFOCTRL", What::kNothing},
-    {"FIFOLEN", What::kNothing},
-    {"FNORM", What::kNothing},
-    {"GROUP_BEGIN", What::kNothing},
-    {"GROUP_END", What::kNothing},
-    {"JERKLIM", What::kNothing},
-    {"KONT", What::kNothing},
-    {"LIMS", What::kNothing},
-    {"MSG", What::kNothing},
-    {"NORM", What::kNothing},
-    {"ORIEULER", What::kNothing},
-    {"ORIRPY", What::kNothing},
-    {"ORIRPY2", What::kNothing},
-    {"ORISOF", What::kNothing},
-    {"ORISON", What::kNothing},
-    {"OTOL", What::kNothing},
-    {"PAROTOF", What::kNothing},
-    {"RTLIOF", What::kNothing},
-    {"RTLION", What::kNothing},
-    {"SBLOF", What::kNothing},
-    {"SBLON", What::kNothing},
-    {"SETMS", What::kNothing},
-    {"SOFT", What::kNothing},
-    {"STARTFIFO", What::kNothing},
-    {"STOLF", What::kNothing},
-    {"STOPFIFO", What::kNothing},
-    {"STOPRE", What::kNothing},
-    {"TOFFOF", What::kNothing},
-    {"TOROTOF", What::kNothing},
-    {"UPATH", What::kNothing},
-    {"VELOLIM", What::kNothing},
-    {"WORKPIECE", What::kNothing},
-    {"CYCLE800", What::kFrame},
-    {"TRANS", What::kFrame},
-    {"ATRANS", What::kFrame},
-    {"ROT", What::kFrame},
-    {"AROT", What::kFrame},
-    {"ROTS", What::kFrame},
-    {"AROTS", What::kFrame},
-    {"MIRROR", What::kFrame},
-    {"AMIRROR", What::kFrame},
-    {"SCALE", What::kFrame},
-    {"ASCALE", What::kFrame},
-    {"ORICONCW", What::kRefused, kCone},
-    {"ORICONCCW", What::kRefused, kCone},
-    {"ORICONIO", What::kRefused, kCone},
-    {"ORICONTO", What::kRefused, kCone},
-    {"ORICURVE", What::kRefused, kCone},
-    {"ASPLINE", What::kRefused, kCurve},
-    {"BSPLINE", What::kRefused, kCurve},
-    {"CSPLINE", What::kRefused, kCurve},
-    {"POLY", What::kRefused, kCurve},
-    {"CIP", What::kRefused, "an arc by a point between"},
-    {"CT", What::kRefused, "a tangent arc"},
-    {"MEAS", What::kRefused, "probing: where it ends only the machine knows"},
-    {"MEAW", What::kRefused, "probing: where it ends only the machine knows"},
-    {"CALL", What::kRefused, kMacro},
-    {"CASE", What::kRefused, kMacro},
-    {"ELSE", What::kRefused, kMacro},
-    {"ENDFOR", What::kRefused, kMacro},
-    {"ENDIF", What::kRefused, kMacro},
-    {"ENDLOOP", What::kRefused, kMacro},
-    {"ENDWHILE", What::kRefused, kMacro},
-    {"EXTCALL", What::kRefused, kMacro},
-    {"FOR", What::kRefused, kMacro},
-    {"GOTO", What::kRefused, kMacro},
-    {"GOTOB", What::kRefused, kMacro},
-    {"GOTOF", What::kRefused, kMacro},
-    {"IF", What::kRefused, kMacro},
-    {"LOOP", What::kRefused, kMacro},
-    {"MCALL", What::kModalCall},
-    {"PROC", What::kRefused, kMacro},
-    {"REPEAT", What::kRefused, kMacro},
-    {"RET", What::kRefused, kMacro},
-    {"TRACYL", What::kRefused, "a transformation of the control"},
-    {"TRANSMIT", What::kRefused, "a transformation of the control"},
-    {"WHILE", What::kRefused, kMacro},
+    {"TRAORI", NameKind::kOn},
+    {"TRAFOOF", NameKind::kOff},
+    {"ORIVECT", NameKind::kGreatCircle},
+    {"ORIPLANE", NameKind::kGreatCircle},
+    {"ORIAXES", NameKind::kEvenJoints},
+    {"ORIWKS", NameKind::kPart},
+    {"ORIWCS", NameKind::kPart},
+    {"ORIMKS", NameKind::kMachine},
+    {"ORIMCS", NameKind::kMachine},
+    {"SUPA", NameKind::kMachinePlace},
+    {"ACC", NameKind::kNothing},
+    {"ADIS", NameKind::kNothing},
+    {"ADISPOS", NameKind::kNothing},
+    {"ATOL", NameKind::kNothing},
+    {"BRISK", NameKind::kNothing},
+    {"CDOF", NameKind::kNothing},
+    {"CDOF2", NameKind::kNothing},
+    {"CDON", NameKind::kNothing},
+    {"CFC", NameKind::kNothing},
+    {"CFIN", NameKind::kNothing},
+    {"CFTCP", NameKind::kNothing},
+    {"COMPCAD", NameKind::kNothing},
+    {"COMPCURV", NameKind::kNothing},
+    {"COMPOF", NameKind::kNothing},
+    {"COMPON", NameKind::kNothing},
+    {"COMPSURF", NameKind::kNothing},
+    {"CPRECOF", NameKind::kNothing},
+    {"CPRECON", NameKind::kNothing},
+    {"CTOL", NameKind::kNothing},
+    {"CUT2D", NameKind::kNothing},
+    {"CUT2DF", NameKind::kNothing},
+    {"CUT3DC", NameKind::kNothing},
+    {"CUT3DF", NameKind::kNothing},
+    {"CYCLE832", NameKind::kNothing},
+    {"DIAMOF", NameKind::kNothing},
+    {"DRIVE", NameKind::kNothing},
+    {"DYNFINISH", NameKind::kNothing},
+    {"DYNNORM", NameKind::kNothing},
+    {"DYNPOS", NameKind::kNothing},
+    {"DYNPREC", NameKind::kNothing},
+    {"DYNROUGH", NameKind::kNothing},
+    {"DYNSEMIFIN", NameKind::kNothing},
+    {"FFWOF", NameKind::kNothing},
+    {"FFWON", NameKind::kNothing},
+    {"FGREF", NameKind::kNothing},
+    {"FGROUP", NameKind::kNothing},
+    {"FIFOCTRL", NameKind::kNothing},
+    {"FIFOLEN", NameKind::kNothing},
+    {"FNORM", NameKind::kNothing},
+    {"GROUP_BEGIN", NameKind::kNothing},
+    {"GROUP_END", NameKind::kNothing},
+    {"JERKLIM", NameKind::kNothing},
+    {"KONT", NameKind::kNothing},
+    {"LIMS", NameKind::kNothing},
+    {"MSG", NameKind::kNothing},
+    {"NORM", NameKind::kNothing},
+    {"ORIEULER", NameKind::kNothing},
+    {"ORIRPY", NameKind::kNothing},
+    {"ORIRPY2", NameKind::kNothing},
+    {"ORISOF", NameKind::kNothing},
+    {"ORISON", NameKind::kNothing},
+    {"OTOL", NameKind::kNothing},
+    {"PAROTOF", NameKind::kNothing},
+    {"RTLIOF", NameKind::kNothing},
+    {"RTLION", NameKind::kNothing},
+    {"SBLOF", NameKind::kNothing},
+    {"SBLON", NameKind::kNothing},
+    {"SETMS", NameKind::kNothing},
+    {"SOFT", NameKind::kNothing},
+    {"STARTFIFO", NameKind::kNothing},
+    {"STOLF", NameKind::kNothing},
+    {"STOPFIFO", NameKind::kNothing},
+    {"STOPRE", NameKind::kNothing},
+    {"TOFFOF", NameKind::kNothing},
+    {"TOROTOF", NameKind::kNothing},
+    {"UPATH", NameKind::kNothing},
+    {"VELOLIM", NameKind::kNothing},
+    {"WORKPIECE", NameKind::kNothing},
+    {"CYCLE800", NameKind::kFrame},
+    {"TRANS", NameKind::kFrame},
+    {"ATRANS", NameKind::kFrame},
+    {"ROT", NameKind::kFrame},
+    {"AROT", NameKind::kFrame},
+    {"ROTS", NameKind::kFrame},
+    {"AROTS", NameKind::kFrame},
+    {"MIRROR", NameKind::kFrame},
+    {"AMIRROR", NameKind::kFrame},
+    {"SCALE", NameKind::kFrame},
+    {"ASCALE", NameKind::kFrame},
+    {"ORICONCW", NameKind::kRefused, kCone},
+    {"ORICONCCW", NameKind::kRefused, kCone},
+    {"ORICONIO", NameKind::kRefused, kCone},
+    {"ORICONTO", NameKind::kRefused, kCone},
+    {"ORICURVE", NameKind::kRefused, kCone},
+    {"ASPLINE", NameKind::kRefused, kCurve},
+    {"BSPLINE", NameKind::kRefused, kCurve},
+    {"CSPLINE", NameKind::kRefused, kCurve},
+    {"POLY", NameKind::kRefused, kCurve},
+    {"CIP", NameKind::kRefused, "an arc by a point between"},
+    {"CT", NameKind::kRefused, "a tangent arc"},
+    {"MEAS", NameKind::kRefused, "probing: where it ends only the machine knows"},
+    {"MEAW", NameKind::kRefused, "probing: where it ends only the machine knows"},
+    {"CALL", NameKind::kRefused, kMacro},
+    {"CASE", NameKind::kRefused, kMacro},
+    {"ELSE", NameKind::kRefused, kMacro},
+    {"ENDFOR", NameKind::kRefused, kMacro},
+    {"ENDIF", NameKind::kRefused, kMacro},
+    {"ENDLOOP", NameKind::kRefused, kMacro},
+    {"ENDWHILE", NameKind::kRefused, kMacro},
+    {"EXTCALL", NameKind::kRefused, kMacro},
+    {"FOR", NameKind::kRefused, kMacro},
+    {"GOTO", NameKind::kRefused, kMacro},
+    {"GOTOB", NameKind::kRefused, kMacro},
+    {"GOTOF", NameKind::kRefused, kMacro},
+    {"IF", NameKind::kRefused, kMacro},
+    {"LOOP", NameKind::kRefused, kMacro},
+    {"MCALL", NameKind::kModalCall},
+    {"PROC", NameKind::kRefused, kMacro},
+    {"REPEAT", NameKind::kRefused, kMacro},
+    {"RET", NameKind::kRefused, kMacro},
+    {"TRACYL", NameKind::kRefused, "a transformation of the control"},
+    {"TRANSMIT", NameKind::kRefused, "a transformation of the control"},
+    {"WHILE", NameKind::kRefused, kMacro},
 });
 
 std::string printed(std::string_view name) { return std::string(name.substr(0, 24)); }
@@ -201,34 +181,34 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOu
   if (is_siemens_drilling(name.name)) return take_drilling(s, name, out);
   const NameRow* const row = find_name(name.name);
   if (row == nullptr) return take_unknown(s, line, name);
-  switch (row->what) {
-    case What::kOn:
+  switch (row->kind) {
+    case NameKind::kOn:
       s.modes.is_oriented = true;
       return set_control(s, line, s.axes ? Control::kRotary : Control::kVector);
-    case What::kOff:
+    case NameKind::kOff:
       s.modes.is_oriented = false;
       return set_control(s, line, Control::kLength);
-    case What::kGreatCircle:
-    case What::kEvenJoints:
-      s.modes.turns_evenly = row->what == What::kEvenJoints;
+    case NameKind::kGreatCircle:
+    case NameKind::kEvenJoints:
+      s.modes.turns_evenly = row->kind == NameKind::kEvenJoints;
       return {};
-    case What::kPart:
-    case What::kMachine:
-      s.modes.has_machine_axes = row->what == What::kMachine;
+    case NameKind::kPart:
+    case NameKind::kMachine:
+      s.modes.has_machine_axes = row->kind == NameKind::kMachine;
       return {};
-    case What::kMachinePlace:
+    case NameKind::kMachinePlace:
       out.has_machine_place = true;
       return {};
-    case What::kNothing:
+    case NameKind::kNothing:
       s.cl.summary.skip(name.name, line.number);
       return {};
-    case What::kFrame:
+    case NameKind::kFrame:
       out.has_frame = true;
       return take_siemens_frame(s, line, name);
-    case What::kModalCall:
+    case NameKind::kModalCall:
       out.holes = NameOutcome::Holes::kNoMore;
       return {};
-    case What::kRefused:
+    case NameKind::kRefused:
       break;
   }
   return refuse_row(*row);
@@ -236,10 +216,12 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOu
 
 }  // namespace
 
+std::span<const NameRow> name_rows() noexcept { return kNames; }
+
 cl::Outcome check_names(const Line& line) {
   for (const Line::Name& name : line.names) {
     const NameRow* const row = find_name(name.name);
-    if (row != nullptr && row->what == What::kRefused) return refuse_row(*row);
+    if (row != nullptr && row->kind == NameKind::kRefused) return refuse_row(*row);
     const bool is_cycle = name.name.starts_with("CYCLE") && row == nullptr;
     if (is_cycle && !is_siemens_drilling(name.name)) {
       return refuse(printed(name.name) + ": a cycle that only the control knows", kMovesByCam,

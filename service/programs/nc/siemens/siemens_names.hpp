@@ -1,9 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <string_view>
+
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
+
+/// What a name of the language does here.
+enum class NameKind : std::uint8_t {
+  kOn,           ///< TRAORI
+  kOff,          ///< TRAFOOF
+  kGreatCircle,  ///< ORIVECT
+  kEvenJoints,   ///< ORIAXES
+  kPart,         ///< ORIWKS: directions of the part
+  kMachine,      ///< ORIMKS
+  kMachinePlace,
+  kNothing,  ///< says how the control smooths or what it shows
+  kFrame,
+  kModalCall,  ///< MCALL
+  kRefused
+};
+
+struct NameRow {
+  std::string_view name;
+  NameKind kind;
+  std::string_view note = {};  ///< why it is refused
+};
+
+/// Every name but those of the drilling cycles. Proof: tests/unit/nc/siemens_name_rows_test.cpp.
+[[nodiscard]] std::span<const NameRow> name_rows() noexcept;
 
 /// What the names of a line say about its other words.
 struct NameOutcome {
