@@ -11,7 +11,7 @@ struct ClError {
   std::string file;
   std::uint32_t line = 0;  ///< 1-based; 0 where the whole file is meant
   std::string message;
-  std::string remedy;     ///< empty where there is none but to mend the file
+  std::string remedy;
   std::string group;      ///< errors of one group are alike; empty: the message without numbers
   bool is_final = false;  ///< nothing behind it can be read
 

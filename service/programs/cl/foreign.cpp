@@ -32,10 +32,12 @@ constexpr std::array kMagics = std::to_array<Magic>({
     {std::string_view("solid ", 6), "an STL model"},
 });
 
+/// One sign for each kind of blank and of line end.
 std::string in_capitals(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) {
+    return c == '\t' ? ' ' : c == '\r' ? '\n' : static_cast<char>(std::toupper(c));
+  });
   return out;
 }
 

@@ -12,6 +12,9 @@
 namespace meridian::cl {
 namespace {
 
+constexpr const char* kByForm =
+    "write it in a form that `meridian cl --words` shows, or output the file anew";
+
 ClReaderOptions in_capitals(ClReaderOptions options) {
   for (std::string& word : options.allowed_words) {
     for (char& c : word) c = capital(c);
@@ -43,7 +46,7 @@ Interpreter::Interpreter(std::string name, ClReaderOptions options)
 
 ClError Interpreter::error(std::uint32_t line, const Refusal& refusal) const {
   return {name_,           refusal.line > 0 ? refusal.line : line,
-          refusal.message, refusal.remedy,
+          refusal.message, refusal.remedy.empty() ? kByForm : refusal.remedy,
           refusal.group,   false};
 }
 
@@ -155,7 +158,7 @@ void Interpreter::go_on_repeating() {
 
 Outcome Interpreter::check_whole(std::uint32_t last_line, bool open_end) {
   const auto cut_short = [](std::uint32_t line, const std::string& why) {
-    return refuse_at(line, "the file is cut short: " + why);
+    return refuse_at(line, "the file is cut short: " + why, "output it anew");
   };
   Structure& structure = modal_.structure;
   if (const auto* const arc = std::get_if<PendingArc>(&modal_.curve)) {

@@ -12,7 +12,7 @@ namespace meridian::cl {
 /// Why a statement is refused. What reads the statement names file and line.
 struct Refusal {
   std::string message;
-  std::string remedy;      ///< empty where there is none but to mend the file
+  std::string remedy;      ///< empty where the line has to be written in another form
   std::string group;       ///< refusals of one group are alike; empty: the message without numbers
   std::uint32_t line = 0;  ///< where another line than that of the statement is at fault
 };

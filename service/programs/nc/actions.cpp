@@ -48,7 +48,8 @@ cl::Outcome take_speed(State& s, const Line& line, bool starts) {
 }
 
 cl::Outcome turn_spindle(State& s, const Line& line, ActionKind sense) {
-  if (!(s.cl.spindle.speed_rpm > 0)) return refuse("the spindle starts, but no S gave its speed");
+  if (!(s.cl.spindle.speed_rpm > 0))
+    return refuse("the spindle starts, but no S gave its speed", "write S with it");
   s.cl.feed.reset();
   s.cl.spindle.sense = s.cl.spindle.state = sense;
   start_spindle(s, line);
@@ -90,7 +91,7 @@ cl::Outcome take_tool(State& s, const Line& line) {
 }
 
 cl::Outcome change_tool(State& s, const Line& line) {
-  if (!s.modes.next_tool) return refuse("M6, but no T named the tool");
+  if (!s.modes.next_tool) return refuse("M6, but no T named the tool", "write T with it");
   const std::uint32_t tool = *s.modes.next_tool;
   if (tool == 0) {  // the spindle is emptied
     s.cl.summary.skip("T0", line.number);
@@ -230,7 +231,8 @@ cl::Outcome siemens_dwell(State& s, const Line& line) {
   }
   if (seconds != nullptr) return rest(s, line, seconds->number);
   if (!s.cl.spindle.turns())
-    return refuse("dwell in revolutions, but no spindle speed is in force");
+    return refuse("dwell in revolutions, but no spindle speed is in force",
+                  "write S and M3 or M4 before it");
   return rest(s, line, turns->number * units::kMinute_s / s.cl.spindle.speed_rpm);
 }
 

@@ -57,7 +57,8 @@ cl::Outcome centre_by_words(const State& s, const Line& line, WrittenArc& arc) {
     const bool is_absolute = word->way == Word::Way::kAbsolute || s.modes.is_centre_absolute;
     arc.centre[at] = is_absolute ? word->number : arc.begin[at] + word->number;
   }
-  if (!has_centre) return refuse("an arc without R and without a centre (I, J, K)");
+  if (!has_centre)
+    return refuse("an arc without R and without a centre (I, J, K)", "output one of them");
   return {};
 }
 

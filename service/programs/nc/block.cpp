@@ -137,12 +137,13 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
                         std::array<bool, 32>& seen) {
   if (row.kind == GKind::kNothing || row.kind == GKind::kSetting) return {};
   bool& is_seen = seen[static_cast<std::size_t>(row.kind)];
-  if (is_seen) return refuse("two G codes of one group in a block");
+  if (is_seen) return refuse("two G codes of one group in a block", "write one block for each");
   is_seen = true;
   const bool is_shot = row.kind == GKind::kDwell || row.kind == GKind::kHome ||
                        row.kind == GKind::kReference || row.kind == GKind::kPlaneTilt ||
                        row.kind == GKind::kPlaneFollow || row.kind == GKind::kLocalZero;
-  if (is_shot && motion_kind) return refuse("two G codes of one group in a block");
+  if (is_shot && motion_kind)
+    return refuse("two G codes of one group in a block", "write one block for each");
   if (is_shot || row.kind == GKind::kMachinePlace) motion_kind = row.kind;
   return {};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // G254 of Haas, the dynamic work offset: the zero of the program goes with the table, X Y Z stay
 // along the machine's axes. It is a tilted plane that the rotary words define.
+#include "service/programs/nc/remedy.hpp"
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
@@ -18,13 +19,13 @@ Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& pla
         "its machine file",
         "--machine FILE", "machine");
   }
-  if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
+  if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), kRightMachine, "machine");
   if (place.is_by_control) {
     return refuse("G254, but no word says where the control turned the rotary axes (G53.1)",
                   "write all rotary words before it", "not told");
   }
   const auto axes_in_w = s.axes->linear_axes(place.rotary);
-  if (!axes_in_w) return refuse("G254 needs a machine with the axes X, Y and Z");
+  if (!axes_in_w) return refuse("G254 needs a machine with the axes X, Y and Z", kRightMachine);
   cl::Frame plane;
   plane.rotation = s.axes->to_program() * *axes_in_w;
   const Vector3 tool = s.axes->to_program() * s.axes->axis(place.rotary);

@@ -184,7 +184,8 @@ void set_zero(State& s, const Line& line, const Vector3& zero_mm) {
 /// G53.1: the rotary axes turn the tool across the plane.
 cl::Outcome follow_plane(State& s, const Line& line) {
   if (auto done = check_plane_is_whole(s); !done) return done;
-  if (s.frames.tilt == Tilt::kNone) return refuse("G53.1, but no G68.2 defines a plane");
+  if (s.frames.tilt == Tilt::kNone)
+    return refuse("G53.1, but no G68.2 defines a plane", "write G68.2 before it");
   turn_to_plane(s, line);
   return {};
 }

@@ -96,7 +96,7 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place
   if (!is_as_written) {
     if (auto done = check_intermediate(s, line, code); !done) return done;
   } else if (s.modes.is_incremental || s.modes.motion > Motion::kLine) {
-    return refuse(std::string(code) + " needs G90, and G0 or G1");
+    return refuse(std::string(code) + " needs G90, and G0 or G1", "write both before it");
   }
   if (!s.cl.path.has_moved()) {
     move_unseen(s, line);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/programs/cl/words/motion.hpp"
+#include "service/programs/nc/remedy.hpp"
 #include "service/programs/nc/state.hpp"
 #include "service/programs/nc/turn.hpp"
 
@@ -18,7 +19,7 @@ Expected<int, cl::Refusal> pieces_of(State& s, const Target& to) {
   const bool is_swept = s.modes.control == Control::kRotary && s.modes.turns_evenly;
   if (!is_swept || !to.turns || !is_known) return 1;
   if (largest_turn_deg(s.place.rotary, to.place.rotary) > kMaxTurn_deg) {
-    return refuse("more than a hundred turns of a rotary axis in one block");
+    return refuse("more than a hundred turns of a rotary axis in one block", kMovesByCam);
   }
   const int pieces =
       pieces_of_turn(*s.axes, s.place.rotary, to.place.rotary, s.axes->axis_tolerance_rad());
@@ -44,7 +45,8 @@ Expected<cl::MotionFeed, cl::Refusal> feed_of_motion(State& s, const Line& line)
   }
   const cl::FeedUnit unit = s.modes.feed_unit;
   if (unit == cl::FeedUnit::kInverseTime && line.find("F") == nullptr) {
-    return refuse("under G93 every cutting block needs its own F", {}, "no F");
+    return refuse("under G93 every cutting block needs its own F", "write F in each, or G94",
+                  "no F");
   }
   if (s.cl.written_feed.unit == cl::FeedUnit::kNone && !s.cl.options.default_feed_mm_per_s) {
     return refuse("cutting motion, but no F before it", "--feed MM_PER_MIN", "no F");

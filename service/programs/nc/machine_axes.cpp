@@ -7,11 +7,19 @@
 #include <limits>
 
 #include "meridian/units.hpp"
+#include "service/programs/nc/remedy.hpp"
 #include "service/programs/post/tip_frame.hpp"
 
 namespace meridian::nc {
 
 using cl::refuse;
+
+namespace {
+
+constexpr const char* kBeyondReach = "the machine does not reach the place where this move begins";
+constexpr const char* kPlaceOfPart = "check the frame of the part (--frame) and the tool length";
+
+}  // namespace
 
 MachineAxes::MachineAxes(const MachineModel& model, const ToolTable& tools)
     : model_(model), tools_(tools) {
@@ -88,7 +96,7 @@ std::optional<JointVector> MachineAxes::solve_near(const ToolPose& pose, double 
 }
 
 Expected<double, cl::Refusal> MachineAxes::length_mm(std::optional<std::uint32_t> tool) const {
-  if (!words_) return refuse(refusal_);
+  if (!words_) return refuse(refusal_, kRightMachine);
   if (!tool) return model_.tool_length_mm;
   const Tool* const row = tools_.find(static_cast<int>(*tool));
   if (row != nullptr) return row->tip_length_mm();
@@ -106,19 +114,21 @@ Expected<double, cl::Refusal> MachineAxes::way_out(const ToolPose& from,
   const auto begin = solve_near(from, *length, joints(rotary));
   const auto end = begin ? solve_near({from.tip + from.axis, from.axis}, *length, *begin)
                          : std::optional<JointVector>();
-  if (!end) return refuse("the machine does not reach the place where this move begins");
+  if (!end) return refuse(kBeyondReach, kPlaceOfPart);
   double way = std::numeric_limits<double>::infinity();
   for (int i = 0; i < model_.joint_count; ++i) {
     const double step = (*end)[i] - (*begin)[i];
     if (words_->is_rotary(i)) {
       if (std::abs(step) < kSameTurn_rad) continue;
-      return refuse("rotary axes of machine " + model_.name + " turn along the tool axis");
+      return refuse("rotary axes of machine " + model_.name + " turn along the tool axis",
+                    kMovesByCam);
     }
     if (std::abs(step) < kAtRest || model_.joints[i].is_endless) continue;
     const JointLimits& limits = model_.joints[i].limits;
     way = std::min(way, ((step > 0 ? limits.travel_max : limits.travel_min) - (*begin)[i]) / step);
   }
-  if (!std::isfinite(way)) return refuse("no travel of machine " + model_.name + " ends there");
+  if (!std::isfinite(way))
+    return refuse("no travel of machine " + model_.name + " ends there", kMovesByCam);
   return std::max(way, 0.0);
 }
 
@@ -128,11 +138,12 @@ Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
   const auto length = length_mm(tool);
   if (!length) return tl::make_unexpected(length.error());
   auto q = solve_near(from, *length, joints(rotary));
-  if (!q) return refuse("the machine does not reach the place where this move begins");
+  if (!q) return refuse(kBeyondReach, kPlaceOfPart);
   for (const Target& target : targets) {
     const int i = words_->find(target.address);
     if (i < 0) {
-      return refuse("machine " + model_.name + " has no axis " + std::string(target.address));
+      return refuse("machine " + model_.name + " has no axis " + std::string(target.address),
+                    kRightMachine);
     }
     const double named = target.position != nullptr
                              ? (*target.position)[static_cast<std::size_t>(i)]

@@ -53,8 +53,9 @@ struct CycleDefinition {
 /// What lines of Q parameters alone belong to, in Klartext.
 enum class OpenDefinition : std::uint8_t {
   kNone,
-  kCycle,  ///< the cycle in force
-  kPreset  ///< CYCL DEF 247
+  kCycle,   ///< the cycle in force
+  kPreset,  ///< CYCL DEF 247
+  kRefused  ///< a cycle of the control
 };
 
 /// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
@@ -68,6 +69,7 @@ struct Modes {
   Cycle cycle;
   std::optional<Drilling> at_every_point;     ///< MCALL of Siemens
   std::optional<CycleDefinition> definition;  ///< CYCL DEF of Klartext
+  bool is_cycle_refused = false;              ///< the last CYCL DEF was a cycle of the control
   OpenDefinition open = OpenDefinition::kNone;
   int work_offset = 0;   ///< code in tenths, with P of G54.1 in thousands; 0: none given
   int moved_offset = 0;  ///< the one under which the tool has moved last

@@ -15,6 +15,7 @@ namespace {
 using cl::refuse;
 
 constexpr std::size_t kLongestTitle = 80;
+constexpr const char* kByForm = "correct the line, or let the CAM system write the program anew";
 
 cl::ClReaderOptions in_capitals(cl::ClReaderOptions options) {
   for (std::string& word : options.allowed_words) {
@@ -66,7 +67,7 @@ void NcProgram::warn(std::string_view key, std::uint32_t line, const std::string
 
 cl::ClError NcProgram::error(std::uint32_t line, const cl::Refusal& refusal) const {
   return {name_,           refusal.line > 0 ? refusal.line : line,
-          refusal.message, refusal.remedy,
+          refusal.message, refusal.remedy.empty() ? kByForm : refusal.remedy,
           refusal.group,   false};
 }
 

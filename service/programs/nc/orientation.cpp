@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "service/programs/nc/remedy.hpp"
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
@@ -36,7 +37,8 @@ cl::Outcome take_vector(const State& s, const Line& line, Target& to) {
     return refuse("under G43.5 the tool axis needs all three of I, J and K");
   }
   const double norm = v.norm();
-  if (!(norm > 1e-6 && norm < 1e9)) return refuse("the tool axis has no direction: it is zero");
+  if (!(norm > 1e-6 && norm < 1e9))
+    return refuse("the tool axis has no direction: it is zero", kNumbersByCam);
   to.place.vector = to_array(Vector3(v / norm));
   to.place.has_vector = true;
   return {};
@@ -54,10 +56,13 @@ cl::Outcome choose_orientation(State& s, const Line& line) {
   const std::string names = std::string(addresses[0]) + ", " + std::string(addresses[1]) + ", " +
                             std::string(addresses[2]);
   if (!s.modes.is_oriented) {
-    if (has_vector) return refuse(names + " without tool-centre control");
+    if (has_vector)
+      return refuse(names + " without tool-centre control",
+                    "write TRAORI or FUNCTION TCPM before it");
     return {};
   }
-  if (has_vector && has_rotary) return refuse("rotary words beside " + names + " in one block");
+  if (has_vector && has_rotary)
+    return refuse("rotary words beside " + names + " in one block", "output one of them");
   if (has_vector && s.modes.has_machine_axes) {
     return refuse("A3, B3, C3 in the axes of the machine (ORIMKS)", "output ORIWKS");
   }

@@ -6,6 +6,7 @@
 
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/cl/words/motion.hpp"
+#include "service/programs/nc/remedy.hpp"
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
@@ -70,7 +71,8 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
     if (!word.may_be_rotary()) continue;
     const std::string address(word.address);
     if (s.modes.control == Control::kVector) {
-      return refuse("rotary word " + address + " under G43.5, where I J K give the tool axis");
+      return refuse("rotary word " + address + " under G43.5, where I J K give the tool axis",
+                    "output G43.4, or I J K alone");
     }
     if (s.axes && s.axes->refusal().empty() && !s.axes->is_rotary(word.address)) {
       return refuse("the machine has no rotary axis with the NC word " + address,
@@ -80,10 +82,11 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
     const std::optional<double> before = rotary_of(to.place, address);
     const bool is_incremental = is_relative(s, word);
     if (is_incremental && !before) {
-      return refuse("G91, but where " + address + " stands is not known here");
+      return refuse("G91, but where " + address + " stands is not known here",
+                    "write G90 and where it goes before it");
     }
     const double deg = is_incremental ? *before + word.number : word.number;
-    if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg");
+    if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg", kMovesByCam);
     to.turns = to.turns || before.value_or(0) != deg;
     set_rotary(to.place, address, deg);
     has_any = true;
@@ -101,7 +104,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
           "what is in its machine file",
           "--machine FILE", "machine");
     }
-    if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), {}, "machine");
+    if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), kRightMachine, "machine");
     if (to.place.is_by_control) {
       return refuse(
           "the control turned the rotary axes (G53.1 and its kin), and no word says to "
@@ -135,17 +138,20 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
     const bool is_vector = s.modes.control == Control::kVector && address[0] != 'R' &&
                            s.modes.language == Language::kFanuc;
     if (line.find(address) != nullptr && !is_arc && !is_vector) {
-      return refuse(std::string("word ") + address + " in a block that is no arc");
+      return refuse(std::string("word ") + address + " in a block that is no arc",
+                    "write G2 or G3, or G43.5 for a tool axis");
     }
   }
   for (const char* const address : {"U", "V", "W"}) {
     if (line.find(address) != nullptr) {
-      return refuse(std::string("word ") + address + " moves an axis beside X, Y and Z");
+      return refuse(std::string("word ") + address + " moves an axis beside X, Y and Z",
+                    kMovesByCam);
     }
   }
   const bool is_fanuc = s.modes.language == Language::kFanuc;  // else D is the tool's own offset
   if (line.find("E") != nullptr || (is_fanuc && line.find("D") != nullptr)) {
-    return refuse("word E or D in a motion block is not understood");
+    return refuse("word E or D in a motion block is not understood",
+                  "write it in a block of its own");
   }
   return {};
 }
@@ -217,7 +223,7 @@ Vector3 in_w(const State& s, const Vector3& written) {
 
 cl::Outcome move(State& s, const Line& line) {
   if (s.modes.motion == Motion::kNone) {
-    return refuse("a point, but no G0, G1, G2 or G3 before it");
+    return refuse("a point, but no G0, G1, G2 or G3 before it", "write G0 or G1 with it");
   }
   const bool is_arc =
       s.modes.motion == Motion::kClockwise || s.modes.motion == Motion::kCounterClockwise;

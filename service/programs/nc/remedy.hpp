@@ -7,4 +7,7 @@ namespace meridian::nc {
 inline constexpr const char* kMovesByCam = "let the CAM system write the moves themselves";
 inline constexpr const char* kNumbersByCam = "let the CAM system write numbers";
 
+inline constexpr const char* kRightMachine =
+    "--machine with the file of the machine that the program is written for";
+
 }  // namespace meridian::nc

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "service/programs/cl/words/motion.hpp"
+#include "service/programs/nc/remedy.hpp"
 #include "service/programs/nc/state.hpp"
 
 namespace meridian::nc {
@@ -13,7 +14,7 @@ using cl::refuse;
 /// How far, in mm: as given, or to the end of travel.
 Expected<double, cl::Refusal> length_of(State& s, const Line& line, std::optional<double> given) {
   if (given) {
-    if (!(*given >= 0)) return refuse("M140 into the part: MB is below zero");
+    if (!(*given >= 0)) return refuse("M140 into the part: MB is below zero", kMovesByCam);
     return *given * s.cl.units.to_mm;
   }
   if (!s.axes) {

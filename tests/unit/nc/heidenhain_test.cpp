@@ -164,7 +164,6 @@ TEST(Klartext, RefusesByName) {
       {"L X+Q5", "a Q parameter"},
       {"Q5 = 3", "a Q parameter"},
       {"FN 0: Q1 = 5", "FN: this word of Klartext"},
-      {"LBL 1", "LBL: this word"},
       {"CALL LBL 1", "CALL LBL: this word"},
       {"CALL PGM A", "CALL PGM: this word"},
       {"TCH PROBE 0.0", "TCH PROBE: this word"},
@@ -220,6 +219,29 @@ TEST(Klartext, KnowsTheFeedsOfOlderControlsWithABlank) {
   EXPECT_DOUBLE_EQ(motion[3].feed, 5);
   EXPECT_EQ(motion[4].kind, BlockKind::kRapid);
   EXPECT_NE(read_klartext("1 L X+0 Y+0 Z+0 FMAX\n2 L X+1 FAUTO\n").error, "");
+}
+
+TEST(Klartext, SkipsLabelsAndTakesBlockDeleteBeforeTheNumber) {
+  const ReadText read =
+      read_klartext("2 LBL 1\n3 L X+0 Y+0 Z+0 R0 FMAX\n/4 L X+9 FMAX\n5 LBL 0\n/6 M30\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().size(), 2U);
+  EXPECT_TRUE(read.warned_of("blocks behind / are run"));
+}
+
+TEST(Klartext, SaysOfACycleOfTheControlNoMoreThanItsName) {
+  const std::string text =
+      "0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+9 R0 FMAX\n2 CYCL DEF 207 RIGID TAPPING ~\n   Q200=2 "
+      ";SET-UP "
+      "~\n   Q201=-9 ;DEPTH\n3 L X+1 FMAX M99\n4 END PGM A MM\n";
+  cl::ClReader reader(std::string_view(text), "part.h", klartext());
+  int refusals = 0;
+  for (auto block = reader.next(); !block || *block; block = reader.next()) {
+    if (block) continue;
+    ++refusals;
+    ASSERT_TRUE(reader.go_on());
+  }
+  EXPECT_EQ(refusals, 1);
 }
 
 TEST(Klartext, WarnsOfVectorsWhoseWayIsTheJoints) {

@@ -54,6 +54,15 @@ TEST(NcPrograms, AreKnownByCodesThatNoOtherControlHas) {
   }
 }
 
+TEST(NcPrograms, MayHaveTabsAndCarriageReturnsAlone) {
+  for (const char* text : {"%\rO1\rG21 G90 G17\rG0 X0. Y0. Z9.\rM30\r",
+                           "0 BEGIN\tPGM\tA MM\r1 L\tX+0 Y+0\tZ+0 R0 FMAX\r2 END\tPGM A MM\r"}) {
+    const ReadText read = cl::read_text(text, untold());
+    EXPECT_EQ(read.error, "") << text;
+    EXPECT_EQ(read.motion().size(), 1U) << text;
+  }
+}
+
 TEST(NcPrograms, OfTwoControlsAreReadAsFanucsWhereTheCallerSaysIt) {
   const ReadText read = cl::read_text("%\nG43 H1\n" + std::string(kPlain), untold());
   EXPECT_NE(read.error.find("--dialect fanuc reads it where G43 is a word of Fanuc's"),

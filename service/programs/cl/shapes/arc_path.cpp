@@ -97,7 +97,8 @@ Outcome BlockPath::arc_to(const ArcPath& told, const Vector3& tip, const Vector3
   }
   const int whole_turns = std::max(told.turns, 1) - 1;
   if (whole_turns > 0 && axis != axis_) {
-    return refuse_at(told.line, "a helix of several turns while the tool axis turns");
+    return refuse_at(told.line, "a helix of several turns while the tool axis turns",
+                     "output points");
   }
   const bool closed = arc.sweep_rad == kTurn_rad;
   if (!closed) check_arc_gap(arc, tip, told.line);

@@ -48,7 +48,7 @@ Outcome refuse_second(const Modal& m) {
   if (const auto* const arc = std::get_if<PendingArc>(&m.curve)) {
     return refuse_at(arc->line, "CIRCLE without the GOTO that ends the arc");
   }
-  return refuse("an arc inside a spline");
+  return refuse("an arc inside a spline", "output all control points of the spline before it");
 }
 
 /// TIMES,n behind the numbers of a CIRCLE; 0: it is not there.
@@ -96,7 +96,8 @@ Expected<Vector3, Refusal> normal_of(Modal& m, const PendingArc& arc, const Vect
     m.forward.reset();
     const Vector3 normal = (m.path.tip() - centre).cross(forward);
     if (normal.norm() > 1e-6) return normal;
-    return refuse_at(arc.line, "INDIRV does not tell which way the arc turns");
+    return refuse_at(arc.line, "INDIRV does not tell which way the arc turns",
+                     "output the direction of motion where the arc begins");
   }
   const Vector3 normal =
       m.frames.direction(Vector3(arc.centre_normal[3], arc.centre_normal[4], arc.centre_normal[5]));
@@ -117,16 +118,18 @@ Outcome check_sweep(const Modal& m, const PendingArc& arc, const Vector3& centre
       kSweepTolerance_rad) {
     return {};
   }
-  return refuse_at(arc.line, "MOVARC tells a sweep of " +
-                                 short_number(units::deg_from_rad(std::abs(*arc.sweep_rad))) +
-                                 " deg, but its end lies elsewhere");
+  return refuse_at(arc.line,
+                   "MOVARC tells a sweep of " +
+                       short_number(units::deg_from_rad(std::abs(*arc.sweep_rad))) +
+                       " deg, but its end lies elsewhere",
+                   "output an end that the sweep leads to, or points");
 }
 
 }  // namespace
 
 Outcome read_circle(Modal& m, const Statement& s) {
   if (m.curve.index() != 0) return refuse_second(m);
-  if (m.cycle) return refuse("an arc inside a cycle");
+  if (m.cycle) return refuse("an arc inside a cycle", "write CYCLE/OFF before it");
   std::size_t n = 0;
   while (n < s.argument_count && s.arguments[n].is_number) ++n;
   PendingArc arc;
@@ -155,7 +158,7 @@ Outcome read_forward(Modal& m, const Statement& s) {
 /// MOVARC/x,y,z,i,j,k,r,ANGLE,a and the GOTO behind it.
 Outcome read_move_arc(Modal& m, const Statement& s) {
   if (m.curve.index() != 0) return refuse_second(m);
-  if (m.cycle) return refuse("an arc inside a cycle");
+  if (m.cycle) return refuse("an arc inside a cycle", "write CYCLE/OFF before it");
   constexpr std::size_t kVector = 7;
   const bool is_whole = s.argument_count == 9 && s.number_count == 8 && s.arguments[8].is_number &&
                         is_word(s.arguments[kVector].text, "ANGLE");

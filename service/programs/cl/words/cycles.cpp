@@ -105,7 +105,8 @@ Expected<MotionFeed, Refusal> feed_of_cycle(Modal& m, const WrittenFeed& written
   auto feed = feed_of(written, {*m.units.in_force, m.spindle});
   if (!feed) return feed;
   remark_on_feed(written, *feed, *m.units.in_force, m.options.max_feed_mm_per_s, line, m.remarks);
-  if (feed->meaning != FeedMeaning::kTip) return refuse("a cycle with a feed in inverse time");
+  if (feed->meaning != FeedMeaning::kTip)
+    return refuse("a cycle with a feed in inverse time", "give CYCLE a feed of its own (MMPM)");
   m.summary.feed_min_mm_per_s = std::min(m.summary.feed_min_mm_per_s, feed->feed);
   m.summary.feed_max_mm_per_s = std::max(m.summary.feed_max_mm_per_s, feed->feed);
   return feed;
@@ -178,10 +179,12 @@ Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
   const auto feeds = feeds_of_cycle(m, line);
   if (!feeds) return tl::make_unexpected(feeds.error());
   if (m.cycle->dwell_revolutions > 0 && !m.spindle.turns()) {
-    return refuse("dwell in revolutions, but no spindle speed is in force");
+    return refuse("dwell in revolutions, but no spindle speed is in force",
+                  "write SPINDL before it");
   }
   if (m.cycle->kind == HoleKind::kStopOut && !m.spindle.turns()) {
-    return refuse("the cycle stops the spindle and starts it again, but it does not turn");
+    return refuse("the cycle stops the spindle and starts it again, but it does not turn",
+                  "write SPINDL before it");
   }
   const double retract_mm = retract_level(m, top, m.axis.in_w);
   check_first_level(m, top, retract_mm, line);

@@ -26,7 +26,8 @@ Expected<std::array<double, 12>, Refusal> numbers_of(const Statement& s, std::si
 
 Outcome refuse_inside_curve(const Modal& m, const Statement& s) {
   if (m.curve.index() == 0) return {};
-  return refuse(std::string(s.major) + ": the frame changes between CIRCLE and its GOTO");
+  return refuse(std::string(s.major) + ": the frame changes between CIRCLE and its GOTO",
+                "change it before CIRCLE or behind the GOTO");
 }
 
 /// Three rows of four.
@@ -145,7 +146,8 @@ Outcome read_rotary(Modal& m, const Statement& s) {
     if (a.is_number && std::remainder(a.number, 360.0) != 0) is_zero = false;
   }
   if (m.curve.index() != 0 || m.cycle) {
-    return refuse(std::string(s.major) + " inside an arc, a spline or a cycle");
+    return refuse(std::string(s.major) + " inside an arc, a spline or a cycle",
+                  "write it before or behind");
   }
   m.summary.skip(s.major, s.line);
   m.rotary.line = is_zero ? 0 : s.line;
@@ -159,7 +161,8 @@ Outcome read_mode(Modal& m, const Statement& s) {
   }
   for (const char* const word : {"TURN", "TOOL", "AXIS"}) {
     if (s.has_word(word) && s.major == "MODE") {
-      return refuse("MODE/" + std::string(word) + " changes what the points behind it mean");
+      return refuse("MODE/" + std::string(word) + " changes what the points behind it mean",
+                    "output points of the tool tip in the part");
     }
   }
   return skip(m, s);

@@ -126,7 +126,8 @@ Outcome read_spindle(Modal& m, const Statement& s) {
     }
     m.spindle.speed_rpm = speed;
   } else if (!(m.spindle.speed_rpm > 0)) {
-    return refuse("SPINDL/" + std::string(s.rest) + " before any speed was told");
+    return refuse("SPINDL/" + std::string(s.rest) + " before any speed was told",
+                  "write SPINDL with a speed before it");
   }
   if (!words->left.empty()) {
     m.remarks.warn(words->left, s.line, [&words] {
@@ -170,7 +171,8 @@ Outcome read_delay(Modal& m, const Statement& s) {
   double seconds = number->number;
   if (revolutions) {
     if (!m.spindle.turns()) {
-      return refuse("dwell in revolutions, but no spindle speed is in force");
+      return refuse("dwell in revolutions, but no spindle speed is in force",
+                    "write SPINDL before it");
     }
     seconds *= units::kMinute_s / m.spindle.speed_rpm;
   }

@@ -123,7 +123,7 @@ Outcome read_delta(Modal& m, const Statement& s) {
     return refuse("GODLTA before any position", "begin with FROM or GOTO");
   }
   if (m.curve.index() != 0 || m.cycle) {
-    return refuse("GODLTA inside an arc, a spline or a cycle");
+    return refuse("GODLTA inside an arc, a spline or a cycle", "output GOTO");
   }
   Vector3 move;
   if (n == 1) {
@@ -177,7 +177,8 @@ Outcome read_multax(Modal& m, const Statement& s) {
 }
 
 Outcome read_home(Modal& m, const Statement& s) {
-  if (m.curve.index() != 0 || m.cycle) return refuse("GOHOME inside an arc, a spline or a cycle");
+  if (m.curve.index() != 0 || m.cycle)
+    return refuse("GOHOME inside an arc, a spline or a cycle", "write it before or behind");
   if (s.argument_count > 0) {  // NX tells where home is
     const std::size_t n = s.argument_count;
     if (!s.all_numbers() || (n != 3 && n != 6)) {

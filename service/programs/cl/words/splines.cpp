@@ -37,7 +37,8 @@ Outcome run_spline(Modal& m, const PendingSpline& told, std::uint32_t line) {
   if (!feed) return tl::make_unexpected(feed.error());
   const std::vector<ToolPose> chords = chords_of(spline, {});
   if (chords.empty()) {
-    return refuse_at(told.line, "the spline would take more than 200000 straight blocks");
+    return refuse_at(told.line, "the spline would take more than 200000 straight blocks",
+                     "output points");
   }
   ++m.summary.splines;
   for (const ToolPose& end : chords) {
@@ -55,7 +56,8 @@ Outcome read_spline(Modal& m, const Statement& s) {
                       " is a spline in a form that is not understood",
                   "output points or arcs");
   }
-  if (m.curve.index() != 0 || m.cycle) return refuse("NURBS inside an arc, a spline or a cycle");
+  if (m.curve.index() != 0 || m.cycle)
+    return refuse("NURBS inside an arc, a spline or a cycle", "write it before or behind");
   m.curve = PendingSpline{.line = s.line, .knots = {}, .points = {}};
   return {};
 }

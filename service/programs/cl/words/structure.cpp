@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/cl/words/handlers.hpp"
 #include "service/programs/cl/words/word_table.hpp"
@@ -85,8 +87,13 @@ Outcome skip_flagged(Modal& m, const Statement& s) {
   return {};
 }
 
+/// The remedy stands behind the `;` of the note.
 Outcome refuse_word(Modal&, const Statement& s) {
-  return refuse(std::string(s.major) + " " + std::string(find_word(s.major)->note), {},
+  const std::string_view note = find_word(s.major)->note;
+  const std::size_t stop = std::min(note.find("; "), note.size());
+  return refuse(std::string(s.major) + " " + std::string(note.substr(0, stop)),
+                stop < note.size() ? std::string(note.substr(stop + 2))
+                                   : "let the CAM system output the moves themselves",
                 std::string(s.major));
 }
 

@@ -88,7 +88,8 @@ cl::Outcome set_pole(State& s, const Line& line) {
     const Word* const word = line.find(k == 0 ? "X" : "Y");
     if (word == nullptr) continue;
     const bool is_relative = word->way == Word::Way::kIncremental;
-    if (is_relative && !s.place.tip[k]) return refuse("CC from a place that is not known here");
+    if (is_relative && !s.place.tip[k])
+      return refuse("CC from a place that is not known here", "write X and Y of CC as absolute");
     s.modes.pole[k] = is_relative ? *s.place.tip[k] + word->number : word->number;
   }
   return {};
@@ -97,11 +98,13 @@ cl::Outcome set_pole(State& s, const Line& line) {
 cl::Outcome prepare_arc(State& s, const Line& line, Line& iso) {
   const std::string_view statement = line.names.front().name;
   const bool is_left = has_sense(line, "DR+");
-  if (!is_left && !has_sense(line, "DR-")) return refuse("an arc without DR+ or DR-");
+  if (!is_left && !has_sense(line, "DR-"))
+    return refuse("an arc without DR+ or DR-", "write which way it turns");
   s.modes.motion = is_left ? Motion::kCounterClockwise : Motion::kClockwise;
   if (statement == "CR") return {};
   if (!s.modes.pole[0] || !s.modes.pole[1]) {
-    return refuse("an arc (" + std::string(statement) + ") before any CC");
+    return refuse("an arc (" + std::string(statement) + ") before any CC",
+                  "write CC with X and Y before it");
   }
   if (statement == "CP") {
     if (auto done = add_polar_end(s, iso); !done) return done;

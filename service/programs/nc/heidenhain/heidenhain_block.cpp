@@ -136,7 +136,8 @@ cl::Outcome take_plane_angles(State& s, Line& iso) {
 /// FAUTO: the feed of the last TOOL CALL that gave one.
 cl::Outcome take_auto_feed(State& s, const Line& line) {
   if (!has_name(line, "FAUTO")) return {};
-  if (!(s.modes.auto_feed > 0)) return refuse("FAUTO, but no TOOL CALL before it gives F");
+  if (!(s.modes.auto_feed > 0))
+    return refuse("FAUTO, but no TOOL CALL before it gives F", "write F with a number");
   s.cl.written_feed = {s.modes.auto_feed, s.modes.feed_unit};
   s.cl.feed.reset();
   return {};
@@ -238,7 +239,8 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   if (statement == "CC") return set_pole(s, line);
   if (statement == "TRANS DATUM") return move_datum(s, line, line.names.front().arguments);
   if (statement == "PLANE") return set_klartext_plane(s, line, line.names.front().arguments);
-  const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF";
+  // A label alone moves nothing: what calls it is refused.
+  const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF" || statement == "LBL";
   if (is_nothing) {
     s.cl.summary.skip(statement, line.number);
     return {};

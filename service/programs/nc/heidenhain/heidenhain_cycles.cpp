@@ -160,6 +160,7 @@ cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view t
       text.remove_prefix(1);
     }
   };
+  if (s.modes.open == OpenDefinition::kRefused) return {};
   for (skip(); !text.empty(); skip()) {
     int parameter = 0;
     double value = 0;
@@ -183,10 +184,15 @@ cl::Outcome define_cycle(State& s, const Line& line, std::string_view number,
   double value = 0;
   const bool is_number = cl::parse_number(number, value) && value > 0 && value < 1000;
   const bool is_preset = is_number && value == kPreset247;
-  if (!is_preset) s.modes.definition.reset();
+  if (!is_preset) {
+    s.modes.definition.reset();
+    s.modes.is_cycle_refused = false;
+  }
   const bool is_drilling =
       is_number && value == std::floor(value) && find_klartext_cycle(static_cast<int>(value));
   if (!is_drilling && !is_preset) {
+    s.modes.is_cycle_refused = true;
+    s.modes.open = OpenDefinition::kRefused;
     return refuse("CYCL DEF " + std::string(number.substr(0, 16)) + ": a cycle of the control",
                   kMovesByCam, "CYCL DEF");
   }
@@ -198,6 +204,7 @@ cl::Outcome define_cycle(State& s, const Line& line, std::string_view number,
 }
 
 cl::Outcome call_cycle(State& s, const Line& line) {
+  if (s.modes.is_cycle_refused) return {};  // where it was defined
   if (!s.modes.definition) {
     return refuse("a cycle is called, but no CYCL DEF that is run here stands before it",
                   kMovesByCam, "CYCL CALL");

@@ -36,14 +36,9 @@ class KlartextCutter {
   KlartextCutter(std::string_view text, Line& line) : rest_(text), line_(line) {}
 
   cl::Outcome cut() {
-    skip_blanks();
+    take_block_delete();
     while (!rest_.empty() && is_numeral(rest_.front())) rest_.remove_prefix(1);  // of the block
-    skip_blanks();
-    if (!rest_.empty() && rest_.front() == '/') {
-      line_.has_block_delete = true;
-      rest_.remove_prefix(1);
-      skip_blanks();
-    }
+    take_block_delete();
     take_comment();
     if (rest_.empty() || rest_.front() == '*') return {};
     return cut_statement();
@@ -52,6 +47,15 @@ class KlartextCutter {
  private:
   void skip_blanks() {
     while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
+  }
+
+  /// `/85 M30` and `85 /M30`.
+  void take_block_delete() {
+    skip_blanks();
+    if (rest_.empty() || rest_.front() != '/') return;
+    line_.has_block_delete = true;
+    rest_.remove_prefix(1);
+    skip_blanks();
   }
 
   void take_comment() {
@@ -222,6 +226,7 @@ class KlartextCutter {
 
 cl::Outcome cut_heidenhain(std::string_view text, std::uint32_t number, Line& line) {
   line.begin(text, number);
+  std::replace(line.text.begin(), line.text.end(), '\t', ' ');
   return KlartextCutter(line.text, line).cut();
 }
 
