@@ -53,6 +53,20 @@ double tip_length(const ClBlock& block, const Array3& begin) {
                     (to - from).dot(normal));
 }
 
+/// The keep-out box that `q` is inside of; -1: none, or another winding of one of its joints may
+/// be outside.
+[[nodiscard]] int keep_out_that_holds(const MachineModel& model, const JointVector& q) {
+  const int number = keep_out_at(model.keep_out, q);
+  if (number < 0) return number;
+  const KeepOutBox& box = model.keep_out.boxes()[static_cast<std::size_t>(number)];
+  for (int i = 0; i < model.joint_count; ++i) {
+    const JointSpec& joint = model.joints[i];
+    const double travel = joint.limits.travel_max - joint.limits.travel_min;
+    if (box.has(i) && joint.is_rotary && travel >= kTurn_rad) return -1;
+  }
+  return number;
+}
+
 [[nodiscard]] bool holds_control_character(const char* text) noexcept {
   for (; *text != '\0'; ++text) {
     if (static_cast<unsigned char>(*text) < 0x20 || *text == 0x7F) return true;
@@ -204,12 +218,14 @@ BlockReject BlockCheck::find_joints(const ClBlock& block, bool& is_marginal) {
     if (found.status == SolveStatus::kUnreachable) return false;
     wind_into_travel(model_, joints_, found.q);
     const int outside = first_joint_outside_travel(model_, found.q, kTravelTolerance);
-    if (outside < 0) {
+    const int box = outside < 0 ? keep_out_that_holds(model_, found.q) : -1;
+    if (outside < 0 && box < 0) {
       joints_ = found.q;
       return true;
     }
     is_marginal = is_marginal || taken_into_travel(model_, tool_length_mm_, found.q).has_value();
-    if (!has_joints) {
+    if (!has_joints && box >= 0) first = reject(block, RejectCode::kKeepOut, box);
+    if (!has_joints && outside >= 0) {
       first = reject(block, RejectCode::kTravel, limited_value(model_, found.q, outside), outside);
     }
     has_joints = true;

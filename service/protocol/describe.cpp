@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -32,6 +33,24 @@ std::string joint_text(const BlockReject& reject, const MachineModel& model) {
   };
   return text("%s at %.6g %s (travel %.6g to %.6g %s)", joint.name.c_str(), shown(reject.value),
               unit, shown(joint.limits.travel_min), shown(joint.limits.travel_max), unit);
+}
+
+/// Returns "keep-out box vice (X -50 to 80 mm, C 0 to 30 deg)".
+std::string keep_out_text(const BlockReject& reject, const MachineModel& model) {
+  std::string out = std::string("keep-out box ") + model.keep_out.name_of(reject.value) + " (";
+  const auto boxes = model.keep_out.boxes();
+  const auto number = static_cast<std::size_t>(std::max(0.0, reject.value));
+  for (int i = 0; number < boxes.size() && i < model.joint_count; ++i) {
+    const KeepOutBox& box = boxes[number];
+    if (!box.has(i)) continue;
+    const JointSpec& joint = limited_spec(model, i);
+    const double unit = joint.is_rotary ? units::kDegree_rad : 1.0;
+    if (out.back() != '(') out += ", ";
+    out +=
+        text("%s %.6g to %.6g %s", joint.name.c_str(), box.min[static_cast<std::size_t>(i)] / unit,
+             box.max[static_cast<std::size_t>(i)] / unit, joint.is_rotary ? "deg" : "mm");
+  }
+  return out + ")";
 }
 
 }  // namespace
@@ -79,6 +98,8 @@ std::string reason_of(const BlockReject& reject, const MachineModel& model) {
     case RejectCode::kDiscontinuous:
       return "its joints would jump or creep: it leads through a singularity or within a hair's "
              "breadth of one; move the workpiece, or pass farther off";
+    case RejectCode::kKeepOut:
+      return "joints enter the " + keep_out_text(reject, model);
   }
   return "unknown reason";
 }

@@ -35,6 +35,11 @@ std::string refusal_of_first_joints(const dds::SessionRequest& request, const Ma
   if (outside >= 0) {
     return "the program begins outside of the travel of " + limited_spec(model, outside).name;
   }
+  const int box = keep_out_at(model.keep_out, joints);
+  if (box >= 0) {
+    return std::string("the program begins inside of the keep-out box ") +
+           model.keep_out.name_of(box);
+  }
   const auto unused = joints.begin() + model.joint_count;
   const bool names_more = std::any_of(unused, joints.end(), [](double at) { return at != 0; });
   return names_more ? "the program begins at joints that machine " + model.name + " has not" : "";

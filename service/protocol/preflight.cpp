@@ -97,6 +97,9 @@ class BlockFindings {
     if (verdict.code == RejectCode::kTravel && verdict.joint >= 0) {
       error.group = "travel of " + limited_spec(model, verdict.joint).name;
     }
+    if (verdict.code == RejectCode::kKeepOut) {
+      error.group = std::string("keep-out box ") + model.keep_out.name_of(verdict.value);
+    }
     return error;
   }
 

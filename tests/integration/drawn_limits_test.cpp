@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "integration/drawn_program.hpp"
 #include "meridian/cycle/guard.hpp"
 #include "meridian/kinematics/soft_limits.hpp"
 #include "service/machine/file/machine_file.hpp"
@@ -20,21 +21,6 @@ namespace meridian {
 namespace {
 
 using Engine = std::mt19937_64;
-
-/// Six cuts about a place of the table, the axis tilted by up to 40 degrees.
-std::string drawn_program(Engine& engine) {
-  std::uniform_real_distribution<double> place(-80, 80), tilt(0, 0.7), around(-3.1, 3.1);
-  std::string text = "PARTNO LIMITS\nUNITS/MM\nFEDRAT/20000,MMPM\n";
-  for (int block = 0; block < 6; ++block) {
-    const double t = tilt(engine), a = around(engine);
-    char line[160];
-    std::snprintf(line, sizeof line, "GOTO/%.4f,%.4f,%.4f,%.6f,%.6f,%.6f\n", place(engine),
-                  place(engine), place(engine) / 4, std::sin(t) * std::cos(a),
-                  std::sin(t) * std::sin(a), std::cos(t));
-    text += line;
-  }
-  return text + "FINI\n";
-}
 
 /// Limits of one to three joints, each a draw of its travel.
 SoftLimits drawn_limits(const MachineModel& own, Engine& engine) {
@@ -74,7 +60,7 @@ TEST(DrawnLimits, AreSeenByPreflightPlannerAndGuardAlike) {
   int run = 0, refused_first = 0, refused_between = 0;
   for (int n = 0; n < programs; ++n) {
     SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", program " << n);
-    const std::string text = drawn_program(engine);
+    const std::string text = test::drawn_program(engine);
     const SoftLimits limits = drawn_limits(own, engine);
     MachineModel model = own;
     shrink_travel(model, travel_under(limits, own));

@@ -141,6 +141,7 @@ enum class Alarm : std::uint8_t {
   kDriveEnabled,      ///< a drive reports operation enabled in a dry run
   kSetpointsUnheard,  ///< drives report, and take no setpoints
   kDrivesAstray,      ///< drives obey another service, or are on or move where they are to be off
+  kKeepOut,           ///< guard: a setpoint entered a keep-out box; the value is its number from 0
 };
 
 /// Why a verb was refused.

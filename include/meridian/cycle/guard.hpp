@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
 #include "meridian/cycle/cycle_data.hpp"
+#include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 
@@ -15,13 +17,14 @@ namespace meridian {
 struct GuardVerdict {
   Alarm alarm = Alarm::kNone;
   int joint = 0;     ///< place in limited.hpp
-  double value = 0;  ///< the offending position or step
+  double value = 0;  ///< the offending position or step; kKeepOut: the number of the box from 0
 };
 
 inline constexpr double kGuardTravel =
     1e-9;  ///< mm or rad; rounding of a pose on the travel's edge
 inline constexpr double kGuardOutside =
     1e-11;  ///< mm or rad; rounding of a joint that comes to rest, 100 ulp of a metre
+inline constexpr double kGuardKeepOut = 2 * kKeepOutRounding;  ///< what planners leave, and a solve
 inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solve, 1000x margin
 
 /// Whether `q` is in travel, or no farther out of it than `previous`: whoever stands outside may
@@ -30,6 +33,32 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
                                        double previous) noexcept {
   return q >= std::min(limits.travel_min - kGuardTravel, previous - kGuardOutside) &&
          q <= std::max(limits.travel_max + kGuardTravel, previous + kGuardOutside);
+}
+
+/// Whether joints enter a keep-out box at `next` or on the straight way there from `previous`, each
+/// box less what a motion within its limits bends off that way. Whoever stands inside may come out,
+/// and stand, but goes no deeper. Boxes of joints without travel (`has_travel`) say nothing.
+[[nodiscard, gnu::noinline]] inline GuardVerdict check_keep_out(const MachineModel& machine,
+                                                                const JointVector& next,
+                                                                const JointVector& previous,
+                                                                double elapsed,
+                                                                std::uint32_t has_travel) noexcept {
+  JointVector off{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
+    off[i] = -(machine.joints[i].limits.fault_acceleration * elapsed * elapsed / 8 + kGuardKeepOut);
+  }
+  const auto boxes = machine.keep_out.boxes();
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    const KeepOutBox& box = boxes[n];
+    if ((box.joints & has_travel) != box.joints) continue;
+    const double before = depth_inside(box, previous), depth = depth_inside(box, next);
+    const bool is_inside = before > kGuardKeepOut;
+    const bool enters = is_inside
+                            ? depth > before + kGuardOutside
+                            : depth > kGuardKeepOut || entry_share(box, previous, next, off) <= 1;
+    if (enters) return {Alarm::kKeepOut, std::countr_zero(box.joints), static_cast<double>(n)};
+  }
+  return {};
 }
 
 /// The drives of a stage, checked like joints; without `has_travel` not for their travel.
@@ -51,9 +80,10 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
 }
 
 /// Checks the next joint setpoint, the last thing before it is sent: finite, inside travel (for the
-/// joints of `has_travel`; where there are none, the drives of a stage have none either), and no
-/// farther from `previous` (sent `elapsed` seconds ago) than the velocity limits of joints and
-/// drives reach. RT: cycle. Proof: tests/unit/cycle/guard_test.cpp, stage_cycle_test.cpp.
+/// joints of `has_travel`; where there are none, the drives of a stage have none either), outside
+/// of every keep-out box, and no farther from `previous` (sent `elapsed` seconds ago) than the
+/// velocity limits of joints and drives reach. RT: cycle. Proof: tests/unit/cycle/guard_test.cpp,
+/// stage_cycle_test.cpp.
 [[nodiscard]] inline GuardVerdict check(const MachineModel& machine, const JointVector& next,
                                         const JointVector& velocity, const JointVector& previous,
                                         double elapsed, std::uint32_t has_travel = ~0U) noexcept {
@@ -67,6 +97,10 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
     if (!(std::abs(step) <= joint.limits.velocity * elapsed + kGuardStep)) {
       return {Alarm::kStep, i, step};
     }
+  }
+  if (!machine.keep_out.empty()) {
+    const GuardVerdict verdict = check_keep_out(machine, next, previous, elapsed, has_travel);
+    if (verdict.alarm != Alarm::kNone) return verdict;
   }
   return has_stage(machine) ? check_stage(machine, next, previous, elapsed, has_travel != 0)
                             : GuardVerdict{};

@@ -11,6 +11,7 @@
 #include "meridian/cycle/jog_law.hpp"
 #include "meridian/cycle/joint_masks.hpp"
 #include "meridian/geometry/jet.hpp"
+#include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 
@@ -128,18 +129,22 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
 
 }  // namespace jog
 
-/// Returns the room of `joint` from `joints`, everything at rest. Without a reference it has no
-/// ends; a joint that a stage carries needs one (may_jog()).
+/// Returns the room of `joint` from `joints`, everything at rest, those of `referenced_mask` with a
+/// reference. Without one it has no ends; a joint that a stage carries needs one (may_jog()).
 [[nodiscard]] inline JogRoom jog_room(const MachineModel& machine, const JointVector& joints,
-                                      int joint, bool is_referenced) noexcept {
+                                      int joint, std::uint32_t referenced_mask) noexcept {
   const JointSpec& spec = machine.joints[static_cast<std::size_t>(joint)];
   const JointLimits& limits = spec.limits;
   constexpr double kEndless = std::numeric_limits<double>::infinity();
+  const bool is_referenced = (referenced_mask >> static_cast<unsigned>(joint) & 1U) != 0;
   const bool has_ends = is_referenced && !spec.is_endless;
   JogRoom room;
   room.axis.at.q = joints[static_cast<std::size_t>(joint)];
   room.axis.low = has_ends ? limits.travel_min : -kEndless;
   room.axis.high = has_ends ? limits.travel_max : kEndless;
+  if (has_ends) {
+    narrow_outside(machine.keep_out, joints, joint, referenced_mask, room.axis.low, room.axis.high);
+  }
   const double share = is_referenced ? kJogShare : kUnreferencedShare;
   room.axis.rates = {share * limits.velocity, kJogShare * limits.acceleration,
                      kJogShare * limits.jerk};

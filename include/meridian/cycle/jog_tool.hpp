@@ -10,6 +10,7 @@
 #include "meridian/cycle/jog_path.hpp"
 #include "meridian/cycle/jog_room.hpp"
 #include "meridian/geometry/jet.hpp"
+#include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 
@@ -122,6 +123,10 @@ class ToolSurvey {
     if (spec.is_endless) return 0;
     return std::max({0.0, spec.limits.travel_min - at, at - spec.limits.travel_max});
   }
+  /// How deep `at` is inside of `box`.
+  [[nodiscard]] static double inside_of(const KeepOutBox& box, const Place& at) noexcept {
+    return std::max(0.0, depth_inside(box, values_of(at)));
+  }
   /// The same of the angle of the stage.
   [[nodiscard]] static double phi_out_of(const MachineModel& machine, const Place& at) noexcept {
     const double phi = stage::carriage_of(machine.stage, values_of(at)).phi;
@@ -136,6 +141,9 @@ class ToolSurvey {
       const JointSpec& spec = limited_spec(machine, i);
       const auto n = static_cast<std::size_t>(i);
       if (out_of(spec, value_of(a[n])) - out_of(spec, value_of(b[n])) > kRounding) return true;
+    }
+    for (const KeepOutBox& box : machine.keep_out.boxes()) {
+      if (inside_of(box, a) - inside_of(box, b) > kKeepOutRounding) return true;
     }
     return has_stage(machine) && phi_out_of(machine, a) - phi_out_of(machine, b) > kRounding;
   }
@@ -156,7 +164,27 @@ class ToolSurvey {
       const double most = std::max(out_of(spec, value_of(b[n])), out_of(spec, peak));
       if (most - out_of(spec, at) > kRounding) return false;
     }
+    if (!machine.keep_out.empty() && !keeps_out(machine, a, b)) return false;
     return !has_stage(machine) || phi_out_of(machine, b) - phi_out_of(machine, a) <= kRounding;
+  }
+
+  /// The same of the keep-out boxes.
+  [[nodiscard, gnu::noinline]] bool keeps_out(const MachineModel& machine, const Place& a,
+                                              const Place& b) const noexcept {
+    constexpr double kBend = 0.25;  // of h² times the second derivative; of a parabola an eighth
+    const JointVector from = values_of(a), to = values_of(b);
+    JointVector off{};
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      const double bend = std::max(std::abs(a[i].derivative(2)), std::abs(b[i].derivative(2)));
+      off[i] = kBend * step_ * step_ * bend;
+    }
+    for (const KeepOutBox& box : machine.keep_out.boxes()) {
+      const double before = depth_inside(box, from);
+      const bool stays = before > kKeepOutRounding ? depth_inside(box, to) <= before + kRounding
+                                                   : entry_share(box, from, to, off) > 1;
+      if (!stays) return false;
+    }
+    return true;
   }
 
   /// Whether what is known at two neighbouring places explains how they differ:

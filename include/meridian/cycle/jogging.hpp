@@ -103,9 +103,8 @@ inline void choose_axis(Cycle& c) noexcept {
   jogging.is_ready = false;
   if (!jogging.has_order || jogging.is_let_go || !may_jog(c.machine, joint, referenced)) return;
   if (!order.is_tool) {
-    const bool is_referenced = (referenced >> static_cast<unsigned>(joint) & 1U) != 0;
     jogging.joint = joint;
-    return take_room(jogging, jog_room(c.machine, c.state.joints, joint, is_referenced));
+    return take_room(jogging, jog_room(c.machine, c.state.joints, joint, referenced));
   }
   const bool has_way = lay_way(c.machine, c.state.joints, order.tool_length_mm,
                                static_cast<ToolAxis>(order.joint), jogging.way);

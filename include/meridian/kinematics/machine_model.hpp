@@ -9,6 +9,7 @@
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/chain.hpp"
 #include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/lai.hpp"
 #include "meridian/kinematics/robot.hpp"
 #include "meridian/kinematics/stage.hpp"
@@ -99,6 +100,7 @@ struct MachineModel {
   std::array<JointSpec, kMaxJoints> joints;
   ActuatorStage stage;  ///< between two of the joints and their drives; identity: none
   std::array<JointSpec, kStageDrives> stage_drives;  ///< its sliders u1, u2 (linear)
+  KeepOut keep_out;                                  ///< where the joints may not stand together
   double tool_length_mm = 0;  ///< tool in the spindle when the service starts
   Eigen::Matrix3d frame_rotation =
       Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics

@@ -25,7 +25,8 @@ enum class RejectCode : std::uint8_t {
   kApproach,       ///< no way from where the machine stands to the block
   kAxisReversal,   ///< the axis turns by half a turn: no great circle is meant
   kTooComplex,     ///< the block needs more pieces than a plan holds
-  kDiscontinuous   ///< at a singularity: its joints would jump, or creep; `value`: the jump
+  kDiscontinuous,  ///< at a singularity: its joints would jump, or creep; `value`: the jump
+  kKeepOut         ///< joints enter a keep-out box; `value`: its number from 0
 };
 
 /// The verdict on one block. Units: mm, rad. Trivially copyable: crosses rings.

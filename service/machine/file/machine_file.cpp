@@ -8,6 +8,7 @@
 
 #include "meridian/units.hpp"
 #include "service/machine/file/homing_file.hpp"
+#include "service/machine/file/keep_out_file.hpp"
 #include "service/machine/file/kinematics_file.hpp"
 #include "service/machine/file/machine_name.hpp"
 #include "service/machine/file/positions_file.hpp"
@@ -189,6 +190,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   pole.finish();
   read_unwind(file.section_or("unwind"), model);
   read_frame(file.section_or("frame"), model);
+  model.keep_out = read_keep_out(file, model);
   (void)read_homing(file.section_or("homing"), model.joint_count);
   (void)read_positions(file, model);
   file.finish();

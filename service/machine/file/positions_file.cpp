@@ -25,6 +25,12 @@ constexpr const char* kHome = "home";
     position.refuse("joints", "inside the travel of " + limited_spec(model, outside).name,
                     "move the position into travel");
   }
+  const int box = keep_out_at(model.keep_out, joints);
+  if (box >= 0) {
+    position.refuse("joints",
+                    std::string("outside of the keep-out box ") + model.keep_out.name_of(box),
+                    "move the position out of the box");
+  }
   return joints;
 }
 

@@ -48,6 +48,8 @@ namespace {
     case RejectCode::kTravelBetween:
       return travel_text(reject, model) + " on the way from the block before" +
              rewind_remedy(reject, model);
+    case RejectCode::kKeepOut:
+      return std::string("joints enter the keep-out box ") + model.keep_out.name_of(reject.value);
     case RejectCode::kBranch:
       return "no branch or winding leads here from the block before";
     case RejectCode::kApproach:

@@ -205,6 +205,10 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
           "ask for it; cut its power, end who commands it, whom the log names, then reset",
           name, measured);
       break;
+    case Alarm::kKeepOut:
+      text = fmt::format("a setpoint would enter the keep-out box {}; report this as a bug",
+                         model.keep_out.name_of(value));
+      break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";
       break;

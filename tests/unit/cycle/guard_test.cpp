@@ -87,6 +87,54 @@ TEST(Guard, WhoStandsOutsideMayStandAndComeBackButGoNoFarther) {
       << "a joint whose position says nothing";
 }
 
+/// Joint 0 from 10 to 20 while joint 2 is from -5 to 5.
+MachineModel machine_with_a_box() {
+  MachineModel machine = machine_under_guard();
+  KeepOutBox box;
+  box.joints = 0b101;
+  box.min = {10, 0, -5};
+  box.max = {20, 0, 5};
+  EXPECT_TRUE(machine.keep_out.add(box));
+  return machine;
+}
+
+TEST(Guard, StopsASetpointInsideAKeepOutBox) {
+  const MachineModel machine = machine_with_a_box();
+  const JointVector last{9.99, 0, 0};
+  const GuardVerdict verdict = check(machine, {10.001, 0, 0}, {}, last, kPeriod_s);
+  EXPECT_EQ(verdict.alarm, Alarm::kKeepOut);
+  EXPECT_EQ(verdict.joint, 0);
+  EXPECT_EQ(verdict.value, 0);
+  EXPECT_EQ(check(machine, {10, 0, 0}, {}, last, kPeriod_s).alarm, Alarm::kNone) << "its face";
+  EXPECT_EQ(check(machine, {10.001, 0, 5.2}, {}, {9.99, 0, 5.2}, kPeriod_s).alarm, Alarm::kNone);
+}
+
+TEST(Guard, StopsASetpointBehindAKeepOutBoxThatIsThinnerThanAStep) {
+  MachineModel machine = machine_under_guard();
+  KeepOutBox wall;
+  wall.joints = 0b001;
+  wall.min = {10};
+  wall.max = {10.05};
+  ASSERT_TRUE(machine.keep_out.add(wall));
+  EXPECT_EQ(check(machine, {10.1, 0, 0}, {}, {9.95, 0, 0}, kPeriod_s).alarm, Alarm::kKeepOut);
+  EXPECT_EQ(check(machine, {9.9, 0, 0}, {}, {9.95, 0, 0}, kPeriod_s).alarm, Alarm::kNone);
+}
+
+TEST(Guard, WhoStandsInAKeepOutBoxMayStandAndComeOutButGoNoDeeper) {
+  const MachineModel machine = machine_with_a_box();
+  const JointVector last{11, 0, 0};
+  EXPECT_EQ(check(machine, last, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine, {10.9, 0, 0}, {}, last, kPeriod_s).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine, {11.1, 0, 0}, {}, last, kPeriod_s).alarm, Alarm::kKeepOut);
+}
+
+TEST(Guard, AKeepOutBoxOfJointsWithoutAReferenceSaysNothing) {
+  const MachineModel machine = machine_with_a_box();
+  const JointVector last{9.99, 0, 0}, next{10.001, 0, 0};
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s, 0b001).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine, next, {}, last, kPeriod_s, 0b101).alarm, Alarm::kKeepOut);
+}
+
 TEST(Guard, EndlessJointsHaveNoTravel) {
   JointVector last{}, next{};
   last[3] = next[3] = 1e4;

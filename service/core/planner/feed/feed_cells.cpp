@@ -260,11 +260,13 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     if (k > 0) {
       const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
       const double step = draft.h / FeedCell::kSteps;
+      const JointPlace before_place{values, last.d1, last.d2, last.d3};
+      const JointPlace place{here, at.d1, at.d2, at.d3};
       PathFault fault = check_turns(model_, values, last.d1, here, at.d1, step);
       if (!is_fault(fault)) {
-        fault = check_joins(model_, {values, last.d1, last.d2, last.d3},
-                            {here, at.d1, at.d2, at.d3}, step);
+        fault = check_joins(model_, before_place, place, step);
       }
+      if (!is_fault(fault)) fault = check_keep_out(model_, before_place, place, step);
       if (is_fault(fault)) return fault;
     }
     values = here;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kJointNoise_rad = 1e-9;  // of a robot's joint, well off its singular places
 constexpr double kMaxOff = 0.01;          // of a joint between samples, of what it bends by
+constexpr double kBetween = 1.25;         // of a second derivative, over what both ends say
 
 /// Joints and drives of the stage, and their derivatives, at one place.
 struct Sample {
@@ -119,6 +120,21 @@ PathFault check_joins(const MachineModel& model, const JointPlace& a, const Join
   return {};
 }
 
+PathFault check_keep_out(const MachineModel& model, const JointPlace& a, const JointPlace& b,
+                         double h) noexcept {
+  if (model.keep_out.empty()) return {};
+  JointVector from{}, to{}, off{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
+    from[i] = a.q[i];
+    to[i] = b.q[i];
+    const double bend = std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
+                        0.5 * h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i]));
+    off[i] = kBetween * h * h / 8 * bend;
+  }
+  const int box = keep_out_between(model.keep_out, from, to, off).box;
+  return box < 0 ? PathFault{} : PathFault{PathFault::Kind::kKeepOut, -1, 1.0 * box};
+}
+
 PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, double begin,
                             double end, int cells, JointVector& joints) noexcept {
   if (count_ + cells > kCapacity) return {PathFault::Kind::kTooLong, -1, 0};
@@ -145,6 +161,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       PathFault fault = check_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
       if (!is_fault(fault)) fault = check_travel(model, at[k].q);
       if (!is_fault(fault)) fault = check_joins(model, at[k - 1].place(), at[k].place(), h / 2);
+      if (!is_fault(fault)) fault = check_keep_out(model, at[k - 1].place(), at[k].place(), h / 2);
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }
     for (int i = 0; i < count; ++i) {

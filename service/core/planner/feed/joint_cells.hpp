@@ -27,9 +27,18 @@ struct JointCell {
   LimitedVector d1{}, d2{}, d3{};
 };
 
-/// Why joints cannot follow a path. kJump: or only next to standstill.
+/// Why joints cannot follow a path. kJump: or only next to standstill. kKeepOut: `value` is the
+/// number of the box.
 struct PathFault {
-  enum class Kind { kNone, kTravel, kUnreachable, kTooLong, kBranch, kJump } kind = Kind::kNone;
+  enum class Kind {
+    kNone,
+    kTravel,
+    kUnreachable,
+    kTooLong,
+    kBranch,
+    kJump,
+    kKeepOut
+  } kind = Kind::kNone;
   int joint = -1;  ///< place in limited.hpp; -1: none
   double value = 0;
 };
@@ -87,6 +96,11 @@ struct JointPlace {
 /// for.
 [[nodiscard]] PathFault check_joins(const MachineModel& model, const JointPlace& a,
                                     const JointPlace& b, double h) noexcept;
+
+/// Whether joints stay out of every keep-out box from `a` to `b`, `h` apart: they are no farther
+/// beside the straight line between both than h²/8 times their second derivative there.
+[[nodiscard]] PathFault check_keep_out(const MachineModel& model, const JointPlace& a,
+                                       const JointPlace& b, double h) noexcept;
 
 /// One cell that bounds both.
 [[nodiscard]] JointCell merged(const JointCell& a, const JointCell& b) noexcept;

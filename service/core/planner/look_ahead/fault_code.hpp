@@ -19,6 +19,8 @@ namespace meridian {
       return RejectCode::kTooComplex;
     case PathFault::Kind::kBranch:
       return RejectCode::kBranch;
+    case PathFault::Kind::kKeepOut:
+      return RejectCode::kKeepOut;
     case PathFault::Kind::kJump:
       break;
   }

@@ -50,10 +50,14 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
   if (redundant_joint(model_) < 0) {
     // The joints of an arm bend on the way up: as far as the whole way stays in reach and travel.
     constexpr int kSteps = 16;
+    JointVector before = joints;
     for (int n = 1; n <= kSteps; ++n) {
       const auto at = solve_near(lifted(pose, whole_mm * n / kSteps), joints, tool_length_mm);
-      if (at.status == SolveStatus::kOk && first_joint_outside_travel(model_, at.q, 0) < 0)
-        continue;
+      const bool is_free = at.status == SolveStatus::kOk &&
+                           first_joint_outside_travel(model_, at.q, 0) < 0 &&
+                           keep_out_between(model_.keep_out, before, at.q).box < 0;
+      before = at.q;
+      if (is_free) continue;
       share = static_cast<double>(n - 1) / kSteps;
       break;
     }
@@ -69,6 +73,7 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
     const double end = by > 0 ? spec.limits.travel_max : spec.limits.travel_min;
     if (std::abs(by) > 1e-9) share = std::min(share, (end - from[i]) / by);
   }
+  share = std::min(share, keep_out_between(model_.keep_out, joints, at.q).share);
   const double clearance = std::max(0.0, share) * whole_mm;
   return clearance > kNoClearance_mm ? clearance : 0;
 }
@@ -99,6 +104,9 @@ PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging
   const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, missing);
   if (above + up < least) {
     const auto at = solve_near(lifted(cursor.pose, missing), cursor.joints, cursor.tool_length_mm);
+    if (const int box = keep_out_between(model_.keep_out, cursor.joints, at.q).box; box >= 0) {
+      return {PathFault::Kind::kKeepOut, -1, 1.0 * box};
+    }
     const int joint = first_joint_outside_travel(model_, at.q, 0);
     return {PathFault::Kind::kTravel, joint, joint >= 0 ? limited_value(model_, at.q, joint) : 0.0};
   }
@@ -276,7 +284,12 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
   if (ways.count == 0) {
     const auto at = solve(model_, cursor.tool_length_mm, target, 0, cursor.joints);
     const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
-    if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
+    const int box = keep_out_at(model_.keep_out, at.q);
+    if (joint >= 0) {
+      first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
+    } else if (box >= 0) {
+      first = {PathFault::Kind::kKeepOut, -1, 1.0 * box};
+    }
   }
   lost_.reset();
   bool is_tried = false;

@@ -78,6 +78,7 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
   const int free = redundant_joint(model_);
   const auto add = [&](const JointVector& q, int branch) {
     if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
+    if (keep_out_at(model_.keep_out, q) >= 0) return;
     double cost = 0;
     const LimitedVector from = limited_of(model_, cursor.joints), to = limited_of(model_, q);
     for (int i = 0; i < limited_count(model_); ++i) {
