@@ -181,7 +181,8 @@ int run(const Options& options) {
     if (frame && options.machine.frame.empty()) {
       stream::place_frame(model, frame->rotation, frame->origin_mm);
     }
-    if (simulation.events.limits) shrink_travel(model, *simulation.events.limits);
+    if (simulation.events.limits)
+      shrink_travel(model, travel_under(*simulation.events.limits, model));
     take_recorded_tools(options, simulation.events, model, tools);
   }
   if (!options.start_from.empty()) {

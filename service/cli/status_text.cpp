@@ -112,7 +112,29 @@ void append_limits(std::string& text, const dds::MachineInfo& machine) {
            shown(row.max), joint.is_rotary ? "deg" : "mm");
     begin = ",";
   });
+  for (const KeepOutBox& box : machine.soft_limits.keep_out().boxes()) {
+    append(text, "%s keep-out %s", begin, box.name.data());
+    begin = ",";
+  }
   if (!machine.soft_limits.empty()) text += "\n";
+}
+
+/// "{"vice":{"b3_mm":[-40,42.5],"b4_rad":[-0.1,0.1]}}".
+std::string keep_out_json(const dds::MachineInfo& machine) {
+  std::string text;
+  for (const KeepOutBox& box : machine.soft_limits.keep_out().boxes()) {
+    std::string joints;
+    for (std::size_t i = 0; i < joint_count(machine); ++i) {
+      if (!box.has(static_cast<int>(i))) continue;
+      const dds::JointInfo& joint = machine.joints[i];
+      if (!joints.empty()) joints += ",";
+      joints += json_quoted(joint.name + (joint.is_rotary ? "_rad" : "_mm")) + ":[" +
+                json_number("%.17g", box.min[i]) + "," + json_number("%.17g", box.max[i]) + "]";
+    }
+    if (!text.empty()) text += ",";
+    text += json_quoted(box.name.data()) + ":{" + joints + "}";
+  }
+  return "{" + text + "}";
 }
 
 /// "{"b3_mm":[-40,42.5],"b4_rad":[-0.1,0.1]}".
@@ -238,6 +260,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
          status.alarm != Alarm::kNone ? status.alarm_line : 0);
   append(text, "\"work_frame\":%u,\"tool\":%u,", status.work_frame, status.tool);
   text += "\"soft_limits\":" + limits_json(machine) + ",";
+  text += "\"keep_out\":" + keep_out_json(machine) + ",";
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

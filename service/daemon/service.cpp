@@ -83,8 +83,8 @@ StartError unreadable(const std::filesystem::path& set_up, const std::string& wh
 StartError outside_travel(const std::filesystem::path& set_up, const std::string& limits) {
   return StartError("the set-up " + set_up.string() + " holds " + limits +
                     ", not inside the travel of the machine file; start with the machine file of "
-                    "before and say meridian ctl limits clear, or remove the set-up and set work "
-                    "frames, tools and soft limits anew");
+                    "before and say meridian ctl limits clear and open, or remove the set-up and "
+                    "set work frames, tools and soft limits anew");
 }
 
 StartError served_already(const dds::MachineInfo& holder) {
@@ -207,7 +207,8 @@ void Service::read_set_up() {
   }
   if (!set_up->limits.empty()) {
     log_->info(
-        "{} in force, as they were set; meridian ctl limits clear gives the whole travel again",
+        "{} in force, as they were set; meridian ctl limits clear gives the whole travel again, "
+        "open takes the boxes away",
         telemetry::limits_text(set_up->limits, parts_.model));
   }
   if (set_up->tools) {

@@ -9,7 +9,8 @@
 namespace meridian::stream {
 
 /// By which station and service know that they mean the same soft limits: FNV-1a, 64 bit, of joint,
-/// minimum and maximum of every pair, as doubles, as they lie in memory. Never 0.
+/// minimum and maximum of every pair, then of every joint of every keep-out box after the number of
+/// the box, -1 of the first, as doubles, as they lie in memory. Never 0.
 /// Proof: tests/unit/protocol/limits_sum_test.cpp.
 [[nodiscard]] inline std::uint64_t limits_sum(const SoftLimits& limits) noexcept {
   text::Checksum sum;
@@ -19,6 +20,16 @@ namespace meridian::stream {
     sum.add(static_cast<double>(joint));
     sum.add(row.min);
     sum.add(row.max);
+  }
+  double number = 0;
+  for (const KeepOutBox& box : limits.keep_out().boxes()) {
+    sum.add(--number);
+    for (int joint = 0; joint < kMaxJoints; ++joint) {
+      if (!box.has(joint)) continue;
+      sum.add(static_cast<double>(joint));
+      sum.add(box.min[static_cast<std::size_t>(joint)]);
+      sum.add(box.max[static_cast<std::size_t>(joint)]);
+    }
   }
   return sum.sum();
 }

@@ -21,7 +21,7 @@ MachineModel whole_model(const dds::MachineInfo& info) {
 
 MachineModel served_model(const dds::MachineInfo& info) {
   MachineModel model = whole_model(info);
-  shrink_travel(model, info.soft_limits);
+  shrink_travel(model, travel_under(info.soft_limits, model));
   return model;
 }
 

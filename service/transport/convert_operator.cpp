@@ -26,6 +26,10 @@ void command_request_fields(Way way, Message& message, Wire& wire) {
   way(message.limits.joint, wire.limits_joint);
   way(message.limits.min, wire.limits_min);
   way(message.limits.max, wire.limits_max);
+  way.name(message.limits.box.name, wire.limits_box_name);
+  way(message.limits.box.joints, wire.limits_box_joints);
+  way(message.limits.box.min, wire.limits_box_min);
+  way(message.limits.box.max, wire.limits_box_max);
 }
 
 template <class Way, class Message, class Wire>

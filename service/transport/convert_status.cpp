@@ -138,6 +138,14 @@ void machine_info_fields(Way way, Message& message, Wire& wire) {
   way.whole(message.tool_file, wire.tool_file);
 }
 
+template <class Way, class Box, class Wire>
+void keep_out_box_fields(Way way, Box& box, Wire& wire) {
+  way.name(box.name, wire.name);
+  way(box.joints, wire.joints);
+  way(box.min, wire.min);
+  way(box.max, wire.max);
+}
+
 void soft_limits_to_wire(const SoftLimits& limits, meridian_wire_Machine& wire) noexcept {
   wire.soft_limits_mask = 0;
   for (std::size_t i = 0; i < limits.rows().size(); ++i) {
@@ -146,13 +154,24 @@ void soft_limits_to_wire(const SoftLimits& limits, meridian_wire_Machine& wire) 
     wire.soft_limits_min[i] = row.min;
     wire.soft_limits_max[i] = row.max;
   }
+  const auto boxes = limits.keep_out().boxes();
+  wire.keep_out_count = static_cast<std::uint32_t>(boxes.size());
+  for (std::size_t i = 0; i < std::size_t{KeepOut::kMax}; ++i) {
+    wire.keep_out[i] = {};
+    if (i < boxes.size()) keep_out_box_fields(ToWire(), boxes[i], wire.keep_out[i]);
+  }
 }
 
-void soft_limits_from_wire(const meridian_wire_Machine& wire, SoftLimits& limits) noexcept {
+void soft_limits_from_wire(const meridian_wire_Machine& wire, SoftLimits& limits) {
   limits = {};
   for (std::size_t i = 0; i < limits.rows().size(); ++i) {
     const bool is_set = (wire.soft_limits_mask >> i & 1U) != 0;
     if (is_set) limits.put(i, wire.soft_limits_min[i], wire.soft_limits_max[i]);
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(wire.keep_out_count, KeepOut::kMax); ++i) {
+    KeepOutBox box;
+    keep_out_box_fields(FromWire(), box, wire.keep_out[i]);
+    (void)limits.put(box);
   }
 }
 

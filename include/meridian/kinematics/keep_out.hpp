@@ -52,6 +52,22 @@ class KeepOut {
     return true;
   }
 
+  /// The box of that name; nullptr: none has it.
+  [[nodiscard]] const KeepOutBox* find(const KeepOutBox& named) const noexcept {
+    const auto at = std::ranges::find(boxes(), named.name, &KeepOutBox::name);
+    return at == boxes().end() ? nullptr : &*at;
+  }
+
+  /// Takes away the box of that name; false where none has it.
+  bool remove(const KeepOutBox& named) noexcept {
+    const KeepOutBox* const found = find(named);
+    if (found == nullptr) return false;
+    KeepOutBox* const at = boxes_.data() + (found - boxes_.data());
+    std::move(at + 1, boxes_.data() + count_, at);
+    boxes_[static_cast<std::size_t>(--count_)] = {};
+    return true;
+  }
+
   /// What box `number`, from 0, is called.
   [[nodiscard]] const char* name_of(double number) const noexcept {
     const bool is_one = number >= 0 && number < count_;

@@ -1,44 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
 #include "meridian/kinematics/joints.hpp"
+#include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 
 namespace meridian {
 
 /// What an operator asks for of the soft limits.
 enum class LimitsWord : std::uint8_t {
-  kSet,   ///< shrinks the travel of one joint
-  kClear  ///< gives one joint, or all of them, the travel of the machine file again
+  kSet,      ///< shrinks the travel of one joint
+  kClear,    ///< gives one joint, or all of them, the travel of the machine file again
+  kKeepOut,  ///< puts up a keep-out box, in place of the one of that name
+  kOpen      ///< takes away the keep-out box of a name, or all of them where it is empty
 };
 
-/// A word with what it says: `kClear` looks at the joint alone.
+/// A word with what it says: `kClear` looks at the joint alone, `kKeepOut` at the box, `kOpen` at
+/// its name.
 struct LimitsOrder {
   static constexpr std::uint8_t kAllJoints = 0xFF;
 
   LimitsWord word = LimitsWord::kSet;
   std::uint8_t joint = kAllJoints;  ///< machine order; `kClear`: kAllJoints too
   double min = 0, max = 0;          ///< mm or rad
+  KeepOutBox box{};
   [[nodiscard]] bool operator==(const LimitsOrder&) const = default;
 };
 
 /// Why a word is not done.
 enum class LimitsFault : std::uint8_t {
   kNone,
-  kWord,     ///< no such word
-  kJoint,    ///< the machine has no such joint
-  kEndless,  ///< the joint has no travel that could shrink
-  kValue,    ///< not the minimum below the maximum
-  kTravel    ///< beyond the travel of the machine file
+  kWord,      ///< no such word
+  kJoint,     ///< the machine has no such joint
+  kEndless,   ///< the joint has no travel that could shrink
+  kValue,     ///< not the minimum below the maximum
+  kTravel,    ///< beyond the travel of the machine file
+  kBox,       ///< no keep-out box: without a name or a joint, or a minimum not below its maximum
+  kBoxJoint,  ///< of a joint that the machine has not, or that has no travel
+  kOwnBox,    ///< the machine file has a box of that name
+  kNoBox,     ///< no box of that name was put up
+  kBoxes      ///< there is no room for another box
 };
 
-/// Travel of joints that shrinks for a job: the soft limits, one pair for a joint at most. Plain
-/// data of fixed size. Units: mm or rad.
+/// Travel of joints that shrinks for a job: the soft limits, one pair for a joint at most, and
+/// keep-out boxes. Plain data of fixed size. Units: mm or rad.
 /// Proof: tests/unit/kinematics/soft_limits_test.cpp.
 class SoftLimits {
  public:
@@ -50,11 +62,16 @@ class SoftLimits {
 
   /// By joint, in machine order.
   [[nodiscard]] const std::array<Row, kMaxJoints>& rows() const noexcept { return rows_; }
-  [[nodiscard]] bool empty() const noexcept { return rows_ == std::array<Row, kMaxJoints>{}; }
+  [[nodiscard]] const KeepOut& keep_out() const noexcept { return keep_out_; }
+  [[nodiscard]] bool empty() const noexcept {
+    return rows_ == std::array<Row, kMaxJoints>{} && keep_out_.empty();
+  }
 
   /// Does what `order` says on a machine with the travel of `own`, or nothing and says why.
   [[nodiscard]] LimitsFault apply(const LimitsOrder& order, const MachineModel& own) noexcept {
-    if (order.word > LimitsWord::kClear) return LimitsFault::kWord;
+    if (order.word > LimitsWord::kOpen) return LimitsFault::kWord;
+    if (order.word == LimitsWord::kKeepOut) return put_up(order.box, own);
+    if (order.word == LimitsWord::kOpen) return open(order.box);
     const bool is_clear = order.word == LimitsWord::kClear;
     if (is_clear && order.joint == LimitsOrder::kAllJoints) {
       rows_ = {};
@@ -74,6 +91,9 @@ class SoftLimits {
     return true;
   }
 
+  /// Puts up a box as it is, whatever the machine; false where there is no room.
+  bool put(const KeepOutBox& box) noexcept { return keep_out_.add(box); }
+
   /// What stands in the way of these on a machine with the travel of `own`.
   [[nodiscard]] LimitsFault find_fault(const MachineModel& own) const noexcept {
     for (std::size_t joint = 0; joint < rows_.size(); ++joint) {
@@ -81,7 +101,12 @@ class SoftLimits {
       const LimitsFault fault = find_fault(rows_[joint], own, joint);
       if (fault != LimitsFault::kNone) return fault;
     }
-    return LimitsFault::kNone;
+    for (const KeepOutBox& box : keep_out_.boxes()) {
+      const LimitsFault fault = find_fault(box, own);
+      if (fault != LimitsFault::kNone) return fault;
+    }
+    const std::size_t boxes = keep_out_.boxes().size() + own.keep_out.boxes().size();
+    return boxes > std::size_t{KeepOut::kMax} ? LimitsFault::kBoxes : LimitsFault::kNone;
   }
 
   [[nodiscard]] bool operator==(const SoftLimits&) const = default;
@@ -97,16 +122,59 @@ class SoftLimits {
     return is_inside ? LimitsFault::kNone : LimitsFault::kTravel;
   }
 
+  [[nodiscard]] static LimitsFault find_fault(const KeepOutBox& box,
+                                              const MachineModel& own) noexcept {
+    if (box.name.front() == '\0' || box.name.back() != '\0' || box.joints == 0) {
+      return LimitsFault::kBox;
+    }
+    if (box.joints >> static_cast<unsigned>(own.joint_count) != 0) return LimitsFault::kBoxJoint;
+    for (int i = 0; i < own.joint_count; ++i) {
+      const auto n = static_cast<std::size_t>(i);
+      if (!box.has(i)) continue;
+      if (own.joints[n].is_endless) return LimitsFault::kBoxJoint;
+      const bool is_right = std::abs(box.min[n]) < kFarthest && std::abs(box.max[n]) < kFarthest &&
+                            box.min[n] < box.max[n];
+      if (!is_right) return LimitsFault::kBox;
+    }
+    return own.keep_out.find(box) != nullptr ? LimitsFault::kOwnBox : LimitsFault::kNone;
+  }
+
+  [[nodiscard]] LimitsFault put_up(const KeepOutBox& box, const MachineModel& own) noexcept {
+    const LimitsFault fault = find_fault(box, own);
+    if (fault != LimitsFault::kNone) return fault;
+    KeepOut next = keep_out_;
+    (void)next.remove(box);
+    const std::size_t boxes = next.boxes().size() + own.keep_out.boxes().size();
+    if (boxes >= std::size_t{KeepOut::kMax} || !next.add(box)) return LimitsFault::kBoxes;
+    keep_out_ = next;
+    return LimitsFault::kNone;
+  }
+
+  [[nodiscard]] LimitsFault open(const KeepOutBox& named) noexcept {
+    if (named.name.front() != '\0') {
+      return keep_out_.remove(named) ? LimitsFault::kNone : LimitsFault::kNoBox;
+    }
+    keep_out_ = {};
+    return LimitsFault::kNone;
+  }
+
+  static constexpr double kFarthest = 1e6;  // mm or rad; far beyond any travel
+
   std::array<Row, kMaxJoints> rows_{};
+  KeepOut keep_out_{};
 };
 
 static_assert(std::is_trivially_copyable_v<SoftLimits> &&
               std::is_trivially_copyable_v<LimitsOrder>);
 
-/// The travel that every joint of `own` with travel has under `limits`: of each a pair is set.
+/// The travel that every joint of `own` with travel has under `limits`: of each a pair is set, and
+/// the boxes of both are put up.
 [[nodiscard]] inline SoftLimits travel_under(const SoftLimits& limits,
                                              const MachineModel& own) noexcept {
   SoftLimits travel;
+  for (const KeepOut* const boxes : {&own.keep_out, &limits.keep_out()}) {
+    for (const KeepOutBox& box : boxes->boxes()) (void)travel.put(box);
+  }
   for (std::size_t joint = 0; joint < static_cast<std::size_t>(own.joint_count); ++joint) {
     const JointLimits& whole = own.joints[joint].limits;
     const SoftLimits::Row& row = limits.rows()[joint];
@@ -117,9 +185,11 @@ static_assert(std::is_trivially_copyable_v<SoftLimits> &&
   return travel;
 }
 
-/// Shrinks the travel of `model` to `limits`. The planner, the guard, jogging and every check go by
-/// the travel of their model, so that these limits are checked wherever travel is. RT: cycle.
+/// Shrinks the travel of `model` to `limits`, as travel_under() gives them. The planner, the guard,
+/// jogging and every check go by the travel and the boxes of their model, so that these limits are
+/// checked wherever travel is. RT: cycle.
 inline void shrink_travel(MachineModel& model, const SoftLimits& limits) noexcept {
+  model.keep_out = limits.keep_out();
   for (std::size_t joint = 0; joint < limits.rows().size(); ++joint) {
     const SoftLimits::Row& row = limits.rows()[joint];
     if (!row.is_set) continue;

@@ -27,31 +27,89 @@ std::nullopt_t refuse_limits(const std::string& what) {
   return is_rotary ? units::deg_from_rad(value) : value;
 }
 
+[[nodiscard]] std::nullopt_t refuse_words() {
+  return refuse_limits(
+      "limits takes set, a joint and both ends of its travel in mm or deg; clear and a joint, or "
+      "clear alone for all; keep-out, a name, and a joint with both ends or several of them; open "
+      "and a name, or open alone for all; or list");
+}
+
+struct Interval {
+  std::uint8_t joint = 0;
+  double min = 0, max = 0;
+};
+
+[[nodiscard]] std::optional<std::uint8_t> joint_named(const std::string& name,
+                                                      const dds::MachineInfo& machine) {
+  const auto begin = machine.joints.begin(), end = begin + machine.joint_count;
+  const auto joint =
+      std::find_if(begin, end, [&name](const dds::JointInfo& known) { return known.name == name; });
+  if (joint != end) return static_cast<std::uint8_t>(joint - begin);
+  return refuse_limits("machine " + machine.name + " has no joint " + name);
+}
+
+/// A joint and both ends, from `at` on.
+[[nodiscard]] std::optional<Interval> read_interval(const std::vector<std::string>& words,
+                                                    std::size_t at,
+                                                    const dds::MachineInfo& machine) {
+  const auto joint = joint_named(words[at], machine);
+  if (!joint) return std::nullopt;
+  const bool is_rotary = machine.joints[*joint].is_rotary;
+  const auto min = read_end(words[at + 1], is_rotary), max = read_end(words[at + 2], is_rotary);
+  if (!min || !max) return refuse_limits("'" + words[at + (min ? 2 : 1)] + "' is no number");
+  return Interval{*joint, *min, *max};
+}
+
+[[nodiscard]] bool read_box_name(const std::string& name, KeepOutBox& box) {
+  if (name.empty() || name.size() > kKeepOutNameChars) return false;
+  std::copy(name.begin(), name.end(), box.name.begin());
+  return true;
+}
+
+[[nodiscard]] std::optional<LimitsOrder> box_order(const std::vector<std::string>& words,
+                                                   const dds::MachineInfo& machine) {
+  LimitsOrder order;
+  order.word = words.front() == "open" ? LimitsWord::kOpen : LimitsWord::kKeepOut;
+  if (words.size() > 1 && !read_box_name(words[1], order.box)) {
+    return refuse_limits("a box has a name of 1 to " + std::to_string(kKeepOutNameChars) +
+                         " characters");
+  }
+  for (std::size_t at = 2; at + 2 < words.size(); at += 3) {
+    const auto interval = read_interval(words, at, machine);
+    if (!interval) return std::nullopt;
+    if (order.box.has(interval->joint)) return refuse_limits(words[at] + " stands there twice");
+    order.box.joints |= 1U << interval->joint;
+    order.box.min[interval->joint] = interval->min;
+    order.box.max[interval->joint] = interval->max;
+  }
+  return order;
+}
+
 }  // namespace
 
 std::optional<LimitsOrder> limits_order(const std::vector<std::string>& words,
                                         const dds::MachineInfo& machine) {
   const std::string word = words.empty() ? "" : words.front();
-  const bool is_set = word == "set" && words.size() == 4;
-  const bool is_clear = word == "clear" && words.size() <= 2;
-  if (!is_set && !is_clear) {
-    return refuse_limits(
-        "limits takes set, a joint and both ends of its travel in mm or deg; clear and a joint, or "
-        "clear alone for all; or list");
-  }
+  const std::size_t count = words.size();
+  const bool is_box = word == "keep-out" && count >= 5 && count % 3 == 2;
+  if (is_box || (word == "open" && count <= 2)) return box_order(words, machine);
+  const bool is_set = word == "set" && count == 4;
+  const bool is_clear = word == "clear" && count <= 2;
+  if (!is_set && !is_clear) return refuse_words();
   LimitsOrder order;
   order.word = is_set ? LimitsWord::kSet : LimitsWord::kClear;
-  if (words.size() == 1) return order;
-  const auto begin = machine.joints.begin(), end = begin + machine.joint_count;
-  const auto joint = std::find_if(
-      begin, end, [&words](const dds::JointInfo& known) { return known.name == words[1]; });
-  if (joint == end) return refuse_limits("machine " + machine.name + " has no joint " + words[1]);
-  order.joint = static_cast<std::uint8_t>(joint - begin);
-  if (!is_set) return order;
-  const auto min = read_end(words[2], joint->is_rotary), max = read_end(words[3], joint->is_rotary);
-  if (!min || !max) return refuse_limits("'" + words[min ? 3 : 2] + "' is no number");
-  order.min = *min;
-  order.max = *max;
+  if (count == 1) return order;
+  if (is_clear) {
+    const auto joint = joint_named(words[1], machine);
+    if (!joint) return std::nullopt;
+    order.joint = *joint;
+    return order;
+  }
+  const auto interval = read_interval(words, 1, machine);
+  if (!interval) return std::nullopt;
+  order.joint = interval->joint;
+  order.min = interval->min;
+  order.max = interval->max;
   return order;
 }
 
@@ -72,6 +130,16 @@ std::string limits_text(const dds::MachineInfo& machine) {
     if (row.is_set) {
       text::append(text, ", of %.10g %.10g", shown(joint.limits.travel_min, joint.is_rotary),
                    shown(joint.limits.travel_max, joint.is_rotary));
+    }
+    text += "\n";
+  }
+  for (const KeepOutBox& box : machine.soft_limits.keep_out().boxes()) {
+    text::append(text, "*  keep-out %s", box.name.data());
+    for (std::size_t i = 0; i < machine.joint_count; ++i) {
+      if (!box.has(static_cast<int>(i))) continue;
+      const dds::JointInfo& joint = machine.joints[i];
+      text::append(text, " %s %.10g %.10g", joint.name.c_str(), shown(box.min[i], joint.is_rotary),
+                   shown(box.max[i], joint.is_rotary));
     }
     text += "\n";
   }

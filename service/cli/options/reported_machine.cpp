@@ -10,7 +10,7 @@ std::optional<MachineModel> reported_machine(const dds::MachineInfo& info) {
   if (info.machine_file.empty()) return std::nullopt;
   MachineModel model = config::parse_machine(info.machine_file, "machine file of the service");
   stream::place_frame(model, info.frame_rotation, info.frame_origin_mm);
-  shrink_travel(model, info.soft_limits);
+  shrink_travel(model, travel_under(info.soft_limits, model));
   return model;
 }
 

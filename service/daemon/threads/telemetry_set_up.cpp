@@ -40,10 +40,18 @@ void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
 
 void TelemetryThread::record_limits(std::uint64_t cycle) noexcept {
   const SoftLimits& limits = in_force_.soft_limits;
-  if (limits.empty()) recorder_.take(record::RecordedLimits{cycle, 0, 0, 0});
+  if (limits.empty()) recorder_.take(record::RecordedLimits{cycle, 0, 0, 0, 0});
   for (std::uint32_t i = 0; i < kMaxJoints; ++i) {
     const SoftLimits::Row& row = limits.rows()[i];
-    if (row.is_set) recorder_.take(record::RecordedLimits{cycle, i + 1, row.min, row.max});
+    if (row.is_set) recorder_.take(record::RecordedLimits{cycle, i + 1, row.min, row.max, 0});
+  }
+  std::uint32_t number = 0;
+  for (const KeepOutBox& box : limits.keep_out().boxes()) {
+    ++number;
+    for (std::uint32_t i = 0; i < kMaxJoints; ++i) {
+      if (!box.has(static_cast<int>(i))) continue;
+      recorder_.take(record::RecordedLimits{cycle, i + 1, box.min[i], box.max[i], number});
+    }
   }
 }
 

@@ -52,7 +52,7 @@ class Recorder {
   SpscRing<Event, 256> events_;
   SpscRing<record::RecordedFrame, 16> frames_;
   SpscRing<record::RecordedTool, 512> tools_;
-  SpscRing<record::RecordedLimits, 32> limits_;
+  SpscRing<record::RecordedLimits, 64> limits_;
   SpscRing<CycleRecord, 8192> ring_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::uint64_t> rows_lost_{0}, events_lost_{0}, events_missed_{0};

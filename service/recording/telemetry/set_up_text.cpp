@@ -16,8 +16,8 @@ namespace meridian::telemetry {
 namespace {
 
 /// Newest first.
-constexpr std::array<std::string_view, 3> kSetUpHeads{"meridian set-up 3", "meridian set-up 2",
-                                                      "meridian set-up 1"};
+constexpr std::array<std::string_view, 4> kSetUpHeads{"meridian set-up 4", "meridian set-up 3",
+                                                      "meridian set-up 2", "meridian set-up 1"};
 
 /// Takes the number at the begin of `text` and the space behind it; false where there is none.
 template <class Number>
@@ -54,12 +54,41 @@ template <class Number>
   return is_right && !lines.has_failed();
 }
 
+/// The keep-out boxes that the next lines hold; false where they hold anything else.
+[[nodiscard]] bool read_boxes(Lines& lines, SoftLimits& limits) {
+  std::size_t count = 0;
+  lines.read("boxes", count);
+  bool is_right = count <= std::size_t{KeepOut::kMax};
+  for (std::size_t i = 0; is_right && i < count; ++i) {
+    KeepOutBox box;
+    std::string_view text = lines.value("box");
+    is_right = take_number(text, box.joints);
+    for (double& end : box.min) is_right = is_right && take_number(text, end);
+    for (double& end : box.max) is_right = is_right && take_number(text, end);
+    put_text(text, box.name);
+    is_right = is_right && limits.put(box);
+  }
+  return is_right && !lines.has_failed();
+}
+
 /// "-10 to 200 mm".
 [[nodiscard]] std::string range_text(double min, double max, bool is_rotary) {
   const auto shown = [is_rotary](double value) {
     return is_rotary ? units::deg_from_rad(value) : value;
   };
   return fmt::format("{:.10g} to {:.10g} {}", shown(min), shown(max), is_rotary ? "deg" : "mm");
+}
+
+/// "X -10 to 200 mm, C 0 to 30 deg".
+[[nodiscard]] std::string box_text(const KeepOutBox& box, const MachineModel& model) {
+  std::string text;
+  for (std::size_t i = 0; i < box.min.size(); ++i) {
+    if (!box.has(static_cast<int>(i))) continue;
+    const JointSpec& joint = model.joints[i];
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", joint.name,
+                        range_text(box.min[i], box.max[i], joint.is_rotary));
+  }
+  return text;
 }
 
 }  // namespace
@@ -79,6 +108,12 @@ std::string to_text(const SetUp& set_up, std::string_view machine) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].is_set) text += fmt::format("limit = {} {} {}\n", i + 1, rows[i].min, rows[i].max);
   }
+  const auto boxes = set_up.limits.keep_out().boxes();
+  text += fmt::format("boxes = {}\n", boxes.size());
+  for (const KeepOutBox& box : boxes) {
+    text += fmt::format("box = {} {} {} {}\n", box.joints, fmt::join(box.min, " "),
+                        fmt::join(box.max, " "), box.name.data());
+  }
   if (set_up.tools) text += fmt::format("tools = {}\n{}\n", set_up.tools->size(), *set_up.tools);
   return seal(text);
 }
@@ -87,7 +122,7 @@ Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_vie
   const auto head = std::find_if(
       kSetUpHeads.begin(), kSetUpHeads.end(),
       [text](std::string_view known) { return text.starts_with(fmt::format("{}\n", known)); });
-  const bool is_newest = head == kSetUpHeads.begin();
+  const auto age = head - kSetUpHeads.begin();
   if (const auto damage =
           find_damage(text, head != kSetUpHeads.end() ? *head : kSetUpHeads[0], "set-up")) {
     return tl::make_unexpected(*damage);
@@ -111,7 +146,8 @@ Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_vie
   }
   is_right = is_right && !lines.has_failed() && frames.rows().size() == count &&
              frames.apply(select) == FrameFault::kNone;
-  is_right = is_right && (!is_newest || read_limits(lines, out.limits));
+  is_right = is_right && (age > 1 || read_limits(lines, out.limits));
+  is_right = is_right && (age > 0 || read_boxes(lines, out.limits));
   if (is_right && lines.rest().starts_with("tools = ")) {
     std::size_t size = 0;
     lines.read("tools", size);
@@ -143,6 +179,10 @@ std::string limits_text(const SoftLimits& limits, const MachineModel& model) {
     text += fmt::format("{} {} {}", text.empty() ? "soft limits" : ",", name,
                         range_text(row.min, row.max, joint.is_rotary));
   }
+  for (const KeepOutBox& box : limits.keep_out().boxes()) {
+    text += fmt::format("{}{} ({})", text.empty() ? "keep-out box " : ", keep-out box ",
+                        box.name.data(), box_text(box, model));
+  }
   return text.empty() ? "no soft limits" : text;
 }
 
@@ -153,7 +193,7 @@ std::string describe(LimitsFault fault, std::uint8_t joint, const MachineModel& 
     case LimitsFault::kNone:
       return "";
     case LimitsFault::kWord:
-      return "no such word; set or clear";
+      return "no such word; set, clear, keep-out or open";
     case LimitsFault::kJoint:
       return fmt::format("the machine has no joint number {}", joint + 1);
     case LimitsFault::kEndless:
@@ -165,6 +205,17 @@ std::string describe(LimitsFault fault, std::uint8_t joint, const MachineModel& 
       return fmt::format(
           "{} has a travel of {}, which soft limits only shrink", spec.name,
           range_text(spec.limits.travel_min, spec.limits.travel_max, spec.is_rotary));
+    case LimitsFault::kBox:
+      return "a keep-out box has a name and, of one joint at least, a minimum below a maximum";
+    case LimitsFault::kBoxJoint:
+      return "a keep-out box is one of joints of the machine that have travel; name others";
+    case LimitsFault::kOwnBox:
+      return "the machine file has a keep-out box of that name; take another one";
+    case LimitsFault::kNoBox:
+      return "no keep-out box of that name was put up; see meridian ctl limits list";
+    case LimitsFault::kBoxes:
+      return fmt::format("there are {} keep-out boxes at most, those of the machine file included",
+                         KeepOut::kMax);
   }
   return "";
 }

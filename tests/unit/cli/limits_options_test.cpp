@@ -34,6 +34,19 @@ TEST(LimitsOptions, MakeAnOrderOfWords) {
   EXPECT_EQ(limits_order({"clear"}, machine())->joint, LimitsOrder::kAllJoints);
 }
 
+TEST(LimitsOptions, MakeAnOrderOfABox) {
+  const auto vice =
+      limits_order({"keep-out", "vice", "X", "-12.5", "200", "A", "-90", "0"}, machine());
+  ASSERT_TRUE(vice);
+  EXPECT_EQ(vice->word, LimitsWord::kKeepOut);
+  EXPECT_STREQ(vice->box.name.data(), "vice");
+  EXPECT_EQ(vice->box.joints, 0b11U);
+  EXPECT_EQ(vice->box.max[0], 200);
+  EXPECT_EQ(vice->box.min[1], -90 * units::kDegree_rad);
+  EXPECT_STREQ(limits_order({"open", "vice"}, machine())->box.name.data(), "vice");
+  EXPECT_EQ(limits_order({"open"}, machine())->word, LimitsWord::kOpen);
+}
+
 TEST(LimitsOptions, RefuseWhatIsNone) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{},
                                                 {"set"},
@@ -45,6 +58,12 @@ TEST(LimitsOptions, RefuseWhatIsNone) {
                                                 {"set", "X", "nan", "2"},
                                                 {"clear", "U"},
                                                 {"clear", "X", "A"},
+                                                {"keep-out", "vice"},
+                                                {"keep-out", "vice", "X", "1"},
+                                                {"keep-out", "vice", "U", "1", "2"},
+                                                {"keep-out", "vice", "X", "1", "2", "X", "1", "2"},
+                                                {"keep-out", std::string(24, 'x'), "X", "1", "2"},
+                                                {"open", "vice", "probe"},
                                                 {"move", "X", "1", "2"}}) {
     EXPECT_FALSE(limits_order(words, machine())) << testing::PrintToString(words);
   }
@@ -57,6 +76,9 @@ TEST(LimitsOptions, AreListedAsSetTakesThem) {
             "*  X        -12.5 200 mm, of -700 700\n"
             "   A        -110 30 deg\n"
             "   C        endless\n");
+  info.soft_limits.put(
+      limits_order({"keep-out", "vice", "X", "1", "2", "A", "-9", "0"}, machine())->box);
+  EXPECT_NE(limits_text(info).find("*  keep-out vice X 1 2 A -9 0\n"), std::string::npos);
 }
 
 }  // namespace

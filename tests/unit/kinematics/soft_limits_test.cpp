@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <string>
+
+#include "support/machines.hpp"
 
 namespace meridian {
 namespace {
@@ -68,6 +72,93 @@ TEST(SoftLimits, OfAMachineFileThatHasChangedAreFoundOut) {
   EXPECT_EQ(limits.find_fault(own), LimitsFault::kTravel);
   own.joint_count = 0;
   EXPECT_EQ(limits.find_fault(own), LimitsFault::kJoint);
+}
+
+/// Joint 0 from 10 to 20 while joint 2 is from -5 to 5.
+KeepOutBox drawn_box(const char* name) {
+  KeepOutBox box;
+  std::copy_n(name, std::char_traits<char>::length(name), box.name.begin());
+  box.joints = 0b101;
+  box.min = {10, 0, -5};
+  box.max = {20, 0, 5};
+  return box;
+}
+
+LimitsOrder about(LimitsWord word, const KeepOutBox& box) {
+  LimitsOrder order;
+  order.word = word;
+  order.box = box;
+  return order;
+}
+
+TEST(SoftLimits, PutUpBoxesByNameAndTakeThemAway) {
+  const MachineModel own = test::lai_machine();
+  SoftLimits limits;
+  KeepOutBox vice = drawn_box("vice");
+  EXPECT_EQ(limits.apply(about(LimitsWord::kKeepOut, vice), own), LimitsFault::kNone);
+  vice.max[0] = 30;
+  EXPECT_EQ(limits.apply(about(LimitsWord::kKeepOut, vice), own), LimitsFault::kNone);
+  ASSERT_EQ(limits.keep_out().boxes().size(), 1U) << "the one of that name is replaced";
+  EXPECT_EQ(limits.keep_out().boxes()[0], vice);
+  const KeepOutBox probe = drawn_box("probe");
+  EXPECT_EQ(limits.apply(about(LimitsWord::kKeepOut, probe), own), LimitsFault::kNone);
+  EXPECT_EQ(limits.apply(about(LimitsWord::kOpen, drawn_box("nobody")), own), LimitsFault::kNoBox);
+  EXPECT_EQ(limits.apply(about(LimitsWord::kOpen, vice), own), LimitsFault::kNone);
+  ASSERT_EQ(limits.keep_out().boxes().size(), 1U);
+  EXPECT_EQ(limits.keep_out().boxes()[0], probe);
+  EXPECT_FALSE(limits.empty());
+  EXPECT_EQ(limits.apply({LimitsWord::kClear}, own), LimitsFault::kNone);
+  EXPECT_FALSE(limits.keep_out().empty()) << "clear is for travel";
+  EXPECT_EQ(limits.apply(about(LimitsWord::kOpen, {}), own), LimitsFault::kNone);
+  EXPECT_TRUE(limits.empty());
+}
+
+TEST(SoftLimits, PutUpNoBoxThatMeansNothing) {
+  MachineModel own = test::lai_machine();
+  SoftLimits limits;
+  const auto fault_of = [&](const KeepOutBox& box) {
+    const LimitsFault fault = limits.apply(about(LimitsWord::kKeepOut, box), own);
+    EXPECT_TRUE(fault == LimitsFault::kNone || limits.keep_out().find(box) == nullptr);
+    return fault;
+  };
+  EXPECT_EQ(fault_of(drawn_box("")), LimitsFault::kBox);
+  KeepOutBox box = drawn_box("vice");
+  box.name.fill('x');
+  EXPECT_EQ(fault_of(box), LimitsFault::kBox) << "a name without an end";
+  box = drawn_box("vice");
+  box.joints = 0;
+  EXPECT_EQ(fault_of(box), LimitsFault::kBox);
+  box.joints = 0b100001;
+  EXPECT_EQ(fault_of(box), LimitsFault::kBoxJoint);
+  for (const double end : {20.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    box = drawn_box("vice");
+    box.min[0] = end;
+    EXPECT_EQ(fault_of(box), LimitsFault::kBox) << end;
+  }
+  own.joints[2].is_endless = true;
+  EXPECT_EQ(fault_of(drawn_box("vice")), LimitsFault::kBoxJoint);
+  own.joints[2].is_endless = false;
+  ASSERT_TRUE(own.keep_out.add(drawn_box("tailstock")));
+  EXPECT_EQ(fault_of(drawn_box("tailstock")), LimitsFault::kOwnBox);
+  const char* const kNames[] = {"1", "2", "3", "4", "5", "6", "7"};
+  for (const char* name : kNames) EXPECT_EQ(fault_of(drawn_box(name)), LimitsFault::kNone);
+  EXPECT_EQ(fault_of(drawn_box("8")), LimitsFault::kBoxes);
+  EXPECT_EQ(limits.find_fault(own), LimitsFault::kNone);
+  ASSERT_TRUE(own.keep_out.add(drawn_box("new in the file")));
+  EXPECT_EQ(limits.find_fault(own), LimitsFault::kBoxes);
+}
+
+TEST(SoftLimits, PutTheirBoxesBesideThoseOfTheMachine) {
+  MachineModel own = test::lai_machine();
+  ASSERT_TRUE(own.keep_out.add(drawn_box("tailstock")));
+  SoftLimits limits;
+  ASSERT_TRUE(limits.put(drawn_box("vice")));
+  MachineModel model = own;
+  for (int again = 0; again < 2; ++again) shrink_travel(model, travel_under(limits, own));
+  ASSERT_EQ(model.keep_out.boxes().size(), 2U);
+  EXPECT_EQ(model.keep_out.boxes()[1], drawn_box("vice"));
+  shrink_travel(model, travel_under(SoftLimits(), own));
+  EXPECT_EQ(model.keep_out, own.keep_out);
 }
 
 TEST(SoftLimits, ShrinkAModelAndGiveItItsTravelBack) {

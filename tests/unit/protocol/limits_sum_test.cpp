@@ -20,6 +20,17 @@ TEST(LimitsSum, TellsLimitsApartByAllThatTheySay) {
   EXPECT_NE(limits_sum(limits_of(2, -5, 5)), sum);
   EXPECT_NE(limits_sum(limits_of(1, -5 - 1e-12, 5)), sum);
   EXPECT_NE(limits_sum(limits_of(1, -5, 5 + 1e-12)), sum);
+  SoftLimits boxed = limits_of(1, -5, 5);
+  KeepOutBox box;
+  box.joints = 0b10;
+  box.min[1] = 1;
+  box.max[1] = 2;
+  boxed.put(box);
+  EXPECT_NE(limits_sum(boxed), sum);
+  SoftLimits other = limits_of(1, -5, 5);
+  box.max[1] = 2 + 1e-12;
+  other.put(box);
+  EXPECT_NE(limits_sum(other), limits_sum(boxed));
   SoftLimits both = limits_of(1, -5, 5);
   both.put(0, -5, 5);
   EXPECT_NE(limits_sum(both), sum);

@@ -275,6 +275,26 @@ TEST_F(Check, RefusesAJointOutsideItsTravel) {
   EXPECT_NE(report.findings[0].text.find("theta2"), std::string::npos);
 }
 
+TEST_F(Check, HoldsEveryCycleAgainstTheKeepOutBoxesOfItsTime) {
+  KeepOutBox box;  // theta2 beyond 0.34, which the tilts of block 5 reach
+  box.joints = 0b10000;
+  box.min[4] = 0.34;
+  box.max[4] = 0.5;
+  const MachineModel own = model;
+  ASSERT_TRUE(model.keep_out.add(box));
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kTravel);
+  EXPECT_NE(report.findings[0].text.find("keep-out box by up to 0.01"), std::string::npos)
+      << report.findings[0].text;
+  model = own;
+  SoftLimits limits;
+  ASSERT_TRUE(limits.put(box));
+  options.soft_limits = {{0, limits}};
+  expect_only(run(), Finding::Kind::kTravel);
+  options.soft_limits = {{0, limits}, {1, SoftLimits()}};
+  EXPECT_TRUE(run().passed()) << "it was taken away";
+}
+
 TEST_F(Check, HoldsEveryCycleAgainstTheSoftLimitsOfItsTime) {
   SoftLimits narrow;
   narrow.put(4, -1, 0.34);

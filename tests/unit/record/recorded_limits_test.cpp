@@ -21,9 +21,23 @@ TEST(RecordedLimits, ComeBackBitForBit) {
   ASSERT_TRUE(writer);
   EXPECT_TRUE(writer->write(RecordedLimits{17, 1, -100.0 / 3.0, 1.0 / 7.0}));
   EXPECT_TRUE(writer->write(RecordedLimits{17, 5, 1e-3, 2}));
+  EXPECT_TRUE(writer->write(RecordedLimits{17, 1, 1, 1.0 / 3.0 + 1, 1}));
+  EXPECT_TRUE(writer->write(RecordedLimits{17, 3, -5, 5, 1}));
+  EXPECT_TRUE(writer->write(RecordedLimits{17, 3, -7, -6, 2}));
   EXPECT_TRUE(writer->close());
   SoftLimits wanted = limits_of(0, -100.0 / 3.0, 1.0 / 7.0);
   wanted.put(4, 1e-3, 2);
+  KeepOutBox box;
+  box.name = {"1"};
+  box.joints = 0b101;
+  box.min = {1, 0, -5};
+  box.max = {1.0 / 3.0 + 1, 0, 5};
+  wanted.put(box);
+  box.name = {"2"};
+  box.joints = 0b100;
+  box.min = {0, 0, -7};
+  box.max = {0, 0, -6};
+  wanted.put(box);
   EXPECT_EQ(find_recorded_limits(test::read_text(file.path())), wanted);
 }
 
@@ -46,9 +60,10 @@ TEST(RecordedLimits, AreToldWithTheCyclesFromWhichTheyHold) {
 
 TEST(RecordedLimits, AreNoneWhereARowHoldsAnythingElse) {
   EXPECT_TRUE(read_limits("0,limits,1,-10,10"));
-  for (const char* row :
-       {"0,limits,1,-10", "0,limits,1,-10,10,6", "0,limits,x,-10,10", "0,limits,7,-10,10",
-        "0,limits,1,nan,10", "0,limit,1,-10,10", "x,limits,1,-10,10"}) {
+  for (const char* row : {"0,limits,1,-10", "0,limits,1,-10,10,6", "0,limits,x,-10,10",
+                          "0,limits,7,-10,10", "0,limits,1,nan,10", "0,keep_out,1,-10,10",
+                          "0,keep_out,0,1,-10,10", "0,keep_out,9,1,-10,10", "0,keep_out,1,0,-10,10",
+                          "0,keep_out,1,7,-10,10", "0,limit,1,-10,10", "x,limits,1,-10,10"}) {
     EXPECT_FALSE(read_limits(row)) << row;
   }
   EXPECT_TRUE(is_limits_row("0,limits,1,nan,5"));

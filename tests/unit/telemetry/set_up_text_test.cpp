@@ -38,6 +38,14 @@ TEST(SetUpText, ComesBackBitForBit) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     telemetry::SetUp set_up{drawn_frames(seed, static_cast<int>(seed % 60)), {}, {}};
     for (std::size_t i = 0; i < seed % 7; ++i) set_up.limits.put(i, -1.0 / (3 + seed), 1e5 / 7);
+    for (unsigned n = 0; n < seed % 9; ++n) {
+      KeepOutBox box;
+      put_text("box " + std::to_string(n), box.name);
+      box.joints = 1 + seed % 31;
+      box.min.fill(-1.0 / (3 + seed));
+      box.max.fill(1e5 / 7 + n);
+      set_up.limits.put(box);
+    }
     if (seed % 3 == 1) set_up.tools = std::string(seed * 40, 'x') + "\n# crc32c = 12345678\n";
     if (seed % 3 == 2) set_up.tools = "";
     const auto read = parse_set_up(to_text(set_up, "lai"), "lai");
@@ -57,6 +65,12 @@ TEST(SetUpText, OfAFullTableFitsIntoItsFile) {
   }
   SoftLimits limits;
   for (std::size_t i = 0; i < kMaxJoints; ++i) limits.put(i, -1.0 / 3.0 * 1e-300, 2.0 / 3.0);
+  KeepOutBox box;
+  put_text(std::string(100, 'x'), box.name);
+  box.joints = 0x3F;
+  box.min.fill(-1.0 / 3.0 * 1e-300);
+  box.max = box.min;
+  for (int n = 0; n < KeepOut::kMax; ++n) limits.put(box);
   const std::string text =
       to_text({frames, std::string(dds::kToolFileBytes, 't'), limits}, std::string(64, 'm'));
   EXPECT_LT(text.size(), kMaxSetUpBytes);

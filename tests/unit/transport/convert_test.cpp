@@ -84,16 +84,17 @@ int lost_bytes() {
 TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
   EXPECT_EQ((lost_bytes<SessionRequest, meridian_wire_ClSession>()), 18);  // 15 padding, 3 texts
   EXPECT_EQ((lost_bytes<Credit, meridian_wire_ClCredit>()), 4);            // 3 padding, 1 text
-  EXPECT_EQ((lost_bytes<CommandRequest, meridian_wire_Command>()), 20);    // 17 padding, 3 texts
+  EXPECT_EQ((lost_bytes<CommandRequest, meridian_wire_Command>()), 25);    // 21 padding, 4 texts
   EXPECT_EQ((lost_bytes<Reply, meridian_wire_Reply>()), 4);            // 2 padding, 1 flag, 1 text
   EXPECT_EQ((lost_bytes<Jog, meridian_wire_Jog>()), 4);                // padding
   EXPECT_EQ((lost_bytes<Action, meridian_wire_Action>()), 4);          // 3 padding, 1 text
   EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
   EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 26);  // 18 padding, 5 flags, 3 texts
   EXPECT_EQ((lost_bytes<MachineInfo, meridian_wire_Machine>()),
-            559);  // 14 padding, 1 flag, 12 clamped counts, 8 texts; per joint or drive 4 padding,
+            607);  // 18 padding, 1 flag, 16 clamped counts, 8 texts; per joint or drive 4 padding,
                    // 2 flags, 1 text; per work frame 7 padding, 1 text; of soft limits the mask
-                   // and the pairs of two joints that it leaves out
+                   // and the pairs of two joints that it leaves out; per keep-out box 4 padding,
+                   // 1 text
 }
 
 TEST(Convert, CarriesTheWorkFramesThatThereAre) {
@@ -115,12 +116,21 @@ TEST(Convert, CarriesTheSoftLimitsThatThereAre) {
   MachineInfo info;
   info.soft_limits.put(0, -1.5, 2);
   info.soft_limits.put(5, 0, 1.0 / 3);
+  KeepOutBox box;
+  box.name = {"vice"};
+  box.joints = 0b101;
+  box.min = {1, 0, -5};
+  box.max = {1.0 / 3.0 + 1, 0, 5};
+  info.soft_limits.put(box);
   static meridian_wire_Machine wire;
   to_wire(info, wire);
   EXPECT_EQ(wire.soft_limits_mask, 0x21U);
   MachineInfo back;
   from_wire(wire, back);
   EXPECT_EQ(back.soft_limits, info.soft_limits);
+  wire.keep_out_count = 1000;
+  from_wire(wire, back);
+  EXPECT_EQ(back.soft_limits.keep_out().boxes().size(), std::size_t{KeepOut::kMax});
 }
 
 TEST(Convert, CutsLongTextsAndEndsEndlessOnes) {

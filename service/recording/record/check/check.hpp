@@ -49,7 +49,7 @@ struct CheckOptions {
 /// * the machine does not creep while it runs (creep_check.hpp);
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel, and
-///   soft limits, outside of which a joint may only come back;
+///   soft limits, outside of which a joint may only come back; keep-out boxes in the same manner;
 /// * not a dry run and a run that drives followed in one recording, of which the first alone would
 ///   be held against the path;
 /// * missing cycles, their order, due times on the grid; sent velocities fit the positions.

@@ -80,6 +80,16 @@ void JointCheck::check_travel(int joint) {
   note(outside_[joint], outside(q), outside(q) > std::max(kTravelMargin, before + kOutside));
 }
 
+/// Outside of every box, or no deeper inside than the cycle before.
+void JointCheck::check_keep_out(const KeepOut& keep_out) {
+  constexpr double kInside = 2 * kKeepOutRounding;  // what the guard lets pass
+  for (const KeepOutBox& box : keep_out.boxes()) {
+    const double depth = depth_inside(box, rows_.back().joints);
+    const double before = run_ < 2 ? 0 : depth_inside(box, rows_[kDepth - 2].joints);
+    note(in_box_, depth, depth > std::max(kInside, before + kOutside));
+  }
+}
+
 /// Over three consecutive cycles the sent velocity of the middle one differs from the central
 /// difference by no more than jerk·T²/6.
 void JointCheck::check_velocity(int joint) {
@@ -131,6 +141,11 @@ void JointCheck::add(const RecordingRow& row, bool has_velocity) {
   if ((row.flags & kSetpointFaultStop) != 0) ++fault_rows_;
   if ((row.flags & kSetpointDryEnabled) != 0) ++dry_rows_;
   if (has_stage(model_) && is_leading(row.flags)) check_stage(row);
+  if (is_enabled) {
+    check_keep_out(model_.keep_out);
+    const bool is_known = !soft_limits_.empty() && soft_limits_.front().cycle <= row.cycle;
+    if (is_known) check_keep_out(soft_limits_.front().limits.keep_out());
+  }
   for (int i = 0; i < limited_count(model_); ++i) {
     const double q = row.places[i];
     const JointSpec& spec = limited_spec(model_, i);
@@ -153,6 +168,13 @@ void JointCheck::finish(CheckReport& report) const {
                   unfit_.worst.value);
     report.findings.push_back(
         {Finding::Kind::kStage, text, unfit_.worst.cycle, unfit_.worst.line, unfit_.count});
+  }
+  if (in_box_.count > 0) {
+    std::snprintf(text, sizeof text,
+                  "the joints are inside of a keep-out box by up to %.6g mm or rad",
+                  in_box_.worst.value);
+    report.findings.push_back(
+        {Finding::Kind::kTravel, text, in_box_.worst.cycle, in_box_.worst.line, in_box_.count});
   }
   report.fault_stop_cycles = fault_rows_;
   report.dry_cycles = dry_rows_;

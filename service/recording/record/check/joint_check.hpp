@@ -29,6 +29,7 @@ class JointCheck {
   void check_rates(int joint);
   void check_velocity(int joint);
   void check_travel(int joint);
+  void check_keep_out(const KeepOut& keep_out);
   void check_stage(const RecordingRow& row);
   void note(Excess& excess, double use, bool is_over) const;
 
@@ -44,6 +45,7 @@ class JointCheck {
   std::array<std::array<Excess, 3>, kMaxLimited> over_{};
   std::array<Excess, kMaxLimited> outside_{};
   std::array<Excess, kMaxLimited> sent_{};
+  Excess in_box_;
   StageUse stage_use_;
   Excess unfit_;
   Peak sent_peak_;

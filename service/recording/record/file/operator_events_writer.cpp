@@ -81,7 +81,13 @@ bool OperatorEventsWriter::write(const RecordedLimits& limits) noexcept {
   char* const at = file_.begin_row();
   if (at == nullptr) return false;
   CsvRow row(at);
-  row.put_integer(limits.cycle).put(',').put(kLimitsWord).put(',').put_integer(limits.joint);
+  row.put_integer(limits.cycle).put(',');
+  if (limits.box == 0) {
+    row.put(kLimitsWord);
+  } else {
+    row.put(kKeepOutWord).put(',').put_integer(limits.box);
+  }
+  row.put(',').put_integer(limits.joint);
   row.put(',').put_real(limits.min).put(',').put_real(limits.max);
   file_.end_row(row.put('\n').end());
   return file_.flush();

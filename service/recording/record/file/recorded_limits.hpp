@@ -11,14 +11,16 @@
 namespace meridian::record {
 
 /// A row of the events beside a recording: `cycle,limits,joint,min,max`, the joint in machine order
-/// from 1, mm or rad. The rows of one cycle are all soft limits that are in force from it on; one
-/// of joint 0 stands for none.
-inline constexpr std::string_view kLimitsWord = "limits";
+/// from 1, mm or rad, or `cycle,keep_out,box,joint,min,max`, one for each joint of a keep-out box,
+/// which counts from 1. The rows of one cycle are all soft limits and boxes that are in force from
+/// it on; one of joint 0 stands for none.
+inline constexpr std::string_view kLimitsWord = "limits", kKeepOutWord = "keep_out";
 
 struct RecordedLimits {
   std::uint64_t cycle = 0;
   std::uint32_t joint = 0;
   double min = 0, max = 0;
+  std::uint32_t box = 0;  ///< 0: a soft limit
   [[nodiscard]] bool operator==(const RecordedLimits&) const = default;
 };
 
