@@ -54,6 +54,29 @@ TEST(SetUpKeepOut, StopsAHandThatJogsAndOutlivesTheService) {
       << list.said();
 }
 
+TEST(SetUpKeepOut, RefusesAMoveIntoTheBoxAndOneThroughIt) {
+  Plant plant;
+  plant.start_service({"--service", service_file(plant)});
+  plant.start_drives();
+  SetUpOperator anna(plant, 100);
+  const dds::Reply put_up = anna.ask(vice_order(20, 40));
+  ASSERT_TRUE(put_up.is_accepted) << put_up.text;
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  const JointVector before = plant.status().joints;
+  for (const char* joints : {"b3=30", "b3=60"}) {
+    Process move = tool(plant, {"ctl", "move", "--joints", joints, "--feed", "3000"});
+    EXPECT_NE(move.wait(milliseconds(20'000)), 0) << move.said();
+    EXPECT_NE(move.said().find("keep-out box vice"), std::string::npos) << move.said();
+    EXPECT_EQ(plant.status().joints, before);
+    EXPECT_TRUE(plant.runs_until([](const dds::Status& status) {
+      return status.state == State::kReady && status.session == 0;
+    })) << plant.standing();
+  }
+  Process beside = tool(plant, {"ctl", "move", "--joints", "b3=19", "--feed", "3000"});
+  EXPECT_EQ(beside.wait(milliseconds(20'000)), 0) << beside.said();
+  EXPECT_NEAR(plant.status().joints[0], 19, 1e-9);
+}
+
 TEST(SetUpKeepOut, IsSeenByTheStationsPreflightAndOpensAgain) {
   Plant plant;
   const std::string part = plant.folder() / "part.apt";

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "integration/set_up_plant.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "service/recording/telemetry/set_up_file.hpp"
 #include "support/draws.hpp"
 
@@ -48,13 +49,23 @@ TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
                                  milliseconds(20'000)))
         << plant.service().said();
     expect_reported(reported_by(plant), acknowledged);
-    // A word for the table, one for the row in force, one for tools, one for limits, in turns.
+    // A word for the table, one for the row in force, one for tools, one for limits or a keep-out
+    // box, in turns.
     const int number = 1 + n / 4 % 3;
     const bool is_select = n % 4 == 1 && acknowledged.frames.find(number) != nullptr;
     const FrameOrder order = order_of(is_select ? FrameWord::kSelect : FrameWord::kSet, number, n);
     SetUpOperator anna(plant, 100 + static_cast<std::uint64_t>(n));
     telemetry::SetUp asked = acknowledged;
-    if (n % 4 == 3) {
+    if (n % 8 == 7) {
+      LimitsOrder box;
+      box.word = LimitsWord::kKeepOut;
+      box.box.name = {static_cast<char>('a' + n / 8 % 8)};
+      box.box.joints = 0b101;
+      box.box.min = {1.0 / 3.0 * n, 0, -5};
+      box.box.max = {1.0 / 3.0 * n + 1, 0, 5};
+      ASSERT_EQ(asked.limits.apply(box, config::load_machine(plant.machine())), LimitsFault::kNone);
+      anna.say(box, plant.status());
+    } else if (n % 4 == 3) {
       const LimitsOrder shrink{LimitsWord::kSet, static_cast<std::uint8_t>(n % 5), -1, 1e-3 * n};
       ASSERT_TRUE(asked.limits.put(shrink.joint, shrink.min, shrink.max));
       anna.say(shrink, plant.status());

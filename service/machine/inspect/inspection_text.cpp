@@ -151,6 +151,22 @@ std::string limits_text(const MachineModel& model) {
   return out;
 }
 
+std::string keep_out_text(const MachineModel& model) {
+  std::string out;
+  for (const KeepOutBox& box : model.keep_out.boxes()) {
+    out += printed("keep out   %-10s", box.name.data());
+    for (int i = 0; i < model.joint_count; ++i) {
+      const JointSpec& joint = limited_spec(model, i);
+      const auto n = static_cast<std::size_t>(i);
+      if (!box.has(i)) continue;
+      out += printed(" %s %.6g .. %.6g %s", joint.name.c_str(), at_edge(joint, box.min[n]),
+                     at_edge(joint, box.max[n]), unit_of(joint));
+    }
+    out += "\n";
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string to_text(const Inspection& in, const MachineModel& model) {
@@ -161,6 +177,7 @@ std::string to_text(const Inspection& in, const MachineModel& model) {
   out += chain_text(in, model);
   out += "home       " + pose_text(in.home_pose) + " in the workpiece\n";
   out += trial_text(in, model) + pole_text(in, model) + reach_text(in) + limits_text(model);
+  out += keep_out_text(model);
   out += printed("inverse    joints to pose and back: within %.2g mm and %.2g rad\n",
                  in.round_trip_mm, in.round_trip_axis);
   for (const std::string& fact : in.measured) out += "measured   " + fact + "\n";

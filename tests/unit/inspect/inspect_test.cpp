@@ -130,6 +130,16 @@ TEST_P(EveryShipped, HasAPatternThatReadsBack) {
 INSTANTIATE_TEST_SUITE_P(Machine, EveryShipped, testing::ValuesIn(test::shipped_machines()),
                          test::test_name);
 
+TEST(Inspection, NamesTheKeepOutBoxes) {
+  const MachineModel model = machine_with(
+      "trunnion-ac", "[tolerances]",
+      "[[keep_out]]\nname = \"vice\"\nX_mm = [100, 250]\nA_deg = [-90, -10]\n[tolerances]");
+  EXPECT_NE(to_text(inspect(model), model)
+                .find("keep out   vice       X 100 .. 250 mm A -90 .. -10 deg\n"),
+            std::string::npos)
+      << to_text(inspect(model), model);
+}
+
 TEST(Inspection, TellsWhatAJointDoesAsTheWorkpieceSeesIt) {
   const MachineModel model = config::load_machine(test::shipped_file("head-table-bc"));
   const std::string text = to_text(inspect(model), model);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <utility>
 
 namespace meridian {
 namespace {
@@ -63,7 +65,15 @@ TEST(KeepOut, IsEnteredBetweenTwoPlacesThatAreBothOutside) {
   EXPECT_EQ(keep_out_between(keep_out, {15, 0, 0}, {15, 0, 0}).share, 0) << "standing inside";
 }
 
-TEST(KeepOut, TellsTheFirstOfSeveralBoxes) {
+TEST(KeepOut, IsEnteredWhereNobodyKnowsHowFarAJointIsBesideItsWay) {
+  const KeepOut keep_out = only(vice());
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(keep_out_between(keep_out, {0, 0, 0}, {1, 0, 0}, {kAnywhere}).box, 0);
+  EXPECT_EQ(keep_out_between(keep_out, {0, 0, 0}, {0, 0, 0}, {kAnywhere}).box, 0);
+  EXPECT_EQ(keep_out_between(keep_out, {0, 0, 9}, {1, 0, 9}, {kAnywhere}).box, -1);
+}
+
+TEST(KeepOut, ReportsTheFirstOfSeveralBoxes) {
   KeepOut keep_out = only(vice());
   KeepOutBox nearer = vice();
   nearer.min[0] = 2;

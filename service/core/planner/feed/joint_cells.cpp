@@ -129,7 +129,8 @@ PathFault check_keep_out(const MachineModel& model, const JointPlace& a, const J
     to[i] = b.q[i];
     const double bend = std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
                         0.5 * h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i]));
-    off[i] = kBetween * h * h / 8 * bend;
+    const double by = kBetween * h * h / 8 * bend;
+    off[i] = std::isfinite(by) ? by : std::numeric_limits<double>::infinity();
   }
   const int box = keep_out_between(model.keep_out, from, to, off).box;
   return box < 0 ? PathFault{} : PathFault{PathFault::Kind::kKeepOut, -1, 1.0 * box};
