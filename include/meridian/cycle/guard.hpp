@@ -38,11 +38,10 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
 /// Whether joints enter a keep-out box at `next` or on the straight way there from `previous`, each
 /// box less what a motion within its limits bends off that way. Whoever stands inside may come out,
 /// and stand, but goes no deeper. Boxes of joints without travel (`has_travel`) say nothing.
-[[nodiscard, gnu::noinline]] inline GuardVerdict check_keep_out(const MachineModel& machine,
-                                                                const JointVector& next,
-                                                                const JointVector& previous,
-                                                                double elapsed,
-                                                                std::uint32_t has_travel) noexcept {
+[[nodiscard]] inline GuardVerdict check_keep_out(const MachineModel& machine,
+                                                 const JointVector& next,
+                                                 const JointVector& previous, double elapsed,
+                                                 std::uint32_t has_travel) noexcept {
   JointVector off{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
     off[i] = -(machine.joints[i].limits.fault_acceleration * elapsed * elapsed / 8 + kGuardKeepOut);
@@ -62,11 +61,9 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
 }
 
 /// The drives of a stage, checked like joints; without `has_travel` not for their travel.
-[[nodiscard, gnu::noinline]] inline GuardVerdict check_stage(const MachineModel& machine,
-                                                             const JointVector& next,
-                                                             const JointVector& previous,
-                                                             double elapsed,
-                                                             bool has_travel) noexcept {
+[[nodiscard]] inline GuardVerdict check_stage(const MachineModel& machine, const JointVector& next,
+                                              const JointVector& previous, double elapsed,
+                                              bool has_travel) noexcept {
   const LimitedVector now = limited_of(machine, next), before = limited_of(machine, previous);
   for (int i = machine.joint_count; i < limited_count(machine); ++i) {
     const auto n = static_cast<std::size_t>(i);
@@ -77,6 +74,17 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
     if (!(std::abs(step) <= limits.velocity * elapsed + kGuardStep)) return {Alarm::kStep, i, step};
   }
   return {};
+}
+
+/// What few machines have: a stage, and keep-out boxes.
+[[nodiscard, gnu::noinline]] inline GuardVerdict check_beyond_joints(
+    const MachineModel& machine, const JointVector& next, const JointVector& previous,
+    double elapsed, std::uint32_t has_travel) noexcept {
+  const GuardVerdict verdict = machine.keep_out.empty()
+                                   ? GuardVerdict{}
+                                   : check_keep_out(machine, next, previous, elapsed, has_travel);
+  if (verdict.alarm != Alarm::kNone || !has_stage(machine)) return verdict;
+  return check_stage(machine, next, previous, elapsed, has_travel != 0);
 }
 
 /// Checks the next joint setpoint, the last thing before it is sent: finite, inside travel (for the
@@ -98,12 +106,9 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
       return {Alarm::kStep, i, step};
     }
   }
-  if (!machine.keep_out.empty()) {
-    const GuardVerdict verdict = check_keep_out(machine, next, previous, elapsed, has_travel);
-    if (verdict.alarm != Alarm::kNone) return verdict;
-  }
-  return has_stage(machine) ? check_stage(machine, next, previous, elapsed, has_travel != 0)
-                            : GuardVerdict{};
+  const bool has_more = has_stage(machine) || !machine.keep_out.empty();
+  return has_more ? check_beyond_joints(machine, next, previous, elapsed, has_travel)
+                  : GuardVerdict{};
 }
 
 }  // namespace meridian

@@ -266,7 +266,9 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
       if (!is_fault(fault)) {
         fault = check_joins(model_, before_place, place, step);
       }
-      if (!is_fault(fault)) fault = check_keep_out(model_, before_place, place, step);
+      if (!model_.keep_out.empty() && !is_fault(fault)) {
+        fault = check_keep_out(model_, before_place, place, step);
+      }
       if (is_fault(fault)) return fault;
     }
     values = here;

@@ -122,7 +122,6 @@ PathFault check_joins(const MachineModel& model, const JointPlace& a, const Join
 
 PathFault check_keep_out(const MachineModel& model, const JointPlace& a, const JointPlace& b,
                          double h) noexcept {
-  if (model.keep_out.empty()) return {};
   JointVector from{}, to{}, off{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
     from[i] = a.q[i];
@@ -162,7 +161,9 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       PathFault fault = check_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
       if (!is_fault(fault)) fault = check_travel(model, at[k].q);
       if (!is_fault(fault)) fault = check_joins(model, at[k - 1].place(), at[k].place(), h / 2);
-      if (!is_fault(fault)) fault = check_keep_out(model, at[k - 1].place(), at[k].place(), h / 2);
+      if (!model.keep_out.empty() && !is_fault(fault)) {
+        fault = check_keep_out(model, at[k - 1].place(), at[k].place(), h / 2);
+      }
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }
     for (int i = 0; i < count; ++i) {
