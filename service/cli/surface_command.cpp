@@ -5,6 +5,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/options/finite_range.hpp"
@@ -20,9 +21,9 @@ namespace meridian::cli::surface_command {
 namespace {
 
 struct Options {
-  std::string patch, sample, output, picture;
+  std::string patch, sample, output, picture, wrist_points;
   std::size_t points = 0, lines = 0;
-  double chord_error_mm = 0, scallop_mm = 0;
+  double chord_error_mm = 0, scallop_mm = 0, wrist_distance_mm = 0;
 };
 
 int refuse(const std::string& message) {
@@ -61,8 +62,15 @@ int make_path(const Options& options) {
   surface::write_program(job, *path, std::filesystem::path(options.patch).filename().string(),
                          program);
   if (const int code = put(options, program.str()); code != kFine) return code;
+  std::vector<surface::WristPoint> wrists;
+  if (options.wrist_distance_mm > 0)
+    wrists = surface::wrist_points(*path, options.wrist_distance_mm);
+  if (!options.wrist_points.empty() && !text::write_whole(options.wrist_points, to_table(wrists))) {
+    return refuse(options.wrist_points + " cannot be written");
+  }
   if (!options.picture.empty()) {
-    if (const auto error = surface::draw(job, *path, options.picture)) return refuse(*error);
+    if (const auto error = surface::draw(job, *path, wrists, options.picture))
+      return refuse(*error);
   }
   const surface::SurfaceReport report = surface::measure(job, *path);
   (options.output.empty() ? std::cerr : std::cout) << to_text(report, job);
@@ -72,12 +80,14 @@ int make_path(const Options& options) {
 int make_sample(const Options& options) {
   std::ostringstream program;
   surface::write_sample(options.sample, program);
-  return put(options, program.str());
+  if (const int code = put(options, program.str()); code != kFine) return code;
+  (options.output.empty() ? std::cerr : std::cout) << surface::sample_report(options.sample);
+  return kFine;
 }
 
 int run(const Options& options) {
-  const std::string lost =
-      text::refusal_to_write({options.patch}, {options.output, options.picture});
+  const std::string lost = text::refusal_to_write(
+      {options.patch}, {options.output, options.picture, options.wrist_points});
   if (!lost.empty()) return refuse(lost);
   if (options.patch.empty() == options.sample.empty()) {
     std::cerr << "meridian surface: name a patch file, or a part with --sample\n";
@@ -121,6 +131,16 @@ void add(CLI::App& app, int& exit_code) {
       ->excludes(lines);
   command->add_option("--picture", options->picture,
                       "Draw patch, path, curvature and chord error to this .png or .svg");
+  CLI::Option* const distance =
+      command
+          ->add_option("--wrist-distance", options->wrist_distance_mm,
+                       "From the contact S to a robot's wrist along the normal N, mm: draws the "
+                       "points S + dN in the picture")
+          ->check(finite_range(1e-3, 1e4));
+  command
+      ->add_option("--wrist-points", options->wrist_points,
+                   "Write these points and N as a table, x_mm,y_mm,z_mm,i,j,k")
+      ->needs(distance);
   command->add_option("--sample", options->sample, "Instead: a sample part by its name")
       ->check(CLI::IsMember(surface::sample_names()));
   command->callback([options, &exit_code] { exit_code = run(*options); });

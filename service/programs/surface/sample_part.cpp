@@ -5,8 +5,9 @@
 #include <numbers>
 
 #include "meridian/geometry/vector3.hpp"
-#include "meridian/units.hpp"
 #include "service/programs/cl/cl_writer.hpp"
+#include "service/programs/surface/sample_blocks.hpp"
+#include "service/programs/surface/side_milling.hpp"
 
 namespace meridian::surface {
 namespace {
@@ -52,30 +53,6 @@ std::vector<double> equal_steps(double begin, double end, int count) {
   return angles;
 }
 
-ClBlock motion(BlockKind kind, const ToolPose& pose, double feed_mm_per_min) {
-  ClBlock block;
-  block.kind = kind;
-  block.tip_mm = to_array(pose.tip);
-  block.axis = to_array(pose.axis);
-  if (kind == BlockKind::kCut) {
-    block.feed_meaning = FeedMeaning::kTip;
-    block.feed = units::per_s_from_per_min(feed_mm_per_min);
-  }
-  return block;
-}
-
-ClBlock action(BlockKind kind, ActionKind what, double value) {
-  ClBlock block;
-  block.kind = kind;
-  block.action = what;
-  block.value = value;
-  return block;
-}
-
-ToolPose above(const ToolPose& pose, double distance_mm) {
-  return {pose.tip + distance_mm * pose.axis, pose.axis};
-}
-
 }  // namespace
 
 std::vector<ClBlock> blossom() {
@@ -105,15 +82,27 @@ std::vector<ClBlock> blossom() {
   return blocks;
 }
 
-std::vector<std::string> sample_names() { return {"blossom"}; }
+std::vector<std::string> sample_names() { return {"blossom", "side-milling"}; }
 
 bool write_sample(std::string_view name, std::ostream& out) {
-  if (name != "blossom") return false;
-  cl::ClWriter writer(out, "MERIDIAN BLOSSOM");
-  writer.note("Three petals on a dome of 100 mm radius, tool along the normal, through the pole.");
-  writer.note("Made by: meridian surface --sample blossom");
-  for (const ClBlock& block : blossom()) writer.write(block);
+  if (name == "blossom") {
+    cl::ClWriter writer(out, "MERIDIAN BLOSSOM");
+    writer.note(
+        "Three petals on a dome of 100 mm radius, tool along the normal, through the pole.");
+    writer.note("Made by: meridian surface --sample blossom");
+    for (const ClBlock& block : blossom()) writer.write(block);
+    return true;
+  }
+  if (name != "side-milling") return false;
+  cl::ClWriter writer(out, "MERIDIAN SIDE MILLING");
+  writer.note("A ruled wall of 80 by 20 mm cut by the flank of an end mill of 10 mm.");
+  writer.note("Made by: meridian surface --sample side-milling");
+  for (const ClBlock& block : side_milling()) writer.write(block);
   return true;
+}
+
+std::string sample_report(std::string_view name) {
+  return name == "side-milling" ? side_milling_report() : std::string();
 }
 
 }  // namespace meridian::surface

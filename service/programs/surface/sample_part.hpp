@@ -17,6 +17,9 @@ namespace meridian::surface {
 /// gives the same bytes. Proof: tests/unit/surface/sample_part_test.cpp.
 bool write_sample(std::string_view name, std::ostream& out);
 
+/// What is worth knowing about it: undercut and overcut of `side-milling`; else empty.
+[[nodiscard]] std::string sample_report(std::string_view name);
+
 /// `blossom`: a rose of three petals cut into a dome of 100 mm radius, ball-end tool along the
 /// normal.
 ///

@@ -227,4 +227,13 @@ Expected<SurfacePath, PathFault> cover(const ContactRule& rule, const CoverOptio
   return Cover(rule, options).run();
 }
 
+std::vector<const Contact*> in_order(const SurfacePath& path) {
+  std::vector<const Contact*> out;
+  for (const SurfacePath::Line& line : path.lines) {
+    for (const Contact& c : line.contacts) out.push_back(&c);
+    for (const Contact& c : line.crossing) out.push_back(&c);
+  }
+  return out;
+}
+
 }  // namespace meridian::surface

@@ -36,6 +36,9 @@ struct SurfacePath {
   bool is_zigzag = true;
 };
 
+/// Every contact, in the order in which they are cut. The path must live as long.
+[[nodiscard]] std::vector<const Contact*> in_order(const SurfacePath& path);
+
 /// Why there is no path: what is wrong, what to do.
 struct PathFault {
   std::string what;

@@ -16,15 +16,6 @@ constexpr std::size_t kAxes = 150;  // drawn at most
 constexpr double kMicrometre_mm = 1e-3;
 constexpr double kMetre_mm = 1e3;
 
-std::vector<const Contact*> in_order(const SurfacePath& path) {
-  std::vector<const Contact*> out;
-  for (const SurfacePath::Line& line : path.lines) {
-    for (const Contact& c : line.contacts) out.push_back(&c);
-    for (const Contact& c : line.crossing) out.push_back(&c);
-  }
-  return out;
-}
-
 /// $surface: u v x y z curvature over a mesh of the whole patch; no value where there is no normal.
 void print_surface(std::FILE* out, const PatchJob& job) {
   const auto [u0, u1] = job.surface->domain_u();
@@ -81,8 +72,19 @@ void print_path(std::FILE* out, const PatchJob& job, const SurfacePath& path, do
   std::fputs("EOD\n", out);
 }
 
-void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path) {
+/// $wrists, never empty.
+void print_wrists(std::FILE* out, const std::vector<WristPoint>& wrists) {
+  std::fputs("$wrists << EOD\nNaN NaN NaN\n", out);
+  for (const WristPoint& p : wrists) {
+    std::fprintf(out, "%.7g %.7g %.7g\n", p.at[0], p.at[1], p.at[2]);
+  }
+  std::fputs("EOD\n", out);
+}
+
+void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path,
+                  const std::vector<WristPoint>& wrists) {
   print_surface(out, job);
+  print_wrists(out, wrists);
   print_path(out, job, path, 0.06 * job.surface->size_mm());
   std::fprintf(out, "set multiplot title %s\n", plot::quoted(job.name).c_str());
   std::fputs(
@@ -94,7 +96,14 @@ void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path) 
       "splot $surface using 3:4:5 with lines lw 0.4 lc '#c8c8c8' title 'patch', "
       "$axes using 1:2:3:4:5:6 with vectors nohead lw 0.8 lc '#e08214' title 'tool axis', "
       "$tips using 1:2:3 with lines lw 1.3 lc '#1f5fa8' title 'tip', "
-      "$gouges using 1:2:3 with points pt 7 ps 0.6 lc '#c22f4f' title 'gouge'\n"
+      "$gouges using 1:2:3 with points pt 7 ps 0.6 lc '#c22f4f' title 'gouge'",
+      out);
+  if (!wrists.empty()) {
+    std::fputs(", $wrists using 1:2:3 with points pt 7 ps 0.4 lc '#2a9d5c' title 'wrist, S + dN'",
+               out);
+  }
+  std::fputs(
+      "\n"
       "unset view\nunset key\nunset zlabel\nset view map\n"
       "set origin 0.62,0.42\nset size 0.37,0.53\nset xlabel 'u'\nset ylabel 'v'\n"
       "set title 'largest principal curvature, 1/m; positive: towards the cutter'\n"
@@ -116,9 +125,9 @@ void print_script(std::FILE* out, const PatchJob& job, const SurfacePath& path) 
 }  // namespace
 
 std::optional<std::string> draw(const PatchJob& job, const SurfacePath& path,
-                                const std::string& file) {
-  const auto error =
-      plot::draw(file, {1500, 850, 14, 11}, [&](std::FILE* out) { print_script(out, job, path); });
+                                const std::vector<WristPoint>& wrists, const std::string& file) {
+  const auto error = plot::draw(file, {1500, 850, 14, 11},
+                                [&](std::FILE* out) { print_script(out, job, path, wrists); });
   return error ? std::optional(error->text()) : std::nullopt;
 }
 

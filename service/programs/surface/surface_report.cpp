@@ -4,23 +4,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "meridian/units.hpp"
+#include "service/programs/surface/print.hpp"
 
 namespace meridian::surface {
 namespace {
 
 double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
 }
 
 std::string radius(double mm) { return std::isfinite(mm) ? print("%.6g mm", mm) : "none"; }

@@ -188,6 +188,14 @@ TEST(SurfaceCommand, CoversAPatchAndReportsBesideIt) {
   const std::string picture = testing::TempDir() + "surface.svg";
   EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --picture " + picture).exit_code, 0);
   EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
+  const std::string wrists = testing::TempDir() + "wrists.csv";
+  EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --wrist-distance 80 --wrist-points " +
+                     wrists + " --picture " + picture)
+                .exit_code,
+            0);
+  EXPECT_NE(meridian::test::read_text(picture).find("wrist, S + dN"), std::string::npos);
+  EXPECT_NE(meridian::test::read_text(wrists).find("x_mm,y_mm,z_mm,i,j,k\n"), std::string::npos);
+  EXPECT_EQ(run_tool("surface " + kPatch + " --wrist-points " + wrists).exit_code, 2);
   const CommandOutput finer = run_tool("surface " + kPatch + " --points 5 --lines 3 -o " + file);
   EXPECT_NE(finer.output.find("3 lines, 15 contacts"), std::string::npos) << finer.output;
   EXPECT_EQ(run_tool("surface " + kPatch + " 2>/dev/null | head -1").output,
