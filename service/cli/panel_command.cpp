@@ -9,6 +9,8 @@
 
 #include "service/cli/commands.hpp"
 #include "service/cli/options/peer_options.hpp"
+#include "service/panel/desks/request_guard.hpp"
+#include "service/panel/desks/token_guard.hpp"
 #include "service/panel/panel.hpp"
 #include "service/panel/serve/server.hpp"
 #include "service/transport/participant.hpp"
@@ -19,10 +21,33 @@ namespace {
 struct Options {
   PeerOptions peer;
   panel::PanelOptions panel;
+  std::string public_url, token_file;
   bool is_open_network = false;
 };
 
+/// Says nothing where both are right, else why not.
+std::string read_access(Options& options) {
+  if (!options.public_url.empty()) {
+    const auto host = panel::public_host_of(options.public_url);
+    if (!host) {
+      return "--public takes the address of the TLS proxy, as https://NAME or https://NAME:PORT";
+    }
+    options.panel.public_host = *host;
+  }
+  if (options.token_file.empty()) return "";
+  try {
+    options.panel.token = panel::load_token(options.token_file);
+  } catch (const panel::TokenError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 int run(Options& options) {
+  if (const std::string refusal = read_access(options); !refusal.empty()) {
+    std::fprintf(stderr, "meridian: %s\n", refusal.c_str());
+    return kUsage;
+  }
   const auto open_network =
       options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused;
   {  // Before a machine is looked for: on an open network a stranger may answer.
@@ -44,9 +69,15 @@ int run(Options& options) {
     panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
       std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
                   static_cast<unsigned>(port));
+      if (!options.panel.public_host.empty()) {
+        std::printf("and behind its TLS proxy at https://%s/\n", options.panel.public_host.c_str());
+      }
       std::fflush(stdout);
     });
   } catch (const panel::ServerError& error) {
+    std::fprintf(stderr, "meridian: %s\n", error.what());
+    return kUsage;
+  } catch (const panel::TokenError& error) {
     std::fprintf(stderr, "meridian: %s\n", error.what());
     return kUsage;
   }
@@ -62,6 +93,12 @@ void add(CLI::App& app, int& exit_code) {
   command->add_option("--port", options->panel.port, "Port on loopback; 0: any that is free")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
+  command->add_option("--token", options->token_file,
+                      "File with the word that browsers and programs have to show; none: loopback "
+                      "is open to every account of this host");
+  command->add_option("--public", options->public_url,
+                      "https://NAME:PORT of a TLS proxy on this host that leads to the panel; "
+                      "needs --token");
   command->add_flag("--watch", options->panel.is_watching,
                     "The page shows and asks for nothing: no buttons");
   command->add_flag("--actions", options->panel.answers_actions,

@@ -10,6 +10,7 @@ extern const char meridian_page_index[], meridian_page_index_end[];
 extern const char meridian_page_script[], meridian_page_script_end[];
 extern const char meridian_page_style[], meridian_page_style_end[];
 extern const char meridian_page_notices[], meridian_page_notices_end[];
+extern const char meridian_page_login[], meridian_page_login_end[];
 extern const char meridian_page_viewer[], meridian_page_viewer_end[];
 }
 
@@ -37,6 +38,8 @@ std::optional<PageFile> find_page_file(std::string_view path) {
   if (found == files.end()) return std::nullopt;
   return *found;
 }
+
+std::string_view login_html() { return bytes(meridian_page_login, meridian_page_login_end); }
 
 std::string_view viewer_html() { return bytes(meridian_page_viewer, meridian_page_viewer_end); }
 

@@ -18,6 +18,10 @@ struct PageFile {
 /// Returns the file of that path; nothing where the page has none.
 [[nodiscard]] std::optional<PageFile> find_page_file(std::string_view path);
 
+/// The page that asks for the token: HTML, with kLoginReason where a reason belongs.
+[[nodiscard]] std::string_view login_html();
+inline constexpr std::string_view kLoginReason = "<!--reason-->";
+
 /// The page as one HTML file that needs no server; empty where this build has no page.
 [[nodiscard]] std::string_view viewer_html();
 

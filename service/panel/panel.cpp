@@ -115,7 +115,8 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
       const Hub::Text text = hub.newest(Hub::kMetrics);
       return text ? *text : std::string();
     };
-    const Server server(hub, options.port, std::move(handler));
+    const Server server(hub, {options.port, options.public_host, options.token},
+                        std::move(handler));
     on_ready(server.port());
     while (!is_ending) {
       watch.poll();

@@ -12,14 +12,17 @@ namespace meridian::panel {
 
 struct PanelOptions {
   std::uint16_t port = 8090;     ///< of loopback; 0: any that is free
+  std::string public_host;       ///< of a TLS proxy in front of it; empty: there is none
+  std::string token;             ///< what browsers and programs have to show; empty: nothing
   std::string operator_name;     ///< for messages and the log
   std::string station_name;      ///< of the panel as a station of programs
   bool answers_actions = false;  ///< the operator does what the path waits for, in place of a PLC
   bool is_watching = false;      ///< the page has no buttons, and nothing that it says is passed on
 };
 
-/// Serves the page of one machine until `is_ending`. `on_ready` gets the port. Throws DdsError and
-/// ServerError. Never touches motion: what a page asks for goes the way of `meridian ctl`.
+/// Serves the page of one machine until `is_ending`. `on_ready` gets the port. Throws DdsError,
+/// ServerError and TokenError. Never touches motion: what a page asks for goes the way of `meridian
+/// ctl`.
 void run_panel(dds::Participant& participant, const PanelOptions& options,
                const std::atomic<bool>& is_ending,
                const std::function<void(std::uint16_t)>& on_ready);

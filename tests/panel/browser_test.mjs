@@ -291,6 +291,26 @@ async function strangersReachNothing() {
   must((await exchange(`GET /../../etc/passwd HTTP/1.1\r\nHost: ${host}\r\n\r\n`)).match(/ (404|400) /), "a path leads out");
 }
 
+// By keys alone, through TLS: the token, and the page behind it.
+async function aBrowserElsewhereShowsTheToken(browser) {
+  const elsewhere = await plant.startPanelElsewhere();
+  const context = await browser.newContext({ viewport: kSmall, ignoreHTTPSErrors: true });
+  const page = await context.newPage();
+  // Asked while a page goes, the next one answers.
+  const holds = (what, isTrue) => until(what, () => page.evaluate(isTrue).catch(() => false), 60000);
+  await page.goto(elsewhere.secured);
+  for (const [shown, isRight] of [["a wrong one", false], [elsewhere.token, true]]) {
+    await holds("the cursor", () => document.activeElement.id === "token");
+    await page.keyboard.type(shown);
+    await page.keyboard.press("Enter");
+    if (!isRight) await holds("the reason", () => document.querySelector('[role="alert"]').textContent.includes("not the token"));
+  }
+  await holds("a frame", () => globalThis.meridian?.frame != null);
+  await context.close();
+  elsewhere.panel.kill("SIGTERM");
+  elsewhere.proxy.close();
+}
+
 async function junkLeavesTheMemoryFlat(count) {
   const { host } = new URL(plant.url);
   const junk = [`GET /${"a".repeat(300)} HTTP/1.1\r\nHost: ${host}\r\n\r\n`, "\0\x01\x02 junk\r\n\r\n", `POST / HTTP/1.1\r\nHost: ${host}\r\nContent-Length: 5\r\n\r\nhello`,
@@ -332,6 +352,7 @@ try {
   await run("EveryViewIsAccessible", everyViewIsAccessible, open);
   open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);
   await picture(open.page, "panel-light");
+  await run("ABrowserElsewhereShowsTheToken", aBrowserElsewhereShowsTheToken, open.browser);
   await run("StrangersReachNothing", strangersReachNothing);
   await run("JunkLeavesTheMemoryFlat", junkLeavesTheMemoryFlat, 2000);
   await run("TheMachineDoesNotNoticeTheEndOfThePanel", theMachineDoesNotNoticeTheEndOfThePanel);

@@ -21,21 +21,48 @@ using namespace std::chrono_literals;
   return kModel;
 }
 
+const Site kLoopback{8090, ""};
+const Site kBehindProxy{8090, "cell-4.shop:8443"};
+
 TEST(RequestGuard, KnowsItsOwnNames) {
-  EXPECT_TRUE(is_own_host("127.0.0.1:8090", 8090));
-  EXPECT_TRUE(is_own_host("localhost:8090", 8090));
-  EXPECT_TRUE(is_own_host("[::1]:8090", 8090));
-  for (const char* const foreign : {"", "evil.example:8090", "127.0.0.1", "127.0.0.1:80",
-                                    "127.0.0.1:80901", "localhost.evil.example:8090"}) {
-    EXPECT_FALSE(is_own_host(foreign, 8090)) << foreign;
+  EXPECT_TRUE(is_own_host("127.0.0.1:8090", kLoopback));
+  EXPECT_TRUE(is_own_host("localhost:8090", kLoopback));
+  EXPECT_TRUE(is_own_host("[::1]:8090", kLoopback));
+  EXPECT_TRUE(is_own_host("localhost:8090", kBehindProxy));
+  EXPECT_TRUE(is_own_host("cell-4.shop:8443", kBehindProxy));
+  EXPECT_FALSE(is_own_host("cell-4.shop:8443", kLoopback));
+  for (const char* const foreign :
+       {"", "evil.example:8090", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:80901",
+        "localhost.evil.example:8090", "cell-4.shop", "cell-4.shop:8090"}) {
+    EXPECT_FALSE(is_own_host(foreign, kLoopback)) << foreign;
+    EXPECT_FALSE(is_own_host(foreign, kBehindProxy)) << foreign;
   }
 }
 
 TEST(RequestGuard, AnotherSiteIsNoOrigin) {
-  EXPECT_TRUE(is_own_origin("http://localhost:8090", "localhost:8090"));
+  EXPECT_TRUE(is_own_origin("http://localhost:8090", "localhost:8090", kLoopback));
   for (const char* const foreign : {"", "null", "http://evil.example", "http://localhost:8091",
                                     "https://localhost:8090", "http://127.0.0.1:8090"}) {
-    EXPECT_FALSE(is_own_origin(foreign, "localhost:8090")) << foreign;
+    EXPECT_FALSE(is_own_origin(foreign, "localhost:8090", kLoopback)) << foreign;
+  }
+}
+
+TEST(RequestGuard, BehindAProxyThePageIsSecured) {
+  EXPECT_TRUE(is_own_origin("https://cell-4.shop:8443", "cell-4.shop:8443", kBehindProxy));
+  EXPECT_TRUE(is_own_origin("http://localhost:8090", "localhost:8090", kBehindProxy));
+  for (const char* const foreign :
+       {"http://cell-4.shop:8443", "https://cell-4.shop", "https://evil.example:8443", "null"}) {
+    EXPECT_FALSE(is_own_origin(foreign, "cell-4.shop:8443", kBehindProxy)) << foreign;
+  }
+}
+
+TEST(RequestGuard, ReadsThePublicAddressAsABrowserWritesIt) {
+  EXPECT_EQ(public_host_of("https://cell-4.shop:8443"), "cell-4.shop:8443");
+  EXPECT_EQ(public_host_of("https://Cell-4.Shop/"), "cell-4.shop");
+  EXPECT_EQ(public_host_of("https://10.0.0.7:443"), "10.0.0.7");
+  for (const char* const bad : {"", "cell-4.shop", "http://cell-4.shop", "https://", "https://a/b",
+                                "https://a b", "https://user@a"}) {
+    EXPECT_FALSE(public_host_of(bad)) << bad;
   }
 }
 

@@ -3,8 +3,10 @@
 import { spawn, execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { connect } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { createServer } from "node:tls";
 
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -58,9 +60,35 @@ export class Plant {
   }
 
   async startPanel() {
-    const panel = this.spawn("meridian", "panel", "--domain", this.domain, "--port", "0", "--timeout", "20");
-    this.url = await until("the panel says where it is", () => /http:\S+/.exec(panel.text)?.[0], 30000);
+    const { panel, url } = await this.spawnPanel();
+    this.url = url;
     return panel;
+  }
+
+  async spawnPanel(...words) {
+    const panel = this.spawn("meridian", "panel", "--domain", this.domain, "--port", "0", "--timeout", "20", ...words);
+    const url = await until("the panel says where it is", () => /http:\S+/.exec(panel.text)?.[0], 30000);
+    return { panel, url };
+  }
+
+  // A panel with a token behind a TLS proxy with a certificate of its own.
+  async startPanelElsewhere() {
+    const file = (name) => join(this.folder, name), token = "0123456789abcdef0123456789abcdef";
+    execFileSync("openssl", ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2",
+      "-subj", "/CN=localhost", "-keyout", file("key.pem"), "-out", file("certificate.pem")], { stdio: "ignore" });
+    writeFileSync(file("token"), `${token}\n`, { mode: 0o600 });
+    let target = null;
+    const proxy = createServer({ key: readFileSync(file("key.pem")), cert: readFileSync(file("certificate.pem")) }, (outside) => {
+      const inside = connect(target, "127.0.0.1");
+      outside.pipe(inside).pipe(outside);
+      outside.on("error", () => inside.destroy());
+      inside.on("error", () => outside.destroy());
+    });
+    await new Promise((resolve) => proxy.listen(0, "127.0.0.1", resolve));
+    const secured = `https://localhost:${proxy.address().port}`;
+    const { panel, url } = await this.spawnPanel("--public", secured, "--token", file("token"));
+    target = Number(new URL(url).port);
+    return { panel, url, secured, token, proxy, tokenFile: file("token") };
   }
 
   async stop() {

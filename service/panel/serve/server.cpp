@@ -10,42 +10,14 @@
 #include <utility>
 
 #include "service/panel/desks/request_guard.hpp"
+#include "service/panel/desks/token_guard.hpp"
 #include "service/panel/page.hpp"
+#include "service/panel/serve/http.hpp"
+#include "service/panel/serve/login_page.hpp"
 #include "service/panel/serve/page_client.hpp"
 
 namespace meridian::panel {
 namespace {
-
-/// No script, style, picture or link but the page's own; nobody shows it in a frame.
-constexpr const char* kHeaders =
-    "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; "
-    "img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'\r\n"
-    "X-Content-Type-Options: nosniff\r\n"
-    "Referrer-Policy: no-referrer\r\n"
-    "Cross-Origin-Opener-Policy: same-origin\r\n"
-    "Cross-Origin-Resource-Policy: same-origin\r\n"
-    "Cache-Control: no-cache\r\n";
-
-[[nodiscard]] std::string_view header_of(const mg_connection* connection, const char* name) {
-  const char* const value = mg_get_header(connection, name);
-  return value != nullptr ? value : "";
-}
-
-void answer(mg_connection* connection, const char* status, std::string_view type,
-            std::string_view body, bool is_gzip = false) {
-  const std::string_view method = mg_get_request_info(connection)->request_method;
-  mg_printf(connection,
-            "HTTP/1.1 %s\r\n%sContent-Type: %.*s\r\nContent-Length: %zu\r\n%sConnection: close\r\n"
-            "\r\n",
-            status, kHeaders, static_cast<int>(type.size()), type.data(), body.size(),
-            is_gzip ? "Content-Encoding: gzip\r\n" : "");
-  if (method != "HEAD") mg_write(connection, body.data(), body.size());
-}
-
-void refuse(mg_connection* connection, const char* status, std::string_view why) {
-  answer(connection, status, "text/plain; charset=utf-8", why);
-}
 
 [[nodiscard]] const char* status_line(int status) {
   switch (status) {
@@ -58,27 +30,23 @@ void refuse(mg_connection* connection, const char* status, std::string_view why)
   }
 }
 
-[[nodiscard]] std::string query_of(const mg_connection* connection) {
-  const char* const query = mg_get_request_info(connection)->query_string;
-  return query != nullptr ? query : "";
-}
-
-/// A variable of a query, decoded; empty where it is not there, or longer than any that is meant.
-[[nodiscard]] std::string find_variable(const std::string& query, const char* name) {
-  std::array<char, 512> value{};
-  const int length = mg_get_var(query.data(), query.size(), name, value.data(), value.size());
-  return length > 0 ? std::string(value.data(), static_cast<std::size_t>(length)) : "";
-}
-
 }  // namespace
 
 struct Server::Impl {
   Impl(Hub& shared, PageHandler page_handler) : hub(shared), handler(std::move(page_handler)) {}
 
   [[nodiscard]] bool is_from_here(const mg_connection* connection) const {
-    return is_own_host(header_of(connection, "Host"), port);
+    return is_own_host(http::header_of(connection, "Host"), site);
   }
-  int serve(mg_connection* connection);
+  /// A browser says where a POST or a WebSocket comes from: a page of another site is refused.
+  [[nodiscard]] bool is_from_own_page(const mg_connection* connection) const {
+    return is_own_origin(http::header_of(connection, "Origin"), http::header_of(connection, "Host"),
+                         site);
+  }
+  [[nodiscard]] bool is_known(const mg_connection* connection);
+  void ask_for_token(mg_connection* connection, std::string_view path) const;
+  void log_in(mg_connection* connection);
+  void serve(mg_connection* connection);
   void upload(mg_connection* connection);
   [[nodiscard]] std::optional<HttpAnswer> get(const mg_connection* connection,
                                               std::string_view path) const;
@@ -90,69 +58,116 @@ struct Server::Impl {
   Hub& hub;
   PageHandler handler;
   mg_context* context = nullptr;
-  std::uint16_t port = 0;
+  Site site;
+  std::optional<TokenGuard> tokens;  ///< none: nobody is asked
   std::mutex mutex;
   std::map<const mg_connection*, std::unique_ptr<PageClient>> pages;
 };
 
-/// Answers one request; 1: done.
-int Server::Impl::serve(mg_connection* connection) {
+/// Whether the request is of somebody who has shown the token: a browser with its session, or a
+/// program that shows it each time.
+bool Server::Impl::is_known(const mg_connection* connection) {
+  constexpr std::string_view kBearer = "Bearer ";
+  if (!tokens || tokens->has_session(http::header_of(connection, "Cookie"), site.port)) return true;
+  const std::string_view shown = http::header_of(connection, "Authorization");
+  return shown.starts_with(kBearer) &&
+         tokens->check(shown.substr(kBearer.size()), TokenGuard::Clock::now()) ==
+             TokenCheck::kRight;
+}
+
+void Server::Impl::ask_for_token(mg_connection* connection, std::string_view path) const {
+  if (path == "/" || path == "/login") return answer_login(connection, "401 Unauthorized", "");
+  if (const auto style = find_page_file(path); style && path == "/panel.css") {
+    return http::answer(connection, "200 OK", style->bytes, {style->type, style->is_gzip});
+  }
+  http::answer(connection, "401 Unauthorized", "show the token of this panel\n",
+               {.headers = "WWW-Authenticate: Bearer\r\n"});
+}
+
+void Server::Impl::log_in(mg_connection* connection) {
+  constexpr long long kMaxForm = 1024;
+  if (!is_from_own_page(connection)) {
+    return http::answer(connection, "403 Forbidden", "this is no page of the panel\n");
+  }
+  const std::string form = http::read_body(connection, kMaxForm);
+  switch (tokens->check(http::find_variable(form, "token"), TokenGuard::Clock::now())) {
+    case TokenCheck::kRight: {
+      const bool is_secured = is_public_host(http::header_of(connection, "Host"), site);
+      const std::string headers = tokens->session_cookie(site.port, is_secured) + "Location: /\r\n";
+      return http::answer(connection, "303 See Other", "", {.headers = headers});
+    }
+    case TokenCheck::kWrong:
+      return answer_login(connection, "401 Unauthorized", "This is not the token of this panel.");
+    case TokenCheck::kTooMany:
+      return answer_login(connection, "429 Too Many Requests",
+                          "Too many wrong tokens. Wait half a minute, then try again.");
+  }
+}
+
+void Server::Impl::serve(mg_connection* connection) {
   const mg_request_info* const request = mg_get_request_info(connection);
   const std::string_view method = request->request_method;
   const std::string_view path = request->local_uri != nullptr ? request->local_uri : "";
   if (!is_from_here(connection)) {
-    refuse(connection, "403 Forbidden", "this is no name of the panel's host\n");
+    http::answer(connection, "403 Forbidden", "this is no name of the panel's host\n");
+  } else if (method == "POST" && path == "/login" && tokens) {
+    log_in(connection);
+  } else if (!is_known(connection)) {
+    ask_for_token(connection, path);
   } else if (method == "POST" && path == "/program" && handler.upload) {
     upload(connection);
   } else if (method != "GET" && method != "HEAD") {
-    refuse(connection, "405 Method Not Allowed", "GET and HEAD alone\n");
+    http::answer(connection, "405 Method Not Allowed", "GET and HEAD alone\n");
   } else if (path == "/metrics" && handler.metrics) {
-    answer(connection, "200 OK", "text/plain; version=0.0.4; charset=utf-8", handler.metrics());
+    http::answer(connection, "200 OK", handler.metrics(),
+                 {.type = "text/plain; version=0.0.4; charset=utf-8"});
   } else if (const auto file = find_page_file(path)) {
-    answer(connection, "200 OK", file->type, file->bytes, file->is_gzip);
+    http::answer(connection, "200 OK", file->bytes, {file->type, file->is_gzip});
   } else if (const auto found = get(connection, path)) {
-    answer(connection, status_line(found->status), found->type, found->text);
+    http::answer(connection, status_line(found->status), found->text, {.type = found->type});
   } else {
-    refuse(connection, "404 Not Found", "the panel has no such page\n");
+    http::answer(connection, "404 Not Found", "the panel has no such page\n");
   }
-  return 1;
 }
 
 std::optional<HttpAnswer> Server::Impl::get(const mg_connection* connection,
                                             std::string_view path) const {
   if (!handler.get) return std::nullopt;
-  const std::string query = query_of(connection);
-  return handler.get({path, [&query](const char* name) -> std::uint64_t {
-                        const std::string value = find_variable(query, name);
+  const std::string_view query = http::query_of(connection);
+  return handler.get({path, [query](const char* name) -> std::uint64_t {
+                        const std::string value = http::find_variable(query, name);
                         std::uint64_t number = 0;
                         std::from_chars(value.data(), value.data() + value.size(), number);
                         return number;
                       }});
 }
 
-/// A browser says where a POST comes from: a page of another site is refused.
 void Server::Impl::upload(mg_connection* connection) {
-  const bool is_own = is_own_origin(header_of(connection, "Origin"), header_of(connection, "Host"));
   const long long bytes = mg_get_request_info(connection)->content_length;
-  if (!is_own) return refuse(connection, "403 Forbidden", "this is no page of the panel\n");
-  if (bytes < 0) return refuse(connection, "411 Length Required", "how long is the file?\n");
-  const std::string query = query_of(connection);
+  if (!is_from_own_page(connection)) {
+    return http::answer(connection, "403 Forbidden", "this is no page of the panel\n");
+  }
+  if (bytes < 0) {
+    return http::answer(connection, "411 Length Required", "how long is the file?\n");
+  }
+  const std::string_view query = http::query_of(connection);
   HttpUpload upload;
-  upload.key = find_variable(query, "key");
-  upload.name = find_variable(query, "name");
+  upload.key = http::find_variable(query, "key");
+  upload.name = http::find_variable(query, "name");
   upload.bytes = static_cast<std::uint64_t>(bytes);
   upload.read = [connection](char* buffer, std::size_t size) -> std::int64_t {
     return mg_read(connection, buffer, size);
   };
   const HttpAnswer done = handler.upload(upload);
-  answer(connection, status_line(done.status), done.type, done.text);
+  http::answer(connection, status_line(done.status), done.text, {.type = done.type});
 }
 
 bool Server::Impl::admits(const mg_connection* connection) {
+  if (!is_from_here(connection) || !is_from_own_page(connection) || !is_known(connection)) {
+    return false;
+  }
   const std::lock_guard lock(mutex);
-  return is_from_here(connection) &&
-         is_own_origin(header_of(connection, "Origin"), header_of(connection, "Host")) &&
-         pages.size() < kMaxPages;
+  return pages.size() < kMaxPages;
 }
 
 void Server::Impl::open(mg_connection* connection) {
@@ -197,42 +212,48 @@ void Server::Impl::close(const mg_connection* connection) {
   handler.on_close(*page);
 }
 
-Server::Server(Hub& hub, std::uint16_t port, PageHandler handler)
+Server::Server(Hub& hub, ServerOptions options, PageHandler handler)
     : impl_(std::make_unique<Impl>(hub, std::move(handler))) {
+  impl_->site = {options.port, std::move(options.public_host)};
+  if (!options.token.empty()) impl_->tokens.emplace(std::move(options.token));
+  if (!impl_->site.public_host.empty() && !impl_->tokens) {
+    throw ServerError("a panel that is reached from elsewhere asks for a token: --token FILE");
+  }
   mg_init_library(MG_FEATURES_WEBSOCKET);
-  const std::string address = "127.0.0.1:" + std::to_string(port);
-  const std::array<const char*, 17> options{"listening_ports",
-                                            address.c_str(),
-                                            "num_threads",
-                                            "24",
-                                            "request_timeout_ms",
-                                            "10000",
-                                            "websocket_timeout_ms",
-                                            "20000",
-                                            "enable_websocket_ping_pong",
-                                            "yes",
-                                            "max_request_size",
-                                            "8192",
-                                            "tcp_nodelay",
-                                            "1",
-                                            "enable_directory_listing",
-                                            "no",
-                                            nullptr};
+  const std::string address = "127.0.0.1:" + std::to_string(options.port);
+  const std::array<const char*, 17> settings{"listening_ports",
+                                             address.c_str(),
+                                             "num_threads",
+                                             "24",
+                                             "request_timeout_ms",
+                                             "10000",
+                                             "websocket_timeout_ms",
+                                             "20000",
+                                             "enable_websocket_ping_pong",
+                                             "yes",
+                                             "max_request_size",
+                                             "8192",
+                                             "tcp_nodelay",
+                                             "1",
+                                             "enable_directory_listing",
+                                             "no",
+                                             nullptr};
   mg_callbacks callbacks{};
-  impl_->context = mg_start(&callbacks, impl_.get(), const_cast<const char**>(options.data()));
+  impl_->context = mg_start(&callbacks, impl_.get(), const_cast<const char**>(settings.data()));
   if (impl_->context == nullptr) {
     throw ServerError("nothing can listen at http://" + address +
                       ": another program does, or a panel that runs already; choose --port");
   }
   mg_server_port bound{};
   if (mg_get_server_ports(impl_->context, 1, &bound) > 0) {
-    impl_->port = static_cast<std::uint16_t>(bound.port);
+    impl_->site.port = static_cast<std::uint16_t>(bound.port);
   }
   Impl* const self = impl_.get();
   mg_set_request_handler(
       self->context, "/",
       [](mg_connection* connection, void* data) {
-        return static_cast<Impl*>(data)->serve(connection);
+        static_cast<Impl*>(data)->serve(connection);
+        return 1;
       },
       self);
   mg_set_websocket_handler(
@@ -256,6 +277,6 @@ Server::~Server() {
   mg_exit_library();
 }
 
-std::uint16_t Server::port() const noexcept { return impl_->port; }
+std::uint16_t Server::port() const noexcept { return impl_->site.port; }
 
 }  // namespace meridian::panel

@@ -60,20 +60,27 @@ struct PageHandler {
   std::function<std::optional<HttpAnswer>(const HttpQuery&)> get;
 };
 
+struct ServerOptions {
+  std::uint16_t port = 0;   ///< of loopback; 0: any that is free
+  std::string public_host;  ///< of a TLS proxy in front of it; empty: there is none
+  std::string token;        ///< what browsers and programs have to show; empty: nothing
+};
+
 /// HTTP and WebSocket on loopback: the files of the page, and a link to each page that is open.
 ///
 /// Requests whose Host is no name of this host, or whose Origin is another site, are refused: a
-/// page of the web that the operator has open in another tab reaches nothing. Pages get what the
-/// hub has, each from a thread of its own: one that does not read holds up no other. At most
-/// kMaxPages. Proof: tests/panel/operating_test.mjs.
+/// page of the web that the operator has open in another tab reaches nothing. With a token nobody
+/// reaches more than the page that asks for it, and behind a public host there has to be one. Pages
+/// get what the hub has, each from a thread of its own: one that does not read holds up no other.
+/// At most kMaxPages. Proof: tests/panel/browser_test.mjs, tests/panel/token_test.mjs.
 class Server {
  public:
   static constexpr int kMaxPages = 12;
   /// Longest text that a page may send.
   static constexpr std::size_t kMaxText = 4096;
 
-  /// `port` 0: any that is free. `hub` must live on. Throws ServerError.
-  Server(Hub& hub, std::uint16_t port, PageHandler handler);
+  /// `hub` must live on. Throws ServerError and TokenError.
+  Server(Hub& hub, ServerOptions options, PageHandler handler);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

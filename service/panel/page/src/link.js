@@ -8,13 +8,20 @@ export class Link {
   }
 
   connect() {
-    this.socket = new WebSocket(`ws://${location.host}/live`);
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    this.socket = new WebSocket(`${scheme}://${location.host}/live`);
     this.socket.addEventListener("open", () => this.onChange(true));
     this.socket.addEventListener("message", (event) => this.onText(JSON.parse(event.data)));
     this.socket.addEventListener("close", () => {
       this.onChange(false);
+      this.askAgain();
       setTimeout(() => this.connect(), 1000);
     });
+  }
+
+  // A panel that was started anew knows no session of before: its page asks for the token.
+  askAgain() {
+    fetch("/", { method: "HEAD" }).then(({ status }) => status === 401 && location.reload(), () => {});
   }
 
   get isOpen() {
