@@ -131,6 +131,23 @@ TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
     std::printf("  %d refused: %s\n", count, reason.c_str());
 }
 
+/// A pass along the base axis, 1 um beside it, that ends where the next span asks for another yaw.
+/// The yaw jumped by a degree there.
+TEST(SingularSeed, WhereAPassDoesNotMeetTheNextSpanTheBlockIsRefusedAndNothingJumps) {
+  constexpr std::uint32_t kSeed = 1016;
+  MachineModel robot = config::load_machine(shipped_file("robot-6r"));
+  config::place_workpiece(robot, config::parse_frame("0,0,0"));
+  const auto blocks = ShoulderPass(robot, kSeed).program(Pass::kAlong, 1e-3);
+  const JointVector start = joints_of(robot, blocks[0]);
+  SmoothTrace trace = plan_smooth(robot, blocks, start, {Transition::kSmooth, 0, 0}, true);
+  trace.joints = end_of(robot, trace, start);
+  const LimitUse use = measure_limits(robot, sample(robot, trace, 1e-3, 0.5, start), 1e-3);
+  EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
+  if (trace.last.status == PlanStatus::kRefused) {
+    EXPECT_EQ(trace.last.reject.code, RejectCode::kDiscontinuous);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Of, SingularSweep,
     testing::Values(Sweep{"WristSmooth", "robot-6r", true, Transition::kSmooth},

@@ -272,11 +272,13 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
       if (is_fault(fault)) return fault;
     }
     values = here;
-    const bool is_begin = last_ == 0 && k == 0;  // no step between where the machine rests and here
+    // No step between where the machine rests, or a robot's cell ended, and here: a span that is
+    // driven past a singular place and the next one may not agree.
+    const bool is_same_place = k == 0 && (last_ == 0 || model_.family == MachineFamily::kRobot);
     for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];
       const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
-      if (is_begin && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
+      if (is_same_place && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
       if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
         return {PathFault::Kind::kJump, i, jump};
       }
