@@ -16,6 +16,7 @@
 #include "service/machine/inspect/inspection.hpp"
 #include "service/machine/inspect/joint_pattern.hpp"
 #include "service/machine/inspect/machine_picture.hpp"
+#include "service/machine/inspect/path_picture.hpp"
 #include "service/machine/inspect/placing.hpp"
 #include "service/machine/inspect/program_poses.hpp"
 #include "service/machine/inspect/rotary_centres.hpp"
@@ -27,7 +28,7 @@ namespace {
 struct Options {
   MachineOptions machine;
   ClFileOptions cl;
-  std::string picture, pattern, program, box, touches, written;
+  std::string picture, along, pattern, program, box, touches, written;
   std::optional<double> sphere_radius_mm;
   bool may_turn = false;
 };
@@ -54,25 +55,45 @@ inspect::PlacingBox read_box(const std::string& text) {
                              .remedy = "give x0,x1,y0,y1,z0,z1 in mm, the smaller of each first"});
 }
 
-/// Looks for a frame in which the whole program fits.
-int place(const Options& options, const MachineModel& model) {
+/// Every pose of a program; throws config::ConfigError.
+Expected<std::vector<inspect::ProgramPose>, std::string> read_program(const Options& options,
+                                                                      const std::string& name,
+                                                                      const MachineModel& model) {
   ToolTable tools = load_tools(options.machine);
   cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
-  add_unknown_tools(options.program, reading, options.machine, tools);
+  add_unknown_tools(name, reading, options.machine, tools);
   describe_machine(reading, model, tools, load_tool_names(options.machine));
   std::ifstream file;
-  std::istream* const input = open_cl_file(options.program, file);
-  if (input == nullptr) return refuse(options.program + ": cannot be opened");
-  cl::ClReader reader(*input, options.program, reading);
-  const auto poses = inspect::read_poses(reader, model, tools);
-  if (!poses) return refuse(poses.error().text());
-  if (poses->empty()) return refuse(options.program + " moves nothing");
+  std::istream* const input = open_cl_file(name, file);
+  if (input == nullptr) return tl::make_unexpected(name + ": cannot be opened");
+  cl::ClReader reader(*input, name, reading);
+  auto poses = inspect::read_poses(reader, model, tools);
+  if (!poses) return tl::make_unexpected(poses.error().text());
+  if (poses->empty()) return tl::make_unexpected(name + " moves nothing");
+  return *std::move(poses);
+}
+
+/// Looks for a frame in which the whole program fits.
+int place(const Options& options, const MachineModel& model) {
+  const auto poses = read_program(options, options.program, model);
+  if (!poses) return refuse(poses.error());
   inspect::PlacingBox box =
       options.box.empty() ? inspect::widest_box(model, *poses) : read_box(options.box);
   box.may_turn = options.may_turn;
   const inspect::Placing found = inspect::find_placing(model, *poses, box);
   std::cout << to_text(found, model);
   return found.fit.margin >= 0 ? kFine : kVerdictNo;
+}
+
+/// The picture of the machine at places of a program.
+int draw_along(const Options& options, const MachineModel& model) {
+  constexpr int kPlaces = 9;
+  const auto poses = read_program(options, options.along, model);
+  if (!poses) return refuse(poses.error());
+  const auto stands = inspect::stands_along(model, *poses, kPlaces);
+  if (!stands) return refuse(options.along + ": " + stands.error());
+  const auto error = inspect::draw_along(model, *stands, options.picture);
+  return error ? refuse(*error) : kFine;
 }
 
 [[nodiscard]] std::optional<std::string> text_of(const std::string& name) {
@@ -103,12 +124,13 @@ int calibrate(const Options& options, const MachineModel& model) {
 
 int run(const Options& options) {
   const std::string lost =
-      text::refusal_to_write({options.machine.machine, options.touches},
+      text::refusal_to_write({options.machine.machine, options.touches, options.along},
                              {options.picture, options.pattern, options.written});
   if (!lost.empty()) return refuse(lost);
   const MachineModel model = load_machine(options.machine);
   if (!options.program.empty()) return place(options, model);
   if (!options.touches.empty()) return calibrate(options, model);
+  if (!options.along.empty()) return draw_along(options, model);
   const inspect::Inspection inspection = inspect::inspect(model);
   std::cout << to_text(inspection, model);
   if (!options.picture.empty()) {
@@ -136,8 +158,14 @@ void add(CLI::App& app, int& exit_code) {
   command->add_option("--frame", options->machine.frame,
                       "Where the workpiece lies: x,y,z[,a,b,c] in mm and deg, Rz(c) Ry(b) Rx(a); "
                       "instead of the machine file's frame");
-  command->add_option("--picture", options->picture,
-                      "Draw axes, pivots, tool and workpiece in three views to this .png or .svg");
+  CLI::Option* const picture = command->add_option(
+      "--picture", options->picture,
+      "Draw axes, pivots, tool and workpiece in three views to this .png or .svg");
+  command
+      ->add_option("--along", options->along,
+                   "With --picture: a part program; draw the arm, or slides and rods, where they "
+                   "stand at up to nine places of it")
+      ->needs(picture);
   command->add_option("--pattern", options->pattern,
                       "Write a CL file that moves each joint alone, forwards and back");
   CLI::Option* const program = command->add_option(
@@ -152,12 +180,11 @@ void add(CLI::App& app, int& exit_code) {
       ->needs(program);
   command->add_flag("--turn", options->may_turn, "With --place: the workpiece may turn about z")
       ->needs(program);
-  command->add_option("--tools", options->machine.tools, "With --place: tool table (TOML)")
-      ->needs(program);
+  command->add_option("--tools", options->machine.tools,
+                      "With --place or --along: tool table (TOML)");
   command
       ->add_option("--unknown-tool-length", options->machine.unknown_tool_length_mm,
-                   "With --place: length of tools that the table has not, mm")
-      ->needs(program)
+                   "With --place or --along: length of tools that the table has not, mm")
       ->check(finite_range(0.0, 1e4));
   CLI::Option* const touches =
       command->add_option("--calibrate", options->touches,

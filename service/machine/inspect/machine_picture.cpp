@@ -6,30 +6,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "service/analysis/plot/gnuplot.hpp"
+#include "service/machine/inspect/point_block.hpp"
 
 namespace meridian::inspect {
 namespace {
 
 using plot::quoted;
-
-void print(std::FILE* out, const Vector3& p) {
-  std::fprintf(out, "%.6g %.6g %.6g", p[0], p[1], p[2]);
-}
-
-/// A data block; a point that is no number is a gap. Never empty.
-void print_block(std::FILE* out, const std::string& name, const std::vector<Vector3>& points) {
-  std::fprintf(out, "$%s << EOD\n", name.c_str());
-  for (const Vector3& p : points) {
-    if (p.allFinite()) print(out, p);
-    std::fputs(p.allFinite() ? "\n" : "\n\n", out);  // one blank line would weave a surface
-  }
-  std::fputs(points.empty() ? "NaN NaN NaN\nEOD\n" : "EOD\n", out);
-}
 
 /// One line of a block of labels.
 std::string label(const Vector3& at, const std::string& text) {
@@ -104,7 +90,7 @@ std::vector<Vector3> arc(const Scene& scene, const SkeletonJoint& joint, std::st
 void print_joints(std::FILE* out, const Scene& scene, bool is_table) {
   const double length = scene.length;
   std::vector<Vector3> axes, arcs;
-  const Vector3 gap = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Vector3 gap = gap_of_block();
   std::string arrows, labels;
   for (const SkeletonJoint& joint : scene.skeleton.joints) {
     if ((joint.side == Side::kTable) != is_table) continue;
@@ -147,9 +133,9 @@ void print_scene(std::FILE* out, const Scene& scene) {
   std::fputs("$frame << EOD\n", out);
   for (int i = 0; i < 3; ++i) {
     const Vector3 by = 0.6 * scene.length * scene.model.frame_rotation.col(i);
-    print(out, origin);
+    print_point(out, origin);
     std::fputs(" ", out);
-    print(out, by);
+    print_point(out, by);
     std::fputs("\n", out);
     labels += label(origin + 1.3 * by, std::string(1, "xyz"[i]));
   }
@@ -180,39 +166,6 @@ std::string plot(const Scene& scene, const char* verb, const std::string& column
   return out + "$framelabels" + u + ":4 with labels font ',10' tc '#2a9d5c' notitle\n";
 }
 
-void print_views(std::FILE* out, const Scene& scene) {
-  const auto range = [&](char name, int axis) {
-    std::fprintf(out, "set %crange [%.6g:%.6g]\n", name, scene.middle[axis] - scene.half,
-                 scene.middle[axis] + scene.half);
-  };
-  for (int i = 0; i < 3; ++i) range("xyz"[i], i);
-  std::fputs(
-      "set origin 0.11,0.5\nset size 0.4,0.46\nset view equal xyz\nset view 65,30,1.5\n"
-      "set xyplane relative 0\nset key at screen 0.01,0.96 left top samplen 2\n"
-      "set xlabel 'x'\nset ylabel 'y'\nset zlabel 'z'\n",
-      out);
-  std::fputs(plot(scene, "splot", "1:2:3", "1:2:3:4:5:6").c_str(), out);
-  std::fputs("unset key\nset size ratio -1\nset grid lc '#e4e4e4'\n", out);
-  struct View {
-    const char *title, *place;
-    int across, up;
-  };
-  constexpr View kViews[] = {
-      {"front", "0.5,0.49", 0, 2}, {"side", "0.5,0.0", 1, 2}, {"top", "0.0,0.0", 0, 1}};
-  for (const View& view : kViews) {
-    const int a = view.across, b = view.up;
-    std::fprintf(out,
-                 "set origin %s\nset size 0.49,0.47\nset title '%s'\nset xlabel '%c, mm'\n"
-                 "set ylabel '%c, mm'\n",
-                 view.place, view.title, "xyz"[a], "xyz"[b]);
-    range('x', a);
-    range('y', b);
-    const std::string columns = std::to_string(a + 1) + ":" + std::to_string(b + 1);
-    const std::string vectors = columns + ":" + std::to_string(a + 4) + ":" + std::to_string(b + 4);
-    std::fputs(plot(scene, "plot", columns, vectors).c_str(), out);
-  }
-}
-
 }  // namespace
 
 std::optional<std::string> draw(const MachineModel& model, const Skeleton& skeleton,
@@ -223,7 +176,9 @@ std::optional<std::string> draw(const MachineModel& model, const Skeleton& skele
   const auto error = plot::draw(file, {1200, 1000, 14, 10}, [&](std::FILE* out) {
     print_scene(out, scene);
     std::fprintf(out, "set multiplot title %s\nset border lc '#888888'\n", quoted(title).c_str());
-    print_views(out, scene);
+    print_four_views(out, scene.middle, scene.half, [&](const char* verb, const View& view) {
+      return plot(scene, verb, view.points(), view.vectors());
+    });
   });
   return error ? std::optional(error->text()) : std::nullopt;
 }

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/machine/inspect/machine_stand.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/limited.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/machine/inspect/path_picture.hpp"
+#include "support/shipped_machines.hpp"
+
+namespace meridian::inspect {
+namespace {
+
+class StandOfEveryShipped : public testing::TestWithParam<std::string> {
+ protected:
+  const MachineModel model_ = config::load_machine(test::shipped_file(GetParam()));
+
+  /// Anywhere in the middle half of travel.
+  [[nodiscard]] JointVector draw(std::mt19937_64& random) const {
+    JointVector q{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(model_.joint_count); ++i) {
+      const JointSpec& joint = model_.joints[i];
+      const double low = joint.is_endless ? -3 : joint.limits.travel_min;
+      const double high = joint.is_endless ? 3 : joint.limits.travel_max;
+      q[i] = std::uniform_real_distribution<double>(0.75 * low + 0.25 * high,
+                                                    0.25 * low + 0.75 * high)(random);
+    }
+    return q;
+  }
+  /// Programs that lead from one drawn place to the next.
+  [[nodiscard]] std::vector<ProgramPose> program(int poses) const {
+    std::vector<ProgramPose> out;
+    std::mt19937_64 random(11);
+    const JointVector middle = draw(random);
+    for (int n = 0; n < poses; ++n) {
+      JointVector q = middle;
+      q[0] += model_.joints[0].is_rotary ? 0.01 * n : 2.0 * n;
+      out.push_back({forward(model_, model_.tool_length_mm, q), model_.tool_length_mm,
+                     static_cast<std::uint32_t>(n + 1)});
+    }
+    return out;
+  }
+};
+
+TEST_P(StandOfEveryShipped, TipAndWorkpieceAreAsFarApartAsForwardKinematicsSays) {
+  std::mt19937_64 random(5);
+  for (int n = 0; n < 50; ++n) {
+    const JointVector q = draw(random);
+    const MachineStand stand = stand_at(model_, q, model_.tool_length_mm);
+    const ToolPose pose = forward(model_, model_.tool_length_mm, q);
+    EXPECT_NEAR((stand.tip - stand.table.back()).norm(), pose.tip.norm(), 1e-9);
+    EXPECT_NEAR((stand.tip - stand.head.back()).norm(), model_.tool_length_mm, 1e-9);
+  }
+}
+
+TEST_P(StandOfEveryShipped, RodsKeepTheirLengthAndLeadFromTheRailsToTheTable) {
+  const ActuatorStage& stage = model_.stage;
+  std::mt19937_64 random(6);
+  for (int n = 0; n < 50; ++n) {
+    const JointVector q = draw(random);
+    const MachineStand stand = stand_at(model_, q, model_.tool_length_mm);
+    ASSERT_EQ(stand.stage.has_value(), has_stage(model_));
+    if (!stand.stage || stage.kind != StageKind::kTwoSlider || !stage::is_in_reach(stage, q)) {
+      continue;
+    }
+    for (std::size_t k = 0; k < stand.stage->pin.size(); ++k) {
+      EXPECT_NEAR((stand.stage->pin[k] - stand.stage->slider[k]).norm(), stage.rod_mm, 1e-9);
+      EXPECT_NEAR((stand.stage->pin[k] - stand.stage->centre).norm(), stage.radius_mm, 1e-9);
+    }
+  }
+}
+
+TEST_P(StandOfEveryShipped, PlacesOfAProgramHaveItsBeginAndItsEnd) {
+  const auto poses = program(40);
+  const auto stands = stands_along(model_, poses, 9);
+  ASSERT_TRUE(stands) << stands.error();
+  EXPECT_LE(stands->size(), 9U);
+  EXPECT_GE(stands->size(), 5U);
+  EXPECT_EQ(stands->front().line, 1U);
+  EXPECT_EQ(stands->back().line, 40U);
+  for (const MachineStand& stand : *stands) {
+    const ToolPose& asked = poses[stand.line - 1].pose;
+    EXPECT_LT((forward(model_, model_.tool_length_mm, stand.joints).tip - asked.tip).norm(), 1e-6);
+  }
+}
+
+TEST_P(StandOfEveryShipped, IsDrawn) {
+  const auto stands = stands_along(model_, program(40), 9);
+  ASSERT_TRUE(stands);
+  const std::string file = testing::TempDir() + "/along-" + GetParam() + ".svg";
+  const auto error = draw_along(model_, *stands, file);
+  EXPECT_FALSE(error) << *error;
+  EXPECT_GT(std::filesystem::file_size(file), 20'000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Machines, StandOfEveryShipped, testing::ValuesIn(test::shipped_machines()),
+                         test::test_name);
+
+TEST(MachineStand, APoseWithoutJointsIsNamedByItsLine) {
+  const MachineModel robot = config::load_machine(test::shipped_file("robot-6r"));
+  const std::vector<ProgramPose> poses{
+      {{Vector3(1e5, 0, 0), Vector3::UnitZ()}, robot.tool_length_mm, 12}};
+  const auto stands = stands_along(robot, poses, 9);
+  ASSERT_FALSE(stands);
+  EXPECT_EQ(stands.error().rfind("line 12: ", 0), 0U) << stands.error();
+}
+
+}  // namespace
+}  // namespace meridian::inspect
