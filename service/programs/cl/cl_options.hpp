@@ -28,7 +28,7 @@ enum class ArcSense : std::uint8_t {
   kLeft
 };
 
-/// What the caller tells the reader beyond the file. Units: mm, s.
+/// What the caller gives the reader beyond the file. Units: mm, s.
 struct ClReaderOptions {
   std::optional<Dialect> dialect;          ///< `--dialect`: wins over what the file shows
   std::optional<LengthUnit> unit;          ///< `--units`: wins over the unit word of the file

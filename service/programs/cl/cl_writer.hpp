@@ -11,7 +11,7 @@ namespace meridian::cl {
 
 /// Writes CL blocks as an APT file that ClReader, and CAM systems and post-processors, read back.
 ///
-/// Metric, six decimals of a millimetre, nine of a tool axis; feed is told where it changes, the
+/// Metric, six decimals of a millimetre, nine of a tool axis; feed is written where it changes, the
 /// axis with every point where it is tilted; the
 /// same calls give the same bytes. Proof: tests/unit/cl/writer_test.cpp.
 class ClWriter {

@@ -77,11 +77,11 @@ Dialect shown_by_text(std::string_view text) {
   return at == kEvidence.end() ? Dialect::kUnknown : at->dialect;
 }
 
-DialectFinder::DialectFinder(std::optional<Dialect> told)
-    : dialect_(told.value_or(Dialect::kUnknown)),
+DialectFinder::DialectFinder(std::optional<Dialect> given)
+    : dialect_(given.value_or(Dialect::kUnknown)),
       traits_(&traits_of(dialect_)),
-      is_reported_(told.has_value()),
-      reason_(told ? "--dialect" : "") {}
+      is_reported_(given.has_value()),
+      reason_(given ? "--dialect" : "") {}
 
 bool DialectFinder::see(Dialect dialect, std::uint32_t line, std::string_view what) {
   if (dialect == Dialect::kUnknown || dialect == dialect_ || is_reported_) return true;

@@ -68,7 +68,7 @@ struct DialectTraits {
 /// Proof: tests/unit/cl/dialect_test.cpp.
 class DialectFinder {
  public:
-  explicit DialectFinder(std::optional<Dialect> told);
+  explicit DialectFinder(std::optional<Dialect> given);
 
   /// The file shows `dialect` by `what`, in this line. False where it showed another one before.
   [[nodiscard]] bool see(Dialect dialect, std::uint32_t line, std::string_view what);

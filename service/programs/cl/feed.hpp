@@ -23,10 +23,10 @@ enum class FeedUnit : std::uint8_t {
   kInchPerRevolution,
   kFootPerRevolution,
   kInverseTime,  ///< 1/min
-  kPerTooth      ///< known, and refused: the file does not tell how many teeth there are
+  kPerTooth      ///< known, and refused: the file does not say how many teeth there are
 };
 
-/// The unit that a word tells; kNone: it is no word for one.
+/// The unit that a word gives; kNone: it is no word for one.
 [[nodiscard]] FeedUnit feed_unit_of(std::string_view word);
 
 /// A feed as it is written.

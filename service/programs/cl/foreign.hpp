@@ -15,14 +15,14 @@ struct Recognised {
   /// More of the text would say nothing else.
   bool is_certain = false;
   bool is_nc = false;                   ///< it is an NC program
-  Dialect program = Dialect::kUnknown;  ///< of an NC program whose words tell it for certain
-  std::string shown_by;                 ///< what tells it: "G43.4"
+  Dialect program = Dialect::kUnknown;  ///< of an NC program whose words show it for certain
+  std::string shown_by;                 ///< the word that shows it: "G43.4"
   std::string like_fanuc;               ///< a code of Fanuc that LinuxCNC has too: "G43"
 };
 
 /// `head` is the first 64 KiB or less.
 ///
-/// NC programs are told by what only they have; a text with a CL word and its slash in it is none.
+/// NC programs are known by what only they have; a text with a CL word and its slash in it is none.
 [[nodiscard]] Recognised recognise_foreign(std::string_view head);
 
 }  // namespace meridian::cl

@@ -28,7 +28,7 @@ class FrameChain {
 
   /// Whether nothing came since the last resolve().
   [[nodiscard]] bool is_resolved() const noexcept { return is_resolved_; }
-  /// Puts what was told in force for the motion that comes. True where points go elsewhere from
+  /// Puts what was set in force for the motion that comes. True where points go elsewhere from
   /// here than they did before.
   bool resolve(double to_mm);
 

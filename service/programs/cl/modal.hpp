@@ -21,7 +21,7 @@ namespace meridian::cl {
 
 /// The unit of lengths: what the file says, and what holds from the first motion on.
 struct Units {
-  std::optional<LengthUnit> told;      ///< by the last unit word
+  std::optional<LengthUnit> stated;    ///< by the last unit word
   std::optional<LengthUnit> in_force;  ///< nothing: to be resolved at the next motion
   double to_mm = 1;
   double cutter = 0;  ///< width of the tool that the file describes, as written
@@ -30,7 +30,7 @@ struct Units {
 /// The tool axis, which points of three numbers leave out.
 struct ToolAxis {
   enum class Source : std::uint8_t {
-    kNone,    ///< +z, as nothing told any
+    kNone,    ///< +z, as nothing gave any
     kPoint,   ///< a point of six numbers
     kCopied,  ///< what a copied pattern left: no point without axis may rely on it
     kWord     ///< TLAXIS, MULTAX/OFF: holds for points without axis in every dialect
@@ -46,7 +46,7 @@ enum class BlockJoin : std::uint8_t {
   kExactStop   ///< the tool rests where the cut ends
 };
 
-/// What the next motion is told besides its point.
+/// What the next motion has besides its point.
 enum class NextMotion : std::uint8_t { kFeed, kRapid };
 
 /// A CIRCLE that waits for the point where its arc ends; numbers as written.
@@ -55,8 +55,8 @@ struct PendingArc {
   Form form = Form::kRight;
   std::uint32_t line = 0;
   std::array<double, 6> centre_normal{};
-  double radius = 0;                ///< 0: not told
-  int turns = 0;                    ///< TIMES of a helix; 0: not told
+  double radius = 0;                ///< 0: not given
+  int turns = 0;                    ///< TIMES of a helix; 0: not given
   std::optional<double> sweep_rad;  ///< of MOVARC: with its sign, right-handed
   std::optional<Vector3> end;       ///< a point list goes on: the arc ends at its last point
   std::uint32_t end_line = 0;
@@ -72,7 +72,7 @@ struct PendingSpline {
 
 using Curve = std::variant<std::monostate, PendingArc, PendingSpline>;
 
-/// What tells that a file is whole, and where it ends.
+/// What shows that a file is whole, and where it ends.
 struct Structure {
   enum class Kind : std::uint8_t { kList, kProgram };            ///< a bare list promises no end
   enum class Phase : std::uint8_t { kOpen, kEnded, kFinished };  ///< END, FINI
@@ -83,8 +83,8 @@ struct Structure {
   bool has_closed = false;           ///< some path or section came to its end
 };
 
-/// Rotary positions that the file tells by ROTABL and its kin: points carry their axis, or they
-/// depend on the machine.
+/// Rotary positions that the file gives by ROTABL and words like it: points carry their axis, or
+/// they depend on the machine.
 struct RotaryWord {
   std::uint32_t line = 0;  ///< 0: none is waiting for a point that carries its axis
   std::string text;

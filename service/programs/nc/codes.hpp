@@ -16,7 +16,7 @@ enum class GKind : std::uint8_t {
   kCentre,      ///< of arcs; `value`: 1 for absolute
   kFeed,        ///< `value`: cl::FeedUnit
   kControl,     ///< of the tool centre; `value`: Control
-  kWorkOffset,  ///< the place of the part, which the station's frame tells
+  kWorkOffset,  ///< the place of the part, which the station's frame gives
   kCycle,       ///< `value`: 81 of G81, 0 ends it
   kReturn,      ///< of cycles; `value`: 1 to R
   kDwell,

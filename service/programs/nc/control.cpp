@@ -155,7 +155,7 @@ cl::Outcome set_unit(State& s, cl::LengthUnit unit) {
   if (s.cl.units.in_force && *s.cl.units.in_force != unit && !s.cl.options.unit) {
     return refuse("the unit changes behind the first motion", "split the program");
   }
-  s.cl.units.told = unit;
+  s.cl.units.stated = unit;
   return {};
 }
 

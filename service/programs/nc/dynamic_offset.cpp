@@ -22,7 +22,7 @@ Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& pla
   if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), kRightMachine, "machine");
   if (place.is_by_control) {
     return refuse("G254, but no word says where the control turned the rotary axes (G53.1)",
-                  "write all rotary words before it", "not told");
+                  "write all rotary words before it", "not given");
   }
   const auto axes_in_w = s.axes->linear_axes(place.rotary);
   if (!axes_in_w) return refuse("G254 needs a machine with the axes X, Y and Z", kRightMachine);

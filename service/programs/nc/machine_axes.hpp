@@ -30,7 +30,7 @@ class MachineAxes {
   /// How many rotary axes the machine has.
   [[nodiscard]] std::size_t rotary_count() const noexcept;
 
-  /// Tool axis in W with the rotary axes there; those of which nothing is told stand at zero.
+  /// Tool axis in W with the rotary axes there; those that are not given stand at zero.
   [[nodiscard]] Vector3 axis(const std::vector<RotaryAt>& rotary) const;
   /// Where X, Y and Z of the machine lead in W with the rotary axes there, as columns; nothing: it
   /// has no such axes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tool axis as the words of a block tell it.
+// The tool axis as the words of a block give it.
 #include <algorithm>
 #include <array>
 

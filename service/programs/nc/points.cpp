@@ -109,7 +109,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
       return refuse(
           "the control turned the rotary axes (G53.1 and its kin), and no word says to "
           "where",
-          "write all rotary words into the first block with tool-centre control", "not told");
+          "write all rotary words into the first block with tool-centre control", "not given");
     }
     to.axis = s.axes->axis(to.place.rotary);
     return {};

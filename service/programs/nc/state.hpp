@@ -33,7 +33,7 @@ struct State {
 };
 
 // frames.cpp
-/// Puts another frame between points and zero; the place of the tool is told in it from here on.
+/// Puts another frame between points and zero; the place of the tool is in it from here on.
 void set_shift(State& s, const Line& line, const cl::Frame& shift);
 /// Another work offset: its zero, from that of the station's frame.
 void set_zero(State& s, const Line& line, const Vector3& zero_mm);
@@ -86,7 +86,7 @@ struct Target {
 /// The tool axis of I J K under G43.5, of A3 B3 C3 under TRAORI: from the tip to the spindle, any
 /// length.
 [[nodiscard]] cl::Outcome take_vector(const State& s, const Line& line, Target& to);
-/// Under TRAORI every block says by its words how it tells the tool axis.
+/// Under TRAORI every block says by its words how it gives the tool axis.
 [[nodiscard]] cl::Outcome choose_orientation(State& s, const Line& line);
 
 // lines.cpp

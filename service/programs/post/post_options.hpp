@@ -28,7 +28,7 @@ enum class Dialect : std::uint8_t {
 
 inline constexpr int kRobotAxes = 6;  ///< of the arm; more of them are not written
 
-/// What `meridian post` is told beside program and machine. Units: mm, rad, s.
+/// What `meridian post` takes beside program and machine. Units: mm, rad, s.
 struct PostOptions {
   Dialect dialect = Dialect::kJoints;
   bool has_vectors = false;            ///< kFanuc: G43.5 I J K instead of G43.4 and rotary words

@@ -46,7 +46,7 @@ struct ProgramReport {
 };
 
 /// Runs `steps` as their control would, every drive evenly from line to line, through forward
-/// kinematics, or the tip as its program of tool-centre words tells it, and holds tip and axis
+/// kinematics, or the tip as its program of tool-centre words gives it, and holds tip and axis
 /// against `blocks`, a whole CL file.
 ///
 /// Tool by tool: from the first line that ends on the first CL point to the last that ends on the

@@ -17,7 +17,7 @@ namespace meridian::surface {
 /// tests/unit/surface/patch_file_test.cpp.
 [[nodiscard]] std::vector<ClBlock> program_of(const PatchJob& job, const SurfacePath& path);
 
-/// Writes them as an APT CL file; `source` is told in a comment. The same job gives the same bytes.
+/// Writes them as an APT CL file; `source` stands in a comment. The same job gives the same bytes.
 void write_program(const PatchJob& job, const SurfacePath& path, std::string_view source,
                    std::ostream& out);
 

@@ -207,7 +207,8 @@ TEST(Circle, WithFourNumbersTakesItsSenseFromIndirv) {
   const auto right =
       read_body("GOTO/10,0,0\nINDIRV/0,-1,0\nCIRCLE/0,0,0,$\n10\nGOTO/0,10,0\n").motion();
   EXPECT_NEAR(right.at(1).sweep_rad, 3 * kPi / 2, 1e-15);
-  EXPECT_NE(read_body("GOTO/10,0,0\nCIRCLE/0,0,0,10\nGOTO/0,10,0\n").error.find("which way"),
+  EXPECT_NE(read_body("GOTO/10,0,0\nCIRCLE/0,0,0,10\nGOTO/0,10,0\n")
+                .error.find("does not give its sense"),
             std::string::npos);
 }
 

@@ -108,9 +108,9 @@ TEST(MissingAxis, IsWhatTheCallerSays) {
 
 TEST(MissingAxis, IsNoQuestionWhereTheAxisIsPlusZOrAWordTellsIt) {
   EXPECT_EQ(read_body("GOTO/1,2,3,0,0,1\nGOTO/4,5,6\n").error, "");
-  const auto told = read_body("TLAXIS/0,.6,.8\nGOTO/1,2,3\nGOTO/4,5,6\n");
-  ASSERT_EQ(told.error, "");
-  EXPECT_NEAR(told.motion().at(1).axis[1], .6, 1e-15);
+  const auto named = read_body("TLAXIS/0,.6,.8\nGOTO/1,2,3\nGOTO/4,5,6\n");
+  ASSERT_EQ(named.error, "");
+  EXPECT_NEAR(named.motion().at(1).axis[1], .6, 1e-15);
   const auto off = read_body("MULTAX/ON\nGOTO/1,2,3,0,.6,.8\nMULTAX/OFF\nGOTO/4,5,6\n");
   ASSERT_EQ(off.error, "");
   EXPECT_EQ(off.motion().at(1).axis, (Array3{0, 0, 1}));

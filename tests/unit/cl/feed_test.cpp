@@ -138,9 +138,9 @@ TEST(Units, OfNoneAreMillimetreAndThatIsSaid) {
   EXPECT_TRUE(read.warned_of("NO UNIT WORD"));
   EXPECT_TRUE(read.warned_of("--units inch"));
   EXPECT_NE(to_text(read.summary).find("NO UNIT WORD"), std::string::npos);
-  const auto told = read_text("FEDRAT/100,MMPM\nGOTO/1,0,0\nFINI\n", metric());
-  EXPECT_TRUE(told.warnings.empty());
-  EXPECT_EQ(told.summary.unit_source, UnitSource::kCaller);
+  const auto named = read_text("FEDRAT/100,MMPM\nGOTO/1,0,0\nFINI\n", metric());
+  EXPECT_TRUE(named.warnings.empty());
+  EXPECT_EQ(named.summary.unit_source, UnitSource::kCaller);
 }
 
 TEST(Units, OfNoneBesideAFeedInInchAreFlagged) {

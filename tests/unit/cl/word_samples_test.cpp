@@ -17,7 +17,7 @@ namespace {
 /// A program of our own as one CAM system writes them (tests/unit/cl/samples).
 struct Sample {
   const char* file;
-  Dialect told;       ///< kUnknown: the file shows it
+  Dialect named;      ///< kUnknown: the file shows it
   const char* title;  ///< of its dialect
   std::array<double, 3> end_mm;
   std::uint64_t points, arcs, holes;
@@ -58,7 +58,7 @@ TEST(Samples, AreReadAsTheirDialectsToTheirEnds) {
   for (const Sample& sample : kSamples) {
     const std::string text = text_of(sample);
     const ReadText read = read_text(
-        text, sample.told == Dialect::kUnknown ? ClReaderOptions() : written_by(sample.told));
+        text, sample.named == Dialect::kUnknown ? ClReaderOptions() : written_by(sample.named));
     ASSERT_EQ(read.error, "") << sample.file;
     EXPECT_EQ(read.summary.dialect, sample.title) << sample.file;
     ASSERT_FALSE(read.motion().empty()) << sample.file;

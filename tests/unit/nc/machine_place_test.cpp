@@ -51,10 +51,10 @@ TEST(NcMachinePlaces, OfG30AreTheMachineFilesPositions) {
   change[static_cast<std::size_t>(words->find("Z"))] = words->axis(words->find("Z"), -25);
   options.positions = {{"G30", change}};
   const ReadText named = read_nc("G0 X1. Y2. Z5.\nG91 G30 Z0.\nG91 G30 P2 Z0.\n", options);
-  const ReadText told = read_nc("G0 X1. Y2. Z5.\nG53 G0 Z-25.\nG53 Z-25.\n", on(model));
+  const ReadText by_value = read_nc("G0 X1. Y2. Z5.\nG53 G0 Z-25.\nG53 Z-25.\n", on(model));
   ASSERT_EQ(named.error, "");
-  ASSERT_EQ(named.motion().size(), told.motion().size());
-  EXPECT_LT((tip(named.motion()[1]) - tip(told.motion()[1])).norm(), kTiny);
+  ASSERT_EQ(named.motion().size(), by_value.motion().size());
+  EXPECT_LT((tip(named.motion()[1]) - tip(by_value.motion()[1])).norm(), kTiny);
   EXPECT_EQ(read_nc("G91 G30 Z0.\nG90 G0 X1. Y2. Z5.\n", on(model)).error, "")
       << "nothing moved yet";
   for (const auto& [body, says] : std::vector<std::pair<const char*, const char*>>{

@@ -11,7 +11,7 @@
 namespace meridian::cl {
 namespace {
 
-constexpr double kRadiusTolerance_mm = 0.01;  // told radius against begin of the arc
+constexpr double kRadiusTolerance_mm = 0.01;  // given radius against begin of the arc
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 
 }  // namespace
@@ -71,38 +71,38 @@ void BlockPath::emit_turns(const Arc& arc, int whole_turns, const Vector3& axis,
   }
 }
 
-Outcome BlockPath::arc_to(const ArcPath& told, const Vector3& tip, const Vector3& axis,
+Outcome BlockPath::arc_to(const ArcPath& given, const Vector3& tip, const Vector3& axis,
                           const MotionFeed& feed, std::uint32_t line) {
   if (position_ == Position::kLost) return line_to(tip, axis, feed, line);
   if (position_ == Position::kUnknown) {
-    return refuse_at(told.line, "an arc before any position", "begin with FROM or GOTO");
+    return refuse_at(given.line, "an arc before any position", "begin with FROM or GOTO");
   }
   if (position_ == Position::kReported) {
-    if (auto done = begin_at_from(told.line); !done) return done;
+    if (auto done = begin_at_from(given.line); !done) return done;
   }
-  const Arc arc = solve_arc(tip_, tip, told.centre, told.normal);
+  const Arc arc = solve_arc(tip_, tip, given.centre, given.normal);
   if (arc.status == Arc::Status::kNoRadius) {
-    return refuse_at(told.line, "the arc has no radius or no plane");
+    return refuse_at(given.line, "the arc has no radius or no plane");
   }
   if (arc.status == Arc::Status::kNotOneCircle) {
     return refuse_at(
-        told.line,
+        given.line,
         "begin and end of the arc do not lie on one circle about its centre: radii differ by " +
             short_number(arc.mismatch_mm) + " mm, allowed 0.01 mm");
   }
-  if (told.radius > 0 && std::abs(told.radius - arc.radius) > kRadiusTolerance_mm) {
-    return refuse_at(told.line, "radius " + short_number(told.radius) +
-                                    " mm is told, but the arc begins " + short_number(arc.radius) +
-                                    " mm from its centre");
+  if (given.radius > 0 && std::abs(given.radius - arc.radius) > kRadiusTolerance_mm) {
+    return refuse_at(given.line, "radius " + short_number(given.radius) +
+                                     " mm is given, but the arc begins " +
+                                     short_number(arc.radius) + " mm from its centre");
   }
-  const int whole_turns = std::max(told.turns, 1) - 1;
+  const int whole_turns = std::max(given.turns, 1) - 1;
   if (whole_turns > 0 && axis != axis_) {
-    return refuse_at(told.line, "a helix of several turns while the tool axis turns",
+    return refuse_at(given.line, "a helix of several turns while the tool axis turns",
                      "output points");
   }
   const bool closed = arc.sweep_rad == kTurn_rad;
-  if (!closed) check_arc_gap(arc, tip, told.line);
-  check_arc_sense(arc.normal.cross(tip_ - arc.centre).normalized(), told.line);
+  if (!closed) check_arc_gap(arc, tip, given.line);
+  check_arc_sense(arc.normal.cross(tip_ - arc.centre).normalized(), given.line);
 
   const double gap = (arc.end - tip).norm();
   const double rest = !closed && gap > kMinMove_mm ? gap : 0;  // cut as a line behind the arc

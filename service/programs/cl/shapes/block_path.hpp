@@ -16,12 +16,12 @@ namespace meridian::cl {
 
 inline constexpr double kMinMove_mm = 1e-9;  ///< below it a block moves nothing
 
-/// An arc or helix as a file tells it, in W. Units: mm, rad.
+/// An arc or helix as a file gives it, in W. Units: mm, rad.
 struct ArcPath {
   Vector3 centre, normal;  ///< the tip turns right-handed about the normal
-  double radius = 0;       ///< 0: not told
-  int turns = 0;           ///< of a helix, the last one begun; 0: not told
-  std::uint32_t line = 0;  ///< of the word that tells it
+  double radius = 0;       ///< 0: not given
+  int turns = 0;           ///< of a helix, the last one begun; 0: not given
+  std::uint32_t line = 0;  ///< of the word that gives it
 };
 
 /// Where the tool goes: turns lines and arcs into blocks, one behind the other, and counts them.

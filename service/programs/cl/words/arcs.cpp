@@ -14,7 +14,7 @@ namespace meridian::cl {
 namespace {
 
 constexpr double kMaxTurns = 1000;
-constexpr double kSweepTolerance_rad = 1e-3;  // told sweep against that to the end point
+constexpr double kSweepTolerance_rad = 1e-3;  // given sweep against that to the end point
 
 /// The numbers inside the bracket that `keyword` opens, e.g. of "(CIRCLE/ 1, 2, 3, 4)": up to 7.
 struct Numbers {
@@ -72,7 +72,7 @@ Outcome set_form(PendingArc& arc, std::size_t n, bool has_forward) {
   switch (n) {
     case 4:
       if (!has_forward) {
-        return refuse("CIRCLE with 4 numbers does not tell which way it turns",
+        return refuse("CIRCLE with 4 numbers does not give its sense",
                       "write INDIRV before it, or output CIRCLE with its normal");
       }
       arc.form = PendingArc::Form::kForward;
@@ -96,7 +96,7 @@ Expected<Vector3, Refusal> normal_of(Modal& m, const PendingArc& arc, const Vect
     m.forward.reset();
     const Vector3 normal = (m.path.tip() - centre).cross(forward);
     if (normal.norm() > 1e-6) return normal;
-    return refuse_at(arc.line, "INDIRV does not tell which way the arc turns",
+    return refuse_at(arc.line, "INDIRV does not give the sense of the arc",
                      "output the direction of motion where the arc begins");
   }
   const Vector3 normal =
@@ -107,7 +107,7 @@ Expected<Vector3, Refusal> normal_of(Modal& m, const PendingArc& arc, const Vect
   return is_left ? Vector3(-normal) : normal;
 }
 
-/// MOVARC tells its sweep, with its sign, beside the end: both must agree.
+/// MOVARC gives its sweep, with its sign, beside the end: both must agree.
 Outcome check_sweep(const Modal& m, const PendingArc& arc, const Vector3& centre,
                     const Vector3& normal, const Vector3& tip) {
   if (!arc.sweep_rad) return {};
@@ -119,7 +119,7 @@ Outcome check_sweep(const Modal& m, const PendingArc& arc, const Vector3& centre
     return {};
   }
   return refuse_at(arc.line,
-                   "MOVARC tells a sweep of " +
+                   "MOVARC gives a sweep of " +
                        short_number(units::deg_from_rad(std::abs(*arc.sweep_rad))) +
                        " deg, but its end lies elsewhere",
                    "output an end that the sweep leads to, or points");
@@ -184,7 +184,7 @@ Outcome read_move_arc(Modal& m, const Statement& s) {
 /// plane (CYLNDR/ centre, axis, radius),ON,(PLANE/PERPTO,...,(POINT/ end)).
 Outcome read_tool_on(Modal& m, const Statement& s) {
   if (m.curve.index() != 0) return refuse_second(m);
-  if (!m.forward) return refuse("TLON without the INDIRV that tells which way the arc turns");
+  if (!m.forward) return refuse("TLON without the INDIRV that gives the sense of the arc");
   std::string text(s.rest);
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });

@@ -132,31 +132,31 @@ void end_cycle(Modal& m) {
 }  // namespace
 
 Outcome read_cycle_word(Modal& m, const Statement& s) {
-  auto told = read_cycle(s, m.dialect);
-  if (!told) {
+  auto written = read_cycle(s, m.dialect);
+  if (!written) {
     m.cycle.emplace().kind = HoleKind::kRefused;
     m.last_cycle = m.cycle;
-    if (told.error().group.empty())
-      told.error().group = "CYCLE/" + std::string(s.rest.substr(0, 12));
-    return tl::make_unexpected(told.error());
+    if (written.error().group.empty())
+      written.error().group = "CYCLE/" + std::string(s.rest.substr(0, 12));
+    return tl::make_unexpected(written.error());
   }
   if (m.curve.index() != 0) return refuse("CYCLE inside an arc or a spline");
-  switch (told->kind) {
+  switch (written->kind) {
     case CycleStatement::Kind::kOff:
       end_cycle(m);
       return {};
     case CycleStatement::Kind::kReturn:
-      m.cycle_return = told->returns;
+      m.cycle_return = written->returns;
       return {};
     case CycleStatement::Kind::kOn:
       if (!m.last_cycle) return refuse("CYCLE/ON before any cycle");
       m.cycle = m.last_cycle;
       break;
     case CycleStatement::Kind::kDefine:
-      m.cycle = m.last_cycle = told->cycle;
+      m.cycle = m.last_cycle = written->cycle;
       break;
   }
-  if (told->has_odd_sign) {
+  if (written->has_odd_sign) {
     m.remarks.warn("cycle sign", s.line, [&m] {
       return std::string("CYCLE: the depth is ") +
              (m.dialect.traits().depth_is_negative ? "not below zero" : "below zero") +

@@ -32,18 +32,18 @@ Outcome read_units(Modal& m, const Statement& s) {
     return refuse("unit " + quoted(s.rest) + " is not understood", "UNITS/MM or UNITS/INCHES");
   }
   if (m.options.unit && *m.options.unit != *unit) {
-    m.remarks.warn("unit told", s.line, [&unit] {
+    m.remarks.warn("unit stated", s.line, [&unit] {
       return std::string("the file says ") + name_of(*unit) + ", --units says otherwise and holds";
     });
   }
-  if (m.units.told && *m.units.told != *unit) {
+  if (m.units.stated && *m.units.stated != *unit) {
     const bool has_begun = m.path.position() != BlockPath::Position::kUnknown;
     m.remarks.warn(has_begun ? "unit change" : "two units", s.line, [has_begun] {
       return has_begun ? "the unit changes in mid-program"
-                       : "the file tells two units: from here on the second";
+                       : "the file states two units: from here on the second";
     });
   }
-  m.units.told = *unit;
+  m.units.stated = *unit;
   m.units.in_force.reset();
   m.feed.reset();
   return {};
@@ -55,18 +55,18 @@ Outcome read_feed(Modal& m, const Statement& s) {
   for (std::size_t i = 0; i < s.argument_count; ++i) {
     const Argument& a = s.arguments[i];
     if (a.is_number) continue;
-    const FeedUnit told = feed_unit_of(a.text);
+    const FeedUnit unit = feed_unit_of(a.text);
     if (is_word(a.text, "AUTO") || is_word(a.text, "OFF")) {
       is_automatic = true;
     } else if (is_for_post(a.text)) {
       asks_post = true;
-    } else if (told == FeedUnit::kNone) {
+    } else if (unit == FeedUnit::kNone) {
       return refuse("feed unit " + quoted(a.text) + " is not understood",
                     "MMPM, IPM, PERMIN, MMPR, IPR, PERREV or INVERS");
     } else if (feed.unit != FeedUnit::kNone) {
-      return refuse("FEDRAT/" + std::string(s.rest.substr(0, 40)) + " tells two units");
+      return refuse("FEDRAT/" + std::string(s.rest.substr(0, 40)) + " has two units");
     } else {
-      feed.unit = told;
+      feed.unit = unit;
     }
   }
   if (feed.unit == FeedUnit::kInverseTime && s.number_count == 0) {

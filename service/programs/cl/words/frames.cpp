@@ -85,8 +85,9 @@ Outcome read_origin(Modal& m, const Statement& s) {
   const bool is_turned = v[3] != 1 || v[4] != 0 || v[5] != 0 || v[6] != 0 || v[7] != 0 || v[8] != 1;
   const bool is_shifted = v[0] != 0 || v[1] != 0 || v[2] != 0;
   if (n == 9 && (is_turned || is_shifted)) {
-    return refuse("ORIGIN with axes tells a frame of its own, and not whether the points are in it",
-                  "output the points in the machining axis system, ORIGIN/0,0,0");
+    return refuse(
+        "ORIGIN with axes sets a frame of its own, and does not say whether the points are in it",
+        "output the points in the machining axis system, ORIGIN/0,0,0");
   }
   if (auto done = refuse_inside_curve(m, s); !done) return done;
   if (is_shifted) {
@@ -138,7 +139,7 @@ Outcome read_tracut(Modal& m, const Statement& s) {
 }
 
 /// ROTABL, ROTATE, ROTHED, INDPOS: at zero they change nothing; elsewhere only points that carry
-/// their tool axis tell where they lie without the machine.
+/// their tool axis say where they lie without the machine.
 Outcome read_rotary(Modal& m, const Statement& s) {
   bool is_zero = s.number_count > 0;
   for (std::size_t i = 0; i < s.argument_count; ++i) {

@@ -113,12 +113,12 @@ Outcome read_spindle(Modal& m, const Statement& s) {
   const auto words = spindle_words(s);
   if (!words) return tl::make_unexpected(words.error());
   const bool takes_angle = is_word(words->other, "ORIENT") || is_word(words->other, "LOCK");
-  const bool tells_speed = words->turns || (words->speed != nullptr && !takes_angle);
-  if (!words->other.empty() && tells_speed) {
+  const bool has_speed = words->turns || (words->speed != nullptr && !takes_angle);
+  if (!words->other.empty() && has_speed) {
     return refuse("SPINDL word " + quoted(words->other) +
                   " beside a speed or a sense is not understood");
   }
-  if (!tells_speed && s.argument_count > 0) return pass_on(m, s);  // ORIENT, LOCK, a gear alone
+  if (!has_speed && s.argument_count > 0) return pass_on(m, s);  // ORIENT, LOCK, a gear alone
   if (words->speed != nullptr) {
     const double speed = words->speed->number;
     if (!(speed >= 0 && speed <= 1e6)) {
@@ -126,7 +126,7 @@ Outcome read_spindle(Modal& m, const Statement& s) {
     }
     m.spindle.speed_rpm = speed;
   } else if (!(m.spindle.speed_rpm > 0)) {
-    return refuse("SPINDL/" + std::string(s.rest) + " before any speed was told",
+    return refuse("SPINDL/" + std::string(s.rest) + " before any speed",
                   "write SPINDL with a speed before it");
   }
   if (!words->left.empty()) {

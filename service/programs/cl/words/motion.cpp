@@ -17,8 +17,8 @@ void resolve_unit(Modal& m, std::uint32_t line) {
   const ClReaderOptions& options = m.options;
   LengthUnit unit = options.default_unit.value_or(LengthUnit::kMillimetre);
   m.summary.unit_source = UnitSource::kStation;
-  if (m.units.told) {
-    unit = *m.units.told;
+  if (m.units.stated) {
+    unit = *m.units.stated;
     m.summary.unit_source = UnitSource::kFile;
   }
   if (options.unit) {
@@ -132,9 +132,9 @@ Expected<MotionFeed, Refusal> cutting_feed(Modal& m, std::uint32_t line) {
     }
     feed = {BlockKind::kCut, FeedMeaning::kTip, *m.options.default_feed_mm_per_s};
   } else {
-    const auto told = feed_of(m.written_feed, {*m.units.in_force, m.spindle});
-    if (!told) return tl::make_unexpected(told.error());
-    feed = *told;
+    const auto written = feed_of(m.written_feed, {*m.units.in_force, m.spindle});
+    if (!written) return tl::make_unexpected(written.error());
+    feed = *written;
     remark_on_feed(m.written_feed, feed, *m.units.in_force, m.options.max_feed_mm_per_s, line,
                    m.remarks);
   }

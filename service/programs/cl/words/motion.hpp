@@ -13,7 +13,7 @@ namespace meridian::cl {
 
 inline constexpr double kAxisNormTolerance = 1e-3;  ///< a rounded or sloppy axis is normalised
 
-/// Puts unit and frames in force that were told since the motion before.
+/// Puts unit and frames in force that were set since the motion before.
 [[nodiscard]] Outcome begin_motion(Modal& m, std::uint32_t line);
 
 /// copying.cpp: the transformation of the pattern that is repeated, for the points behind; `before`
@@ -43,7 +43,7 @@ void put_copy_in_force(Modal& m, const Frame& before);
 /// arcs.cpp: the arc of `pending` to `tip`, with the modal axis.
 [[nodiscard]] Outcome run_arc(Modal& m, const PendingArc& pending, const Vector3& tip,
                               std::uint32_t line);
-/// arcs.cpp: the arc whose end a list of points was still to tell.
+/// arcs.cpp: the arc whose end a list of points has still to give.
 [[nodiscard]] Outcome end_listed_arc(Modal& m);
 
 /// cycles.cpp: the hole of the active cycle at `top`, along the modal axis.

@@ -15,11 +15,11 @@ void count_decimals(ClSummary& summary, const Statement& s) {
   }
 }
 
-/// Axis of a point: as told by numbers 4 to 6, else as the dialect leaves it out.
+/// Axis of a point: by numbers 4 to 6, else as the dialect leaves it out.
 Outcome take_axis(Modal& m, const Statement& s) {
   if (s.argument_count < 6) return axis_left_out(m, s.line);
   const auto ijk = numbers_from(s, 3);
-  m.rotary.line = 0;  // the point carries its axis, whatever rotary positions were told
+  m.rotary.line = 0;  // the point carries its axis, whatever rotary positions came before
   return set_axis(m, ijk.data(), ToolAxis::Source::kPoint);
 }
 
@@ -179,7 +179,7 @@ Outcome read_multax(Modal& m, const Statement& s) {
 Outcome read_home(Modal& m, const Statement& s) {
   if (m.curve.index() != 0 || m.cycle)
     return refuse("GOHOME inside an arc, a spline or a cycle", "write it before or behind");
-  if (s.argument_count > 0) {  // NX tells where home is
+  if (s.argument_count > 0) {  // NX says where home is
     const std::size_t n = s.argument_count;
     if (!s.all_numbers() || (n != 3 && n != 6)) {
       return refuse(

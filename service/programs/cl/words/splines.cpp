@@ -15,20 +15,20 @@ Outcome refuse_stray(const Statement& s) {
 }
 
 /// Cuts the whole spline into straight blocks.
-Outcome run_spline(Modal& m, const PendingSpline& told, std::uint32_t line) {
+Outcome run_spline(Modal& m, const PendingSpline& given, std::uint32_t line) {
   if (auto done = begin_motion(m, line); !done) return done;
   using Position = BlockPath::Position;
   const bool has_begin = m.path.position() == Position::kReached ||
                          m.path.position() == Position::kReported ||
                          m.path.position() == Position::kLost;
-  if (!has_begin) return refuse_at(told.line, "a spline before any position", "begin with GOTO");
+  if (!has_begin) return refuse_at(given.line, "a spline before any position", "begin with GOTO");
   ClampedCubic spline;
-  spline.inner_knots.assign(told.knots.begin(), told.knots.end() - 1);
+  spline.inner_knots.assign(given.knots.begin(), given.knots.end() - 1);
   spline.points.push_back({m.path.tip(), m.axis.in_w});
-  for (const std::array<double, 6>& point : told.points) {
+  for (const std::array<double, 6>& point : given.points) {
     const auto tip = point_in_w(m, point.data());
     if (!tip) return tl::make_unexpected(tip.error());
-    if (told.has_axes) {
+    if (given.has_axes) {
       if (auto done = set_axis(m, point.data() + 3, ToolAxis::Source::kPoint); !done) return done;
     }
     spline.points.push_back({*tip, m.axis.in_w});
@@ -37,7 +37,7 @@ Outcome run_spline(Modal& m, const PendingSpline& told, std::uint32_t line) {
   if (!feed) return tl::make_unexpected(feed.error());
   const std::vector<ToolPose> chords = chords_of(spline, {});
   if (chords.empty()) {
-    return refuse_at(told.line, "the spline would take more than 200000 straight blocks",
+    return refuse_at(given.line, "the spline would take more than 200000 straight blocks",
                      "output points");
   }
   ++m.summary.splines;

@@ -5,7 +5,7 @@
 
 namespace meridian::nc {
 
-/// PLANE SPATIAL and PLANE RESET, with MOVE, TURN or STAY. Refused by name: planes that are told
+/// PLANE SPATIAL and PLANE RESET, with MOVE, TURN or STAY. Refused by name: planes that are given
 /// otherwise, and Q parameters. Proof: tests/unit/nc/heidenhain_frame_test.cpp.
 [[nodiscard]] cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text);
 

@@ -82,7 +82,7 @@ class Arguments {
   std::array<double, 24> numbers_{};
 };
 
-/// A depth below the reference plane, told as Z, as a length, or as both.
+/// A depth below the reference plane, given as Z, as a length, or as both.
 Expected<double, cl::Refusal> depth_of(const Arguments& v, int absolute, int relative,
                                        std::string_view name) {
   const double by_plane = v[kReference] - v[absolute];
@@ -92,7 +92,7 @@ Expected<double, cl::Refusal> depth_of(const Arguments& v, int absolute, int rel
   if (is_reported_twice) {
     return refuse(std::string(name) + ": two depths, " + cl::short_number(by_plane) +
                       " by its Z and " + cl::short_number(depth) + " as a length",
-                  "tell one of them", std::string(name));
+                  "give one of them", std::string(name));
   }
   return depth;
 }
