@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "meridian/kinematics/soft_limits.hpp"
+#include "support/keep_out_machine.hpp"
 
 namespace meridian {
 namespace {
@@ -89,13 +90,7 @@ TEST(Guard, WhoStandsOutsideMayStandAndComeBackButGoNoFarther) {
 
 /// Joint 0 from 10 to 20 while joint 2 is from -5 to 5.
 MachineModel machine_with_a_box() {
-  MachineModel machine = machine_under_guard();
-  KeepOutBox box;
-  box.joints = 0b101;
-  box.min = {10, 0, -5};
-  box.max = {20, 0, 5};
-  EXPECT_TRUE(machine.keep_out.add(box));
-  return machine;
+  return test::with_keep_out(machine_under_guard(), 0b101, {10, 0, -5}, {20, 0, 5});
 }
 
 TEST(Guard, StopsASetpointInsideAKeepOutBox) {

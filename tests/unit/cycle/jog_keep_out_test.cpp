@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meridian/cycle/jogging.hpp"
+#include "support/keep_out_machine.hpp"
 #include "support/machines.hpp"
 #include "unit/cycle/hand.hpp"
 
@@ -15,13 +16,7 @@ using test::Hand;
 
 /// b3 from 100 to 200 while b4 is from -50 to 50.
 MachineModel machine_with_a_vice() {
-  MachineModel machine = test::lai_machine();
-  KeepOutBox box;
-  box.joints = 0b101;
-  box.min = {100, 0, -50};
-  box.max = {200, 0, 50};
-  EXPECT_TRUE(machine.keep_out.add(box));
-  return machine;
+  return test::with_keep_out(test::lai_machine(), 0b101, {100, 0, -50}, {200, 0, 50});
 }
 
 TEST(JogKeepOut, EndsAtTheFaceOfTheBox) {
