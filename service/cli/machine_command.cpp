@@ -90,9 +90,9 @@ int draw_along(const Options& options, const MachineModel& model) {
   constexpr int kPlaces = 9;
   const auto poses = read_program(options, options.along, model);
   if (!poses) return refuse(poses.error());
-  const auto stands = inspect::stands_along(model, *poses, kPlaces);
-  if (!stands) return refuse(options.along + ": " + stands.error());
-  const auto error = inspect::draw_along(model, *stands, options.picture);
+  const auto postures = inspect::postures_along(model, *poses, kPlaces);
+  if (!postures) return refuse(options.along + ": " + postures.error());
+  const auto error = inspect::draw_along(model, *postures, options.picture);
   return error ? refuse(*error) : kFine;
 }
 

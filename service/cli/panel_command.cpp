@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <memory>
 #include <string>
 
@@ -25,29 +26,21 @@ struct Options {
   bool is_open_network = false;
 };
 
-/// Says nothing where both are right, else why not.
-std::string read_access(Options& options) {
+/// The token and the public address; throws ServerError and TokenError.
+void read_access(Options& options) {
   if (!options.public_url.empty()) {
     const auto host = panel::public_host_of(options.public_url);
     if (!host) {
-      return "--public takes the address of the TLS proxy, as https://NAME or https://NAME:PORT";
+      throw panel::ServerError(
+          "--public takes the address of the TLS proxy, as https://NAME or https://NAME:PORT");
     }
     options.panel.public_host = *host;
   }
-  if (options.token_file.empty()) return "";
-  try {
-    options.panel.token = panel::load_token(options.token_file);
-  } catch (const panel::TokenError& error) {
-    return error.what();
-  }
-  return "";
+  if (!options.token_file.empty()) options.panel.token = panel::load_token(options.token_file);
 }
 
-int run(Options& options) {
-  if (const std::string refusal = read_access(options); !refusal.empty()) {
-    std::fprintf(stderr, "meridian: %s\n", refusal.c_str());
-    return kUsage;
-  }
+int serve(Options& options) {
+  read_access(options);
   const auto open_network =
       options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused;
   {  // Before a machine is looked for: on an open network a stranger may answer.
@@ -65,23 +58,30 @@ int run(Options& options) {
   dds::Participant participant({.domain = options.peer.domain,
                                 .machine = options.peer.machine,
                                 .open_network = open_network});
-  try {
-    panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
-      std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
-                  static_cast<unsigned>(port));
-      if (!options.panel.public_host.empty()) {
-        std::printf("and behind its TLS proxy at https://%s/\n", options.panel.public_host.c_str());
-      }
-      std::fflush(stdout);
-    });
-  } catch (const panel::ServerError& error) {
-    std::fprintf(stderr, "meridian: %s\n", error.what());
-    return kUsage;
-  } catch (const panel::TokenError& error) {
-    std::fprintf(stderr, "meridian: %s\n", error.what());
-    return kUsage;
-  }
+  panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
+    std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
+                static_cast<unsigned>(port));
+    if (!options.panel.public_host.empty()) {
+      std::printf("and behind its TLS proxy at https://%s/\n", options.panel.public_host.c_str());
+    }
+    std::fflush(stdout);
+  });
   return kFine;
+}
+
+int refuse(const std::exception& error) {
+  std::fprintf(stderr, "meridian: %s\n", error.what());
+  return kUsage;
+}
+
+int run(Options& options) {
+  try {
+    return serve(options);
+  } catch (const panel::ServerError& error) {
+    return refuse(error);
+  } catch (const panel::TokenError& error) {
+    return refuse(error);
+  }
 }
 
 }  // namespace

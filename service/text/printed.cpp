@@ -7,19 +7,37 @@
 
 namespace meridian::text {
 
-void append(std::string& text, const char* format, ...) {
-  std::va_list arguments;
-  va_start(arguments, format);
+namespace {
+
+/// Leaves `arguments` read.
+void append_list(std::string& text, const char* format, std::va_list arguments) {
   std::va_list again;
   va_copy(again, arguments);
   const int size = std::vsnprintf(nullptr, 0, format, arguments);
-  va_end(arguments);
   const std::size_t before = text.size();
   if (size > 0) {
     text.resize(before + static_cast<std::size_t>(size));
     std::vsnprintf(text.data() + before, static_cast<std::size_t>(size) + 1, format, again);
   }
   va_end(again);
+}
+
+}  // namespace
+
+std::string printed(const char* format, ...) {
+  std::string text;
+  std::va_list arguments;
+  va_start(arguments, format);
+  append_list(text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+void append(std::string& text, const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  append_list(text, format, arguments);
+  va_end(arguments);
 }
 
 std::string json_quoted(const std::string& text) {

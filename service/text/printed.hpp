@@ -10,6 +10,9 @@ namespace meridian::text {
 /// What printf's %llu calls std::uint64_t.
 using Count = unsigned long long;
 
+/// What std::printf prints.
+[[nodiscard, gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...);
+
 /// Adds `format` with its arguments to `text`.
 [[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...);
 

@@ -6,9 +6,11 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/inspect/inspection.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 constexpr double kNothing = 1e-9;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "service/machine/inspect/machine_stand.hpp"
+#include "service/machine/inspect/machine_posture.hpp"
 
 namespace meridian::inspect {
 
@@ -14,7 +14,7 @@ namespace meridian::inspect {
 /// its sliders and rods; the first place pale, the last one dark. `file` ends in .png or .svg.
 /// Returns what went wrong.
 [[nodiscard]] std::optional<std::string> draw_along(const MachineModel& model,
-                                                    const std::vector<MachineStand>& stands,
+                                                    const std::vector<MachinePosture>& postures,
                                                     const std::string& file);
 
 }  // namespace meridian::inspect

@@ -5,9 +5,11 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/inspect/placing.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 double shown(const JointSpec& joint, double value) {

@@ -25,7 +25,7 @@ struct View {
   bool is_in_space = true;
   int across = 0, up = 1;  ///< of a view that is not in space: x 0, y 1, z 2
 
-  /// Columns of a point ("1:2:3"), and of a point with its way.
+  /// Columns of a point ("1:2:3"), and of an arrow: a point and a vector.
   [[nodiscard]] std::string points() const;
   [[nodiscard]] std::string vectors() const;
 };

@@ -7,9 +7,11 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 constexpr double kBeyondMargin = 1e-9;

@@ -4,9 +4,11 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/inspect/pose_solutions.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 std::string value_text(const JointSpec& joint, double value) {

@@ -8,9 +8,11 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/machine/inspect/least_squares.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 constexpr Eigen::Index kMiddle = 4, kRadius = 7;  // unknowns: two for each axis, three, one

@@ -7,9 +7,11 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/inspect/inspection.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 constexpr double kExact = 1e-6;  // rad and mm: what rounding of a file makes

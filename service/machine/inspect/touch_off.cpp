@@ -9,9 +9,11 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/inspect/least_squares.hpp"
-#include "service/machine/inspect/printed.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
+
+using text::printed;
 namespace {
 
 constexpr double kAlongAxis = 0.866;  // cosine of 30 degrees

@@ -6,10 +6,12 @@
 #include <limits>
 #include <numbers>
 
-#include "service/programs/surface/print.hpp"
 #include "service/programs/surface/sample_blocks.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::surface {
+
+using text::printed;
 namespace {
 
 constexpr double kWallLength_mm = 80, kWallHeight_mm = 20;
@@ -111,12 +113,12 @@ std::vector<ClBlock> side_milling() {
 
 std::string side_milling_report() {
   const FlankFit fit = measure_flank(sample_wall, swept(block_ends()), kCutterRadius_mm);
-  std::string out = print("wall      ruled, %.6g mm long, %.6g mm high; twist up to %.3f deg\n",
-                          kWallLength_mm, kWallHeight_mm, units::deg_from_rad(fit.twist_rad));
-  out += print("cutter    flank of an end mill, diameter %.6g mm, along the rulings\n",
-               2 * kCutterRadius_mm);
-  out += print("undercut  at most %.6f mm\novercut   at most %.6f mm\n", fit.undercut_mm,
-               fit.overcut_mm);
+  std::string out = printed("wall      ruled, %.6g mm long, %.6g mm high; twist up to %.3f deg\n",
+                            kWallLength_mm, kWallHeight_mm, units::deg_from_rad(fit.twist_rad));
+  out += printed("cutter    flank of an end mill, diameter %.6g mm, along the rulings\n",
+                 2 * kCutterRadius_mm);
+  out += printed("undercut  at most %.6f mm\novercut   at most %.6f mm\n", fit.undercut_mm,
+                 fit.overcut_mm);
   return out;
 }
 

@@ -7,16 +7,18 @@
 #include <limits>
 
 #include "meridian/units.hpp"
-#include "service/programs/surface/print.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::surface {
+
+using text::printed;
 namespace {
 
 double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-std::string radius(double mm) { return std::isfinite(mm) ? print("%.6g mm", mm) : "none"; }
+std::string radius(double mm) { return std::isfinite(mm) ? printed("%.6g mm", mm) : "none"; }
 
 /// Adds one contact, and the block that leads to it from `last`.
 class Measure {
@@ -66,7 +68,7 @@ class Measure {
 };
 
 std::string asked(const char* what, double bound_mm) {
-  return bound_mm > 0 ? print(", %s %.6g mm", what, bound_mm) : "";
+  return bound_mm > 0 ? printed(", %s %.6g mm", what, bound_mm) : "";
 }
 
 }  // namespace
@@ -98,29 +100,29 @@ std::string to_text(const SurfaceReport& r, const PatchJob& job) {
   const NurbsNet& net = job.surface->net();
   const Cutter& cutter = job.rule.cutter;
   const char* kind = cutter.is_ball() ? "ball" : cutter.corner_radius_mm > 0 ? "toroidal" : "flat";
-  std::string out = print("surface   %s: degree %d x %d, %zu x %zu control points\n",
-                          job.name.c_str(), net.degree_u, net.degree_v, net.rows, net.columns);
+  std::string out = printed("surface   %s: degree %d x %d, %zu x %zu control points\n",
+                            job.name.c_str(), net.degree_u, net.degree_v, net.rows, net.columns);
   out += "curvature smallest radius convex " + radius(r.convex_radius_mm) + ", concave " +
          radius(r.concave_radius_mm) + "\n";
-  out +=
-      print("cutter    %s, diameter %.6g mm, corner radius %.6g mm; lead %.6g deg, tilt %.6g deg\n",
-            kind, cutter.diameter_mm, cutter.corner_radius_mm,
-            units::deg_from_rad(job.rule.lead_rad), units::deg_from_rad(job.rule.tilt_rad));
-  out += print("path      %s along %s: %zu lines, %zu contacts, %.3f mm, %.3f s at %.6g mm/min\n",
-               job.cover.is_zigzag ? "zigzag" : "one-way", job.rule.runs_along_u ? "u" : "v",
-               r.lines, r.contacts, r.length_mm, r.seconds_at_feed,
-               units::per_min_from_per_s(job.program.feed_mm_per_s));
-  out += print("axis      %.3f to %.3f deg from z, at most %.3f deg in one block\n",
-               units::deg_from_rad(r.min_tilt_rad), units::deg_from_rad(r.largest_tilt_rad),
-               units::deg_from_rad(r.largest_turn_rad));
-  out +=
-      print("chord     error at most %.6f mm on lines, %.6f mm between them%s\n", r.chord_error_mm,
-            r.crossing_chord_error_mm, asked("asked", job.cover.chord_error_mm).c_str());
-  out += std::isfinite(r.scallop_mm) ? print("scallop   at most %.6f mm high", r.scallop_mm)
+  out += printed(
+      "cutter    %s, diameter %.6g mm, corner radius %.6g mm; lead %.6g deg, tilt %.6g deg\n", kind,
+      cutter.diameter_mm, cutter.corner_radius_mm, units::deg_from_rad(job.rule.lead_rad),
+      units::deg_from_rad(job.rule.tilt_rad));
+  out += printed("path      %s along %s: %zu lines, %zu contacts, %.3f mm, %.3f s at %.6g mm/min\n",
+                 job.cover.is_zigzag ? "zigzag" : "one-way", job.rule.runs_along_u ? "u" : "v",
+                 r.lines, r.contacts, r.length_mm, r.seconds_at_feed,
+                 units::per_min_from_per_s(job.program.feed_mm_per_s));
+  out += printed("axis      %.3f to %.3f deg from z, at most %.3f deg in one block\n",
+                 units::deg_from_rad(r.min_tilt_rad), units::deg_from_rad(r.largest_tilt_rad),
+                 units::deg_from_rad(r.largest_turn_rad));
+  out += printed("chord     error at most %.6f mm on lines, %.6f mm between them%s\n",
+                 r.chord_error_mm, r.crossing_chord_error_mm,
+                 asked("asked", job.cover.chord_error_mm).c_str());
+  out += std::isfinite(r.scallop_mm) ? printed("scallop   at most %.6f mm high", r.scallop_mm)
                                      : std::string("scallop   lines do not overlap");
   out += asked("asked", job.cover.scallop_mm) + "\n";
   if (r.gouges == 0) return out + "gouge     none: the cutter bends more than the surface\n";
-  return out + print(
+  return out + printed(
                    "gouge     WARNING: %zu of %zu contacts: the cutter bends less than the "
                    "surface; worst at u = %.6g, v = %.6g, where the surface has radius %s\n",
                    r.gouges, r.contacts, r.worst_gouge.u, r.worst_gouge.v,

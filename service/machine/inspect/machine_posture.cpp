@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/machine_stand.hpp"
+#include "service/machine/inspect/machine_posture.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Axis {
   return {Vector3::Zero(), Vector3::UnitZ()};
 }
 
-/// The pivots of a branch as its joints stand, and what it ends in.
+/// The pivots of a branch as its joints posture, and what it ends in.
 [[nodiscard]] std::vector<Vector3> chain_of(const std::vector<Screw>& screws, const JointVector& q,
                                             const Vector3& end) {
   std::vector<Vector3> out;
@@ -42,8 +42,8 @@ struct Axis {
   return out;
 }
 
-[[nodiscard]] StageStand stage_at(const MachineModel& model, const scene::LinkTree& tree,
-                                  const JointVector& q) {
+[[nodiscard]] StagePosture stage_at(const MachineModel& model, const scene::LinkTree& tree,
+                                    const JointVector& q) {
   const ActuatorStage& stage = model.stage;
   const Axis linear = axis_of(tree.table, q, stage.linear_joint);
   const Axis rotary = axis_of(tree.table, q, stage.rotary_joint);
@@ -51,7 +51,7 @@ struct Axis {
   const JointVector u = stage::drives_of(stage, q);
   const Vector3 along = stage.sign_s * linear.direction;
   const Vector3 across = (stage.sign_phi * rotary.direction).cross(along);
-  StageStand out;
+  StagePosture out;
   out.centre = rotary.point;
   for (std::size_t n = 0; n < kStageDrives; ++n) {
     const double side = n == 0 ? 1 : -1;
@@ -91,35 +91,34 @@ struct Axis {
   return at.pose.tip + at.tool_length_mm * at.pose.axis;
 }
 
-/// The way of the gauge point up to each pose.
-[[nodiscard]] std::vector<double> ways_of(const std::vector<ProgramPose>& poses) {
-  std::vector<double> ways(poses.size(), 0.0);
+/// The path length of the gauge point up to each pose.
+[[nodiscard]] std::vector<double> lengths_to(const std::vector<ProgramPose>& poses) {
+  std::vector<double> lengths(poses.size(), 0.0);
   for (std::size_t n = 1; n < poses.size(); ++n) {
-    ways[n] = ways[n - 1] + (gauge_of(poses[n]) - gauge_of(poses[n - 1])).norm();
+    lengths[n] = lengths[n - 1] + (gauge_of(poses[n]) - gauge_of(poses[n - 1])).norm();
   }
-  return ways;
+  return lengths;
 }
 
 }  // namespace
 
-MachineStand stand_at(const MachineModel& model, const JointVector& q, double tool_length_mm) {
+MachinePosture posture_at(const MachineModel& model, const JointVector& q, double tool_length_mm) {
   const scene::LinkTree tree = scene::link_tree(model);
-  MachineStand stand;
-  stand.joints = q;
-  stand.head = chain_of(tree.head, q, tree.gauge_mm);
-  stand.tip = chain_of(tree.head, q, tree.gauge_mm - tool_length_mm * tree.axis).back();
-  stand.table = chain_of(tree.table, q, model.frame_origin_mm);
-  if (has_stage(model)) stand.stage = stage_at(model, tree, q);
-  return stand;
+  MachinePosture posture;
+  posture.joints = q;
+  posture.head = chain_of(tree.head, q, tree.gauge_mm);
+  posture.tip = chain_of(tree.head, q, tree.gauge_mm - tool_length_mm * tree.axis).back();
+  posture.table = chain_of(tree.table, q, model.frame_origin_mm);
+  if (has_stage(model)) posture.stage = stage_at(model, tree, q);
+  return posture;
 }
 
-Expected<std::vector<MachineStand>, std::string> stands_along(const MachineModel& model,
-                                                              const std::vector<ProgramPose>& poses,
-                                                              int count) {
-  const std::vector<double> ways = ways_of(poses);
-  const double step = poses.empty() ? 0 : ways.back() / (count - 1);
+Expected<std::vector<MachinePosture>, std::string> postures_along(
+    const MachineModel& model, const std::vector<ProgramPose>& poses, int count) {
+  const std::vector<double> lengths = lengths_to(poses);
+  const double step = poses.empty() ? 0 : lengths.back() / (count - 1);
   double due = 0;
-  std::vector<MachineStand> stands;
+  std::vector<MachinePosture> postures;
   MachineModel with_tool = model;
   JointVector joints{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
@@ -135,12 +134,12 @@ Expected<std::vector<MachineStand>, std::string> stands_along(const MachineModel
     }
     joints = *next;
     const bool is_last = n + 1 == poses.size();
-    if (ways[n] < due && !is_last) continue;
-    due = step > 0 ? step * (std::floor(ways[n] / step) + 1) : ways.back() + 1;
-    stands.push_back(stand_at(with_tool, joints, with_tool.tool_length_mm));
-    stands.back().line = poses[n].line;
+    if (lengths[n] < due && !is_last) continue;
+    due = step > 0 ? step * (std::floor(lengths[n] / step) + 1) : lengths.back() + 1;
+    postures.push_back(posture_at(with_tool, joints, with_tool.tool_length_mm));
+    postures.back().line = poses[n].line;
   }
-  return stands;
+  return postures;
 }
 
 }  // namespace meridian::inspect

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/machine_stand.hpp"
+#include "service/machine/inspect/machine_posture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace meridian::inspect {
 namespace {
 
-class StandOfEveryShipped : public testing::TestWithParam<std::string> {
+class PostureOfEveryShipped : public testing::TestWithParam<std::string> {
  protected:
   const MachineModel model_ = config::load_machine(test::shipped_file(GetParam()));
 
@@ -48,67 +48,68 @@ class StandOfEveryShipped : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(StandOfEveryShipped, TipAndWorkpieceAreAsFarApartAsForwardKinematicsSays) {
+TEST_P(PostureOfEveryShipped, TipAndWorkpieceAreAsFarApartAsForwardKinematicsSays) {
   std::mt19937_64 random(5);
   for (int n = 0; n < 50; ++n) {
     const JointVector q = draw(random);
-    const MachineStand stand = stand_at(model_, q, model_.tool_length_mm);
+    const MachinePosture posture = posture_at(model_, q, model_.tool_length_mm);
     const ToolPose pose = forward(model_, model_.tool_length_mm, q);
-    EXPECT_NEAR((stand.tip - stand.table.back()).norm(), pose.tip.norm(), 1e-9);
-    EXPECT_NEAR((stand.tip - stand.head.back()).norm(), model_.tool_length_mm, 1e-9);
+    EXPECT_NEAR((posture.tip - posture.table.back()).norm(), pose.tip.norm(), 1e-9);
+    EXPECT_NEAR((posture.tip - posture.head.back()).norm(), model_.tool_length_mm, 1e-9);
   }
 }
 
-TEST_P(StandOfEveryShipped, RodsKeepTheirLengthAndLeadFromTheRailsToTheTable) {
+TEST_P(PostureOfEveryShipped, RodsKeepTheirLengthAndLeadFromTheRailsToTheTable) {
   const ActuatorStage& stage = model_.stage;
   std::mt19937_64 random(6);
   for (int n = 0; n < 50; ++n) {
     const JointVector q = draw(random);
-    const MachineStand stand = stand_at(model_, q, model_.tool_length_mm);
-    ASSERT_EQ(stand.stage.has_value(), has_stage(model_));
-    if (!stand.stage || stage.kind != StageKind::kTwoSlider || !stage::is_in_reach(stage, q)) {
+    const MachinePosture posture = posture_at(model_, q, model_.tool_length_mm);
+    ASSERT_EQ(posture.stage.has_value(), has_stage(model_));
+    if (!posture.stage || stage.kind != StageKind::kTwoSlider || !stage::is_in_reach(stage, q)) {
       continue;
     }
-    for (std::size_t k = 0; k < stand.stage->pin.size(); ++k) {
-      EXPECT_NEAR((stand.stage->pin[k] - stand.stage->slider[k]).norm(), stage.rod_mm, 1e-9);
-      EXPECT_NEAR((stand.stage->pin[k] - stand.stage->centre).norm(), stage.radius_mm, 1e-9);
+    for (std::size_t k = 0; k < posture.stage->pin.size(); ++k) {
+      EXPECT_NEAR((posture.stage->pin[k] - posture.stage->slider[k]).norm(), stage.rod_mm, 1e-9);
+      EXPECT_NEAR((posture.stage->pin[k] - posture.stage->centre).norm(), stage.radius_mm, 1e-9);
     }
   }
 }
 
-TEST_P(StandOfEveryShipped, PlacesOfAProgramHaveItsBeginAndItsEnd) {
+TEST_P(PostureOfEveryShipped, PlacesOfAProgramHaveItsBeginAndItsEnd) {
   const auto poses = program(40);
-  const auto stands = stands_along(model_, poses, 9);
-  ASSERT_TRUE(stands) << stands.error();
-  EXPECT_LE(stands->size(), 9U);
-  EXPECT_GE(stands->size(), 5U);
-  EXPECT_EQ(stands->front().line, 1U);
-  EXPECT_EQ(stands->back().line, 40U);
-  for (const MachineStand& stand : *stands) {
-    const ToolPose& asked = poses[stand.line - 1].pose;
-    EXPECT_LT((forward(model_, model_.tool_length_mm, stand.joints).tip - asked.tip).norm(), 1e-6);
+  const auto postures = postures_along(model_, poses, 9);
+  ASSERT_TRUE(postures) << postures.error();
+  EXPECT_LE(postures->size(), 9U);
+  EXPECT_GE(postures->size(), 5U);
+  EXPECT_EQ(postures->front().line, 1U);
+  EXPECT_EQ(postures->back().line, 40U);
+  for (const MachinePosture& posture : *postures) {
+    const ToolPose& asked = poses[posture.line - 1].pose;
+    EXPECT_LT((forward(model_, model_.tool_length_mm, posture.joints).tip - asked.tip).norm(),
+              1e-6);
   }
 }
 
-TEST_P(StandOfEveryShipped, IsDrawn) {
-  const auto stands = stands_along(model_, program(40), 9);
-  ASSERT_TRUE(stands);
+TEST_P(PostureOfEveryShipped, IsDrawn) {
+  const auto postures = postures_along(model_, program(40), 9);
+  ASSERT_TRUE(postures);
   const std::string file = testing::TempDir() + "/along-" + GetParam() + ".svg";
-  const auto error = draw_along(model_, *stands, file);
+  const auto error = draw_along(model_, *postures, file);
   EXPECT_FALSE(error) << *error;
   EXPECT_GT(std::filesystem::file_size(file), 20'000U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, StandOfEveryShipped, testing::ValuesIn(test::shipped_machines()),
-                         test::test_name);
+INSTANTIATE_TEST_SUITE_P(Machines, PostureOfEveryShipped,
+                         testing::ValuesIn(test::shipped_machines()), test::test_name);
 
-TEST(MachineStand, APoseWithoutJointsIsNamedByItsLine) {
+TEST(MachinePosture, APoseWithoutJointsIsNamedByItsLine) {
   const MachineModel robot = config::load_machine(test::shipped_file("robot-6r"));
   const std::vector<ProgramPose> poses{
       {{Vector3(1e5, 0, 0), Vector3::UnitZ()}, robot.tool_length_mm, 12}};
-  const auto stands = stands_along(robot, poses, 9);
-  ASSERT_FALSE(stands);
-  EXPECT_EQ(stands.error().rfind("line 12: ", 0), 0U) << stands.error();
+  const auto postures = postures_along(robot, poses, 9);
+  ASSERT_FALSE(postures);
+  EXPECT_EQ(postures.error().rfind("line 12: ", 0), 0U) << postures.error();
 }
 
 }  // namespace
