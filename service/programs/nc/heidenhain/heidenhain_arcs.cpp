@@ -99,7 +99,7 @@ cl::Outcome prepare_arc(State& s, const Line& line, Line& iso) {
   const std::string_view statement = line.names.front().name;
   const bool is_left = has_sense(line, "DR+");
   if (!is_left && !has_sense(line, "DR-"))
-    return refuse("an arc without DR+ or DR-", "write which way it turns");
+    return refuse("an arc without DR+ or DR-", "write DR+ for left, DR- for right");
   s.modes.motion = is_left ? Motion::kCounterClockwise : Motion::kClockwise;
   if (statement == "CR") return {};
   if (!s.modes.pole[0] || !s.modes.pole[1]) {
