@@ -4,21 +4,18 @@
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/options/cl_options.hpp"
 #include "service/cli/options/finite_range.hpp"
 #include "service/cli/options/machine_options.hpp"
-#include "service/machine/file/config_error.hpp"
+#include "service/cli/options/place_options.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/inspection.hpp"
 #include "service/machine/inspect/joint_pattern.hpp"
 #include "service/machine/inspect/machine_picture.hpp"
 #include "service/machine/inspect/path_picture.hpp"
-#include "service/machine/inspect/placing.hpp"
-#include "service/machine/inspect/program_poses.hpp"
 #include "service/machine/inspect/rotary_centres.hpp"
 #include "service/text/whole_file.hpp"
 
@@ -28,9 +25,9 @@ namespace {
 struct Options {
   MachineOptions machine;
   ClFileOptions cl;
-  std::string picture, along, pattern, program, box, touches, written;
+  PlaceOptions place;
+  std::string picture, along, pattern, touches, written;
   std::optional<double> sphere_radius_mm;
-  bool may_turn = false;
 };
 
 int refuse(const std::string& message) {
@@ -38,57 +35,10 @@ int refuse(const std::string& message) {
   return kInputRefused;
 }
 
-/// `x0,x1,y0,y1,z0,z1` in mm; throws config::ConfigError.
-inspect::PlacingBox read_box(const std::string& text) {
-  inspect::PlacingBox box;
-  std::istringstream numbers(text);
-  bool is_fine = true;
-  for (std::size_t i = 0; i < 3 && is_fine; ++i) {
-    char comma = ',';
-    if (i > 0) numbers >> comma;
-    is_fine = comma == ',' && (numbers >> box.low_mm[i] >> comma >> box.high_mm[i]) &&
-              comma == ',' && box.low_mm[i] <= box.high_mm[i];
-  }
-  if (is_fine && numbers.peek() == std::istringstream::traits_type::eof()) return box;
-  throw config::ConfigError({.file = "--box",
-                             .value = "'" + text + "' is no box",
-                             .remedy = "give x0,x1,y0,y1,z0,z1 in mm, the smaller of each first"});
-}
-
-/// Every pose of a program; throws config::ConfigError.
-Expected<std::vector<inspect::ProgramPose>, std::string> read_program(const Options& options,
-                                                                      const std::string& name,
-                                                                      const MachineModel& model) {
-  ToolTable tools = load_tools(options.machine);
-  cl::ClReaderOptions reading = reader_options(options.cl, options.machine, model);
-  add_unknown_tools(name, reading, options.machine, tools);
-  describe_machine(reading, model, tools, load_tool_names(options.machine));
-  std::ifstream file;
-  std::istream* const input = open_cl_file(name, file);
-  if (input == nullptr) return tl::make_unexpected(name + ": cannot be opened");
-  cl::ClReader reader(*input, name, reading);
-  auto poses = inspect::read_poses(reader, model, tools);
-  if (!poses) return tl::make_unexpected(poses.error().text());
-  if (poses->empty()) return tl::make_unexpected(name + " moves nothing");
-  return *std::move(poses);
-}
-
-/// Looks for a frame in which the whole program fits.
-int place(const Options& options, const MachineModel& model) {
-  const auto poses = read_program(options, options.program, model);
-  if (!poses) return refuse(poses.error());
-  inspect::PlacingBox box =
-      options.box.empty() ? inspect::widest_box(model, *poses) : read_box(options.box);
-  box.may_turn = options.may_turn;
-  const inspect::Placing found = inspect::find_placing(model, *poses, box);
-  std::cout << to_text(found, model);
-  return found.fit.margin >= 0 ? kFine : kVerdictNo;
-}
-
 /// The picture of the machine at places of a program.
 int draw_along(const Options& options, const MachineModel& model) {
   constexpr int kPlaces = 9;
-  const auto poses = read_program(options, options.along, model);
+  const auto poses = read_program_poses(options.along, options.cl, options.machine, model);
   if (!poses) return refuse(poses.error());
   const auto postures = inspect::postures_along(model, *poses, kPlaces);
   if (!postures) return refuse(options.along + ": " + postures.error());
@@ -128,7 +78,10 @@ int run(const Options& options) {
                              {options.picture, options.pattern, options.written});
   if (!lost.empty()) return refuse(lost);
   const MachineModel model = load_machine(options.machine);
-  if (!options.program.empty()) return place(options, model);
+  if (!options.place.program.empty()) {
+    const auto code = run_place(options.place, options.cl, options.machine, model);
+    return code ? *code : refuse(code.error());
+  }
   if (!options.touches.empty()) return calibrate(options, model);
   if (!options.along.empty()) return draw_along(options, model);
   const inspect::Inspection inspection = inspect::inspect(model);
@@ -168,18 +121,7 @@ void add(CLI::App& app, int& exit_code) {
       ->needs(picture);
   command->add_option("--pattern", options->pattern,
                       "Write a CL file that moves each joint alone, forwards and back");
-  CLI::Option* const program = command->add_option(
-      "--place", options->program,
-      "A part program: find the frame in which it fits with the largest margin to all ends of "
-      "travel. Exit code 1 where there is none");
-  command
-      ->add_option(
-          "--box", options->box,
-          "With --place: where the origin of the workpiece may lie, x0,x1,y0,y1,z0,z1 in mm; "
-          "default: wherever the machine reaches")
-      ->needs(program);
-  command->add_flag("--turn", options->may_turn, "With --place: the workpiece may turn about z")
-      ->needs(program);
+  CLI::Option* const program = add_place_options(*command, options->place);
   command->add_option("--tools", options->machine.tools,
                       "With --place or --along: tool table (TOML)");
   command

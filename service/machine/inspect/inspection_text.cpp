@@ -6,6 +6,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/inspect/inspection.hpp"
+#include "service/machine/inspect/joint_unit.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::inspect {
@@ -29,12 +30,6 @@ std::string direction_text(const Vector3& v) {
   }
   return vector_text(v);
 }
-
-double at_edge(const JointSpec& joint, double value) {
-  return joint.is_rotary ? units::deg_from_rad(value) : value;
-}
-
-const char* unit_of(const JointSpec& joint) { return joint.is_rotary ? "deg" : "mm"; }
 
 const JointSpec& spec_of(const MachineModel& model, int joint) {
   return model.joints[static_cast<std::size_t>(joint)];

@@ -17,7 +17,6 @@ constexpr int kBest = 12;       // of them, that steps begin from
 constexpr int kFewPoses = 400;  // that a search looks at
 constexpr int kRounds = 8;      // of search, each with the pose that was worst before
 constexpr double kSmallest_mm = 0.05, kSmallest_rad = 1e-4;
-constexpr double kOutOfReach = -1;  // and a share of the program more
 
 /// Number `index` of the van der Corput sequence in `base`: spread evenly over 0 to 1.
 double spread(int index, int base) {
@@ -26,96 +25,25 @@ double spread(int index, int base) {
   return value;
 }
 
-/// Range of a joint over a program.
-struct Range {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -std::numeric_limits<double>::infinity();
-  std::uint32_t min_line = 0, max_line = 0;
-
-  void add(double q, std::uint32_t line) {
-    if (q < least) {
-      least = q;
-      min_line = line;
-    }
-    if (q > most) {
-      most = q;
-      max_line = line;
-    }
-  }
-};
-
-/// What is left to the ends of travel: negative where the range is beyond, and the nearer end.
-struct Room {
-  double share = 1;
-  std::uint32_t line = 0;
-};
-
-Room room_of(const JointSpec& joint, Range& range) {
-  const double low = joint.limits.travel_min, high = joint.limits.travel_max;
-  const double half = 0.5 * (high - low);
-  if (joint.is_rotary) {
-    // The whole program in the winding that leaves most room.
-    constexpr double kTurn = 2 * std::numbers::pi;
-    const double off = 0.5 * (low + high) - 0.5 * (range.least + range.most);
-    const double by = kTurn * std::round(off / kTurn);
-    range.least += by;
-    range.most += by;
-  }
-  const double below = (range.least - low) / half, above = (high - range.most) / half;
-  return below < above ? Room{below, range.min_line} : Room{above, range.max_line};
-}
-
-Fit fit_on(const MachineModel& model, const std::vector<ProgramPose>& poses, int branch) {
-  Fit fit;
-  fit.branch = branch;
-  std::array<Range, kMaxLimited> ranges;
-  JointVector q{};
-  for (int i = 0; i < model.joint_count; ++i) q[i] = model.joints[i].home;
-  std::size_t out_of_reach = 0;
-  for (const ProgramPose& at : poses) {
-    const auto solution = solve(model, at.tool_length_mm, at.pose, branch, q);
-    if (solution.status == SolveStatus::kUnreachable) {
-      if (out_of_reach++ == 0) fit.line = at.line;
-      continue;
-    }
-    q = solution.q;
-    const LimitedVector all = limited_of(model, q);
-    for (int i = 0; i < limited_count(model); ++i)
-      ranges[static_cast<std::size_t>(i)].add(all[i], at.line);
-  }
-  if (out_of_reach > 0) {
-    fit.margin =
-        kOutOfReach - static_cast<double>(out_of_reach) / static_cast<double>(poses.size());
-    fit.score = fit.margin;
-    return fit;
-  }
-  constexpr double kOfMean = 0.01;
-  double sum = 0;
-  fit.margin = 1;
-  for (int i = 0; i < limited_count(model); ++i) {
-    Range& range = ranges[static_cast<std::size_t>(i)];
-    const JointSpec& joint = limited_spec(model, i);
-    if (!joint.is_endless) {
-      const Room room = room_of(joint, range);
-      sum += room.share;
-      if (room.share < fit.margin) {
-        fit.margin = std::max(room.share, -0.999);
-        fit.joint = i;
-        fit.line = room.line;
-      }
-    }
-    fit.least[i] = range.least;
-    fit.most[i] = range.most;
-  }
-  fit.score = fit.margin + kOfMean * sum / limited_count(model);
-  return fit;
-}
-
 std::vector<ProgramPose> few_of(const std::vector<ProgramPose>& poses) {
   const std::size_t step = std::max<std::size_t>(1, poses.size() / kFewPoses);
   std::vector<ProgramPose> few;
-  for (std::size_t n = 0; n < poses.size(); n += step) few.push_back(poses[n]);
+  double feed_time_s = 0;
+  for (std::size_t n = 0; n < poses.size(); ++n) {
+    feed_time_s += poses[n].feed_time_s;
+    if (n % step != 0) continue;
+    few.push_back(poses[n]);
+    few.back().feed_time_s = feed_time_s;
+    feed_time_s = 0;
+  }
   return few;
+}
+
+/// What the search makes large: of frames with room for it the speed, of others the score.
+double worth(const Fit& fit, PlacingAim aim) {
+  const bool has_room = aim == PlacingAim::kTime && fit.margin >= kTimeMargin;
+  constexpr double kAboveAnyScore = 2;
+  return has_room ? kAboveAnyScore + 1 / (1 + fit.estimated_time_s) : fit.score;
 }
 
 /// A frame as the search moves it: x, y, z and the turn.
@@ -123,7 +51,8 @@ using Place = std::array<double, 4>;
 
 class Search {
  public:
-  Search(const MachineModel& model, const PlacingBox& box) : model_(model), box_(box) {}
+  Search(const MachineModel& model, const PlacingBox& box, PlacingAim aim)
+      : model_(model), box_(box), aim_(aim) {}
 
   [[nodiscard]] Place run(const std::vector<ProgramPose>& poses, const std::vector<Place>& also) {
     struct Tried {
@@ -158,7 +87,7 @@ class Search {
  private:
   [[nodiscard]] double score(const Place& place, const std::vector<ProgramPose>& poses) {
     ++frames_;
-    return fit_of(placed(model_, {place[0], place[1], place[2]}, place[3]), poses).score;
+    return worth(fit_of(placed(model_, {place[0], place[1], place[2]}, place[3]), poses), aim_);
   }
 
   /// Steps along each direction as long as they gain, halved where none does.
@@ -192,6 +121,7 @@ class Search {
 
   const MachineModel& model_;
   const PlacingBox& box_;
+  const PlacingAim aim_;
   int frames_ = 0;
 };
 
@@ -204,15 +134,6 @@ MachineModel placed(MachineModel model, const std::array<double, 3>& origin_mm, 
   model.frame_rotation = about_z * model.frame_rotation;
   model.frame_origin_mm = Vector3(origin_mm[0], origin_mm[1], origin_mm[2]);
   return model;
-}
-
-Fit fit_of(const MachineModel& model, const std::vector<ProgramPose>& poses) {
-  Fit best;
-  for (int branch = 0; branch < branch_count(model); ++branch) {
-    const Fit fit = fit_on(model, poses, branch);
-    if (branch == 0 || fit.score > best.score) best = fit;
-  }
-  return best;
 }
 
 PlacingBox widest_box(const MachineModel& model, const std::vector<ProgramPose>& poses) {
@@ -245,8 +166,8 @@ PlacingBox widest_box(const MachineModel& model, const std::vector<ProgramPose>&
 }
 
 Placing find_placing(const MachineModel& model, const std::vector<ProgramPose>& poses,
-                     const PlacingBox& box) {
-  Search search(model, box);
+                     const PlacingBox& box, PlacingAim aim) {
+  Search search(model, box, aim);
   std::vector<ProgramPose> few = few_of(poses);
   Placing best;
   std::vector<Place> also;
@@ -255,7 +176,7 @@ Placing find_placing(const MachineModel& model, const std::vector<ProgramPose>& 
     for (std::size_t i = 0; i < 3; ++i) place[i] = std::round(place[i] * 1e3) * 1e-3;
     const std::array<double, 3> origin = {place[0], place[1], place[2]};
     const Fit fit = fit_of(placed(model, origin, place[3]), poses);
-    if (round == 0 || fit.score > best.fit.score) best = {origin, place[3], fit, 0};
+    if (round == 0 || worth(fit, aim) > worth(best.fit, aim)) best = {origin, place[3], fit, 0};
     // The few had the margin that all have: no pose between them is worse.
     const Fit seen = fit_of(placed(model, origin, place[3]), few);
     if (fit.margin > seen.margin - 1e-3) break;

@@ -4,6 +4,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/machine/inspect/joint_unit.hpp"
 #include "service/machine/inspect/placing.hpp"
 #include "service/text/printed.hpp"
 
@@ -12,23 +13,41 @@ namespace meridian::inspect {
 using text::printed;
 namespace {
 
-double shown(const JointSpec& joint, double value) {
-  return joint.is_rotary ? units::deg_from_rad(value) : value;
+std::string margin_text(const Fit& fit, const MachineModel& model) {
+  const JointSpec& joint = limited_spec(model, fit.joint);
+  const JointLimits& limits = joint.limits;
+  const double room =
+      std::min(fit.min[fit.joint] - limits.travel_min, limits.travel_max - fit.max[fit.joint]);
+  return printed("margin     %.1f %% of half the travel: %s comes within %.3f %s of its travel's "
+                 "end in line %u\n",
+                 100 * fit.margin, joint.name.c_str(), at_edge(joint, room), unit_of(joint),
+                 fit.line);
 }
 
-std::string reason_of(const Fit& fit, const MachineModel& model) {
-  if (fit.joint < 0) {
-    return printed("line %u is out of reach, and with it %.1f %% of the program", fit.line,
-                   -100 * (fit.margin + 1));
+std::string lines_text(const FitFinding& finding) {
+  if (finding.lines == 1) return printed("in line %u", finding.first_line);
+  return printed("in %d lines, %u to %u", finding.lines, finding.first_line, finding.last_line);
+}
+
+std::string finding_text(const FitFinding& finding, const MachineModel& model) {
+  const std::string lines = lines_text(finding);
+  switch (finding.obstacle) {
+    case Obstacle::kOutOfReach:
+      return "the pose is out of reach " + lines;
+    case Obstacle::kKeepOut:
+      return printed("keep-out box %s is entered ", model.keep_out.name_of(finding.number)) + lines;
+    case Obstacle::kTravelMin:
+    case Obstacle::kTravelMax:
+      break;
   }
-  const JointSpec& joint = limited_spec(model, fit.joint);
-  const char* const unit = joint.is_rotary ? "deg" : "mm";
-  const double low = joint.limits.travel_min, high = joint.limits.travel_max;
-  const double below = fit.least[fit.joint] - low, above = high - fit.most[fit.joint];
-  const double room = shown(joint, std::min(below, above));
-  return printed(room < 0 ? "%s goes %.3f %s beyond its travel in line %u"
-                          : "%s comes within %.3f %s of its travel's end in line %u",
-                 joint.name.c_str(), std::abs(room), unit, fit.line);
+  const JointSpec& joint = limited_spec(model, finding.number);
+  const bool is_min = finding.obstacle == Obstacle::kTravelMin;
+  const double end = is_min ? joint.limits.travel_min : joint.limits.travel_max;
+  const std::string where =
+      finding.lines == 1 ? "" : printed(", farthest in line %u", finding.farthest_line);
+  return printed("%s goes %.3f %s beyond its travel's end at %.3f ", joint.name.c_str(),
+                 at_edge(joint, finding.farthest), unit_of(joint), at_edge(joint, end)) +
+         lines + where;
 }
 
 }  // namespace
@@ -48,27 +67,31 @@ std::string frame_text(const MachineModel& placed_model) {
   return printed("%.3f,%.3f,%.3f,%.6f,%.6f,%.6f", o.x(), o.y(), o.z(), deg(a), deg(b), deg(c));
 }
 
-std::string to_text(const Placing& placing, const MachineModel& model) {
+std::string to_text(const Placing& placing, const MachineModel& model,
+                    const std::vector<ProgramPose>& poses) {
   const Fit& fit = placing.fit;
-  const std::string frame = frame_text(placed(model, placing.origin_mm, placing.turn_rad));
+  const MachineModel there = placed(model, placing.origin_mm, placing.turn_rad);
+  const std::string frame = frame_text(there);
   std::string out;
   if (fit.margin < 0) {
     out +=
         printed("fits       nowhere in this box, of %d frames that were tried\n", placing.frames);
     out += "nearest    --frame " + frame + "\n";
-    return out + "in the way " + reason_of(fit, model) + "\n";
+    for (const FitFinding& finding : findings_of(there, poses, fit.branch)) {
+      out += "in the way " + finding_text(finding, model) + "\n";
+    }
+    return out;
   }
   out += "fits       --frame " + frame + "\n";
-  out += printed("margin     %.1f %% of half the travel: ", 100 * fit.margin) +
-         reason_of(fit, model) + "\n";
+  if (fit.joint >= 0) out += margin_text(fit, model);
   for (int i = 0; i < limited_count(model); ++i) {
     const JointSpec& joint = limited_spec(model, i);
-    out += printed("%-10s %.3f .. %.3f %s", joint.name.c_str(), shown(joint, fit.least[i]),
-                   shown(joint, fit.most[i]), joint.is_rotary ? "deg" : "mm");
+    out += printed("%-10s %.3f .. %.3f %s", joint.name.c_str(), at_edge(joint, fit.min[i]),
+                   at_edge(joint, fit.max[i]), unit_of(joint));
     out += joint.is_endless
                ? std::string(", endless\n")
-               : printed(", travel %.3f .. %.3f\n", shown(joint, joint.limits.travel_min),
-                         shown(joint, joint.limits.travel_max));
+               : printed(", travel %.3f .. %.3f\n", at_edge(joint, joint.limits.travel_min),
+                         at_edge(joint, joint.limits.travel_max));
   }
   return out;
 }

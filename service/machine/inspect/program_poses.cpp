@@ -26,6 +26,12 @@ int poses_for(const ClBlock& block, const ToolPose& from, const ToolPose& to) {
   return std::max(1, static_cast<int>(std::ceil(std::max(turn, arc) / kTurn_rad)));
 }
 
+/// What the feed of `block` allows for its path of `length_mm`.
+double feed_time_of(const ClBlock& block, double length_mm) {
+  if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return 0;
+  return block.feed_meaning == FeedMeaning::kInverseTime ? 1 / block.feed : length_mm / block.feed;
+}
+
 }  // namespace
 
 Expected<std::vector<ProgramPose>, cl::ClError> read_poses(cl::ClReader& reader,
@@ -50,11 +56,13 @@ Expected<std::vector<ProgramPose>, cl::ClError> read_poses(cl::ClReader& reader,
     const PathPiece piece = !has_way       ? PathPiece{}
                             : block.is_arc ? make_arc(*from, to, block)
                                            : make_line(*from, to);
+    const double length_mm = has_way ? piece.length : from ? (to.tip - from->tip).norm() : 0;
+    const double feed_time_s = feed_time_of(block, length_mm) / count;
     for (int n = 1; n < count; ++n) {
       const auto at = pose_at(piece, piece.length * n / count);
-      poses.push_back({at, tool_length_mm, block.line});
+      poses.push_back({at, tool_length_mm, block.line, feed_time_s});
     }
-    poses.push_back({to, tool_length_mm, block.line});
+    poses.push_back({to, tool_length_mm, block.line, feed_time_s});
     from = to;
   }
 }

@@ -16,6 +16,7 @@ struct ProgramPose {
   ToolPose pose;
   double tool_length_mm = 0;
   std::uint32_t line = 0;
+  double feed_time_s = 0;  ///< from the pose before, by the feed alone; rapid: 0
 };
 
 /// Every pose that a program goes to, and poses between where arcs or turns of the tool axis lead

@@ -37,15 +37,15 @@ TEST(Placing, PutsAPlateInTheMiddleOfTheTravelOfEachAxis) {
   const MachineModel model = trunnion();
   const auto poses = poses_of(plate(300), model);
   const Placing found = find_placing(model, poses, widest_box(model, poses));
-  ASSERT_GT(found.fit.margin, 0.7) << to_text(found, model);
+  ASSERT_GT(found.fit.margin, 0.7) << to_text(found, model, poses);
   for (int i = 0; i < 3; ++i) {
     const JointLimits& limits = model.joints[i].limits;
     const double middle = 0.5 * (limits.travel_min + limits.travel_max);
-    EXPECT_NEAR(0.5 * (found.fit.least[i] + found.fit.most[i]), middle, 5)
+    EXPECT_NEAR(0.5 * (found.fit.min[i] + found.fit.max[i]), middle, 5)
         << model.joints[i].name << "\n"
-        << to_text(found, model);
+        << to_text(found, model, poses);
   }
-  EXPECT_NE(to_text(found, model).find("--frame "), std::string::npos);
+  EXPECT_NE(to_text(found, model, poses).find("--frame "), std::string::npos);
 }
 
 TEST(Placing, SaysWhichJointIsTooShortWhereNothingFits) {
@@ -53,7 +53,7 @@ TEST(Placing, SaysWhichJointIsTooShortWhereNothingFits) {
   const auto poses = poses_of(plate(1500), model);
   const Placing found = find_placing(model, poses, widest_box(model, poses));
   EXPECT_LT(found.fit.margin, 0);
-  const std::string text = to_text(found, model);
+  const std::string text = to_text(found, model, poses);
   EXPECT_NE(text.find("nowhere in this box"), std::string::npos) << text;
   EXPECT_NE(text.find("X goes 50.0"), std::string::npos) << "1500 mm in 1400\n" << text;
 }
@@ -79,7 +79,7 @@ TEST(Placing, TurnsTheWorkpieceWhereThatHelps) {
   EXPECT_LT(find_placing(model, bar, box).fit.margin, 0);
   box.may_turn = true;
   const Placing turned = find_placing(model, bar, box);
-  EXPECT_GT(turned.fit.margin, 0.4) << to_text(turned, model);
+  EXPECT_GT(turned.fit.margin, 0.4) << to_text(turned, model, bar);
   EXPECT_NEAR(std::abs(std::sin(turned.turn_rad)), 1, 0.1);
 }
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "meridian/expected.hpp"
+#include "meridian/kinematics/machine_model.hpp"
+#include "service/cli/options/cl_options.hpp"
+#include "service/cli/options/machine_options.hpp"
+#include "service/machine/inspect/program_poses.hpp"
+
+namespace meridian::cli {
+
+/// The options of `meridian machine --place`.
+struct PlaceOptions {
+  std::string program, box;
+  bool may_turn = false, is_fastest = false;
+};
+
+/// Adds --place, which is returned, --box, --turn and --fastest.
+CLI::Option* add_place_options(CLI::App& command, PlaceOptions& options);
+
+/// Every pose of program `name`, or why it cannot be read. Throws config::ConfigError.
+[[nodiscard]] Expected<std::vector<inspect::ProgramPose>, std::string> read_program_poses(
+    const std::string& name, const ClFileOptions& cl, const MachineOptions& machine,
+    const MachineModel& model);
+
+/// Looks for a frame in which the whole program fits and prints it. The exit code, or why the
+/// program cannot be read. Throws config::ConfigError.
+[[nodiscard]] Expected<int, std::string> run_place(const PlaceOptions& options,
+                                                   const ClFileOptions& cl,
+                                                   const MachineOptions& machine,
+                                                   const MachineModel& model);
+
+}  // namespace meridian::cli
