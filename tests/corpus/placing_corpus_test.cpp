@@ -17,8 +17,8 @@
 #include "support/shipped_machines.hpp"
 
 /// Where real programs fit on every machine: a frame in which the simulation runs, or none, which a
-/// search of drawn frames confirms. MERIDIAN_PLACING_LINES: how many lines of a file count (all: 0),
-/// MERIDIAN_PLACING_FRAMES: how many frames are drawn where nothing fits.
+/// search of drawn frames confirms. MERIDIAN_PLACING_LINES: how many lines of a file count (all:
+/// 0), MERIDIAN_PLACING_FRAMES: how many frames are drawn where nothing fits.
 namespace meridian {
 namespace {
 
@@ -94,8 +94,7 @@ void place_and_confirm(const std::string& name, const std::string& text, const s
   }
   const MachineModel there = inspect::placed(model, found.origin_mm, found.turn_rad);
   cl::ClReader again(std::string_view(text), name, placing_reader());
-  const auto report =
-      simulate::simulate(again, name, there, tools, {}, [](const CycleRecord&) {});
+  const auto report = simulate::simulate(again, name, there, tools, {}, [](const CycleRecord&) {});
   if (report.outcome == simulate::Outcome::kDone) {
     ++count.confirmed;
     return;
@@ -130,19 +129,19 @@ TEST_P(PlacingCorpus, FindsAFrameThatRunsOnEveryMachineOrAReasonThatDrawnFramesC
 
 constexpr const char* kEndOfSection = "PPRINT/END-SECTION,MACHINING\n";
 
-INSTANTIATE_TEST_SUITE_P(
-    Files, PlacingCorpus,
-    testing::Values(PlacedFile{"makino_ff_Plane_1.cldata", kEndOfSection},
-                    PlacedFile{"makino_ff_Plane_2.cldata", kEndOfSection},
-                    PlacedFile{"nx_coremill.cls", "END-OF-PATH\n"},
-                    PlacedFile{"nx_simple_block.cls", "END-OF-PATH\n"},
-                    PlacedFile{"ramsai_1-1_plan_3x.apt"},
-                    PlacedFile{"ramsai_1-2_plan_5x_depincage_lateral.apt"},
-                    PlacedFile{"ramsai_1-3_plan_5x_depincage_double.apt"},
-                    PlacedFile{"ramsai_2-1_calotte_3x.apt"}, PlacedFile{"solidworks_boss.apt"},
-                    PlacedFile{"solidworks_manufacture3_top.apt"},
-                    PlacedFile{"solidworks_sacrifice_board.apt"}),
-    placing_name);
+INSTANTIATE_TEST_SUITE_P(Files, PlacingCorpus,
+                         testing::Values(PlacedFile{"makino_ff_Plane_1.cldata", kEndOfSection},
+                                         PlacedFile{"makino_ff_Plane_2.cldata", kEndOfSection},
+                                         PlacedFile{"nx_coremill.cls", "END-OF-PATH\n"},
+                                         PlacedFile{"nx_simple_block.cls", "END-OF-PATH\n"},
+                                         PlacedFile{"ramsai_1-1_plan_3x.apt"},
+                                         PlacedFile{"ramsai_1-2_plan_5x_depincage_lateral.apt"},
+                                         PlacedFile{"ramsai_1-3_plan_5x_depincage_double.apt"},
+                                         PlacedFile{"ramsai_2-1_calotte_3x.apt"},
+                                         PlacedFile{"solidworks_boss.apt"},
+                                         PlacedFile{"solidworks_manufacture3_top.apt"},
+                                         PlacedFile{"solidworks_sacrifice_board.apt"}),
+                         placing_name);
 
 }  // namespace
 }  // namespace meridian

@@ -82,8 +82,8 @@ inspect::Placing fastest(const inspect::Placing& widest, const PlaceOptions& opt
   const auto quick = inspect::find_placing(model, poses, box, inspect::PlacingAim::kTime);
   const TimedPlacing by_margin = simulate_at(widest, options, cl, machine, model);
   const TimedPlacing by_time = simulate_at(quick, options, cl, machine, model);
-  const bool is_quicker = by_time.reason.empty() && (!by_margin.reason.empty() ||
-                                                     by_time.time_s < by_margin.time_s);
+  const bool is_quicker =
+      by_time.reason.empty() && (!by_margin.reason.empty() || by_time.time_s < by_margin.time_s);
   const TimedPlacing& best = is_quicker ? by_time : by_margin;
   std::cout << "time       " << time_text(best) << "; with the largest margin "
             << time_text(by_margin) << "\n";

@@ -149,8 +149,8 @@ class TimeEstimate {
     step.time_s = feed_time_s;
     for (int i = 0; i < limited_count(model_); ++i) {
       step.by[i] = q[i] - (*before_)[i];
-      step.time_s = std::max(step.time_s,
-                             std::abs(step.by[i]) / limited_spec(model_, i).limits.velocity);
+      step.time_s =
+          std::max(step.time_s, std::abs(step.by[i]) / limited_spec(model_, i).limits.velocity);
     }
     before_ = q;
     if (step.time_s < kShortest_s) return;

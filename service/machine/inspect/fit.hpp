@@ -46,11 +46,11 @@ enum class Obstacle : std::uint8_t {
 /// One obstacle with the lines that it is in the way of.
 struct FitFinding {
   Obstacle obstacle = Obstacle::kOutOfReach;
-  int number = 0;        ///< of the joint in limited.hpp, or of the box
-  double farthest = 0;   ///< travel: by how much the joint is beyond it, in its unit
+  int number = 0;       ///< of the joint in limited.hpp, or of the box
+  double farthest = 0;  ///< travel: by how much the joint is beyond it, in its unit
   std::uint32_t farthest_line = 0;
   std::uint32_t first_line = 0, last_line = 0;
-  int lines = 0;         ///< how many of the program
+  int lines = 0;  ///< how many of the program
 };
 
 /// Everything that is in the way of `poses` on `branch`, travel by joint, in a fixed order. Empty

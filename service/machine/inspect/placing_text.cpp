@@ -18,10 +18,10 @@ std::string margin_text(const Fit& fit, const MachineModel& model) {
   const JointLimits& limits = joint.limits;
   const double room =
       std::min(fit.min[fit.joint] - limits.travel_min, limits.travel_max - fit.max[fit.joint]);
-  return printed("margin     %.1f %% of half the travel: %s comes within %.3f %s of its travel's "
-                 "end in line %u\n",
-                 100 * fit.margin, joint.name.c_str(), at_edge(joint, room), unit_of(joint),
-                 fit.line);
+  return printed(
+      "margin     %.1f %% of half the travel: %s comes within %.3f %s of its travel's "
+      "end in line %u\n",
+      100 * fit.margin, joint.name.c_str(), at_edge(joint, room), unit_of(joint), fit.line);
 }
 
 std::string lines_text(const FitFinding& finding) {

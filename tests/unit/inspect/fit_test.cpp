@@ -110,7 +110,8 @@ TEST(Placing, LeavesKeepOutBoxesAlone) {
   MachineModel model = trunnion_of_fit();
   const auto poses = upright({{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {0, 100, 0}}, model);
   const PlacingBox box = widest_box(model, poses);
-  const double middle = 0.5 * (model.joints[0].limits.travel_min + model.joints[0].limits.travel_max);
+  const double middle =
+      0.5 * (model.joints[0].limits.travel_min + model.joints[0].limits.travel_max);
   ASSERT_TRUE(model.keep_out.add(box_on(0, middle - 50, middle + 60)));
   const Placing found = find_placing(model, poses, box);
   ASSERT_GT(found.fit.margin, 0) << to_text(found, model, poses);
