@@ -254,7 +254,8 @@ void add(CLI::App& app, int& exit_code) {
           "joints, default all; single-block, optional-stop, dry-run: on or off; frame: set, "
           "select or clear and a number, or list; tool: set or clear and a number, load or save "
           "and a file, or list; limits: set, a joint and both ends in mm or deg, clear and a joint "
-          "or all, keep-out, a name and joints with both ends, open and a name or all, or list; "
+          "or all, keep-out, a name and joints with both ends, open and a name or all, tip and two "
+          "corners X,Y,Z over the base in mm, clear tip, or list; "
           "touch-off: touch, frame and a number, or tool and a number; move: "
           "none")
       ->type_name("VALUE");

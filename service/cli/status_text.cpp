@@ -116,6 +116,10 @@ void append_limits(std::string& text, const dds::MachineInfo& machine) {
     append(text, "%s keep-out %s", begin, box.name.data());
     begin = ",";
   }
+  if (const TipBox& tip = machine.soft_limits.tip_box(); tip.is_set) {
+    append(text, "%s tip %.10g,%.10g,%.10g to %.10g,%.10g,%.10g mm", begin, tip.min[0], tip.min[1],
+           tip.min[2], tip.max[0], tip.max[1], tip.max[2]);
+  }
   if (!machine.soft_limits.empty()) text += "\n";
 }
 
@@ -135,6 +139,17 @@ std::string keep_out_json(const dds::MachineInfo& machine) {
     text += json_quoted(box.name.data()) + ":{" + joints + "}";
   }
   return "{" + text + "}";
+}
+
+/// "{"min_mm":[0,0,0],"max_mm":[9,9,9]}"; null where no tip box is set.
+std::string tip_box_json(const dds::MachineInfo& machine) {
+  const TipBox& tip = machine.soft_limits.tip_box();
+  const auto ends = [](const Array3& end) {
+    return "[" + json_number("%.17g", end[0]) + "," + json_number("%.17g", end[1]) + "," +
+           json_number("%.17g", end[2]) + "]";
+  };
+  if (!tip.is_set) return "null";
+  return "{\"min_mm\":" + ends(tip.min) + ",\"max_mm\":" + ends(tip.max) + "}";
 }
 
 /// "{"b3_mm":[-40,42.5],"b4_rad":[-0.1,0.1]}".
@@ -261,6 +276,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   append(text, "\"work_frame\":%u,\"tool\":%u,", status.work_frame, status.tool);
   text += "\"soft_limits\":" + limits_json(machine) + ",";
   text += "\"keep_out\":" + keep_out_json(machine) + ",";
+  text += "\"tip_box\":" + tip_box_json(machine) + ",";
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/kinematics/travel_rounding.hpp"
 #include "meridian/units.hpp"
 
@@ -219,12 +220,17 @@ BlockReject BlockCheck::find_joints(const ClBlock& block, bool& is_marginal) {
     wind_into_travel(model_, joints_, found.q);
     const int outside = first_joint_outside_travel(model_, found.q, kTravelTolerance);
     const int box = outside < 0 ? keep_out_that_holds(model_, found.q) : -1;
-    if (outside < 0 && box < 0) {
+    const int axis = outside < 0 ? tip_axis_outside(model_, tool_length_mm_, found.q) : -1;
+    if (outside < 0 && box < 0 && axis < 0) {
       joints_ = found.q;
       return true;
     }
     is_marginal = is_marginal || taken_into_travel(model_, tool_length_mm_, found.q).has_value();
     if (!has_joints && box >= 0) first = reject(block, RejectCode::kKeepOut, box);
+    if (!has_joints && box < 0 && axis >= 0) {
+      const Array3 tip = tip_over_base(model_, tool_length_mm_, found.q);
+      first = reject(block, RejectCode::kTipBox, tip[static_cast<std::size_t>(axis)], axis);
+    }
     if (!has_joints && outside >= 0) {
       first = reject(block, RejectCode::kTravel, limited_value(model_, found.q, outside), outside);
     }

@@ -53,6 +53,14 @@ std::string keep_out_text(const BlockReject& reject, const MachineModel& model) 
   return out + ")";
 }
 
+/// Returns "X at 130.2 mm over the base (-100 to 100 mm)".
+std::string tip_box_text(const BlockReject& reject, const MachineModel& model) {
+  if (reject.joint < 0 || reject.joint > 2) return "an axis of the base";
+  const auto i = static_cast<std::size_t>(reject.joint);
+  return text("%c at %.6g mm over the base (%.6g to %.6g mm)", "XYZ"[i], reject.value,
+              model.tip_box.min[i], model.tip_box.max[i]);
+}
+
 }  // namespace
 
 std::string reason_of(const BlockReject& reject, const MachineModel& model) {
@@ -100,6 +108,8 @@ std::string reason_of(const BlockReject& reject, const MachineModel& model) {
              "breadth of one; move the workpiece, or pass farther off";
     case RejectCode::kKeepOut:
       return "joints enter the " + keep_out_text(reject, model);
+    case RejectCode::kTipBox:
+      return "the tip leaves the tip box: " + tip_box_text(reject, model);
   }
   return "unknown reason";
 }

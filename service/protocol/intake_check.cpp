@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "service/protocol/smooth_tolerances.hpp"
 
 namespace meridian::stream {
@@ -28,7 +29,8 @@ bool contradicts_itself(const dds::SessionRequest& request) {
 }
 
 /// Why no program may begin at the joints that the request names; empty where it may.
-std::string refusal_of_first_joints(const dds::SessionRequest& request, const MachineModel& model) {
+std::string refusal_of_first_joints(const dds::SessionRequest& request, const MachineModel& model,
+                                    double tool_length_mm) {
   if ((request.policies & dds::kPolicyFirstJoints) == 0) return "";
   const JointVector& joints = request.first_joints;
   const int outside = first_joint_outside_travel(model, joints, 0);
@@ -39,6 +41,9 @@ std::string refusal_of_first_joints(const dds::SessionRequest& request, const Ma
   if (box >= 0) {
     return std::string("the program begins inside of the keep-out box ") +
            model.keep_out.name_of(box);
+  }
+  if (tip_axis_outside(model, tool_length_mm, joints) >= 0) {
+    return "the program begins with the tip outside of the tip box";
   }
   const auto unused = joints.begin() + model.joint_count;
   const bool names_more = std::any_of(unused, joints.end(), [](double at) { return at != 0; });
@@ -94,7 +99,7 @@ dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surround
   std::string refusal =
       refusal_of_tolerances(model_, transition_asked(request).value_or(model_.transition),
                             request.tip_tolerance_mm, request.axis_tolerance_rad);
-  if (refusal.empty()) refusal = refusal_of_first_joints(request, model_);
+  if (refusal.empty()) refusal = refusal_of_first_joints(request, model_, tool_length_mm);
   if (!refusal.empty()) return refused(Verdict::kRefusedProgram, std::move(refusal));
   if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
       !around.actions.is_ignored) {

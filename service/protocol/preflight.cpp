@@ -100,6 +100,7 @@ class BlockFindings {
     if (verdict.code == RejectCode::kKeepOut) {
       error.group = std::string("keep-out box ") + model.keep_out.name_of(verdict.value);
     }
+    if (verdict.code == RejectCode::kTipBox) error.group = "the tip box";
     return error;
   }
 

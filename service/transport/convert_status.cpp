@@ -146,6 +146,13 @@ void keep_out_box_fields(Way way, Box& box, Wire& wire) {
   way(box.max, wire.max);
 }
 
+template <class Way, class Box, class Wire>
+void tip_box_fields(Way way, Box& box, Wire& wire) {
+  way(box.is_set, wire.has_tip_box);
+  way(box.min, wire.tip_box_min_mm);
+  way(box.max, wire.tip_box_max_mm);
+}
+
 void soft_limits_to_wire(const SoftLimits& limits, meridian_wire_Machine& wire) noexcept {
   wire.soft_limits_mask = 0;
   for (std::size_t i = 0; i < limits.rows().size(); ++i) {
@@ -160,6 +167,7 @@ void soft_limits_to_wire(const SoftLimits& limits, meridian_wire_Machine& wire) 
     wire.keep_out[i] = {};
     if (i < boxes.size()) keep_out_box_fields(ToWire(), boxes[i], wire.keep_out[i]);
   }
+  tip_box_fields(ToWire(), limits.tip_box(), wire);
 }
 
 void soft_limits_from_wire(const meridian_wire_Machine& wire, SoftLimits& limits) {
@@ -173,6 +181,9 @@ void soft_limits_from_wire(const meridian_wire_Machine& wire, SoftLimits& limits
     keep_out_box_fields(FromWire(), box, wire.keep_out[i]);
     (void)limits.put(box);
   }
+  TipBox tip;
+  tip_box_fields(FromWire(), tip, wire);
+  limits.put(tip);
 }
 
 /// "number:count number:count ..." of the buckets that are not empty. What does not fit is left

@@ -24,11 +24,6 @@ LimitsOrder vice_order(double min, double max) {
   return order;
 }
 
-Process ctl_limits(const Plant& plant, std::vector<std::string> words) {
-  words.insert(words.begin(), {"ctl", "limits"});
-  return tool(plant, words);
-}
-
 TEST(SetUpKeepOut, StopsAHandThatJogsAndOutlivesTheService) {
   Plant plant;
   plant.start_service();

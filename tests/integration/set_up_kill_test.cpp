@@ -56,7 +56,14 @@ TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {
     const FrameOrder order = order_of(is_select ? FrameWord::kSelect : FrameWord::kSet, number, n);
     SetUpOperator anna(plant, 100 + static_cast<std::uint64_t>(n));
     telemetry::SetUp asked = acknowledged;
-    if (n % 8 == 7) {
+    if (n % 16 == 7) {
+      LimitsOrder tip;
+      tip.word = LimitsWord::kTip;
+      tip.box.min = {-1.0 / 3.0 * n, -500, -500};
+      tip.box.max = {1.0 / 3.0 * n, 500, 500};
+      ASSERT_EQ(asked.limits.apply(tip, config::load_machine(plant.machine())), LimitsFault::kNone);
+      anna.say(tip, plant.status());
+    } else if (n % 8 == 7) {
       LimitsOrder box;
       box.word = LimitsWord::kKeepOut;
       box.box.name = {static_cast<char>('a' + n / 8 % 8)};

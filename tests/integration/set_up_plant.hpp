@@ -197,4 +197,10 @@ class SetUpStation {
   dds::Reader<dds::Credit> credits_;
 };
 
+/// `meridian ctl limits` with these words.
+[[nodiscard]] inline Process ctl_limits(const Plant& plant, std::vector<std::string> words) {
+  words.insert(words.begin(), {"ctl", "limits"});
+  return tool(plant, words);
+}
+
 }  // namespace meridian::test

@@ -142,6 +142,8 @@ enum class Alarm : std::uint8_t {
   kSetpointsUnheard,  ///< drives report, and take no setpoints
   kDrivesAstray,      ///< drives obey another service, or are on or move where they are to be off
   kKeepOut,           ///< guard: a setpoint entered a keep-out box; the value is its number from 0
+  kTipBox,            ///< guard: a setpoint took the tip out of its box; the joint is the axis of
+                      ///< the base, 0 X, 1 Y, 2 Z, the value is where, mm
 };
 
 /// Why a verb was refused.

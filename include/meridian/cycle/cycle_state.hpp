@@ -53,6 +53,7 @@ struct CycleInputs {
   ActionAnswer action;
   JogOrder jog;               ///< newest of the operator who jogs
   std::uint64_t session = 0;  ///< open session, 0: none; starvation ends by itself only in its own
+  double tool_length_mm = 0;  ///< of the tool in the spindle, where no program moves it
 };
 static_assert(std::is_trivially_copyable_v<CycleInputs>);
 

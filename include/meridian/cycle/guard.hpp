@@ -10,13 +10,14 @@
 #include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 
 namespace meridian {
 
 /// What is wrong with a setpoint; kNone: it may be sent.
 struct GuardVerdict {
   Alarm alarm = Alarm::kNone;
-  int joint = 0;     ///< place in limited.hpp
+  int joint = 0;     ///< place in limited.hpp; kTipBox: axis of the base, 0 X, 1 Y, 2 Z
   double value = 0;  ///< the offending position or step; kKeepOut: the number of the box from 0
 };
 
@@ -25,6 +26,7 @@ inline constexpr double kGuardTravel =
 inline constexpr double kGuardOutside =
     1e-11;  ///< mm or rad; rounding of a joint that comes to rest, 100 ulp of a metre
 inline constexpr double kGuardKeepOut = 2 * kKeepOutRounding;  ///< what planners leave, and a solve
+inline constexpr double kGuardTip = 1e-8;   ///< mm; what planners leave, and a solve
 inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solve, 1000x margin
 
 /// Whether `q` is in travel, or no farther out of it than `previous`: whoever stands outside may
@@ -58,6 +60,22 @@ inline constexpr double kGuardStep = 1e-9;  ///< mm or rad; rounding of one solv
     if (enters) return {Alarm::kKeepOut, std::countr_zero(box.joints), static_cast<double>(n)};
   }
   return {};
+}
+
+/// Whether the tip of a tool of that length leaves its box at `next`. Whoever is outside may come
+/// in, and stand, but goes no farther out. Says nothing where a joint that moves the tip has no
+/// travel (`has_travel`). Proof: tests/unit/cycle/guard_test.cpp.
+[[nodiscard]] inline GuardVerdict check_tip_box(const MachineModel& machine, double tool_length_mm,
+                                                const JointVector& next,
+                                                const JointVector& previous,
+                                                std::uint32_t has_travel = ~0U) noexcept {
+  const std::uint32_t joints = tip_joints(machine);
+  if ((joints & has_travel) != joints) return {};
+  const Array3 tip = tip_over_base(machine, tool_length_mm, next);
+  const int axis = axis_leaving(machine.tip_box, tip,
+                                tip_over_base(machine, tool_length_mm, previous), kGuardTip);
+  if (axis < 0) return {};
+  return {Alarm::kTipBox, axis, tip[static_cast<std::size_t>(axis)]};
 }
 
 /// The drives of a stage, checked like joints; without `has_travel` not for their travel.

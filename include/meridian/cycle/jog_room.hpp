@@ -14,6 +14,7 @@
 #include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 
 /// What one joint may do while the others stand still: as far as its travel and that of the drives
 /// of a stage reach, as fast as both may go. Units: mm or rad, s. RT: cycle.
@@ -127,12 +128,28 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
   }
 }
 
+/// Narrows the room of a joint to what the tip box leaves, where it is known where the tip is.
+[[gnu::noinline]] inline void narrow_for_tip(const MachineModel& machine, double tool_length_mm,
+                                             const JointVector& joints, int joint,
+                                             std::uint32_t referenced_mask,
+                                             JogAxis& axis) noexcept {
+  const std::uint32_t all = tip_joints(machine);
+  const bool moves_tip = (all >> static_cast<unsigned>(joint) & 1U) != 0;
+  if (!moves_tip || (referenced_mask & all) != all) return;
+  const std::array<TipCircle, 3> tip = tip_circles(machine, tool_length_mm, joints, joint);
+  for (std::size_t i = 0; i < tip.size(); ++i) {
+    narrow_inside(machine.tip_box, i, tip[i], axis.at.q, axis.low, axis.high);
+  }
+}
+
 }  // namespace jog
 
 /// Returns the room of `joint` from `joints`, everything at rest, those of `referenced_mask` with a
-/// reference. Without one it has no ends; a joint that a stage carries needs one (may_jog()).
-[[nodiscard]] inline JogRoom jog_room(const MachineModel& machine, const JointVector& joints,
-                                      int joint, std::uint32_t referenced_mask) noexcept {
+/// reference, a tool of that length in the spindle. Without a reference it has no ends; a joint
+/// that a stage carries needs one (may_jog()).
+[[nodiscard]] inline JogRoom jog_room(const MachineModel& machine, double tool_length_mm,
+                                      const JointVector& joints, int joint,
+                                      std::uint32_t referenced_mask) noexcept {
   const JointSpec& spec = machine.joints[static_cast<std::size_t>(joint)];
   const JointLimits& limits = spec.limits;
   constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -144,6 +161,9 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
   room.axis.high = has_ends ? limits.travel_max : kEndless;
   if (has_ends) {
     narrow_outside(machine.keep_out, joints, joint, referenced_mask, room.axis.low, room.axis.high);
+  }
+  if (machine.tip_box.is_set) {
+    jog::narrow_for_tip(machine, tool_length_mm, joints, joint, referenced_mask, room.axis);
   }
   const double share = is_referenced ? kJogShare : kUnreferencedShare;
   room.axis.rates = {share * limits.velocity, kJogShare * limits.acceleration,

@@ -13,6 +13,7 @@
 #include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 
 /// Jogging in the frame of the tool: along its axis, across it, or turning it
 /// about its tip. The way is surveyed before anything moves, a few places in
@@ -47,10 +48,13 @@ class ToolSurvey {
       const double s = (is_back_ ? -1 : 1) * (steps_ + 1) * step_;
       const bool goes_on = look(machine, way, s, values_of(last_), next) &&
                            is_even(machine, last_, next) && stays_in(machine, last_, next) &&
+                           keeps_tip_in(machine, way.tool_length_mm, last_, next) &&
                            steps_ < kSteps;
       if (goes_on) {
         keep(machine, next);
-        if (comes_in(machine, last_, next)) (is_back_ ? last_out_ : first_in_) = s;
+        const bool is_in = comes_in(machine, last_, next) ||
+                           brings_tip_in(machine, way.tool_length_mm, last_, next);
+        if (is_in) (is_back_ ? last_out_ : first_in_) = s;
         last_ = next;
         (is_back_ ? low_ : high_) = s;
         ++steps_;
@@ -185,6 +189,49 @@ class ToolSurvey {
       if (!stays) return false;
     }
     return true;
+  }
+
+  /// The tip over the base, with its derivatives along the way.
+  [[nodiscard]] static std::array<Jet<3>, 3> tip_at(const MachineModel& machine,
+                                                    double tool_length_mm,
+                                                    const Place& at) noexcept {
+    Joints<Jet<3>> q;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = at[i];
+    return tip_over_base(machine, tool_length_mm, q);
+  }
+
+  /// Whether the tip is nowhere farther outside of its box between `a` and `b`, and there, than at
+  /// `a`.
+  [[nodiscard, gnu::noinline]] bool keeps_tip_in(const MachineModel& machine, double tool_length_mm,
+                                                 const Place& a, const Place& b) const noexcept {
+    constexpr double kBend = 2;  // of the second derivative at both ends
+    if (!machine.tip_box.is_set) return true;
+    const std::array<Jet<3>, 3> from = tip_at(machine, tool_length_mm, a),
+                                to = tip_at(machine, tool_length_mm, b);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const double bend = std::max(std::abs(from[i].derivative(2)), std::abs(to[i].derivative(2)));
+      const TipStep step{value_of(from[i]), value_of(to[i]), from[i].derivative(1),
+                         to[i].derivative(1), kBend * bend};
+      const double before = beyond_face(machine.tip_box, i, step.from);
+      const double out = beyond_over_step(machine.tip_box, i, step, step_);
+      if (!(out <= std::max(kTipBoxRounding, before + kRounding))) return false;
+    }
+    return true;
+  }
+
+  /// Whether a tip that is outside of its box at `a` is farther in at its neighbour `b`.
+  [[nodiscard, gnu::noinline]] static bool brings_tip_in(const MachineModel& machine,
+                                                         double tool_length_mm, const Place& a,
+                                                         const Place& b) noexcept {
+    if (!machine.tip_box.is_set) return false;
+    const std::array<Jet<3>, 3> from = tip_at(machine, tool_length_mm, a),
+                                to = tip_at(machine, tool_length_mm, b);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const double before = beyond_face(machine.tip_box, i, value_of(from[i]));
+      const double behind = beyond_face(machine.tip_box, i, value_of(to[i]));
+      if (before > kTipBoxRounding && before - std::max(0.0, behind) > kTipBoxRounding) return true;
+    }
+    return false;
   }
 
   /// Whether what is known at two neighbouring places explains how they differ:

@@ -104,7 +104,8 @@ inline void choose_axis(Cycle& c) noexcept {
   if (!jogging.has_order || jogging.is_let_go || !may_jog(c.machine, joint, referenced)) return;
   if (!order.is_tool) {
     jogging.joint = joint;
-    return take_room(jogging, jog_room(c.machine, c.state.joints, joint, referenced));
+    return take_room(jogging,
+                     jog_room(c.machine, order.tool_length_mm, c.state.joints, joint, referenced));
   }
   const bool has_way = lay_way(c.machine, c.state.joints, order.tool_length_mm,
                                static_cast<ToolAxis>(order.joint), jogging.way);

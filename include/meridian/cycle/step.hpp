@@ -176,13 +176,34 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
   return is_program ? ~0U : c.drives.referenced_mask;
 }
 
+/// Gauge line to tip of the tool that moves.
+[[nodiscard]] inline double tool_length_of(const Cycle& c) noexcept {
+  const Jogging& jogging = c.state.jogging;
+  if (jogging.is_active && jogging.has_order) return jogging.order.tool_length_mm;
+  const PathPiece* const path = c.reader.path();
+  return path != nullptr ? path->tool_length_mm : c.in.tool_length_mm;
+}
+
+/// What check() does not know the tool for: whether the tip leaves its box.
+[[nodiscard, gnu::noinline]] inline GuardVerdict check_tip(const Cycle& c,
+                                                           std::uint32_t has_travel) noexcept {
+  return check_tip_box(c.machine, tool_length_of(c), c.state.joints, c.previous, has_travel);
+}
+
+[[nodiscard]] inline GuardVerdict check_setpoint(const Cycle& c,
+                                                 std::uint32_t has_travel) noexcept {
+  const GuardVerdict verdict =
+      check(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
+  const bool has_more = c.machine.tip_box.is_set && verdict.alarm == Alarm::kNone;
+  return has_more ? check_tip(c, has_travel) : verdict;
+}
+
 /// The last look before a setpoint leaves. One that must not be sent is replaced by a stop of every
 /// joint along its last velocity, and where even that must not be sent, by standing still.
 inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) noexcept {
   if (!is_enabled(c.state.state)) return;
   const std::uint32_t has_travel = joints_with_travel(c);
-  GuardVerdict verdict =
-      check(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
+  GuardVerdict verdict = check_setpoint(c, has_travel);
   if (!has_joints) verdict.alarm = Alarm::kUnreachable;
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
@@ -190,7 +211,7 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
   c.state.jogging = {};
   begin_stop_off_path(c, c.previous, last_velocity);
   (void)follow_stop(c);
-  verdict = check(c.machine, c.state.joints, c.state.velocity, c.previous, c.elapsed, has_travel);
+  verdict = check_setpoint(c, has_travel);
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
   rest(c);

@@ -13,6 +13,7 @@
 #include "meridian/kinematics/lai.hpp"
 #include "meridian/kinematics/robot.hpp"
 #include "meridian/kinematics/stage.hpp"
+#include "meridian/kinematics/tip_box.hpp"
 
 namespace meridian {
 
@@ -101,6 +102,7 @@ struct MachineModel {
   ActuatorStage stage;  ///< between two of the joints and their drives; identity: none
   std::array<JointSpec, kStageDrives> stage_drives;  ///< its sliders u1, u2 (linear)
   KeepOut keep_out;                                  ///< where the joints may not stand together
+  TipBox tip_box;             ///< what the tool tip stays inside of, over the base
   double tool_length_mm = 0;  ///< tool in the spindle when the service starts
   Eigen::Matrix3d frame_rotation =
       Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics

@@ -11,19 +11,22 @@
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/tip_box.hpp"
 
 namespace meridian {
 
 /// What an operator asks for of the soft limits.
 enum class LimitsWord : std::uint8_t {
   kSet,      ///< shrinks the travel of one joint
-  kClear,    ///< gives one joint, or all of them, the travel of the machine file again
+  kClear,    ///< gives one joint the travel of the machine file again; all of them, and the tip
   kKeepOut,  ///< puts up a keep-out box, in place of the one of that name
-  kOpen      ///< takes away the keep-out box of a name, or all of them where it is empty
+  kOpen,     ///< takes away the keep-out box of a name, or all of them where it is empty
+  kTip,      ///< sets the tip box
+  kClearTip  ///< gives the tip the box of the machine file again, if that has one
 };
 
 /// A word with what it says: `kClear` looks at the joint alone, `kKeepOut` at the box, `kOpen` at
-/// its name.
+/// its name, `kTip` at its ends, of which the first three are X, Y, Z of the tip over the base.
 struct LimitsOrder {
   static constexpr std::uint8_t kAllJoints = 0xFF;
 
@@ -32,6 +35,10 @@ struct LimitsOrder {
   double min = 0, max = 0;          ///< mm or rad
   KeepOutBox box{};
   [[nodiscard]] bool operator==(const LimitsOrder&) const = default;
+
+  [[nodiscard]] TipBox tip_box() const noexcept {
+    return {true, {box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+  }
 };
 
 /// Why a word is not done.
@@ -46,11 +53,13 @@ enum class LimitsFault : std::uint8_t {
   kBoxJoint,  ///< of a joint that the machine has not, or that has no travel
   kOwnBox,    ///< the machine file has a box of that name
   kNoBox,     ///< no box of that name was put up
-  kBoxes      ///< there is no room for another box
+  kBoxes,     ///< there is no room for another box
+  kTip,       ///< no tip box: not the minimum below the maximum along each axis
+  kTipBeyond  ///< a tip box beyond the one of the machine file
 };
 
-/// Travel of joints that shrinks for a job: the soft limits, one pair for a joint at most, and
-/// keep-out boxes. Plain data of fixed size. Units: mm or rad.
+/// Travel of joints that shrinks for a job: the soft limits, one pair for a joint at most, keep-out
+/// boxes, and a box of the tip. Plain data of fixed size. Units: mm or rad.
 /// Proof: tests/unit/kinematics/soft_limits_test.cpp.
 class SoftLimits {
  public:
@@ -63,18 +72,22 @@ class SoftLimits {
   /// By joint, in machine order.
   [[nodiscard]] const std::array<Row, kMaxJoints>& rows() const noexcept { return rows_; }
   [[nodiscard]] const KeepOut& keep_out() const noexcept { return keep_out_; }
+  [[nodiscard]] const TipBox& tip_box() const noexcept { return tip_box_; }
   [[nodiscard]] bool empty() const noexcept {
-    return rows_ == std::array<Row, kMaxJoints>{} && keep_out_.empty();
+    return rows_ == std::array<Row, kMaxJoints>{} && keep_out_.empty() && !tip_box_.is_set;
   }
 
   /// Does what `order` says on a machine with the travel of `own`, or nothing and says why.
   [[nodiscard]] LimitsFault apply(const LimitsOrder& order, const MachineModel& own) noexcept {
-    if (order.word > LimitsWord::kOpen) return LimitsFault::kWord;
+    if (order.word > LimitsWord::kClearTip) return LimitsFault::kWord;
     if (order.word == LimitsWord::kKeepOut) return put_up(order.box, own);
     if (order.word == LimitsWord::kOpen) return open(order.box);
+    if (order.word == LimitsWord::kTip) return set_tip_box(order.tip_box(), own);
+    if (order.word == LimitsWord::kClearTip) return set_tip_box({}, own);
     const bool is_clear = order.word == LimitsWord::kClear;
     if (is_clear && order.joint == LimitsOrder::kAllJoints) {
       rows_ = {};
+      tip_box_ = {};
       return LimitsFault::kNone;
     }
     if (order.joint >= own.joint_count) return LimitsFault::kJoint;
@@ -94,6 +107,9 @@ class SoftLimits {
   /// Puts up a box as it is, whatever the machine; false where there is no room.
   bool put(const KeepOutBox& box) noexcept { return keep_out_.add(box); }
 
+  /// Sets the tip box as it is, whatever the machine.
+  void put(const TipBox& box) noexcept { tip_box_ = box; }
+
   /// What stands in the way of these on a machine with the travel of `own`.
   [[nodiscard]] LimitsFault find_fault(const MachineModel& own) const noexcept {
     for (std::size_t joint = 0; joint < rows_.size(); ++joint) {
@@ -106,7 +122,8 @@ class SoftLimits {
       if (fault != LimitsFault::kNone) return fault;
     }
     const std::size_t boxes = keep_out_.boxes().size() + own.keep_out.boxes().size();
-    return boxes > std::size_t{KeepOut::kMax} ? LimitsFault::kBoxes : LimitsFault::kNone;
+    if (boxes > std::size_t{KeepOut::kMax}) return LimitsFault::kBoxes;
+    return find_fault(tip_box_, own);
   }
 
   [[nodiscard]] bool operator==(const SoftLimits&) const = default;
@@ -139,6 +156,18 @@ class SoftLimits {
     return own.keep_out.find(box) != nullptr ? LimitsFault::kOwnBox : LimitsFault::kNone;
   }
 
+  [[nodiscard]] static LimitsFault find_fault(const TipBox& box, const MachineModel& own) noexcept {
+    if (!box.is_set) return LimitsFault::kNone;
+    if (!is_tip_box(box)) return LimitsFault::kTip;
+    return is_within(box, own.tip_box) ? LimitsFault::kNone : LimitsFault::kTipBeyond;
+  }
+
+  [[nodiscard]] LimitsFault set_tip_box(const TipBox& box, const MachineModel& own) noexcept {
+    const LimitsFault fault = find_fault(box, own);
+    if (fault == LimitsFault::kNone) tip_box_ = box;
+    return fault;
+  }
+
   [[nodiscard]] LimitsFault put_up(const KeepOutBox& box, const MachineModel& own) noexcept {
     const LimitsFault fault = find_fault(box, own);
     if (fault != LimitsFault::kNone) return fault;
@@ -162,16 +191,18 @@ class SoftLimits {
 
   std::array<Row, kMaxJoints> rows_{};
   KeepOut keep_out_{};
+  TipBox tip_box_{};
 };
 
 static_assert(std::is_trivially_copyable_v<SoftLimits> &&
               std::is_trivially_copyable_v<LimitsOrder>);
 
-/// The travel that every joint of `own` with travel has under `limits`: of each a pair is set, and
-/// the boxes of both are put up.
+/// The travel that every joint of `own` with travel has under `limits`: of each a pair is set, the
+/// keep-out boxes of both are put up, and the tip has the box of `limits`, or else that of `own`.
 [[nodiscard]] inline SoftLimits travel_under(const SoftLimits& limits,
                                              const MachineModel& own) noexcept {
   SoftLimits travel;
+  travel.put(limits.tip_box().is_set ? limits.tip_box() : own.tip_box);
   for (const KeepOut* const boxes : {&own.keep_out, &limits.keep_out()}) {
     for (const KeepOutBox& box : boxes->boxes()) (void)travel.put(box);
   }
@@ -190,6 +221,7 @@ static_assert(std::is_trivially_copyable_v<SoftLimits> &&
 /// checked wherever travel is. RT: cycle.
 inline void shrink_travel(MachineModel& model, const SoftLimits& limits) noexcept {
   model.keep_out = limits.keep_out();
+  model.tip_box = limits.tip_box();
   for (std::size_t joint = 0; joint < limits.rows().size(); ++joint) {
     const SoftLimits::Row& row = limits.rows()[joint];
     if (!row.is_set) continue;

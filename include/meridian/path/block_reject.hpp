@@ -26,7 +26,8 @@ enum class RejectCode : std::uint8_t {
   kAxisReversal,   ///< the axis turns by half a turn: no great circle is meant
   kTooComplex,     ///< the block needs more pieces than a plan holds
   kDiscontinuous,  ///< at a singularity: its joints would jump, or creep; `value`: the jump
-  kKeepOut         ///< joints enter a keep-out box; `value`: its number from 0
+  kKeepOut,        ///< joints enter a keep-out box; `value`: its number from 0
+  kTipBox          ///< the tip leaves its box; `joint`: 0 X, 1 Y, 2 Z of the base; `value`: where
 };
 
 /// The verdict on one block. Units: mm, rad. Trivially copyable: crosses rings.
@@ -34,7 +35,7 @@ struct BlockReject {
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
   RejectCode code = RejectCode::kNone;
-  std::int32_t joint = -1;  ///< machine order, then the drives of the stage; -1: none
+  std::int32_t joint = -1;  ///< machine order, then the drives of the stage; -1: none; see kTipBox
   double value = 0;         ///< see RejectCode
 };
 static_assert(std::is_trivially_copyable_v<BlockReject>);

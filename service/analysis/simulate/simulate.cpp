@@ -37,6 +37,7 @@ class Run {
     for (int i = 0; i < model.joint_count; ++i) drives_[i] = drive_spec(model, i).home;
     if (options.start) drives_ = *options.start;
     in_.session = 1;
+    in_.tool_length_mm = model_.tool_length_mm;
     if (!options.events.feed_marks.empty()) feed_.replay_feed(options.events.feed_marks);
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "meridian/units.hpp"
 #include "service/text/number.hpp"
@@ -31,7 +32,9 @@ std::nullopt_t refuse_limits(const std::string& what) {
   return refuse_limits(
       "limits takes set, a joint and both ends of its travel in mm or deg; clear and a joint, or "
       "clear alone for all; keep-out, a name, and a joint with both ends or several of them; open "
-      "and a name, or open alone for all; or list");
+      "and a name, or open alone for all; tip and two corners X,Y,Z over the base in mm; clear "
+      "tip; "
+      "or list");
 }
 
 struct Interval {
@@ -85,6 +88,26 @@ struct Interval {
   return order;
 }
 
+/// Reads "X,Y,Z".
+[[nodiscard]] bool read_corner(std::string_view text, JointVector& corner) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? std::min(text.find(','), text.size()) : text.size();
+    if (!text::read_finite(text.substr(0, comma), corner[i])) return false;
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return true;
+}
+
+[[nodiscard]] std::optional<LimitsOrder> tip_order(const std::vector<std::string>& words) {
+  LimitsOrder order;
+  order.word = LimitsWord::kTip;
+  for (const std::size_t i : {1U, 2U}) {
+    if (read_corner(words[i], i == 1 ? order.box.min : order.box.max)) continue;
+    return refuse_limits("'" + words[i] + "' is no corner X,Y,Z of a tip box");
+  }
+  return order;
+}
+
 }  // namespace
 
 std::optional<LimitsOrder> limits_order(const std::vector<std::string>& words,
@@ -93,6 +116,8 @@ std::optional<LimitsOrder> limits_order(const std::vector<std::string>& words,
   const std::size_t count = words.size();
   const bool is_box = word == "keep-out" && count >= 5 && count % 3 == 2;
   if (is_box || (word == "open" && count <= 2)) return box_order(words, machine);
+  if (word == "tip" && count == 3) return tip_order(words);
+  if (word == "clear" && count == 2 && words[1] == "tip") return LimitsOrder{LimitsWord::kClearTip};
   const bool is_set = word == "set" && count == 4;
   const bool is_clear = word == "clear" && count <= 2;
   if (!is_set && !is_clear) return refuse_words();
@@ -142,6 +167,10 @@ std::string limits_text(const dds::MachineInfo& machine) {
                    shown(box.max[i], joint.is_rotary));
     }
     text += "\n";
+  }
+  if (const TipBox& tip = machine.soft_limits.tip_box(); tip.is_set) {
+    text::append(text, "*  tip      %.10g,%.10g,%.10g %.10g,%.10g,%.10g mm\n", tip.min[0],
+                 tip.min[1], tip.min[2], tip.max[0], tip.max[1], tip.max[2]);
   }
   return text;
 }

@@ -46,6 +46,7 @@ class Interpolator::Machine {
         reader_(port_),
         state_({}, rate_bounds(model)) {
     in_.session = 1;
+    in_.tool_length_mm = model_.tool_length_mm;
     get_ready(drives);
     begin_planning();
     if (state_.state != State::kReady)

@@ -28,7 +28,7 @@ bool Supervisor::change_limits(const Pending& command) {
 }
 
 std::string Supervisor::words_of_limits() const {
-  return set_up_.limits.empty() ? "every joint has its whole travel, no keep-out box is put up"
+  return set_up_.limits.empty() ? "every joint has its whole travel, no box is put up"
                                 : telemetry::limits_text(set_up_.limits, model_) + " in force";
 }
 

@@ -61,6 +61,7 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   watch_enabling(now_ns);
   inputs_.has_command = ports_.commands.try_pop(inputs_.command);
   inputs_.session = ports_.session.load(std::memory_order_relaxed);
+  inputs_.tool_length_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
 }
 
 void CycleThread::hand_over() noexcept {

@@ -53,6 +53,11 @@ void TelemetryThread::record_limits(std::uint64_t cycle) noexcept {
       recorder_.take(record::RecordedLimits{cycle, i + 1, box.min[i], box.max[i], number});
     }
   }
+  const TipBox& tip = limits.tip_box();
+  for (std::uint32_t i = 0; tip.is_set && i < tip.min.size(); ++i) {
+    recorder_.take(
+        record::RecordedLimits{cycle, i + 1, tip.min[i], tip.max[i], record::kTipBoxNumber});
+  }
 }
 
 void TelemetryThread::record_set_up(Verb verb, std::uint64_t cycle) noexcept {

@@ -14,6 +14,7 @@
 #include "service/machine/file/positions_file.hpp"
 #include "service/machine/file/section.hpp"
 #include "service/machine/file/stage_file.hpp"
+#include "service/machine/file/tip_box_file.hpp"
 
 namespace meridian::config {
 namespace {
@@ -191,6 +192,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   read_unwind(file.section_or("unwind"), model);
   read_frame(file.section_or("frame"), model);
   model.keep_out = read_keep_out(file, model);
+  model.tip_box = read_tip_box(file, model);
   (void)read_homing(file.section_or("homing"), model.joint_count);
   (void)read_positions(file, model);
   file.finish();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/file/machine_file.hpp"
 
@@ -30,6 +31,9 @@ constexpr const char* kHome = "home";
     position.refuse("joints",
                     std::string("outside of the keep-out box ") + model.keep_out.name_of(box),
                     "move the position out of the box");
+  }
+  if (tip_axis_outside(model, model.tool_length_mm, joints) >= 0) {
+    position.refuse("joints", "joints that have the tip in the tip box", "move the position");
   }
   return joints;
 }

@@ -164,6 +164,13 @@ std::string keep_out_text(const MachineModel& model) {
   return out;
 }
 
+std::string tip_box_text(const MachineModel& model) {
+  const TipBox& box = model.tip_box;
+  if (!box.is_set) return "";
+  return printed("tip box    X %.6g .. %.6g Y %.6g .. %.6g Z %.6g .. %.6g mm over the base\n",
+                 box.min[0], box.max[0], box.min[1], box.max[1], box.min[2], box.max[2]);
+}
+
 }  // namespace
 
 std::string to_text(const Inspection& in, const MachineModel& model) {
@@ -174,7 +181,7 @@ std::string to_text(const Inspection& in, const MachineModel& model) {
   out += chain_text(in, model);
   out += "home       " + pose_text(in.home_pose) + " in the workpiece\n";
   out += trial_text(in, model) + pole_text(in, model) + reach_text(in) + limits_text(model);
-  out += keep_out_text(model);
+  out += keep_out_text(model) + tip_box_text(model);
   out += printed("inverse    joints to pose and back: within %.2g mm and %.2g rad\n",
                  in.round_trip_mm, in.round_trip_axis);
   for (const std::string& fact : in.measured) out += "measured   " + fact + "\n";

@@ -50,6 +50,8 @@ namespace {
              rewind_remedy(reject, model);
     case RejectCode::kKeepOut:
       return std::string("joints enter the keep-out box ") + model.keep_out.name_of(reject.value);
+    case RejectCode::kTipBox:
+      return "the tip leaves the tip box";
     case RejectCode::kBranch:
       return "no branch or winding leads here from the block before";
     case RejectCode::kApproach:

@@ -16,8 +16,9 @@ namespace meridian::telemetry {
 namespace {
 
 /// Newest first.
-constexpr std::array<std::string_view, 4> kSetUpHeads{"meridian set-up 4", "meridian set-up 3",
-                                                      "meridian set-up 2", "meridian set-up 1"};
+constexpr std::array<std::string_view, 5> kSetUpHeads{"meridian set-up 5", "meridian set-up 4",
+                                                      "meridian set-up 3", "meridian set-up 2",
+                                                      "meridian set-up 1"};
 
 /// Takes the number at the begin of `text` and the space behind it; false where there is none.
 template <class Number>
@@ -71,6 +72,21 @@ template <class Number>
   return is_right && !lines.has_failed();
 }
 
+/// The tip box that the next lines hold, or none; false where they hold anything else.
+[[nodiscard]] bool read_tip_box(Lines& lines, SoftLimits& limits) {
+  std::size_t count = 0;
+  lines.read("tip_boxes", count);
+  if (count == 0) return !lines.has_failed();
+  const std::string text = std::string(lines.value("tip_box")) + ' ';
+  std::string_view rest = text;
+  TipBox box{true, {}, {}};
+  bool is_right = count == 1;
+  for (double& end : box.min) is_right = is_right && take_number(rest, end);
+  for (double& end : box.max) is_right = is_right && take_number(rest, end);
+  limits.put(box);
+  return is_right && rest.empty() && !lines.has_failed();
+}
+
 /// "-10 to 200 mm".
 [[nodiscard]] std::string range_text(double min, double max, bool is_rotary) {
   const auto shown = [is_rotary](double value) {
@@ -114,6 +130,11 @@ std::string to_text(const SetUp& set_up, std::string_view machine) {
     text += fmt::format("box = {} {} {} {}\n", box.joints, fmt::join(box.min, " "),
                         fmt::join(box.max, " "), box.name.data());
   }
+  const TipBox& tip = set_up.limits.tip_box();
+  text += fmt::format("tip_boxes = {}\n", tip.is_set ? 1 : 0);
+  if (tip.is_set) {
+    text += fmt::format("tip_box = {} {}\n", fmt::join(tip.min, " "), fmt::join(tip.max, " "));
+  }
   if (set_up.tools) text += fmt::format("tools = {}\n{}\n", set_up.tools->size(), *set_up.tools);
   return seal(text);
 }
@@ -146,8 +167,9 @@ Expected<SetUp, std::string> parse_set_up(std::string_view text, std::string_vie
   }
   is_right = is_right && !lines.has_failed() && frames.rows().size() == count &&
              frames.apply(select) == FrameFault::kNone;
-  is_right = is_right && (age > 1 || read_limits(lines, out.limits));
-  is_right = is_right && (age > 0 || read_boxes(lines, out.limits));
+  is_right = is_right && (age > 2 || read_limits(lines, out.limits));
+  is_right = is_right && (age > 1 || read_boxes(lines, out.limits));
+  is_right = is_right && (age > 0 || read_tip_box(lines, out.limits));
   if (is_right && lines.rest().starts_with("tools = ")) {
     std::size_t size = 0;
     lines.read("tools", size);
@@ -183,6 +205,14 @@ std::string limits_text(const SoftLimits& limits, const MachineModel& model) {
     text += fmt::format("{}{} ({})", text.empty() ? "keep-out box " : ", keep-out box ",
                         box.name.data(), box_text(box, model));
   }
+  if (const TipBox& tip = limits.tip_box(); tip.is_set) {
+    text += text.empty() ? "tip box (" : ", tip box (";
+    for (std::size_t i = 0; i < tip.min.size(); ++i) {
+      text += fmt::format("{}{} {}", i > 0 ? ", " : "", "XYZ"[i],
+                          range_text(tip.min[i], tip.max[i], false));
+    }
+    text += ")";
+  }
   return text.empty() ? "no soft limits" : text;
 }
 
@@ -193,7 +223,7 @@ std::string describe(LimitsFault fault, std::uint8_t joint, const MachineModel& 
     case LimitsFault::kNone:
       return "";
     case LimitsFault::kWord:
-      return "no such word; set, clear, keep-out or open";
+      return "no such word; set, clear, keep-out, open or tip";
     case LimitsFault::kJoint:
       return fmt::format("the machine has no joint number {}", joint + 1);
     case LimitsFault::kEndless:
@@ -216,6 +246,14 @@ std::string describe(LimitsFault fault, std::uint8_t joint, const MachineModel& 
     case LimitsFault::kBoxes:
       return fmt::format("there are {} keep-out boxes at most, those of the machine file included",
                          KeepOut::kMax);
+    case LimitsFault::kTip:
+      return "a tip box has a minimum below a maximum along each of X, Y, Z; swap the numbers";
+    case LimitsFault::kTipBeyond: {
+      const TipBox& own = model.tip_box;
+      return fmt::format(
+          "the machine file's tip box is {:.10g} to {:.10g} mm, which a tip box only shrinks",
+          fmt::join(own.min, ","), fmt::join(own.max, ","));
+    }
   }
   return "";
 }

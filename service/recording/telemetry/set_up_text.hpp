@@ -27,11 +27,13 @@ inline constexpr std::size_t kMaxSetUpBytes = 24'576;
 /// The set-up of `machine` as the text of its file: a line for each frame with its number, x, y, z
 /// in mm, a, b, c in degrees and its name, one for each soft limit with its joint from 1, minimum
 /// and maximum in mm or rad, one for each keep-out box with the mask of its joints, the minima and
-/// maxima of all and its name, then the tool table as it is; every value comes back bit for bit.
+/// maxima of all and its name, one for the tip box, then the tool table as it is; every value comes
+/// back bit for bit.
 [[nodiscard]] std::string to_text(const SetUp& set_up, std::string_view machine);
 
 /// Reads what to_text() wrote for `machine`, this version's or one of before: the first knew no
-/// tools, the second no soft limits, the third no boxes. The error says in what the text is none.
+/// tools, the second no soft limits, the third no boxes, the fourth no tip box. The error says in
+/// what the text is none.
 /// Proof: tests/unit/telemetry/set_up_text_test.cpp.
 [[nodiscard]] Expected<SetUp, std::string> parse_set_up(std::string_view text,
                                                         std::string_view machine);
@@ -42,8 +44,8 @@ inline constexpr std::size_t kMaxSetUpBytes = 24'576;
 /// "tool 5, 110.05 mm long", or "the machine file's tool, 110 mm long".
 [[nodiscard]] std::string tool_name(std::uint32_t number, double length_mm);
 
-/// "soft limits X -10 to 200 mm, B -30 to 30 deg, keep-out box vice (X 1 to 2 mm)"; of none: "no
-/// soft limits".
+/// "soft limits X -10 to 200 mm, B -30 to 30 deg, keep-out box vice (X 1 to 2 mm), tip box (X 0
+/// to 9 mm, Y 0 to 9 mm, Z 0 to 9 mm)"; of none: "no soft limits".
 [[nodiscard]] std::string limits_text(const SoftLimits& limits, const MachineModel& model);
 
 /// Why a word about the soft limits of a joint of `model` is refused, and what to do.

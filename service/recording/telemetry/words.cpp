@@ -209,6 +209,12 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       text = fmt::format("a setpoint would enter the keep-out box {}; report this as a bug",
                          model.keep_out.name_of(value));
       break;
+    case Alarm::kTipBox:
+      text = fmt::format(
+          "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; report "
+          "this as a bug",
+          "XYZ"[joint >= 0 && joint < 3 ? joint : 0], value);
+      break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";
       break;

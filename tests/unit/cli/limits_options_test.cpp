@@ -47,6 +47,14 @@ TEST(LimitsOptions, MakeAnOrderOfABox) {
   EXPECT_EQ(limits_order({"open"}, machine())->word, LimitsWord::kOpen);
 }
 
+TEST(LimitsOptions, MakeAnOrderOfATipBox) {
+  const auto tip = limits_order({"tip", "-10,0,2.5", "100,200,300"}, machine());
+  ASSERT_TRUE(tip);
+  EXPECT_EQ(tip->word, LimitsWord::kTip);
+  EXPECT_EQ(tip->tip_box(), (TipBox{true, {-10, 0, 2.5}, {100, 200, 300}}));
+  EXPECT_EQ(limits_order({"clear", "tip"}, machine())->word, LimitsWord::kClearTip);
+}
+
 TEST(LimitsOptions, RefuseWhatIsNone) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{},
                                                 {"set"},
@@ -64,6 +72,10 @@ TEST(LimitsOptions, RefuseWhatIsNone) {
                                                 {"keep-out", "vice", "X", "1", "2", "X", "1", "2"},
                                                 {"keep-out", std::string(24, 'x'), "X", "1", "2"},
                                                 {"open", "vice", "probe"},
+                                                {"tip", "0,0,0"},
+                                                {"tip", "0,0,0", "1,1"},
+                                                {"tip", "0,0,0", "1,1,1,1"},
+                                                {"tip", "0,0,nan", "1,1,1"},
                                                 {"move", "X", "1", "2"}}) {
     EXPECT_FALSE(limits_order(words, machine())) << testing::PrintToString(words);
   }
@@ -79,6 +91,8 @@ TEST(LimitsOptions, AreListedAsSetTakesThem) {
   info.soft_limits.put(
       limits_order({"keep-out", "vice", "X", "1", "2", "A", "-9", "0"}, machine())->box);
   EXPECT_NE(limits_text(info).find("*  keep-out vice X 1 2 A -9 0\n"), std::string::npos);
+  info.soft_limits.put(TipBox{true, {-1, 0, 2.5}, {9, 8, 7}});
+  EXPECT_NE(limits_text(info).find("*  tip      -1,0,2.5 9,8,7 mm\n"), std::string::npos);
 }
 
 }  // namespace

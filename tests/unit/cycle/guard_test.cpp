@@ -130,6 +130,40 @@ TEST(Guard, AKeepOutBoxOfJointsWithoutAReferenceSaysNothing) {
   EXPECT_EQ(check(machine, next, {}, last, kPeriod_s, 0b101).alarm, Alarm::kKeepOut);
 }
 
+/// The tip of joints at zero is at (0, 0, -100): in the box by 10 mm along each axis.
+MachineModel machine_with_a_tip_box() {
+  MachineModel machine = machine_under_guard();
+  machine.tip_box = {true, {-10, -10, -110}, {10, 10, -90}};
+  return machine;
+}
+
+TEST(Guard, StopsASetpointThatTakesTheTipOutOfItsBox) {
+  const MachineModel machine = machine_with_a_tip_box();
+  const JointVector last{9.99};
+  const GuardVerdict verdict = check_tip_box(machine, 100, {10.001}, last);
+  EXPECT_EQ(verdict.alarm, Alarm::kTipBox);
+  EXPECT_EQ(verdict.joint, 0);
+  EXPECT_NEAR(verdict.value, 10.001, 1e-9);
+  EXPECT_EQ(check_tip_box(machine, 100, {10}, last).alarm, Alarm::kNone) << "its face";
+  EXPECT_EQ(check_tip_box(machine, 100, {0, 0, 10.1}, {}).joint, 2) << "b4 points down";
+  EXPECT_EQ(check_tip_box(machine, 100, {0, 50, 0}, {}).alarm, Alarm::kNone) << "of the table";
+}
+
+TEST(Guard, LetsATipComeInThatIsOutsideOfItsBox) {
+  const MachineModel machine = machine_with_a_tip_box();
+  const JointVector last{12};
+  EXPECT_EQ(check_tip_box(machine, 100, last, last).alarm, Alarm::kNone);
+  EXPECT_EQ(check_tip_box(machine, 100, {11.9}, last).alarm, Alarm::kNone);
+  EXPECT_EQ(check_tip_box(machine, 100, {12.1}, last).alarm, Alarm::kTipBox);
+  EXPECT_EQ(check_tip_box(machine, 130, {}, {}).alarm, Alarm::kNone) << "a longer tool, at rest";
+}
+
+TEST(Guard, ATipBoxSaysNothingWhereAJointThatMovesTheTipHasNoReference) {
+  const MachineModel machine = machine_with_a_tip_box();
+  EXPECT_EQ(check_tip_box(machine, 100, {10.1}, {}, 0b00101).alarm, Alarm::kNone);
+  EXPECT_EQ(check_tip_box(machine, 100, {10.1}, {}, 0b10101).alarm, Alarm::kTipBox);
+}
+
 TEST(Guard, EndlessJointsHaveNoTravel) {
   JointVector last{}, next{};
   last[3] = next[3] = 1e4;

@@ -140,6 +140,16 @@ TEST(Inspection, NamesTheKeepOutBoxes) {
       << to_text(inspect(model), model);
 }
 
+TEST(Inspection, NamesTheTipBox) {
+  const MachineModel model = machine_with(
+      "trunnion-ac", "[tolerances]",
+      "[tip_box]\nmin_mm = [-900, -900, -900]\nmax_mm = [900, 800.5, 900]\n[tolerances]");
+  EXPECT_NE(to_text(inspect(model), model)
+                .find("tip box    X -900 .. 900 Y -900 .. 800.5 Z -900 .. 900 mm over the base\n"),
+            std::string::npos)
+      << to_text(inspect(model), model);
+}
+
 TEST(Inspection, TellsWhatAJointDoesAsTheWorkpieceSeesIt) {
   const MachineModel model = config::load_machine(test::shipped_file("head-table-bc"));
   const std::string text = to_text(inspect(model), model);

@@ -161,6 +161,42 @@ TEST(SoftLimits, PutTheirBoxesBesideThoseOfTheMachine) {
   EXPECT_EQ(model.keep_out, own.keep_out);
 }
 
+/// An order of a tip box from `min` to `max` along each axis.
+LimitsOrder about_tip(double min, double max) {
+  LimitsOrder order;
+  order.word = LimitsWord::kTip;
+  order.box.min = {min, min, min};
+  order.box.max = {max, max, max};
+  return order;
+}
+
+TEST(SoftLimits, HaveOneTipBoxInsideTheOneOfTheMachine) {
+  MachineModel own = test::lai_machine();
+  SoftLimits limits;
+  EXPECT_EQ(limits.apply(about_tip(-50, 60), own), LimitsFault::kNone);
+  EXPECT_EQ(limits.tip_box(), (TipBox{true, {-50, -50, -50}, {60, 60, 60}}));
+  EXPECT_FALSE(limits.empty());
+  for (const double end : {-50.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(limits.apply(about_tip(-50, end), own), LimitsFault::kTip) << end;
+  }
+  EXPECT_EQ(limits.apply(about_tip(-40, 40), own), LimitsFault::kNone) << "in place of the first";
+  own.tip_box = {true, {-45, -45, -45}, {45, 45, 45}};
+  EXPECT_EQ(limits.apply(about_tip(-50, 40), own), LimitsFault::kTipBeyond);
+  EXPECT_EQ(limits.find_fault(own), LimitsFault::kNone);
+  MachineModel model = own;
+  shrink_travel(model, travel_under(limits, own));
+  EXPECT_EQ(model.tip_box.max[2], 40);
+  EXPECT_EQ(limits.apply({LimitsWord::kClearTip}, own), LimitsFault::kNone);
+  EXPECT_TRUE(limits.empty());
+  shrink_travel(model, travel_under(limits, own));
+  EXPECT_EQ(model.tip_box, own.tip_box) << "the machine file's again";
+  ASSERT_EQ(limits.apply(about_tip(-40, 40), own), LimitsFault::kNone);
+  EXPECT_EQ(limits.apply({LimitsWord::kClear}, own), LimitsFault::kNone);
+  EXPECT_TRUE(limits.empty()) << "clear alone clears it too";
+  limits.put(TipBox{true, {-46, 0, 0}, {1, 1, 1}});
+  EXPECT_EQ(limits.find_fault(own), LimitsFault::kTipBeyond);
+}
+
 TEST(SoftLimits, ShrinkAModelAndGiveItItsTravelBack) {
   const MachineModel own = two_joints();
   MachineModel model = own;

@@ -34,6 +34,11 @@ TEST(LimitsSum, TellsLimitsApartByAllThatTheySay) {
   SoftLimits both = limits_of(1, -5, 5);
   both.put(0, -5, 5);
   EXPECT_NE(limits_sum(both), sum);
+  SoftLimits tipped = limits_of(1, -5, 5), otherwise = tipped;
+  tipped.put(TipBox{true, {0, 0, 0}, {1, 1, 1}});
+  otherwise.put(TipBox{true, {0, 0, 0}, {1, 1, 1 + 1e-12}});
+  EXPECT_NE(limits_sum(tipped), sum);
+  EXPECT_NE(limits_sum(tipped), limits_sum(otherwise));
 }
 
 }  // namespace

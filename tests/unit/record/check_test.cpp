@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "check_fixture.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 
 namespace meridian::record {
 namespace {
@@ -293,6 +294,33 @@ TEST_F(Check, HoldsEveryCycleAgainstTheKeepOutBoxesOfItsTime) {
   expect_only(run(), Finding::Kind::kTravel);
   options.soft_limits = {{0, limits}, {1, SoftLimits()}};
   EXPECT_TRUE(run().passed()) << "it was taken away";
+}
+
+TEST_F(Check, HoldsEveryCycleAgainstTheTipBoxesOfItsTime) {
+  Array3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  for (const CycleRecord& record : records) {
+    const Array3 tip = tip_over_base(model, model.tool_length_mm, record.joints);
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], tip[i]);
+      high[i] = std::max(high[i], tip[i]);
+    }
+  }
+  SoftLimits limits;
+  limits.put(TipBox{true, {low[0] - 1, low[1] - 1, low[2] - 1}, high});
+  options.soft_limits = {{0, limits}};
+  EXPECT_TRUE(run().passed());
+  TipBox narrow = limits.tip_box();
+  narrow.max[0] -= 0.5;
+  limits.put(narrow);
+  options.soft_limits = {{0, limits}};
+  const CheckReport report = run();
+  expect_only(report, Finding::Kind::kTravel);
+  EXPECT_NE(report.findings[0].text.find("tip box by up to 0.5 mm"), std::string::npos)
+      << report.findings[0].text;
+  options.soft_limits = {{0, limits}, {1, SoftLimits()}};
+  EXPECT_TRUE(run().passed()) << "it was cleared";
+  model.tip_box = narrow;
+  expect_only(run(), Finding::Kind::kTravel);
 }
 
 TEST_F(Check, HoldsEveryCycleAgainstTheSoftLimitsOfItsTime) {

@@ -48,6 +48,11 @@ TEST(RecordedLimits, AreThoseInForceAtTheFirstStart) {
   EXPECT_EQ(find_recorded_limits(events), limits_of(0, -9, 9));
   EXPECT_EQ(find_recorded_limits("0,limits,1,-10,10\n9,limits,0,0,0\n20,start,0\n"), SoftLimits());
   EXPECT_FALSE(find_recorded_limits("20,start,0\n"));
+  SoftLimits tipped = limits_of(0, -9, 9);
+  tipped.put(TipBox{true, {-1, -2, -3}, {1, 2, 3}});
+  EXPECT_EQ(find_recorded_limits("0,limits,1,-9,9\n0,tip_box,1,-1,1\n0,tip_box,2,-2,2\n"
+                                 "0,tip_box,3,-3,3\n20,start,0\n"),
+            tipped);
 }
 
 TEST(RecordedLimits, AreToldWithTheCyclesFromWhichTheyHold) {
@@ -60,10 +65,11 @@ TEST(RecordedLimits, AreToldWithTheCyclesFromWhichTheyHold) {
 
 TEST(RecordedLimits, AreNoneWhereARowHoldsAnythingElse) {
   EXPECT_TRUE(read_limits("0,limits,1,-10,10"));
-  for (const char* row : {"0,limits,1,-10", "0,limits,1,-10,10,6", "0,limits,x,-10,10",
-                          "0,limits,7,-10,10", "0,limits,1,nan,10", "0,keep_out,1,-10,10",
-                          "0,keep_out,0,1,-10,10", "0,keep_out,9,1,-10,10", "0,keep_out,1,0,-10,10",
-                          "0,keep_out,1,7,-10,10", "0,limit,1,-10,10", "x,limits,1,-10,10"}) {
+  for (const char* row :
+       {"0,limits,1,-10", "0,limits,1,-10,10,6", "0,limits,x,-10,10", "0,limits,7,-10,10",
+        "0,limits,1,nan,10", "0,keep_out,1,-10,10", "0,keep_out,0,1,-10,10",
+        "0,keep_out,9,1,-10,10", "0,keep_out,1,0,-10,10", "0,keep_out,1,7,-10,10",
+        "0,tip_box,0,-10,10", "0,tip_box,4,-10,10", "0,limit,1,-10,10", "x,limits,1,-10,10"}) {
     EXPECT_FALSE(read_limits(row)) << row;
   }
   EXPECT_TRUE(is_limits_row("0,limits,1,nan,5"));

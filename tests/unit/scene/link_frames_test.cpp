@@ -8,6 +8,7 @@
 #include <set>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"
 
@@ -45,6 +46,8 @@ TEST_P(OfEveryMachine, ToolStandsInTheWorkpieceWhereForwardKinematicsSays) {
     const Pose<double> wanted = forward(model, tool, q);
     EXPECT_LT((seen.translation() - wanted.tip).norm(), 1e-9);
     EXPECT_LT((seen.linear().col(2) - wanted.axis).norm(), 1e-12);
+    const Vector3 over_base = to_vector(tip_over_base(model, tool, q));
+    EXPECT_LT((poses["tool"].translation() - over_base).norm(), 1e-9);
   }
 }
 

@@ -45,6 +45,7 @@ TEST(SetUpText, ComesBackBitForBit) {
       box.min.fill(-1.0 / (3 + seed));
       box.max.fill(1e5 / 7 + n);
       set_up.limits.put(box);
+      set_up.limits.put(TipBox{true, {-1.0 / (3 + seed), 0, 1}, {1e5 / 7 + n, 2, 3}});
     }
     if (seed % 3 == 1) set_up.tools = std::string(seed * 40, 'x') + "\n# crc32c = 12345678\n";
     if (seed % 3 == 2) set_up.tools = "";
@@ -71,6 +72,8 @@ TEST(SetUpText, OfAFullTableFitsIntoItsFile) {
   box.min.fill(-1.0 / 3.0 * 1e-300);
   box.max = box.min;
   for (int n = 0; n < KeepOut::kMax; ++n) limits.put(box);
+  const double end = -1.0 / 3.0 * 1e-300;
+  limits.put(TipBox{true, {end, end, end}, {end, end, end}});
   const std::string text =
       to_text({frames, std::string(dds::kToolFileBytes, 't'), limits}, std::string(64, 'm'));
   EXPECT_LT(text.size(), kMaxSetUpBytes);
@@ -128,6 +131,12 @@ TEST(SetUpText, SaysOfLimitsWhatTheyAreAndWhatIsWrong) {
   limits.put(0, -40, 42.5);
   limits.put(1, 0, units::rad_from_deg(30));
   EXPECT_EQ(limits_text(limits, model), "soft limits X -40 to 42.5 mm, C 0 to 30 deg");
+  SoftLimits tipped;
+  tipped.put(TipBox{true, {-1, 0, 2.5}, {9, 8, 7}});
+  EXPECT_EQ(limits_text(tipped, model), "tip box (X -1 to 9 mm, Y 0 to 8 mm, Z 2.5 to 7 mm)");
+  model.tip_box = {true, {-1, 0, 2.5}, {9, 8, 7}};
+  EXPECT_EQ(describe(LimitsFault::kTipBeyond, 0, model),
+            "the machine file's tip box is -1,0,2.5 to 9,8,7 mm, which a tip box only shrinks");
   EXPECT_EQ(describe(LimitsFault::kTravel, 0, model),
             "X has a travel of -600 to 600 mm, which soft limits only shrink");
   EXPECT_EQ(describe(LimitsFault::kEndless, 1, model), "C is endless, it has no travel to shrink");

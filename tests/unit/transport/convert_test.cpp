@@ -91,7 +91,7 @@ TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
   EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
   EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 26);  // 18 padding, 5 flags, 3 texts
   EXPECT_EQ((lost_bytes<MachineInfo, meridian_wire_Machine>()),
-            607);  // 18 padding, 1 flag, 16 clamped counts, 8 texts; per joint or drive 4 padding,
+            615);  // 25 padding, 2 flags, 16 clamped counts, 8 texts; per joint or drive 4 padding,
                    // 2 flags, 1 text; per work frame 7 padding, 1 text; of soft limits the mask
                    // and the pairs of two joints that it leaves out; per keep-out box 4 padding,
                    // 1 text
@@ -122,6 +122,7 @@ TEST(Convert, CarriesTheSoftLimitsThatThereAre) {
   box.min = {1, 0, -5};
   box.max = {1.0 / 3.0 + 1, 0, 5};
   info.soft_limits.put(box);
+  info.soft_limits.put(TipBox{true, {-1, -2, -3}, {1, 2, 1.0 / 3}});
   static meridian_wire_Machine wire;
   to_wire(info, wire);
   EXPECT_EQ(wire.soft_limits_mask, 0x21U);

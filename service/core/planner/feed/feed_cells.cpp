@@ -266,8 +266,8 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
       if (!is_fault(fault)) {
         fault = check_joins(model_, before_place, place, step);
       }
-      if (!model_.keep_out.empty() && !is_fault(fault)) {
-        fault = check_keep_out(model_, before_place, place, step);
+      if (has_boxes(model_) && !is_fault(fault)) {
+        fault = check_boxes(model_, tool_length_mm_, before_place, place, step);
       }
       if (is_fault(fault)) return fault;
     }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
 
@@ -135,6 +136,40 @@ PathFault check_keep_out(const MachineModel& model, const JointPlace& a, const J
   return box < 0 ? PathFault{} : PathFault{PathFault::Kind::kKeepOut, -1, 1.0 * box};
 }
 
+PathFault check_tip_box(const MachineModel& model, double tool_length_mm, const JointPlace& a,
+                        const JointPlace& b, double h) noexcept {
+  const auto tip_of = [&](const JointPlace& place) {
+    Joints<Jet<3>> q;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      q[i] = Jet<3>::from_derivatives({place.q[i], place.d1[i], place.d2[i], place.d3[i]});
+    }
+    return tip_over_base(model, tool_length_mm, q);
+  };
+  const std::array<Jet<3>, 3> from = tip_of(a), to = tip_of(b);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const auto larger = [&](int order) {
+      return std::max(std::abs(from[i].derivative(order)), std::abs(to[i].derivative(order)));
+    };
+    const TipStep step{value_of(from[i]), value_of(to[i]), from[i].derivative(1),
+                       to[i].derivative(1), kBetween * (larger(2) + 0.5 * h * larger(3))};
+    if (!(beyond_over_step(model.tip_box, i, step, h) <= kTipBoxRounding)) {
+      const bool is_end = beyond_face(model.tip_box, i, step.to) > kTipBoxRounding;
+      return {PathFault::Kind::kTipBox, static_cast<int>(i), is_end ? step.to : step.from};
+    }
+  }
+  return {};
+}
+
+PathFault check_boxes(const MachineModel& model, double tool_length_mm, const JointPlace& a,
+                      const JointPlace& b, double h) noexcept {
+  PathFault fault;
+  if (!model.keep_out.empty()) fault = check_keep_out(model, a, b, h);
+  if (model.tip_box.is_set && !is_fault(fault)) {
+    fault = check_tip_box(model, tool_length_mm, a, b, h);
+  }
+  return fault;
+}
+
 PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, double begin,
                             double end, int cells, JointVector& joints) noexcept {
   if (count_ + cells > kCapacity) return {PathFault::Kind::kTooLong, -1, 0};
@@ -148,6 +183,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
   coarseness_ = 1;
   const double h = (end - begin) / cells;
   const int count = limited_count(model);
+  const bool is_boxed = has_boxes(model);
   for (int n = 0; n < cells; ++n) {
     at[0] = at[2];
     JointCell& cell = cells_[count_++];
@@ -161,8 +197,8 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       PathFault fault = check_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
       if (!is_fault(fault)) fault = check_travel(model, at[k].q);
       if (!is_fault(fault)) fault = check_joins(model, at[k - 1].place(), at[k].place(), h / 2);
-      if (!model.keep_out.empty() && !is_fault(fault)) {
-        fault = check_keep_out(model, at[k - 1].place(), at[k].place(), h / 2);
+      if (is_boxed && !is_fault(fault)) {
+        fault = check_boxes(model, piece.tool_length_mm, at[k - 1].place(), at[k].place(), h / 2);
       }
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }

@@ -28,7 +28,7 @@ struct JointCell {
 };
 
 /// Why joints cannot follow a path. kJump: or only next to standstill. kKeepOut: `value` is the
-/// number of the box.
+/// number of the box. kTipBox: `joint` is the axis of the base, 0 to 2, `value` where, mm.
 struct PathFault {
   enum class Kind {
     kNone,
@@ -37,7 +37,8 @@ struct PathFault {
     kTooLong,
     kBranch,
     kJump,
-    kKeepOut
+    kKeepOut,
+    kTipBox
   } kind = Kind::kNone;
   int joint = -1;  ///< place in limited.hpp; -1: none
   double value = 0;
@@ -101,6 +102,18 @@ struct JointPlace {
 /// beside the straight line between both than h²/8 times their second derivative there.
 [[nodiscard]] PathFault check_keep_out(const MachineModel& model, const JointPlace& a,
                                        const JointPlace& b, double h) noexcept;
+
+/// Whether the tip stays inside of its box from `a` to `b`, `h` apart.
+[[nodiscard]] PathFault check_tip_box(const MachineModel& model, double tool_length_mm,
+                                      const JointPlace& a, const JointPlace& b, double h) noexcept;
+
+/// check_keep_out() and check_tip_box(), for a machine that has one of them.
+[[nodiscard]] PathFault check_boxes(const MachineModel& model, double tool_length_mm,
+                                    const JointPlace& a, const JointPlace& b, double h) noexcept;
+/// Whether there is anything for check_boxes() to look at.
+[[nodiscard]] inline bool has_boxes(const MachineModel& model) noexcept {
+  return !model.keep_out.empty() || model.tip_box.is_set;
+}
 
 /// One cell that bounds both.
 [[nodiscard]] JointCell merged(const JointCell& a, const JointCell& b) noexcept;

@@ -21,6 +21,8 @@ namespace meridian {
       return RejectCode::kBranch;
     case PathFault::Kind::kKeepOut:
       return RejectCode::kKeepOut;
+    case PathFault::Kind::kTipBox:
+      return RejectCode::kTipBox;
     case PathFault::Kind::kJump:
       break;
   }

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/look_ahead/robot_look_ahead.hpp"
 #include "service/core/planner/route/ahead_look.hpp"
@@ -35,6 +36,17 @@ ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
   return {pose.tip + by_mm * pose.axis, pose.axis};
 }
 
+/// The share of the straight way from `from` to `to` on which the tip stays in its box.
+double share_in_tip_box(const TipBox& box, const Array3& from, const Array3& to) noexcept {
+  double share = 1;
+  for (std::size_t i = 0; box.is_set && i < from.size(); ++i) {
+    const double by = to[i] - from[i];
+    const double end = by > 0 ? box.max[i] : box.min[i];
+    if (std::abs(by) > kTipBoxRounding) share = std::min(share, (end - from[i]) / by);
+  }
+  return share;
+}
+
 /// Adds length and time of what is staged from `begin` on.
 void add_way(const Staging::Mark& begin, const Staging& staged, Approach& way) noexcept {
   for (int n = begin.paths; n < staged.path_count; ++n) way.length += staged.paths[n].length;
@@ -55,7 +67,8 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
       const auto at = solve_near(lifted(pose, whole_mm * n / kSteps), joints, tool_length_mm);
       const bool is_free = at.status == SolveStatus::kOk &&
                            first_joint_outside_travel(model_, at.q, 0) < 0 &&
-                           keep_out_between(model_.keep_out, before, at.q).box < 0;
+                           keep_out_between(model_.keep_out, before, at.q).box < 0 &&
+                           tip_axis_outside(model_, tool_length_mm, at.q) < 0;
       before = at.q;
       if (is_free) continue;
       share = static_cast<double>(n - 1) / kSteps;
@@ -74,8 +87,20 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
     if (std::abs(by) > 1e-9) share = std::min(share, (end - from[i]) / by);
   }
   share = std::min(share, keep_out_between(model_.keep_out, joints, at.q).share);
+  if (model_.tip_box.is_set) {
+    share = std::min(share,
+                     share_in_tip_box(model_.tip_box, tip_over_base(model_, tool_length_mm, joints),
+                                      tip_over_base(model_, tool_length_mm, at.q)));
+  }
   const double clearance = std::max(0.0, share) * whole_mm;
   return clearance > kNoClearance_mm ? clearance : 0;
+}
+
+PathFault Router::find_tip_fault(double tool_length_mm, const JointVector& joints) const noexcept {
+  const int axis = tip_axis_outside(model_, tool_length_mm, joints);
+  if (axis < 0) return {};
+  const Array3 tip = tip_over_base(model_, tool_length_mm, joints);
+  return {PathFault::Kind::kTipBox, axis, tip[static_cast<std::size_t>(axis)]};
 }
 
 PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
@@ -107,6 +132,8 @@ PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging
     if (const int box = keep_out_between(model_.keep_out, cursor.joints, at.q).box; box >= 0) {
       return {PathFault::Kind::kKeepOut, -1, 1.0 * box};
     }
+    const PathFault tip = find_tip_fault(cursor.tool_length_mm, at.q);
+    if (is_fault(tip)) return tip;
     const int joint = first_joint_outside_travel(model_, at.q, 0);
     return {PathFault::Kind::kTravel, joint, joint >= 0 ? limited_value(model_, at.q, joint) : 0.0};
   }
@@ -289,6 +316,8 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
       first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
     } else if (box >= 0) {
       first = {PathFault::Kind::kKeepOut, -1, 1.0 * box};
+    } else if (const PathFault tip = find_tip_fault(cursor.tool_length_mm, at.q); is_fault(tip)) {
+      first = tip;
     }
   }
   lost_.reset();

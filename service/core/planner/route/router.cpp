@@ -9,6 +9,7 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
@@ -79,6 +80,7 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
   const auto add = [&](const JointVector& q, int branch) {
     if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
     if (keep_out_at(model_.keep_out, q) >= 0) return;
+    if (tip_axis_outside(model_, cursor.tool_length_mm, q) >= 0) return;
     double cost = 0;
     const LimitedVector from = limited_of(model_, cursor.joints), to = limited_of(model_, q);
     for (int i = 0; i < limited_count(model_); ++i) {

@@ -195,10 +195,13 @@ class Router {
   /// Fills in what is known of the way once it is staged from `begin` on.
   void describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
                        const Staging::Mark& begin, const Staging& staged) noexcept;
-  /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel; 0: not at
-  /// all.
+  /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel and the tip
+  /// box, and past every keep-out box; 0: not at all.
   [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
                                       double tool_length_mm, double whole_mm) const noexcept;
+  /// Where the tip leaves its box at `joints`.
+  [[nodiscard]] PathFault find_tip_fault(double tool_length_mm,
+                                         const JointVector& joints) const noexcept;
 
   const MachineModel& model_;
   LegPlanner legs_;

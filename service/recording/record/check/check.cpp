@@ -12,6 +12,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/recording/record/check/joint_check.hpp"
 #include "service/recording/record/check/path_check.hpp"
+#include "service/recording/record/check/tip_box_check.hpp"
 #include "service/recording/record/check/unwind_check.hpp"
 
 namespace meridian::record {
@@ -225,10 +226,13 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   JointCheck joints(model, survey.largest(), options.soft_limits);
   PathCheck tool(model, path, options);
   UnwindCheck unwinding(model, path.begin_tool_length_mm(), options);
+  TipBoxCheck tip_box(model, path, options.soft_limits);
   const bool has_cut = survey.has_cut(options);
   std::uint64_t next_cycle = report.begin_cycle, missing = 0;
   read = for_each(recording, options, [&](const RecordingRow& row) {
     joints.add(row, recording.has_velocity());
+    const bool is_ahead = row.cycle < report.begin_cycle;
+    if (has_cut && row.cycle <= report.end_cycle) tip_box.add(row, !is_ahead);
     if (has_cut && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
       if ((row.flags & kSetpointDryEnabled) != 0) ++report.dry_cut_cycles;
       missing += row.cycle > next_cycle ? row.cycle - next_cycle : 0;
@@ -244,6 +248,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
     unwinding.finish(report);
   }
   joints.finish(report);
+  tip_box.finish(report);
   return report;
 }
 

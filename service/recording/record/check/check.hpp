@@ -47,6 +47,7 @@ struct CheckOptions {
 ///   long before as the machine takes to follow; inverse time: tip and axis never faster than the
 ///   fastest block within 5 mm asks for, and no block in less than its time;
 /// * the machine does not creep while it runs (creep_check.hpp);
+/// * the tip in its box, in the cut and the approach to it, or going no farther out;
 /// * velocity, acceleration, jerk of every joint, inside runs of consecutive cycles, to 1e-6
 ///   relative and 8 ulp(q)/T^n; FaultStop rows by the FaultStop limits; travel, and
 ///   soft limits, outside of which a joint may only come back; keep-out boxes in the same manner;

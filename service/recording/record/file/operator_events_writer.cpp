@@ -84,6 +84,8 @@ bool OperatorEventsWriter::write(const RecordedLimits& limits) noexcept {
   row.put_integer(limits.cycle).put(',');
   if (limits.box == 0) {
     row.put(kLimitsWord);
+  } else if (limits.box == kTipBoxNumber) {
+    row.put(kTipBoxWord);
   } else {
     row.put(kKeepOutWord).put(',').put_integer(limits.box);
   }

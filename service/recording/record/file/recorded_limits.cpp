@@ -8,30 +8,38 @@ namespace meridian::record {
 bool is_limits_row(std::string_view row) {
   (void)next_field(row);
   const std::string_view word = next_field(row);
-  return word == kLimitsWord || word == kKeepOutWord;
+  return word == kLimitsWord || word == kKeepOutWord || word == kTipBoxWord;
 }
 
 std::optional<RecordedLimits> read_limits(std::string_view row) {
   RecordedLimits limits;
   if (!is_limits_row(row)) return std::nullopt;
   bool is_right = read_field(row, limits.cycle);
-  const bool is_box = next_field(row) == kKeepOutWord;
+  const std::string_view word = next_field(row);
+  const bool is_box = word == kKeepOutWord, is_tip = word == kTipBoxWord;
+  if (is_tip) limits.box = kTipBoxNumber;
   if (is_box) {
     is_right = is_right && read_field(row, limits.box) && limits.box > 0 &&
                limits.box <= std::uint32_t{KeepOut::kMax};
   }
-  is_right = is_right && read_field(row, limits.joint) && limits.joint <= kMaxJoints &&
-             (!is_box || limits.joint > 0) && read_finite(row, limits.min) &&
-             read_finite(row, limits.max);
+  is_right = is_right && read_field(row, limits.joint) &&
+             limits.joint <= (is_tip ? 3 : kMaxJoints) && (limits.box == 0 || limits.joint > 0) &&
+             read_finite(row, limits.min) && read_finite(row, limits.max);
   return is_right && row.empty() ? std::optional(limits) : std::nullopt;
 }
 
 std::vector<LimitsFrom> find_all_limits(std::string_view events) {
   std::vector<LimitsFrom> all;
-  KeepOutBox box;  // of which rows come
+  KeepOutBox box;  // of which rows come, the tip box too
   std::uint32_t number = 0;
   const auto finish_box = [&] {
-    if (number > 0) (void)all.back().limits.put(box);
+    if (number == kTipBoxNumber) {
+      LimitsOrder order;
+      order.box = box;
+      all.back().limits.put(order.tip_box());
+    } else if (number > 0) {
+      (void)all.back().limits.put(box);
+    }
     box = {};
     number = 0;
   };

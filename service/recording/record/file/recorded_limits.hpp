@@ -12,15 +12,20 @@ namespace meridian::record {
 
 /// A row of the events beside a recording: `cycle,limits,joint,min,max`, the joint in machine order
 /// from 1, mm or rad, or `cycle,keep_out,box,joint,min,max`, one for each joint of a keep-out box,
-/// which counts from 1. The rows of one cycle are all soft limits and boxes that are in force from
-/// it on; one of joint 0 stands for none.
-inline constexpr std::string_view kLimitsWord = "limits", kKeepOutWord = "keep_out";
+/// which counts from 1, or `cycle,tip_box,axis,min,max`, one for each of X, Y, Z from 1. The rows
+/// of one cycle are all soft limits and boxes that are in force from it on; one of joint 0 stands
+/// for none.
+inline constexpr std::string_view kLimitsWord = "limits", kKeepOutWord = "keep_out",
+                                  kTipBoxWord = "tip_box";
+
+/// RecordedLimits::box of the tip box.
+inline constexpr std::uint32_t kTipBoxNumber = KeepOut::kMax + 1;
 
 struct RecordedLimits {
   std::uint64_t cycle = 0;
-  std::uint32_t joint = 0;
+  std::uint32_t joint = 0;  ///< of the tip box: 1 X, 2 Y, 3 Z
   double min = 0, max = 0;
-  std::uint32_t box = 0;  ///< 0: a soft limit
+  std::uint32_t box = 0;  ///< 0: a soft limit; kTipBoxNumber
   [[nodiscard]] bool operator==(const RecordedLimits&) const = default;
 };
 

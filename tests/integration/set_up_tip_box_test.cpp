@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "integration/live_run.hpp"
+#include "integration/set_up_plant.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "service/protocol/limits_sum.hpp"
+
+/// The tip box of a machine that runs.
+namespace meridian::test {
+namespace {
+
+/// Within `half_mm` of where the tip is, along X; anywhere along Y and Z.
+LimitsOrder tip_order(Plant& plant, double half_mm) {
+  const MachineModel model = config::load_machine(plant.machine());
+  const dds::Status status = plant.status();
+  const Array3 tip = tip_over_base(model, status.tool_length_mm, status.joints);
+  LimitsOrder order;
+  order.word = LimitsWord::kTip;
+  order.box.min = {tip[0] - half_mm, -2000, -2000};
+  order.box.max = {tip[0] + half_mm, 2000, 2000};
+  return order;
+}
+
+TEST(SetUpTipBox, StopsAHandThatJogsAndOutlivesTheService) {
+  Plant plant;
+  plant.start_service();
+  plant.start_drives();
+  Process set = ctl_limits(plant, {"tip", "-2.5,-900,-900", "2.5,900,900"});
+  ASSERT_EQ(set.wait(kToolPatience), 0) << set.said();
+  EXPECT_NE(set.said().find("tip box (X -2.5 to 2.5 mm, Y -900 to 900 mm, Z -900 to 900 mm)"),
+            std::string::npos)
+      << set.said();
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  Process jog = tool(plant, {"ctl", "jog", "b3", "20", "--for", "1"});
+  ASSERT_EQ(jog.wait(kToolPatience), 0) << jog.said();
+  const MachineModel model = config::load_machine(plant.machine());
+  const dds::Status status = plant.status();
+  EXPECT_NEAR(tip_over_base(model, status.tool_length_mm, status.joints)[0], 2.5, 1e-9);
+  EXPECT_EQ(status.alarm, Alarm::kNone);
+  ASSERT_NO_FATAL_FAILURE(end_service(plant));
+  plant.start_service();
+  SoftLimits wanted;
+  wanted.put(TipBox{true, {-2.5, -900, -900}, {2.5, 900, 900}});
+  EXPECT_EQ(reported_by(plant).soft_limits, wanted);
+  EXPECT_EQ(plant.status().limits, stream::limits_sum(wanted));
+  Process list = ctl_limits(plant, {"list"});
+  ASSERT_EQ(list.wait(kToolPatience), 0) << list.said();
+  EXPECT_NE(list.said().find("*  tip      -2.5,-900,-900 2.5,900,900 mm\n"), std::string::npos)
+      << list.said();
+}
+
+TEST(SetUpTipBox, RefusesAMoveThatTakesTheTipOut) {
+  Plant plant;
+  plant.start_service({"--service", service_file(plant)});
+  plant.start_drives();
+  SetUpOperator anna(plant, 100);
+  const dds::Reply set = anna.ask(tip_order(plant, 20));
+  ASSERT_TRUE(set.is_accepted) << set.text;
+  ASSERT_TRUE(plant.enable()) << plant.service().said();
+  const JointVector before = plant.status().joints;
+  Process move = tool(plant, {"ctl", "move", "--joints", "b3=30", "--feed", "3000"});
+  EXPECT_NE(move.wait(milliseconds(20'000)), 0) << move.said();
+  EXPECT_NE(move.said().find("tip box"), std::string::npos) << move.said();
+  EXPECT_EQ(plant.status().joints, before);
+  EXPECT_TRUE(plant.runs_until([](const dds::Status& status) {
+    return status.state == State::kReady && status.session == 0;
+  })) << plant.standing();
+  Process inside = tool(plant, {"ctl", "move", "--joints", "b3=19", "--feed", "3000"});
+  EXPECT_EQ(inside.wait(milliseconds(20'000)), 0) << inside.said();
+  EXPECT_NEAR(plant.status().joints[0], 19, 1e-9);
+}
+
+TEST(SetUpTipBox, IsSeenByTheStationsPreflightAndIsClearedAgain) {
+  Plant plant;
+  const std::string part = plant.folder() / "part.apt";
+  write_cl_file(part, 12);
+  plant.start_service();
+  SetUpOperator anna(plant, 100);
+  const dds::Reply reply = anna.ask(tip_order(plant, 0.5));
+  ASSERT_TRUE(reply.is_accepted) << reply.text;
+  Process stream = tool(plant, {"stream", part});
+  EXPECT_EQ(stream.wait(kToolPatience), 3) << stream.said();
+  EXPECT_NE(stream.said().find("the tip leaves the tip box: X at "), std::string::npos)
+      << stream.said();
+  EXPECT_NE(stream.said().find("part.apt:"), std::string::npos) << stream.said();
+  Process clear = ctl_limits(plant, {"clear", "tip"});
+  ASSERT_EQ(clear.wait(kToolPatience), 0) << clear.said();
+  EXPECT_TRUE(reported_by(plant).soft_limits.empty());
+}
+
+TEST(SetUpTipBox, ThatMeansNothingOrIsStaleIsRefused) {
+  Plant plant;
+  plant.start_service();
+  SetUpOperator anna(plant, 100);
+  const dds::Status before = plant.status();
+  EXPECT_EQ(anna.ask(tip_order(plant, -1)).refusal, Refusal::kOutOfRange);
+  EXPECT_EQ(plant.status().limits, before.limits);
+  ASSERT_TRUE(anna.ask(tip_order(plant, 20)).is_accepted);
+  SetUpOperator ben(plant, 200);
+  ben.say(tip_order(plant, 30), before);  // has not seen anna's
+  const auto late = ben.answer();
+  ASSERT_TRUE(late);
+  EXPECT_FALSE(late->is_accepted);
+  EXPECT_EQ(late->refusal, Refusal::kStale) << late->text;
+}
+
+}  // namespace
+}  // namespace meridian::test
