@@ -73,7 +73,7 @@ int show_pose(const MachineModel& model, const std::vector<double>& values, bool
     std::cout << inspect::to_text(solutions, model);
   }
   const bool is_possible = std::any_of(solutions.begin(), solutions.end(),
-                                       [](const auto& one) { return one.outside < 0; });
+                                       [](const auto& one) { return one.is_possible(); });
   return is_possible ? kFine : kVerdictNo;
 }
 

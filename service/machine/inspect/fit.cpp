@@ -13,6 +13,7 @@
 
 #include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 
 namespace meridian::inspect {
 namespace {
@@ -135,6 +136,40 @@ void look_for_boxes(const MachineModel& model, const Course& course, Fit& fit) {
   fit.margin = std::min(fit.margin, margin);
 }
 
+/// How far the tip is outside of its box along the axis where that is farthest; not positive
+/// inside.
+struct TipBeyond {
+  int axis = 0;
+  double by_mm = -std::numeric_limits<double>::infinity();
+};
+
+TipBeyond tip_beyond(const MachineModel& model, const Followed& at) {
+  TipBeyond out;
+  const Array3 tip = tip_over_base(model, at.pose->tool_length_mm, at.q);
+  for (std::size_t i = 0; i < tip.size(); ++i) {
+    const double by = beyond_face(model.tip_box, i, tip[i]);
+    if (by > out.by_mm) out = {static_cast<int>(i), by};
+  }
+  return out;
+}
+
+/// Puts into `fit` where the tip is farthest outside of its box, if it is.
+void look_for_tip(const MachineModel& model, const Course& course, Fit& fit) {
+  if (!model.tip_box.is_set) return;
+  constexpr double kLeft = 1e-3, kFarthest_mm = 1e4;  // share of half travel
+  double farthest = kTipBoxRounding;
+  for (const Followed& at : course.reached) {
+    const TipBeyond beyond = tip_beyond(model, at);
+    if (beyond.by_mm <= farthest) continue;
+    farthest = beyond.by_mm;
+    fit.tip_axis = beyond.axis;
+    fit.line = at.pose->line;
+  }
+  if (fit.tip_axis < 0) return;
+  fit.joint = fit.box = -1;
+  fit.margin = std::min(fit.margin, -kLeft - std::min(farthest / kFarthest_mm, 0.9));
+}
+
 /// The time of a program by feeds, and velocities and accelerations of joints and drives.
 class TimeEstimate {
  public:
@@ -217,6 +252,7 @@ Fit fit_on(const MachineModel& model, const std::vector<ProgramPose>& poses, int
     fit.line = room.line;
   }
   look_for_boxes(model, course, fit);
+  look_for_tip(model, course, fit);
   fit.score = fit.margin + kOfMean * sum / limited_count(model);
   TimeEstimate time(model);
   for (const Followed& at : course.reached) {
@@ -246,7 +282,10 @@ class Findings {
     const auto key = [](const FitFinding& one) {
       const bool is_travel =
           one.obstacle == Obstacle::kTravelMin || one.obstacle == Obstacle::kTravelMax;
-      const int group = one.obstacle == Obstacle::kOutOfReach ? 0 : is_travel ? 1 : 2;
+      const int group = one.obstacle == Obstacle::kOutOfReach ? 0
+                        : is_travel                           ? 1
+                        : one.obstacle == Obstacle::kKeepOut  ? 2
+                                                              : 3;
       return std::tuple(group, one.number, one.obstacle);
     };
     std::ranges::stable_sort(found_, {}, key);
@@ -289,6 +328,10 @@ std::vector<FitFinding> findings_of(const MachineModel& model,
     double depth = 0;
     const int box = model.keep_out.empty() ? -1 : box_at(model, course, n, depth);
     if (box >= 0) findings.add(Obstacle::kKeepOut, box, depth, at.pose->line);
+    const TipBeyond tip = model.tip_box.is_set ? tip_beyond(model, at) : TipBeyond{};
+    if (tip.by_mm > kTipBoxRounding) {
+      findings.add(Obstacle::kTipBox, tip.axis, tip.by_mm, at.pose->line);
+    }
   }
   return std::move(findings).in_order();
 }

@@ -16,8 +16,8 @@ namespace meridian::inspect {
 /// follow from pose to pose, windings included.
 struct Fit {
   /// The smallest distance of a joint or drive to an end of its travel, as a share of half that
-  /// travel: 1 where all stand in the middle, below 0 where one is beyond or a keep-out box is
-  /// entered, -1 and less where a pose is out of reach.
+  /// travel: 1 where all stand in the middle, below 0 where one is beyond, a keep-out box is
+  /// entered or the tip box left, -1 and less where a pose is out of reach.
   double margin = -2;
   /// The margin and a hundredth of the mean of all: what a search makes large, for a joint that the
   /// frame cannot help must not leave the others anywhere.
@@ -27,6 +27,7 @@ struct Fit {
   double estimated_time_s = 0;
   int joint = -1;          ///< that has the margin, by its place in limited.hpp; -1: none
   int box = -1;            ///< the keep-out box that is entered; -1: none
+  int tip_axis = -1;       ///< of the base, from 0, along which the tip leaves its box; -1: none
   std::uint32_t line = 0;  ///< where it is so
   int branch = 0;
   LimitedVector min{}, max{};  ///< every joint and drive over the program
@@ -40,14 +41,15 @@ enum class Obstacle : std::uint8_t {
   kOutOfReach,  ///< no joints reach the pose
   kTravelMin,   ///< a joint is below its travel
   kTravelMax,   ///< a joint is above its travel
-  kKeepOut      ///< the joints are in a keep-out box, or pass one
+  kKeepOut,     ///< the joints are in a keep-out box, or pass one
+  kTipBox       ///< the tip is outside of its box
 };
 
 /// One obstacle with the lines that it is in the way of.
 struct FitFinding {
   Obstacle obstacle = Obstacle::kOutOfReach;
-  int number = 0;       ///< of the joint in limited.hpp, or of the box
-  double farthest = 0;  ///< travel: by how much the joint is beyond it, in its unit
+  int number = 0;       ///< of the joint in limited.hpp, of the box, or of the axis of the base
+  double farthest = 0;  ///< by how much the joint is beyond its travel, in its unit, or the tip, mm
   std::uint32_t farthest_line = 0;
   std::uint32_t first_line = 0, last_line = 0;
   int lines = 0;  ///< how many of the program

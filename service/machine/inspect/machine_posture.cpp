@@ -66,14 +66,14 @@ struct Axis {
   return out;
 }
 
-/// The solution inside travel that asks least of the joint that it asks most of.
+/// The solution inside travel, and at no box, that asks least of the joint that it asks most of.
 [[nodiscard]] std::optional<JointVector> nearest_solution(const MachineModel& model,
                                                           const ToolPose& pose,
                                                           const JointVector& from) {
   std::optional<JointVector> nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const PoseSolution& solution : solve_all(model, pose)) {
-    if (solution.outside >= 0) continue;
+    if (!solution.is_possible()) continue;
     double farthest = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
       const double by = std::abs(solution.q[i] - from[i]) / model.joints[i].limits.velocity;

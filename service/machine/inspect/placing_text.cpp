@@ -36,6 +36,10 @@ std::string finding_text(const FitFinding& finding, const MachineModel& model) {
       return "the pose is out of reach " + lines;
     case Obstacle::kKeepOut:
       return printed("keep-out box %s is entered ", model.keep_out.name_of(finding.number)) + lines;
+    case Obstacle::kTipBox:
+      return printed("the tip goes %.3f mm out of the tip box along %c ", finding.farthest,
+                     "XYZ"[finding.number]) +
+             lines;
     case Obstacle::kTravelMin:
     case Obstacle::kTravelMax:
       break;

@@ -56,6 +56,10 @@ ordered_json solution_json(const MachineModel& model, const PoseSolution& soluti
     const JointSpec& joint = limited_spec(model, solution.outside);
     out["outside"] = {{"joint", joint.name}, {"by", edge_value(joint, solution.beyond)}};
   }
+  if (solution.keep_out >= 0) out["keep_out"] = model.keep_out.name_of(solution.keep_out);
+  if (solution.tip_outside >= 0) {
+    out["tip_outside"] = std::string(1, "XYZ"[solution.tip_outside]);
+  }
   out["joints"] = joint_values(model, solution.q);
   add_stage(model, solution.q, out);
   return out;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/units.hpp"
 #include "service/text/printed.hpp"
 
@@ -41,6 +42,8 @@ PoseSolution looked_at(const MachineModel& model, int branch, const Solution<dou
     out.beyond =
         beyond_travel(limited_spec(model, out.outside), limited_value(model, out.q, out.outside));
   }
+  out.keep_out = keep_out_at(model.keep_out, out.q);
+  out.tip_outside = tip_axis_outside(model, model.tool_length_mm, out.q);
   return out;
 }
 

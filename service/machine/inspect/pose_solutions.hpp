@@ -17,10 +17,17 @@ struct PoseSolution {
   double measure = 0;       ///< distance from singularity, see meridian::measure()
   int outside = -1;         ///< first joint or drive of the stage beyond travel; -1: none
   double beyond = 0;        ///< by how much it is
+  int keep_out = -1;        ///< the keep-out box that it is inside of; -1: none
+  int tip_outside = -1;  ///< axis of the base, from 0, along which the tip leaves its box; -1: none
+
+  /// Whether a machine may stand there.
+  [[nodiscard]] bool is_possible() const noexcept {
+    return outside < 0 && keep_out < 0 && tip_outside < 0;
+  }
 };
 
-/// Every branch that puts the tool at `pose`, each once, those beyond travel too. Empty where the
-/// pose is out of reach. Frame: W. Proof: tests/unit/inspect/pose_solutions_test.cpp.
+/// Every branch that puts the tool at `pose`, each once, those beyond travel or at a box too. Empty
+/// where the pose is out of reach. Frame: W. Proof: tests/unit/inspect/pose_solutions_test.cpp.
 [[nodiscard]] std::vector<PoseSolution> solve_all(const MachineModel& model, const ToolPose& pose);
 
 /// The whole turns by which rotary joint `joint` may leave `q` and stay inside travel.
@@ -35,6 +42,8 @@ struct Windings {
 /// Report on the solutions of a pose: joints, drives, other windings, measure, what is beyond.
 [[nodiscard]] std::string to_text(const std::vector<PoseSolution>& solutions,
                                   const MachineModel& model);
+/// "; INSIDE THE KEEP-OUT BOX vice", "; TIP OUTSIDE ITS BOX along X"; empty where it is at no box.
+[[nodiscard]] std::string boxes_text(const PoseSolution& solution, const MachineModel& model);
 /// Report on tip and axis of given joints.
 [[nodiscard]] std::string joints_text(const MachineModel& model, const JointVector& q);
 

@@ -74,9 +74,16 @@ ToolPose pose_of_row(const TableRow& row) {
   return {{v[0], v[1], v[2]}, Vector3(v[3], v[4], v[5]).normalized()};
 }
 
+/// What of a solution is outside of travel, the keep-out box that it is in, or "tip X".
+std::string hindrance_of(const MachineModel& model, const PoseSolution& one) {
+  if (one.outside < 0 && one.keep_out >= 0) return model.keep_out.name_of(one.keep_out);
+  if (one.outside < 0 && one.tip_outside >= 0) return printed("tip %c", "XYZ"[one.tip_outside]);
+  return outside_name(model, one.outside);
+}
+
 bool is_reached(const std::vector<PoseSolution>& solutions) {
   return std::any_of(solutions.begin(), solutions.end(),
-                     [](const PoseSolution& one) { return one.outside < 0; });
+                     [](const PoseSolution& one) { return one.is_possible(); });
 }
 
 JointVector joints_of_row(const MachineModel& model, const TableRow& row) {
@@ -121,7 +128,7 @@ TableResult solve_table(const MachineModel& model, const std::vector<TableRow>& 
       cells.push_back(printed("%d", windings_of(model, one.q)));
       cells.push_back(printed("%.6g", one.measure));
       cells.emplace_back(one.is_at_pole ? "yes" : "no");
-      cells.push_back(outside_name(model, one.outside));
+      cells.push_back(hindrance_of(model, one));
       out.text += csv_row(cells);
     }
   }

@@ -43,6 +43,17 @@ std::string values_text(const MachineModel& model, const JointVector& q) {
 
 }  // namespace
 
+std::string boxes_text(const PoseSolution& solution, const MachineModel& model) {
+  std::string out;
+  if (solution.keep_out >= 0) {
+    out += printed("; INSIDE THE KEEP-OUT BOX %s", model.keep_out.name_of(solution.keep_out));
+  }
+  if (solution.tip_outside >= 0) {
+    out += printed("; TIP OUTSIDE ITS BOX along %c", "XYZ"[solution.tip_outside]);
+  }
+  return out;
+}
+
 std::string to_text(const std::vector<PoseSolution>& solutions, const MachineModel& model) {
   std::string out;
   for (const PoseSolution& solution : solutions) {
@@ -54,7 +65,7 @@ std::string to_text(const std::vector<PoseSolution>& solutions, const MachineMod
                      joint.is_rotary ? units::deg_from_rad(solution.beyond) : solution.beyond,
                      joint.is_rotary ? "deg" : "mm");
     }
-    out += "\n";
+    out += boxes_text(solution, model) + "\n";
     out += values_text(model, solution.q);
   }
   return out;

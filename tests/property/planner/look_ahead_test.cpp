@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "property/planner/block_stream.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
@@ -76,6 +77,33 @@ TEST(LookAhead, TakesTheBranchOnWhichNoJointLeavesItsTravelLater) {
         const PlanResult last = plan_with_look(limited, blocks, begin, transition);
         EXPECT_EQ(last.status, PlanStatus::kOk)
             << "joint " << joint << " branch " << branch << " block " << last.reject.sequence;
+      }
+    }
+  }
+}
+
+TEST(LookAhead, TakesTheBranchThatPassesNoBoxLater) {
+  const MachineModel model = lai_machine();
+  const std::vector<ClBlock> blocks{leaning(0.17, 0, {5, 0, 0}), leaning(0.17, 0, {100, 0, 0}),
+                                    leaning(0.17, 0, {250, 0, 0})};
+  for (int branch = 0; branch < branch_count(model); ++branch) {
+    const JointVector begin = solve_block(model, blocks[0], branch);
+    const JointVector at = solve_block(model, blocks[2], branch);
+    const double tip = tip_over_base(model, model.tool_length_mm, at)[0];
+    MachineModel kept_out = model, tipped = model;
+    KeepOutBox box;
+    box.joints = 0b001;
+    box.min[0] = at[0] - 20;
+    box.max[0] = at[0] + 20;
+    ASSERT_TRUE(kept_out.keep_out.add(box));
+    tipped.tip_box = {true, {-2e3, -2e3, -2e3}, {2e3, 2e3, 2e3}};
+    (tip > 0 ? tipped.tip_box.max : tipped.tip_box.min)[0] = tip > 0 ? tip - 50 : tip + 50;
+    for (const MachineModel& boxed : {kept_out, tipped}) {
+      for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+        const PlanResult last = plan_with_look(boxed, blocks, begin, transition);
+        EXPECT_EQ(last.status, PlanStatus::kOk)
+            << "branch " << branch << " block " << last.reject.sequence << " tip box "
+            << boxed.tip_box.is_set;
       }
     }
   }

@@ -69,6 +69,25 @@ TEST(Fit, IsRefusedByAKeepOutBoxBetweenTwoPoses) {
   EXPECT_EQ(findings[0].first_line, 2U);
 }
 
+TEST(Fit, SeesWhereTheTipLeavesItsBox) {
+  MachineModel model = config::load_machine(test::shipped_file("fork-ca"));
+  const auto poses = upright({{0, 0, 0}, {100, 0, 0}}, model);
+  ASSERT_GT(fit_of(model, poses).margin, 0);
+  model.tip_box = {true, {-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}};
+  EXPECT_EQ(fit_of(model, poses).tip_axis, -1);
+  model.tip_box.max[0] = model.frame_origin_mm[0] + 60;
+  const Fit fit = fit_of(model, poses);
+  EXPECT_EQ(fit.tip_axis, 0);
+  EXPECT_LT(fit.margin, 0);
+  const auto findings = findings_of(model, poses, fit.branch);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].obstacle, Obstacle::kTipBox);
+  EXPECT_NEAR(findings[0].farthest, 40, 1e-9);
+  EXPECT_EQ(findings[0].first_line, 2U);
+  const Placing found = find_placing(model, poses, widest_box(model, poses));
+  EXPECT_GT(found.fit.margin, 0) << to_text(found, model, poses);
+}
+
 TEST(Fit, NamesEveryJointThatIsBeyondItsTravelWithItsLines) {
   const MachineModel model = trunnion_of_fit();
   const auto poses = upright({{0, 0, 0}, {1000, 0, 0}, {1100, 2000, 0}, {0, 0, 0}}, model);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"
 
@@ -51,6 +52,31 @@ TEST_P(PoseOfEveryShipped, IsGivenBackByEveryBranchAndEveryWinding) {
 
 INSTANTIATE_TEST_SUITE_P(Machine, PoseOfEveryShipped, testing::ValuesIn(test::shipped_machines()),
                          test::test_name);
+
+TEST(PoseSolutions, SayWhichStandAtABox) {
+  MachineModel model = config::load_machine(test::shipped_file("lai"));
+  const ToolPose pose{{100, 0, 50}, Vector3(0.3, 0, 1).normalized()};
+  const auto open = solve_all(model, pose);
+  ASSERT_EQ(open.size(), 2U);
+  EXPECT_TRUE(open[0].is_possible() && open[1].is_possible());
+  KeepOutBox box;
+  box.name = {"vice"};
+  box.joints = 0b001;
+  box.min[0] = open[0].q[0] - 1;
+  box.max[0] = open[0].q[0] + 1;
+  ASSERT_TRUE(model.keep_out.add(box));
+  model.tip_box = {true, {-1e3, -1e3, -1e3}, {1e3, 1e3, 1e3}};
+  const double tip = tip_over_base(model, model.tool_length_mm, open[1].q)[0];
+  (tip > 0 ? model.tip_box.max : model.tip_box.min)[0] = 0;
+  const auto boxed = solve_all(model, pose);
+  ASSERT_EQ(boxed.size(), 2U);
+  EXPECT_FALSE(boxed[0].is_possible() || boxed[1].is_possible());
+  const std::string text = to_text(boxed, model), json = to_json(boxed, model, pose);
+  EXPECT_NE(text.find("INSIDE THE KEEP-OUT BOX vice\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("TIP OUTSIDE ITS BOX along X\n"), std::string::npos) << text;
+  EXPECT_NE(json.find("\"keep_out\": \"vice\""), std::string::npos) << json;
+  EXPECT_NE(json.find("\"tip_outside\": \"X\""), std::string::npos) << json;
+}
 
 TEST(PoseSolutions, CountTheTurnsThatTravelHasOnEitherSide) {
   MachineModel model = config::load_machine(test::shipped_file("trunnion-ac"));

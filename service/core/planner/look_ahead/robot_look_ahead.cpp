@@ -7,6 +7,7 @@
 
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
@@ -101,7 +102,9 @@ class Course {
   }
   [[nodiscard]] bool is_inside(const Solution<double>& to) const noexcept {
     return to.status != SolveStatus::kUnreachable &&
-           first_joint_outside_travel(model_, to.q, kTravelMargin) < 0;
+           first_joint_outside_travel(model_, to.q, kTravelMargin) < 0 &&
+           keep_out_at(model_.keep_out, to.q) < 0 &&
+           tip_axis_outside(model_, at_.tool_length_mm, to.q) < 0;
   }
   [[nodiscard]] double turn_to(const JointVector& q) const noexcept {
     double most = 0;

@@ -9,6 +9,7 @@
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
@@ -126,7 +127,10 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
   JointVector all = joints_;
   all[free_] += way.free - begin_;
   const int joint = first_outside(all);
-  if (joint < 0) return;
+  if (joint < 0) {
+    if (has_boxes(model_) && is_tool_known_ && is_at_box(all)) way.end = AheadEnd::kDoubt;
+    return;
+  }
   way.end = joint == free_ && may_unwind(model_) ? AheadEnd::kUnwinds : AheadEnd::kDoubt;
   if (way.end == AheadEnd::kUnwinds) return;
   const double value = limited_value(model_, all, joint);
@@ -135,6 +139,11 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
   if (!is_branch_certain_ || !(beyond > spread_of(joint, pose))) return;
   way.end = AheadEnd::kLost;
   way.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
+}
+
+bool AheadFollower::is_at_box(const JointVector& all) const noexcept {
+  return keep_out_at(model_.keep_out, all) >= 0 ||
+         tip_axis_outside(model_, tool_length_mm_, all) >= 0;
 }
 
 int AheadFollower::first_outside(const JointVector& all) const noexcept {

@@ -11,7 +11,7 @@ namespace meridian {
 enum class AheadEnd : std::uint8_t {
   kNone,     ///< all is inside travel
   kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it or
-             ///< on a branch that is not certain
+             ///< on a branch that is not certain, or is at a box
   kUnwinds,  ///< the redundant joint runs out of travel and may be turned back there
   kLost      ///< something leaves its travel for certain: the program cannot be cut this way
 };
@@ -19,8 +19,8 @@ enum class AheadEnd : std::uint8_t {
 /// A branch and winding at the pose where a way starts, and how far it leads.
 struct AheadWay {
   int branch = 0;
-  double free = 0;    ///< the redundant joint at the start, rad
-  int carries = 0;    ///< blocks after which all is still inside travel, of those looked at
+  double free = 0;  ///< the redundant joint at the start, rad
+  int carries = 0;  ///< blocks after which all is inside travel and past boxes, of those looked at
   double time_s = 0;  ///< of them: by the feed, or by the joint that is slowest
   AheadEnd end = AheadEnd::kNone;
   BlockReject lost{};  ///< kLost: the block, the joint and where it comes to
