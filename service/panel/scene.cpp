@@ -62,6 +62,26 @@ using nlohmann::json;
   return {{"rotation", rotation}, {"origin", to_json(model.frame_origin_mm)}};
 }
 
+/// The tip box in force; null where there is none.
+[[nodiscard]] json tip_box_to_json(const TipBox& box) {
+  if (!box.is_set) return nullptr;
+  return {{"min", box.min}, {"max", box.max}};
+}
+
+/// The keep-out boxes in force, each with the joints that it names.
+[[nodiscard]] json keep_out_to_json(const KeepOut& keep_out) {
+  json out = json::array();
+  for (const KeepOutBox& box : keep_out.boxes()) {
+    json joints = json::array();
+    for (std::size_t i = 0; i < box.min.size(); ++i) {
+      if (!box.has(static_cast<int>(i))) continue;
+      joints.push_back({{"joint", i}, {"min", box.min[i]}, {"max", box.max[i]}});
+    }
+    out.push_back({{"name", box.name.data()}, {"joints", joints}});
+  }
+  return out;
+}
+
 [[nodiscard]] const char* family_name(MachineFamily family) {
   switch (family) {
     case MachineFamily::kChain:
@@ -79,6 +99,7 @@ using nlohmann::json;
 std::string describe_scene(const MachineModel& model, const ToolTable& tools,
                            const SoftLimits& soft_limits) {
   const scene::LinkTree tree = scene::link_tree(model);
+  const SoftLimits in_force = travel_under(soft_limits, model);
   json joints = json::array(), table = json::array();
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
     const SoftLimits::Row& row = soft_limits.rows()[i];
@@ -99,6 +120,8 @@ std::string describe_scene(const MachineModel& model, const ToolTable& tools,
                         {"axis", to_json(tree.axis)},
                         {"frame", frame_to_json(model)},
                         {"stage", stage_to_json(model)},
+                        {"tip_box", tip_box_to_json(in_force.tip_box())},
+                        {"keep_out", keep_out_to_json(in_force.keep_out())},
                         {"redundant_joint", redundant_joint(model)},
                         {"pole", to_json(pole_direction(model))},
                         {"tool_length", model.tool_length_mm},

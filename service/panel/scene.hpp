@@ -18,7 +18,7 @@ namespace meridian::panel {
 ///     X_MT = exp(head 1) ... exp(head n) home_T      X_MW = exp(table 1) ... exp(table n) home_W
 ///
 /// and the tip in W is forward() of the kinematics. Bodies are drawn by the travel of `model`;
-/// `soft_limits` stand beside it. Units: mm, rad, s. Off the real-time path.
+/// `soft_limits` stand beside it, and the boxes of both. Units: mm, rad, s. Off the real-time path.
 /// Source: docs/kinematics.md, chapters 2, 4 and 5.
 /// Proof: tests/panel/scene_test.js, tests/panel/scene_limits_test.cpp.
 [[nodiscard]] std::string describe_scene(const MachineModel& model, const ToolTable& tools,

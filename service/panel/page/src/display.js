@@ -21,17 +21,33 @@ export class Display {
   }
 
   buildJoints() {
-    this.rows = this.scene.joints.map((joint) => {
+    this.rows = this.scene.joints.map((joint, i) => {
       const mark = element("i", { class: "mark" });
       const bar = element("div", { class: joint.endless ? "travel endless" : "travel", role: "presentation" }, mark);
       const value = element("output", { class: "value" });
       const shares = kOrders.map((order) => element("i", { title: `share of the ${order} limit` }));
+      const boxes = this.boxesOf(i, joint);
+      bar.prepend(...boxes.map((box) => box.strip));
       const row = element("div", { class: "joint" },
         element("b", {}, joint.name), value, element("span", { class: "unit" }, unit(joint)), bar,
         element("div", { class: "shares" }, ...shares.map((share) => element("div", {}, share))));
-      return { row, mark, value, shares, peaks: [0, 0, 0] };
+      return { row, mark, value, shares, boxes, peaks: [0, 0, 0] };
     });
     byId("joints").replaceChildren(...this.rows.map((one) => one.row));
+  }
+
+  // Strips of a joint's bar, where keep-out boxes name it.
+  boxesOf(i, joint) {
+    const [low, high] = joint.soft_limits ?? joint.travel;
+    const place = (value) => 100 * Math.min(Math.max((value - low) / (high - low), 0), 1);
+    return this.scene.keep_out.flatMap((box) => {
+      const own = box.joints.find((one) => one.joint === i);
+      if (!own) return [];
+      const strip = element("i", { class: "keep-out", title: `keep-out box ${box.name}` });
+      strip.style.left = `${place(own.min)}%`;
+      strip.style.width = `${place(own.max) - place(own.min)}%`;
+      return [{ strip, others: box.joints.filter((one) => one.joint !== i) }];
+    });
   }
 
   setFrame(frame) {
@@ -94,6 +110,10 @@ export class Display {
       const at = Math.min(Math.max((turned - low) / (high - low), 0), 1);
       one.mark.style.left = `${100 * at}%`;
       one.row.classList.toggle("near-end", !joint.endless && (at < 0.03 || at > 0.97));
+      for (const { strip, others } of one.boxes) {
+        const isClosed = others.every(({ joint: k, min, max }) => frame.joints[k] > min && frame.joints[k] < max);
+        strip.classList.toggle("closed", isClosed);
+      }
       one.row.classList.toggle("limits", frame.limiting === joint.name);
       frame.shares[i].forEach((share, order) => {
         // Peaks stay for a moment, as an eye needs them.

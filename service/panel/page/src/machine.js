@@ -32,6 +32,7 @@ export class Machine {
     this.drawHead();
     this.stage = drawStage(this);
     this.drawTool();
+    if (scene.tip_box) this.root.add(this.solids.frame(scene.tip_box.min, scene.tip_box.max));
     this.setJoints(scene.joints.map((joint) => joint.home));
   }
 

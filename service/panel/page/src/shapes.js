@@ -21,6 +21,7 @@ export class Solids {
         color: colours[role], roughness: 0.55, metalness: role === "tool" ? 0.6 : 0.25 });
     }
     this.edge = new LineBasicMaterial({ color: colours.edge, transparent: true, opacity: 0.55 });
+    this.bound = new LineBasicMaterial({ color: colours.accent, transparent: true, opacity: 0.7 });
   }
 
   solid(geometry, role) {
@@ -35,6 +36,14 @@ export class Solids {
     const body = this.solid(new BoxGeometry(...size), role);
     body.position.copy(centre);
     return body;
+  }
+
+  // The edges alone of a box from `min` to `max`.
+  frame(min, max) {
+    const size = max.map((end, i) => end - min[i]);
+    const edges = new LineSegments(new EdgesGeometry(new BoxGeometry(...size)), this.bound);
+    edges.position.set(...min.map((end, i) => end + size[i] / 2));
+    return edges;
   }
 
   // A cylinder about `centre` along `direction`.
