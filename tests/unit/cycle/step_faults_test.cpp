@@ -243,6 +243,21 @@ TEST(StepFaults, ASetpointThatLeavesTravelIsNeverSent) {
   }
 }
 
+TEST(StepFaults, ASetpointThatTakesTheTipOutOfItsBoxIsNeverSent) {
+  Program p;  // its plan knows no box
+  const auto tip_of = [&p](const JointVector& joints) {
+    return tip_over_base(p.machine, p.machine.tool_length_mm, joints);
+  };
+  const Array3 tip = tip_of(p.plan.joints());
+  p.world.machine.tip_box = {true, {tip[0] - 50, -1e3, -1e3}, {tip[0] + 50, 1e3, 1e3}};
+  start_long_cut(p);
+  ASSERT_TRUE(p.world.run_until(State::kFault, 3));
+  EXPECT_EQ(p.world.state.alarm, Alarm::kTipBox);
+  for (const CycleRecord& record : p.world.records) {
+    ASSERT_EQ(axis_outside(p.world.machine.tip_box, tip_of(record.joints), 2 * kGuardTip), -1);
+  }
+}
+
 TEST(StepFaults, APathThatCannotBeEvaluatedEndsOnTheLastCourse) {
   Program p;
   PathPiece path;
