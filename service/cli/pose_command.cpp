@@ -51,9 +51,13 @@ int show_joints(const MachineModel& model, const std::vector<double>& at_edge, b
     q[i] = model.joints[i].is_rotary ? units::rad_from_deg(at_edge[i]) : at_edge[i];
   }
   std::cout << (is_json ? inspect::joints_json(model, q) : inspect::joints_text(model, q));
-  const int outside = first_joint_outside_travel(model, q, 1e-9);
-  if (outside < 0) return kFine;
-  std::cerr << "OUTSIDE TRAVEL: " << limited_spec(model, outside).name << "\n";
+  const inspect::PoseSolution here = inspect::solution_of_joints(model, q);
+  if (here.is_possible()) return kFine;
+  if (here.outside >= 0) {
+    std::cerr << "OUTSIDE TRAVEL: " << limited_spec(model, here.outside).name << "\n";
+  }
+  const std::string boxes = inspect::boxes_text(here, model);
+  if (!boxes.empty()) std::cerr << boxes.substr(2) << "\n";
   return kVerdictNo;
 }
 

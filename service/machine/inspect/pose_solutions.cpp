@@ -65,6 +65,10 @@ std::vector<PoseSolution> solve_all(const MachineModel& model, const ToolPose& p
   return out;
 }
 
+PoseSolution solution_of_joints(const MachineModel& model, const JointVector& q) {
+  return looked_at(model, 0, {q, SolveStatus::kOk});
+}
+
 Windings windings_at(const MachineModel& model, const JointVector& q, int joint) {
   const JointSpec& spec = model.joints[joint];
   if (!spec.is_rotary || spec.is_endless) return {};

@@ -30,6 +30,9 @@ struct PoseSolution {
 /// where the pose is out of reach. Frame: W. Proof: tests/unit/inspect/pose_solutions_test.cpp.
 [[nodiscard]] std::vector<PoseSolution> solve_all(const MachineModel& model, const ToolPose& pose);
 
+/// What given joints are, as one of solve_all(); their branch is not looked for.
+[[nodiscard]] PoseSolution solution_of_joints(const MachineModel& model, const JointVector& q);
+
 /// The whole turns by which rotary joint `joint` may leave `q` and stay inside travel.
 struct Windings {
   int down = 0, up = 0;  ///< 0 for a linear or an endless joint

@@ -95,8 +95,6 @@ JointVector joints_of_row(const MachineModel& model, const TableRow& row) {
   return q;
 }
 
-constexpr double kTravelSlack = 1e-9;
-
 }  // namespace
 
 std::vector<std::string> pose_columns() { return {"x_mm", "y_mm", "z_mm", "i", "j", "k"}; }
@@ -144,13 +142,13 @@ TableResult pose_table(const MachineModel& model, const std::vector<TableRow>& j
   for (const TableRow& row : joints) {
     const JointVector q = joints_of_row(model, row);
     const ToolPose pose = forward(model, model.tool_length_mm, q);
-    const int outside = first_joint_outside_travel(model, q, kTravelSlack);
-    if (outside >= 0) ++out.unreached;
+    const PoseSolution here = solution_of_joints(model, q);
+    if (!here.is_possible()) ++out.unreached;
     std::vector<std::string> cells = {printed("%u", row.line)};
     for (int k = 0; k < 3; ++k) cells.push_back(printed("%.9f", pose.tip[k]));
     for (int k = 0; k < 3; ++k) cells.push_back(printed("%.12f", pose.axis[k]));
     cells.push_back(printed("%.6g", measure(model, q)));
-    cells.push_back(outside_name(model, outside));
+    cells.push_back(hindrance_of(model, here));
     out.text += csv_row(cells);
   }
   return out;
@@ -176,7 +174,7 @@ TableResult pose_table_json(const MachineModel& model, const std::vector<TableRo
   ordered_json all = ordered_json::array();
   for (const TableRow& row : joints) {
     const JointVector q = joints_of_row(model, row);
-    if (first_joint_outside_travel(model, q, kTravelSlack) >= 0) ++out.unreached;
+    if (!solution_of_joints(model, q).is_possible()) ++out.unreached;
     ordered_json one = ordered_json::parse(joints_json(model, q));
     one["line"] = row.line;
     all.push_back(std::move(one));

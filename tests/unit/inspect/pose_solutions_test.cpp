@@ -76,6 +76,8 @@ TEST(PoseSolutions, SayWhichStandAtABox) {
   EXPECT_NE(text.find("TIP OUTSIDE ITS BOX along X\n"), std::string::npos) << text;
   EXPECT_NE(json.find("\"keep_out\": \"vice\""), std::string::npos) << json;
   EXPECT_NE(json.find("\"tip_outside\": \"X\""), std::string::npos) << json;
+  EXPECT_EQ(solution_of_joints(model, boxed[0].q).keep_out, 0);
+  EXPECT_EQ(solution_of_joints(model, boxed[1].q).tip_outside, 0);
 }
 
 TEST(PoseSolutions, CountTheTurnsThatTravelHasOnEitherSide) {
