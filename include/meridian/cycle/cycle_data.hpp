@@ -52,26 +52,34 @@ struct CycleRecord {
   std::int32_t computation_ns = 0;  ///< time that the cycle before this one took
 };
 
+/// What the drives report of a touch probe.
+enum class ProbeInput : std::uint8_t {
+  kNone,    ///< none is connected
+  kFree,    ///< it touches nothing
+  kContact  ///< its stylus is deflected
+};
+
 /// In the place of a joint: none.
 inline constexpr std::uint8_t kNoJoint = 255;
 
 /// The newest feedback of the drives, as the cycle sees it.
 struct Feedback {
-  std::int64_t arrival_ns = 0;          ///< receiver's own clock; 0: never
-  std::uint64_t cycle_seen = 0;         ///< newest setpoint cycle that the drives took
-  JointVector position{};               ///< drive coordinates in drive order
-  std::uint32_t joint_mask = 0;         ///< joints that report
-  std::uint32_t enabled_mask = 0;       ///< drives in operation enabled
-  std::uint32_t fault_mask = 0;         ///< drives in fault
-  std::uint32_t referenced_mask = 0;    ///< joints with a valid reference
-  bool emergency_stop = false;          ///< reported, and not taken back since
-  std::int64_t emergency_ns = 0;        ///< arrival of the newest report that says so; 0: none
-  std::uint32_t homing_mask = 0;        ///< drives that are in homing mode, and of these
-  std::uint32_t still_mask = 0;         ///< those whose homing is over, interrupted or not begun
-  std::uint32_t homed_mask = 0;         ///< those that have attained their reference
-  std::uint32_t homing_error_mask = 0;  ///< those whose homing failed
-  std::uint32_t contested_mask = 0;     ///< joints that a second source reports too
-  std::uint32_t foreign_mask = 0;       ///< joints whose drives obey another service
+  std::int64_t arrival_ns = 0;           ///< receiver's own clock; 0: never
+  std::uint64_t cycle_seen = 0;          ///< newest setpoint cycle that the drives took
+  JointVector position{};                ///< drive coordinates in drive order
+  std::uint32_t joint_mask = 0;          ///< joints that report
+  std::uint32_t enabled_mask = 0;        ///< drives in operation enabled
+  std::uint32_t fault_mask = 0;          ///< drives in fault
+  std::uint32_t referenced_mask = 0;     ///< joints with a valid reference
+  bool emergency_stop = false;           ///< reported, and not taken back since
+  ProbeInput probe = ProbeInput::kNone;  ///< kContact as soon as one group says so
+  std::int64_t emergency_ns = 0;         ///< arrival of the newest report that says so; 0: none
+  std::uint32_t homing_mask = 0;         ///< drives that are in homing mode, and of these
+  std::uint32_t still_mask = 0;          ///< those whose homing is over, interrupted or not begun
+  std::uint32_t homed_mask = 0;          ///< those that have attained their reference
+  std::uint32_t homing_error_mask = 0;   ///< those whose homing failed
+  std::uint32_t contested_mask = 0;      ///< joints that a second source reports too
+  std::uint32_t foreign_mask = 0;        ///< joints whose drives obey another service
   std::uint8_t oldest_joint = 0;   ///< lowest of the group that `arrival_ns` is of; kNoJoint: it
                                    ///< has none, but the stop input
   std::uint8_t deafest_joint = 0;  ///< lowest of the group that `cycle_seen` is of
@@ -93,7 +101,7 @@ struct JogOrder {
 
 /// An operator's word on its way to the cycle. `request` grows in the order in which words came,
 /// and comes back in the reply event. What `argument` says hangs on the verb; of `enable` and
-/// `start` 1: for a dry run alone.
+/// `start` 1: for a dry run alone; of `start` 2: a probing move.
 struct Command {
   std::uint64_t request = 0;
   Verb verb = Verb::kHold;
@@ -119,6 +127,10 @@ enum class EventCode : std::uint16_t {
   kJointsHomed,     ///< a: mask of the joints that have their reference now
   kPlanLooked,      ///< of the planner: branch and winding were chosen over a blocks, the first, or
                     ///< those from block b on; x: 1 if the stream stalled then
+  kContactJoint,  ///< a: joint, b: 0 when the probe reported contact, 1 in the report before, when
+                  ///< it was free; x: where the joint was by its feedback
+  kContactFound,  ///< the probing move has its contact, behind the joints; a: periods between the
+                  ///< two reports
 };
 
 /// Why the cycle took the machine to FaultStop, or refused to send a setpoint.
@@ -144,6 +156,9 @@ enum class Alarm : std::uint8_t {
   kKeepOut,           ///< guard: a setpoint entered a keep-out box; the value is its number from 0
   kTipBox,            ///< guard: a setpoint took the tip out of its box; the joint is the axis of
                       ///< the base, 0 X, 1 Y, 2 Z, the value is where, mm
+  kNoContact,         ///< a probing move came to its end without contact (Ready, not FaultStop)
+  kContact,           ///< the probe touched something, and the motion was no probing move
+  kProbeLost,         ///< the probe is connected no more, during a probing move
 };
 
 /// Why a verb was refused.
@@ -167,6 +182,8 @@ enum class Refusal : std::uint8_t {
   kDrivesTaken,       ///< the drives obey another service
   kDrivesAstray,      ///< drives are on or move although the machine has them off
   kNotJournalled,     ///< the set-up could not be written to where it survives the service
+  kNoProbe,           ///< the drives report no probe that is connected
+  kProbeContact,      ///< the probe is in contact before the move begins
 };
 
 /// Leaves the cycle as numbers and becomes words in service/recording/telemetry.

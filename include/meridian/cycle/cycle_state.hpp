@@ -161,6 +161,23 @@ struct DriveWatch {
   JointVector moved{};
 };
 
+/// A program that was started to probe.
+enum class ProbeState : std::uint8_t {
+  kOff,      ///< none
+  kSeeking,  ///< it moves until the probe reports contact, or is held
+  kFound     ///< it comes to rest behind its contact
+};
+
+/// The probe, as the cycle follows it (cycle/probing.hpp).
+struct Probing {
+  ProbeState state = ProbeState::kOff;
+  double free_time = 0;          ///< s since the probe touched anything, while drives were on
+  JointVector free_joints{};     ///< kSeeking: feedback in the newest report without contact
+  std::uint64_t free_cycle = 0;  ///< the cycle that saw it
+  std::uint64_t free_seen = 0;   ///< Feedback::cycle_seen then
+  std::int64_t free_arrival_ns = 0;
+};
+
 /// What the action peer said about the action that the cycle waits for.
 enum class ActionState : std::uint8_t { kNotReported, kWaiting, kDone, kRefused };
 
@@ -196,6 +213,7 @@ struct CycleState {
   Jogging jogging;
   Homing homing;
   DriveWatch watch;
+  Probing probing;
 
   JointVector joints{};                            ///< last commanded
   JointVector velocity{};                          ///< its time derivative

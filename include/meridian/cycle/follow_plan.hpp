@@ -5,6 +5,7 @@
 
 #include "meridian/cycle/cycle_state.hpp"
 #include "meridian/cycle/on_path.hpp"
+#include "meridian/cycle/probing.hpp"
 #include "meridian/cycle/single_block.hpp"
 #include "meridian/cycle/state_table.hpp"
 
@@ -97,6 +98,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
       return;
     case TimeKind::kEnd:
       report_block_done(c);
+      end_probing(c);
       tell(c, EventCode::kProgramEnd, piece.sequence);
       c.reader.advance();
       c.state.piece_time = 0;

@@ -11,6 +11,7 @@
 #include "meridian/cycle/homing.hpp"
 #include "meridian/cycle/jogging.hpp"
 #include "meridian/cycle/joint_masks.hpp"
+#include "meridian/cycle/probing.hpp"
 #include "meridian/cycle/state_table.hpp"
 #include "meridian/cycle/stop_motion.hpp"
 #include "meridian/cycle/supervise.hpp"
@@ -21,6 +22,7 @@ namespace meridian {
 /// At rest: everything planned is void, and all that travels later carries the next epoch.
 inline void drop_program(Cycle& c) noexcept {
   c.state.has_block = false;
+  c.state.probing.state = ProbeState::kOff;
   c.state.single_block.is_braking = c.state.single_block.is_behind = false;
   c.state.piece_time = 0;
   c.state.program_time = 0;
@@ -86,10 +88,29 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
   return argument == 1 && is_drive_enabled(c) ? Refusal::kDriveEnabled : Refusal::kNone;
 }
 
-/// Why a word that may be said for a dry run alone is refused, whatever the table says: nobody who
-/// means a dry run is told to go on towards a cut.
+/// Why a program that goes on with `command` may not seek contact now: it would begin with it, or
+/// nobody would report it.
+[[nodiscard]] inline Refusal condition_of_probe(const Cycle& c) noexcept {
+  if (c.drives.probe == ProbeInput::kNone) return Refusal::kNoProbe;
+  return c.drives.probe == ProbeInput::kContact ? Refusal::kProbeContact : Refusal::kNone;
+}
+
+/// Why a start as a probing move is refused: only a program that is loaded begins as one, and one
+/// that is under way is no other.
+[[nodiscard]] inline Refusal condition_of_probing_start(const Cycle& c) noexcept {
+  if (c.state.is_dry_run) return Refusal::kDryRun;
+  if (c.state.probing.state == ProbeState::kSeeking) return Refusal::kNone;
+  const VerbEffect effect = effect_of(c.state.state, Verb::kStart);
+  if (effect.effect == Effect::kRefused) return effect.refusal;
+  return c.state.state == State::kLoaded ? condition_of_probe(c) : Refusal::kWrongState;
+}
+
+/// Why a word that may be said for a dry run or a probing move alone is refused, whatever the table
+/// says: nobody who means a dry run is told to go on towards a cut.
 [[nodiscard]] inline Refusal condition_of_kind(const Cycle& c, const Command& command) noexcept {
   if (!may_be_dry(command.verb) || command.argument == 0) return Refusal::kNone;
+  const bool is_probing = command.verb == Verb::kStart && command.argument == kStartProbing;
+  if (is_probing) return condition_of_probing_start(c);
   if (command.argument != 1) return Refusal::kOutOfRange;
   return c.state.is_dry_run ? Refusal::kNone : Refusal::kNotDryRun;
 }
@@ -99,6 +120,11 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
 [[nodiscard]] inline Refusal take_up(Cycle& c, const Command& command) noexcept {
   const Feedback& f = c.drives;
   const std::uint32_t all = all_joints(c.machine);
+  const bool goes_on = command.verb == Verb::kStart || command.verb == Verb::kResume;
+  if (goes_on && c.state.probing.state == ProbeState::kSeeking) {
+    const Refusal refusal = condition_of_probe(c);
+    if (refusal != Refusal::kNone) return refusal;
+  }
   switch (command.verb) {
     case Verb::kEnable:
       return condition_of_enable(c);
@@ -173,6 +199,7 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
     case State::kApproaching:
       c.state.program_time = 0;
       c.state.single_block.next_block = 0;
+      begin_probing(c, command.argument == kStartProbing);
       report_block(c);
       break;
     case State::kHolding:

@@ -92,7 +92,7 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 19> kNames{"none",
+  constexpr std::array<const char*, 21> kNames{"none",
                                                "wrong state",
                                                "not referenced",
                                                "no program",
@@ -110,8 +110,10 @@ inline constexpr std::array<Row, kStateCount> kTable{{
                                                "no enabling device",
                                                "drives taken",
                                                "drives astray",
-                                               "not journalled"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kNotJournalled) + 1);
+                                               "not journalled",
+                                               "no probe",
+                                               "probe in contact"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kProbeContact) + 1);
   const auto i = static_cast<std::size_t>(refusal);
   return i < kNames.size() ? kNames[i] : "unknown";
 }
@@ -119,6 +121,11 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 /// Whether `verb` may be said for a dry run alone, by an argument of 1: it leads to motion.
 [[nodiscard]] constexpr bool may_be_dry(Verb verb) noexcept {
   return verb == Verb::kEnable || verb == Verb::kStart;
+}
+
+/// Whether `verb` is said for a dry run alone.
+[[nodiscard]] constexpr bool is_said_dry(Verb verb, double argument) noexcept {
+  return may_be_dry(verb) && argument == 1;
 }
 
 /// Whether `verb` changes the set-up.

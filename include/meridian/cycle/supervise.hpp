@@ -12,10 +12,11 @@
 #include "meridian/cycle/jogging.hpp"
 #include "meridian/cycle/joint_masks.hpp"
 #include "meridian/cycle/on_path.hpp"
+#include "meridian/cycle/probing.hpp"
 #include "meridian/cycle/state_table.hpp"
 #include "meridian/cycle/stop_motion.hpp"
 
-/// What makes the machine stop by itself: drives, feedback, emergency input, lost periods.
+/// What makes the machine stop by itself: drives, feedback, emergency input, probe, lost periods.
 /// RT: cycle.
 namespace meridian {
 
@@ -142,6 +143,21 @@ inline constexpr int kHearingSlack = 4;
   }
 }
 
+/// Looks at the probe: a contact that is sought stops the program as an abort does.
+[[gnu::noinline]] inline void check_probe(Cycle& c) noexcept {
+  switch (see_probe(c)) {
+    case ProbeNews::kNone:
+      return;
+    case ProbeNews::kFound:
+      if (!c.state.stop.is_active) begin_stop(c, StopKind::kHold);
+      return enter(c, State::kAborting);
+    case ProbeNews::kTouch:
+      return raise(c, Alarm::kContact);
+    case ProbeNews::kLost:
+      return raise(c, Alarm::kProbeLost);
+  }
+}
+
 /// Looks at drives and feedback while they are enabled.
 inline void check_drives(Cycle& c) noexcept {
   const Feedback& f = c.drives;
@@ -172,6 +188,9 @@ inline void check_drives(Cycle& c) noexcept {
   double error = 0;
   const int joint = first_joint_behind(c, error);
   if (joint >= 0) raise(c, Alarm::kFollowingError, joint, error);
+  const bool has_probe =
+      f.probe != ProbeInput::kNone || c.state.probing.state == ProbeState::kSeeking;
+  if (has_probe && c.state.state != State::kFaultStop) check_probe(c);
 }
 
 /// Finds the place of the path ahead that is nearest to `joints` (1 rad counts kAxisLength mm),

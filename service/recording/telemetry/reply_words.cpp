@@ -31,6 +31,7 @@ namespace {
   }
   const std::string value = fmt::format("{:.6g} is out of range: ", argument);
   if (is_switch(verb)) return value + "on or off";
+  if (verb == Verb::kStart) return value + "1 for a dry run alone, 2 for a probing move, else 0";
   if (may_be_dry(verb)) return value + "1 for a dry run alone, else 0";
   return value + "it takes no value";
 }
@@ -145,6 +146,12 @@ std::string describe(Verb verb, Refusal refusal, State state, double argument,
       break;
     case Refusal::kNotJournalled:
       why = "the set-up is kept nowhere; give the service a state_directory, or --state";
+      break;
+    case Refusal::kNoProbe:
+      why = "the drives report no probe that is connected; connect it, then repeat";
+      break;
+    case Refusal::kProbeContact:
+      why = "the probe is in contact; move it free, then repeat";
       break;
     case Refusal::kNoEnablingDevice:
       why = "an enabling device is required and none is pressed; press it, then repeat";

@@ -67,6 +67,7 @@ Weight weight_of(const Event& event) noexcept {
     case EventCode::kBlockStarted:
     case EventCode::kBlockDone:
     case EventCode::kActionAnswered:
+    case EventCode::kContactJoint:
       return Weight::kDetail;
     default:
       return Weight::kNews;
@@ -136,6 +137,13 @@ std::string describe(const Event& event, const MachineModel& model) {
                          100 * event.x);
     case EventCode::kPeriodsLost:
       return fmt::format("{} periods lost before cycle {}", event.a, event.cycle);
+    case EventCode::kContactJoint:
+      return fmt::format("{} {} was at {}", event.b == 0 ? "contact:" : "the report before:",
+                         joint_name(static_cast<int>(event.a), model),
+                         quantity(event.x, static_cast<int>(event.a), model));
+    case EventCode::kContactFound:
+      return fmt::format("the probe has contact, {} period{} after the report before", event.a,
+                         event.a == 1 ? "" : "s");
     case EventCode::kStopped:
       return fmt::format("came to rest in {:.3f} s on {:.4g} mm",
                          1e-9 * static_cast<double>(event.a), event.x);
@@ -214,6 +222,19 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
           "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; report "
           "this as a bug",
           "XYZ"[joint >= 0 && joint < 3 ? joint : 0], value);
+      break;
+    case Alarm::kNoContact:
+      text = "the probe found no contact within the distance; look where the workpiece is";
+      break;
+    case Alarm::kContact:
+      text =
+          "the probe touched something in a motion that was no probing move; reset, enable and jog "
+          "it free";
+      break;
+    case Alarm::kProbeLost:
+      text =
+          "the probe is connected no more; look at its plug, its battery and its receiver, then "
+          "reset";
       break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/cycle/probing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "unit/cycle/hand.hpp"
+#include "unit/cycle/program.hpp"
+
+namespace meridian {
+namespace {
+
+using test::alarm_of;
+using test::Hand;
+using test::kLimits;
+using test::Program;
+using test::refusal_of;
+
+/// A cut of 200 mm along x that is loaded, and a probe in the spindle.
+struct Probed : Program {
+  explicit Probed(ProbeInput probe = ProbeInput::kFree) {
+    say(probe);
+    plan.cut({200, 0, 0}, kLimits);
+    plan.barrier(TimeKind::kEnd);
+    EXPECT_TRUE(world.run_until(State::kLoaded, 1));
+  }
+  void say(ProbeInput probe) { world.in.feedback.probe = probe; }
+  void seek(double seconds) {
+    world.command(Verb::kStart, kStartProbing);
+    world.run_for(seconds);
+  }
+  void touch() {
+    say(ProbeInput::kContact);
+    world.run();
+  }
+  [[nodiscard]] double tip_x(const JointVector& joints) const {
+    return forward(machine, machine.tool_length_mm, joints).tip.x();
+  }
+  /// The joints that the contact was told with.
+  [[nodiscard]] JointVector reported(std::uint64_t is_before) const {
+    JointVector joints{};
+    for (const Event& event : world.events) {
+      const bool is_one = event.code == EventCode::kContactJoint && event.b == is_before;
+      if (is_one) joints[event.a] = event.x;
+    }
+    return joints;
+  }
+};
+
+TEST(Probing, IsRefusedWithoutAProbeInContactAndInADryRun) {
+  Probed none(ProbeInput::kNone);
+  none.seek(0.01);
+  EXPECT_EQ(none.world.now(), State::kLoaded);
+  EXPECT_EQ(refusal_of(none.world), Refusal::kNoProbe);
+  Probed touching(ProbeInput::kContact);
+  touching.seek(0.01);
+  EXPECT_EQ(touching.world.now(), State::kLoaded);
+  EXPECT_EQ(refusal_of(touching.world), Refusal::kProbeContact);
+  Program dry(State::kOff);
+  dry.world.in.feedback.probe = ProbeInput::kFree;
+  dry.world.run();
+  dry.world.command(Verb::kDryRun, 1);
+  dry.plan.set_epoch(dry.world.state.epoch);
+  dry.plan.cut({200, 0, 0}, kLimits);
+  dry.world.command(Verb::kEnable);
+  ASSERT_TRUE(dry.world.run_until(State::kReady, 1));
+  dry.world.command(Verb::kStart, kStartProbing);
+  EXPECT_EQ(refusal_of(dry.world), Refusal::kDryRun);
+}
+
+TEST(Probing, DoesNotBeginInTheMiddleOfAnotherProgram) {
+  Probed p;
+  p.run(0.2);
+  ASSERT_EQ(p.world.now(), State::kRunning);
+  p.world.command(Verb::kStart, kStartProbing);
+  EXPECT_EQ(refusal_of(p.world), Refusal::kWrongState);
+  EXPECT_EQ(p.world.state.probing.state, ProbeState::kOff);
+}
+
+TEST(Probing, LatchesTheFeedbackOfBothReportsAndStopsOnThePath) {
+  Probed p;
+  p.seek(0.4);
+  ASSERT_EQ(p.world.now(), State::kRunning);
+  const JointVector before = p.world.records[p.world.records.size() - 2].joints;
+  const JointVector at = p.world.records.back().joints;
+  p.touch();
+  EXPECT_EQ(p.world.now(), State::kAborting);
+  EXPECT_EQ(p.reported(0), at);
+  EXPECT_EQ(p.reported(1), before);
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 1);
+  EXPECT_EQ(p.world.last(EventCode::kContactFound).a, 1U);
+  ASSERT_TRUE(p.world.run_until(State::kReady, 2));
+  EXPECT_EQ(p.world.state.epoch, 2);
+  EXPECT_EQ(p.world.count(EventCode::kAlarm), 0);
+  EXPECT_EQ(p.world.count(EventCode::kProgramEnd), 0);
+  EXPECT_NEAR(p.tip_x(p.world.state.joints) - p.tip_x(at), p.world.last(EventCode::kStopped).x,
+              1e-6);
+  EXPECT_EQ(p.world.state.probing.state, ProbeState::kOff);
+}
+
+TEST(Probing, CountsThePeriodsBetweenTheReportsThatItSaw) {
+  Probed p;
+  p.seek(0.4);
+  p.say(ProbeInput::kContact);
+  p.world.run(2);  // two periods were lost, and with them two reports
+  EXPECT_EQ(p.world.last(EventCode::kContactFound).a, 3U);
+}
+
+TEST(Probing, WithoutContactEndsInReadyWithAnAlarmAndNoFault) {
+  Probed p;
+  p.seek(0);
+  ASSERT_TRUE(p.world.run_until(State::kReady, 10));
+  EXPECT_EQ(alarm_of(p.world), Alarm::kNoContact);
+  EXPECT_EQ(p.world.count(EventCode::kProgramEnd), 1);
+  EXPECT_EQ(p.world.state.alarm, Alarm::kNone);
+  EXPECT_EQ(p.world.state.probing.state, ProbeState::kOff);
+}
+
+TEST(Probing, ThatAnOperatorAbortsSaysNothingOfAContact) {
+  Probed p;
+  p.seek(0.4);
+  p.world.command(Verb::kAbort);
+  ASSERT_TRUE(p.world.run_until(State::kReady, 2));
+  EXPECT_EQ(p.world.count(EventCode::kAlarm), 0);
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 0);
+}
+
+TEST(Probing, FindsItsContactWhileItIsHeldBackToo) {
+  Probed p;
+  p.seek(0.4);
+  p.world.command(Verb::kHold);
+  ASSERT_EQ(p.world.now(), State::kHolding);
+  p.touch();
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 1);
+  EXPECT_EQ(p.world.now(), State::kAborting);
+  ASSERT_TRUE(p.world.run_until(State::kReady, 2));
+  EXPECT_EQ(p.world.count(EventCode::kAlarm), 0);
+}
+
+TEST(Probing, IsNotResumedInContactAndFindsItBehindTheResume) {
+  Probed p;
+  p.seek(0.4);
+  p.world.command(Verb::kHold);
+  ASSERT_TRUE(p.world.run_until(State::kHeld, 2));
+  p.touch();  // by hand
+  p.world.command(Verb::kResume);
+  EXPECT_EQ(refusal_of(p.world), Refusal::kProbeContact);
+  EXPECT_EQ(p.world.now(), State::kHeld);
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 0);
+  p.say(ProbeInput::kFree);
+  p.world.command(Verb::kResume);
+  p.world.run_for(0.2);
+  p.touch();
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 1);
+}
+
+TEST(Probing, StopsWithAnAlarmWhereTheProbeIsConnectedNoMore) {
+  Probed p;
+  p.seek(0.4);
+  p.say(ProbeInput::kNone);
+  p.world.run();
+  EXPECT_EQ(p.world.now(), State::kFaultStop);
+  EXPECT_EQ(p.world.state.alarm, Alarm::kProbeLost);
+  ASSERT_TRUE(p.world.run_until(State::kFault, 2));
+}
+
+TEST(Probing, StopsWithAnAlarmWhereFeedbackIsLost) {
+  Probed p;
+  p.seek(0.4);
+  p.world.are_drives_alive = false;
+  ASSERT_TRUE(p.world.run_until(State::kFault, 2));
+  EXPECT_EQ(p.world.state.alarm, Alarm::kFeedbackLost);
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 0);
+}
+
+TEST(Probing, ContactInAProgramThatSeeksNoneIsAnAlarm) {
+  Probed p;
+  p.run(0.4);
+  p.touch();
+  EXPECT_EQ(p.world.now(), State::kFaultStop);
+  EXPECT_EQ(p.world.state.alarm, Alarm::kContact);
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 0);
+}
+
+TEST(Probing, ContactWhileJoggingIsAnAlarm) {
+  Hand hand;
+  hand.world.in.feedback.probe = ProbeInput::kFree;
+  hand.world.run_for(0.05);
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.hold(0, 20, 0.3);
+  ASSERT_EQ(hand.world.now(), State::kJogging);
+  hand.world.in.feedback.probe = ProbeInput::kContact;
+  hand.world.run();
+  EXPECT_EQ(hand.world.now(), State::kFaultStop);
+  EXPECT_EQ(hand.world.state.alarm, Alarm::kContact);
+}
+
+TEST(Probing, AMotionThatBeginsInContactMayLeaveItAndItsStylusMayBounce) {
+  Hand hand;
+  hand.world.in.feedback.probe = ProbeInput::kContact;
+  hand.world.run_for(0.05);
+  ASSERT_TRUE(hand.lay_on(0));
+  hand.hold(0, 20, 0.2);
+  for (int n = 0; n < 3; ++n) {
+    hand.order(0, 20);
+    hand.world.in.feedback.probe = ProbeInput::kFree;
+    hand.world.run_for(0.015);
+    hand.world.in.feedback.probe = ProbeInput::kContact;
+    hand.world.run_for(0.01);
+  }
+  hand.world.in.feedback.probe = ProbeInput::kFree;
+  hand.hold(0, 20, 0.1);
+  EXPECT_EQ(hand.world.now(), State::kJogging);
+  hand.world.in.feedback.probe = ProbeInput::kContact;
+  hand.world.run();
+  EXPECT_EQ(hand.world.state.alarm, Alarm::kContact) << "free for long enough";
+}
+
+TEST(Probing, WhoTouchesTheProbeOfAMachineAtRestStopsNothing) {
+  Probed p;
+  p.world.run_for(0.05);
+  p.touch();
+  p.world.run_for(0.05);
+  EXPECT_EQ(p.world.now(), State::kLoaded);
+  EXPECT_EQ(p.world.count(EventCode::kAlarm), 0);
+}
+
+TEST(Probing, DrivesThatAreHomingMayTouch) {
+  Hand hand;
+  hand.world.in.feedback.probe = ProbeInput::kFree;
+  hand.world.run_for(0.05);
+  hand.world.command(Verb::kHome);
+  ASSERT_EQ(hand.world.now(), State::kHoming);
+  hand.world.in.feedback.homing_mask = 0x1F;
+  hand.world.in.feedback.position[0] += 0.01;
+  hand.world.run();
+  hand.world.in.feedback.probe = ProbeInput::kContact;
+  hand.world.run();
+  EXPECT_EQ(hand.world.now(), State::kHoming);
+}
+
+}  // namespace
+}  // namespace meridian
