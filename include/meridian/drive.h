@@ -36,6 +36,13 @@ typedef struct meridian_drive_reading {
   double index_position;
 } meridian_drive_reading;
 
+/* What a touch probe says whose signal the drives read. */
+typedef enum meridian_probe {
+  MERIDIAN_PROBE_NONE = 0,
+  MERIDIAN_PROBE_FREE = 1,
+  MERIDIAN_PROBE_CONTACT = 2
+} meridian_probe;
+
 typedef enum meridian_homing_state {
   MERIDIAN_HOMING_SEARCHING = 0,
   MERIDIAN_HOMING_ATTAINED = 1,
@@ -81,6 +88,7 @@ typedef struct meridian_drive_hardware {
   void (*home)(void* user, int axis, const meridian_homing_view* view, meridian_homing_step* step);
   int (*act)(void* user, const meridian_drive_action* action, char* why, size_t why_size);
   void (*report)(void* user, const char* text);
+  meridian_probe (*probe)(void* user); /* of the same instant as the positions */
 } meridian_drive_hardware;
 
 typedef struct meridian_drive_axis {

@@ -30,6 +30,13 @@ struct Reading {
   double index_position = 0;  ///< where `position` was when it came
 };
 
+/// What a touch probe says whose signal the drives read.
+enum class Probe : std::uint8_t {
+  kNone,    ///< none is connected
+  kFree,    ///< it touches nothing
+  kContact  ///< its stylus is deflected
+};
+
 enum class HomingState : std::uint8_t { kSearching, kAttained, kFailed };
 
 /// What a search for the reference begins a period with.
@@ -50,7 +57,7 @@ struct HomingStep {
 };
 
 /// The motors. Every function is called by the thread that works the drives, once a period, and may
-/// not wait. In each period come write() of all axes, exchange(), read() of all axes.
+/// not wait. In each period come write() of all axes, exchange(), read() of all axes, the inputs.
 class Hardware {
  public:
   virtual ~Hardware() = default;
@@ -64,6 +71,8 @@ class Hardware {
   virtual void exchange(double dt_s) noexcept { static_cast<void>(dt_s); }
   /// Whether the stop input is open.
   [[nodiscard]] virtual bool is_emergency_stop() noexcept { return false; }
+  /// The touch probe, of the same instant as the positions that read() gives.
+  [[nodiscard]] virtual Probe probe() noexcept { return Probe::kNone; }
   /// One period of a search: HomingMethod::kByDrive and kByCallback. Who does not override it finds
   /// no reference.
   [[nodiscard]] virtual HomingStep home(int axis, const HomingView& view) noexcept {

@@ -39,6 +39,7 @@ void drive_feedback_fields(Way way, Message& message, Wire& wire) {
   way(message.error, wire.error);
   way(message.referenced_mask, wire.referenced_mask);
   way(message.is_emergency_stop, wire.is_emergency_stop);
+  way(message.probe, wire.probe);
   way(message.mode_display, wire.mode_display);
 }
 

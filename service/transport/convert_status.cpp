@@ -60,6 +60,11 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.joints, wire.joints);
   way(message.drives_enabled_mask, wire.drives_enabled_mask);
   way(message.drives_fault_mask, wire.drives_fault_mask);
+  way(message.probe, wire.probe);
+  way(message.contacts, wire.contacts);
+  way(message.contact_periods, wire.contact_periods);
+  way(message.contact_joints, wire.contact_joints);
+  way(message.contact_free_joints, wire.contact_free_joints);
   way(message.blocks_received, wire.blocks_received);
   way(message.blocks_done, wire.blocks_done);
   way(message.blocks_queued, wire.blocks_queued);

@@ -198,6 +198,7 @@ struct DriveFeedback {
   std::array<std::uint16_t, kMaxJoints> error{};
   std::uint32_t referenced_mask = 0;
   bool is_emergency_stop = false;
+  ProbeInput probe = ProbeInput::kNone;
   std::array<std::uint8_t, kMaxJoints> mode_display{};  ///< 0: the drive does not say
 };
 
@@ -271,6 +272,11 @@ struct Status {
   JointVector joints{};
   std::uint32_t drives_enabled_mask = 0;
   std::uint32_t drives_fault_mask = 0;
+  ProbeInput probe = ProbeInput::kNone;
+  std::uint32_t contacts = 0;         ///< of probing moves, since the service started
+  std::uint32_t contact_periods = 0;  ///< of the newest: between its two reports
+  JointVector contact_joints{};       ///< feedback in the report of the newest contact
+  JointVector contact_free_joints{};  ///< and in the report before it
   std::uint64_t blocks_received = 0;
   std::uint64_t blocks_done = 0;
   std::uint32_t blocks_queued = 0;

@@ -48,6 +48,7 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
   place->arrival_ns = now_ns;
   place->has_only_stop = sample.joint_mask == 0;
   place->is_emergency_stop = sample.is_emergency_stop;
+  place->probe = sample.probe <= ProbeInput::kContact ? sample.probe : ProbeInput::kNone;
   bind(*place, now_ns, may_hand_over);
   take_joints(sample, place->joints());
   merge(now_ns);
@@ -108,6 +109,7 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   feedback_.joint_mask = feedback_.contested_mask = 0;
   feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
   feedback_.emergency_ns = feedback_.emergency_stop ? stopped_ns_ : 0;
+  feedback_.probe = ProbeInput::kNone;
   for (const DriveSource& source : sources_.places) {
     if (source.writer == 0) continue;
     if (source.is_emergency_stop) {
@@ -119,6 +121,7 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
       feedback_.contested_mask |= contested(source, other, now_ns, kSilence_ns);
     }
     if (source.joints() == 0 && !source.has_only_stop) continue;
+    feedback_.probe = std::max(feedback_.probe, source.probe);
     if (oldest == nullptr || source.arrival_ns < oldest->arrival_ns) oldest = &source;
     if (source.joints() == 0) continue;
     if (deafest == nullptr || source.cycle_seen < deafest->cycle_seen) deafest = &source;
@@ -136,6 +139,7 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   words_.enabled_mask = feedback_.enabled_mask;
   words_.fault_mask = feedback_.fault_mask;
   words_.contested_mask = feedback_.contested_mask;
+  words_.probe = feedback_.probe;
   words_.oldest_group = oldest != nullptr ? oldest->group : 0;
   words_.oldest_mask = oldest != nullptr ? oldest->joints() : 0;
 }

@@ -19,7 +19,8 @@ namespace meridian::interpolator {
 /// report it any more; until then what others say of it is passed over, and while both speak it is
 /// contested. The stop input of every source counts, whatever else is taken from it, until DDS says
 /// that its writer is gone. One that has nothing but a stop input is missed like a drive when it
-/// falls silent; one whose joints this machine has not is not.
+/// falls silent; one whose joints this machine has not is not. The probe of every source that is
+/// missed counts: it is in contact as soon as one says so.
 /// Proof: tests/unit/daemon/feedback_merge_test.cpp.
 class FeedbackMerge {
  public:

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "meridian/cycle/cycle_data.hpp"
+
 namespace meridian::interpolator {
 
 /// One writer's word on one drive group.
@@ -20,6 +22,7 @@ struct DriveSource {
   std::int64_t first_ns = 0, arrival_ns = 0;  ///< of its first and its newest sample
   bool has_only_stop = false;                 ///< it has no joint of any machine: a stop input
   bool is_emergency_stop = false;
+  ProbeInput probe = ProbeInput::kNone;
 
   /// The joints that the machine takes from it.
   [[nodiscard]] std::uint32_t joints() const noexcept { return claimed_mask & bound_mask; }

@@ -137,6 +137,7 @@ struct DriveWords {
   std::uint32_t contested_mask = 0;  ///< drives that two sources report
   std::uint32_t oldest_group = 0;    ///< that has not reported for the longest
   std::uint32_t oldest_mask = 0;     ///< its drives; 0: it has none, but the stop input
+  ProbeInput probe = ProbeInput::kNone;
 };
 
 struct Ports {

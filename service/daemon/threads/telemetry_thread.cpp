@@ -18,6 +18,12 @@ namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
 
+/// Whether an alarm that took the machine to Ready stands until it leaves it.
+[[nodiscard]] bool stands_in_ready(Alarm alarm) noexcept {
+  return alarm == Alarm::kHomingFailed || alarm == Alarm::kHomingTimeout ||
+         alarm == Alarm::kNoContact;
+}
+
 /// As if an operator had said so ahead of the first cycle: what a replay begins with.
 [[nodiscard]] Event optional_stop_on() noexcept {
   Event event;
@@ -229,9 +235,8 @@ void TelemetryThread::tell(const Event& event) {
         status_.alarm = Alarm::kNone;
         has_news_ = true;
       }
-      // That of a homing stands until the machine does something else.
-      if ((status_.alarm == Alarm::kHomingFailed || status_.alarm == Alarm::kHomingTimeout) &&
-          static_cast<State>(event.b) == State::kReady) {
+      // That of a homing or a probing move stands until the machine does something else.
+      if (stands_in_ready(status_.alarm) && static_cast<State>(event.b) == State::kReady) {
         status_.alarm = Alarm::kNone;
         has_news_ = true;
       }
@@ -240,6 +245,10 @@ void TelemetryThread::tell(const Event& event) {
           static_cast<State>(event.b) == State::kLoaded) {
         status_.message = approach_message_ = approach_;
       }
+      break;
+    case EventCode::kContactJoint:
+    case EventCode::kContactFound:
+      keep_contact(event);
       break;
     case EventCode::kStopped:
       status_.stop_time_s = 1e-9 * static_cast<double>(event.a);
@@ -273,6 +282,17 @@ void TelemetryThread::tell(const Event& event) {
   // Why it stopped stays behind how it stopped.
   if (is_reported_stop) status_.message = notice_.empty() ? words : notice_ + "; " + words;
   log_->log(telemetry::level_of(weight), "cycle {}: {}", event.cycle, words);
+}
+
+void TelemetryThread::keep_contact(const Event& event) {
+  if (event.code == EventCode::kContactFound) {
+    ++status_.contacts;
+    status_.contact_periods = static_cast<std::uint32_t>(event.a);
+    has_news_ = true;
+    return;
+  }
+  JointVector& joints = event.b == 0 ? status_.contact_joints : status_.contact_free_joints;
+  if (event.a < joints.size()) joints[event.a] = event.x;
 }
 
 void TelemetryThread::note(telemetry::AuditKind kind, const std::string& text,

@@ -146,6 +146,11 @@ drive::Reading HalHardware::read(int axis) noexcept {
   return reading;
 }
 
+drive::Probe HalHardware::probe() noexcept {
+  const auto probe = static_cast<drive::Probe>(report_.probe);
+  return probe <= drive::Probe::kContact ? probe : drive::Probe::kNone;
+}
+
 drive::HomingStep HalHardware::home(int axis, const drive::HomingView& view) noexcept {
   Joint& joint = joints_[static_cast<std::size_t>(axis)];
   drive::HomingStep step{drive::HomingState::kSearching, view.position, 0, 0};

@@ -30,6 +30,7 @@ class HalHardware final : public drive::Hardware {
   void write(int axis, const drive::Output& output) noexcept override;
   void exchange(double dt_s) noexcept override;
   [[nodiscard]] bool is_emergency_stop() noexcept override { return report_.is_stopped != 0; }
+  [[nodiscard]] drive::Probe probe() noexcept override;
   [[nodiscard]] drive::HomingStep home(int axis, const drive::HomingView& view) noexcept override;
 
   /// The library knows where the axis is: its index pulse is asked for no more.

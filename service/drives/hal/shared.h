@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 #define MERIDIAN_HAL_FILE "/meridian-hal-"  // and the name of the machine: POSIX shared memory
-#define MERIDIAN_HAL_MAGIC 0x4D484C31u      // "MHL1": another layout, another magic
+#define MERIDIAN_HAL_MAGIC 0x4D484C32u      // "MHL2": another layout, another magic
 #define MERIDIAN_HAL_JOINTS 6
 #define MERIDIAN_HAL_KEPT 8  // setpoints that the component can look back on
 
@@ -69,6 +69,8 @@ struct meridian_hal_report {
   uint32_t is_stopped;  // the emergency stop chain is open
   uint32_t is_lost;     // setpoints stayed away: ramped down and off
   uint64_t order_done;  // number of the newest order that is done
+  uint32_t probe;       // 0 none connected, 1 free, 2 in contact
+  uint32_t reserved;
 };
 
 /// The parts that are guarded, each by the lock in front of it: odd while it is written.

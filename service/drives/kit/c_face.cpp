@@ -45,6 +45,9 @@ class CHardware : public drive::Hardware {
   [[nodiscard]] bool is_emergency_stop() noexcept override {
     return c_.is_emergency_stop != nullptr && c_.is_emergency_stop(c_.user) != 0;
   }
+  [[nodiscard]] drive::Probe probe() noexcept override {
+    return c_.probe != nullptr ? static_cast<drive::Probe>(c_.probe(c_.user)) : drive::Probe::kNone;
+  }
   [[nodiscard]] drive::HomingStep home(int axis, const drive::HomingView& view) noexcept override {
     if (c_.home == nullptr) return Hardware::home(axis, view);
     const meridian_homing_view seen{view.is_begin, view.target, view.position, view.dt_s};

@@ -6,6 +6,9 @@
 
 namespace meridian::drive {
 
+static_assert(static_cast<int>(Probe::kFree) == static_cast<int>(ProbeInput::kFree) &&
+              static_cast<int>(Probe::kContact) == static_cast<int>(ProbeInput::kContact));
+
 Group::Group(const GroupSpec& spec)
     : number_(spec.number),
       machine_joints_(spec.joints),
@@ -166,14 +169,19 @@ void Group::work(int periods, Hardware& hardware) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].see(hardware.read(static_cast<int>(i)), dt_s);
   }
+  see_inputs(hardware);
+}
+
+void Group::see_inputs(Hardware& hardware) noexcept {
   is_emergency_stop_ = hardware.is_emergency_stop();
+  probe_ = static_cast<ProbeInput>(hardware.probe());
 }
 
 void Group::see(Hardware& hardware) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].see(hardware.read(static_cast<int>(i)), 0);
   }
-  is_emergency_stop_ = hardware.is_emergency_stop();
+  see_inputs(hardware);
 }
 
 dds::DriveFeedback Group::feedback() noexcept {
@@ -184,6 +192,7 @@ dds::DriveFeedback Group::feedback() noexcept {
   feedback.cycle_seen = has_setpoint_ ? newest_.setpoint.cycle : 0;
   feedback.service_id = pin_.master().service_id;
   feedback.is_emergency_stop = is_emergency_stop_;
+  feedback.probe = probe_;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const FollowingAxis& axis = axes_[i];
     const std::size_t joint = joints_[i];

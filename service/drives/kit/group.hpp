@@ -79,6 +79,7 @@ class Group : public Receiver {
   [[nodiscard]] Drop check(const dds::SetpointSample& setpoint, std::uint64_t sender,
                            std::int64_t arrival_ns) noexcept;
   void obey_new_master() noexcept;
+  void see_inputs(Hardware& hardware) noexcept;
   [[nodiscard]] AxisInput input_of(std::size_t joint, int bridged) const noexcept;
   [[nodiscard]] double elapsed_s() const noexcept;
 
@@ -104,6 +105,7 @@ class Group : public Receiver {
   std::int64_t periods_since_ = 0;    ///< own periods since then
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
   bool is_emergency_stop_ = false;
+  ProbeInput probe_ = ProbeInput::kNone;
 };
 
 }  // namespace meridian::drive

@@ -115,6 +115,25 @@ TEST(FeedbackMerge, KeepsAnOpenStopInputInAFlood) {
   EXPECT_TRUE(merge.feedback().emergency_stop);
 }
 
+TEST(FeedbackMerge, IsInContactAsSoonAsOneSourceSaysSo) {
+  FeedbackMerge merge;
+  dds::DriveFeedback own = sample(1, 0b11111, 1), box = sample(2, 0, 1);
+  ASSERT_TRUE(merge.take(own, 7, kMilli));
+  EXPECT_EQ(merge.feedback().probe, ProbeInput::kNone);
+  own.sample = 2;
+  own.probe = ProbeInput::kFree;
+  box.probe = ProbeInput::kContact;
+  ASSERT_TRUE(merge.take(own, 7, 2 * kMilli));
+  EXPECT_EQ(merge.feedback().probe, ProbeInput::kFree);
+  ASSERT_TRUE(merge.take(box, 8, 2 * kMilli));
+  EXPECT_EQ(merge.feedback().probe, ProbeInput::kContact) << "an input without drives";
+  EXPECT_EQ(merge.words().probe, ProbeInput::kContact);
+  box.sample = 2;
+  box.probe = static_cast<ProbeInput>(200);
+  ASSERT_TRUE(merge.take(box, 8, 3 * kMilli));
+  EXPECT_EQ(merge.feedback().probe, ProbeInput::kFree) << "no probe says so";
+}
+
 TEST(FeedbackMerge, ReadsHomingOfDrivesInHomingModeAlone) {
   FeedbackMerge merge;
   dds::DriveFeedback feedback = sample(1, 0b111, 1);

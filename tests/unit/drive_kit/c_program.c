@@ -21,6 +21,8 @@ static void exchange(void* user, double dt_s) {
 
 static int is_emergency_stop(void* user) { return ((struct c_motors*)user)->is_stop_open; }
 
+static meridian_probe probe(void* user) { return ((struct c_motors*)user)->probe; }
+
 static void home(void* user, int axis, const meridian_homing_view* view,
                  meridian_homing_step* step) {
   struct c_motors* motors = user;
@@ -44,7 +46,7 @@ static void report(void* user, const char* text) {
 
 meridian_drive_hardware c_hardware(struct c_motors* motors) {
   const meridian_drive_hardware hardware = {
-      motors, read_axis, write_axis, exchange, is_emergency_stop, home, act, report};
+      motors, read_axis, write_axis, exchange, is_emergency_stop, home, act, report, probe};
   return hardware;
 }
 

@@ -13,6 +13,7 @@ struct c_motors {
   double position[6];
   int periods, is_stop_open, reports;
   int stops_after; /* periods; 0: never */
+  meridian_probe probe;
   volatile int is_stopping;
   meridian_drive_output output[6];
 };

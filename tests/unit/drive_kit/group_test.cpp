@@ -101,6 +101,14 @@ TEST_F(PartOfAMachine, TheStopInputIsReported) {
   EXPECT_TRUE(group_.feedback().is_emergency_stop);
 }
 
+TEST_F(PartOfAMachine, TheTouchProbeIsReported) {
+  for (const drive::Probe probe : {Probe::kNone, Probe::kFree, Probe::kContact}) {
+    motors_.touch_probe = probe;
+    group_.work(1, motors_);
+    EXPECT_EQ(static_cast<int>(group_.feedback().probe), static_cast<int>(probe));
+  }
+}
+
 TEST_F(PartOfAMachine, NothingMovesInADryRun) {
   enable();
   (void)send(0);

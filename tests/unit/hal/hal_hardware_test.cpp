@@ -91,6 +91,17 @@ TEST_F(HalSide, HalThatSaysNothingIsAFault) {
   EXPECT_EQ(hardware_.read(0).error, 0x7500);
 }
 
+TEST_F(HalSide, ATouchProbeIsReported) {
+  period({.is_on = true});
+  EXPECT_EQ(hardware_.probe(), drive::Probe::kNone);
+  report_.probe = 1;
+  period({.is_on = true});
+  EXPECT_EQ(hardware_.probe(), drive::Probe::kFree);
+  report_.probe = 2;
+  period({.is_on = true});
+  EXPECT_EQ(hardware_.probe(), drive::Probe::kContact);
+}
+
 TEST_F(HalSide, FaultStopAndLostSetpointsAreReported) {
   report_.fault_mask = 0b01;
   period({.is_on = true});

@@ -40,6 +40,7 @@ struct joint_pins {
 struct pins {
   struct joint_pins joint[MERIDIAN_HAL_JOINTS];
   hal_bit_t *emc_enable_in, *user_enable_out, *user_request_enable, *is_lost;
+  hal_bit_t *probe_connected, *probe_contact;
   hal_bit_t *spindle_on, *spindle_forward, *spindle_reverse, *spindle_at_speed;
   hal_float_t* spindle_speed;
   hal_bit_t *coolant_mist, *coolant_flood;
@@ -212,6 +213,7 @@ static void update(void* unused, long period_ns) {
   ++report.number;
   report.time_ns = now_ns;
   report.is_stopped = !*pins->emc_enable_in;
+  report.probe = !*pins->probe_connected ? 0 : *pins->probe_contact ? 2 : 1;
   memcpy(report.position, feedback, sizeof report.position);
   meridian_hal_write(&shared->report_lock, &shared->report, &report, sizeof report);
 }
@@ -239,6 +241,8 @@ static int make_machine_pins(void) {
                     {&pins->user_enable_out, HAL_OUT, "user-enable-out"},
                     {&pins->user_request_enable, HAL_OUT, "user-request-enable"},
                     {&pins->is_lost, HAL_OUT, "setpoints-lost"},
+                    {&pins->probe_connected, HAL_IN, "probe-connected"},
+                    {&pins->probe_contact, HAL_IN, "probe-contact"},
                     {&pins->spindle_on, HAL_OUT, "spindle-on"},
                     {&pins->spindle_forward, HAL_OUT, "spindle-forward"},
                     {&pins->spindle_reverse, HAL_OUT, "spindle-reverse"},
