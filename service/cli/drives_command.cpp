@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +38,7 @@ struct DrivesOptions {
   bool is_beside_others = false, is_open_network = false, is_check = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
+  std::string probe;                                        ///< file of what a probe can touch
   std::vector<std::string> unreferenced, failing, hanging;  ///< names of drives, or all
 };
 
@@ -93,6 +96,12 @@ std::vector<drives::HomingPlan> homing_plans(const DrivesOptions& options,
   return false;
 }
 
+[[nodiscard]] std::string text_of_file(const std::string& name) {
+  std::ifstream file(name, std::ios::binary);
+  if (!file) throw CLI::ValidationError("--probe", name + ": cannot be opened");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// Returns the exit code.
 int run_drives(const DrivesOptions& options) {
   const MachineModel model = config::load_machine(options.machine_file);
@@ -104,6 +113,9 @@ int run_drives(const DrivesOptions& options) {
     simulated.injections.push_back(read_injection(text, model));
   }
   simulated.homing = homing_plans(options, model);
+  if (!options.probe.empty()) {
+    simulated.probed = drives::parse_probed_part(text_of_file(options.probe), options.probe);
+  }
   simulated.is_action_peer = !options.has_no_actions;
   simulated.is_refusing_actions = options.is_refusing_actions;
   simulated.action_delay_ns = static_cast<std::int64_t>(options.action_delay_s * 1e9);
@@ -200,6 +212,11 @@ void add(CLI::App& app, int& exit_code) {
                   "Drives (or all) that say that they found no reference");
   add_drive_names("--homing-hangs", options->hanging,
                   "Drives (or all) that search for their reference for ever");
+  command
+      ->add_option("--probe", options->probe,
+                   "A touch probe is in the spindle: file (TOML) of its stylus and of what it "
+                   "can touch")
+      ->type_name("FILE");
   command->add_flag("--check", options->is_check,
                     "Check somebody's drives, which run already, instead: play the service against "
                     "them and name the rules that they break. The first linear drive moves by some "

@@ -30,6 +30,8 @@ class DriveGroup : public drive::Receiver {
                    std::int64_t arrival_ns = 0) noexcept override;
   void take(const drive::Bridge& bridge) noexcept override { group_.take(bridge); }
   void see_master(bool is_there) noexcept override { group_.see_master(is_there); }
+  /// A probe is in the spindle from now on.
+  void connect(const SimulatedProbe& probe) { servos_.connect(probe); }
   /// Goes wrong when its time has come.
   void inject(const Injection& injection) { injections_.push_back(injection); }
   /// Goes wrong now.

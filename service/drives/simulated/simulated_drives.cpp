@@ -64,6 +64,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
                                            const std::function<void(const std::string&)>& say) {
   DriveGroup group(model, options.lag, options.homing);
   for (const Injection& injection : options.injections) group.inject(injection);
+  if (options.probed) group.connect(SimulatedProbe(*options.probed, model));
   drive::StateReport states(drive_names(model), say);
   dds::Writer<dds::DriveFeedback> feedbacks(participant);
   drive::Intake intake(participant, say);

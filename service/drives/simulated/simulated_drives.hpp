@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct SimulatedDrivesOptions {
   bool is_action_peer = true;                         ///< plays the PLC too
   bool is_refusing_actions = false;
   std::int64_t action_delay_ns = 200'000'000;
-  bool has_priority = false;  ///< works at FIFO 65
+  bool has_priority = false;         ///< works at FIFO 65
+  std::optional<ProbedPart> probed;  ///< a probe is in the spindle, and this in front of it
 };
 
 /// Real drives have processors of their own; these share them with everybody. Pins the calling

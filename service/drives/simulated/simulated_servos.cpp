@@ -52,6 +52,13 @@ void SimulatedServos::exchange(double dt_s) noexcept {
   }
 }
 
+drive::Probe SimulatedServos::probe() noexcept {
+  if (!probe_) return drive::Probe::kNone;
+  JointVector drives{};
+  for (std::size_t i = 0; i < servos_.size(); ++i) drives[i] = servos_[i].servo.position;
+  return probe_->distance(drives) > 0 ? drive::Probe::kFree : drive::Probe::kContact;
+}
+
 drive::HomingStep SimulatedServos::home(int axis, const drive::HomingView& view) noexcept {
   SimulatedServo& one = servos_[static_cast<std::size_t>(axis)];
   const drive::HomingStep step = one.search.work(view);

@@ -8,6 +8,7 @@
 #include "meridian/drive_hardware.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/drives/simulated/homing_search.hpp"
+#include "service/drives/simulated/probed_part.hpp"
 #include "service/drives/simulated/servo.hpp"
 
 namespace meridian::drives {
@@ -31,6 +32,7 @@ class SimulatedServos : public drive::Hardware {
  public:
   explicit SimulatedServos(const ServoLag& lag) : lag_(lag) {}
   void add(const JointSpec& spec, const HomingPlan& plan) { servos_.emplace_back(spec, plan); }
+  void connect(const SimulatedProbe& probe) { probe_ = probe; }
   [[nodiscard]] SimulatedServo& servo(std::size_t axis) noexcept { return servos_[axis]; }
   [[nodiscard]] std::size_t size() const noexcept { return servos_.size(); }
 
@@ -38,10 +40,12 @@ class SimulatedServos : public drive::Hardware {
   void write(int axis, const drive::Output& output) noexcept override;
   void exchange(double dt_s) noexcept override;
   [[nodiscard]] drive::HomingStep home(int axis, const drive::HomingView& view) noexcept override;
+  [[nodiscard]] drive::Probe probe() noexcept override;
 
  private:
   ServoLag lag_;
   std::vector<SimulatedServo> servos_;
+  std::optional<SimulatedProbe> probe_;
 };
 
 /// How the library homes such a drive: the simulation leads it.

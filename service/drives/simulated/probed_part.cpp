@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/drives/simulated/probed_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/limited.hpp"
+
+namespace meridian::drives {
+namespace {
+
+[[nodiscard]] double distance_to_box(const Vector3& p, const Vector3& size) noexcept {
+  Vector3 outside = Vector3::Zero();
+  double inside = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const double from = std::min(0.0, size[i]), to = std::max(0.0, size[i]);
+    const double beyond = std::max(from - p[i], p[i] - to);
+    outside[i] = std::max(0.0, beyond);
+    inside = std::max(inside, beyond);
+  }
+  return inside > 0 ? outside.norm() : inside;
+}
+
+}  // namespace
+
+double distance_to(const ProbedShape& shape, const Vector3& point) noexcept {
+  const Vector3 p = shape.rotation.transpose() * (point - shape.origin_mm);
+  switch (shape.kind) {
+    case ProbedShape::Kind::kBox:
+      return distance_to_box(p, shape.size_mm);
+    case ProbedShape::Kind::kSphere:
+      return p.norm() - shape.radius_mm;
+    case ProbedShape::Kind::kBore: {
+      const bool is_in_hole = p.z() <= 0 && p.z() >= -shape.depth_mm;
+      const double wall = shape.radius_mm - std::hypot(p.x(), p.y());
+      return is_in_hole ? wall : std::abs(wall);
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+SimulatedProbe::SimulatedProbe(ProbedPart part, MachineModel machine)
+    : part_(std::move(part)), machine_(std::move(machine)) {
+  machine_.frame_rotation = Eigen::Matrix3d::Identity();
+  machine_.frame_origin_mm = Vector3::Zero();
+}
+
+double SimulatedProbe::distance(const JointVector& drives) const noexcept {
+  const ToolPose pose = forward(machine_, part_.length_mm, joints_of(machine_, drives));
+  const Vector3 centre = pose.tip + part_.ball_mm * pose.axis;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const ProbedShape& shape : part_.shapes) {
+    nearest = std::min(nearest, distance_to(shape, centre));
+  }
+  return nearest - part_.ball_mm;
+}
+
+}  // namespace meridian::drives
