@@ -51,6 +51,11 @@ constexpr double kMaxPeriods = 1e9;
   return word == record::kPeriodsBridgedWord || word == record::kPeriodsLostWord;
 }
 
+/// What counts periods.
+[[nodiscard]] bool is_count(std::string_view word) {
+  return is_of_loss(word) || word == record::kContactFoundWord;
+}
+
 struct EventRow {
   std::string_view word;
   OperatorEvent event;  ///< its verb: that of `word` where it is one
@@ -62,8 +67,8 @@ struct EventRow {
   row.word = cut(text, ',');
   const std::string_view argument = cut(text, ',');
   if (!text::read_number(cycle, row.event.cycle)) return about(cycle, "is no cycle number");
-  const bool is_loss = is_of_loss(row.word);
-  const bool is_of_host = is_loss || row.word == record::kActionAnsweredWord;
+  const bool counts = is_count(row.word);
+  const bool is_of_host = counts || row.word == record::kActionAnsweredWord;
   const auto verb = find_verb(row.word);
   if (!verb && !is_of_host) return about(row.word, "is no verb (hold, resume, feed_override, ...)");
   double& value = row.event.argument;
@@ -72,10 +77,10 @@ struct EventRow {
   }
   if (!text.empty()) return "there is more than cycle, verb and argument";
   if (is_of_host) {
-    const double most = is_loss ? kMaxPeriods : 1;
-    const bool is_count = !argument.empty() && value >= (is_loss ? 1 : 0) && value <= most &&
+    const double most = counts ? kMaxPeriods : 1;
+    const bool is_whole = !argument.empty() && value >= (counts ? 1 : 0) && value <= most &&
                           value == std::floor(value);
-    return is_count ? "" : about(row.word, "needs a whole number");
+    return is_whole ? "" : about(row.word, "needs a whole number");
   }
   row.event.verb = *verb;
   if (is_switch(*verb) && (argument.empty() || (value != 0 && value != 1))) {
@@ -98,10 +103,12 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   if (is_of_loss(row.word)) {
     events.losses.push_back(
         {cycle, static_cast<int>(row.event.argument), row.word == record::kPeriodsBridgedWord});
+  } else if (row.word == record::kContactFoundWord) {
+    events.verbs.push_back({cycle, Verb::kAbort, 0});  // it stops as an abort does
   } else if (row.word == record::kActionAnsweredWord) {
     events.answers.push_back({cycle, row.event.argument != 0});
   } else if (row.event.verb != Verb::kStart || cycle > 0) {
-    // Said for a dry run alone: a simulation moves no drive either.
+    // Said for a dry run alone, or to probe: a simulation moves no drive, and its contact is there.
     const double argument = may_be_dry(row.event.verb) ? 0 : row.event.argument;
     events.verbs.push_back({cycle, row.event.verb, argument});
   }

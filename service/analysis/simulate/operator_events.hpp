@@ -57,13 +57,14 @@ struct OperatorEvents {
 /// those of name_of(Verb); an override's argument is its factor, that of the feed up to
 /// `max_feed`. A row `start` says which cycle the others count from (that of a live run); without
 /// one they count from the start as they are. Of what was before the start the overrides in force
-/// then are replayed, nothing else. Three words stand beside the verbs, with the host's part in a
-/// live run: `periods_bridged` and `periods_lost`, how many before this cycle, and
-/// `action_answered`, 1 done, 0 refused; three with the planner's: `plan_begun,1[,length of the
-/// tool]`, `plan_looked,blocks[,block]` and `feed_planned,factor,block,span`. Rows `frame`
-/// (RecordedFrame), `tool` (RecordedTool) and `limits` (RecordedLimits) stand anywhere. A row
-/// `incomplete`, by which a recorder says that it lost events, is refused. The error is a message
-/// with name and line. Proof: tests/unit/simulate/operator_events_test.cpp.
+/// then are replayed, nothing else. Four words stand beside the verbs, with the host's part in a
+/// live run: `periods_bridged` and `periods_lost`, how many before this cycle, `action_answered`, 1
+/// done, 0 refused, and `contact_found`, which stops a probing move; three with the planner's:
+/// `plan_begun,1[,length of the tool]`, `plan_looked,blocks[,block]` and
+/// `feed_planned,factor,block,span`. Rows `frame` (RecordedFrame), `tool` (RecordedTool) and
+/// `limits` (RecordedLimits) stand anywhere. A row `incomplete`, by which a recorder says that it
+/// lost events, is refused. The error is a message with name and line. Proof:
+/// tests/unit/simulate/operator_events_test.cpp.
 [[nodiscard]] Expected<OperatorEvents, std::string> read_operator_events(std::string_view text,
                                                                          const std::string& name,
                                                                          double max_feed = 1.0);

@@ -34,6 +34,11 @@ TEST(OperatorEventsWriter, KeepsWhatTheMotionFollowsFromWithCycleAndArgument) {
   event.code = EventCode::kActionAnswered;
   event.x = 1;
   EXPECT_TRUE(writer->write(event));
+  event.code = EventCode::kContactFound;
+  event.a = 2;
+  EXPECT_TRUE(writer->write(event));
+  event.code = EventCode::kContactJoint;
+  EXPECT_TRUE(writer->write(event));
   event.code = EventCode::kPlanBegun;
   event.x = 110.5;
   EXPECT_TRUE(writer->write(event));
@@ -54,6 +59,7 @@ TEST(OperatorEventsWriter, KeepsWhatTheMotionFollowsFromWithCycleAndArgument) {
   EXPECT_EQ(test::read_text(file.path()),
             "cycle,verb,argument,block,span\n1203,start,0\n2000,feed_override,0.10000000000000001\n"
             "2100,periods_bridged,17\n2100,periods_lost,70\n2100,action_answered,1\n"
+            "2100,contact_found,2\n"
             "2100,plan_begun,1,110.5\n2100,feed_planned,1.25,12,3\n2100,plan_looked,300\n"
             "2100,plan_looked,300,57\n");
 }

@@ -36,6 +36,15 @@ TEST(OperatorEvents, TellWhereTheWorkpieceLayAtTheStart) {
   EXPECT_EQ(torn.error(), "e.csv:1: holds no work frame");
 }
 
+TEST(OperatorEvents, OfAProbingMoveAbortItWhereItHadContact) {
+  const auto events = read_operator_events("1000,start,2\n1250,contact_found,1\n", "e.csv");
+  ASSERT_TRUE(events) << events.error();
+  ASSERT_EQ(events->verbs.size(), 1U);
+  EXPECT_EQ(events->verbs[0].cycle, 250);
+  EXPECT_EQ(events->verbs[0].verb, Verb::kAbort);
+  EXPECT_FALSE(read_operator_events("1250,contact_found,0\n", "e.csv"));
+}
+
 TEST(OperatorEvents, CountAsTheyAreWithoutAStart) {
   const auto events = read_operator_events("10,hold\n20,abort", "e.csv");
   ASSERT_TRUE(events.has_value());

@@ -27,8 +27,8 @@ bool is_replayed(const Event& event) noexcept {
                           is_set_up(verb);  // has rows of its own
   return (event.code == EventCode::kAccepted && event.b < kVerbCount && !is_outside) ||
          event.code == EventCode::kPeriodsLost || event.code == EventCode::kActionAnswered ||
-         event.code == EventCode::kPlanBegun || event.code == EventCode::kFeedPlanned ||
-         event.code == EventCode::kPlanLooked;
+         event.code == EventCode::kContactFound || event.code == EventCode::kPlanBegun ||
+         event.code == EventCode::kFeedPlanned || event.code == EventCode::kPlanLooked;
 }
 
 bool OperatorEventsWriter::write(const Event& event) noexcept {
@@ -41,6 +41,8 @@ bool OperatorEventsWriter::write(const Event& event) noexcept {
     row.put(event.b != 0 ? kPeriodsBridgedWord : kPeriodsLostWord).put(',').put_integer(event.a);
   } else if (event.code == EventCode::kActionAnswered) {
     row.put(kActionAnsweredWord).put(',').put_real(event.x);
+  } else if (event.code == EventCode::kContactFound) {
+    row.put(kContactFoundWord).put(',').put_integer(event.a);
   } else if (event.code == EventCode::kPlanBegun) {
     row.put(kPlanBegunWord).put(",1,").put_real(event.x);
   } else if (event.code == EventCode::kPlanLooked) {

@@ -24,6 +24,8 @@ namespace meridian::record {
 inline constexpr std::string_view kPeriodsBridgedWord = "periods_bridged";
 inline constexpr std::string_view kPeriodsLostWord = "periods_lost";
 inline constexpr std::string_view kActionAnsweredWord = "action_answered";
+/// A probing move found its contact, so many periods behind the report before: it aborted itself.
+inline constexpr std::string_view kContactFoundWord = "contact_found";
 /// Of the planner: it begins a program (at a factor of 1, with a tool so long in the spindle as the
 /// next column says); it plans for a feed override above 100 %, the argument,
 /// from the block and span of it on that two more columns tell (FeedMark).
@@ -34,7 +36,7 @@ inline constexpr std::string_view kFeedPlannedWord = "feed_planned";
 inline constexpr std::string_view kPlanLookedWord = "plan_looked";
 
 /// Whether the motion follows from it, beside the program: an accepted verb, lost periods, an
-/// answered action, what the planner planned with.
+/// answered action, a contact that was sought, what the planner planned with.
 [[nodiscard]] bool is_replayed(const Event& event) noexcept;
 
 /// Writes what operators asked for and the cycle took, and what else the world did to it, one row
