@@ -17,6 +17,7 @@
 #include "service/cli/options/limits_options.hpp"
 #include "service/cli/options/move_options.hpp"
 #include "service/cli/options/peer_options.hpp"
+#include "service/cli/options/probing_options.hpp"
 #include "service/cli/options/tool_options.hpp"
 #include "service/cli/options/touch_off_options.hpp"
 #include "service/cli/status_text.hpp"
@@ -41,6 +42,8 @@ struct CtlOptions {
   std::vector<const CLI::Option*> of_touch_off;
   MoveOptions move;
   std::vector<const CLI::Option*> of_move;
+  std::optional<double> retract_mm;
+  const CLI::Option* retract = nullptr;
   double wait_s = 60;
   bool is_for_dry_run = false;
 };
@@ -48,6 +51,7 @@ struct CtlOptions {
 /// No verbs of the machine: they become others of its verbs.
 constexpr const char* kTouchOff = "touch-off";
 constexpr const char* kMove = "move";
+constexpr const char* kProbe = "probe";
 
 const std::map<std::string, Verb>& verbs() {
   static const std::map<std::string, Verb> kVerbs{{"enable", Verb::kEnable},
@@ -105,9 +109,11 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
     return "--length, --radius and their kin are for tool and touch-off alone";
   }
   if (has_any(options.of_touch_off)) {
-    return "--touches, --toward, --as, --height and --confirm are for touch-off alone";
+    return "--touches, --toward, --as, --height and --confirm are for touch-off and probe alone";
   }
-  if (has_any(options.of_move)) return "--tip, --joints, --to and --feed are for move alone";
+  if (has_any(options.of_move))
+    return "--tip, --joints, --to and --feed are for move and probe alone";
+  if (is_said(options.retract)) return "--retract is for probe alone";
   const bool has_jog = has_any(options.of_jog);
   return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
 }
@@ -148,10 +154,19 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
   for (const std::string& service : services) std::fprintf(stderr, "  %s\n", service.c_str());
 }
 
+[[nodiscard]] ProbingOptions probing_of(const CtlOptions& options) {
+  return {options.touch_off.toward, options.jog.distance, options.move.feed,
+          options.touch_off.touches, options.retract_mm};
+}
+
 /// What is found becomes a word of `frame` or `tool`, a move a program and its `start`.
 int run_composed(CtlOptions& options) {
-  if (options.verb == kMove && (!options.values.empty() || !options.wait.empty())) {
-    std::fprintf(stderr, "meridian: move takes --tip, --joints or --to, and --feed alone\n");
+  const bool has_words = !options.values.empty() || !options.wait.empty();
+  if (has_words && options.verb != kTouchOff) {
+    std::fprintf(stderr, "meridian: %s\n",
+                 options.verb == kMove
+                     ? "move takes --tip, --joints or --to, and --feed alone"
+                     : "probe takes --toward, --distance, --feed, --touches and --retract alone");
     return kUsage;
   }
   int exit_code = kFine;
@@ -162,12 +177,18 @@ int run_composed(CtlOptions& options) {
   if (options.verb == kMove) {
     return run_move(options.move, *machine, participant, link, options.operator_name, options.peer);
   }
+  if (options.verb == kProbe) {
+    return run_probing(probing_of(options), options.tool, *machine, participant, link,
+                       options.operator_name, options.peer);
+  }
   return run_touch_off(options.values, options.touch_off, options.tool, *machine, link,
                        options.peer.timeout());
 }
 
 int run_ctl(CtlOptions& options) {
-  if (options.verb == kTouchOff || options.verb == kMove) return run_composed(options);
+  const bool is_composed =
+      options.verb == kTouchOff || options.verb == kMove || options.verb == kProbe;
+  if (is_composed) return run_composed(options);
   const Verb verb = verbs().at(options.verb);
   std::optional<double> argument = argument_of(verb, options);
   if (!argument) return kUsage;
@@ -241,6 +262,7 @@ void add(CLI::App& app, int& exit_code) {
   for (const auto& [name, verb] : verbs()) names.push_back(name);
   names.emplace_back(kTouchOff);
   names.emplace_back(kMove);
+  names.emplace_back(kProbe);
   command->add_option("verb", options->verb, CLI::detail::join(names, ", "))
       ->required()
       ->check(CLI::IsMember(names))
@@ -256,7 +278,7 @@ void add(CLI::App& app, int& exit_code) {
           "and a file, or list; limits: set, a joint and both ends in mm or deg, clear and a joint "
           "or all, keep-out, a name and joints with both ends, open and a name or all, tip and two "
           "corners X,Y,Z over the base in mm, clear tip, or list; "
-          "touch-off: touch, frame and a number, or tool and a number; move: "
+          "touch-off: touch, frame and a number, or tool and a number; move and probe: "
           "none")
       ->type_name("VALUE");
   CLI::Option* const time =
@@ -265,7 +287,8 @@ void add(CLI::App& app, int& exit_code) {
   CLI::Option* const distance =
       command
           ->add_option("--distance", options->jog.distance,
-                       "jog: the joint rests exactly so far from where it began, mm or deg")
+                       "jog: the joint rests exactly so far from where it began, mm or deg; probe: "
+                       "the tip goes no farther, mm")
           ->check(finite_range(1e-6, 1e6));
   CLI::Option* const dead_man =
       command
@@ -285,6 +308,10 @@ void add(CLI::App& app, int& exit_code) {
   options->of_tool = add_tool_options(*command, options->tool);
   options->of_touch_off = add_touch_off_options(*command, options->touch_off);
   options->of_move = add_move_options(*command, options->move);
+  options->retract = command
+                         ->add_option("--retract", options->retract_mm,
+                                      "probe: back along the line by so much from the contact, mm")
+                         ->check(finite_range(1e-3, 1e4));
   CLI::Option* const wait =
       command
           ->add_option(

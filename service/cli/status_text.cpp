@@ -123,6 +123,25 @@ void append_limits(std::string& text, const dds::MachineInfo& machine) {
   if (!machine.soft_limits.empty()) text += "\n";
 }
 
+/// "probe     in contact", of a machine that has one.
+void append_probe(std::string& text, const dds::Status& status) {
+  if (status.probe == ProbeInput::kNone) return;
+  const bool is_in_contact = status.probe == ProbeInput::kContact;
+  append(text, "probe     %s\n", is_in_contact ? "in contact" : "free");
+}
+
+/// "free", as JSON has it.
+const char* word_of(ProbeInput probe) {
+  switch (probe) {
+    case ProbeInput::kFree:
+      return "free";
+    case ProbeInput::kContact:
+      return "contact";
+    default:
+      return "none";
+  }
+}
+
 /// "{"vice":{"b3_mm":[-40,42.5],"b4_rad":[-0.1,0.1]}}".
 std::string keep_out_json(const dds::MachineInfo& machine) {
   std::string text;
@@ -240,6 +259,7 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
   }
   text += "\n";
   if (tool) append_tool(text, *tool, status);
+  append_probe(text, status);
   append(text, "cycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
          Count{status.periods_lost},
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "real time" : "best effort",
@@ -277,6 +297,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
   text += "\"soft_limits\":" + limits_json(machine) + ",";
   text += "\"keep_out\":" + keep_out_json(machine) + ",";
   text += "\"tip_box\":" + tip_box_json(machine) + ",";
+  append(text, "\"probe\":\"%s\",\"contacts\":%u,", word_of(status.probe), status.contacts);
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "meridian/cycle/probing.hpp"
 #include "meridian/cycle/state_table.hpp"
 #include "service/programs/cl/cl_reader.hpp"
 #include "service/protocol/source_pump.hpp"
@@ -22,7 +23,7 @@ dds::SessionRequest request_of(const MoveOrder& order) {
   dds::SessionRequest request;
   request.session = draw_id();
   request.station = order.station;
-  request.program = "move";
+  request.program = order.is_probing ? "probe" : "move";
   request.policies = dds::kPolicyMove | dds::kPolicyExactStop;
   request.frame = order.frame;
   request.tools = order.tools;
@@ -54,7 +55,8 @@ class MoveRun {
     if (status.joints != order_.joints || status.tool_length_mm != order_.tool_length_mm) {
       return give_up("the machine stands elsewhere by now; look, and say it again");
     }
-    const auto reply = operator_.ask(Verb::kStart, 0, timeout_);
+    const double argument = order_.is_probing ? kStartProbing : 0;
+    const auto reply = operator_.ask(Verb::kStart, argument, timeout_);
     if (!reply) return give_up("the machine does not answer the start");
     if (!reply->is_accepted) return give_up(reply->text);
     return follow(is_stopping);

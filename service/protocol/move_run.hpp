@@ -21,6 +21,7 @@ struct MoveOrder {
   std::uint64_t frame = 0;   ///< frame_sum()
   std::uint64_t tools = 0;   ///< tools_sum(); 0: of none
   std::uint64_t limits = 0;  ///< limits_sum()
+  bool is_probing = false;   ///< it ends where the probe has contact
 };
 
 enum class MoveEnd : std::uint8_t {

@@ -177,7 +177,7 @@ std::optional<dds::Reply> OperatorLink::ask(dds::CommandRequest request, Millise
   const Verb verb = request.verb;
   const double argument = request.argument;
   for (Service& service : services_) service.reply.reset();
-  const bool is_for_dry_run = may_be_dry(verb) && argument != 0;
+  const bool is_for_dry_run = is_said_dry(verb, argument);
   const auto begin = Clock::now(), end = begin + timeout;
   const auto told = begin + std::min<Clock::duration>(kReported, timeout / 2);
   auto due = begin;

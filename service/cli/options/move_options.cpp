@@ -33,11 +33,6 @@ namespace {
   return kMachineRefused;
 }
 
-void print_pose(const char* what, const ToolPose& pose) {
-  std::printf("%s %.4f %.4f %.4f mm, axis %.6f %.6f %.6f\n", what, pose.tip.x(), pose.tip.y(),
-              pose.tip.z(), pose.axis.x(), pose.axis.y(), pose.axis.z());
-}
-
 void print_joints(const MachineModel& model, const JointVector& joints) {
   for (int i = 0; i < model.joint_count; ++i) {
     const JointSpec& joint = model.joints[i];
@@ -116,10 +111,16 @@ std::vector<const CLI::Option*> add_move_options(CLI::App& command, MoveOptions&
           command.add_option("--to", options.position,
                              "move: the position of the machine file where the joints go, or home"),
           command
-              .add_option("--feed", options.feed,
-                          "move: feed of the tip, mm/min; of joints along their way, 1 rad as 50 "
-                          "mm")
+              .add_option(
+                  "--feed", options.feed,
+                  "move, probe: feed of the tip, mm/min; of joints along their way, 1 rad as 50 "
+                  "mm")
               ->check(finite_range(1e-3, 1e6))};
+}
+
+void print_pose(const char* what, const ToolPose& pose) {
+  std::printf("%s %.4f %.4f %.4f mm, axis %.6f %.6f %.6f\n", what, pose.tip.x(), pose.tip.y(),
+              pose.tip.z(), pose.axis.x(), pose.axis.y(), pose.axis.z());
 }
 
 std::optional<ToolPose> pose_of(const std::string& text, const ToolPose& now) {

@@ -36,6 +36,9 @@ std::vector<const CLI::Option*> add_move_options(CLI::App& command, MoveOptions&
                                                            const MachineModel& model,
                                                            const JointVector& now);
 
+/// Prints `what` and the pose behind it, a line.
+void print_pose(const char* what, const ToolPose& pose);
+
 /// Moves the machine that publishes `machine`, tip or joints, straight to where the options say,
 /// and stays until it is there or the user interrupts, which aborts the move. The exit code.
 [[nodiscard]] int run_move(const MoveOptions& options, const dds::MachineInfo& machine,

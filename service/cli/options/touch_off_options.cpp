@@ -58,12 +58,9 @@ int fail_touch_off(const std::string& what, int exit_code = kUsage) {
   }
   const auto touch = touch_of(status, machine, tool, *toward);
   if (!touch) return fail_touch_off(touch.error());
-  std::error_code error;
-  const bool is_new = !std::filesystem::exists(options.touches, error);
-  std::ofstream file(options.touches, std::ios::app | std::ios::binary);
-  if (is_new) file << inspect::touch_header();
-  file << inspect::to_row(*touch) << std::flush;
-  if (!file) return fail_touch_off(options.touches + ": cannot be written", kVerdictNo);
+  if (!append_touch(options.touches, *touch)) {
+    return fail_touch_off(options.touches + ": cannot be written", kVerdictNo);
+  }
   const ToolPose pose = inspect::pose_of(*touch, model);
   std::printf("tip at %.4f %.4f %.4f mm in the frame of the kinematics, noted in %s\n",
               pose.tip.x(), pose.tip.y(), pose.tip.z(), options.touches.c_str());
@@ -130,10 +127,11 @@ int fail_touch_off(const std::string& what, int exit_code = kUsage) {
 }  // namespace
 
 std::vector<const CLI::Option*> add_touch_off_options(CLI::App& command, TouchOffOptions& options) {
-  return {command.add_option("--touches", options.touches, "touch-off: file of the touches"),
-          command.add_option("--toward", options.toward,
-                             "touch-off touch: which way the tool went to touch, by an axis of the "
-                             "work frame in force: -x, +x, -y, +y, -z, +z"),
+  return {command.add_option("--touches", options.touches, "touch-off, probe: file of the touches"),
+          command.add_option(
+              "--toward", options.toward,
+              "touch-off touch, probe: which way the tool goes to touch, by an axis of the "
+              "work frame in force: -x, +x, -y, +y, -z, +z"),
           command.add_option("--as", options.as,
                              "touch-off frame: what was touched: face, edge, plane, corner, bore"),
           command
@@ -171,6 +169,15 @@ Expected<inspect::Touch, std::string> touch_of(const dds::Status& status,
   touch.is_ball = touch.radius_mm > 0 && corner == touch.radius_mm;
   touch.toward = toward;
   return touch;
+}
+
+bool append_touch(const std::string& name, const inspect::Touch& touch) {
+  std::error_code error;
+  const bool is_new = !std::filesystem::exists(name, error);
+  std::ofstream file(name, std::ios::app | std::ios::binary);
+  if (is_new) file << inspect::touch_header();
+  file << inspect::to_row(touch) << std::flush;
+  return file.good();
 }
 
 int run_touch_off(const std::vector<std::string>& words, const TouchOffOptions& options,

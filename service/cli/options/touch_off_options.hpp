@@ -38,6 +38,10 @@ std::vector<const CLI::Option*> add_touch_off_options(CLI::App& command, TouchOf
                                                              const ToolOptions& tool,
                                                              const Vector3& toward);
 
+/// Adds `touch` to the file of that name, which is made where there is none; false where it cannot
+/// be written.
+[[nodiscard]] bool append_touch(const std::string& file, const inspect::Touch& touch);
+
 /// `touch`: adds where the machine stands to a file. `frame N`: shows which frame the touches in
 /// it make, and sets it where that is confirmed. `tool N`: the same of a tool's length. Returns the
 /// exit code. Proof: tests/unit/cli/touch_off_options_test.cpp.

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/cli/options/probing_options.hpp"
+
+#include <cstdio>
+
+#include "meridian/cycle/state_table.hpp"
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/analysis/simulate/move_forecast.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/options/move_options.hpp"
+#include "service/cli/options/reported_machine.hpp"
+#include "service/cli/options/touch_off_options.hpp"
+#include "service/protocol/frame_sum.hpp"
+#include "service/protocol/limits_sum.hpp"
+#include "service/protocol/probe_run.hpp"
+
+namespace meridian::cli {
+namespace {
+
+[[nodiscard]] int fail_probing(const std::string& what, int exit_code) {
+  std::fprintf(stderr, "meridian: %s\n", what.c_str());
+  return exit_code;
+}
+
+[[nodiscard]] int refuse_probing(const std::string& why) {
+  std::fprintf(stderr, "refused: %s\n", why.c_str());
+  return kMachineRefused;
+}
+
+/// Why the machine begins no probing move as it is; empty: it does.
+[[nodiscard]] std::string hindrance(const dds::Status& status) {
+  if (status.state != State::kReady || status.session != 0) {
+    return "the machine is " + std::string(name_of(status.state)) +
+           "; a probing move begins in Ready, with no program";
+  }
+  if (status.is_dry_run) return "this is a dry run: no drive moves, and nothing is touched";
+  if (status.probe == ProbeInput::kNone) return "the drives report no probe that is connected";
+  if (status.probe == ProbeInput::kContact) return "the probe is in contact; move it free first";
+  return "";
+}
+
+/// The machine, and what is asked of it.
+struct ProbingRun {
+  const ProbingOptions& options;
+  const dds::MachineInfo& machine;
+  MachineModel model;
+  dds::Participant& participant;
+  stream::OperatorLink& link;
+  const std::string& operator_name;
+  std::chrono::milliseconds timeout;
+};
+
+[[nodiscard]] stream::MoveOrder order_of(const ProbingRun& probing, const Vector3& to) {
+  const dds::Status& status = *probing.link.status();
+  const ToolPose from = forward(probing.model, status.tool_length_mm, status.joints);
+  return {{from, {to, from.axis}, *probing.options.feed, {}},
+          status.joints,
+          status.tool_length_mm,
+          probing.operator_name,
+          stream::frame_sum(probing.model, probing.machine.work_frames),
+          status.tools,
+          stream::limits_sum(probing.machine.soft_limits)};
+}
+
+void print_contact(const ProbingRun& probing, const dds::Status& status,
+                   const ContactReport& found) {
+  const double period_ms = 1e-6 * static_cast<double>(probing.model.cycle_ns);
+  std::printf("contact at %.4f %.4f %.4f mm, uncertainty %.4f mm (%u period%s of %.4g ms)\n",
+              found.tip.x(), found.tip.y(), found.tip.z(), found.uncertainty_mm,
+              status.contact_periods, status.contact_periods == 1 ? "" : "s", period_ms);
+  std::printf("overtravel %.4f mm\n", found.overtravel_mm);
+  std::fflush(stdout);
+}
+
+/// Adds the contact to the file of the touches: the exit code.
+[[nodiscard]] int note_contact(const ProbingRun& probing, const ToolOptions& tool,
+                               dds::Status status) {
+  if (probing.options.touches.empty()) return kFine;
+  status.joints = status.contact_joints;
+  const auto toward = direction_of(probing.options.toward, probing.model);
+  const auto touch = touch_of(status, probing.machine, tool, *toward);
+  if (!touch) return fail_probing(touch.error(), kUsage);
+  if (!append_touch(probing.options.touches, *touch)) {
+    return fail_probing(probing.options.touches + ": cannot be written", kVerdictNo);
+  }
+  std::printf("noted in %s\n", probing.options.touches.c_str());
+  return kFine;
+}
+
+/// Back along the line from the contact: the exit code.
+[[nodiscard]] int retract(const ProbingRun& probing, const Vector3& contact,
+                          const Vector3& toward) {
+  if (!probing.options.retract_mm) return kFine;
+  const stream::MoveOrder order = order_of(probing, contact - *probing.options.retract_mm * toward);
+  const auto moved =
+      stream::run_move(probing.participant, probing.link, order, stop_flag(), probing.timeout);
+  if (moved.end == stream::MoveEnd::kRefused) return refuse_probing(moved.text);
+  if (moved.end == stream::MoveEnd::kNoAnswer) {
+    return fail_probing("the machine does not answer: look what it does", kNoPeer);
+  }
+  if (moved.end == stream::MoveEnd::kStopped) {
+    return fail_probing("the way back was stopped: " + moved.text, kVerdictNo);
+  }
+  std::printf("back by %.4f mm\n", *probing.options.retract_mm);
+  return kFine;
+}
+
+/// What came of the move: the exit code.
+[[nodiscard]] int conclude(const ProbingRun& probing, const ToolOptions& tool,
+                           const stream::ProbeResult& result, const Vector3& toward) {
+  switch (result.end) {
+    case stream::ProbeEnd::kContact:
+      break;
+    case stream::ProbeEnd::kNoContact:
+      return fail_probing("no contact within " + std::to_string(probing.options.distance_mm) +
+                              " mm; the tip stands at the end of them",
+                          kVerdictNo);
+    case stream::ProbeEnd::kRefused:
+      return refuse_probing(result.text);
+    case stream::ProbeEnd::kStopped:
+      return fail_probing("stopped without contact: " + result.text, kVerdictNo);
+    case stream::ProbeEnd::kNoAnswer:
+      return fail_probing("the machine does not answer: look what it does", kNoPeer);
+  }
+  const ContactReport found = contact_of(result.status, probing.model);
+  print_contact(probing, result.status, found);
+  const int exit_code = note_contact(probing, tool, result.status);
+  return exit_code == kFine ? retract(probing, found.tip, toward) : exit_code;
+}
+
+}  // namespace
+
+std::optional<Vector3> axis_of_work_frame(const std::string& word) {
+  MachineModel in_frame;
+  in_frame.frame_rotation = Eigen::Matrix3d::Identity();
+  return direction_of(word, in_frame);
+}
+
+ContactReport contact_of(const dds::Status& status, const MachineModel& model) {
+  const auto tip = [&](const JointVector& joints) {
+    return forward(model, status.tool_length_mm, joints).tip;
+  };
+  ContactReport report;
+  report.tip = tip(status.contact_joints);
+  report.uncertainty_mm = (report.tip - tip(status.contact_free_joints)).norm();
+  report.overtravel_mm = (tip(status.joints) - report.tip).norm();
+  return report;
+}
+
+int run_probing(const ProbingOptions& options, const ToolOptions& tool,
+                const dds::MachineInfo& machine, dds::Participant& participant,
+                stream::OperatorLink& link, const std::string& operator_name,
+                const PeerOptions& peer) {
+  const auto toward = axis_of_work_frame(options.toward);
+  if (!toward || !(options.distance_mm > 0) || !options.feed) {
+    return fail_probing("probe needs --toward -x, +x, -y, +y, -z or +z, --distance and --feed",
+                        kUsage);
+  }
+  auto model = reported_machine(machine);
+  if (!model) return fail_probing("the machine does not publish its file", kVerdictNo);
+  if (!link.wait_for_status(peer.timeout())) {
+    return fail_probing("machine " + machine.name + " does not answer", kNoPeer);
+  }
+  const dds::Status status = *link.status();
+  if (const std::string why = hindrance(status); !why.empty()) return refuse_probing(why);
+  model->tool_length_mm = status.tool_length_mm;
+  if (!options.touches.empty()) {
+    const auto touch = touch_of(status, machine, tool, *toward);
+    if (!touch) return fail_probing(touch.error(), kUsage);
+  }
+  const ProbingRun probing{options, machine,       *model,        participant,
+                           link,    operator_name, peer.timeout()};
+  const ToolPose from = forward(*model, status.tool_length_mm, status.joints);
+  const stream::MoveOrder order = order_of(probing, from.tip + options.distance_mm * *toward);
+  const simulate::MoveForecast forecast = simulate::forecast(order.move, status.joints, *model);
+  if (!forecast.refusal.empty()) return refuse_probing(forecast.refusal);
+  print_pose("from", order.move.from);
+  print_pose("to  ", order.move.to);
+  std::printf("stop distance %.4f mm at %.10g mm/min, and what the drives lag behind\n",
+              simulate::stop_distance_mm(order.move, status.joints, *model), *options.feed);
+  std::fflush(stdout);
+  watch_for_stop();
+  const auto result = stream::run_probe(participant, link, order, stop_flag(), peer.timeout());
+  return conclude(probing, tool, result, *toward);
+}
+
+}  // namespace meridian::cli

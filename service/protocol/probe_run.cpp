@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/protocol/probe_run.hpp"
+
+#include <utility>
+
+#include "meridian/cycle/state_table.hpp"
+#include "service/protocol/steady_ns.hpp"
+
+namespace meridian::stream {
+namespace {
+
+/// Waits until the machine is free of the move, and tells of all that it came to.
+void wait_until_free(OperatorLink& link) {
+  constexpr std::chrono::milliseconds kLookFree{20};
+  constexpr std::int64_t kPatience_ns = 2'000'000'000;
+  const std::int64_t begin_ns = steady_ns();
+  const auto is_free = [&link] {
+    const auto& status = link.status();
+    return status && status->session == 0 && !is_on_path(status->state);
+  };
+  while (!is_free() && steady_ns() - begin_ns < kPatience_ns) (void)link.wait_for_status(kLookFree);
+}
+
+[[nodiscard]] ProbeEnd end_of(MoveEnd end, bool has_contact) {
+  switch (end) {
+    case MoveEnd::kRefused:
+      return ProbeEnd::kRefused;
+    case MoveEnd::kNoAnswer:
+      return ProbeEnd::kNoAnswer;
+    case MoveEnd::kThere:
+    case MoveEnd::kStopped:
+      break;
+  }
+  if (has_contact) return ProbeEnd::kContact;
+  return end == MoveEnd::kThere ? ProbeEnd::kNoContact : ProbeEnd::kStopped;
+}
+
+}  // namespace
+
+ProbeResult run_probe(dds::Participant& participant, OperatorLink& link, MoveOrder order,
+                      const std::atomic<bool>& is_stopping, std::chrono::milliseconds timeout) {
+  order.is_probing = true;
+  const std::uint32_t before = link.status() ? link.status()->contacts : 0;
+  MoveResult moved = run_move(participant, link, order, is_stopping, timeout);
+  const bool has_moved = moved.end == MoveEnd::kThere || moved.end == MoveEnd::kStopped;
+  if (has_moved) wait_until_free(link);
+  ProbeResult result{ProbeEnd::kNoAnswer, std::move(moved.text), {}};
+  if (link.status()) result.status = *link.status();
+  result.end = end_of(moved.end, has_moved && result.status.contacts != before);
+  return result;
+}
+
+}  // namespace meridian::stream
