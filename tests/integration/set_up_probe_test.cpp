@@ -101,7 +101,7 @@ TEST_F(SetUpProbe, IsRefusedInContactAndLetOutOfIt) {
   Process again = probe("20");
   EXPECT_EQ(again.wait(milliseconds(20'000)), 4) << again.said();
   EXPECT_NE(again.said().find("in contact"), std::string::npos) << again.said();
-  Process out = tool(plant, {"ctl", "jog", "tool-x", "--distance", "3", "--", "-20"});
+  Process out = tool(plant, {"ctl", "jog", "tool-x", "-20", "--distance", "3"});
   EXPECT_EQ(out.wait(milliseconds(20'000)), 0) << out.said();
   ASSERT_NO_FATAL_FAILURE(expect_ready());
   EXPECT_TRUE(plant.runs_until([](const auto& s) { return s.probe == ProbeInput::kFree; }));

@@ -42,6 +42,9 @@ SimulateReport simulate_move(const stream::StraightMove& move, const JointVector
   return forward(model, model.tool_length_mm, joints).tip;
 }
 
+/// So many cycles of moves are simulated to find where they stop.
+constexpr std::size_t kStopCycles = 100'000;
+
 /// The tips of the cycles from that of the start on, of a move that is aborted in cycle `abort`
 /// of these; 0: in none.
 [[nodiscard]] std::vector<Vector3> tips_of(const stream::StraightMove& move,
@@ -91,7 +94,10 @@ double stop_distance_mm(const stream::StraightMove& move, const JointVector& joi
     if (step_of(n) > step_of(fastest)) fastest = n;
   }
   begins.push_back(fastest);
-  for (std::size_t n = 1; n < kStopSamples; ++n) begins.push_back(n * whole.size() / kStopSamples);
+  // A slow move is long: fewer samples of it take as long.
+  const std::size_t count = kStopCycles / std::max<std::size_t>(whole.size(), 1);
+  const std::size_t samples = std::clamp<std::size_t>(count, 4, kStopSamples);
+  for (std::size_t n = 1; n < samples; ++n) begins.push_back(n * whole.size() / samples);
   double longest_mm = 0;
   for (const std::size_t begin : begins) {
     if (begin < 1 || begin >= whole.size()) continue;

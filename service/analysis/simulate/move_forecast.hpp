@@ -26,10 +26,10 @@ struct MoveForecast {
 [[nodiscard]] MoveForecast forecast(const stream::StraightMove& move, const JointVector& joints,
                                     const MachineModel& model);
 
-/// How far the tip goes on, mm, where the move is aborted on its way: the longest of kStopSamples
-/// stops that begin all along it, by its setpoints, and what it goes in the period in which the
-/// reason for a stop is reported. `move` can be done (forecast()). Context: as forecast().
-/// Proof: tests/integration/drawn_probing_test.cpp.
+/// How far the tip goes on, mm, where the move is aborted on its way: the longest of up to
+/// kStopSamples stops that begin all along it, by its setpoints, and what it goes in the period in
+/// which the reason for a stop is reported. `move` can be done (forecast()). Context: as
+/// forecast(). Proof: tests/integration/drawn_probing_test.cpp.
 [[nodiscard]] double stop_distance_mm(const stream::StraightMove& move, const JointVector& joints,
                                       const MachineModel& model);
 

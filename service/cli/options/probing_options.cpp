@@ -13,6 +13,7 @@
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/limits_sum.hpp"
 #include "service/protocol/probe_run.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::cli {
 namespace {
@@ -99,7 +100,7 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
     return fail_probing("the machine does not answer: look what it does", kNoPeer);
   }
   if (moved.end == stream::MoveEnd::kStopped) {
-    return fail_probing("the way back was stopped: " + moved.text, kVerdictNo);
+    return fail_probing("the retract was stopped: " + moved.text, kVerdictNo);
   }
   std::printf("back by %.4f mm\n", *probing.options.retract_mm);
   return kFine;
@@ -112,8 +113,8 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
     case stream::ProbeEnd::kContact:
       break;
     case stream::ProbeEnd::kNoContact:
-      return fail_probing("no contact within " + std::to_string(probing.options.distance_mm) +
-                              " mm; the tip stands at the end of them",
+      return fail_probing(text::printed("no contact within %.10g mm; the tip stands at their end",
+                                        probing.options.distance_mm),
                           kVerdictNo);
     case stream::ProbeEnd::kRefused:
       return refuse_probing(result.text);

@@ -83,7 +83,8 @@ void Intake::take_events() {
       show_mark();
     } else {
       empty_queue(static_cast<std::uint16_t>(event.a));
-      publish(check_.on_queues_emptied("the operator or a fault ended the program", around()));
+      publish(check_.on_queues_emptied("the operator, the probe or a fault ended the program",
+                                       around()));
     }
   }
 }
