@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -44,9 +43,9 @@ enum class ProbeNews : std::uint8_t {
   const std::uint64_t own = c.in.cycle - probing.free_cycle;
   const std::uint64_t seen =
       c.drives.cycle_seen > probing.free_seen ? c.drives.cycle_seen - probing.free_seen : 0;
-  const auto between_ns = static_cast<double>(c.drives.arrival_ns - probing.free_arrival_ns);
-  const double arrived = std::round(between_ns / static_cast<double>(c.machine.cycle_ns));
-  return std::max({own, seen, static_cast<std::uint64_t>(std::max(arrived, 1.0))});
+  const std::int64_t between_ns = c.drives.arrival_ns - probing.free_arrival_ns;
+  const std::int64_t arrived = (between_ns + c.machine.cycle_ns / 2) / c.machine.cycle_ns;
+  return std::max({own, seen, static_cast<std::uint64_t>(std::max<std::int64_t>(arrived, 1))});
 }
 
 /// Keeps a report without contact while one is sought: the other end of the interval that holds it.

@@ -145,6 +145,7 @@ inline constexpr int kHearingSlack = 4;
 
 /// Looks at the probe: a contact that is sought stops the program as an abort does.
 [[gnu::noinline]] inline void check_probe(Cycle& c) noexcept {
+  if (c.state.state == State::kFaultStop) return;
   switch (see_probe(c)) {
     case ProbeNews::kNone:
       return;
@@ -188,9 +189,9 @@ inline void check_drives(Cycle& c) noexcept {
   double error = 0;
   const int joint = first_joint_behind(c, error);
   if (joint >= 0) raise(c, Alarm::kFollowingError, joint, error);
-  const bool has_probe =
-      f.probe != ProbeInput::kNone || c.state.probing.state == ProbeState::kSeeking;
-  if (has_probe && c.state.state != State::kFaultStop) check_probe(c);
+  const unsigned has_probe =
+      static_cast<unsigned>(f.probe) | static_cast<unsigned>(c.state.probing.state);
+  if (has_probe != 0) check_probe(c);
 }
 
 /// Finds the place of the path ahead that is nearest to `joints` (1 rad counts kAxisLength mm),
