@@ -164,8 +164,9 @@ std::string keep_out_json(const dds::MachineInfo& machine) {
 std::string tip_box_json(const dds::MachineInfo& machine) {
   const TipBox& tip = machine.soft_limits.tip_box();
   const auto ends = [](const Array3& end) {
-    return "[" + json_number("%.17g", end[0]) + "," + json_number("%.17g", end[1]) + "," +
-           json_number("%.17g", end[2]) + "]";
+    std::string text = "[";
+    text += json_number("%.17g", end[0]) + "," + json_number("%.17g", end[1]) + ",";
+    return text + json_number("%.17g", end[2]) + "]";
   };
   if (!tip.is_set) return "null";
   return "{\"min_mm\":" + ends(tip.min) + ",\"max_mm\":" + ends(tip.max) + "}";
