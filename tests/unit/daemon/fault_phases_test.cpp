@@ -61,7 +61,17 @@ void starve(Rehearsal& plant) {
   EXPECT_EQ(plant.world.now(), State::kStarving);
 }
 
-const std::array<Phase, 23> kPhases{{
+/// A probing move that has been under way for a while.
+void probe_and_run(Rehearsal& plant) {
+  plant.probe = ProbeInput::kFree;
+  EXPECT_TRUE(plant.enable());
+  plant.plan.cut({60, 0, 0}, kRehearsalLimits);
+  plant.plan.barrier(TimeKind::kEnd);
+  plant.run(0.3, kStartProbing);
+  EXPECT_EQ(plant.world.state.probing.state, ProbeState::kSeeking);
+}
+
+const std::array<Phase, 27> kPhases{{
     {"Off", Way::kNone, [](Rehearsal& plant) { plant.cycle(); }},
     {"Enabling", Way::kNone,
      [](Rehearsal& plant) {
@@ -145,6 +155,26 @@ const std::array<Phase, 23> kPhases{{
        lay_hand_on(plant);
        plant.say(Verb::kHold);
        plant.wait(0.01);
+     }},
+    {"Probing", Way::kOnLine, probe_and_run},
+    {"Probing, held", Way::kOnLine,
+     [](Rehearsal& plant) {
+       probe_and_run(plant);
+       plant.say(Verb::kHold);
+       EXPECT_TRUE(plant.until(State::kHeld, 1));
+     }},
+    {"Probing, behind its contact", Way::kOnLine,
+     [](Rehearsal& plant) {
+       probe_and_run(plant);
+       plant.probe = ProbeInput::kContact;
+       plant.wait(0.01);
+       EXPECT_EQ(plant.world.now(), State::kAborting);
+     }},
+    {"Leaving what the probe touches", Way::kOnLine,
+     [](Rehearsal& plant) {
+       plant.probe = ProbeInput::kContact;
+       cut_and_run(plant, 0.3);
+       EXPECT_EQ(plant.world.now(), State::kRunning);
      }},
     {"Homing", Way::kNone,
      [](Rehearsal& plant) {

@@ -66,9 +66,9 @@ struct Rehearsal {
     return until(State::kReady, 1);
   }
   /// Starts what was planned since Ready, and runs `seconds` of it.
-  void run(double seconds) {
+  void run(double seconds, double argument = 0) {
     ASSERT_TRUE(until(State::kLoaded, 1));
-    say(Verb::kStart);
+    say(Verb::kStart, argument);
     wait(seconds);
   }
   /// The machine cuts 200 mm along x at 100 mm/s, and has done so for a while.
@@ -149,6 +149,7 @@ struct Rehearsal {
   MadePlan plan{model, *world.port, kRehearsalBegin};
   drives::DriveGroup group;
   interpolator::FeedbackMerge merge;
+  ProbeInput probe = ProbeInput::kNone;  ///< what the drives report of it
   bool is_resetting = false;
   int injected = 0;
 
@@ -159,6 +160,7 @@ struct Rehearsal {
       merge.take(sample, 7, world.in.now_ns);
     }
     world.in.feedback = merge.feedback();
+    world.in.feedback.probe = probe;
   }
   [[nodiscard]] dds::DriveCommand command_of(std::uint8_t drive, State state) const {
     const HomingAsked asked = asked_of(world.state.homing);
