@@ -106,16 +106,18 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   if (verb != Verb::kFrame && has_any(options.of_frame))
     return "--at and --name are for frame alone";
   if (verb != Verb::kTool && has_any(options.of_tool)) {
-    return "--length, --radius and their kin are for tool and touch-off alone";
+    return "--length, --radius and the like are for tool, touch-off and probe alone";
   }
   if (has_any(options.of_touch_off)) {
-    return "--touches, --toward, --as, --height and --confirm are for touch-off and probe alone";
+    return "--touches, --toward, --as, --height and --confirm are for touch-off alone, the first "
+           "two "
+           "for probe too";
   }
   if (has_any(options.of_move))
     return "--tip, --joints, --to and --feed are for move and probe alone";
   if (is_said(options.retract)) return "--retract is for probe alone";
   const bool has_jog = has_any(options.of_jog);
-  return has_jog ? "--for, --distance and --dead-man are for jog alone" : nullptr;
+  return has_jog ? "--for and --dead-man are for jog alone, --distance for probe too" : nullptr;
 }
 
 std::optional<double> switch_of(const CtlOptions& options) {
@@ -159,6 +161,28 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
           options.touch_off.touches, options.retract_mm};
 }
 
+/// What is wrong with the options beside a composed verb; nullptr: nothing.
+[[nodiscard]] const char* misplaced_beside(const CtlOptions& options) {
+  const auto is_said = [](const CLI::Option* option) { return option->count() > 0; };
+  const auto has_any = [&](const std::vector<const CLI::Option*>& of) {
+    return std::any_of(of.begin(), of.end(), is_said);
+  };
+  if (options.is_for_dry_run) return "--dry-run is for enable and start alone";
+  if (has_any(options.of_frame)) return "--at and --name are for frame alone";
+  const bool is_probe = options.verb == kProbe, is_move = options.verb == kMove;
+  if (is_said(options.retract) && !is_probe) return "--retract is for probe alone";
+  const bool has_target =
+      !options.move.tip.empty() || !options.move.joints.empty() || !options.move.position.empty();
+  if (has_target && !is_move) return "--tip, --joints and --to are for move alone";
+  if (is_move && (has_any(options.of_touch_off) || has_any(options.of_tool))) {
+    return "options of a touch are for touch-off and probe alone";
+  }
+  const bool has_distance = options.jog.distance != 0;
+  if (has_distance && !is_probe) return "--distance is for jog and probe alone";
+  const auto count = std::count_if(options.of_jog.begin(), options.of_jog.end(), is_said);
+  return count > (has_distance ? 1 : 0) ? "--for and --dead-man are for jog alone" : nullptr;
+}
+
 /// What is found becomes a word of `frame` or `tool`, a move a program and its `start`.
 int run_composed(CtlOptions& options) {
   const bool has_words = !options.values.empty() || !options.wait.empty();
@@ -167,6 +191,10 @@ int run_composed(CtlOptions& options) {
                  options.verb == kMove
                      ? "move takes --tip, --joints or --to, and --feed alone"
                      : "probe takes --toward, --distance, --feed, --touches and --retract alone");
+    return kUsage;
+  }
+  if (const char* const wrong = misplaced_beside(options)) {
+    std::fprintf(stderr, "meridian: %s\n", wrong);
     return kUsage;
   }
   int exit_code = kFine;

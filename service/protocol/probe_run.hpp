@@ -21,8 +21,9 @@ enum class ProbeEnd : std::uint8_t {
 
 struct ProbeResult {
   ProbeEnd end = ProbeEnd::kNoAnswer;
-  std::string text;    ///< what the machine said last
-  dds::Status status;  ///< of the machine at rest; kContact: with the contact
+  std::string text;          ///< what the machine said last
+  dds::Status status;        ///< of the machine at rest; kContact: with the contact
+  bool was_stopped = false;  ///< somebody stopped the machine meanwhile, or it was held
 };
 
 /// run_move() of a move that ends where the probe has contact. One thread. Throws DdsError.

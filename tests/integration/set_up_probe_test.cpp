@@ -126,6 +126,29 @@ TEST_F(SetUpProbe, ContactWhileJoggingIsAFault) {
   (void)jog.wait(milliseconds(10'000));
 }
 
+TEST_F(SetUpProbe, IsReplayedBitForBitFromItsRecordedContact) {
+  ASSERT_NO_FATAL_FAILURE(start_in_front_of_a_block());
+  const MachineModel model = config::load_machine(plant.machine());
+  const ToolPose from = forward(model, model.tool_length_mm, plant.status().joints);
+  const std::string part = plant.folder() / "part.apt";
+  std::ofstream program(part);
+  program.precision(17);
+  program << "UNITS/MM\nMULTAX/ON\nFEDRAT/300,MMPM\n";
+  for (const double ahead : {0.0, 20.0}) {
+    program << "GOTO/" << from.tip.x() + ahead << ',' << from.tip.y() << ',' << from.tip.z() << ','
+            << from.axis.x() << ',' << from.axis.y() << ',' << from.axis.z() << '\n';
+  }
+  program << "FINI\n" << std::flush;
+  Process found = probe("20");
+  ASSERT_EQ(found.wait(milliseconds(30'000)), 0) << found.said();
+  ASSERT_NO_FATAL_FAILURE(expect_ready());
+  ASSERT_NO_FATAL_FAILURE(end_service(plant));
+  const std::string events = plant.folder() / "recording.events.csv";
+  const std::string replayed =
+      simulate_part(plant, part, LiveRun(), {"--events", events, "--transition", "exact_stop"});
+  ASSERT_NO_FATAL_FAILURE(expect_same(plant, replayed));
+}
+
 TEST_F(SetUpProbe, IsRefusedWhereTheDrivesReportNoProbe) {
   plant.start_service();
   plant.start_drives();

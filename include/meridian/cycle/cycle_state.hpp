@@ -176,6 +176,7 @@ struct Probing {
   std::uint64_t free_cycle = 0;  ///< the cycle that saw it
   std::uint64_t free_seen = 0;   ///< Feedback::cycle_seen then
   std::int64_t free_arrival_ns = 0;
+  double contact_travel_mm = 0;  ///< of motion that seeks nothing, in contact from its begin
 };
 
 /// What the action peer said about the action that the cycle waits for.

@@ -37,8 +37,11 @@ inline void starve(Cycle& c) noexcept {
 inline void aim_rate(Cycle& c) noexcept {
   const MotionKind motion = c.reader.path()->motion;
   const bool is_rapid = motion == MotionKind::kRapid || motion == MotionKind::kApproach;
-  double wanted =
-      is_rapid ? c.state.rapid_override : c.state.feed_override / c.reader.piece()->feed_factor;
+  // The stop distance that a probing move was begun with is that of its own feed.
+  const bool is_probing = c.state.probing.state == ProbeState::kSeeking;
+  const double feed_override =
+      is_probing ? std::min(c.state.feed_override, 1.0) : c.state.feed_override;
+  double wanted = is_rapid ? c.state.rapid_override : feed_override / c.reader.piece()->feed_factor;
   // It comes in mid-cut and ends in the cut: whoever slowed the cut down slowed it too.
   if (motion == MotionKind::kUnwind) wanted = std::min(wanted, c.state.rapid_override);
   if (is_plan_at_rest(c)) {
@@ -97,6 +100,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
       next_piece(c);
       return;
     case TimeKind::kEnd:
+      if (may_touch_yet(c)) return;
       report_block_done(c);
       end_probing(c);
       tell(c, EventCode::kProgramEnd, piece.sequence);

@@ -88,8 +88,7 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
   return argument == 1 && is_drive_enabled(c) ? Refusal::kDriveEnabled : Refusal::kNone;
 }
 
-/// Why a program that goes on with `command` may not seek contact now: it would begin with it, or
-/// nobody would report it.
+/// Why a program may not seek contact now: it would begin with it, or nobody would report it.
 [[nodiscard]] inline Refusal condition_of_probe(const Cycle& c) noexcept {
   if (c.drives.probe == ProbeInput::kNone) return Refusal::kNoProbe;
   return c.drives.probe == ProbeInput::kContact ? Refusal::kProbeContact : Refusal::kNone;
@@ -106,7 +105,7 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
 }
 
 /// Why a word that may be said for a dry run or a probing move alone is refused, whatever the table
-/// says: nobody who means a dry run is told to go on towards a cut.
+/// says: no word for a dry run leads on towards a cut.
 [[nodiscard]] inline Refusal condition_of_kind(const Cycle& c, const Command& command) noexcept {
   if (!may_be_dry(command.verb) || command.argument == 0) return Refusal::kNone;
   const bool is_probing = command.verb == Verb::kStart && command.argument == kStartProbing;

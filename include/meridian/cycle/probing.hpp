@@ -7,6 +7,7 @@
 
 #include "meridian/cycle/cycle_state.hpp"
 #include "meridian/cycle/state_table.hpp"
+#include "meridian/path/path_piece.hpp"
 
 /// Probing: a program that is started with kStartProbing moves until the drives report contact of
 /// the probe, latches where they were, and comes to rest on its path. Contact in any other motion
@@ -20,6 +21,14 @@ inline constexpr double kStartProbing = 2;
 /// The probe must have been free for so long, s, before its contact is an alarm: a stylus that
 /// leaves the surface may bounce.
 inline constexpr double kProbeFree_s = 0.02;
+
+/// A motion that begins in contact leaves it within so much of its largest joint, a rotary one at
+/// kAxisLength_mm_per_rad; beyond, it leads into what it touches.
+inline constexpr double kLeaveContact_mm = 5;
+
+/// At the end of a probing move the drives may lag behind its last setpoint: they are waited for
+/// until they are so near to it, or for so long.
+inline constexpr double kProbeSettled_mm = 1e-3, kProbeSettle_s = 0.25;
 
 /// What a report of the probe means for the motion.
 enum class ProbeNews : std::uint8_t {
@@ -36,8 +45,8 @@ enum class ProbeNews : std::uint8_t {
                      [](double velocity) { return velocity != 0; });
 }
 
-/// Periods between the newest report without contact and this one, by all that tells: the
-/// setpoints that the drives took, this cycle's own count, and the arrivals.
+/// Periods between the newest report without contact and this one, by the setpoints that the
+/// drives took, this cycle's own count, and the arrivals: the largest.
 [[nodiscard]] inline std::uint64_t periods_of_contact(const Cycle& c) noexcept {
   const Probing& probing = c.state.probing;
   const std::uint64_t own = c.in.cycle - probing.free_cycle;
@@ -64,13 +73,47 @@ inline void report_contact(const Cycle& c) noexcept {
     tell(c, EventCode::kContactJoint, joint, 1, c.state.probing.free_joints[joint]);
     tell(c, EventCode::kContactJoint, joint, 0, c.feedback[joint]);
   }
-  tell(c, EventCode::kContactFound, periods_of_contact(c));
+  tell(c, EventCode::kContactFound, periods_of_contact(c), 0, c.state.stop.is_active ? 1 : 0);
 }
 
 /// Begins to seek contact, or not: the program that starts is a probing move, or is none.
 inline void begin_probing(const Cycle& c, bool is_probing) noexcept {
   c.state.probing.state = is_probing ? ProbeState::kSeeking : ProbeState::kOff;
   keep_free_report(c);
+}
+
+/// The largest of the amounts of `value`, by joint, in mm.
+[[nodiscard]] inline double largest_joint_mm(const Cycle& c, const JointVector& value) noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+    const double mm = c.machine.joints[i].is_rotary ? kAxisLength_mm_per_rad : 1.0;
+    largest = std::max(largest, mm * std::abs(value[i]));
+  }
+  return largest;
+}
+
+/// Whether contact in a motion that seeks none is new, or the motion leads farther into it.
+[[nodiscard]] inline ProbeNews see_contact(Cycle& c, double free_time) noexcept {
+  Probing& probing = c.state.probing;
+  if (probing.state == ProbeState::kFound || !is_in_motion(c)) return ProbeNews::kNone;
+  probing.contact_travel_mm += largest_joint_mm(c, c.state.velocity) * c.dt * c.periods;
+  const bool is_new = free_time >= kProbeFree_s;
+  if (!is_new && probing.contact_travel_mm <= kLeaveContact_mm) return ProbeNews::kNone;
+  probing.contact_travel_mm = 0;
+  return ProbeNews::kTouch;
+}
+
+/// Whether drives that reported `feedback` still come up to the last setpoint.
+[[nodiscard]] inline bool is_lagging(const Cycle& c, const JointVector& feedback) noexcept {
+  JointVector left{};
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = c.state.joints[i] - feedback[i];
+  return largest_joint_mm(c, left) > kProbeSettled_mm;
+}
+
+/// Whether a probing move that is at its end may have contact yet: drives that lag are not there.
+[[nodiscard]] inline bool may_touch_yet(const Cycle& c) noexcept {
+  return c.state.probing.state == ProbeState::kSeeking && c.state.barrier_time <= kProbeSettle_s &&
+         is_lagging(c, c.feedback);
 }
 
 /// Takes the newest report of the probe. It is called where a probe is connected or sought.
@@ -83,17 +126,16 @@ inline void begin_probing(const Cycle& c, bool is_probing) noexcept {
   const bool is_lost = is_sought && c.drives.probe == ProbeInput::kNone;
   if (is_lost) return is_in_motion(c) ? ProbeNews::kLost : ProbeNews::kNone;
   if (!is_in_contact) {
+    probing.contact_travel_mm = 0;
     if (is_sought) keep_free_report(c);
     return ProbeNews::kNone;
   }
-  if (!is_in_motion(c)) return ProbeNews::kNone;
-  if (is_sought) {
-    report_contact(c);
-    probing.state = ProbeState::kFound;
-    return ProbeNews::kFound;
-  }
-  const bool is_edge = free_time >= kProbeFree_s && probing.state == ProbeState::kOff;
-  return is_edge ? ProbeNews::kTouch : ProbeNews::kNone;
+  if (!is_sought) return see_contact(c, free_time);
+  // At rest it is a hand that touches the stylus.
+  if (!is_in_motion(c) && !is_lagging(c, probing.free_joints)) return ProbeNews::kNone;
+  report_contact(c);
+  probing.state = ProbeState::kFound;
+  return ProbeNews::kFound;
 }
 
 /// The program is at its end: one that still seeks contact says that there was none.

@@ -131,7 +131,9 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 [[nodiscard]] inline double find_exit(const TipCircle& t, double face, double sign) noexcept {
   const double room = std::max(0.0, sign * (face - t.at)), slope = sign * t.slope;
   if (!t.is_rotary) return slope > 0 ? room / slope : kNever;
-  const bool is_at_once = slope > 0 || (slope == 0 && sign * t.bend > 0);
+  // On the face at the turning point of the circle, but for rounding, it goes out to either side.
+  const double bend = sign * t.bend;
+  const bool is_at_once = slope > 0 || (bend > 0 && room - bend <= -hypot(slope, bend));
   return room <= kTipBoxRounding && is_at_once ? 0 : find_crossing(t, room, sign);
 }
 

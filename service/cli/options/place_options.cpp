@@ -62,6 +62,7 @@ TimedPlacing simulate_at(const inspect::Placing& placing, const PlaceOptions& op
   const MachineModel there = inspect::placed(model, placing.origin_mm, placing.turn_rad);
   ReadableProgram program;
   open_program(options.program, cl, machine, there, program);
+  if (program.input == nullptr) return {placing, 0, options.program + " cannot be opened again"};
   cl::ClReader reader(*program.input, options.program, program.reading);
   const simulate::SimulateReport report = simulate::simulate(
       reader, options.program, there, program.tools, {}, [](const CycleRecord&) {});
@@ -75,10 +76,10 @@ std::string time_text(const TimedPlacing& at) {
 
 /// The quicker one of the frames with the largest margin and with the least estimated time, as
 /// simulated.
-inspect::Placing fastest(const inspect::Placing& widest, const PlaceOptions& options,
-                         const std::vector<inspect::ProgramPose>& poses,
-                         const inspect::PlacingBox& box, const ClFileOptions& cl,
-                         const MachineOptions& machine, const MachineModel& model) {
+TimedPlacing fastest(const inspect::Placing& widest, const PlaceOptions& options,
+                     const std::vector<inspect::ProgramPose>& poses, const inspect::PlacingBox& box,
+                     const ClFileOptions& cl, const MachineOptions& machine,
+                     const MachineModel& model) {
   const auto quick = inspect::find_placing(model, poses, box, inspect::PlacingAim::kTime);
   const TimedPlacing by_margin = simulate_at(widest, options, cl, machine, model);
   const TimedPlacing by_time = simulate_at(quick, options, cl, machine, model);
@@ -87,7 +88,7 @@ inspect::Placing fastest(const inspect::Placing& widest, const PlaceOptions& opt
   const TimedPlacing& best = is_quicker ? by_time : by_margin;
   std::cout << "time       " << time_text(best) << "; with the largest margin "
             << time_text(by_margin) << "\n";
-  return best.placing;
+  return best;
 }
 
 }  // namespace
@@ -136,12 +137,14 @@ Expected<int, std::string> run_place(const PlaceOptions& options, const ClFileOp
       options.box.empty() ? inspect::widest_box(model, *poses) : read_box(options.box);
   box.may_turn = options.may_turn;
   inspect::Placing found = inspect::find_placing(model, *poses, box);
-  const bool fits = found.fit.margin >= 0;
-  if (fits && options.is_fastest) {
-    found = fastest(found, options, *poses, box, cl, machine, model);
+  bool runs = found.fit.margin >= 0;
+  if (runs && options.is_fastest) {
+    const TimedPlacing quick = fastest(found, options, *poses, box, cl, machine, model);
+    found = quick.placing;
+    runs = quick.reason.empty();
   }
   std::cout << to_text(found, model, *poses);
-  return fits ? kFine : kVerdictNo;
+  return runs ? kFine : kVerdictNo;
 }
 
 }  // namespace meridian::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/cli/options/probing_options.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "meridian/cycle/state_table.hpp"
@@ -34,8 +35,12 @@ namespace {
     return "the machine is " + std::string(name_of(status.state)) +
            "; a probing move begins in Ready, with no program";
   }
-  if (status.is_dry_run) return "this is a dry run: no drive moves, and nothing is touched";
-  if (status.probe == ProbeInput::kNone) return "the drives report no probe that is connected";
+  if (status.is_dry_run) {
+    return "this is a dry run, in which no drive moves; disable, dry-run off, enable, then repeat";
+  }
+  if (status.probe == ProbeInput::kNone) {
+    return "the drives report no probe that is connected; connect it, then repeat";
+  }
   if (status.probe == ProbeInput::kContact) return "the probe is in contact; move it free first";
   return "";
 }
@@ -49,6 +54,7 @@ struct ProbingRun {
   stream::OperatorLink& link;
   const std::string& operator_name;
   std::chrono::milliseconds timeout;
+  Vector3 from;  ///< where the tip began
 };
 
 [[nodiscard]] stream::MoveOrder order_of(const ProbingRun& probing, const Vector3& to) {
@@ -88,11 +94,21 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   return kFine;
 }
 
-/// Back along the line from the contact: the exit code.
-[[nodiscard]] int retract(const ProbingRun& probing, const Vector3& contact,
-                          const Vector3& toward) {
+/// Back along the line from the contact: the exit code. Whoever stopped the machine meanwhile wants
+/// it to stand.
+[[nodiscard]] int retract(const ProbingRun& probing, const stream::ProbeResult& result,
+                          const Vector3& contact, const Vector3& toward) {
   if (!probing.options.retract_mm) return kFine;
-  const stream::MoveOrder order = order_of(probing, contact - *probing.options.retract_mm * toward);
+  if (result.was_stopped || stop_flag().load()) {
+    return fail_probing("it was stopped meanwhile, and stands where it rests: no retract",
+                        kVerdictNo);
+  }
+  const dds::Status status = *probing.link.status();
+  const double way_in_mm = (contact - probing.from).norm();
+  const double by_mm = std::min(*probing.options.retract_mm, way_in_mm);
+  const stream::MoveOrder order = order_of(probing, contact - by_mm * toward);
+  const auto forecast = simulate::forecast(order.move, status.joints, probing.model);
+  if (!forecast.refusal.empty()) return refuse_probing(forecast.refusal);
   const auto moved =
       stream::run_move(probing.participant, probing.link, order, stop_flag(), probing.timeout);
   if (moved.end == stream::MoveEnd::kRefused) return refuse_probing(moved.text);
@@ -102,7 +118,7 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   if (moved.end == stream::MoveEnd::kStopped) {
     return fail_probing("the retract was stopped: " + moved.text, kVerdictNo);
   }
-  std::printf("back by %.4f mm\n", *probing.options.retract_mm);
+  std::printf("back by %.4f mm\n", by_mm);
   return kFine;
 }
 
@@ -126,7 +142,10 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   const ContactReport found = contact_of(result.status, probing.model);
   print_contact(probing, result.status, found);
   const int exit_code = note_contact(probing, tool, result.status);
-  return exit_code == kFine ? retract(probing, found.tip, toward) : exit_code;
+  if (result.status.state != State::kReady) {
+    return fail_probing("behind the contact: " + result.status.message, kVerdictNo);
+  }
+  return exit_code == kFine ? retract(probing, result, found.tip, toward) : exit_code;
 }
 
 }  // namespace
@@ -157,6 +176,9 @@ int run_probing(const ProbingOptions& options, const ToolOptions& tool,
     return fail_probing("probe needs --toward -x, +x, -y, +y, -z or +z, --distance and --feed",
                         kUsage);
   }
+  if (options.retract_mm.value_or(0) > options.distance_mm) {
+    return fail_probing("--retract goes back along the line: no farther than --distance", kUsage);
+  }
   auto model = reported_machine(machine);
   if (!model) return fail_probing("the machine does not publish its file", kVerdictNo);
   if (!link.wait_for_status(peer.timeout())) {
@@ -169,9 +191,9 @@ int run_probing(const ProbingOptions& options, const ToolOptions& tool,
     const auto touch = touch_of(status, machine, tool, *toward);
     if (!touch) return fail_probing(touch.error(), kUsage);
   }
-  const ProbingRun probing{options, machine,       *model,        participant,
-                           link,    operator_name, peer.timeout()};
   const ToolPose from = forward(*model, status.tool_length_mm, status.joints);
+  const ProbingRun probing{options, machine,       *model,         participant,
+                           link,    operator_name, peer.timeout(), from.tip};
   const stream::MoveOrder order = order_of(probing, from.tip + options.distance_mm * *toward);
   const simulate::MoveForecast forecast = simulate::forecast(order.move, status.joints, *model);
   if (!forecast.refusal.empty()) return refuse_probing(forecast.refusal);

@@ -263,7 +263,9 @@ void TelemetryThread::tell(const Event& event) {
     case EventCode::kAccepted:
     case EventCode::kRefused:
       // Whoever is to move the machine again must have seen a status of after the stop.
-      if (is_stop(static_cast<Verb>(event.b))) has_news_ = true;
+      if (!is_stop(static_cast<Verb>(event.b))) break;
+      has_news_ = true;
+      if (event.code == EventCode::kAccepted) ++status_.stops;
       break;
     case EventCode::kPeriodsLost:
       periods_lost_ += event.a;  // told once a second: a busy host loses many
@@ -287,6 +289,7 @@ void TelemetryThread::tell(const Event& event) {
 void TelemetryThread::keep_contact(const Event& event) {
   if (event.code == EventCode::kContactFound) {
     ++status_.contacts;
+    if (event.x != 0) ++status_.stops;  // whatever held the move, it was stopped
     status_.contact_periods = static_cast<std::uint32_t>(event.a);
     has_news_ = true;
     return;

@@ -91,9 +91,9 @@ class TelemetryThread {
   /// `words` with the approach behind them, where that is still ahead.
   [[nodiscard]] std::string with_approach(const std::string& words) const;
   void keep_journal(std::int64_t now_ns);
-  /// A line of the audit log about what nobody commanded.
   /// Of a contact that a probing move found.
   void keep_contact(const Event& event);
+  /// A line of the audit log about what nobody commanded.
   void note(telemetry::AuditKind kind, const std::string& text, const SessionView& session);
   void publish_status(std::int64_t now_ns);
   void publish_latency(std::int64_t now_ns);

@@ -46,7 +46,10 @@ class CHardware : public drive::Hardware {
     return c_.is_emergency_stop != nullptr && c_.is_emergency_stop(c_.user) != 0;
   }
   [[nodiscard]] drive::Probe probe() noexcept override {
-    return c_.probe != nullptr ? static_cast<drive::Probe>(c_.probe(c_.user)) : drive::Probe::kNone;
+    const int said = c_.probe != nullptr ? c_.probe(c_.user) : 0;
+    const bool is_known = said == static_cast<int>(drive::Probe::kFree) ||
+                          said == static_cast<int>(drive::Probe::kContact);
+    return is_known ? static_cast<drive::Probe>(said) : drive::Probe::kNone;
   }
   [[nodiscard]] drive::HomingStep home(int axis, const drive::HomingView& view) noexcept override {
     if (c_.home == nullptr) return Hardware::home(axis, view);

@@ -12,6 +12,8 @@
 namespace meridian::drives {
 namespace {
 
+constexpr double kBoreWall_mm = 10;
+
 [[nodiscard]] double distance_to_box(const Vector3& p, const Vector3& size) noexcept {
   Vector3 outside = Vector3::Zero();
   double inside = -std::numeric_limits<double>::infinity();
@@ -33,10 +35,9 @@ double distance_to(const ProbedShape& shape, const Vector3& point) noexcept {
       return distance_to_box(p, shape.size_mm);
     case ProbedShape::Kind::kSphere:
       return p.norm() - shape.radius_mm;
-    case ProbedShape::Kind::kBore: {
-      const bool is_in_hole = p.z() <= 0 && p.z() >= -shape.depth_mm;
-      const double wall = shape.radius_mm - std::hypot(p.x(), p.y());
-      return is_in_hole ? wall : std::abs(wall);
+    case ProbedShape::Kind::kBore: {  // a ring: in its section, a box
+      const Vector3 in_section(std::hypot(p.x(), p.y()) - shape.radius_mm, 0, p.z());
+      return distance_to_box(in_section, {kBoreWall_mm, 0, -shape.depth_mm});
     }
   }
   return std::numeric_limits<double>::infinity();

@@ -34,8 +34,8 @@ struct ProbedPart {
   std::vector<ProbedShape> shapes;
 };
 
-/// How far `point` is from the material of `shape`, mm; below 0: inside of it. A bore has material
-/// on its wall alone: above and below it, and in it, a point is as far as the wall.
+/// How far `point` is from the material of `shape`, mm; below 0: inside of it. A bore is a ring
+/// with a wall of 10 mm.
 [[nodiscard]] double distance_to(const ProbedShape& shape, const Vector3& point) noexcept;
 
 /// A probe in the spindle of a machine, and the part in front of it.

@@ -126,7 +126,9 @@ std::string describe(Verb verb, Refusal refusal, State state, double argument,
           "both";
       break;
     case Refusal::kDryRun:
-      why = "this is a dry run: every joint has its reference, and no drive searches for one";
+      why = verb == Verb::kHome
+                ? "this is a dry run: every joint has its reference, and no drive searches for one"
+                : "this is a dry run, in which nothing is touched; disable, dry-run off, enable";
       break;
     case Refusal::kNotDryRun:
       why =
@@ -151,7 +153,8 @@ std::string describe(Verb verb, Refusal refusal, State state, double argument,
       why = "the drives report no probe that is connected; connect it, then repeat";
       break;
     case Refusal::kProbeContact:
-      why = "the probe is in contact; move it free, then repeat";
+      why = verb == Verb::kResume ? "the probe is in contact; abort, jog it free, start again"
+                                  : "the probe is in contact; move it free, then repeat";
       break;
     case Refusal::kNoEnablingDevice:
       why = "an enabling device is required and none is pressed; press it, then repeat";

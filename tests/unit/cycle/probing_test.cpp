@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "unit/cycle/hand.hpp"
@@ -37,7 +38,7 @@ struct Probed : Program {
   [[nodiscard]] double tip_x(const JointVector& joints) const {
     return forward(machine, machine.tool_length_mm, joints).tip.x();
   }
-  /// The joints that the contact was told with.
+  /// The joints that the contact was reported with.
   [[nodiscard]] JointVector reported(std::uint64_t is_before) const {
     JointVector joints{};
     for (const Event& event : world.events) {
@@ -133,9 +134,59 @@ TEST(Probing, FindsItsContactWhileItIsHeldBackToo) {
   ASSERT_EQ(p.world.now(), State::kHolding);
   p.touch();
   EXPECT_EQ(p.world.count(EventCode::kContactFound), 1);
+  EXPECT_EQ(p.world.last(EventCode::kContactFound).x, 1) << "it was stopped already";
   EXPECT_EQ(p.world.now(), State::kAborting);
   ASSERT_TRUE(p.world.run_until(State::kReady, 2));
   EXPECT_EQ(p.world.count(EventCode::kAlarm), 0);
+}
+
+TEST(Probing, FindsTheContactOfDrivesThatComeUpToItsEndLate) {
+  Probed p;
+  p.seek(0);
+  const auto run_late = [&p] {
+    p.world.in.feedback.position[0] -= 0.05;  // mm, what the first joint lags
+    p.world.run();
+  };
+  for (int n = 0; n < 10'000 && p.world.state.barrier_time == 0; ++n) run_late();
+  for (int n = 0; n < 20; ++n) run_late();
+  ASSERT_EQ(p.world.now(), State::kRunning) << "it waits for them";
+  p.say(ProbeInput::kContact);
+  run_late();
+  EXPECT_EQ(p.world.count(EventCode::kContactFound), 1);
+  EXPECT_EQ(p.world.count(EventCode::kAlarm), 0);
+  ASSERT_TRUE(p.world.run_until(State::kReady, 2));
+}
+
+TEST(Probing, WaitsForDrivesThatNeverComeUpToItsEndNoLongerThanTheySettle) {
+  Probed p;
+  p.seek(0);
+  double waited_s = 0;
+  for (int n = 0; n < 10'000 && p.world.now() != State::kReady; ++n) {
+    p.world.in.feedback.position[0] -= 0.05;
+    p.world.run();
+    if (p.world.state.barrier_time > 0) waited_s += p.world.dt();
+  }
+  EXPECT_EQ(alarm_of(p.world), Alarm::kNoContact);
+  EXPECT_NEAR(waited_s, kProbeSettle_s, 0.01);
+}
+
+TEST(Probing, IsNoFasterThanItsFeed) {
+  Probed p;
+  p.world.command(Verb::kFeedOverride, 1.5);
+  p.seek(0.5);
+  ASSERT_EQ(p.world.now(), State::kRunning);
+  EXPECT_EQ(p.world.records.back().rate, 1);
+}
+
+TEST(Probing, AMotionThatBeginsInContactAndStaysInItIsAnAlarm) {
+  Hand hand;
+  hand.world.in.feedback.probe = ProbeInput::kContact;
+  hand.world.run_for(0.05);
+  ASSERT_TRUE(hand.lay_on(0));
+  const double begin = hand.world.state.joints[0];
+  for (int n = 0; n < 200 && hand.world.now() == State::kJogging; ++n) hand.hold(0, 20, 0.02);
+  EXPECT_EQ(hand.world.state.alarm, Alarm::kContact);
+  EXPECT_NEAR(std::abs(hand.world.state.joints[0] - begin), kLeaveContact_mm, 1);
 }
 
 TEST(Probing, IsNotResumedInContactAndFindsItBehindTheResume) {
@@ -238,6 +289,7 @@ TEST(Probing, DrivesThatAreHomingMayTouch) {
   hand.world.in.feedback.probe = ProbeInput::kContact;
   hand.world.run();
   EXPECT_EQ(hand.world.now(), State::kHoming);
+  EXPECT_EQ(hand.world.count(EventCode::kAlarm), 0);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ void probe_and_run(Rehearsal& plant) {
   EXPECT_EQ(plant.world.state.probing.state, ProbeState::kSeeking);
 }
 
-const std::array<Phase, 27> kPhases{{
+const std::array<Phase, 26> kPhases{{
     {"Off", Way::kNone, [](Rehearsal& plant) { plant.cycle(); }},
     {"Enabling", Way::kNone,
      [](Rehearsal& plant) {
@@ -169,12 +169,6 @@ const std::array<Phase, 27> kPhases{{
        plant.probe = ProbeInput::kContact;
        plant.wait(0.01);
        EXPECT_EQ(plant.world.now(), State::kAborting);
-     }},
-    {"Leaving what the probe touches", Way::kOnLine,
-     [](Rehearsal& plant) {
-       plant.probe = ProbeInput::kContact;
-       cut_and_run(plant, 0.3);
-       EXPECT_EQ(plant.world.now(), State::kRunning);
      }},
     {"Homing", Way::kNone,
      [](Rehearsal& plant) {

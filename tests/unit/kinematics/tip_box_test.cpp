@@ -147,6 +147,19 @@ TEST(TipBox, LeavesARotaryJointTheWayOnWhichTheTipStaysInside) {
   EXPECT_GT(bounded, 1000);
 }
 
+TEST(TipBox, LeavesNoRoomWhereTheTipTurnsRoundOnItsFaceButForRounding) {
+  TipBox box;
+  box.is_set = true;
+  box.min = {-100, -100, -100};
+  box.max = {50, 100, 100};
+  for (const double slope : {0.0, 1e-15, -1e-15, 1e-9, -1e-9, 1e-7, -1e-7}) {
+    double low = -1, high = 1;
+    narrow_inside(box, 0, {50, slope, 100, true}, 0, low, high);
+    EXPECT_NEAR(low, 0, 1e-6) << slope;
+    EXPECT_NEAR(high, 0, 1e-6) << slope;
+  }
+}
+
 TEST(TipBox, ARoomOfEachJointEndsWithTheTipOnAFace) {
   MachineModel model = test::lai_machine();
   const JointVector q{20, 5, -30, 1, 0.2};
