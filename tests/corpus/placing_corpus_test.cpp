@@ -127,11 +127,11 @@ TEST_P(PlacingCorpus, FindsAFrameThatRunsOnEveryMachineOrAReasonThatDrawnFramesC
   return name;
 }
 
-constexpr const char* kEndOfSection = "PPRINT/END-SECTION,MACHINING\n";
+constexpr const char* kEndOfSections = "PPRINT/END-SECTION,PATH\nPPRINT/END-SECTION,MACHINING\n";
 
 INSTANTIATE_TEST_SUITE_P(Files, PlacingCorpus,
-                         testing::Values(PlacedFile{"makino_ff_Plane_1.cldata", kEndOfSection},
-                                         PlacedFile{"makino_ff_Plane_2.cldata", kEndOfSection},
+                         testing::Values(PlacedFile{"makino_ff_Plane_1.cldata", kEndOfSections},
+                                         PlacedFile{"makino_ff_Plane_2.cldata", kEndOfSections},
                                          PlacedFile{"nx_coremill.cls", "END-OF-PATH\n"},
                                          PlacedFile{"nx_simple_block.cls", "END-OF-PATH\n"},
                                          PlacedFile{"ramsai_1-1_plan_3x.apt"},
