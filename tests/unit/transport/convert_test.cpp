@@ -89,7 +89,7 @@ TEST(Convert, CarriesEveryFieldOfMessagesWithTexts) {
   EXPECT_EQ((lost_bytes<Jog, meridian_wire_Jog>()), 4);                // padding
   EXPECT_EQ((lost_bytes<Action, meridian_wire_Action>()), 4);          // 3 padding, 1 text
   EXPECT_EQ((lost_bytes<ActionDone, meridian_wire_ActionDone>()), 9);  // 7 padding, 1 flag, 1 text
-  EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 33);  // 25 padding, 5 flags, 3 texts
+  EXPECT_EQ((lost_bytes<Status, meridian_wire_Status>()), 29);  // 21 padding, 5 flags, 3 texts
   EXPECT_EQ((lost_bytes<MachineInfo, meridian_wire_Machine>()),
             615);  // 25 padding, 2 flags, 16 clamped counts, 8 texts; per joint or drive 4 padding,
                    // 2 flags, 1 text; per work frame 7 padding, 1 text; of soft limits the mask
