@@ -144,8 +144,12 @@ TEST_F(SetUpProbe, IsReplayedBitForBitFromItsRecordedContact) {
   ASSERT_NO_FATAL_FAILURE(expect_ready());
   ASSERT_NO_FATAL_FAILURE(end_service(plant));
   const std::string events = plant.folder() / "recording.events.csv";
-  const std::string replayed =
-      simulate_part(plant, part, LiveRun(), {"--events", events, "--transition", "exact_stop"});
+  const std::string replayed = plant.folder() / "replayed.csv";
+  Process simulate({"meridian", "simulate", part, "--machine", plant.machine(), "--events", events,
+                    "--transition", "exact_stop", "--record", replayed},
+                   plant.folder() / "simulate.log");
+  EXPECT_EQ(simulate.wait(milliseconds(60'000)), 1) << simulate.said();
+  EXPECT_NE(simulate.said().find("STOPPED"), std::string::npos) << "by its contact, before its end";
   ASSERT_NO_FATAL_FAILURE(expect_same(plant, replayed));
 }
 
