@@ -18,7 +18,7 @@ struct ProbedShape {
   enum class Kind : std::uint8_t {
     kBox,     ///< from its origin by `size_mm` along its axes, either way
     kSphere,  ///< of `radius_mm` about its origin
-    kBore     ///< a hole of `radius_mm` along its z, from its origin down by `depth_mm`
+    kBore     ///< a ring: a hole of `radius_mm` along its z, from its origin down by `depth_mm`
   };
   Kind kind = Kind::kBox;
   Vector3 origin_mm = Vector3::Zero();

@@ -56,7 +56,10 @@ TEST(ProbedPart, KnowsTheDistanceToEachOfItsShapes) {
   EXPECT_NEAR(distance(0, {20, 20, -2}), -2, kExact_mm) << "inside";
   EXPECT_NEAR(distance(1, {-100, 0, 20}), 8, kExact_mm);
   EXPECT_NEAR(distance(2, {15, 200, -10}), 5, kExact_mm);
-  EXPECT_NEAR(distance(2, {0, 200, 50}), 20, kExact_mm) << "above the hole";
+  EXPECT_NEAR(distance(2, {24, 200, 50}), 50, kExact_mm) << "above the wall of the bore";
+  EXPECT_NEAR(distance(2, {20, 200, -34}), 4, kExact_mm) << "below it";
+  EXPECT_NEAR(distance(2, {40, 200, -10}), 10, kExact_mm) << "outside of it";
+  EXPECT_LE(distance(2, {25, 200, -10}), 0) << "in it";
 }
 
 TEST(ProbedPart, IsTouchedByTheBallWhereTheDrivesAre) {
