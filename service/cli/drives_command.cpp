@@ -3,8 +3,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +21,7 @@
 #include "service/drives/kit/other_source.hpp"
 #include "service/drives/simulated/simulated_drives.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "service/text/whole_file.hpp"
 #include "service/transport/participant.hpp"
 
 namespace meridian::cli::drives_command {
@@ -96,10 +95,10 @@ std::vector<drives::HomingPlan> homing_plans(const DrivesOptions& options,
   return false;
 }
 
-[[nodiscard]] std::string text_of_file(const std::string& name) {
-  std::ifstream file(name, std::ios::binary);
-  if (!file) throw CLI::ValidationError("--probe", name + ": cannot be opened");
-  return {std::istreambuf_iterator<char>(file), {}};
+[[nodiscard]] drives::ProbedPart read_probed_part(const std::string& name) {
+  const auto text = text::read_whole(name);
+  if (!text) throw CLI::ValidationError("--probe", name + ": cannot be opened");
+  return drives::parse_probed_part(*text, name);
 }
 
 /// Returns the exit code.
@@ -113,9 +112,7 @@ int run_drives(const DrivesOptions& options) {
     simulated.injections.push_back(read_injection(text, model));
   }
   simulated.homing = homing_plans(options, model);
-  if (!options.probe.empty()) {
-    simulated.probed = drives::parse_probed_part(text_of_file(options.probe), options.probe);
-  }
+  if (!options.probe.empty()) simulated.probed = read_probed_part(options.probe);
   simulated.is_action_peer = !options.has_no_actions;
   simulated.is_refusing_actions = options.is_refusing_actions;
   simulated.action_delay_ns = static_cast<std::int64_t>(options.action_delay_s * 1e9);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,15 +44,9 @@ int draw_along(const Options& options, const MachineModel& model) {
   return error ? refuse(*error) : kFine;
 }
 
-[[nodiscard]] std::optional<std::string> text_of(const std::string& name) {
-  std::ifstream file(name, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(file), {}};
-}
-
 /// Where the rotary axes lie by touches of a sphere; into a new machine file where all is known.
 int calibrate(const Options& options, const MachineModel& model) {
-  const auto text = text_of(options.touches);
+  const auto text = text::read_whole(options.touches);
   if (!text) return refuse(options.touches + ": cannot be opened");
   const auto touches = inspect::read_touches(*text, options.touches);
   if (!touches) return refuse(touches.error());
@@ -62,7 +54,7 @@ int calibrate(const Options& options, const MachineModel& model) {
   if (!found) return refuse(options.touches + ": " + found.error());
   std::cout << to_text(*found);
   if (options.written.empty()) return found->is_determined() ? kFine : kVerdictNo;
-  const std::string machine_file = text_of(options.machine.machine).value_or("");
+  const std::string machine_file = text::read_whole(options.machine.machine).value_or("");
   const auto written = inspect::with_centres(machine_file, *found);
   if (!written) return refuse(options.machine.machine + ": " + written.error());
   (void)config::parse_machine(*written, options.written);

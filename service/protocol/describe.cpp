@@ -109,7 +109,8 @@ std::string reason_of(const BlockReject& reject, const MachineModel& model) {
     case RejectCode::kKeepOut:
       return "joints enter the " + keep_out_text(reject, model);
     case RejectCode::kTipBox:
-      return "the tip leaves the tip box: " + tip_box_text(reject, model);
+      return "the tip leaves the tip box: " + tip_box_text(reject, model) +
+             "; move the workpiece, or widen the box";
   }
   return "unknown reason";
 }

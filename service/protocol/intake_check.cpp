@@ -43,7 +43,7 @@ std::string refusal_of_first_joints(const dds::SessionRequest& request, const Ma
            model.keep_out.name_of(box);
   }
   if (tip_axis_outside(model, tool_length_mm, joints) >= 0) {
-    return "the program begins with the tip outside of the tip box";
+    return "the program begins with the tip outside of the tip box; jog it in, or widen the box";
   }
   const auto unused = joints.begin() + model.joint_count;
   const bool names_more = std::any_of(unused, joints.end(), [](double at) { return at != 0; });

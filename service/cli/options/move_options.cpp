@@ -13,6 +13,7 @@
 #include "service/analysis/simulate/move_forecast.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/options/finite_range.hpp"
+#include "service/cli/options/print_end.hpp"
 #include "service/cli/options/reported_machine.hpp"
 #include "service/machine/file/positions_file.hpp"
 #include "service/protocol/frame_sum.hpp"
@@ -22,16 +23,6 @@
 
 namespace meridian::cli {
 namespace {
-
-[[nodiscard]] int fail_move(const std::string& what, int exit_code) {
-  std::fprintf(stderr, "meridian: %s\n", what.c_str());
-  return exit_code;
-}
-
-[[nodiscard]] int refuse_move(const std::string& why) {
-  std::fprintf(stderr, "refused: %s\n", why.c_str());
-  return kMachineRefused;
-}
 
 void print_joints(const MachineModel& model, const JointVector& joints) {
   for (int i = 0; i < model.joint_count; ++i) {
@@ -90,11 +81,11 @@ void print_joints(const MachineModel& model, const JointVector& joints) {
     case stream::MoveEnd::kThere:
       return kFine;
     case stream::MoveEnd::kRefused:
-      return refuse_move(result.text);
+      return print_refusal(result.text);
     case stream::MoveEnd::kStopped:
-      return fail_move("the move was stopped on its way: " + result.text, kVerdictNo);
+      return print_failure("the move was stopped on its way: " + result.text, kVerdictNo);
     case stream::MoveEnd::kNoAnswer:
-      return fail_move("the machine does not answer: look what it does", kNoPeer);
+      return print_silence();
   }
   return kVerdictNo;
 }
@@ -159,23 +150,23 @@ int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
              const std::string& operator_name, const PeerOptions& peer) {
   const int targets = !options.tip.empty() + !options.joints.empty() + !options.position.empty();
   if (targets != 1 || !options.feed) {
-    return fail_move("move needs one of --tip, --joints and --to, and --feed", kUsage);
+    return print_failure("move needs one of --tip, --joints and --to, and --feed", kUsage);
   }
   auto model = reported_machine(machine);
-  if (!model) return fail_move("the machine does not publish its file", kVerdictNo);
+  if (!model) return print_failure("the machine does not publish its file", kVerdictNo);
   if (!link.wait_for_status(peer.timeout())) {
-    return fail_move("machine " + machine.name + " does not answer", kNoPeer);
+    return print_failure("machine " + machine.name + " does not answer", kNoPeer);
   }
   const dds::Status status = *link.status();
   if (status.state != State::kReady || status.session != 0) {
-    return refuse_move("the machine is " + std::string(name_of(status.state)) +
+    return print_refusal("the machine is " + std::string(name_of(status.state)) +
                        "; a move begins in Ready, with no program");
   }
   model->tool_length_mm = status.tool_length_mm;
   const auto move = move_of(options, machine, *model, status.joints);
-  if (!move) return fail_move(move.error(), kUsage);
+  if (!move) return print_failure(move.error(), kUsage);
   const simulate::MoveForecast forecast = simulate::forecast(*move, status.joints, *model);
-  if (!forecast.refusal.empty()) return refuse_move(forecast.refusal);
+  if (!forecast.refusal.empty()) return print_refusal(forecast.refusal);
   print_pose("from", forward(*model, status.tool_length_mm, status.joints));
   print_pose("to  ", move->to);
   if (move->joints) print_joints(*model, *move->joints);

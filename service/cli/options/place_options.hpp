@@ -16,7 +16,8 @@ namespace meridian::cli {
 /// The options of `meridian machine --place`.
 struct PlaceOptions {
   std::string program, box;
-  bool may_turn = false, is_fastest = false;
+  bool may_turn = false;    ///< about z
+  bool is_fastest = false;  ///< the least time is looked for, not the largest margin
 };
 
 /// Adds --place, which is returned, --box, --turn and --fastest.

@@ -9,6 +9,7 @@
 #include "service/analysis/simulate/move_forecast.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/options/move_options.hpp"
+#include "service/cli/options/print_end.hpp"
 #include "service/cli/options/reported_machine.hpp"
 #include "service/cli/options/touch_off_options.hpp"
 #include "service/protocol/frame_sum.hpp"
@@ -18,16 +19,6 @@
 
 namespace meridian::cli {
 namespace {
-
-[[nodiscard]] int fail_probing(const std::string& what, int exit_code) {
-  std::fprintf(stderr, "meridian: %s\n", what.c_str());
-  return exit_code;
-}
-
-[[nodiscard]] int refuse_probing(const std::string& why) {
-  std::fprintf(stderr, "refused: %s\n", why.c_str());
-  return kMachineRefused;
-}
 
 /// Why the machine begins no probing move as it is; empty: it does.
 [[nodiscard]] std::string hindrance(const dds::Status& status) {
@@ -86,9 +77,9 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   status.joints = status.contact_joints;
   const auto toward = direction_of(probing.options.toward, probing.model);
   const auto touch = touch_of(status, probing.machine, tool, *toward);
-  if (!touch) return fail_probing(touch.error(), kUsage);
+  if (!touch) return print_failure(touch.error(), kUsage);
   if (!append_touch(probing.options.touches, *touch)) {
-    return fail_probing(probing.options.touches + ": cannot be written", kVerdictNo);
+    return print_failure(probing.options.touches + ": cannot be written", kVerdictNo);
   }
   std::printf("noted in %s\n", probing.options.touches.c_str());
   return kFine;
@@ -100,7 +91,7 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
                           const Vector3& contact, const Vector3& toward) {
   if (!probing.options.retract_mm) return kFine;
   if (result.was_stopped || stop_flag().load()) {
-    return fail_probing("it was stopped meanwhile, and stands where it rests: no retract",
+    return print_failure("it was stopped meanwhile, and stands where it rests: no retract",
                         kVerdictNo);
   }
   const dds::Status status = *probing.link.status();
@@ -108,15 +99,15 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   const double by_mm = std::min(*probing.options.retract_mm, way_in_mm);
   const stream::MoveOrder order = order_of(probing, contact - by_mm * toward);
   const auto forecast = simulate::forecast(order.move, status.joints, probing.model);
-  if (!forecast.refusal.empty()) return refuse_probing(forecast.refusal);
+  if (!forecast.refusal.empty()) return print_refusal(forecast.refusal);
   const auto moved =
       stream::run_move(probing.participant, probing.link, order, stop_flag(), probing.timeout);
-  if (moved.end == stream::MoveEnd::kRefused) return refuse_probing(moved.text);
+  if (moved.end == stream::MoveEnd::kRefused) return print_refusal(moved.text);
   if (moved.end == stream::MoveEnd::kNoAnswer) {
-    return fail_probing("the machine does not answer: look what it does", kNoPeer);
+    return print_silence();
   }
   if (moved.end == stream::MoveEnd::kStopped) {
-    return fail_probing("the retract was stopped: " + moved.text, kVerdictNo);
+    return print_failure("the retract was stopped: " + moved.text, kVerdictNo);
   }
   std::printf("back by %.4f mm\n", by_mm);
   return kFine;
@@ -129,21 +120,21 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
     case stream::ProbeEnd::kContact:
       break;
     case stream::ProbeEnd::kNoContact:
-      return fail_probing(text::printed("no contact within %.10g mm; the tip stands at their end",
+      return print_failure(text::printed("no contact within %.10g mm; the tip stands at their end",
                                         probing.options.distance_mm),
                           kVerdictNo);
     case stream::ProbeEnd::kRefused:
-      return refuse_probing(result.text);
+      return print_refusal(result.text);
     case stream::ProbeEnd::kStopped:
-      return fail_probing("stopped without contact: " + result.text, kVerdictNo);
+      return print_failure("stopped without contact: " + result.text, kVerdictNo);
     case stream::ProbeEnd::kNoAnswer:
-      return fail_probing("the machine does not answer: look what it does", kNoPeer);
+      return print_silence();
   }
   const ContactReport found = contact_of(result.status, probing.model);
   print_contact(probing, result.status, found);
   const int exit_code = note_contact(probing, tool, result.status);
   if (result.status.state != State::kReady) {
-    return fail_probing("behind the contact: " + result.status.message, kVerdictNo);
+    return print_failure("behind the contact: " + result.status.message, kVerdictNo);
   }
   return exit_code == kFine ? retract(probing, result, found.tip, toward) : exit_code;
 }
@@ -173,30 +164,30 @@ int run_probing(const ProbingOptions& options, const ToolOptions& tool,
                 const PeerOptions& peer) {
   const auto toward = axis_of_work_frame(options.toward);
   if (!toward || !(options.distance_mm > 0) || !options.feed) {
-    return fail_probing("probe needs --toward -x, +x, -y, +y, -z or +z, --distance and --feed",
+    return print_failure("probe needs --toward -x, +x, -y, +y, -z or +z, --distance and --feed",
                         kUsage);
   }
   if (options.retract_mm.value_or(0) > options.distance_mm) {
-    return fail_probing("--retract goes back along the line: no farther than --distance", kUsage);
+    return print_failure("--retract goes back along the line: no farther than --distance", kUsage);
   }
   auto model = reported_machine(machine);
-  if (!model) return fail_probing("the machine does not publish its file", kVerdictNo);
+  if (!model) return print_failure("the machine does not publish its file", kVerdictNo);
   if (!link.wait_for_status(peer.timeout())) {
-    return fail_probing("machine " + machine.name + " does not answer", kNoPeer);
+    return print_failure("machine " + machine.name + " does not answer", kNoPeer);
   }
   const dds::Status status = *link.status();
-  if (const std::string why = hindrance(status); !why.empty()) return refuse_probing(why);
+  if (const std::string why = hindrance(status); !why.empty()) return print_refusal(why);
   model->tool_length_mm = status.tool_length_mm;
   if (!options.touches.empty()) {
     const auto touch = touch_of(status, machine, tool, *toward);
-    if (!touch) return fail_probing(touch.error(), kUsage);
+    if (!touch) return print_failure(touch.error(), kUsage);
   }
   const ToolPose from = forward(*model, status.tool_length_mm, status.joints);
   const ProbingRun probing{options, machine,       *model,         participant,
                            link,    operator_name, peer.timeout(), from.tip};
   const stream::MoveOrder order = order_of(probing, from.tip + options.distance_mm * *toward);
   const simulate::MoveForecast forecast = simulate::forecast(order.move, status.joints, *model);
-  if (!forecast.refusal.empty()) return refuse_probing(forecast.refusal);
+  if (!forecast.refusal.empty()) return print_refusal(forecast.refusal);
   print_pose("from", order.move.from);
   print_pose("to  ", order.move.to);
   std::printf("stop distance %.4f mm at %.10g mm/min, and what the drives lag behind\n",

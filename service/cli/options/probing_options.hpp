@@ -11,7 +11,7 @@
 
 namespace meridian::cli {
 
-/// What `meridian ctl probe` is told.
+/// The options of `meridian ctl probe`.
 struct ProbingOptions {
   std::string toward;          ///< -x, +x, -y, ... of the work frame in force
   double distance_mm = 0;      ///< no farther
@@ -31,7 +31,7 @@ struct ContactReport {
   double overtravel_mm = 0;   ///< from there to rest
 };
 
-/// The contact that `status`, of a machine at rest, tells of. Proof:
+/// The contact that `status`, of a machine at rest, has. Proof:
 /// tests/unit/cli/probing_options_test.cpp.
 [[nodiscard]] ContactReport contact_of(const dds::Status& status, const MachineModel& model);
 

@@ -14,7 +14,7 @@ TipBox read_tip_box(Section& file, const MachineModel& model) {
   box.max = section.triple("max_mm", {-1e5, 1e5}, kRemedy);
   section.finish();
   if (!is_tip_box(box))
-    section.refuse("max_mm", "above min_mm along each axis", "swap the numbers");
+    section.refuse("max_mm", "above min_mm along each axis", "give both corners so");
   JointVector home{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
     home[i] = model.joints[i].home;

@@ -254,11 +254,6 @@ Fit fit_on(const MachineModel& model, const std::vector<ProgramPose>& poses, int
   look_for_boxes(model, course, fit);
   look_for_tip(model, course, fit);
   fit.score = fit.margin + kOfMean * sum / limited_count(model);
-  TimeEstimate time(model);
-  for (const Followed& at : course.reached) {
-    time.add(limited_of(model, at.q), at.pose->feed_time_s);
-  }
-  fit.estimated_time_s = time.total_s();
   return fit;
 }
 
@@ -305,6 +300,15 @@ Fit fit_of(const MachineModel& model, const std::vector<ProgramPose>& poses) {
     if (branch == 0 || fit.score > best.score) best = fit;
   }
   return best;
+}
+
+double estimated_time_s(const MachineModel& model, const std::vector<ProgramPose>& poses,
+                        int branch) {
+  TimeEstimate time(model);
+  for (const Followed& at : follow(model, poses, branch).reached) {
+    time.add(limited_of(model, at.q), at.pose->feed_time_s);
+  }
+  return time.total_s();
 }
 
 std::vector<FitFinding> findings_of(const MachineModel& model,

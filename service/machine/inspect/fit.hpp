@@ -22,9 +22,6 @@ struct Fit {
   /// The margin and a hundredth of the mean of all: what a search makes large, for a joint that the
   /// frame cannot help must not leave the others anywhere.
   double score = -2;
-  /// What the program takes by its feeds and by the velocities and accelerations of the joints. An
-  /// estimate: corners that are smoothed, jerk and approaches are not in it.
-  double estimated_time_s = 0;
   int joint = -1;          ///< that has the margin, by its place in limited.hpp; -1: none
   int box = -1;            ///< the keep-out box that is entered; -1: none
   int tip_axis = -1;       ///< of the base, from 0, along which the tip leaves its box; -1: none
@@ -35,6 +32,11 @@ struct Fit {
 
 /// How `poses` fit with the workpiece of `model` where it is.
 [[nodiscard]] Fit fit_of(const MachineModel& model, const std::vector<ProgramPose>& poses);
+
+/// What `poses` take on `branch` by their feeds and by the velocities and accelerations of joints and
+/// drives, s. An estimate: corners that are smoothed, jerk and approaches are not in it.
+[[nodiscard]] double estimated_time_s(const MachineModel& model,
+                                      const std::vector<ProgramPose>& poses, int branch);
 
 /// What is in the way of a program.
 enum class Obstacle : std::uint8_t {

@@ -39,13 +39,6 @@ std::vector<ProgramPose> few_of(const std::vector<ProgramPose>& poses) {
   return few;
 }
 
-/// What the search makes large: of frames with room for it the speed, of others the score.
-double worth(const Fit& fit, PlacingAim aim) {
-  const bool has_room = aim == PlacingAim::kTime && fit.margin >= kTimeMargin;
-  constexpr double kAboveAnyScore = 2;
-  return has_room ? kAboveAnyScore + 1 / (1 + fit.estimated_time_s) : fit.score;
-}
-
 /// A frame as the search moves it: x, y, z and the turn.
 using Place = std::array<double, 4>;
 
@@ -82,12 +75,22 @@ class Search {
     return best.place;
   }
 
+  /// What the search makes large, of a machine with its workpiece where it fits so: the speed where
+  /// that is the aim and there is room, else the score.
+  [[nodiscard]] double worth(const MachineModel& there, const std::vector<ProgramPose>& poses,
+                             const Fit& fit) const {
+    constexpr double kAboveAnyScore = 2;
+    if (aim_ == PlacingAim::kMargin || fit.margin < kTimeMargin) return fit.score;
+    return kAboveAnyScore + 1 / (1 + estimated_time_s(there, poses, fit.branch));
+  }
+
   [[nodiscard]] int frames() const noexcept { return frames_; }
 
  private:
   [[nodiscard]] double score(const Place& place, const std::vector<ProgramPose>& poses) {
     ++frames_;
-    return worth(fit_of(placed(model_, {place[0], place[1], place[2]}, place[3]), poses), aim_);
+    const MachineModel there = placed(model_, {place[0], place[1], place[2]}, place[3]);
+    return worth(there, poses, fit_of(there, poses));
   }
 
   /// Steps along each direction as long as they gain, halved where none does.
@@ -170,15 +173,21 @@ Placing find_placing(const MachineModel& model, const std::vector<ProgramPose>& 
   Search search(model, box, aim);
   std::vector<ProgramPose> few = few_of(poses);
   Placing best;
+  double best_worth = 0;
   std::vector<Place> also;
   for (int round = 0; round < kRounds; ++round) {
     Place place = search.run(few, also);
     for (std::size_t i = 0; i < 3; ++i) place[i] = std::round(place[i] * 1e3) * 1e-3;
     const std::array<double, 3> origin = {place[0], place[1], place[2]};
-    const Fit fit = fit_of(placed(model, origin, place[3]), poses);
-    if (round == 0 || worth(fit, aim) > worth(best.fit, aim)) best = {origin, place[3], fit, 0};
+    const MachineModel there = placed(model, origin, place[3]);
+    const Fit fit = fit_of(there, poses);
+    const double worth = search.worth(there, poses, fit);
+    if (round == 0 || worth > best_worth) {
+      best = {origin, place[3], fit, 0};
+      best_worth = worth;
+    }
     // The few had the margin that all have: no pose between them is worse.
-    const Fit seen = fit_of(placed(model, origin, place[3]), few);
+    const Fit seen = fit_of(there, few);
     if (fit.margin > seen.margin - 1e-3) break;
     also.push_back(place);
     for (const ProgramPose& at : poses) {

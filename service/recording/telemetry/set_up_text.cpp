@@ -247,11 +247,11 @@ std::string describe(LimitsFault fault, std::uint8_t joint, const MachineModel& 
       return fmt::format("there are {} keep-out boxes at most, those of the machine file included",
                          KeepOut::kMax);
     case LimitsFault::kTip:
-      return "a tip box has a minimum below a maximum along each of X, Y, Z; swap the numbers";
+      return "a tip box has a minimum below a maximum along each of X, Y, Z; give both corners so";
     case LimitsFault::kTipBeyond: {
       const TipBox& own = model.tip_box;
       return fmt::format(
-          "the machine file's tip box is {:.10g} to {:.10g} mm, which a tip box only shrinks",
+          "the machine file's tip box is {:.10g} to {:.10g} mm; give one that is inside of it",
           fmt::join(own.min, ","), fmt::join(own.max, ","));
     }
   }

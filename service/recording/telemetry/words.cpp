@@ -219,8 +219,8 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       break;
     case Alarm::kTipBox:
       text = fmt::format(
-          "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; report "
-          "this as a bug",
+          "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; reset and "
+          "jog the tip back; without an alarm before it report this as a bug",
           "XYZ"[joint >= 0 && joint < 3 ? joint : 0], value);
       break;
     case Alarm::kNoContact:

@@ -136,7 +136,7 @@ TEST(SetUpText, SaysOfLimitsWhatTheyAreAndWhatIsWrong) {
   EXPECT_EQ(limits_text(tipped, model), "tip box (X -1 to 9 mm, Y 0 to 8 mm, Z 2.5 to 7 mm)");
   model.tip_box = {true, {-1, 0, 2.5}, {9, 8, 7}};
   EXPECT_EQ(describe(LimitsFault::kTipBeyond, 0, model),
-            "the machine file's tip box is -1,0,2.5 to 9,8,7 mm, which a tip box only shrinks");
+            "the machine file's tip box is -1,0,2.5 to 9,8,7 mm; give one that is inside of it");
   EXPECT_EQ(describe(LimitsFault::kTravel, 0, model),
             "X has a travel of -600 to 600 mm, which soft limits only shrink");
   EXPECT_EQ(describe(LimitsFault::kEndless, 1, model), "C is endless, it has no travel to shrink");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "meridian/cycle/guard.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 
 namespace meridian::record {
@@ -33,11 +34,10 @@ void TipBoxCheck::find_tool(const RecordingRow& row) {
 }
 
 void TipBoxCheck::check(const TipBox& box, const Array3& tip, const RecordingRow& row) {
-  constexpr double kOutside = 1e-8;  // what the guard lets pass
   const bool has_before = cycle_ + 1 == row.cycle;
   const Array3 before = tip_over_base(model_, tool_length_mm_, has_before ? before_ : row.joints);
   const int axis =
-      has_before ? axis_leaving(box, tip, before, kOutside) : axis_outside(box, tip, kOutside);
+      has_before ? axis_leaving(box, tip, before, kGuardTip) : axis_outside(box, tip, kGuardTip);
   if (axis < 0) return;
   const auto i = static_cast<std::size_t>(axis);
   outside_.add(beyond_face(box, i, tip[i]), row.cycle, row.line);
