@@ -37,10 +37,10 @@ KeepOut drawn_keep_out(const MachineModel& own, test::Engine& engine) {
 }
 
 /// How near the setpoints come to a box: the largest depth, negative outside.
-double nearest(const std::vector<CycleRecord>& records, const KeepOut& keep_out) {
+double nearest(const std::vector<CycleRecord>& records, const MachineModel& model) {
   double depth = -1e9;
   for (const CycleRecord& record : records) {
-    for (const KeepOutBox& box : keep_out.boxes()) {
+    for (const KeepOutBox& box : model.keep_out.boxes()) {
       depth = std::max(depth, depth_inside(box, record.joints));
     }
   }
@@ -49,28 +49,16 @@ double nearest(const std::vector<CycleRecord>& records, const KeepOut& keep_out)
 
 TEST(DrawnKeepOut, IsSeenByPreflightPlannerAndGuardAlike) {
   constexpr unsigned kSeed = 20261128;
-  constexpr double kNear = 5e-3;  // mm, rad: what a box's face is bent by between samples
   const auto narrow = [](const MachineModel& own, test::Engine& engine) {
     MachineModel model = own;
     model.keep_out = drawn_keep_out(own, engine);
     return model;
   };
-  const auto stops = [](const std::vector<CycleRecord>& records, const MachineModel& model) {
-    return test::is_stopped(records, model, Alarm::kKeepOut);
-  };
   test::DrawnCounts counts;
   test::check_drawn_programs(
       kSeed, narrow,
-      [&stops](const test::DrawnRun& drawn) {
-        const KeepOut& boxes = drawn.narrowed.keep_out;
-        if (drawn.is_done) {
-          EXPECT_FALSE(stops(drawn.run.records, drawn.narrowed));
-          EXPECT_LE(nearest(drawn.run.records, boxes), kKeepOutRounding);
-        } else {
-          EXPECT_TRUE(stops(drawn.whole.records, drawn.narrowed) ||
-                      nearest(drawn.whole.records, boxes) > -kNear)
-              << drawn.run.report.reason;
-        }
+      [](const test::DrawnRun& drawn) {
+        test::expect_box_kept(drawn, Alarm::kKeepOut, nearest, kKeepOutRounding);
       },
       counts);
   EXPECT_GT(counts.run, counts.programs / 10);

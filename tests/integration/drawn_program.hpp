@@ -44,7 +44,9 @@ using Engine = std::mt19937_64;
   for (std::size_t i = 1; i < records.size(); ++i) {
     const Setpoint& now = records[i].setpoint;
     const GuardVerdict verdict =
-        check(model, now.position, now.velocity, records[i - 1].setpoint.position, period_s);
+        alarm == Alarm::kTipBox
+            ? check_tip_box(model, model.tool_length_mm, records[i].joints, records[i - 1].joints)
+            : check(model, now.position, now.velocity, records[i - 1].setpoint.position, period_s);
     if (verdict.alarm == alarm) return true;
   }
   return false;
@@ -56,6 +58,22 @@ struct DrawnRun {
   SimulatedRun run, whole;
   bool is_done = false;  ///< `run`, to its end
 };
+
+/// A program that is done kept its box: the guard is silent, and `nearest`, how deep its setpoints
+/// come into what is forbidden, is no more than `rounding`. One that is refused would not have kept
+/// it, or would have come near to it: boxes are checked with what a path bends by between samples.
+template <class Nearest>
+void expect_box_kept(const DrawnRun& drawn, Alarm alarm, const Nearest& nearest, double rounding) {
+  constexpr double kNear = 5e-3;  // mm, rad
+  if (drawn.is_done) {
+    EXPECT_FALSE(is_stopped(drawn.run.records, drawn.narrowed, alarm));
+    EXPECT_LE(nearest(drawn.run.records, drawn.narrowed), rounding);
+    return;
+  }
+  EXPECT_TRUE(is_stopped(drawn.whole.records, drawn.narrowed, alarm) ||
+              nearest(drawn.whole.records, drawn.narrowed) > -kNear)
+      << drawn.run.report.reason;
+}
 
 struct DrawnCounts {
   int programs = 0, run = 0, refused_first = 0, refused_between = 0;

@@ -39,18 +39,8 @@ double farthest(const std::vector<CycleRecord>& records, const MachineModel& mod
   return out;
 }
 
-bool is_guarded(const std::vector<CycleRecord>& records, const MachineModel& model) {
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const GuardVerdict verdict =
-        check_tip_box(model, model.tool_length_mm, records[i].joints, records[i - 1].joints);
-    if (verdict.alarm == Alarm::kTipBox) return true;
-  }
-  return false;
-}
-
 TEST(DrawnTipBox, IsSeenByPreflightPlannerAndGuardAlike) {
   constexpr unsigned kSeed = 20261129;
-  constexpr double kNear = 5e-3;  // mm: what the tip bends by between samples
   const auto narrow = [](const MachineModel& own, test::Engine& engine) {
     MachineModel model = own;
     model.tip_box = drawn_tip_box(own, engine);
@@ -60,14 +50,7 @@ TEST(DrawnTipBox, IsSeenByPreflightPlannerAndGuardAlike) {
   test::check_drawn_programs(
       kSeed, narrow,
       [](const test::DrawnRun& drawn) {
-        if (drawn.is_done) {
-          EXPECT_FALSE(is_guarded(drawn.run.records, drawn.narrowed));
-          EXPECT_LE(farthest(drawn.run.records, drawn.narrowed), kTipBoxRounding);
-        } else {
-          EXPECT_TRUE(is_guarded(drawn.whole.records, drawn.narrowed) ||
-                      farthest(drawn.whole.records, drawn.narrowed) > -kNear)
-              << drawn.run.report.reason;
-        }
+        test::expect_box_kept(drawn, Alarm::kTipBox, farthest, kTipBoxRounding);
       },
       counts);
   EXPECT_GT(counts.run, counts.programs / 10);

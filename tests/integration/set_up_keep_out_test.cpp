@@ -7,7 +7,6 @@
 
 #include "integration/live_run.hpp"
 #include "integration/set_up_plant.hpp"
-#include "service/protocol/limits_sum.hpp"
 
 /// Keep-out boxes of a machine that runs.
 namespace meridian::test {
@@ -37,16 +36,9 @@ TEST(SetUpKeepOut, StopsAHandThatJogsAndOutlivesTheService) {
   Process jog = tool(plant, {"ctl", "jog", "b3", "20", "--for", "1"});
   ASSERT_EQ(jog.wait(kToolPatience), 0) << jog.said();
   EXPECT_NEAR(plant.status().joints[0], 2.5, 1e-9);
-  ASSERT_NO_FATAL_FAILURE(end_service(plant));
-  plant.start_service();
   SoftLimits wanted;
   wanted.put(vice_order(2.5, 40).box);
-  EXPECT_EQ(reported_by(plant).soft_limits, wanted);
-  EXPECT_EQ(plant.status().limits, stream::limits_sum(wanted));
-  Process list = ctl_limits(plant, {"list"});
-  ASSERT_EQ(list.wait(kToolPatience), 0) << list.said();
-  EXPECT_NE(list.said().find("*  keep-out vice b3 2.5 40 b4 -400 400\n"), std::string::npos)
-      << list.said();
+  expect_limits_outlive_the_service(plant, wanted, "*  keep-out vice b3 2.5 40 b4 -400 400\n");
 }
 
 TEST(SetUpKeepOut, RefusesAMoveIntoTheBoxAndOneThroughIt) {
@@ -57,19 +49,10 @@ TEST(SetUpKeepOut, RefusesAMoveIntoTheBoxAndOneThroughIt) {
   const dds::Reply put_up = anna.ask(vice_order(20, 40));
   ASSERT_TRUE(put_up.is_accepted) << put_up.text;
   ASSERT_TRUE(plant.enable()) << plant.service().said();
-  const JointVector before = plant.status().joints;
   for (const char* joints : {"b3=30", "b3=60"}) {
-    Process move = tool(plant, {"ctl", "move", "--joints", joints, "--feed", "3000"});
-    EXPECT_NE(move.wait(milliseconds(20'000)), 0) << move.said();
-    EXPECT_NE(move.said().find("keep-out box vice"), std::string::npos) << move.said();
-    EXPECT_EQ(plant.status().joints, before);
-    EXPECT_TRUE(plant.runs_until([](const dds::Status& status) {
-      return status.state == State::kReady && status.session == 0;
-    })) << plant.standing();
+    expect_move_refused(plant, joints, "keep-out box vice");
   }
-  Process beside = tool(plant, {"ctl", "move", "--joints", "b3=19", "--feed", "3000"});
-  EXPECT_EQ(beside.wait(milliseconds(20'000)), 0) << beside.said();
-  EXPECT_NEAR(plant.status().joints[0], 19, 1e-9);
+  expect_moved(plant, 19);
 }
 
 TEST(SetUpKeepOut, IsSeenByTheStationsPreflightAndOpensAgain) {
@@ -86,11 +69,7 @@ TEST(SetUpKeepOut, IsSeenByTheStationsPreflightAndOpensAgain) {
     const dds::Reply reply = anna.ask(order);
     ASSERT_TRUE(reply.is_accepted) << reply.text;
   }
-  Process stream = tool(plant, {"stream", part});
-  EXPECT_EQ(stream.wait(kToolPatience), 3) << stream.said();
-  EXPECT_NE(stream.said().find("joints enter the keep-out box "), std::string::npos)
-      << stream.said();
-  EXPECT_NE(stream.said().find("part.apt:"), std::string::npos) << stream.said();
+  expect_refused_by_preflight(plant, part, "joints enter the keep-out box ");
   Process open = ctl_limits(plant, {"open"});
   ASSERT_EQ(open.wait(kToolPatience), 0) << open.said();
   EXPECT_TRUE(reported_by(plant).soft_limits.empty());

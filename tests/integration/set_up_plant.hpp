@@ -11,6 +11,7 @@
 
 #include "integration/plant.hpp"
 #include "service/protocol/frame_sum.hpp"
+#include "service/protocol/limits_sum.hpp"
 #include "service/protocol/machine_finder.hpp"
 
 namespace meridian::test {
@@ -201,6 +202,47 @@ class SetUpStation {
 [[nodiscard]] inline Process ctl_limits(const Plant& plant, std::vector<std::string> words) {
   words.insert(words.begin(), {"ctl", "limits"});
   return tool(plant, words);
+}
+
+/// A move of the joints is refused for `why`: nothing moves, and the machine is free.
+inline void expect_move_refused(Plant& plant, const std::string& joints, const std::string& why) {
+  const JointVector before = plant.status().joints;
+  Process move = tool(plant, {"ctl", "move", "--joints", joints, "--feed", "3000"});
+  EXPECT_NE(move.wait(milliseconds(20'000)), 0) << move.said();
+  EXPECT_NE(move.said().find(why), std::string::npos) << move.said();
+  EXPECT_EQ(plant.status().joints, before);
+  EXPECT_TRUE(plant.runs_until([](const dds::Status& status) {
+    return status.state == State::kReady && status.session == 0;
+  })) << plant.standing();
+}
+
+/// A move of joint b3 to `b3_mm` is made.
+inline void expect_moved(Plant& plant, int b3_mm) {
+  Process move =
+      tool(plant, {"ctl", "move", "--joints", "b3=" + std::to_string(b3_mm), "--feed", "3000"});
+  EXPECT_EQ(move.wait(milliseconds(20'000)), 0) << move.said();
+  EXPECT_NEAR(plant.status().joints[0], b3_mm, 1e-9);
+}
+
+/// The service ends, and the one behind it has the soft limits `wanted`; the list shows `row`.
+inline void expect_limits_outlive_the_service(Plant& plant, const SoftLimits& wanted,
+                                              const std::string& row) {
+  ASSERT_NO_FATAL_FAILURE(end_service(plant));
+  plant.start_service();
+  EXPECT_EQ(reported_by(plant).soft_limits, wanted);
+  EXPECT_EQ(plant.status().limits, stream::limits_sum(wanted));
+  Process list = ctl_limits(plant, {"list"});
+  ASSERT_EQ(list.wait(kToolPatience), 0) << list.said();
+  EXPECT_NE(list.said().find(row), std::string::npos) << list.said();
+}
+
+/// `meridian stream` refuses the part for `why`, with its line, before anything moves.
+inline void expect_refused_by_preflight(Plant& plant, const std::string& part,
+                                        const std::string& why) {
+  Process stream = tool(plant, {"stream", part});
+  EXPECT_EQ(stream.wait(kToolPatience), 3) << stream.said();
+  EXPECT_NE(stream.said().find(why), std::string::npos) << stream.said();
+  EXPECT_NE(stream.said().find("part.apt:"), std::string::npos) << stream.said();
 }
 
 }  // namespace meridian::test

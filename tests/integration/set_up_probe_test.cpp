@@ -76,6 +76,7 @@ TEST_F(SetUpProbe, ReportsItsContactNotesTheTouchAndGoesBack) {
       "20", {"--retract", "2", "--touches", touches, "--radius", "3", "--corner-radius", "3"});
   ASSERT_EQ(found.wait(milliseconds(30'000)), 0) << found.said();
   const std::string said = found.said();
+  std::fputs(said.c_str(), stdout);
   const double at = number_behind("contact at ", said);
   const double uncertainty = number_behind("uncertainty ", said);
   EXPECT_GT(uncertainty, 0);

@@ -7,7 +7,6 @@
 #include "integration/set_up_plant.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/protocol/limits_sum.hpp"
 
 /// The tip box of a machine that runs.
 namespace meridian::test {
@@ -41,16 +40,9 @@ TEST(SetUpTipBox, StopsAHandThatJogsAndOutlivesTheService) {
   const dds::Status status = plant.status();
   EXPECT_NEAR(tip_over_base(model, status.tool_length_mm, status.joints)[0], 2.5, 1e-9);
   EXPECT_EQ(status.alarm, Alarm::kNone);
-  ASSERT_NO_FATAL_FAILURE(end_service(plant));
-  plant.start_service();
   SoftLimits wanted;
   wanted.put(TipBox{true, {-2.5, -900, -900}, {2.5, 900, 900}});
-  EXPECT_EQ(reported_by(plant).soft_limits, wanted);
-  EXPECT_EQ(plant.status().limits, stream::limits_sum(wanted));
-  Process list = ctl_limits(plant, {"list"});
-  ASSERT_EQ(list.wait(kToolPatience), 0) << list.said();
-  EXPECT_NE(list.said().find("*  tip      -2.5,-900,-900 2.5,900,900 mm\n"), std::string::npos)
-      << list.said();
+  expect_limits_outlive_the_service(plant, wanted, "*  tip      -2.5,-900,-900 2.5,900,900 mm\n");
 }
 
 TEST(SetUpTipBox, RefusesAMoveThatTakesTheTipOut) {
@@ -61,17 +53,8 @@ TEST(SetUpTipBox, RefusesAMoveThatTakesTheTipOut) {
   const dds::Reply set = anna.ask(tip_order(plant, 20));
   ASSERT_TRUE(set.is_accepted) << set.text;
   ASSERT_TRUE(plant.enable()) << plant.service().said();
-  const JointVector before = plant.status().joints;
-  Process move = tool(plant, {"ctl", "move", "--joints", "b3=30", "--feed", "3000"});
-  EXPECT_NE(move.wait(milliseconds(20'000)), 0) << move.said();
-  EXPECT_NE(move.said().find("tip box"), std::string::npos) << move.said();
-  EXPECT_EQ(plant.status().joints, before);
-  EXPECT_TRUE(plant.runs_until([](const dds::Status& status) {
-    return status.state == State::kReady && status.session == 0;
-  })) << plant.standing();
-  Process inside = tool(plant, {"ctl", "move", "--joints", "b3=19", "--feed", "3000"});
-  EXPECT_EQ(inside.wait(milliseconds(20'000)), 0) << inside.said();
-  EXPECT_NEAR(plant.status().joints[0], 19, 1e-9);
+  expect_move_refused(plant, "b3=30", "tip box");
+  expect_moved(plant, 19);
 }
 
 TEST(SetUpTipBox, IsSeenByTheStationsPreflightAndIsClearedAgain) {
@@ -82,11 +65,7 @@ TEST(SetUpTipBox, IsSeenByTheStationsPreflightAndIsClearedAgain) {
   SetUpOperator anna(plant, 100);
   const dds::Reply reply = anna.ask(tip_order(plant, 0.5));
   ASSERT_TRUE(reply.is_accepted) << reply.text;
-  Process stream = tool(plant, {"stream", part});
-  EXPECT_EQ(stream.wait(kToolPatience), 3) << stream.said();
-  EXPECT_NE(stream.said().find("the tip leaves the tip box: X at "), std::string::npos)
-      << stream.said();
-  EXPECT_NE(stream.said().find("part.apt:"), std::string::npos) << stream.said();
+  expect_refused_by_preflight(plant, part, "the tip leaves the tip box: X at ");
   Process clear = ctl_limits(plant, {"clear", "tip"});
   ASSERT_EQ(clear.wait(kToolPatience), 0) << clear.said();
   EXPECT_TRUE(reported_by(plant).soft_limits.empty());

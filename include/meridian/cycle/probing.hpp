@@ -38,9 +38,9 @@ enum class ProbeNews : std::uint8_t {
   kLost    ///< the probe that seeks contact is connected no more
 };
 
-/// Whether joints move by setpoints: those of drives that are homing are their feedback.
+/// Whether joints move by setpoints. Drives that are homing move by themselves, at velocity 0.
 [[nodiscard]] inline bool is_in_motion(const Cycle& c) noexcept {
-  if (!is_on_path(c.state.state) || c.state.homing.is_active) return false;
+  if (!is_on_path(c.state.state)) return false;
   return std::any_of(c.state.velocity.begin(), c.state.velocity.end(),
                      [](double velocity) { return velocity != 0; });
 }

@@ -160,7 +160,7 @@ int run_move(const MoveOptions& options, const dds::MachineInfo& machine,
   const dds::Status status = *link.status();
   if (status.state != State::kReady || status.session != 0) {
     return print_refusal("the machine is " + std::string(name_of(status.state)) +
-                       "; a move begins in Ready, with no program");
+                         "; a move begins in Ready, with no program");
   }
   model->tool_length_mm = status.tool_length_mm;
   const auto move = move_of(options, machine, *model, status.joints);

@@ -92,7 +92,7 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   if (!probing.options.retract_mm) return kFine;
   if (result.was_stopped || stop_flag().load()) {
     return print_failure("it was stopped meanwhile, and stands where it rests: no retract",
-                        kVerdictNo);
+                         kVerdictNo);
   }
   const dds::Status status = *probing.link.status();
   const double way_in_mm = (contact - probing.from).norm();
@@ -121,8 +121,8 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
       break;
     case stream::ProbeEnd::kNoContact:
       return print_failure(text::printed("no contact within %.10g mm; the tip stands at their end",
-                                        probing.options.distance_mm),
-                          kVerdictNo);
+                                         probing.options.distance_mm),
+                           kVerdictNo);
     case stream::ProbeEnd::kRefused:
       return print_refusal(result.text);
     case stream::ProbeEnd::kStopped:
@@ -165,7 +165,7 @@ int run_probing(const ProbingOptions& options, const ToolOptions& tool,
   const auto toward = axis_of_work_frame(options.toward);
   if (!toward || !(options.distance_mm > 0) || !options.feed) {
     return print_failure("probe needs --toward -x, +x, -y, +y, -z or +z, --distance and --feed",
-                        kUsage);
+                         kUsage);
   }
   if (options.retract_mm.value_or(0) > options.distance_mm) {
     return print_failure("--retract goes back along the line: no farther than --distance", kUsage);

@@ -33,8 +33,8 @@ struct Fit {
 /// How `poses` fit with the workpiece of `model` where it is.
 [[nodiscard]] Fit fit_of(const MachineModel& model, const std::vector<ProgramPose>& poses);
 
-/// What `poses` take on `branch` by their feeds and by the velocities and accelerations of joints and
-/// drives, s. An estimate: corners that are smoothed, jerk and approaches are not in it.
+/// What `poses` take on `branch` by their feeds and by the velocities and accelerations of joints
+/// and drives, s. An estimate: corners that are smoothed, jerk and approaches are not in it.
 [[nodiscard]] double estimated_time_s(const MachineModel& model,
                                       const std::vector<ProgramPose>& poses, int branch);
 

@@ -49,7 +49,7 @@ std::string finding_text(const FitFinding& finding, const MachineModel& model) {
   const double end = is_min ? joint.limits.travel_min : joint.limits.travel_max;
   const std::string where =
       finding.lines == 1 ? "" : printed(", farthest in line %u", finding.farthest_line);
-  return printed("%s goes %.3f %s beyond its travel's end at %.3f ", joint.name.c_str(),
+  return printed("%s goes %.3f %s beyond its end at %.3f ", joint.name.c_str(),
                  at_edge(joint, finding.farthest), unit_of(joint), at_edge(joint, end)) +
          lines + where;
 }

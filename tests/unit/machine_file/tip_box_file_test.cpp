@@ -40,7 +40,7 @@ TEST(TipBoxFile, RefusesABoxThatMeansNothingAndSaysWhy) {
     const char* reason;
   } kCases[] = {
       {"[tip_box]\nmin_mm = [-300, -200, -100]\n", "max_mm"},
-      {"[tip_box]\nmin_mm = [300, -200, -100]\nmax_mm = [-300, 200, 500]\n", "swap"},
+      {"[tip_box]\nmin_mm = [300, -200, -100]\nmax_mm = [-300, 200, 500]\n", "both corners"},
       {"[tip_box]\nmin_mm = [-300, -200]\nmax_mm = [300, 200, 500]\n", "min_mm"},
       {"[tip_box]\nmin = [-300, -200, -100]\nmax_mm = [300, 200, 500]\n", "min"},
       {"[tip_box]\nmin_mm = [200, -200, -100]\nmax_mm = [300, 200, 500]\n", "at home"},
