@@ -27,6 +27,8 @@ class MadePlan {
 
   /// Pieces that follow carry `epoch`.
   void set_epoch(std::uint16_t epoch) { epoch_ = epoch; }
+  /// What comes is planned for so many times its feed.
+  void set_feed_factor(double factor) { feed_factor_ = factor; }
 
   /// Moves the tip by `delta` inside `limits`; stops may use them too, FaultStops twice the
   /// acceleration and four times the jerk.
@@ -146,6 +148,7 @@ class MadePlan {
   TimePiece next_piece(TimeKind kind) const {
     TimePiece piece;
     piece.kind = kind;
+    piece.feed_factor = feed_factor_;
     piece.is_from_rest = is_next_from_rest_;
     piece.epoch = epoch_;
     piece.window = window_;
@@ -166,6 +169,7 @@ class MadePlan {
   std::uint64_t index_ = 0, sequence_ = 0;
   std::uint32_t window_ = 0;
   std::uint16_t epoch_ = 1;
+  double feed_factor_ = 1;
   bool is_next_from_rest_ = true;
   PathPiece long_path_;  ///< of cut_with_tail
   PathLimits long_limits_;

@@ -20,8 +20,9 @@ using test::refusal_of;
 
 /// A cut of 200 mm along x that is loaded, and a probe in the spindle.
 struct Probed : Program {
-  explicit Probed(ProbeInput probe = ProbeInput::kFree) {
+  explicit Probed(ProbeInput probe = ProbeInput::kFree, double planned_feed_factor = 1) {
     say(probe);
+    plan.set_feed_factor(planned_feed_factor);
     plan.cut({200, 0, 0}, kLimits);
     plan.barrier(TimeKind::kEnd);
     EXPECT_TRUE(world.run_until(State::kLoaded, 1));
@@ -170,12 +171,17 @@ TEST(Probing, WaitsForDrivesThatNeverComeUpToItsEndNoLongerThanTheySettle) {
   EXPECT_NEAR(waited_s, kProbeSettle_s, 0.01);
 }
 
-TEST(Probing, IsNoFasterThanItsFeed) {
-  Probed p;
-  p.world.command(Verb::kFeedOverride, 1.5);
-  p.seek(0.5);
-  ASSERT_EQ(p.world.now(), State::kRunning);
-  EXPECT_EQ(p.world.records.back().rate, 1);
+TEST(Probing, IsNoFasterThanItsFeedWhateverTheOverride) {
+  for (const bool is_sought : {true, false}) {
+    Probed p(ProbeInput::kFree, 1.25);
+    p.world.machine.max_feed_override = 1.25;
+    p.world.command(Verb::kFeedOverride, 1.25);
+    p.world.command(Verb::kStart, is_sought ? kStartProbing : 0);
+    p.world.run_for(0.5);
+    ASSERT_EQ(p.world.now(), State::kRunning);
+    const double of_the_feed = 1.25 * p.world.records.back().rate;
+    EXPECT_NEAR(of_the_feed, is_sought ? 1 : 1.25, 1e-9);
+  }
 }
 
 TEST(Probing, AMotionThatBeginsInContactAndStaysInItIsAnAlarm) {
