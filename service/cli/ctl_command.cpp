@@ -92,6 +92,12 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   return kVerdictNo;
 }
 
+[[nodiscard]] bool is_said(const CLI::Option* option) { return option->count() > 0; }
+
+[[nodiscard]] bool has_any(const std::vector<const CLI::Option*>& of) {
+  return std::any_of(of.begin(), of.end(), is_said);
+}
+
 /// What is wrong with the options beside the verb; nullptr: nothing.
 [[nodiscard]] const char* misplaced(Verb verb, const CtlOptions& options) {
   if (options.is_for_dry_run && !may_be_dry(verb)) return "--dry-run is for enable and start alone";
@@ -99,10 +105,6 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
     return options.wait.empty() ? nullptr
                                 : "--wait is not for jog, which ends when the joint rests";
   }
-  const auto is_said = [](const CLI::Option* option) { return option->count() > 0; };
-  const auto has_any = [&](const std::vector<const CLI::Option*>& of) {
-    return std::any_of(of.begin(), of.end(), is_said);
-  };
   if (verb != Verb::kFrame && has_any(options.of_frame))
     return "--at and --name are for frame alone";
   if (verb != Verb::kTool && has_any(options.of_tool)) {
@@ -163,12 +165,9 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
 
 /// What is wrong with the options beside a composed verb; nullptr: nothing.
 [[nodiscard]] const char* misplaced_beside(const CtlOptions& options) {
-  const auto is_said = [](const CLI::Option* option) { return option->count() > 0; };
-  const auto has_any = [&](const std::vector<const CLI::Option*>& of) {
-    return std::any_of(of.begin(), of.end(), is_said);
-  };
   if (options.is_for_dry_run) return "--dry-run is for enable and start alone";
   if (has_any(options.of_frame)) return "--at and --name are for frame alone";
+  if (!options.wait.empty()) return "--wait is not for move, probe and touch-off";
   const bool is_probe = options.verb == kProbe, is_move = options.verb == kMove;
   if (is_said(options.retract) && !is_probe) return "--retract is for probe alone";
   const bool has_target =
@@ -176,6 +175,10 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
   if (has_target && !is_move) return "--tip, --joints and --to are for move alone";
   if (is_move && (has_any(options.of_touch_off) || has_any(options.of_tool))) {
     return "options of a touch are for touch-off and probe alone";
+  }
+  const TouchOffOptions& touch = options.touch_off;
+  if (is_probe && (!touch.as.empty() || touch.height || touch.is_confirmed)) {
+    return "--as, --height and --confirm are for touch-off alone";
   }
   const bool has_distance = options.jog.distance != 0;
   if (has_distance && !is_probe) return "--distance is for jog and probe alone";
@@ -185,8 +188,7 @@ void warn_of_others(const stream::OperatorLink& link, const std::string& machine
 
 /// What is found becomes a word of `frame` or `tool`, a move a program and its `start`.
 int run_composed(CtlOptions& options) {
-  const bool has_words = !options.values.empty() || !options.wait.empty();
-  if (has_words && options.verb != kTouchOff) {
+  if (!options.values.empty() && options.verb != kTouchOff) {
     std::fprintf(stderr, "meridian: %s\n",
                  options.verb == kMove
                      ? "move takes --tip, --joints or --to, and --feed alone"

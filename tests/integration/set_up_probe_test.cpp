@@ -93,6 +93,20 @@ TEST_F(SetUpProbe, ReportsItsContactNotesTheTouchAndGoesBack) {
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 2) << rows;
 }
 
+TEST_F(SetUpProbe, DoesNotGoBackWhereSomebodyStoppedItMeanwhile) {
+  ASSERT_NO_FATAL_FAILURE(start_in_front_of_a_block());
+  Process held = probe("20", {"--retract", "2"});
+  ASSERT_TRUE(plant.wait_for(State::kRunning, milliseconds(10'000))) << held.said();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kHold));
+  ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kResume));
+  EXPECT_EQ(held.wait(milliseconds(30'000)), 1) << held.said();
+  EXPECT_NE(held.said().find("contact at "), std::string::npos) << held.said();
+  EXPECT_NE(held.said().find("no retract"), std::string::npos) << held.said();
+  ASSERT_NO_FATAL_FAILURE(expect_ready());
+  EXPECT_GT(tip().x(), tip_x + kAhead_mm - 0.1) << "where it touched";
+}
+
 TEST_F(SetUpProbe, IsRefusedInContactAndLetOutOfIt) {
   ASSERT_NO_FATAL_FAILURE(start_in_front_of_a_block());
   Process found = probe("20");

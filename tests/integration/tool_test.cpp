@@ -84,6 +84,9 @@ TEST_F(Tool, SaysWhatIsForADryRunAloneToADryRunAlone) {
   EXPECT_EQ(plant.status().state, State::kOff);
   Process misplaced = run({"ctl", "resume", "--dry-run"});
   EXPECT_EQ(misplaced.wait(kShort), 2) << misplaced.said();
+  Process probe =
+      run({"ctl", "probe", "--toward=+x", "--distance", "5", "--feed", "60", "--dry-run"});
+  EXPECT_EQ(probe.wait(kShort), 2) << "drives would move: " << probe.said();
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kDryRun, 1));
   Process dry = run({"ctl", "enable", "--dry-run", "--wait", "Ready"});
   EXPECT_EQ(dry.wait(kShort), 0) << dry.said();
