@@ -16,6 +16,9 @@ struct Output {
   bool is_homing =
       false;              ///< HomingMethod::kByDrive: the drive searches, `position` is as it reads
   bool is_reset = false;  ///< the operator resets a fault: clear your own
+  /// From the position before to this one by the service's clock: setpoints come unevenly, two in
+  /// one period or none. Who interpolates goes by this, not by the period.
+  double elapsed_s = 0;
 };
 
 /// What one axis reports in one period.

@@ -96,6 +96,7 @@ void HalHardware::write(int axis, const drive::Output& output) noexcept {
     mask = is_set ? mask | bit : mask & ~bit;
   };
   joint.is_on = output.is_on;
+  elapsed_s_ = output.elapsed_s;
   setpoint_.position[i] = output.position + joint.hidden;
   setpoint_.velocity[i] = output.is_on ? output.velocity : 0;
   set(setpoint_.on_mask, output.is_on);
@@ -110,7 +111,7 @@ void HalHardware::write(int axis, const drive::Output& output) noexcept {
 
 void HalHardware::exchange(double dt_s) noexcept {
   const std::int64_t now_ns = monotonic_ns();
-  setpoint_.end_ns = grid_.end_of(now_ns, dt_s);
+  setpoint_.end_ns = grid_.end_of(now_ns, setpoint_.on_mask != 0 ? elapsed_s_ : dt_s);
   ++setpoint_.number;
   meridian_hal_write(&shared_.setpoint_lock,
                      &shared_.setpoints[setpoint_.number % MERIDIAN_HAL_KEPT], &setpoint_,

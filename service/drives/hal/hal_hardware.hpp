@@ -54,6 +54,7 @@ class HalHardware final : public drive::Hardware {
   std::vector<Joint> joints_;
   std::int64_t bridge_ns_;
   PeriodGrid grid_;
+  double elapsed_s_ = 0;  ///< by the service's clock, of the axes alike
   meridian_hal_setpoint setpoint_{};
   meridian_hal_report report_{};
   std::int64_t heard_ns_ = 0;  ///< when the newest report came

@@ -6,6 +6,12 @@
 
 namespace meridian::drive {
 
+namespace {
+
+constexpr std::int64_t kSlack = 2;  // periods of two clocks
+
+}  // namespace
+
 static_assert(static_cast<int>(Probe::kFree) == static_cast<int>(ProbeInput::kFree) &&
               static_cast<int>(Probe::kContact) == static_cast<int>(ProbeInput::kContact));
 
@@ -62,6 +68,7 @@ void Group::apply(const dds::DriveCommand& command) noexcept {
 void Group::obey_new_master() noexcept {
   has_setpoint_ = is_new_ = false;
   age_ = {};
+  reached_cycle_ = 0;
   bridge_cycles_ = own_bridge_cycles_;
   for (const Bridge& bridge : bridges_) {
     if (bridge.by == pin_.master()) bridge_cycles_ = bridge.cycles;
@@ -126,10 +133,21 @@ Drop Group::accept(const dds::SetpointSample& setpoint) noexcept {
 /// Between the setpoint that the drives worked with last and the newest: by the sender's cycles,
 /// and no longer than this side's own periods allow.
 double Group::elapsed_s() const noexcept {
-  constexpr std::int64_t kSlack = 2;  // periods of two clocks
   const std::uint64_t cycles = newest_.setpoint.cycle - followed_cycle_;
   const auto most = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
   return cycle_s_ * static_cast<double>(std::min(cycles, most));
+}
+
+/// How far this period leads on by the sender's cycles: not at all where the bridge has led there
+/// already. Own periods count where no setpoint leads.
+double Group::advance_s(int periods, int bridged) noexcept {
+  const std::uint64_t before = reached_cycle_;
+  reached_cycle_ = is_new_ ? std::max(before, newest_.setpoint.cycle)
+                           : before + static_cast<std::uint64_t>(bridged);
+  const bool is_led = before != 0 && (is_new_ || bridged == periods);
+  if (!is_led || is_off()) return cycle_s_ * periods;
+  const auto most = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
+  return cycle_s_ * static_cast<double>(std::min(reached_cycle_ - before, most));
 }
 
 AxisInput Group::input_of(std::size_t joint, int bridged) const noexcept {
@@ -156,9 +174,12 @@ void Group::work(int periods, Hardware& hardware) noexcept {
   bridge_left_ -= bridged;
   if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
   periods_since_ += periods;
+  const double advance = advance_s(periods, bridged);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const int axis = static_cast<int>(i);
-    hardware.write(axis, axes_[i].lead(input_of(joints_[i], bridged), dt_s, axis, hardware));
+    Output output = axes_[i].lead(input_of(joints_[i], bridged), dt_s, axis, hardware);
+    output.elapsed_s = advance;
+    hardware.write(axis, output);
   }
   if (is_new_) {
     followed_cycle_ = newest_.setpoint.cycle;

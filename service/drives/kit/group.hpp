@@ -82,6 +82,7 @@ class Group : public Receiver {
   void see_inputs(Hardware& hardware) noexcept;
   [[nodiscard]] AxisInput input_of(std::size_t joint, int bridged) const noexcept;
   [[nodiscard]] double elapsed_s() const noexcept;
+  [[nodiscard]] double advance_s(int periods, int bridged) noexcept;
 
   std::vector<FollowingAxis> axes_;
   std::vector<std::size_t> joints_;        ///< of the axes
@@ -102,6 +103,7 @@ class Group : public Receiver {
   int bridge_left_ = 0;      ///< periods for which the newest setpoint's velocity still leads on
   int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
   std::uint64_t followed_cycle_ = 0;  ///< of the setpoint that the drives worked with last
+  std::uint64_t reached_cycle_ = 0;   ///< to which setpoint or bridge has led the axes
   std::int64_t periods_since_ = 0;    ///< own periods since then
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
   bool is_emergency_stop_ = false;

@@ -82,6 +82,19 @@ TEST_F(Follow, PositionsAreThoseOfOnePeriodAgoWhateverThePeriodsAre) {
   }
 }
 
+TEST_F(Follow, BeyondTheNewestSetpointItsVelocityLeadsFromItsPosition) {
+  begin(2);
+  for (int n = 3; n <= 10; ++n) {
+    send(n);
+    step((n - 1) * kPeriod_ns);
+  }
+  for (int n = 11; n <= 60; ++n) {  // each comes when its time is over already
+    step(n * kPeriod_ns + 900'000);
+    EXPECT_NEAR(position(), way(1e-9 * static_cast<double>((n - 1) * kPeriod_ns + 900'000)), 2e-3);
+    send(n);
+  }
+}
+
 TEST_F(Follow, LateSetpointsAreBridgedByTheVelocity) {
   begin(2);
   for (int n = 3; n <= 10; ++n) {

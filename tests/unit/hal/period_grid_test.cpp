@@ -15,11 +15,23 @@ TEST(PeriodGrid, EndsAreAPeriodApartThoughWakeUpsAreNot) {
   for (int n = 11; n < 1000; ++n) {
     const std::int64_t late = n % 2 == 0 ? 800'000 : 0;
     const std::int64_t end = grid.end_of(n * kPeriod_ns + late, 1e-3);
-    // It gives way by a 64th of how far it is off, which is less than two periods.
-    EXPECT_NEAR(static_cast<double>(end - before), 1e6, 2e6 / 64) << n;
+    // It gives way by a 256th of how far it is off, which is less than four periods.
+    EXPECT_NEAR(static_cast<double>(end - before), 1e6, 4e6 / 256) << n;
     before = end;
   }
   EXPECT_NEAR(static_cast<double>(before), 1000.4e6, 0.05e6) << "in the middle of the wake-ups";
+}
+
+TEST(PeriodGrid, TwoSetpointsAtOnceAndThenNoneAreWhereTheyBelong) {
+  PeriodGrid grid(kPeriod_ns);
+  const std::int64_t first = grid.end_of(10 * kPeriod_ns, 1e-3);
+  const std::int64_t two = grid.end_of(11 * kPeriod_ns, 2e-3);
+  EXPECT_NEAR(static_cast<double>(two - first), 2e6, 1e6 / 256);
+  const std::int64_t bridged = grid.end_of(12 * kPeriod_ns, 1e-3);
+  EXPECT_NEAR(static_cast<double>(bridged - two), 1e6, 1e6 / 256);
+  const std::int64_t same = grid.end_of(13 * kPeriod_ns, 0);
+  EXPECT_GE(same, bridged);
+  EXPECT_LT(same, bridged + 1000) << "the bridge was there already";
 }
 
 TEST(PeriodGrid, BeginsAnewBehindAStall) {

@@ -66,8 +66,11 @@ static void follow(struct meridian_hal_follow* me, const struct meridian_hal_set
 }
 
 /// Beyond the newest setpoint the joint goes on with its velocity: a late one is bridged, no jump.
-static void bridge(struct meridian_hal_follow* me, int joint, double dt_s) {
-  me->position[joint] += me->velocity[joint] * dt_s;
+static void bridge(struct meridian_hal_follow* me, const struct meridian_hal_setpoint* newest,
+                   int64_t at_ns, int joint) {
+  me->velocity[joint] = newest->velocity[joint];
+  me->position[joint] =
+      newest->position[joint] + newest->velocity[joint] * 1e-9 * (double)(at_ns - newest->end_ns);
 }
 
 void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal_shared* shared,
@@ -104,7 +107,7 @@ void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal
     switch (me->phase[i]) {
       case MERIDIAN_HAL_FOLLOWS:
         if (newest->end_ns < at_ns) {
-          bridge(me, i, dt_s);
+          bridge(me, newest, at_ns, i);
         } else {
           follow(me, setup, at_ns, i);
         }
