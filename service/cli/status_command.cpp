@@ -151,8 +151,9 @@ int run_status(StatusOptions& options) {
                    options.peer.machine.c_str());
       return kNoPeer;
     }
-    output.print(options.is_json ? to_json(*status, *machine)
-                                 : describe(*status, *machine, tool_of(*status, model)));
+    const std::optional<Pose<double>> tool = tool_of(*status, model);
+    output.print(options.is_json ? to_json(*status, *machine, tool)
+                                 : describe(*status, *machine, tool));
   } while (options.is_watching && !stop_flag().load());
   return kFine;
 }

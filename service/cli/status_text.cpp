@@ -160,16 +160,19 @@ std::string keep_out_json(const dds::MachineInfo& machine) {
   return "{" + text + "}";
 }
 
+/// "[1,2,3]".
+template <class Three>
+std::string array_json(const Three& values) {
+  std::string text = "[";
+  text += json_number("%.17g", values[0]) + "," + json_number("%.17g", values[1]) + ",";
+  return text + json_number("%.17g", values[2]) + "]";
+}
+
 /// "{"min_mm":[0,0,0],"max_mm":[9,9,9]}"; null where no tip box is set.
 std::string tip_box_json(const dds::MachineInfo& machine) {
   const TipBox& tip = machine.soft_limits.tip_box();
-  const auto ends = [](const Array3& end) {
-    std::string text = "[";
-    text += json_number("%.17g", end[0]) + "," + json_number("%.17g", end[1]) + ",";
-    return text + json_number("%.17g", end[2]) + "]";
-  };
   if (!tip.is_set) return "null";
-  return "{\"min_mm\":" + ends(tip.min) + ",\"max_mm\":" + ends(tip.max) + "}";
+  return "{\"min_mm\":" + array_json(tip.min) + ",\"max_mm\":" + array_json(tip.max) + "}";
 }
 
 /// "{"b3_mm":[-40,42.5],"b4_rad":[-0.1,0.1]}".
@@ -284,7 +287,8 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
   return text;
 }
 
-std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) {
+std::string to_json(const dds::Status& status, const dds::MachineInfo& machine,
+                    const std::optional<Pose<double>>& tool) {
   std::string text = "{";
   append(text, "\"machine\":%s,", json_quoted(machine.name).c_str());
   append(text, "\"state\":\"%s\",\"alarm\":%d,\"epoch\":%u,\"status_sequence\":%llu,",
@@ -339,6 +343,9 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine) 
     const dds::JointInfo& joint = machine.joints[i];
     add(joint.name + (joint.is_rotary ? "_rad" : "_mm"), "%.17g", status.joints[i]);
   }
+  append(text, "\"limiting\":%s,", json_quoted(held_by(status, machine)).c_str());
+  text += "\"tip_mm\":" + (tool ? array_json(tool->tip) : "null") + ",";
+  text += "\"tool_axis\":" + (tool ? array_json(tool->axis) : "null") + ",";
   append(text, "\"message\":%s}", json_quoted(status.message).c_str());
   return text;
 }

@@ -29,7 +29,9 @@ struct TimeToGo {
 /// known.
 [[nodiscard]] std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
                                    const std::optional<Pose<double>>& tool = {});
-/// A status for a program: one JSON object on one line; units are in the names.
-[[nodiscard]] std::string to_json(const dds::Status& status, const dds::MachineInfo& machine);
+/// A status for a program: one JSON object on one line; units are in the names. Without `tool` its
+/// tip and axis are null.
+[[nodiscard]] std::string to_json(const dds::Status& status, const dds::MachineInfo& machine,
+                                  const std::optional<Pose<double>>& tool = {});
 
 }  // namespace meridian::cli

@@ -1,53 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// browser_test.mjs BIN SOURCE FETCHED PICTURES: the panel in a real browser, in front of a service with simulated drives.
+// The panel in a real browser, in front of a service with simulated drives: programs, jogging, strangers.
 import { connect } from "node:net";
-import { mkdirSync } from "node:fs";
-import { createRequire } from "node:module";
-import { join, resolve } from "node:path";
-import { familyOf, findPlaywright, kLarge, kSmall, memoryOf, openBrowser, Plant, sleep, until } from "./plant.mjs";
+import { familyOf, kSmall, memoryOf, openBrowser, sleep, until } from "./plant.mjs";
+import { afterStalls, click, confirmed, enabled, inState, load, must, phase, picture, runTests, setFeedOverride, stateOf } from "./page_hand.mjs";
+import { fetched, pictures, plant, playwright } from "./browser_case.mjs";
 
-const [bin, source, fetched, pictures] = process.argv.slice(2).map((path) => resolve(path));
-const playwright = findPlaywright(fetched);
-if (!playwright) {
-  console.log("SKIPPED: chromium or playwright-core is not here (deploy/install_packages browser)");
-  process.exit(77);
-}
-mkdirSync(pictures, { recursive: true });
-const plant = new Plant(bin, source, "lai.toml");
-const must = (isTrue, words) => {
-  if (!isTrue) throw new Error(words);
-};
-
-const stateOf = (page) => page.textContent("#state");
-// A host that stalls for longer than drives bridge ends a run in a fault, on any machine: that run counts for nothing.
-class HostStalled extends Error {}
-const inState = (page, state, ms) =>
-  until(`state ${state}`, async () => {
-    const now = await stateOf(page);
-    if (now === "Fault" && state !== "Fault") throw new HostStalled(await page.textContent("#alarm-text"));
-    return now === state;
-  }, ms);
-const kAttempts = 5;
-
-async function afterStalls(page, test) {
-  for (let attempt = 1; ; ++attempt) {
-    try {
-      return await test();
-    } catch (error) {
-      if (!(error instanceof HostStalled) || attempt === kAttempts) throw error;
-      console.log(`  again, the host stalled: ${error.message}`);
-      await page.keyboard.press("Escape");
-      await click(page, "reset");
-      await until("state Off", async () => (await stateOf(page)) === "Off");
-    }
-  }
-}
-const click = (page, verb) => page.click(`[data-verb="${verb}"]:enabled`, { timeout: 15000 });
-async function picture(page, name) {
-  await page.setViewportSize(kLarge);
-  await page.screenshot({ path: join(pictures, `${name}.png`) });
-  await page.setViewportSize(kSmall);
-}
 const jointOf = (status) => status.b3_mm;
 const firstJog = ".jog-row:first-child button:last-child";
 
@@ -66,31 +23,26 @@ async function pageShowsTheStatus({ page, errors }) {
 const aPartRunsByClicksAlone = ({ page }) => afterStalls(page, () => onePartByClicks(page));
 
 async function onePartByClicks(page) {
-  await click(page, "enable");
-  await inState(page, "Ready");
-  await load(page, part());
+  await enabled(page);
+  await load(page, plant.part());
   await inState(page, "Loaded");
   await click(page, "start");
   await sleep(300);
   must((await stateOf(page)) === "Loaded", "a single click on start moved the machine");
   must((await page.textContent("#confirm-message")).includes("approach"), "the approach is not declared");
-  await picture(page, "panel-start");
+  await picture(page, pictures, "panel-start");
   await page.click("#confirm-yes");
   await inState(page, "Running");
   await click(page, "hold");
   await inState(page, "Held");
-  await click(page, "resume");
-  await page.click("#confirm-yes");
+  await confirmed(page, "resume");
   await inState(page, "Running");
-  for (const share of [30, 120, 20]) {
-    await page.fill("#feed-slider", String(share));
-    await until("the override", async () => Math.abs((await page.evaluate(() => meridian.frame.feed_override)) - share / 100) < 1e-9);
-  }
+  for (const percent of [30, 120, 20]) await setFeedOverride(page, percent);
   await sleep(1000);
   await theTextFollowsTheProgram(page);
-  await picture(page, "panel-program");
+  await picture(page, pictures, "panel-program");
   await page.click("#tab-machine");
-  await picture(page, "panel-running");
+  await picture(page, pictures, "panel-running");
   must((await page.evaluate(() => meridian.view.trail.count)) > 100, "there is no trail");
   await click(page, "abort");
   await inState(page, "Ready");
@@ -119,17 +71,6 @@ const part = () => {
   plant.tool("surface", "--sample", "blossom", "-o", file);
   return file;
 };
-const phase = (page, name, ms = 30000) =>
-  until(`the program is ${name}`, () => page.evaluate((wanted) => meridian.program.program.phase === wanted && !meridian.program.program.simulating, name), ms);
-
-// By the file button; what is dropped goes the same way.
-async function load(page, file) {
-  await page.click("#tab-program");
-  await page.setInputFiles("#program-file", file);
-  await phase(page, "ready", 60000);
-  await page.click("#program-load:enabled");
-}
-
 const kDoesNotFit = "PARTNO/TOO FAR\nUNITS/MM\nMULTAX/ON\nFEDRAT/900,MMPM\nGOTO/5000,0,50,0,0,1\nGOTO/5010,0,50,0,0,1\nBLESS/YOU\nGOTO/5010,0,50,0,0,0\nFINI\n";
 
 async function aProgramIsCheckedAsAWhole({ page }) {
@@ -144,20 +85,19 @@ async function aProgramIsCheckedAsAWhole({ page }) {
   for (const line of [5, 7, 8]) must(lines.includes(line), `no finding at line ${line}: ${findings.join("; ")}`);
   must((await page.textContent("#program-name")) === "too_far.apt", "the name leads elsewhere");
   must(await page.isDisabled("#program-load"), "a program that does not fit can be loaded");
-  await picture(page, "panel-findings");
+  await picture(page, pictures, "panel-findings");
   const far = kDoesNotFit.replace("BLESS/YOU\n", "").replace("GOTO/5010,0,50,0,0,0\n", "");
   await page.setInputFiles("#program-file", { name: "far.apt", mimeType: "text/plain", buffer: Buffer.from(far) });
   await until("where it would fit", async () => (await page.textContent("#program-placing")).includes("It fits with the workpiece at"), 60000);
-  await picture(page, "panel-placing");
+  await picture(page, pictures, "panel-placing");
 }
 
 const aProgramGoesOnAtALine = ({ page }) => afterStalls(page, () => oneProgramFromALine(page));
 
 async function oneProgramFromALine(page) {
-  if ((await stateOf(page)) === "Off") await click(page, "enable");
-  await inState(page, "Ready");
+  await enabled(page);
   await page.click("#tab-program");
-  await page.setInputFiles("#program-file", part());
+  await page.setInputFiles("#program-file", plant.part());
   // The program before this one may still be the one that is ready.
   const whole = await until("the time of the program", () => page.evaluate(() => {
     const { phase, program_s } = meridian.program.program;
@@ -212,7 +152,7 @@ async function jogEndsWhereverTheHandIsLost(first) {
   await inState(open.page, "Ready");
   await press(open.page);
   await restAfter(() => open.page.mouse.up(), "let go");
-  await picture(open.page, "panel-jog");
+  await picture(open.page, pictures, "panel-jog");
   await press(open.page);
   await restAfter(() => open.page.evaluate(() => window.dispatchEvent(new Event("blur"))), "focus lost");
   await open.page.mouse.up();
@@ -254,31 +194,6 @@ function exchange(bytes, ms = 400) {
 const upgrade = (host, origin) =>
   `GET /live HTTP/1.1\r\nHost: ${host}\r\nOrigin: ${origin}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
   "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
-
-// Every view in both themes, by the rules that axe-core calls serious or critical.
-async function everyViewIsAccessible({ page }) {
-  const draw = (ratio) => page.evaluate((value) => (meridian.view.renderer.setPixelRatio(value), meridian.view.resize()), ratio);
-  await draw(0.1);  // the picture is not looked at
-  await page.evaluate(createRequire(join(fetched, "package.json"))("axe-core").source);
-  const faults = [];
-  for (const theme of ["dark", "light"]) {
-    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-    for (const view of ["machine", "program", "scope", "timing"]) {
-      await page.click(`#tab-${view}`);
-      await sleep(300);
-      const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-      for (const { id, impact, nodes } of violations.filter(({ impact }) => impact === "serious" || impact === "critical"))
-        faults.push(`${theme}, ${view}: ${impact} ${id} at ${nodes.slice(0, 3).map((node) => node.target.join(" ")).join(", ")}`);
-    }
-  }
-  await page.click("#tab-machine");
-  await draw(1);
-  await afterStalls(page, async () => {
-    if ((await stateOf(page)) === "Off") await click(page, "enable");
-    await inState(page, "Ready");
-  });
-  must(faults.length === 0, faults.join("\n"));
-}
 
 async function strangersReachNothing() {
   const { host } = new URL(plant.url);
@@ -335,35 +250,18 @@ async function theMachineDoesNotNoticeTheEndOfThePanel() {
   must(state === "Ready" && cycles_run > lost, "the machine noticed");
 }
 
-let open = null;
-const run = async (name, test, ...words) => {
-  const begin = Date.now();
-  const value = await test(...words);
-  console.log(`ok ${name} (${Date.now() - begin} ms)`);
-  return value;
-};
-try {
+await runTests(plant, pictures, async (session, run) => {
   await plant.start();
-  open = await openBrowser(playwright, plant);
+  session.open = await openBrowser(playwright, plant);
+  const { open } = session;
   await run("PageShowsTheStatus", pageShowsTheStatus, open);
   await run("AProgramIsCheckedAsAWhole", aProgramIsCheckedAsAWhole, open);
   await run("APartRunsByClicksAlone", aPartRunsByClicksAlone, open);
   await run("AProgramGoesOnAtALine", aProgramGoesOnAtALine, open);
-  await run("EveryViewIsAccessible", everyViewIsAccessible, open);
-  open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);
-  await picture(open.page, "panel-light");
-  await run("ABrowserElsewhereShowsTheToken", aBrowserElsewhereShowsTheToken, open.browser);
+  session.open = await run("JogEndsWhereverTheHandIsLost", jogEndsWhereverTheHandIsLost, open);
+  await picture(session.open.page, pictures, "panel-light");
+  await run("ABrowserElsewhereShowsTheToken", aBrowserElsewhereShowsTheToken, session.open.browser);
   await run("StrangersReachNothing", strangersReachNothing);
-  await run("JunkLeavesTheMemoryFlat", junkLeavesTheMemoryFlat, 2000);
+  await run("JunkLeavesTheMemoryFlat", junkLeavesTheMemoryFlat, Number(process.env.MERIDIAN_PANEL_JUNK ?? 2000));
   await run("TheMachineDoesNotNoticeTheEndOfThePanel", theMachineDoesNotNoticeTheEndOfThePanel);
-} catch (error) {
-  console.log(`FAILED: ${error.stack}`);
-  if (open) await picture(open.page, "failed").catch(() => {});
-  console.log(plant.children.map((child) => child.text.slice(-600)).join("\n--\n"));
-  process.exitCode = 1;
-} finally {
-  await open?.browser.close().catch(() => {});
-  await open?.server.close().catch(() => {});
-  await plant.stop();
-}
-process.exit();
+});

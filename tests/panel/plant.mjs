@@ -51,12 +51,25 @@ export class Plant {
     return text.startsWith("{") ? JSON.parse(text) : { state: "" };
   }
 
-  async start() {
+  // `tool`: a number that the table has beside its own.
+  async start({ tool } = {}) {
     this.recording = join(this.folder, "recording.csv");
-    this.spawn("meridiand", "--machine", this.machine, "--service", join(this.source, "deploy/service.toml"), "--domain",
-      this.domain, "--best-effort", "--record", this.recording);
-    this.spawn("meridian", "drives", "--machine", this.machine, "--domain", this.domain);
+    this.tools = join(this.folder, "tools.toml");
+    const service = join(this.folder, "service.toml");
+    const own = tool ? `\n[[tool]]\nnumber = ${tool}\nlength_mm = 100\nradius_mm = 5\n` : "";
+    writeFileSync(this.tools, readFileSync(join(this.source, "deploy/tools.toml"), "utf8") + own);
+    writeFileSync(service, readFileSync(join(this.source, "deploy/service.toml"), "utf8"));
+    this.spawn("meridiand", "--machine", this.machine, "--service", service, "--domain", this.domain, "--best-effort", "--record",
+      this.recording);
+    this.drives = this.spawn("meridian", "drives", "--machine", this.machine, "--domain", this.domain, "--console");
     this.panel = await this.startPanel();
+  }
+
+  // The sample part, made once.
+  part() {
+    const file = join(this.folder, "part.apt");
+    if (!existsSync(file)) this.tool("surface", "--sample", "blossom", "-o", file);
+    return file;
   }
 
   async startPanel() {

@@ -115,6 +115,13 @@ TEST(StatusText, TellsProgramsTheSame) {
   text = to_json(status, machine_of_a_stage());
   EXPECT_NE(text.find("\"alarm_joint\":\"\",\"alarm_line\":0,"), std::string::npos)
       << "that of the last alarm is none: " << text;
+  EXPECT_NE(text.find("\"limiting\":\"\",\"tip_mm\":null,\"tool_axis\":null,"), std::string::npos)
+      << text;
+  status.limiting_joint = 1;
+  text = to_json(status, machine_of_a_stage(), Pose<double>{{1, 2, 3.5}, {0, 0, 1}});
+  EXPECT_NE(text.find("\"limiting\":\"b2\",\"tip_mm\":[1,2,3.5],\"tool_axis\":[0,0,1],"),
+            std::string::npos)
+      << text;
   status.alarm = Alarm::kEmergencyStop;
   text = to_json(status, machine_of_a_stage());
   EXPECT_NE(text.find("\"alarm_name\":\"emergency_stop\",\"alarm_joint\":\"\","), std::string::npos)

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an operator does on the page, and what he waits for.
+import { join } from "node:path";
+import { kLarge, kSmall, sleep, until } from "./plant.mjs";
+
+export const must = (isTrue, words) => {
+  if (!isTrue) throw new Error(words);
+};
+
+export const stateOf = (page) => page.textContent("#state");
+// A host that stalls for longer than drives bridge ends a run in a fault, on any machine: that run counts for nothing.
+class HostStalled extends Error {}
+export const inState = (page, state, ms) =>
+  until(`state ${state}`, async () => {
+    const now = await stateOf(page);
+    if (now === "Fault" && state !== "Fault") throw new HostStalled(await page.textContent("#alarm-text"));
+    return now === state;
+  }, ms);
+const kAttempts = 5;
+
+export async function afterStalls(page, test) {
+  for (let attempt = 1; ; ++attempt) {
+    try {
+      return await test();
+    } catch (error) {
+      if (!(error instanceof HostStalled) || attempt === kAttempts) throw error;
+      console.log(`  again, the host stalled: ${error.message}`);
+      await page.keyboard.press("Escape");
+      await click(page, "reset");
+      await until("state Off", async () => (await stateOf(page)) === "Off");
+    }
+  }
+}
+
+export const click = (page, verb) => page.click(`[data-verb="${verb}"]:enabled`, { timeout: 15000 });
+export async function confirmed(page, verb) {
+  await click(page, verb);
+  await page.click("#confirm-yes");
+}
+// Until the machine is in that state. A page that lags, drawn in software on a busy host, is refused as stale: looked again.
+export async function go(page, verb, state) {
+  for (let attempt = 1; ; ++attempt) {
+    await click(page, verb);
+    try {
+      return await inState(page, state, 5000);
+    } catch (error) {
+      const answer = await page.textContent("#reply");
+      if (error instanceof HostStalled || !answer.includes("look again") || attempt === kAttempts) throw error;
+    }
+  }
+}
+export async function enabled(page) {
+  const isOff = await until("Off or Ready", async () => ({ Off: "off", Ready: "ready" })[await stateOf(page)]) === "off";
+  if (isOff) await go(page, "enable", "Ready");
+}
+export async function setFeedOverride(page, percent) {
+  await page.fill("#feed-slider", String(percent));
+  await until("the override", async () => Math.abs((await page.evaluate(() => meridian.frame.feed_override)) - percent / 100) < 1e-9);
+}
+
+// A picture of the page as a large screen shows it, under that name in the folder.
+export async function picture(page, folder, name) {
+  await page.setViewportSize(kLarge);
+  await page.screenshot({ path: join(folder, `${name}.png`) });
+  await page.setViewportSize(kSmall);
+}
+
+export const phase = (page, name, ms = 30000) =>
+  until(`the program is ${name}`, () => page.evaluate((wanted) => meridian.program.program.phase === wanted && !meridian.program.program.simulating, name), ms);
+
+// By the file button; what is dropped goes the same way.
+export async function load(page, file) {
+  await page.click("#tab-program");
+  await page.setInputFiles("#program-file", file);
+  await phase(page, "ready", 120000);
+  await page.click("#program-load:enabled");
+}
+
+// The tests of one file, a line each; where one fails: a picture, and what the programs said.
+export async function runTests(plant, pictures, tests) {
+  const session = { open: null };
+  try {
+    await tests(session, async (name, test, ...words) => {
+      const begin = Date.now();
+      const value = await test(...words);
+      console.log(`ok ${name} (${Date.now() - begin} ms)`);
+      return value;
+    });
+  } catch (error) {
+    console.log(`FAILED: ${error.stack}`);
+    if (session.open) await picture(session.open.page, pictures, "failed").catch(() => {});
+    console.log(plant.children.map((child) => child.text.slice(-600)).join("\n--\n"));
+    process.exitCode = 1;
+  } finally {
+    await session.open?.browser.close().catch(() => {});
+    await session.open?.server.close().catch(() => {});
+    await plant.stop();
+  }
+  process.exit();
+}

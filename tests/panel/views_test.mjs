@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every view of the page in a real browser: what it shows is what the machine says, by keys alone too.
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { openBrowser, sleep, until } from "./plant.mjs";
+import { afterStalls, click, confirmed, enabled, go, inState, load, must, phase, picture, runTests, stateOf } from "./page_hand.mjs";
+import { fetched, pictures, plant, playwright } from "./browser_case.mjs";
+
+// ---- the numbers beside the picture
+
+const kJoints = [["b3_mm", false], ["b2_mm", false], ["b4_mm", false], ["theta1_rad", true], ["theta2_rad", true]];
+
+// Statuses and frames of the same sequence, while the part is cut.
+async function theNumbersAreThoseOfTheStatus({ page }) {
+  await afterStalls(page, async () => {
+    await enabled(page);
+    await load(page, plant.part());
+    await inState(page, "Loaded");
+    await confirmed(page, "start");
+    await inState(page, "Running");
+    await page.evaluate(() => {
+      // What stood on the page when each frame had been shown.
+      const shown = (globalThis.shownFrames = new Map());
+      const text = (id) => document.getElementById(id).textContent;
+      const original = meridian.display.setFrame.bind(meridian.display);
+      meridian.display.setFrame = (frame) => {
+        original(frame);
+        shown.set(frame.sequence, {
+          tip: ["tip-x", "tip-y", "tip-z"].map(text), axis: ["axis-i", "axis-j", "axis-k"].map(text), feed: text("feed"),
+          joints: [...document.querySelectorAll("#joints .value")].map((one) => one.textContent),
+          limiting: document.querySelector("#joints .limits b")?.textContent ?? "", state: text("state"),
+          block: text("block"),
+        });
+      };
+    });
+    let compared = 0;
+    for (let i = 0; i < 60 && compared < 12; ++i) {
+      const status = plant.status();
+      const seen = await until("the frame of the status", () => page.evaluate((sequence) => globalThis.shownFrames.get(sequence), status.status_sequence), 400).catch(() => null);
+      if (!seen || status.state !== "Running") continue;
+      compare(seen, status);
+      ++compared;
+    }
+    must(compared >= 12, `only ${compared} statuses were met`);
+    await page.reload();
+    await until("a frame", () => page.evaluate(() => globalThis.meridian?.frame != null));
+    await click(page, "abort");
+    await inState(page, "Ready");
+  });
+}
+
+function compare(seen, status) {
+  const number = (text) => Number(text.replaceAll("\u2212", "-"));
+  const near = (text, value, digits, what) =>
+    must(Math.abs(number(text) - value) <= 0.501 * 10 ** -digits, `${what}: the page shows ${text}, the status says ${value}`);
+  seen.tip.forEach((text, i) => near(text, status.tip_mm[i], 3, "tip"));
+  seen.axis.forEach((text, i) => near(text, status.tool_axis[i], 4, "axis"));
+  near(seen.feed, status.feed_achieved_mm_per_min, 0, "feed");
+  kJoints.forEach(([name, isRotary], i) => near(seen.joints[i], isRotary ? (status[name] * 180) / Math.PI : status[name], isRotary ? 4 : 3, name));
+  must(seen.limiting === status.limiting, `the page marks "${seen.limiting}", the status says "${status.limiting}" limits`);
+  must(seen.block === `block ${status.block} of ${status.block_count}`, `the page shows ${seen.block}, the status block ${status.block}`);
+}
+
+// ---- by keys alone
+
+// Tab until the focus is there.
+async function focus(page, selector) {
+  for (let i = 0; i < 90; ++i) {
+    if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) ?? false, selector)) return;
+    await page.keyboard.press("Tab");
+  }
+  throw new Error(`the keyboard does not come to ${selector}`);
+}
+async function push(page, selector) {
+  await until(`${selector} is there`, () => page.isEnabled(selector));
+  await focus(page, selector);
+  await page.keyboard.press("Enter");
+}
+
+const theKeyboardAloneRunsThePart = ({ page }) => afterStalls(page, () => onePartByKeys(page));
+
+async function onePartByKeys(page) {
+  if ((await stateOf(page)) === "Off") await push(page, '[data-verb="enable"]');
+  await inState(page, "Ready");
+  await focus(page, "[role=tab][aria-selected=true]");
+  while (!(await page.evaluate(() => document.activeElement.id === "tab-program"))) await page.keyboard.press("ArrowRight");
+  const chooser = page.waitForEvent("filechooser");
+  await push(page, "#program-choose");
+  await (await chooser).setFiles(plant.part());
+  await phase(page, "ready", 60000);
+  await push(page, "#program-load");
+  await inState(page, "Loaded");
+  await push(page, '[data-verb="start"]');
+  await push(page, "#confirm-yes");
+  await inState(page, "Running");
+  await page.keyboard.press("Escape");
+  await inState(page, "Held");
+  await push(page, '[data-verb="abort"]');
+  await inState(page, "Ready");
+}
+
+// ---- scope and timing
+
+const rowsOf = (text) => text.trim().split("\n").slice(1).map((line) => line.split(",").map(Number));
+
+// Every cycle that the wire had; what is saved can be opened again; a trigger stops it; cursors stand.
+async function theScopeShowsEveryCycle({ page }) {
+  await page.click("#tab-scope");
+  await page.selectOption("#scope-window", "5");
+  await until("samples", async () => (await page.evaluate(() => meridian.scope.live.count)) > 3000);
+  await page.click("#scope-pause");
+  const file = await saved(page, "#scope-csv", "scope.csv");
+  const rows = rowsOf(readFileSync(file, "utf8"));
+  const gaps = rows.filter((row, i) => i > 0 && row[0] - rows[i - 1][0] > 1).length;
+  must(rows.length > 2000 && gaps < 0.05 * rows.length, `${rows.length} rows with ${gaps} gaps`);
+  await page.setInputFiles("#scope-file", file);
+  await until("the recording", async () => (await page.textContent("#scope-report")).includes(`${rows.length} cycles`));
+  must((await page.evaluate(() => meridian.scope.buffer.cycle[0])) === rows[0][0], "the recording begins elsewhere");
+  await page.setInputFiles("#scope-file", { name: "wrong.csv", mimeType: "text/csv", buffer: Buffer.from("a,b\n1,2\n") });
+  await until("a refusal", async () => (await page.textContent("#scope-report")).includes("no recording of this machine"));
+  await page.click("#scope-live");
+}
+
+async function saved(page, button, name) {
+  const download = page.waitForEvent("download");
+  await page.click(button);
+  const file = join(plant.folder, name);
+  await (await download).saveAs(file);
+  return file;
+}
+
+async function aTriggerStopsTheScope({ page }) {
+  await page.click("#tab-scope");
+  await page.selectOption("#scope-window", "1");
+  await page.selectOption("#scope-trigger", "state");
+  await page.selectOption("#scope-state", "Ready");
+  await page.click("#scope-arm");
+  await go(page, "disable", "Off");
+  await go(page, "enable", "Ready");
+  await until("the trigger", () => page.evaluate(() => meridian.scope.trigger.at !== null && meridian.scope.isPaused), 10000);
+  const box = await page.locator("#scope-plot-1 .u-over").boundingBox();
+  for (const share of [0.3, 0.6]) await page.mouse.click(box.x + share * box.width, box.y + box.height / 2);
+  must((await page.textContent("#scope-readout")).includes("B \u2212 A"), "no cursors");
+  await picture(page, pictures, "panel-scope");
+}
+
+async function theStagesStandBesideTheirBudgets({ page }) {
+  await page.click("#tab-timing");
+  await until("stages", async () => (await page.locator(".stage-card").count()) >= 6);
+  must((await page.textContent("#timing-stages")).includes("budget"), "no budgets");
+  await picture(page, pictures, "panel-timing");
+  await page.click("#tab-machine");
+}
+
+// Every view in both themes, by the rules that axe-core calls serious or critical.
+async function everyViewIsAccessible({ page }) {
+  const draw = (ratio) => page.evaluate((value) => (meridian.view.renderer.setPixelRatio(value), meridian.view.resize()), ratio);
+  await draw(0.1);  // the picture is not looked at
+  await page.evaluate(createRequire(join(fetched, "package.json"))("axe-core").source);
+  const faults = [];
+  for (const theme of ["dark", "light"]) {
+    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+    for (const view of ["machine", "program", "scope", "timing"]) {
+      await page.click(`#tab-${view}`);
+      await sleep(300);
+      const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+      for (const { id, impact, nodes } of violations.filter(({ impact }) => impact === "serious" || impact === "critical"))
+        faults.push(`${theme}, ${view}: ${impact} ${id} at ${nodes.slice(0, 3).map((node) => node.target.join(" ")).join(", ")}`);
+    }
+  }
+  await page.click("#tab-machine");
+  await draw(1);
+  await afterStalls(page, async () => {
+    await enabled(page);
+  });
+  must(faults.length === 0, faults.join("\n"));
+}
+
+
+await runTests(plant, pictures, async (session, run) => {
+  await plant.start();
+  session.open = await openBrowser(playwright, plant);
+  const { open } = session;
+  await run("TheNumbersAreThoseOfTheStatus", theNumbersAreThoseOfTheStatus, open);
+  await run("TheKeyboardAloneRunsThePart", theKeyboardAloneRunsThePart, open);
+  await run("TheScopeShowsEveryCycle", theScopeShowsEveryCycle, open);
+  await run("ATriggerStopsTheScope", aTriggerStopsTheScope, open);
+  await run("TheStagesStandBesideTheirBudgets", theStagesStandBesideTheirBudgets, open);
+  await run("EveryViewIsAccessible", everyViewIsAccessible, open);
+});
