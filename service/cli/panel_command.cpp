@@ -99,6 +99,9 @@ void add(CLI::App& app, int& exit_code) {
   command->add_option("--public", options->public_url,
                       "https://NAME:PORT of a TLS proxy on this host that leads to the panel; "
                       "needs --token");
+  command->add_option("--history", options->panel.history_file,
+                      "Audit log of the service on this host: its faults, commands and sessions "
+                      "stand under Messages, those of before the panel began too");
   command->add_flag("--watch", options->panel.is_watching,
                     "The page shows and asks for nothing: no buttons");
   command->add_flag("--actions", options->panel.answers_actions,

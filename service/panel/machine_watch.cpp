@@ -27,13 +27,17 @@ constexpr std::chrono::milliseconds kSilent{1500};
 
 }  // namespace
 
-MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub)
+MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub, std::filesystem::path history)
     : hub_(hub),
       machines_(participant),
       statuses_(participant),
       setpoints_(participant, {}, kDepth),
       feedbacks_(participant, {}, kDepth),
-      latencies_(participant) {}
+      latencies_(participant),
+      actions_(participant),
+      answers_(participant) {
+  if (!history.empty()) history_.emplace(std::move(history));
+}
 
 void MachineWatch::adopt(const dds::MachineInfo& info) {
   {
@@ -99,10 +103,12 @@ void MachineWatch::take_status() {
   status_ = std::move(status);
   newest_status_ = status_->status_sequence;
   if (!model_ || !machine_ || machine_->service_id != status_->service_id) return;
+  auxiliaries_.follow(*status_);
   if (news_.add(*status_, *model_, std::chrono::system_clock::now())) {
     hub_.publish(Hub::kNews, news_text(news_));
   }
-  hub_.publish(Hub::kFrame, frame_text(*status_, *model_, status_->tool_length_mm, *motion_));
+  hub_.publish(Hub::kFrame, frame_text(*status_, *model_, status_->tool_length_mm, *motion_,
+                                         auxiliaries_));
   motion_->clear();
 }
 
@@ -115,6 +121,26 @@ void MachineWatch::take_latency() {
   }
 }
 
+void MachineWatch::take_actions() {
+  dds::Action action;
+  while (actions_.take(action)) auxiliaries_.ask(action);
+  dds::ActionDone done;
+  while (answers_.take(done)) auxiliaries_.answer(done);
+}
+
+void MachineWatch::take_history() {
+  const auto now = Clock::now();
+  if (!history_ || now < history_due_) return;
+  history_due_ = now + std::chrono::seconds(1);
+  bool is_new = false;
+  for (NewsItem& item : history_->take()) {
+    if (item.source == NewsSource::kMachine && item.time >= began_) continue;
+    news_.add(std::move(item));
+    is_new = true;
+  }
+  if (is_new) hub_.publish(Hub::kNews, news_text(news_));
+}
+
 void MachineWatch::publish_metrics() {
   const auto now = Clock::now();
   if (!machine_ || now < metrics_due_) return;
@@ -125,8 +151,10 @@ void MachineWatch::publish_metrics() {
 void MachineWatch::poll() {
   take_machine();
   take_motion();
+  take_actions();
   take_status();
   take_latency();
+  take_history();
   publish_metrics();
 }
 

@@ -4,12 +4,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "service/panel/auxiliaries.hpp"
+#include "service/panel/history.hpp"
 #include "service/panel/latency_text.hpp"
 #include "service/panel/motion.hpp"
 #include "service/panel/serve/frame.hpp"
@@ -26,8 +29,9 @@ namespace meridian::panel {
 /// only reads, and polls: the rate of the setpoints costs no wake-ups. One thread.
 class MachineWatch {
  public:
-  /// `hub` and `participant` must live on. Throws DdsError.
-  MachineWatch(dds::Participant& participant, Hub& hub);
+  /// `hub` and `participant` must live on; `history`: the audit log of the service, empty: none is
+  /// read. Throws DdsError.
+  MachineWatch(dds::Participant& participant, Hub& hub, std::filesystem::path history = {});
 
   /// Takes what came and publishes what is new.
   void poll();
@@ -46,6 +50,10 @@ class MachineWatch {
   void take_motion();
   void take_status();
   void take_latency();
+  void take_actions();
+  /// What the audit log says, once a second: all that it knows of the time before the panel; of
+  /// now, what the status does not say.
+  void take_history();
   /// What /metrics answers, once a second.
   void publish_metrics();
   /// Builds the model from what the machine topic says of it.
@@ -57,6 +65,8 @@ class MachineWatch {
   dds::Reader<dds::SetpointSample> setpoints_;
   dds::Reader<dds::DriveFeedback> feedbacks_;
   dds::Reader<dds::Latency> latencies_;
+  dds::Reader<dds::Action> actions_;
+  dds::Reader<dds::ActionDone> answers_;
   dds::Followed<dds::Status> followed_;
   mutable std::mutex machine_mutex_;  ///< of machine_ against other threads
   std::optional<dds::MachineInfo> machine_;
@@ -66,7 +76,10 @@ class MachineWatch {
   std::unique_ptr<Motion> motion_;
   std::vector<probe::Budget> budgets_ = known_budgets();
   News news_;
-  Clock::time_point heard_{}, metrics_due_{};
+  Auxiliaries auxiliaries_;
+  std::optional<History> history_;
+  std::chrono::system_clock::time_point began_ = std::chrono::system_clock::now();
+  Clock::time_point heard_{}, metrics_due_{}, history_due_{};
   std::atomic<std::uint64_t> newest_status_{0};
 };
 

@@ -95,7 +95,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
                const std::function<void(std::uint16_t)>& on_ready) {
   constexpr std::chrono::milliseconds kBetweenPolls{20};
   Hub hub;
-  MachineWatch watch(participant, hub);
+  MachineWatch watch(participant, hub, options.history_file);
   // Outcomes go to pages, so the desk ends first; pages talk to the desk, so the server goes
   // before.
   std::optional<OperatorDesk> desk;
@@ -120,7 +120,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     on_ready(server.port());
     while (!is_ending) {
       watch.poll();
-      if (actions) actions->poll();
+      if (actions) actions->poll(watch.status());
       std::this_thread::sleep_for(kBetweenPolls);
     }
   }

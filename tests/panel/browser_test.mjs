@@ -2,7 +2,7 @@
 // The panel in a real browser, in front of a service with simulated drives: programs, jogging, strangers.
 import { connect } from "node:net";
 import { familyOf, kSmall, memoryOf, openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, click, confirmed, enabled, inState, load, must, phase, picture, runTests, setFeedOverride, stateOf } from "./page_hand.mjs";
+import { afterStalls, click, confirmed, drawAt, enabled, inState, load, must, phase, picture, runTests, setFeedOverride, stateOf } from "./page_hand.mjs";
 import { fetched, pictures, plant, playwright } from "./browser_case.mjs";
 
 const jointOf = (status) => status.b3_mm;
@@ -131,8 +131,7 @@ async function restAfter(what, end) {
 async function press(page) {
   if (await page.isHidden("#jog")) await page.click("#jog-toggle");
   await page.bringToFront();
-  // Drawn small: what is tested is the hand, not the picture.
-  await page.evaluate(() => (meridian.view.renderer.setPixelRatio(0.2), meridian.view.resize()));
+  await drawAt(page, 0.2);
   const box = await page.locator(firstJog).boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   // A page that lags, as one drawn in software on a busy host does, lets go by itself: pressed again.

@@ -9,11 +9,11 @@ export const must = (isTrue, words) => {
 
 export const stateOf = (page) => page.textContent("#state");
 // A host that stalls for longer than drives bridge ends a run in a fault, on any machine: that run counts for nothing.
-class HostStalled extends Error {}
+export class HostStalled extends Error {}
 export const inState = (page, state, ms) =>
   until(`state ${state}`, async () => {
     const now = await stateOf(page);
-    if (now === "Fault" && state !== "Fault") throw new HostStalled(await page.textContent("#alarm-text"));
+    if (now === "Fault" && !["Fault", "Off"].includes(state)) throw new HostStalled(await page.textContent("#alarm-text"));
     return now === state;
   }, ms);
 const kAttempts = 5;
@@ -57,6 +57,10 @@ export async function setFeedOverride(page, percent) {
   await page.fill("#feed-slider", String(percent));
   await until("the override", async () => Math.abs((await page.evaluate(() => meridian.frame.feed_override)) - percent / 100) < 1e-9);
 }
+
+// Drawn in software, the picture would take the time of what is tested where nobody looks at it.
+export const drawAt = (page, ratio) =>
+  page.evaluate((value) => (meridian.view.renderer.setPixelRatio(value), meridian.view.resize()), ratio);
 
 // A picture of the page as a large screen shows it, under that name in the folder.
 export async function picture(page, folder, name) {

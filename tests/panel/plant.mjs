@@ -104,12 +104,16 @@ export class Plant {
     return { panel, url, secured, token, proxy, tokenFile: file("token") };
   }
 
-  async stop() {
-    for (const child of this.children.reverse()) {
+  async end() {
+    for (const child of this.children.splice(0).reverse()) {
       child.kill("SIGTERM");
       const isOver = await Promise.race([child.ended.then(() => true), sleep(5000)]);
       if (!isOver) child.kill("SIGKILL");
     }
+  }
+
+  async stop() {
+    await this.end();
     rmSync(this.folder, { recursive: true, force: true });
   }
 }
@@ -117,6 +121,12 @@ export class Plant {
 // The resident memory of a process, KiB.
 export function memoryOf(pid) {
   return Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
+}
+
+// The time that a process took of all cores, s.
+export function cpuSecondsOf(pid) {
+  const fields = readFileSync(`/proc/${pid}/stat`, "utf8").replace(/^.*\) /, "").split(" ");
+  return (Number(fields[11]) + Number(fields[12])) / 100;
 }
 
 // A process and all that it started.

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, click, confirmed, enabled, go, inState, load, must, phase, picture, runTests, stateOf } from "./page_hand.mjs";
+import { afterStalls, click, confirmed, drawAt, enabled, go, inState, load, must, phase, picture, runTests, stateOf } from "./page_hand.mjs";
 import { fetched, pictures, plant, playwright } from "./browser_case.mjs";
 
 // ---- the numbers beside the picture
@@ -155,8 +155,7 @@ async function theStagesStandBesideTheirBudgets({ page }) {
 
 // Every view in both themes, by the rules that axe-core calls serious or critical.
 async function everyViewIsAccessible({ page }) {
-  const draw = (ratio) => page.evaluate((value) => (meridian.view.renderer.setPixelRatio(value), meridian.view.resize()), ratio);
-  await draw(0.1);  // the picture is not looked at
+  await drawAt(page, 0.1);
   await page.evaluate(createRequire(join(fetched, "package.json"))("axe-core").source);
   const faults = [];
   for (const theme of ["dark", "light"]) {
@@ -170,7 +169,7 @@ async function everyViewIsAccessible({ page }) {
     }
   }
   await page.click("#tab-machine");
-  await draw(1);
+  await drawAt(page, 1);
   await afterStalls(page, async () => {
     await enabled(page);
   });

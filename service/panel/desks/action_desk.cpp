@@ -9,13 +9,21 @@
 #include "service/panel/json_text.hpp"
 
 namespace meridian::panel {
+namespace {
 
-ActionDesk::ActionDesk(dds::Participant& participant, Hub& hub) : hub_(hub), link_(participant) {
+/// A program that ended, was aborted or came to a fault waits for nobody.
+[[nodiscard]] bool waits_for_actions(State state) {
+  return state != State::kOff && state != State::kReady && state != State::kFault;
+}
+
+}  // namespace
+
+ActionDesk::ActionDesk(dds::Participant& participant, Hub& hub)
+    : hub_(hub), link_(participant), answers_(participant) {
   publish();
 }
 
-void ActionDesk::poll() {
-  const std::lock_guard lock(mutex_);
+bool ActionDesk::take_asked() {
   bool is_new = false;
   dds::Action action;
   while (link_.take(action)) {
@@ -29,7 +37,26 @@ void ActionDesk::poll() {
     if (open_.size() > kMaxOpen) open_.pop_front();
     is_new = true;
   }
-  if (is_new) publish();
+  return is_new;
+}
+
+bool ActionDesk::take_answered(const std::optional<dds::Status>& status) {
+  const std::size_t before = open_.size();
+  dds::ActionDone done;
+  while (answers_.take(done)) {
+    std::erase_if(open_, [&done](const dds::Action& known) {
+      return known.id == done.id && known.service_id == done.service_id;
+    });
+  }
+  if (status && !waits_for_actions(status->state)) open_.clear();
+  return open_.size() != before;
+}
+
+void ActionDesk::poll(const std::optional<dds::Status>& status) {
+  const std::lock_guard lock(mutex_);
+  const bool is_closed = take_answered(status);
+  const bool is_asked = take_asked();
+  if (is_closed || is_asked) publish();
 }
 
 Outcome ActionDesk::answer(std::uint64_t id, bool is_done) {

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 
 #include "service/drives/kit/action_link.hpp"
 #include "service/panel/desks/outcome.hpp"
 #include "service/panel/serve/hub.hpp"
 #include "service/transport/messages.hpp"
 #include "service/transport/participant.hpp"
+#include "service/transport/reader.hpp"
 
 namespace meridian::panel {
 
@@ -21,18 +23,24 @@ class ActionDesk {
   /// `participant` and `hub` must live on. Throws DdsError.
   ActionDesk(dds::Participant& participant, Hub& hub);
 
-  /// Publishes what is to be done now. One thread.
-  void poll();
+  /// Publishes what is to be done now. What somebody else answered, or what no program waits for any
+  /// more, is not. One thread.
+  void poll(const std::optional<dds::Status>& status);
   /// Answers the action of that id; `is_done` false: it could not be done. Any thread.
   [[nodiscard]] Outcome answer(std::uint64_t id, bool is_done);
 
  private:
   static constexpr std::size_t kMaxOpen = 8;
   void publish() const;
+  /// Whether an action was added.
+  [[nodiscard]] bool take_asked();
+  /// Whether an action was closed.
+  [[nodiscard]] bool take_answered(const std::optional<dds::Status>& status);
 
   Hub& hub_;
   std::mutex mutex_;  ///< of all below
   drive::ActionLink link_;
+  dds::Reader<dds::ActionDone> answers_;
   std::deque<dds::Action> open_;  ///< that wait for an answer
 };
 

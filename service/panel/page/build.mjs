@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // build.mjs IN OUT: bundles the page of IN into OUT: packed files for the server, and one HTML file that needs none.
-import { readFileSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { gzipSync } from "node:zlib";
 import { join } from "node:path";
@@ -23,15 +23,12 @@ const bundle = async (entry, format) => {
   return result.outputFiles[0].text;
 };
 
-// What others wrote, with their licences.
+// What others wrote and the page carries, with their licences.
+const lock = JSON.parse(readFileSync(join(out, "package-lock.json"), "utf8"));
+const carried = Object.entries(lock.packages).filter(([path, { dev }]) => path !== "" && !dev);
+const licence = (folder) => readFileSync(join(folder, readdirSync(folder).find((name) => /^licen[cs]e/i.test(name))), "utf8");
 const notices = () =>
-  ["three", "uplot"]
-    .map((name) => {
-      const folder = join(out, "node_modules", name);
-      const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
-      return `${name} ${version}\n\n${readFileSync(join(folder, "LICENSE"), "utf8")}`;
-    })
-    .join("\n\n");
+  carried.map(([path, { version }]) => `${path.replace("node_modules/", "")} ${version}\n\n${licence(join(out, path))}`).join("\n\n");
 
 const pack = (name, text) => writeFileSync(join(out, `${name}.gz`), gzipSync(text, { level: 9 }));
 

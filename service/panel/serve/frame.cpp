@@ -2,6 +2,7 @@
 #include "service/panel/serve/frame.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -121,7 +122,7 @@ void add_health(json& out, const dds::Status& status) {
 }  // namespace
 
 std::string frame_text(const dds::Status& status, const MachineModel& model, double tool_length_mm,
-                       const Motion& motion) {
+                       const Motion& motion, const Auxiliaries& auxiliaries) {
   const Pose<double> pose = forward(model, tool_length_mm, status.joints);
   // 64-bit numbers as text: a page has doubles.
   json out = {{"t", "frame"},
@@ -135,6 +136,11 @@ std::string frame_text(const dds::Status& status, const MachineModel& model, dou
               {"axis", pose.axis},
               {"joints", to_json(status.joints, model.joint_count)},
               {"tool_length", tool_length_mm},
+              {"tool", status.tool},
+              {"work_frame", status.work_frame},
+              {"spindle", auxiliaries.spindle()},
+              {"coolant", auxiliaries.coolant()},
+              {"waits_for", auxiliaries.waits_for()},
               {"feed_programmed", status.feed_programmed_mm_per_min},
               {"feed_achieved", status.feed_achieved_mm_per_min},
               {"feed_override", status.feed_override},
@@ -154,6 +160,7 @@ std::string frame_text(const dds::Status& status, const MachineModel& model, dou
 }
 
 std::string news_text(const News& news) {
+  static constexpr std::array<const char*, 3> kSources{"machine", "operator", "station"};
   json items = json::array();
   for (const NewsItem& item : news.items()) {
     const auto since = item.time.time_since_epoch();
@@ -161,6 +168,7 @@ std::string news_text(const News& news) {
         {{"number", item.number},
          {"time_ms", std::chrono::duration_cast<std::chrono::milliseconds>(since).count()},
          {"severity", static_cast<int>(item.severity)},
+         {"source", kSources.at(static_cast<std::size_t>(item.source))},
          {"text", item.text}});
   }
   return json_text({{"t", "news"}, {"items", items}});

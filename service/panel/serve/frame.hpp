@@ -4,6 +4,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "service/panel/auxiliaries.hpp"
 #include "service/panel/motion.hpp"
 #include "service/panel/serve/news.hpp"
 #include "service/transport/messages.hpp"
@@ -12,9 +13,10 @@
 namespace meridian::panel {
 
 /// {"t":"frame", ...}: one status, with tip and tool axis by forward() and what `motion` gathered.
-/// `tool_length_mm` is the tool in the spindle.
+/// `tool_length_mm` is the tool in the spindle; `auxiliaries` what is asked of spindle and coolant.
 [[nodiscard]] std::string frame_text(const dds::Status& status, const MachineModel& model,
-                                     double tool_length_mm, const Motion& motion);
+                                     double tool_length_mm, const Motion& motion,
+                                     const Auxiliaries& auxiliaries = {});
 
 /// {"t":"news", "items": [...]}
 [[nodiscard]] std::string news_text(const News& news);

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/panel/serve/news.hpp"
 
+#include <utility>
+
 #include "service/recording/telemetry/words.hpp"
 
 namespace meridian::panel {
 
 void News::push(Severity severity, const std::string& text,
                 std::chrono::system_clock::time_point now) {
-  items_.push_back({++count_, now, severity, text});
+  add({0, now, severity, NewsSource::kMachine, text});
+}
+
+void News::add(NewsItem item) {
+  item.number = ++count_;
+  items_.push_back(std::move(item));
   if (items_.size() > kKept) items_.pop_front();
 }
 

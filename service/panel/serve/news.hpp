@@ -13,16 +13,20 @@ namespace meridian::panel {
 
 enum class Severity : std::uint8_t { kNews, kWarning, kAlarm };
 
-/// One line of what the machine said.
+/// Whose message it is.
+enum class NewsSource : std::uint8_t { kMachine, kOperator, kStation };
+
+/// One line of what the machine said, or of what was asked of it.
 struct NewsItem {
   std::uint64_t number = 0;  ///< from 1 on
   std::chrono::system_clock::time_point time;
   Severity severity = Severity::kNews;
+  NewsSource source = NewsSource::kMachine;
   std::string text;
 };
 
-/// What the machine said since the panel began, newest last: a page that is loaded again shows it
-/// all. At most kKept items; one thread. Proof: tests/panel/panel_unit_test.cpp.
+/// What the machine said since the panel began, and what a history adds, newest last: a page that
+/// is loaded again shows it all. At most kKept items; one thread. Proof: tests/panel/panel_unit_test.cpp.
 class News {
  public:
   static constexpr std::size_t kKept = 200;
@@ -30,6 +34,8 @@ class News {
   /// Looks at the next status; true where it says something new.
   bool add(const dds::Status& status, const MachineModel& model,
            std::chrono::system_clock::time_point now);
+  /// Adds what was heard otherwise.
+  void add(NewsItem item);
 
   [[nodiscard]] const std::deque<NewsItem>& items() const noexcept { return items_; }
 

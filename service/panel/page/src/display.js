@@ -9,9 +9,20 @@ const kTones = {
   Jogging: "jog", Homing: "jog", Stepping: "run",
 };
 
+// The day stands in front where it is not today.
+function shownTime(time_ms) {
+  const time = new Date(time_ms);
+  const clockTime = time.toLocaleTimeString([], { hour12: false });
+  return time.toDateString() === new Date().toDateString() ? clockTime : `${time.toLocaleDateString()} ${clockTime}`;
+}
+
 const kOrders = ["velocity", "acceleration", "jerk"];
 
 export class Display {
+  constructor() {
+    byId("news-source").addEventListener("change", () => this.drawNews());
+  }
+
   setMachine(message) {
     this.scene = message.scene;
     setText(byId("machine-name"), message.name);
@@ -67,7 +78,8 @@ export class Display {
   setPosition(frame) {
     ["x", "y", "z"].forEach((name, i) => setText(byId(`tip-${name}`), fixed(frame.tip[i], 3)));
     ["i", "j", "k"].forEach((name, i) => setText(byId(`axis-${name}`), fixed(frame.axis[i], 4)));
-    setText(byId("tool-length"), `${fixed(frame.tool_length, 3)} mm`);
+    setText(byId("tool-length"), `${frame.tool > 0 ? `${frame.tool}, ` : ""}${fixed(frame.tool_length, 3)} mm`);
+    setText(byId("work-frame"), frame.work_frame > 0 ? String(frame.work_frame) : "of the machine file");
   }
 
   setFeed(frame) {
@@ -80,16 +92,19 @@ export class Display {
     byId("feed-bar").style.width = `${100 * share}%`;
     setText(byId("held-by"), this.heldBy(frame, wanted));
     setText(byId("override"), `${fixed(100 * frame.feed_override, 0)} %`);
+    setText(byId("spindle"), frame.spindle.replace(/^spindle /, "") || "\u2013");
+    setText(byId("coolant"), frame.coolant.replace(/^coolant /, "") || "\u2013");
     setText(byId("rapid-override"), `${fixed(100 * frame.rapid_override, 0)} %`);
   }
 
   heldBy(frame, wanted) {
     const words = {
       Off: "drives are off", Ready: "ready", Loaded: "program loaded: start when the approach is clear",
-      Held: "held: resume goes on", Holding: "braking for the hold", Starved: "waits for blocks",
+      Held: "held: resume goes on", Stepping: "at rest behind a block: resume goes on", Holding: "braking for the hold", Starved: "waits for blocks",
       Starving: "blocks do not come fast enough", Fault: "fault: reset after the cause is gone", FaultStop: "stopping",
       Enabling: "drives are switched on", Jogging: "jogging", Homing: "homing", Approaching: "approaches the program",
     };
+    if (frame.waits_for) return `waits for: ${frame.waits_for}`;
     if (words[frame.state] && frame.state !== "Approaching") return words[frame.state];
     if (frame.at_pole) return "the axis is on the pole: the redundant joint turns";
     if (frame.limiting) return `joint ${frame.limiting} holds the feed back`;
@@ -154,9 +169,16 @@ export class Display {
   }
 
   setNews(items) {
-    const rows = items.slice(-60).reverse().map((item) =>
-      element("li", { class: ["news", "warning", "alarm"][item.severity] },
-        element("time", {}, new Date(item.time_ms).toLocaleTimeString([], { hour12: false })), element("span", {}, item.text)));
+    this.news = items;
+    this.drawNews();
+  }
+
+  // Of all, or of one who speaks: the machine, operators, stations.
+  drawNews() {
+    const from = byId("news-source").value;
+    const rows = (this.news ?? []).filter((item) => from === "all" || item.source === from).reverse().map((item) =>
+      element("li", { class: `${["news", "warning", "alarm"][item.severity]} ${item.source}` },
+        element("time", { datetime: new Date(item.time_ms).toISOString() }, shownTime(item.time_ms)), element("span", {}, item.text)));
     byId("news").replaceChildren(...rows);
   }
 

@@ -168,7 +168,9 @@ export class Program {
     this.setButtons();
     const isOurs = this.isRunning(frame);
     if (isOurs && frame.line > 0) this.listing.show(frame.line);
-    setText(byId("to-go"), isOurs && this.path && frame.plan_time_s > 0 ? `to go ${clock(this.toGo(frame))}` : "");
+    const isOnPath = isOurs && this.path && frame.plan_time_s > 0;
+    setText(byId("block-to-go"), isOnPath ? `${fixed(this.path.distanceToGo(frame.plan_time_s, frame.line, frame.tip), 1)} mm` : "\u2013");
+    setText(byId("to-go"), isOnPath ? `to go ${clock(this.toGo(frame))}` : "");
   }
 
   // An override below 100 % stretches what is left.

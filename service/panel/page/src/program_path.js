@@ -24,15 +24,33 @@ export class ProgramPath {
     return this.count > 0 ? this.time[this.count - 1] : 0;
   }
 
-  // How long the program still takes at 100 % when its plan has come to `planTime`.
-  toGo(planTime) {
+  // The first point at or behind that time of the plan.
+  find(planTime) {
     let low = 0, high = this.count;
     while (low < high) {
       const middle = (low + high) >> 1;
       if (this.planTime[middle] < planTime) low = middle + 1;
       else high = middle;
     }
-    return low < this.count ? this.duration - this.time[low] : 0;
+    return low;
+  }
+
+  // How long the program still takes at 100 % when its plan has come to `planTime`.
+  toGo(planTime) {
+    const at = this.find(planTime);
+    return at < this.count ? this.duration - this.time[at] : 0;
+  }
+
+  // How far the tip, mm, still goes from `tip` to the end of `line` when the plan has come to `planTime`.
+  distanceToGo(planTime, line, tip) {
+    const point = (i) => [0, 1, 2].map((k) => this.tip[3 * i + k]);
+    let sum = 0, from = tip;
+    for (let i = this.find(planTime); i < this.count && this.line[i] === line; ++i) {
+      const to = point(i);
+      sum += Math.hypot(...to.map((value, k) => value - from[k]));
+      from = to;
+    }
+    return sum;
   }
 
   // Seconds at each limit, longest first: [limit, seconds].

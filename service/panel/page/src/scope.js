@@ -5,6 +5,7 @@ import { byId, element, setText } from "./dom.js";
 import { limitColour } from "./path.js";
 import { kMaxBytes, readRecording } from "./recording.js";
 import { kQuantities, ScopeBuffer } from "./scope_buffer.js";
+import { mcapOf } from "./scope_mcap.js";
 import { Trigger } from "./trigger.js";
 import { fixed, unit } from "./units.js";
 
@@ -28,7 +29,8 @@ export class Scope {
     byId("scope-window").addEventListener("change", () => this.draw());
     byId("scope-pause").addEventListener("click", () => this.pause(!this.isPaused));
     byId("scope-arm").addEventListener("click", () => this.arm());
-    byId("scope-csv").addEventListener("click", () => this.save());
+    byId("scope-csv").addEventListener("click", () => this.save("csv", new Blob([this.buffer.csv(...this.range())], { type: "text/csv" })));
+    byId("scope-mcap").addEventListener("click", async () => this.save("mcap", await mcapOf(this.buffer, ...this.range())));
     byId("scope-live").addEventListener("click", () => this.goLive());
     const file = byId("scope-file");
     byId("scope-open").addEventListener("click", () => file.click());
@@ -132,9 +134,8 @@ export class Scope {
     return this.report(`${file.name}: ${this.buffer.count} cycles`);
   }
 
-  save() {
-    const [begin, end] = this.range();
-    const link = element("a", { href: URL.createObjectURL(new Blob([this.buffer.csv(begin, end)], { type: "text/csv" })), download: "meridian-scope.csv" });
+  save(kind, blob) {
+    const link = element("a", { href: URL.createObjectURL(blob), download: `meridian-scope.${kind}` });
     link.click();
     URL.revokeObjectURL(link.href);
   }

@@ -93,14 +93,23 @@ export class ScopeBuffer {
     return out;
   }
 
+  // Of the samples from `begin` to `end` (s).
+  *indices(begin, end) {
+    const last = Math.min(this.find(end) + 1, this.count);
+    for (let i = this.find(begin); i < last; ++i) yield i;
+  }
+
+  // Names of the joints with their units, as the columns of a recording have them.
+  get names() {
+    return this.joints.map((joint) => `${joint.name}_${joint.rotary ? "rad" : "mm"}`);
+  }
+
   // CSV of the samples from `begin` to `end`: a header with units, a row per cycle.
   csv(begin, end) {
-    const names = this.joints.map((joint) => `${joint.name}_${joint.rotary ? "rad" : "mm"}`);
     const following = this.joints.map((joint) => `${joint.name}_following_${joint.rotary ? "rad" : "mm"}`);
     const text = (number) => (Number.isFinite(number) ? String(number) : "");
-    const lines = [["cycle", "time_s", ...names, ...following, "feed_mm_per_min", "lateness_us"].join(",")];
-    const last = Math.min(this.find(end) + 1, this.count);
-    for (let i = this.find(begin); i < last; ++i) {
+    const lines = [["cycle", "time_s", ...this.names, ...following, "feed_mm_per_min", "lateness_us"].join(",")];
+    for (const i of this.indices(begin, end)) {
       lines.push([this.cycle[i], this.time(i).toFixed(6), ...this.position.map((column) => text(column[i])),
         ...this.following.map((column) => text(column[i])), text(this.feed[i]), text(this.lateness[i])].join(","));
     }
