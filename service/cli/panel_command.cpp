@@ -99,6 +99,10 @@ void add(CLI::App& app, int& exit_code) {
   command->add_option("--public", options->public_url,
                       "https://NAME:PORT of a TLS proxy on this host that leads to the panel; "
                       "needs --token");
+  command->add_option("--meshes", options->panel.mesh_folder,
+                      "Folder of the STL files that the machine file names in [[mesh]]; none: the "
+                      "machine is drawn from its joints alone")
+      ->check(CLI::ExistingDirectory);
   command->add_option("--history", options->panel.history_file,
                       "Audit log of the service on this host: its faults, commands and sessions "
                       "stand under Messages, those of before the panel began too");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/panel/machine_watch.hpp"
 
+#include <cstdint>
+#include <system_error>
 #include <utility>
 
 #include "service/machine/file/machine_file.hpp"
@@ -8,6 +10,7 @@
 #include "service/panel/metrics.hpp"
 #include "service/panel/scene.hpp"
 #include "service/protocol/served_model.hpp"
+#include "service/text/whole_file.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -16,6 +19,7 @@ namespace {
 constexpr int kDepth = 512;
 /// A service speaks twenty times a second; one that was silent for so long is gone.
 constexpr std::chrono::milliseconds kSilent{1500};
+constexpr std::uintmax_t kMaxMeshBytes = 32 << 20;
 
 /// Whether both say the same of the machine; who serves it, and for how long, aside.
 [[nodiscard]] bool is_same_machine(const dds::MachineInfo& a, const dds::MachineInfo& b) {
@@ -27,7 +31,7 @@ constexpr std::chrono::milliseconds kSilent{1500};
 
 }  // namespace
 
-MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub, std::filesystem::path history)
+MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub, Files files)
     : hub_(hub),
       machines_(participant),
       statuses_(participant),
@@ -35,8 +39,9 @@ MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub, std::filesys
       feedbacks_(participant, {}, kDepth),
       latencies_(participant),
       actions_(participant),
-      answers_(participant) {
-  if (!history.empty()) history_.emplace(std::move(history));
+      answers_(participant),
+      mesh_folder_(std::move(files.meshes)) {
+  if (!files.history.empty()) history_.emplace(std::move(files.history));
 }
 
 void MachineWatch::adopt(const dds::MachineInfo& info) {
@@ -46,18 +51,37 @@ void MachineWatch::adopt(const dds::MachineInfo& info) {
   }
   motion_.reset();
   model_.reset();
+  std::vector<config::Mesh> meshes;
   std::string scene;
   try {
     model_ = std::make_unique<MachineModel>(stream::served_model(info));
     motion_ = std::make_unique<Motion>(*model_);
     const bool has_tools = !info.tool_file.empty();
+    if (!mesh_folder_.empty()) meshes = config::parse_meshes(info.machine_file, info.name, *model_);
     scene = describe_scene(stream::whole_model(info),
                            has_tools ? config::parse_tools(info.tool_file, "tools") : ToolTable(),
-                           info.soft_limits);
+                           info.soft_limits, meshes);
   } catch (const config::ConfigError&) {
     // Its file does not fit the topic, or another version wrote it: shown without a picture.
   }
+  {
+    const std::lock_guard lock(machine_mutex_);
+    meshes_ = std::move(meshes);
+  }
   hub_.publish(Hub::kMachine, machine_text(info, scene));
+}
+
+std::optional<std::string> MachineWatch::mesh(std::size_t number) const {
+  std::string file;
+  {
+    const std::lock_guard lock(machine_mutex_);
+    if (number >= meshes_.size()) return std::nullopt;
+    file = meshes_[number].file;
+  }
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(mesh_folder_ / file, unknown);
+  if (unknown || bytes > kMaxMeshBytes) return std::nullopt;
+  return text::read_whole(mesh_folder_ / file);
 }
 
 std::optional<dds::MachineInfo> MachineWatch::machine() const {

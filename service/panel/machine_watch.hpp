@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "service/machine/file/mesh_file.hpp"
 #include "service/panel/auxiliaries.hpp"
 #include "service/panel/history.hpp"
 #include "service/panel/latency_text.hpp"
@@ -29,9 +30,13 @@ namespace meridian::panel {
 /// only reads, and polls: the rate of the setpoints costs no wake-ups. One thread.
 class MachineWatch {
  public:
-  /// `hub` and `participant` must live on; `history`: the audit log of the service, empty: none is
-  /// read. Throws DdsError.
-  MachineWatch(dds::Participant& participant, Hub& hub, std::filesystem::path history = {});
+  /// Files beside the topics; an empty path: none.
+  struct Files {
+    std::filesystem::path history;  ///< audit log of the service
+    std::filesystem::path meshes;   ///< folder of the meshes that the machine file names
+  };
+  /// `hub` and `participant` must live on. Throws DdsError.
+  MachineWatch(dds::Participant& participant, Hub& hub, Files files = {});
 
   /// Takes what came and publishes what is new.
   void poll();
@@ -42,6 +47,8 @@ class MachineWatch {
   [[nodiscard]] const std::optional<dds::Status>& status() const noexcept { return status_; }
   /// The machine as its service reported it last, for any thread; nothing: it is silent.
   [[nodiscard]] std::optional<dds::MachineInfo> machine() const;
+  /// The bytes of a mesh of the machine, from 0, for any thread; nothing: there is none.
+  [[nodiscard]] std::optional<std::string> mesh(std::size_t number) const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -69,6 +76,8 @@ class MachineWatch {
   dds::Reader<dds::ActionDone> answers_;
   dds::Followed<dds::Status> followed_;
   mutable std::mutex machine_mutex_;  ///< of machine_ against other threads
+  std::filesystem::path mesh_folder_;
+  std::vector<config::Mesh> meshes_;  ///< of machine_, under machine_mutex_
   std::optional<dds::MachineInfo> machine_;
   std::optional<dds::Status> status_;
   std::optional<dds::Latency> latency_;

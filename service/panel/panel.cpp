@@ -9,6 +9,7 @@
 #include "service/panel/desks/action_desk.hpp"
 #include "service/panel/desks/operator_desk.hpp"
 #include "service/panel/desks/program_desk.hpp"
+#include "service/panel/doctor_text.hpp"
 #include "service/panel/machine_watch.hpp"
 #include "service/panel/serve/hub.hpp"
 #include "service/panel/serve/operator_pages.hpp"
@@ -49,13 +50,6 @@ struct Desks {
           [desks](const PageMessage& message) { return serve(desks, message); }};
 }
 
-/// A panel that only watches says so to its pages and passes nothing on.
-[[nodiscard]] PageHandler watching() {
-  PageHandler handler;
-  handler.on_open = [](PageLink& page) { page.say(R"({"t":"operator","who":"watching"})"); };
-  return handler;
-}
-
 /// What pages send and get beside their link.
 [[nodiscard]] HttpAnswer receive(OperatorPages& pages, ProgramDesk& programs,
                                  const HttpUpload& upload) {
@@ -67,21 +61,39 @@ struct Desks {
   return {.status = outcome.is_accepted ? 200 : kConflict, .text = outcome.text};
 }
 
-[[nodiscard]] std::optional<HttpAnswer> find_part(const ProgramDesk& programs,
+[[nodiscard]] std::optional<HttpAnswer> find_part(const MachineWatch& watch,
+                                                  const ProgramDesk* programs,
                                                   const HttpQuery& query) {
+  constexpr const char* kBytes = "application/octet-stream";
+  if (query.path == "/doctor") return HttpAnswer{.type = "application/json", .text = doctor_text()};
+  if (query.path == "/mesh") {
+    auto mesh = watch.mesh(query.number("number"));
+    if (!mesh) return std::nullopt;
+    return HttpAnswer{.type = kBytes, .text = std::move(*mesh)};
+  }
+  if (programs == nullptr) return std::nullopt;
   if (query.path == "/program/lines") {
-    return HttpAnswer{.text = programs.read_lines(query.number("first"), query.number("count"))};
+    return HttpAnswer{.text = programs->read_lines(query.number("first"), query.number("count"))};
   }
   if (query.path != "/program/path") return std::nullopt;
-  const Hub::Text path = programs.path();
+  const Hub::Text path = programs->path();
   if (!path) return std::nullopt;
-  return HttpAnswer{.type = "application/octet-stream", .text = *path};
+  return HttpAnswer{.type = kBytes, .text = *path};
 }
 
-[[nodiscard]] PageHandler operating(OperatorPages& pages, ProgramDesk& programs) {
+/// A panel that only watches says so to its pages and passes nothing on.
+[[nodiscard]] PageHandler watching(const MachineWatch& watch) {
+  PageHandler handler;
+  handler.get = [&watch](const HttpQuery& query) { return find_part(watch, nullptr, query); };
+  handler.on_open = [](PageLink& page) { page.say(R"({"t":"operator","who":"watching"})"); };
+  return handler;
+}
+
+[[nodiscard]] PageHandler operating(const MachineWatch& watch, OperatorPages& pages,
+                                    ProgramDesk& programs) {
   PageHandler handler;
   handler.upload = [&](const HttpUpload& upload) { return receive(pages, programs, upload); };
-  handler.get = [&programs](const HttpQuery& query) { return find_part(programs, query); };
+  handler.get = [&](const HttpQuery& query) { return find_part(watch, &programs, query); };
   handler.on_open = [&pages](PageLink& page) { pages.open(page); };
   handler.on_text = [&pages](PageLink& page, std::string_view text) { pages.read(page, text); };
   handler.on_close = [&pages](PageLink& page) { pages.close(page); };
@@ -95,7 +107,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
                const std::function<void(std::uint16_t)>& on_ready) {
   constexpr std::chrono::milliseconds kBetweenPolls{20};
   Hub hub;
-  MachineWatch watch(participant, hub, options.history_file);
+  MachineWatch watch(participant, hub, {options.history_file, options.mesh_folder});
   // Outcomes go to pages, so the desk ends first; pages talk to the desk, so the server goes
   // before.
   std::optional<OperatorDesk> desk;
@@ -110,7 +122,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     pages.emplace(desk_of(*desk, watch, {*programs, actions ? &*actions : nullptr}));
   }
   {
-    PageHandler handler = pages ? operating(*pages, *programs) : watching();
+    PageHandler handler = pages ? operating(watch, *pages, *programs) : watching(watch);
     handler.metrics = [&hub] {
       const Hub::Text text = hub.newest(Hub::kMetrics);
       return text ? *text : std::string();

@@ -16,6 +16,7 @@ struct PanelOptions {
   std::string token;             ///< what browsers and programs have to show; empty: nothing
   std::string operator_name;     ///< for messages and the log
   std::string history_file;      ///< audit log of the service; empty: none is read
+  std::string mesh_folder;       ///< of the meshes that the machine file names; empty: none are drawn
   std::string station_name;      ///< of the panel as a station of programs
   bool answers_actions = false;  ///< the operator does what the path waits for, in place of a PLC
   bool is_watching = false;      ///< the page has no buttons, and nothing that it says is passed on

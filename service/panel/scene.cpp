@@ -82,6 +82,12 @@ using nlohmann::json;
   return out;
 }
 
+[[nodiscard]] json to_json(const std::vector<config::Mesh>& meshes) {
+  json out = json::array();
+  for (const config::Mesh& mesh : meshes) out.push_back({{"link", mesh.link}});
+  return out;
+}
+
 [[nodiscard]] const char* family_name(MachineFamily family) {
   switch (family) {
     case MachineFamily::kChain:
@@ -97,7 +103,7 @@ using nlohmann::json;
 }  // namespace
 
 std::string describe_scene(const MachineModel& model, const ToolTable& tools,
-                           const SoftLimits& soft_limits) {
+                           const SoftLimits& soft_limits, const std::vector<config::Mesh>& meshes) {
   const scene::LinkTree tree = scene::link_tree(model);
   const SoftLimits in_force = travel_under(soft_limits, model);
   json joints = json::array(), table = json::array();
@@ -126,6 +132,7 @@ std::string describe_scene(const MachineModel& model, const ToolTable& tools,
                         {"pole", to_json(pole_direction(model))},
                         {"tool_length", model.tool_length_mm},
                         {"tools", table},
+                        {"meshes", to_json(meshes)},
                         {"tip_tolerance", model.tolerances.tip_mm},
                         {"max_feed", model.max_feed_mm_per_s * 60},
                         {"max_override", model.max_feed_override},

@@ -3,7 +3,7 @@
 import { existsSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { openBrowser, sleep, until } from "./plant.mjs";
-import { HostStalled, afterStalls, click, confirmed, drawAt, enabled, go, inState, load, must, picture, runTests, setFeedOverride, stateOf } from "./page_hand.mjs";
+import { HostStalled, afterStalls, confirmed, drawAt, enabled, go, goConfirmed, inState, load, must, picture, runTests, setFeedOverride, stateOf } from "./page_hand.mjs";
 import { pictures, plant, playwright } from "./browser_case.mjs";
 
 const kTool = "45";  // the one that the file calls
@@ -17,8 +17,7 @@ const kLimit_ms = 300000;
 async function started(page) {
   await load(page, corpus);
   await inState(page, "Loaded");
-  await confirmed(page, "start");
-  await inState(page, "Running", 60000);
+  await goConfirmed(page, "start", "Running");
 }
 
 async function switched(page, name, isOn) {
@@ -37,8 +36,7 @@ async function twoBlocksOneByOne(page) {
   }
   await inState(page, "Stepping", 60000);
   await switched(page, "single_block", false);
-  await confirmed(page, "resume");
-  await inState(page, "Running");
+  await goConfirmed(page, "resume", "Running");
 }
 
 async function aWholePartRunsByClicksAlone({ page }) {
@@ -46,10 +44,8 @@ async function aWholePartRunsByClicksAlone({ page }) {
   await enabled(page);
   await started(page);
   await sleep(3000);
-  await click(page, "hold");
-  await inState(page, "Held");
-  await confirmed(page, "resume");
-  await inState(page, "Running");
+  await go(page, "hold", "Held");
+  await goConfirmed(page, "resume", "Running");
   for (const percent of [30, 120]) {
     await setFeedOverride(page, percent);
     await sleep(2000);
@@ -84,8 +80,7 @@ const itBeginsAgainBehindAnEmergencyStop = ({ page }) => afterStalls(page, () =>
 async function oneEmergencyStop(page) {
   await enabled(page);
   await started(page);
-  await click(page, "abort");
-  await inState(page, "Ready");
+  await go(page, "abort", "Ready");
   await started(page);
   await sleep(1000);
   plant.drives.stdin.write("emergency\n");
@@ -98,8 +93,7 @@ async function oneEmergencyStop(page) {
   await enabled(page);
   await started(page);
   await sleep(1000);
-  await click(page, "abort");
-  await inState(page, "Ready");
+  await go(page, "abort", "Ready");
 }
 
 function theRecordingIsRight(end) {

@@ -37,18 +37,20 @@ export async function confirmed(page, verb) {
   await click(page, verb);
   await page.click("#confirm-yes");
 }
-// Until the machine is in that state. A page that lags, drawn in software on a busy host, is refused as stale: looked again.
-export async function go(page, verb, state) {
+// Asks until the machine is in that state. A page that lags, drawn in software on a busy host, is refused as stale: looked again.
+export async function goBy(page, ask, state) {
   for (let attempt = 1; ; ++attempt) {
-    await click(page, verb);
+    await ask();
     try {
-      return await inState(page, state, 5000);
+      return await inState(page, state, 10000);
     } catch (error) {
       const answer = await page.textContent("#reply");
       if (error instanceof HostStalled || !answer.includes("look again") || attempt === kAttempts) throw error;
     }
   }
 }
+export const go = (page, verb, state) => goBy(page, () => click(page, verb), state);
+export const goConfirmed = (page, verb, state) => goBy(page, () => confirmed(page, verb), state);
 export async function enabled(page) {
   const isOff = await until("Off or Ready", async () => ({ Off: "off", Ready: "ready" })[await stateOf(page)]) === "off";
   if (isOff) await go(page, "enable", "Ready");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture's tip and tool axis equal forward() for every shipped machine file and a hundred poses each.
 import { execFileSync } from "node:child_process";
+import { BoxGeometry, Vector3 } from "three";
 import { Frames } from "../../service/panel/page/src/screws.js";
 import { Machine } from "../../service/panel/page/src/machine.js";
 
@@ -10,6 +11,26 @@ const kMinMachines = 10;
 const [cases, machines] = process.argv.slice(4);
 const text = execFileSync(cases, [machines], { encoding: "utf8", maxBuffer: 1 << 28 });
 const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
+
+// A body that hangs on a joint is carried by it and by those below it: where the drawn tip goes, one at the tip goes too.
+function meshesHangWhereTheySay(scene, poses) {
+  const machine = new Machine(scene, "dark");
+  const drawnOf = () => { let count = 0; machine.root.traverse((one) => (count += one.userData.isDrawn ? 1 : 0)); return count; };
+  const before = drawnOf(), last = scene.head.at(-1);
+  if (!last) return true;
+  machine.setTool(poses[0].tool);
+  const tipAtZero = machine.frames.tip.position.clone();
+  machine.addMesh(scene.joints[last.joint].name, new BoxGeometry(1, 1, 1).translate(...tipAtZero.toArray()));
+  machine.addMesh("part", new BoxGeometry(1, 1, 1));
+  machine.addMesh("no such link", new BoxGeometry(1, 1, 1));
+  const body = machine.frames.head.at(-1).children.find((one) => one.isMesh);
+  const blank = machine.frames.workpiece.children.find((one) => one.isMesh);
+  return Boolean(body) && Boolean(blank) && drawnOf() < before && poses.every(({ joints }) => {
+    machine.setJoints(joints);
+    const at = new Vector3(...tipAtZero.toArray()).applyMatrix4(body.matrixWorld);
+    return at.distanceTo(new Vector3().setFromMatrixPosition(machine.frames.tip.matrixWorld)) <= kTip_mm;
+  });
+}
 
 let worstTip = 0, worstAxis = 0, count = 0, failures = 0;
 for (const line of text.trim().split("\n")) {
@@ -37,6 +58,10 @@ for (const line of text.trim().split("\n")) {
       console.log(`${scene.name}: a body has no position`);
     }
   });
+  if (!meshesHangWhereTheySay(scene, poses)) {
+    failures += 1;
+    console.log(`${scene.name}: a mesh hangs elsewhere`);
+  }
   count += 1;
 }
 console.log(`${count} machines, tip within ${worstTip.toExponential(2)} mm, axis within ${worstAxis.toExponential(2)}`);

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, click, confirmed, drawAt, enabled, go, inState, load, must, phase, picture, runTests, stateOf } from "./page_hand.mjs";
+import { afterStalls, drawAt, enabled, go, goBy, goConfirmed, inState, load, must, phase, picture, runTests, stateOf } from "./page_hand.mjs";
 import { fetched, pictures, plant, playwright } from "./browser_case.mjs";
 
 // ---- the numbers beside the picture
@@ -17,8 +17,7 @@ async function theNumbersAreThoseOfTheStatus({ page }) {
     await enabled(page);
     await load(page, plant.part());
     await inState(page, "Loaded");
-    await confirmed(page, "start");
-    await inState(page, "Running");
+    await goConfirmed(page, "start", "Running");
     await page.evaluate(() => {
       // What stood on the page when each frame had been shown.
       const shown = (globalThis.shownFrames = new Map());
@@ -45,8 +44,7 @@ async function theNumbersAreThoseOfTheStatus({ page }) {
     must(compared >= 12, `only ${compared} statuses were met`);
     await page.reload();
     await until("a frame", () => page.evaluate(() => globalThis.meridian?.frame != null));
-    await click(page, "abort");
-    await inState(page, "Ready");
+    await go(page, "abort", "Ready");
   });
 }
 
@@ -91,9 +89,10 @@ async function onePartByKeys(page) {
   await phase(page, "ready", 60000);
   await push(page, "#program-load");
   await inState(page, "Loaded");
-  await push(page, '[data-verb="start"]');
-  await push(page, "#confirm-yes");
-  await inState(page, "Running");
+  await goBy(page, async () => {
+    await push(page, '[data-verb="start"]');
+    await push(page, "#confirm-yes");
+  }, "Running");
   await page.keyboard.press("Escape");
   await inState(page, "Held");
   await push(page, '[data-verb="abort"]');
@@ -149,6 +148,8 @@ async function theStagesStandBesideTheirBudgets({ page }) {
   await page.click("#tab-timing");
   await until("stages", async () => (await page.locator(".stage-card").count()) >= 6);
   must((await page.textContent("#timing-stages")).includes("budget"), "no budgets");
+  const [said] = JSON.parse(plant.tool("doctor", "--json", "--no-dds").replace(/^failed \(\d+\): /, "")).findings.filter(({ what }) => what === "kernel");
+  await until("what doctor finds", async () => (await page.textContent("#timing-doctor")).includes(said.found));
   await picture(page, pictures, "panel-timing");
   await page.click("#tab-machine");
 }

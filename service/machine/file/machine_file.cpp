@@ -9,6 +9,7 @@
 #include "meridian/units.hpp"
 #include "service/machine/file/homing_file.hpp"
 #include "service/machine/file/keep_out_file.hpp"
+#include "service/machine/file/mesh_file.hpp"
 #include "service/machine/file/kinematics_file.hpp"
 #include "service/machine/file/machine_name.hpp"
 #include "service/machine/file/positions_file.hpp"
@@ -195,6 +196,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   model.tip_box = read_tip_box(file, model);
   (void)read_homing(file.section_or("homing"), model.joint_count);
   (void)read_positions(file, model);
+  (void)read_meshes(file, model);
   file.finish();
   return model;
 }

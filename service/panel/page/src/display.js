@@ -79,7 +79,7 @@ export class Display {
     ["x", "y", "z"].forEach((name, i) => setText(byId(`tip-${name}`), fixed(frame.tip[i], 3)));
     ["i", "j", "k"].forEach((name, i) => setText(byId(`axis-${name}`), fixed(frame.axis[i], 4)));
     setText(byId("tool-length"), `${frame.tool > 0 ? `${frame.tool}, ` : ""}${fixed(frame.tool_length, 3)} mm`);
-    setText(byId("work-frame"), frame.work_frame > 0 ? String(frame.work_frame) : "of the machine file");
+    setText(byId("work-frame"), frame.work_frame > 0 ? String(frame.work_frame) : "machine file");
   }
 
   setFeed(frame) {

@@ -36,6 +36,18 @@ export class Machine {
     this.setJoints(scene.joints.map((joint) => joint.home));
   }
 
+  // A body from a file, in the frame M with every joint at zero; what was drawn of its link from the joints alone goes.
+  addMesh(link, geometry) {
+    const { scene, frames, solids } = this;
+    const joint = scene.joints.findIndex(({ name }) => name === link);
+    const at = (screws, groups) => groups[screws.findIndex((screw) => screw.joint === joint)];
+    const group = link === "part" ? frames.workpiece : link === "base" ? this.root : at(scene.head, frames.head) ?? at(scene.table, frames.table);
+    if (!group) return;
+    const kept = new Set(link === "part" ? group.children : [this.tool, this.holder]);
+    for (const one of [...group.children]) if (one.userData.isDrawn && !kept.has(one)) one.removeFromParent();
+    group.add(solids.mesh(geometry, link === "base" ? "body" : link === "part" ? "table" : "moving"));
+  }
+
   setJoints(joints) {
     this.frames.setJoints(joints);
     this.stage?.(joints);

@@ -26,9 +26,15 @@ export class Solids {
 
   solid(geometry, role) {
     const group = new Group();
+    group.userData.isDrawn = true;
     group.add(new Mesh(geometry, this.materials[role]));
     group.add(new LineSegments(new EdgesGeometry(geometry, 28), this.edge));
     return group;
+  }
+
+  // A body from a file, without its edges: they may be many.
+  mesh(geometry, role) {
+    return new Mesh(geometry, this.materials[role]);
   }
 
   // A box with its sides along x, y, z of M.

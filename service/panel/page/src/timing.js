@@ -7,7 +7,28 @@ const time = (us) => (us >= 10000 ? `${fixed(us / 1000, 1)} ms` : us >= 100 ? `$
 
 export class Timing {
   constructor() {
-    window.addEventListener("meridian-view", () => this.draw());
+    window.addEventListener("meridian-view", () => {
+      this.draw();
+      this.askDoctor();
+    });
+  }
+
+  // What the host lacks for real time, whenever the view is opened.
+  async askDoctor() {
+    if (byId("sheet-timing").hidden) return;
+    try {
+      const answer = await fetch("/doctor");
+      if (answer.ok) this.drawDoctor((await answer.json()).findings);
+    } catch {
+      // The link says that the panel is gone.
+    }
+  }
+
+  drawDoctor(findings) {
+    const rank = { bad: 0, note: 1, fine: 2 };
+    const rows = findings.sort((a, b) => rank[a.health] - rank[b.health]).map(({ what, health, found, remedy }) =>
+      element("li", { class: health }, element("b", {}, what), element("span", {}, found), element("small", {}, remedy)));
+    byId("timing-doctor").replaceChildren(...rows);
   }
 
   setLatency(message) {

@@ -6,6 +6,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Machine } from "./machine.js";
+import { loadMesh } from "./mesh.js";
 import { palette } from "./shapes.js";
 import { Trail } from "./trail.js";
 
@@ -53,9 +54,23 @@ export class View {
     this.drawFloor();
     this.drawMarks();
     this.apply();
+    this.loadMeshes();
     if (!this.isPlaced) this.look("iso");
     this.isPlaced = true;
     this.ask();
+  }
+
+  // Bodies come after the machine, from files that the panel has; one that does not come leaves what is drawn.
+  async loadMeshes() {
+    const { machine } = this;
+    for (const [number, { link }] of (this.description.meshes ?? []).entries()) {
+      const geometry = await loadMesh(number);
+      if (machine !== this.machine) return;
+      if (!geometry) continue;
+      machine.addMesh(link, geometry);
+      this.apply();
+      this.ask();
+    }
   }
 
   setPath(path) {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// How fast the page comes and turns with a long program on it. MERIDIAN_PANEL_BLOCKS: how many blocks (20000). Absolute limits
+// are for a quiet host: MERIDIAN_PANEL_FRAMES, MERIDIAN_PANEL_FIRST_MS; else the path is measured against the page without it.
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { cpuSecondsOf, kLarge, memoryOf, openBrowser, sleep, until } from "./plant.mjs";
+import { enabled, must, phase, runTests } from "./page_hand.mjs";
+import { pictures, plant, playwright } from "./browser_case.mjs";
+
+const kBlocks = Number(process.env.MERIDIAN_PANEL_BLOCKS ?? 20000);
+const kMinFrames = Number(process.env.MERIDIAN_PANEL_FRAMES ?? 0), kMaxFirst_ms = Number(process.env.MERIDIAN_PANEL_FIRST_MS ?? 60000);
+const kMaxBytes = 1e6;
+
+// A spiral on a dome, the tool along the normal of it.
+function longProgram() {
+  const rows = ["PARTNO/LONG", "UNITS/MM", "MULTAX/ON", "FEDRAT/6000,MMPM"];
+  for (let i = 0; i < kBlocks; ++i) {
+    const share = i / kBlocks, turn = 2 * Math.PI * 120 * share, tilt = 0.1 + 0.35 * share, radius = 150;
+    const [x, y, z] = [Math.sin(tilt) * Math.cos(turn), Math.sin(tilt) * Math.sin(turn), Math.cos(tilt)];
+    const text = [radius * x, radius * y, radius * z - 100, x, y, z].map((value) => value.toFixed(6)).join(",");
+    rows.push(`GOTO/${text}`);
+  }
+  const file = join(plant.folder, "long.apt");
+  writeFileSync(file, `${rows.join("\n")}\nFINI\n`);
+  return file;
+}
+
+async function thePageIsSmall() {
+  let bytes = 0;
+  for (const path of ["/", "/panel.js", "/panel.css"]) {
+    const answer = await fetch(new URL(path, plant.url), { headers: { "Accept-Encoding": "gzip" } });
+    bytes += Number(answer.headers.get("content-length"));
+    must(answer.ok, `${path} is not there`);
+  }
+  console.log(`  ${bytes} bytes, packed`);
+  must(bytes > 50000 && bytes < kMaxBytes, `the page has ${bytes} bytes`);
+}
+
+async function theFirstPictureComesSoon({ page }) {
+  const begin = Date.now();
+  await page.goto(plant.url);
+  await until("a picture", () => page.evaluate(() => globalThis.meridian?.frame != null && meridian.view.frames > 0).catch(() => false), 60000);
+  const took = Date.now() - begin;
+  console.log(`  first picture after ${took} ms`);
+  must(took < kMaxFirst_ms, `the first picture came after ${took} ms`);
+}
+
+// The camera goes round; every frame that is drawn counts.
+const framesPerSecond = (page, seconds) => page.evaluate(async (duration_ms) => {
+  const { view } = meridian;
+  const begin = performance.now(), drawn = view.frames;
+  for (;;) {
+    const now = await new Promise((done) => requestAnimationFrame(done));
+    if (now - begin > duration_ms) return (1000 * (view.frames - drawn)) / (now - begin);
+    const angle = 0.001 * (now - begin), { target } = view.controls, distance = view.camera.position.distanceTo(target);
+    view.camera.position.set(target.x + 0.7 * distance * Math.cos(angle), target.y + 0.7 * distance * Math.sin(angle), target.z + 0.7 * distance);
+    view.controls.update();
+    view.ask();
+  }
+}, 1000 * seconds);
+
+async function aLongPathTurns({ page }) {
+  await page.setViewportSize(kLarge);
+  await enabled(page);
+  const empty = await framesPerSecond(page, 3);
+  await page.click("#tab-program");
+  await page.setInputFiles("#program-file", longProgram());
+  await phase(page, "ready", 900000);
+  await until("the path", () => page.evaluate(() => meridian.program.path !== null), 60000);
+  await page.click("#tab-machine");
+  await page.click('[data-view="part"]');
+  await sleep(1000);
+  const used = cpuSecondsOf(plant.panel.pid), began = Date.now();
+  const full = await framesPerSecond(page, 5);
+  const share = (cpuSecondsOf(plant.panel.pid) - used) / ((Date.now() - began) / 1000);
+  const points = await page.evaluate(() => meridian.program.path.count);
+  console.log(`  ${kBlocks} blocks, ${points} points: ${full.toFixed(1)} frames/s at 1080p, ${empty.toFixed(1)} without; panel ${(100 * share).toFixed(1)} % of a core, ${memoryOf(plant.panel.pid)} KiB`);
+  must(full >= kMinFrames, `${full} frames/s`);
+  must(full > 0.5 * empty, "the path takes more than half of the frames");
+}
+
+await runTests(plant, pictures, async (session, run) => {
+  await plant.start();
+  await run("ThePageIsSmall", thePageIsSmall);
+  session.open = await openBrowser(playwright, plant);
+  await run("TheFirstPictureComesSoon", theFirstPictureComesSoon, session.open);
+  await run("ALongPathTurns", aLongPathTurns, session.open);
+});
