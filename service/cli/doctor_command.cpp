@@ -2,13 +2,13 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/host_findings.hpp"
 #include "service/cli/options/machine_name_option.hpp"
 #include "service/host/probe/dds_network.hpp"
 #include "service/host/probe/doctor.hpp"
@@ -57,17 +57,10 @@ void add(probe::Findings& all, const probe::Findings& more) {
 int run(const Options& options) {
   const probe::HostFiles host;
   const probe::Rights rights = probe::try_rights();
-  const char* const uri = std::getenv("CYCLONEDDS_URI");
-  probe::Findings all = probe::examine_rights(host, rights);
-  add(all, probe::examine_service_group(host));
-  add(all, probe::examine_isolation(host, cycle_cpu(options)));
-  add(all, probe::examine_processors(host, rights));
-  add(all, probe::examine_kernel(host));
-  add(all, probe::examine_clocks(host, probe::read_time_of_day()));
-  const std::string cyclone_uri = uri == nullptr ? "" : uri;
-  add(all, probe::examine_network(host, cyclone_uri));
+  const std::string uri = cyclone_uri();
+  probe::Findings all = examine_host(cycle_cpu(options), uri, &rights);
   if (!options.is_silent) {
-    add(all, probe::examine_dds_network(host, cyclone_uri, probe::real_network()));
+    add(all, probe::examine_dds_network(host, uri, probe::real_network()));
   }
   add(all, probe::examine_traces(options.trace));
   if (!options.is_silent) add(all, examine_domain(options));

@@ -9,7 +9,9 @@
 #include <string>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/host_findings.hpp"
 #include "service/cli/options/peer_options.hpp"
+#include "service/host/process/processors.hpp"
 #include "service/panel/desks/request_guard.hpp"
 #include "service/panel/desks/token_guard.hpp"
 #include "service/panel/panel.hpp"
@@ -58,6 +60,9 @@ int serve(Options& options) {
   dds::Participant participant({.domain = options.peer.domain,
                                 .machine = options.peer.machine,
                                 .open_network = open_network});
+  options.panel.examine_host = [] {
+    return to_json(examine_host(process::last_cpu(), cyclone_uri(), nullptr));
+  };
   panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
     std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
                 static_cast<unsigned>(port));

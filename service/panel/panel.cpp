@@ -9,7 +9,6 @@
 #include "service/panel/desks/action_desk.hpp"
 #include "service/panel/desks/operator_desk.hpp"
 #include "service/panel/desks/program_desk.hpp"
-#include "service/panel/doctor_text.hpp"
 #include "service/panel/machine_watch.hpp"
 #include "service/panel/serve/hub.hpp"
 #include "service/panel/serve/operator_pages.hpp"
@@ -61,16 +60,24 @@ struct Desks {
   return {.status = outcome.is_accepted ? 200 : kConflict, .text = outcome.text};
 }
 
-[[nodiscard]] std::optional<HttpAnswer> find_part(const MachineWatch& watch,
-                                                  const ProgramDesk* programs,
-                                                  const HttpQuery& query) {
+/// What pages ask for; programs: null where the panel only watches.
+struct Sources {
+  const PanelOptions& options;
+  const MachineWatch& watch;
+  const ProgramDesk* programs = nullptr;
+};
+
+[[nodiscard]] std::optional<HttpAnswer> find_part(const Sources& sources, const HttpQuery& query) {
   constexpr const char* kBytes = "application/octet-stream";
-  if (query.path == "/doctor") return HttpAnswer{.type = "application/json", .text = doctor_text()};
+  if (query.path == "/doctor" && sources.options.examine_host) {
+    return HttpAnswer{.type = "application/json", .text = sources.options.examine_host()};
+  }
   if (query.path == "/mesh") {
-    auto mesh = watch.mesh(query.number("number"));
+    auto mesh = sources.watch.mesh(query.number("number"));
     if (!mesh) return std::nullopt;
     return HttpAnswer{.type = kBytes, .text = std::move(*mesh)};
   }
+  const ProgramDesk* const programs = sources.programs;
   if (programs == nullptr) return std::nullopt;
   if (query.path == "/program/lines") {
     return HttpAnswer{.text = programs->read_lines(query.number("first"), query.number("count"))};
@@ -82,18 +89,18 @@ struct Desks {
 }
 
 /// A panel that only watches says so to its pages and passes nothing on.
-[[nodiscard]] PageHandler watching(const MachineWatch& watch) {
+[[nodiscard]] PageHandler watching(const Sources& sources) {
   PageHandler handler;
-  handler.get = [&watch](const HttpQuery& query) { return find_part(watch, nullptr, query); };
+  handler.get = [sources](const HttpQuery& query) { return find_part(sources, query); };
   handler.on_open = [](PageLink& page) { page.say(R"({"t":"operator","who":"watching"})"); };
   return handler;
 }
 
-[[nodiscard]] PageHandler operating(const MachineWatch& watch, OperatorPages& pages,
+[[nodiscard]] PageHandler operating(const Sources& sources, OperatorPages& pages,
                                     ProgramDesk& programs) {
   PageHandler handler;
   handler.upload = [&](const HttpUpload& upload) { return receive(pages, programs, upload); };
-  handler.get = [&](const HttpQuery& query) { return find_part(watch, &programs, query); };
+  handler.get = [sources](const HttpQuery& query) { return find_part(sources, query); };
   handler.on_open = [&pages](PageLink& page) { pages.open(page); };
   handler.on_text = [&pages](PageLink& page, std::string_view text) { pages.read(page, text); };
   handler.on_close = [&pages](PageLink& page) { pages.close(page); };
@@ -122,7 +129,8 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     pages.emplace(desk_of(*desk, watch, {*programs, actions ? &*actions : nullptr}));
   }
   {
-    PageHandler handler = pages ? operating(watch, *pages, *programs) : watching(watch);
+    const Sources sources{options, watch, programs ? &*programs : nullptr};
+    PageHandler handler = pages ? operating(sources, *pages, *programs) : watching(sources);
     handler.metrics = [&hub] {
       const Hub::Text text = hub.newest(Hub::kMetrics);
       return text ? *text : std::string();

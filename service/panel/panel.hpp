@@ -18,6 +18,8 @@ struct PanelOptions {
   std::string history_file;      ///< audit log of the service; empty: none is read
   std::string mesh_folder;       ///< of the meshes that the machine file names; empty: none are drawn
   std::string station_name;      ///< of the panel as a station of programs
+  /// What `meridian doctor` finds on this host, as its JSON; none: the page says nothing of it.
+  std::function<std::string()> examine_host;
   bool answers_actions = false;  ///< the operator does what the path waits for, in place of a PLC
   bool is_watching = false;      ///< the page has no buttons, and nothing that it says is passed on
 };
