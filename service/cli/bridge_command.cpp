@@ -11,6 +11,7 @@
 #include "service/cli/options/peer_options.hpp"
 #include "service/machine/file/config_error.hpp"
 #include "service/neighbours/bridge/ros_bridge.hpp"
+#include "service/neighbours/ros/urdf.hpp"
 #include "service/protocol/served_model.hpp"
 
 namespace meridian::cli::bridge_command {
@@ -22,6 +23,7 @@ struct BridgeOptions {
   std::uint32_t ros_domain = 0;
   double rate_hz = 50;
   double duration_s = 0;
+  bool is_description_alone = false;
 };
 
 /// The machine with its kinematics: of the file behind --machine, else of the one that the service
@@ -41,6 +43,10 @@ struct BridgeOptions {
 }
 
 int run_ros2(BridgeOptions& options) {
+  if (options.is_description_alone) {
+    std::fputs(ros::urdf_of(load_machine(options.machine)).c_str(), stdout);
+    return kFine;
+  }
   int exit_code = kFine;
   const auto machine = find_machine(options.peer, exit_code);
   if (!machine) return exit_code;
@@ -93,6 +99,9 @@ void add(CLI::App& app, int& exit_code) {
   ros2->add_option("--duration", options->duration_s, "Ends after so many seconds; 0: never")
       ->capture_default_str()
       ->check(finite_range(0.0, 1e9));
+  ros2->add_flag("--description", options->is_description_alone,
+                 "Print the URDF of the machine file and end; no service is needed")
+      ->needs("--machine");
   ros2->callback([options, &exit_code] { exit_code = run_ros2(*options); });
 }
 

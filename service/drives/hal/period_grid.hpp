@@ -15,18 +15,20 @@ class PeriodGrid {
   explicit PeriodGrid(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
 
   /// The end of a setpoint that is `elapsed_s` behind the one before, of a thread that woke at
-  /// `now_ns`. Never before the last end; four periods off, the grid begins anew.
+  /// `now_ns`. Never before the last end; 32 periods off, the grid begins anew: setpoints that were
+  /// held up come at once a little later, and belong where they were.
   [[nodiscard]] std::int64_t end_of(std::int64_t now_ns, double elapsed_s) noexcept {
     const std::int64_t asked = now_ns + period_ns_;
     const std::int64_t grid = end_ns_ + static_cast<std::int64_t>(std::llround(1e9 * elapsed_s));
     const std::int64_t off = asked - grid;
-    const std::int64_t end = std::abs(off) < 4 * period_ns_ ? grid + off / kSlowness : asked;
+    const bool is_near = end_ns_ != 0 && std::abs(off) < kFarOff * period_ns_;
+    const std::int64_t end = is_near ? grid + off / kSlowness : asked;
     end_ns_ = std::max(end_ns_, end);
     return end_ns_;
   }
 
  private:
-  static constexpr std::int64_t kSlowness = 256;  ///< periods
+  static constexpr std::int64_t kSlowness = 256, kFarOff = 32;  ///< periods
   std::int64_t period_ns_, end_ns_ = 0;
 };
 

@@ -34,6 +34,14 @@ TEST(PeriodGrid, TwoSetpointsAtOnceAndThenNoneAreWhereTheyBelong) {
   EXPECT_LT(same, bridged + 1000) << "the bridge was there already";
 }
 
+TEST(PeriodGrid, SetpointsThatWereHeldUpLeaveNoLagBehind) {
+  PeriodGrid grid(kPeriod_ns);
+  (void)grid.end_of(10 * kPeriod_ns, 1e-3);
+  (void)grid.end_of(16 * kPeriod_ns, 1e-3);  // six periods late, and one setpoint of the six is there
+  const std::int64_t end = grid.end_of(17 * kPeriod_ns, 6e-3);  // the others, and the newest
+  EXPECT_NEAR(static_cast<double>(end), 18e6, 0.05e6);
+}
+
 TEST(PeriodGrid, BeginsAnewBehindAStall) {
   PeriodGrid grid(kPeriod_ns);
   (void)grid.end_of(10 * kPeriod_ns, 1e-3);
