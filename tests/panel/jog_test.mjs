@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A machine that is jogged from a browser rests wherever the hand is lost. MERIDIAN_PANEL_JOGS: how often each (1).
+import { familyOf, openBrowser, sleep, until } from "./plant.mjs";
+import { afterStalls, drawAt, enabled, must, picture, runTests, stateOf } from "./page_hand.mjs";
+import { pictures, plant, playwright } from "./browser_case.mjs";
+
+const kTimes = Number(process.env.MERIDIAN_PANEL_JOGS ?? 1);
+const kFirstJog = ".jog-row:first-child button:last-child";
+const joint = () => plant.status().b3_mm;
+
+async function press(page) {
+  await enabled(page);
+  if (await page.isHidden("#jog")) await page.click("#jog-toggle");
+  await page.bringToFront();
+  await drawAt(page, 0.2);
+  const box = await page.locator(kFirstJog).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  // A page that lags, as one drawn in software on a busy host does, lets go by itself: pressed again.
+  for (let attempt = 1; ; ++attempt) {
+    await page.mouse.down();
+    const from = joint();
+    const isMoving = await until("the joint moves", () => joint() > from + 0.02, 2000).then(() => true, () => false);
+    if (isMoving && (await stateOf(page)) === "Jogging") return;
+    await page.mouse.up();
+    must(attempt < 8, "jog does not begin");
+    await sleep(500);
+  }
+}
+
+// How long until it rests, ms, polls of the status included; it stays where it came to rest.
+async function restAfter(cut, end) {
+  const begin = Date.now();
+  await cut();
+  await until("the machine rests", () => plant.status().state === "Ready", 3000);
+  const took = Date.now() - begin, at = joint();
+  await sleep(300);
+  must(joint() === at, `${end}: it still moves`);
+  return { took, at };
+}
+
+const hide = (page, isHidden) => page.evaluate((hidden) => {
+  Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
+  Object.defineProperty(document, "visibilityState", { configurable: true, get: () => (hidden ? "hidden" : "visible") });
+  document.dispatchEvent(new Event("visibilitychange"));
+}, isHidden);
+const signal = (family, name) => family.forEach((pid) => process.kill(pid, name));
+
+async function comeBackAndReload({ page, pid }) {
+  signal(familyOf(pid), "SIGCONT");
+  await page.mouse.up();
+  await page.reload();
+}
+
+// How the hand is lost, and how it comes back.
+const kEnds = {
+  "let go": { lose: ({ page }) => page.mouse.up() },
+  "focus lost": { lose: ({ page }) => page.evaluate(() => window.dispatchEvent(new Event("blur"))) },
+  "tab hidden": { lose: ({ page }) => hide(page, true), back: ({ page }) => hide(page, false) },
+  "socket cut": { lose: ({ page }) => page.evaluate(() => meridian.link.socket.close()) },
+  "browser stopped": { lose: ({ pid }) => signal(familyOf(pid), "SIGSTOP"), back: comeBackAndReload },
+  "browser killed": { lose: ({ pid }) => signal(familyOf(pid).reverse(), "SIGKILL"), isGone: true },
+};
+
+async function jogEndsWhen(session, name) {
+  const { lose, back, isGone } = kEnds[name];
+  const times = [];
+  for (let i = 0; i < kTimes; ++i) {
+    await afterStalls(session.open.page, async () => {
+      await press(session.open.page);
+      const { took, at } = await restAfter(() => lose(session.open), name);
+      if (back) await back(session.open);
+      if (isGone) session.open = await openBrowser(playwright, plant, "light");
+      else await session.open.page.mouse.up();
+      await sleep(500);
+      must(joint() === at, `${name}: the machine moved when the hand came back`);
+      times.push(took);
+    });
+  }
+  times.sort((a, b) => a - b);
+  console.log(`  ${name}, ${times.length} times: at rest within ${times.at(-1)} ms (median ${times[times.length >> 1]}), polls of the status included`);
+}
+
+await runTests(plant, pictures, async (session, run) => {
+  await plant.start();
+  session.open = await openBrowser(playwright, plant);
+  for (const name of Object.keys(kEnds)) {
+    await run(`JogEndsWith: ${name}`, jogEndsWhen, session, name);
+    if (name === "let go") await picture(session.open.page, pictures, "panel-jog");
+  }
+  await drawAt(session.open.page, 1);
+  await picture(session.open.page, pictures, "panel-light");
+});
