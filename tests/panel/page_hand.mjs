@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an operator does on the page, and what he waits for.
 import { join } from "node:path";
-import { kLarge, kSmall, sleep, until } from "./plant.mjs";
+import { kPicture, kSmall, sleep, until } from "./plant.mjs";
 
 export const must = (isTrue, words) => {
   if (!isTrue) throw new Error(words);
@@ -64,10 +64,11 @@ export async function setFeedOverride(page, percent) {
 export const drawAt = (page, ratio) =>
   page.evaluate((value) => (meridian.view.renderer.setPixelRatio(value), meridian.view.resize()), ratio);
 
-// A picture of the page as a large screen shows it, under that name in the folder.
+// A picture of the page as a larger screen shows it, under that name in the folder.
 export async function picture(page, folder, name) {
-  await page.setViewportSize(kLarge);
-  await page.screenshot({ path: join(folder, `${name}.png`) });
+  await page.setViewportSize(kPicture);
+  await sleep(500);
+  await page.screenshot({ path: join(folder, `${name}.jpg`), type: "jpeg", quality: 80 });
   await page.setViewportSize(kSmall);
 }
 

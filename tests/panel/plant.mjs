@@ -145,7 +145,7 @@ export function familyOf(pid) {
   return family;
 }
 
-export const kSmall = { width: 1280, height: 800 }, kLarge = { width: 1920, height: 1080 };
+export const kSmall = { width: 1280, height: 800 }, kPicture = { width: 1600, height: 900 }, kLarge = { width: 1920, height: 1080 };
 export const kChromium = "/usr/bin/chromium";
 
 // Playwright from where npm fetched it; nothing where it or the browser is not there.

@@ -3,8 +3,8 @@
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, drawAt, enabled, go, goBy, goConfirmed, inState, load, must, phase, picture, runTests, stateOf } from "./page_hand.mjs";
+import { kSmall, openBrowser, sleep, until } from "./plant.mjs";
+import { afterStalls, drawAt, enabled, go, goBy, goConfirmed, inState, load, must, phase, picture, runTests, setFeedOverride, stateOf } from "./page_hand.mjs";
 import { fetched, pictures, plant, playwright } from "./browser_case.mjs";
 
 // ---- the numbers beside the picture
@@ -15,6 +15,7 @@ const kJoints = [["b3_mm", false], ["b2_mm", false], ["b4_mm", false], ["theta1_
 async function theNumbersAreThoseOfTheStatus({ page }) {
   await afterStalls(page, async () => {
     await enabled(page);
+    await setFeedOverride(page, 40);
     await load(page, plant.part());
     await inState(page, "Loaded");
     await goConfirmed(page, "start", "Running");
@@ -45,6 +46,7 @@ async function theNumbersAreThoseOfTheStatus({ page }) {
     await page.reload();
     await until("a frame", () => page.evaluate(() => globalThis.meridian?.frame != null));
     await go(page, "abort", "Ready");
+    await setFeedOverride(page, 100);
   });
 }
 
@@ -58,6 +60,73 @@ function compare(seen, status) {
   kJoints.forEach(([name, isRotary], i) => near(seen.joints[i], isRotary ? (status[name] * 180) / Math.PI : status[name], isRotary ? 4 : 3, name));
   must(seen.limiting === status.limiting, `the page marks "${seen.limiting}", the status says "${status.limiting}" limits`);
   must(seen.block === `block ${status.block} of ${status.block_count}`, `the page shows ${seen.block}, the status block ${status.block}`);
+}
+
+// ---- the path by what holds the feed
+
+// Of each block, the limit that holds it longest in the picture is the one that `simulate --explain-table` names.
+async function theColoursAgreeWithExplain({ page }) {
+  const table = join(plant.folder, "explained.csv");
+  plant.tool("simulate", plant.part(), "--machine", plant.machine, "--tools", plant.tools, "--explain-table", table);
+  const [head, ...rows] = readFileSync(table, "utf8").trim().split("\n").map((line) => line.split(","));
+  const shares = head.flatMap((name, at) => (name.startsWith("share_") ? [at] : [])), line = head.indexOf("line");
+  await page.click("#tab-program");
+  await page.setInputFiles("#program-file", plant.part());
+  await phase(page, "ready", 60000);
+  const held = await until("the path", () => page.evaluate(() => {
+    const { path } = meridian.program, byLine = {};
+    if (path === null) return null;
+    for (let i = 1; i < path.count; ++i) {
+      const one = (byLine[path.line[i]] ??= {});
+      one[path.limit[i]] = (one[path.limit[i]] ?? 0) + path.time[i] - path.time[i - 1];
+    }
+    return byLine;
+  }));
+  let compared = 0;
+  for (const row of rows) {
+    const values = shares.map((at) => Number(row[at])), top = Math.max(...values), drawn = held[Number(row[line])];
+    // Where two limits share a block evenly, a cycle more or less decides; a block of a few cycles is all ends.
+    const seconds = drawn ? Object.values(drawn).reduce((sum, value) => sum + value, 0) : 0;
+    if (!(top > 0.65) || seconds < 0.02) continue;
+    const longest = Number(Object.keys(drawn).reduce((a, b) => (drawn[a] >= drawn[b] ? a : b)));
+    must(longest === values.indexOf(top), `line ${row[line]}: drawn as limit ${longest}, explained as ${head[shares[values.indexOf(top)]]}`);
+    ++compared;
+  }
+  console.log(`  ${compared} blocks compared`);
+  must(compared > 60, `only ${compared} blocks were compared`);
+}
+
+// ---- a run as one file
+
+async function aRunAsOneFileOpensFromADisk({ browser, page: live }) {
+  await drawAt(live, 0.1);
+  const file = join(plant.folder, "run.html");
+  const said = plant.tool("simulate", plant.part(), "--machine", plant.machine, "--tools", plant.tools, "--html", file);
+  must(!said.startsWith("failed"), said);
+  const page = await (await browser.newContext({ viewport: kSmall, colorScheme: "dark" })).newPage();
+  const asked = [], errors = [];
+  page.on("request", (request) => asked.push(request.url()));
+  page.on("pageerror", (error) => errors.push(error.message));
+  await page.goto(`file://${file}`, { timeout: 90000 });
+  await until("the run", () => page.evaluate(() => globalThis.meridian?.report?.count > 100));
+  const at = (i) => page.evaluate((moment) => {
+    const scrub = document.getElementById("scrub");
+    scrub.value = String(moment);
+    scrub.dispatchEvent(new Event("input"));
+    return ["moment", "tip-x", "line"].map((id) => document.getElementById(id).textContent);
+  }, i);
+  const count = await page.evaluate(() => meridian.report.count);
+  const [early, late] = [await at(Math.floor(0.3 * count)), await at(Math.floor(0.6 * count))];
+  must(early.every((text, i) => text !== "" && text !== late[i]), `nothing changes with time: ${early}, ${late}`);
+  await page.click("#play");
+  await until("it plays", async () => (await page.textContent("#moment")) !== late[0]);
+  await page.click("#play");
+  await page.click('[data-view="part"]');
+  must(asked.every((url) => url.startsWith("file:") || url.startsWith("data:") || url.startsWith("blob:")), `it asks for ${asked}`);
+  must(errors.length === 0, errors.join("; "));
+  await picture(page, pictures, "panel-viewer");
+  await page.context().close();
+  await drawAt(live, 1);
 }
 
 // ---- by keys alone
@@ -113,12 +182,25 @@ async function theScopeShowsEveryCycle({ page }) {
   const rows = rowsOf(readFileSync(file, "utf8"));
   const gaps = rows.filter((row, i) => i > 0 && row[0] - rows[i - 1][0] > 1).length;
   must(rows.length > 2000 && gaps < 0.05 * rows.length, `${rows.length} rows with ${gaps} gaps`);
+  await theMcapFileHasTheSameRows(await saved(page, "#scope-mcap", "scope.mcap"), rows);
   await page.setInputFiles("#scope-file", file);
   await until("the recording", async () => (await page.textContent("#scope-report")).includes(`${rows.length} cycles`));
   must((await page.evaluate(() => meridian.scope.buffer.cycle[0])) === rows[0][0], "the recording begins elsewhere");
   await page.setInputFiles("#scope-file", { name: "wrong.csv", mimeType: "text/csv", buffer: Buffer.from("a,b\n1,2\n") });
   await until("a refusal", async () => (await page.textContent("#scope-report")).includes("no recording of this machine"));
   await page.click("#scope-live");
+}
+
+// Read by the library of the format.
+async function theMcapFileHasTheSameRows(file, rows) {
+  const { McapIndexedReader } = createRequire(join(fetched, "package.json"))("@mcap/core");
+  const bytes = readFileSync(file);
+  const readable = { size: async () => BigInt(bytes.length), read: async (offset, size) => bytes.subarray(Number(offset), Number(offset + size)) };
+  const reader = await McapIndexedReader.Initialize({ readable });
+  const messages = [];
+  for await (const message of reader.readMessages()) messages.push(JSON.parse(new TextDecoder().decode(message.data)));
+  must(messages.length === rows.length, `${messages.length} messages of ${rows.length} cycles`);
+  must(messages.every((one, i) => one.cycle === rows[i][0] && one.position.b3_mm === rows[i][2]), "a message is not its row");
 }
 
 async function saved(page, button, name) {
@@ -183,6 +265,8 @@ await runTests(plant, pictures, async (session, run) => {
   session.open = await openBrowser(playwright, plant);
   const { open } = session;
   await run("TheNumbersAreThoseOfTheStatus", theNumbersAreThoseOfTheStatus, open);
+  await run("TheColoursAgreeWithExplain", theColoursAgreeWithExplain, open);
+  await run("ARunAsOneFileOpensFromADisk", aRunAsOneFileOpensFromADisk, open);
   await run("TheKeyboardAloneRunsThePart", theKeyboardAloneRunsThePart, open);
   await run("TheScopeShowsEveryCycle", theScopeShowsEveryCycle, open);
   await run("ATriggerStopsTheScope", aTriggerStopsTheScope, open);
