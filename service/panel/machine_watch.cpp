@@ -38,9 +38,13 @@ MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub, Files files)
       setpoints_(participant, {}, kDepth),
       feedbacks_(participant, {}, kDepth),
       latencies_(participant),
-      actions_(participant),
-      answers_(participant),
       mesh_folder_(std::move(files.meshes)) {
+  try {
+    actions_.emplace(participant);
+    answers_.emplace(participant);
+  } catch (const dds::DdsError&) {
+    // Spindle and coolant stay unknown to a panel that may read less.
+  }
   if (!files.history.empty()) history_.emplace(std::move(files.history));
 }
 
@@ -147,9 +151,9 @@ void MachineWatch::take_latency() {
 
 void MachineWatch::take_actions() {
   dds::Action action;
-  while (actions_.take(action)) auxiliaries_.ask(action);
+  while (actions_ && actions_->take(action)) auxiliaries_.ask(action);
   dds::ActionDone done;
-  while (answers_.take(done)) auxiliaries_.answer(done);
+  while (answers_ && answers_->take(done)) auxiliaries_.answer(done);
 }
 
 void MachineWatch::take_history() {

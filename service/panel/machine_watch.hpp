@@ -72,8 +72,8 @@ class MachineWatch {
   dds::Reader<dds::SetpointSample> setpoints_;
   dds::Reader<dds::DriveFeedback> feedbacks_;
   dds::Reader<dds::Latency> latencies_;
-  dds::Reader<dds::Action> actions_;
-  dds::Reader<dds::ActionDone> answers_;
+  std::optional<dds::Reader<dds::Action>> actions_;      ///< nothing: its identity may not read
+  std::optional<dds::Reader<dds::ActionDone>> answers_;  ///< the same
   dds::Followed<dds::Status> followed_;
   mutable std::mutex machine_mutex_;  ///< of machine_ against other threads
   std::filesystem::path mesh_folder_;
