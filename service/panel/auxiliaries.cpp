@@ -1,64 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/panel/auxiliaries.hpp"
 
-#include <algorithm>
+#include <optional>
 
 #include "service/drives/kit/action_words.hpp"
 
 namespace meridian::panel {
 
-void Auxiliaries::ask(const dds::Action& action) {
-  if (action.kind == ActionKind::kNone) return;
-  std::erase_if(open_,
-                [&](const dds::Action& known) { return known.service_id != action.service_id; });
-  open_.push_back(action);
-  if (open_.size() > kMaxOpen) open_.pop_front();
-}
-
 void Auxiliaries::answer(const dds::ActionDone& done) {
-  const auto found = std::find_if(open_.begin(), open_.end(), [&done](const dds::Action& asked) {
-    return asked.id == done.id && asked.service_id == done.service_id;
-  });
-  if (found == open_.end()) return;
-  if (done.is_done) {
-    switch (found->kind) {
-      case ActionKind::kSpindleOff:
-      case ActionKind::kSpindleClockwise:
-      case ActionKind::kSpindleCounterClockwise:
-        spindle_ = drive::describe(*found);
-        break;
-      case ActionKind::kCoolantOff:
-      case ActionKind::kCoolantFlood:
-      case ActionKind::kCoolantMist:
-      case ActionKind::kCoolantThrough:
-        coolant_ = drive::describe(*found);
-        break;
-      default:
-        break;
-    }
-  }
-  open_.erase(found);
-}
-
-void Auxiliaries::follow(const dds::Status& status) {
-  switch (status.state) {
-    case State::kOff:
-    case State::kFaultStop:
-    case State::kFault:
-      spindle_.clear();
-      coolant_.clear();
-      open_.clear();
+  const std::optional<dds::Action> action = awaited_.answer(done);
+  if (!action || !done.is_done) return;
+  switch (action->kind) {
+    case ActionKind::kSpindleOff:
+    case ActionKind::kSpindleClockwise:
+    case ActionKind::kSpindleCounterClockwise:
+      spindle_ = drive::describe(*action);
       break;
-    case State::kReady:
-      open_.clear();
+    case ActionKind::kCoolantOff:
+    case ActionKind::kCoolantFlood:
+    case ActionKind::kCoolantMist:
+    case ActionKind::kCoolantThrough:
+      coolant_ = drive::describe(*action);
       break;
     default:
       break;
   }
 }
 
+void Auxiliaries::follow(const dds::Status& status) {
+  awaited_.follow(status);
+  if (status.state == State::kOff || status.state == State::kFaultStop ||
+      status.state == State::kFault) {
+    spindle_.clear();
+    coolant_.clear();
+  }
+}
+
 std::string Auxiliaries::waits_for() const {
-  return open_.empty() ? "" : drive::describe(open_.back());
+  return awaited_.now() ? drive::describe(*awaited_.now()) : "";
 }
 
 }  // namespace meridian::panel

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
 #include <string>
 
+#include "service/panel/awaited_action.hpp"
 #include "service/transport/messages.hpp"
 
 namespace meridian::panel {
@@ -14,7 +14,7 @@ namespace meridian::panel {
 class Auxiliaries {
  public:
   /// Somebody is asked for something.
-  void ask(const dds::Action& action);
+  void ask(const dds::Action& action) { awaited_.ask(action); }
   /// Somebody has answered.
   void answer(const dds::ActionDone& done);
   /// What the machine says: with its drives off nothing waits, and nothing is known to turn.
@@ -24,12 +24,11 @@ class Auxiliaries {
   [[nodiscard]] const std::string& spindle() const noexcept { return spindle_; }
   /// "coolant flood"; empty: not known.
   [[nodiscard]] const std::string& coolant() const noexcept { return coolant_; }
-  /// What the path waits for, newest; empty: nothing.
+  /// What the path waits for; empty: nothing.
   [[nodiscard]] std::string waits_for() const;
 
  private:
-  static constexpr std::size_t kMaxOpen = 8;
-  std::deque<dds::Action> open_;
+  AwaitedAction awaited_;
   std::string spindle_, coolant_;
 };
 

@@ -9,6 +9,8 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "service/text/printed.hpp"
+
 namespace meridian::panel {
 namespace {
 
@@ -33,7 +35,7 @@ using nlohmann::json;
   if (found == line.end() || !found->is_number()) return "";
   const double value = found->get<double>();
   if (verb == "feed_override" || verb == "rapid_override") {
-    return " " + std::to_string(static_cast<int>(100 * value + 0.5)) + " %";
+    return text::printed(" %.0f %%", 100 * value);
   }
   const bool is_switch = verb == "single_block" || verb == "optional_stop" || verb == "dry_run";
   return is_switch ? (value != 0 ? " on" : " off") : "";

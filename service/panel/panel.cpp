@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "service/panel/costly_parts.hpp"
 #include "service/panel/desks/action_desk.hpp"
 #include "service/panel/desks/operator_desk.hpp"
 #include "service/panel/desks/program_desk.hpp"
@@ -62,20 +63,20 @@ struct Desks {
 
 /// What pages ask for; programs: null where the panel only watches.
 struct Sources {
-  const PanelOptions& options;
+  CostlyParts& costly;
   const MachineWatch& watch;
   const ProgramDesk* programs = nullptr;
 };
 
 [[nodiscard]] std::optional<HttpAnswer> find_part(const Sources& sources, const HttpQuery& query) {
   constexpr const char* kBytes = "application/octet-stream";
-  if (query.path == "/doctor" && sources.options.examine_host) {
-    return HttpAnswer{.type = "application/json", .text = sources.options.examine_host()};
-  }
+  if (query.path == "/doctor") return sources.costly.host_findings(CostlyParts::Clock::now());
   if (query.path == "/mesh") {
-    auto mesh = sources.watch.mesh(query.number("number"));
-    if (!mesh) return std::nullopt;
-    return HttpAnswer{.type = kBytes, .text = std::move(*mesh)};
+    return sources.costly.one_at_a_time([&]() -> std::optional<HttpAnswer> {
+      auto mesh = sources.watch.mesh(query.number("number"));
+      if (!mesh) return std::nullopt;
+      return HttpAnswer{.type = kBytes, .text = std::move(*mesh)};
+    });
   }
   const ProgramDesk* const programs = sources.programs;
   if (programs == nullptr) return std::nullopt;
@@ -114,6 +115,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
                const std::function<void(std::uint16_t)>& on_ready) {
   constexpr std::chrono::milliseconds kBetweenPolls{20};
   Hub hub;
+  CostlyParts costly(options.examine_host);
   MachineWatch watch(participant, hub, {options.history_file, options.mesh_folder});
   // Outcomes go to pages, so the desk ends first; pages talk to the desk, so the server goes
   // before.
@@ -129,7 +131,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     pages.emplace(desk_of(*desk, watch, {*programs, actions ? &*actions : nullptr}));
   }
   {
-    const Sources sources{options, watch, programs ? &*programs : nullptr};
+    const Sources sources{costly, watch, programs ? &*programs : nullptr};
     PageHandler handler = pages ? operating(sources, *pages, *programs) : watching(sources);
     handler.metrics = [&hub] {
       const Hub::Text text = hub.newest(Hub::kMetrics);

@@ -153,6 +153,8 @@ async function strangersReachNothing() {
   must((await exchange(`GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n`)).includes(" 403 "), "a foreign name is served");
   must((await exchange(`POST /program?key=&name=a HTTP/1.1\r\nHost: ${host}\r\nOrigin: http://${host}\r\nContent-Length: 4\r\n\r\nFINI`)).includes(" 403 "), "a program without a key is taken");
   must((await exchange(`POST /program?key=&name=a HTTP/1.1\r\nHost: ${host}\r\nOrigin: http://evil.example\r\nContent-Length: 4\r\n\r\nFINI`)).includes(" 403 "), "a program of another site is taken");
+  must((await exchange(`GET /doctor HTTP/1.1\r\nHost: ${host}\r\nSec-Fetch-Site: cross-site\r\n\r\n`)).includes(" 403 "), "a page of another site makes the host work");
+  must((await exchange(`GET /mesh?number=99 HTTP/1.1\r\nHost: ${host}\r\n\r\n`)).includes(" 404 "), "a mesh that is not there is served");
   must((await exchange(`GET /../../etc/passwd HTTP/1.1\r\nHost: ${host}\r\n\r\n`)).match(/ (404|400) /), "a path leads out");
 }
 

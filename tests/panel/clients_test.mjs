@@ -57,7 +57,6 @@ async function manyPagesAndAFrozenOneDisturbNothing() {
   const parts = await cut.end();
   console.log(`  ${kMinutes} min, ${kClients} pages and a frozen one, ${parts} parts cut: panel ${(100 * share).toFixed(1)} % of a core, ${memory} KiB`);
   must(pages.slice(1).every((one) => !one.destroyed && one.bytes > 100000), "a page was left behind");
-  must(plant.status().stalled_reader === "", "somebody does not read");
   must(memory < kMaxMemory_kib, `the panel takes ${memory} KiB`);
   must(share < kMaxShare, `the panel takes ${share} of a core`);
   pages.forEach((one) => one.destroy());

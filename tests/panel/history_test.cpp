@@ -37,6 +37,7 @@ TEST(History, ReadsWhatTheServiceWrites) {
             std::chrono::milliseconds(1'790'000'000'123));
   EXPECT_EQ(parse_history_line(command_line(Verb::kFeedOverride, 0.8, true))->text,
             "anna: feed_override 80 %");
+  EXPECT_TRUE(parse_history_line(command_line(Verb::kFeedOverride, 1e300, false)));
   const auto refused = parse_history_line(command_line(Verb::kStart, 0, false));
   EXPECT_EQ(refused->text, "anna: start, refused: no program is loaded");
   EXPECT_EQ(refused->severity, Severity::kWarning);

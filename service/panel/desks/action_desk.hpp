@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <mutex>
 #include <optional>
 
 #include "service/drives/kit/action_link.hpp"
+#include "service/panel/awaited_action.hpp"
 #include "service/panel/desks/outcome.hpp"
 #include "service/panel/serve/hub.hpp"
 #include "service/transport/messages.hpp"
@@ -30,18 +30,14 @@ class ActionDesk {
   [[nodiscard]] Outcome answer(std::uint64_t id, bool is_done);
 
  private:
-  static constexpr std::size_t kMaxOpen = 8;
   void publish() const;
-  /// Whether an action was added.
-  [[nodiscard]] bool take_asked();
-  /// Whether an action was closed.
-  [[nodiscard]] bool take_answered(const std::optional<dds::Status>& status);
+  void take();
 
   Hub& hub_;
   std::mutex mutex_;  ///< of all below
   drive::ActionLink link_;
-  dds::Reader<dds::ActionDone> answers_;
-  std::deque<dds::Action> open_;  ///< that wait for an answer
+  std::optional<dds::Reader<dds::ActionDone>> answers_;  ///< nothing: its identity may not read
+  AwaitedAction awaited_;
 };
 
 }  // namespace meridian::panel

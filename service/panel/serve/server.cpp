@@ -5,6 +5,7 @@
 
 #include <array>
 #include <charconv>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -25,6 +26,8 @@ namespace {
       return "200 OK";
     case 403:
       return "403 Forbidden";
+    case 503:
+      return "503 Service Unavailable";
     default:
       return "409 Conflict";
   }
@@ -47,6 +50,8 @@ struct Server::Impl {
   void ask_for_token(mg_connection* connection, std::string_view path) const;
   void log_in(mg_connection* connection);
   void serve(mg_connection* connection);
+  /// The same; what goes wrong within is answered, for the server is written in C.
+  void serve_or_fail(mg_connection* connection) noexcept;
   void upload(mg_connection* connection);
   [[nodiscard]] std::optional<HttpAnswer> get(const mg_connection* connection,
                                               std::string_view path) const;
@@ -123,10 +128,21 @@ void Server::Impl::serve(mg_connection* connection) {
                  {.type = "text/plain; version=0.0.4; charset=utf-8"});
   } else if (const auto file = find_page_file(path)) {
     http::answer(connection, "200 OK", file->bytes, {file->type, file->is_gzip});
+  } else if (http::header_of(connection, "Sec-Fetch-Site") == "cross-site") {
+    // A browser says so: what another site's page asks for costs this host time.
+    http::answer(connection, "403 Forbidden", "this is no page of the panel\n");
   } else if (const auto found = get(connection, path)) {
     http::answer(connection, status_line(found->status), found->text, {.type = found->type});
   } else {
     http::answer(connection, "404 Not Found", "the panel has no such page\n");
+  }
+}
+
+void Server::Impl::serve_or_fail(mg_connection* connection) noexcept {
+  try {
+    serve(connection);
+  } catch (const std::exception&) {
+    mg_send_http_error(connection, 500, "%s", "the panel cannot answer that now");
   }
 }
 
@@ -252,7 +268,7 @@ Server::Server(Hub& hub, ServerOptions options, PageHandler handler)
   mg_set_request_handler(
       self->context, "/",
       [](mg_connection* connection, void* data) {
-        static_cast<Impl*>(data)->serve(connection);
+        static_cast<Impl*>(data)->serve_or_fail(connection);
         return 1;
       },
       self);

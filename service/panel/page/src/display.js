@@ -9,6 +9,10 @@ const kTones = {
   Jogging: "jog", Homing: "jog", Stepping: "run",
 };
 
+// "clockwise 8000 rev/min" as a display has room for: CW 8000/min.
+const shortSpindle = (words) =>
+  words.replace(/^spindle /, "").replace("counter-clockwise", "CCW").replace("clockwise", "CW").replace(" rev/min", "/min");
+
 // The day stands in front where it is not today.
 function shownTime(time_ms) {
   const time = new Date(time_ms);
@@ -92,7 +96,7 @@ export class Display {
     byId("feed-bar").style.width = `${100 * share}%`;
     setText(byId("held-by"), this.heldBy(frame, wanted));
     setText(byId("override"), `${fixed(100 * frame.feed_override, 0)} %`);
-    setText(byId("spindle"), frame.spindle.replace(/^spindle /, "") || "\u2013");
+    setText(byId("spindle"), shortSpindle(frame.spindle) || "\u2013");
     setText(byId("coolant"), frame.coolant.replace(/^coolant /, "") || "\u2013");
     setText(byId("rapid-override"), `${fixed(100 * frame.rapid_override, 0)} %`);
   }
