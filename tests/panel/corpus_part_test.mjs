@@ -86,7 +86,9 @@ async function oneEmergencyStop(page) {
   plant.drives.stdin.write("emergency\n");
   await until("the fault", async () => (await stateOf(page)) === "Fault");
   must((await page.textContent("#alarm-text")).toLowerCase().includes("emergency"), "the alarm does not name the stop input");
+  await drawAt(page, 1);
   await picture(page, pictures, "panel-alarm");
+  await drawAt(page, 0.1);
   plant.drives.stdin.write("mend\n");
   await sleep(300);
   await go(page, "reset", "Off");

@@ -59,7 +59,25 @@ const framesPerSecond = (page, seconds) => page.evaluate(async (duration_ms) => 
   }
 }, 1000 * seconds);
 
-async function aLongPathTurns({ page }) {
+// What this browser draws of a page with a WebGL canvas of that size that it only clears: the host's share of the figure.
+async function emptyCanvas(browser, { width, height }) {
+  const page = await (await browser.newContext({ viewport: kLarge })).newPage();
+  await page.setContent(`<body style="margin:0;background:#123"><canvas width="${width}" height="${height}"></canvas>`);
+  const rate = await page.evaluate(async () => {
+    const gl = document.querySelector("canvas").getContext("webgl2", { antialias: true });
+    const begin = performance.now();
+    for (let drawn = 0; ; ++drawn) {
+      const now = await new Promise((done) => requestAnimationFrame(done));
+      if (now - begin > 3000) return (1000 * drawn) / (now - begin);
+      gl.clearColor((drawn % 60) / 60, 0.2, 0.3, 1);
+      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    }
+  });
+  await page.context().close();
+  return rate;
+}
+
+async function aLongPathTurns({ page, browser }) {
   await page.setViewportSize(kLarge);
   await enabled(page);
   const empty = await framesPerSecond(page, 3);
@@ -73,8 +91,10 @@ async function aLongPathTurns({ page }) {
   const used = cpuSecondsOf(plant.panel.pid), began = Date.now();
   const full = await framesPerSecond(page, 5);
   const share = (cpuSecondsOf(plant.panel.pid) - used) / ((Date.now() - began) / 1000);
+  const canvas = await page.evaluate(() => ({ width: meridian.view.canvas.width, height: meridian.view.canvas.height }));
+  const bare = await emptyCanvas(browser, canvas);
   const points = await page.evaluate(() => meridian.program.path.count);
-  console.log(`  ${kBlocks} blocks, ${points} points: ${full.toFixed(1)} frames/s at 1080p, ${empty.toFixed(1)} without; panel ${(100 * share).toFixed(1)} % of a core, ${memoryOf(plant.panel.pid)} KiB`);
+  console.log(`  ${kBlocks} blocks, ${points} points: ${full.toFixed(1)} frames/s at 1080p, ${empty.toFixed(1)} without, ${bare.toFixed(1)} of a bare canvas of ${canvas.width} x ${canvas.height}; panel ${(100 * share).toFixed(1)} % of a core, ${memoryOf(plant.panel.pid)} KiB`);
   must(full >= kMinFrames, `${full} frames/s`);
   must(full > 0.5 * empty, "the path takes more than half of the frames");
 }
