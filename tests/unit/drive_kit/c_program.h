@@ -11,7 +11,7 @@ extern "C" {
 /* Motors in C that stand at once where they are told to. */
 struct c_motors {
   double position[6];
-  int periods, is_stop_open, reports;
+  int periods, is_stop_open, is_guard_open, reports;
   int stops_after; /* periods; 0: never */
   meridian_probe probe;
   volatile int is_stopping;
