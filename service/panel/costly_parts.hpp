@@ -11,8 +11,8 @@
 
 namespace meridian::panel {
 
-/// Answers that cost the host memory or time, one at a time: who asks meanwhile is told to come
-/// again. Any thread. Proof: tests/panel/costly_parts_test.cpp.
+/// Answers that cost the host memory or time, one at a time: who asks meanwhile has to ask
+/// again (503). Any thread. Proof: tests/panel/costly_parts_test.cpp.
 class CostlyParts {
  public:
   using Clock = std::chrono::steady_clock;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <nlohmann/json.hpp>
 
@@ -27,7 +28,8 @@ using nlohmann::json;
   const char* const rest = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S", &utc);
   if (rest == nullptr || *rest != '.') return std::nullopt;
   const auto seconds = std::chrono::system_clock::from_time_t(::timegm(&utc));
-  return seconds + std::chrono::milliseconds(std::strtol(rest + 1, nullptr, 10));
+  const long milliseconds = std::clamp(std::strtol(rest + 1, nullptr, 10), 0L, 999L);
+  return seconds + std::chrono::milliseconds(milliseconds);
 }
 
 [[nodiscard]] std::string argument_of(const json& line, const std::string& verb) {

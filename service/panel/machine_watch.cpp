@@ -180,9 +180,9 @@ void MachineWatch::poll() {
   take_machine();
   take_motion();
   take_actions();
+  take_history();  // what was before stands before what is said now
   take_status();
   take_latency();
-  take_history();
   publish_metrics();
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using Clock = CostlyParts::Clock;
 
-TEST(CostlyParts, WhoAsksWhileAnotherAnswerIsMadeIsToldToComeAgain) {
+TEST(CostlyParts, WhoAsksWhileAnotherAnswerIsMadeHasToAskAgain) {
   CostlyParts costly({});
   const auto outer = costly.one_at_a_time([&]() -> std::optional<HttpAnswer> {
     const auto inner = costly.one_at_a_time([] { return HttpAnswer{.text = "twice"}; });

@@ -62,6 +62,10 @@ TEST(History, PassesOverWhatIsNoLineOfTheLog) {
     EXPECT_FALSE(parse_history_line(text)) << text;
   }
   EXPECT_TRUE(parse_history_line(R"({"time":"2026-09-21T14:13:20.123Z","event":"command"})"));
+  const auto late = parse_history_line(
+      R"({"time":"2026-09-21T14:13:20.99999999999999999999Z","event":"start"})");
+  const auto next = parse_history_line(R"({"time":"2026-09-21T14:13:21.000Z","event":"start"})");
+  EXPECT_LT(late->time, next->time);
 }
 
 class HistoryFile : public ::testing::Test {

@@ -3,13 +3,11 @@
 import { request } from "node:https";
 import { request as plainRequest } from "node:http";
 import { resolve } from "node:path";
+import { must } from "./page_hand.mjs";
 import { Plant } from "./plant.mjs";
 
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
 const plant = new Plant(bin, source, "lai.toml");
-const must = (isTrue, words) => {
-  if (!isTrue) throw new Error(words);
-};
 
 // Status, headers and text of one request; status 0: hung up on, as a link is that is refused.
 function ask(base, path, { method = "GET", headers = {}, body = "" } = {}) {

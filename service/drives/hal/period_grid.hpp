@@ -9,7 +9,8 @@
 namespace meridian::hal {
 
 /// Ends of setpoints on a grid that follows a thread's wake-ups slowly: neither their jitter is in
-/// the times by which the component interpolates, nor that two setpoints come at once, then none. RT. Proof: tests/unit/hal/period_grid_test.cpp.
+/// the times by which the component interpolates, nor that two setpoints come at once, then none. RT.
+/// Proof: tests/unit/hal/period_grid_test.cpp.
 class PeriodGrid {
  public:
   explicit PeriodGrid(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}

@@ -130,12 +130,15 @@ Drop Group::accept(const dds::SetpointSample& setpoint) noexcept {
   return Drop::kNone;
 }
 
-/// Between the setpoint that the drives worked with last and the newest: by the sender's cycles,
-/// and no longer than this side's own periods allow.
+/// So many cycles of the sender, and no longer than this side's own periods allow.
+double Group::capped_s(std::uint64_t cycles) const noexcept {
+  const auto max = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
+  return cycle_s_ * static_cast<double>(std::min(cycles, max));
+}
+
+/// Between the setpoint that the drives worked with last and the newest, by the sender's cycles.
 double Group::elapsed_s() const noexcept {
-  const std::uint64_t cycles = newest_.setpoint.cycle - followed_cycle_;
-  const auto most = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
-  return cycle_s_ * static_cast<double>(std::min(cycles, most));
+  return capped_s(newest_.setpoint.cycle - followed_cycle_);
 }
 
 /// How far this period leads on by the sender's cycles: not at all where the bridge has led there
@@ -146,8 +149,7 @@ double Group::advance_s(int periods, int bridged) noexcept {
                            : before + static_cast<std::uint64_t>(bridged);
   const bool is_led = before != 0 && (is_new_ || bridged == periods);
   if (!is_led || is_off()) return cycle_s_ * periods;
-  const auto most = static_cast<std::uint64_t>(periods_since_ + bridge_cycles_ + kSlack);
-  return cycle_s_ * static_cast<double>(std::min(reached_cycle_ - before, most));
+  return capped_s(reached_cycle_ - before);
 }
 
 AxisInput Group::input_of(std::size_t joint, int bridged) const noexcept {

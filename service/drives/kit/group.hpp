@@ -81,6 +81,7 @@ class Group : public Receiver {
   void obey_new_master() noexcept;
   void see_inputs(Hardware& hardware) noexcept;
   [[nodiscard]] AxisInput input_of(std::size_t joint, int bridged) const noexcept;
+  [[nodiscard]] double capped_s(std::uint64_t cycles) const noexcept;
   [[nodiscard]] double elapsed_s() const noexcept;
   [[nodiscard]] double advance_s(int periods, int bridged) noexcept;
 
