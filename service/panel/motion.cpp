@@ -18,6 +18,12 @@ Motion::Motion(const MachineModel& model, int trail_every)
   samples_.reserve(kMaxSamples);
 }
 
+void Motion::set_tool_length(double tool_length_mm) noexcept {
+  if (tool_length_mm == tool_length_mm_) return;
+  tool_length_mm_ = tool_length_mm;
+  if (joints_) tip_ = forward(model_, tool_length_mm_, *joints_).tip;
+}
+
 void Motion::add(const Setpoint& setpoint) {
   if (joints_ && setpoint.cycle <= cycle_ && cycle_ - setpoint.cycle < kKept) return;
   const bool is_next = joints_ && setpoint.cycle == cycle_ + 1 && is_leading(setpoint.flags);

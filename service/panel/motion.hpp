@@ -34,7 +34,8 @@ class Motion {
   /// `model` must live on. Every `trail_every` cycles a point of the trail.
   explicit Motion(const MachineModel& model, int trail_every = 8);
 
-  void set_tool_length(double tool_length_mm) noexcept { tool_length_mm_ = tool_length_mm; }
+  /// The tip is now at the end of another tool: that is no path.
+  void set_tool_length(double tool_length_mm) noexcept;
   /// Takes the next setpoint; older ones than the last are passed over.
   void add(const Setpoint& setpoint);
   /// Takes feedback: `cycle_seen` names the setpoint that it is compared with.

@@ -44,6 +44,10 @@ RunView::RunView(const MachineModel& model)
 }
 
 void RunView::add(const Setpoint& setpoint, const Cause& cause) {
+  if (has_begun_ && cause.tool_length_mm != tool_length_mm_) {
+    tip_ = forward(model_, cause.tool_length_mm, *motion_.joints()).tip;  // another tool is no path
+  }
+  tool_length_mm_ = cause.tool_length_mm;
   motion_.add(setpoint);
   if (!motion_.joints()) return;
   const Pose<double> pose = forward(model_, cause.tool_length_mm, *motion_.joints());

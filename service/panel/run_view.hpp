@@ -67,6 +67,7 @@ class RunView {
   std::uint64_t every_ = 1, since_ = 0, first_cycle_ = 0, kept_cycle_ = 0;
   double path_mm_ = 0;  ///< of the tip since the last sample
   Vector3 tip_ = Vector3::Zero();
+  double tool_length_mm_ = 0;  ///< that `tip_` is of
   bool has_begun_ = false;
 };
 

@@ -116,6 +116,14 @@ TEST(Motion, ALostCycleMakesNoFalseAcceleration) {
   EXPECT_EQ(motion.shares()[0][1], 0);
 }
 
+TEST(Motion, AnotherToolIsNoFeed) {
+  Motion motion(trunnion());
+  motion.add(setpoint_at(1, 0));
+  motion.set_tool_length(trunnion().tool_length_mm + 25);
+  motion.add(setpoint_at(2, 0.1));
+  EXPECT_NEAR(motion.samples().back().feed_mm_per_s, 100, 1e-6);
+}
+
 TEST(Motion, TheTrailIsForwardKinematics) {
   Motion motion(trunnion(), 1);
   motion.add(setpoint_at(8, 12.5));

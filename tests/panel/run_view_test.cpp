@@ -27,14 +27,17 @@ using nlohmann::json;
 }
 
 /// X runs along at `step` mm a cycle.
-void run(RunView& view, int cycles, double step) {
+void run(RunView& view, int cycles, double step, int tool_changed_at = -1) {
   for (int i = 0; i < cycles; ++i) {
     Setpoint setpoint;
     setpoint.cycle = static_cast<std::uint64_t>(i) + 1;
     setpoint.position[0] = step * i;
     setpoint.line = 7;
     setpoint.flags = kSetpointEnabled;
-    view.add(setpoint, {.programmed_mm_per_s = 60, .limit = 1, .tool_length_mm = 110});
+    view.add(setpoint,
+             {.programmed_mm_per_s = 60,
+              .limit = 1,
+              .tool_length_mm = tool_changed_at >= 0 && i >= tool_changed_at ? 85.0 : 110.0});
   }
 }
 
@@ -47,6 +50,15 @@ TEST(RunView, TheFeedIsTheTipsPathByItsTime) {
   EXPECT_NEAR(columns["programmed"][50].get<double>(), 3600, 0.01);
   EXPECT_NEAR(columns["time"][50].get<double>(), 0.05, 1e-9);
   EXPECT_NEAR(columns["tip"][3 * 50].get<double>(), 2.5, 1e-6);
+}
+
+TEST(RunView, AnotherToolIsNoPath) {
+  RunView view(seen_machine());
+  run(view, 100, 0.05, 50);
+  const json columns = report_in(view.html({}, {}))["columns"];
+  for (const double feed : columns["feed"]) EXPECT_LE(feed, 0.05 * 1000 * 60 + 0.01);
+  EXPECT_NEAR(columns["tip"][3 * 50 + 2].get<double>(),
+              columns["tip"][3 * 49 + 2].get<double>() + 25, 1e-6);
 }
 
 TEST(RunView, ALongRunKeepsItsFeedAndGrowsNoFurther) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Position, feed, joints, program, health: what a frame says, in numbers and words.
-import { byId, element, setText } from "./dom.js";
+import { byId, element, setShare, setText } from "./dom.js";
 import { clock, fixed, shown, unit } from "./units.js";
 
 const kTones = {
@@ -93,7 +93,7 @@ export class Display {
     setText(byId("feed-programmed"), programmed);
     const wanted = frame.feed_programmed * frame.feed_override;
     const share = wanted > 0 ? Math.min(frame.feed_achieved / wanted, 1) : 0;
-    byId("feed-bar").style.width = `${100 * share}%`;
+    setShare(byId("feed-bar"), share);
     setText(byId("held-by"), this.heldBy(frame, wanted));
     setText(byId("override"), `${fixed(100 * frame.feed_override, 0)} %`);
     setText(byId("spindle"), shortSpindle(frame.spindle) || "\u2013");
@@ -137,7 +137,7 @@ export class Display {
       frame.shares[i].forEach((share, order) => {
         // Peaks stay for a moment, as an eye needs them.
         one.peaks[order] = Math.max(share, 0.9 * one.peaks[order]);
-        one.shares[order].style.width = `${100 * Math.min(one.peaks[order], 1)}%`;
+        setShare(one.shares[order], Math.min(one.peaks[order], 1));
         one.shares[order].classList.toggle("high", one.peaks[order] > 0.97);
       });
     });
@@ -148,12 +148,12 @@ export class Display {
     setText(byId("program"), hasProgram ? frame.program : "no program");
     setText(byId("station"), hasProgram ? `from ${frame.station}` : "");
     const share = frame.block_count > 0 && hasProgram ? Math.min(frame.block / frame.block_count, 1) : 0;
-    byId("progress-bar").style.width = `${100 * share}%`;
+    setShare(byId("progress-bar"), share);
     setText(byId("line"), frame.line > 0 ? `line ${frame.line}` : "");
     setText(byId("block"), hasProgram && frame.block_count > 0 ? `block ${frame.block} of ${frame.block_count}` : "");
     setText(byId("elapsed"), hasProgram && frame.plan_time_s > 0 ? clock(frame.plan_time_s) : "");
     setText(byId("buffer"), `${fixed(frame.planned_s, 1)} s planned \u00b7 ${frame.blocks_queued} blocks wait`);
-    byId("buffer-bar").style.width = `${Math.min(frame.planned_s / 2, 1) * 100}%`;
+    setShare(byId("buffer-bar"), Math.min(frame.planned_s / 2, 1));
     const modes = [];
     if (frame.dry_run) modes.push("dry run: no drive moves");
     if (frame.single_block) modes.push("single block");

@@ -17,3 +17,9 @@ export function element(tag, properties = {}, ...children) {
 export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
+
+// How full a bar is, 0 to 1, to a tenth of a percent.
+export function setShare(bar, share) {
+  const text = `scaleX(${share.toFixed(3)})`;
+  if (bar.style.transform !== text) bar.style.transform = text;
+}

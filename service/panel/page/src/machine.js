@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws any machine from its screws: from the tool down to the base, then from the workpiece down to it.
 import { Vector3 } from "three";
+import { Bodies } from "./bodies.js";
 import { Frames, nearestOnAxis } from "./screws.js";
 import { Solids } from "./shapes.js";
 import { drawStage } from "./stage.js";
@@ -31,6 +32,8 @@ export class Machine {
     this.drawTable();
     this.drawHead();
     this.stage = drawStage(this);
+    this.bodies = new Bodies(this.solids.colours.edge);
+    this.root.add(this.bodies.faces, this.bodies.edges);
     this.drawTool();
     if (scene.tip_box) this.root.add(this.solids.frame(scene.tip_box.min, scene.tip_box.max));
     this.setJoints(scene.joints.map((joint) => joint.home));
@@ -44,8 +47,9 @@ export class Machine {
     const group = link === "part" ? frames.workpiece : link === "base" ? this.root : at(scene.head, frames.head) ?? at(scene.table, frames.table);
     if (!group) return;
     const kept = new Set(link === "part" ? group.children : [this.tool, this.holder]);
-    for (const one of [...group.children]) if (one.userData.isDrawn && !kept.has(one)) one.removeFromParent();
+    for (const one of [...group.children]) if (one.userData.edges && !kept.has(one)) one.removeFromParent();
     group.add(solids.mesh(geometry, link === "base" ? "body" : link === "part" ? "table" : "moving"));
+    this.bodies.rebuild(this.root);
   }
 
   setJoints(joints) {
@@ -76,6 +80,7 @@ export class Machine {
     this.holder?.removeFromParent();
     this.holder = solids.cylinder(at(holder / 2), axis, narrow, holder, "holder", Math.max(narrow, 0.13 * this.size));
     parent.add(this.tool, this.holder);
+    this.bodies.rebuild(this.root);
   }
 
   groupBelow(groups, i) {

@@ -12,6 +12,17 @@ import { Tabs } from "./tabs.js";
 import { Timing } from "./timing.js";
 import { View } from "./view.js";
 
+// A file that was opened from a disk has its run in itself, and no machine.
+const embedded = document.getElementById("report");
+
+// First of all: the answer comes while the rest is made.
+const link = embedded ? null : new Link((message) => receive[message.t]?.(message), (isOpen) => {
+  document.body.classList.toggle("is-cut", !isOpen);
+  if (isOpen) return;
+  panel.frame = null;
+  panel.jog?.release();
+  display.setSilent("No link");
+});
 const display = new Display();
 const view = new View(byId("picture"), (hit) => {
   if (hit?.isPath) return (panel.report ?? panel.program).pick(hit.index);
@@ -19,7 +30,7 @@ const view = new View(byId("picture"), (hit) => {
   byId("picked").textContent = line > 0 ? `line ${line}` : "";
   return undefined;
 });
-const panel = { display, view, frame: null, sequence: 0 };
+const panel = { link, display, view, frame: null, sequence: 0 };
 window.meridian = panel;
 
 // ---- dark and light
@@ -98,23 +109,9 @@ const receive = {
   },
 };
 
-// A file that was opened from a disk has its run in itself, and no machine.
-const embedded = document.getElementById("report");
-
 function connect() {
-  panel.link = new Link(
-    (message) => receive[message.t]?.(message),
-    (isOpen) => {
-      document.body.classList.toggle("is-cut", !isOpen);
-      if (!isOpen) {
-        panel.frame = null;
-        panel.jog?.release();
-        display.setSilent("No link");
-      }
-    },
-  );
-  panel.operate = new Operate(panel.link, () => panel.frame);
-  panel.jog = new Jog(panel.link, panel, panel.operate);
+  panel.operate = new Operate(link, () => panel.frame);
+  panel.jog = new Jog(link, panel, panel.operate);
   panel.tabs = new Tabs();
   panel.actions = new Actions(panel.operate);
   panel.program = new Program(panel);

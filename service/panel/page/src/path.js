@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A whole path at once, each stretch in the colour of what held it.
-import { BufferAttribute, BufferGeometry, Color, Group, Line, LineBasicMaterial, LineSegments } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Color, Group, LineSegments } from "three";
+import { bytesOf } from "./colour.js";
+import { lineMaterial } from "./materials.js";
+import { Polyline } from "./polyline.js";
 
 // Of limits by their number: nothing and the feed are calm, joints are not.
 const kCalm = ["#6b7a8c", "#37d67a", "#22b8cf"];
@@ -11,20 +14,27 @@ export function limitColour(limit) {
   return limit < 3 ? kCalm[limit] : kJoints[Math.floor((limit - 3) / 3) % kJoints.length];
 }
 
+function coloursOf(limit) {
+  const bytes = new Map();
+  const colours = new Uint8Array(3 * limit.length);
+  for (let i = 0; i < limit.length; ++i) {
+    if (!bytes.has(limit[i])) bytes.set(limit[i], bytesOf(new Color(limitColour(limit[i]))));
+    colours.set(bytes.get(limit[i]), 3 * i);
+  }
+  return colours;
+}
+
 export class Path {
   constructor(columns) {
     const { tip, axis, limit } = columns;
     const count = limit.length;
     this.root = new Group();
-    const geometry = new BufferGeometry();
-    const colours = new Float32Array(3 * count);
-    const colour = new Color();
-    for (let i = 0; i < count; ++i) colour.set(limitColour(limit[i])).toArray(colours, 3 * i);
-    geometry.setAttribute("position", new BufferAttribute(new Float32Array(tip), 3));
-    geometry.setAttribute("color", new BufferAttribute(colours, 3));
-    this.line = new Line(geometry, new LineBasicMaterial({ vertexColors: true }));
+    const position = new Float32Array(tip), colours = coloursOf(limit);
+    this.bounds = new Box3().setFromArray(position);
+    this.line = new Polyline(count);
+    this.line.set(position, colours);
     this.fan = this.fanOf(tip, axis, colours, count);
-    this.root.add(this.line, this.fan);
+    this.root.add(this.line.line, this.fan);
   }
 
   fanOf(tip, axis, colours, count) {
@@ -39,8 +49,8 @@ export class Path {
     }
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
-    geometry.setAttribute("color", new BufferAttribute(new Float32Array(tints), 3));
-    const fan = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.5 }));
+    geometry.setAttribute("color", new BufferAttribute(new Uint8Array(tints), 3, true));
+    const fan = new LineSegments(geometry, lineMaterial(0.5));
     fan.visible = false;
     return fan;
   }

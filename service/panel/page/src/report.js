@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run that lies in the page itself: scrub through time, see machine, feed and limits at that moment.
 import uPlot from "uplot";
-import { byId, element, setText } from "./dom.js";
+import { byId, element, setShare, setText } from "./dom.js";
 import { limitColour, Path } from "./path.js";
 import { clock, fixed } from "./units.js";
 
@@ -141,7 +141,7 @@ export class Report {
     this.display.setPosition({ tip: slice("tip", 3), axis: slice("axis", 3), tool_length: columns.tool[i] });
     setText(byId("feed"), fixed(columns.feed[i], 0));
     setText(byId("feed-programmed"), columns.programmed[i] > 0 ? `of ${fixed(columns.programmed[i], 0)}` : "");
-    byId("feed-bar").style.width = `${columns.programmed[i] > 0 ? Math.min(100, (100 * columns.feed[i]) / columns.programmed[i]) : 0}%`;
+    setShare(byId("feed-bar"), columns.programmed[i] > 0 ? Math.min(1, columns.feed[i] / columns.programmed[i]) : 0);
     setText(byId("held-by"), limit === 0 ? "" : `held by: ${report.limits[limit]}`);
     this.display.setJoints({ joints: q, shares: share.map((value) => [value, 0, 0]), limiting: "" });
     setText(byId("line"), columns.line[i] > 0 ? `line ${columns.line[i]}` : "");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies that machines are drawn with: plain solids with their edges.
 import {
-  BoxGeometry, ConeGeometry, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
-  MeshStandardMaterial, Vector3,
+  BoxGeometry, BufferAttribute, Color, ConeGeometry, CylinderGeometry, EdgesGeometry, LineSegments,
+  Mesh, Object3D, Vector3,
 } from "three";
+import { bytesOf } from "./colour.js";
+import { plainMaterial } from "./materials.js";
 
 export const palette = {
   dark: { body: 0x5b6675, moving: 0x7f8da0, accent: 0x3aa0ff, table: 0x6d7886, tool: 0xd9dee6, holder: 0x9aa4b2,
@@ -15,26 +17,28 @@ export const palette = {
 export class Solids {
   constructor(theme) {
     const colours = palette[theme];
-    this.materials = {};
-    for (const role of ["body", "moving", "accent", "table", "tool", "holder"]) {
-      this.materials[role] = new MeshStandardMaterial({
-        color: colours[role], roughness: 0.55, metalness: role === "tool" ? 0.6 : 0.25 });
-    }
-    this.edge = new LineBasicMaterial({ color: colours.edge, transparent: true, opacity: 0.55 });
-    this.bound = new LineBasicMaterial({ color: colours.accent, transparent: true, opacity: 0.7 });
+    this.colours = colours;
+    this.bound = plainMaterial(colours.accent, 0.7);
   }
 
+  // A part: its faces and edges, which `Bodies` draws. Nothing of it is drawn by itself.
   solid(geometry, role) {
-    const group = new Group();
-    group.userData.isDrawn = true;
-    group.add(new Mesh(geometry, this.materials[role]));
-    group.add(new LineSegments(new EdgesGeometry(geometry, 28), this.edge));
-    return group;
+    const part = this.mesh(geometry, role);
+    part.userData.edges = new EdgesGeometry(geometry, 28);
+    return part;
   }
 
-  // A body from a file, without its edges: they may be many.
+  // A part without edges: those of a file may be many.
   mesh(geometry, role) {
-    return new Mesh(geometry, this.materials[role]);
+    const { count } = geometry.attributes.position;
+    const tint = bytesOf(new Color(this.colours[role]));
+    const colours = new Uint8Array(3 * count);
+    for (let i = 0; i < count; ++i) colours.set(tint, 3 * i);
+    geometry.setAttribute("color", new BufferAttribute(colours, 3, true));
+    geometry.deleteAttribute("uv");
+    const part = new Object3D();
+    part.userData.faces = geometry;
+    return part;
   }
 
   // A box with its sides along x, y, z of M.

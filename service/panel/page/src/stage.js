@@ -36,6 +36,7 @@ export function drawStage(machine) {
     const slider = solids.box(new Vector3(), [0.4 * size, 0.4 * size, 0.24 * size], "accent");
     const pin = solids.cylinder(new Vector3(), new Vector3(0, 0, 1), 0.07 * size, 0.5 * size, "tool");
     const rod = solids.beam(new Vector3(), new Vector3(0, 1, 0), 0.11 * size, "moving");
+    for (const part of [slider, pin, rod]) part.userData.isLoose = true;
     root.add(slider, pin, rod);
     return { slider, pin, rod };
   });
@@ -47,10 +48,9 @@ export function drawStage(machine) {
       pin.position.copy(to);
       const reach = to.clone().sub(from);
       const length = reach.length();
-      rod.visible = length > 1e-6;
-      if (!rod.visible) return;
       rod.position.copy(from).addScaledVector(reach, 0.5);
-      rod.scale.set(1, length, 1);
+      rod.scale.set(1, Math.max(length, 1e-6), 1);
+      if (length < 1e-6) return;
       rod.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), reach.normalize());
     });
     root.updateMatrixWorld(true);

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture: camera, light, floor, and whatever machine, path and trail hang in it. Draws only when something changed.
+// The picture: camera, floor, and whatever machine, path and trail hang in it. Draws only when something changed.
 import {
-  Box3, DirectionalLight, GridHelper, HemisphereLight, Mesh, MeshBasicMaterial, PerspectiveCamera, Raycaster, Scene,
-  SphereGeometry, Vector2, Vector3, WebGLRenderer, DoubleSide,
+  Box3, GridHelper, Mesh, PerspectiveCamera, Raycaster, Scene,
+  SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Machine } from "./machine.js";
+import { lineMaterial, plainMaterial } from "./materials.js";
 import { loadMesh } from "./mesh.js";
+import { Resolution } from "./resolution.js";
 import { palette } from "./shapes.js";
 import { Trail } from "./trail.js";
+import { warmUp } from "./warm_up.js";
 
 const kViews = {
   iso: [0.85, -1.25, 0.75], front: [0, -1, 0.0001], right: [1, 0, 0.0001], top: [0, -0.0001, 1],
@@ -19,18 +22,16 @@ export class View {
   constructor(canvas, onPick) {
     this.canvas = canvas;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.resolution = new Resolution(this.renderer, () => this.ask());
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(32, 1, 1, 50000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
-    this.controls.addEventListener("change", () => this.ask());
-    this.sky = new HemisphereLight(0xffffff, 0x445060, 1.6);
-    this.sky.position.set(0, 0, 1);
-    this.sun = new DirectionalLight(0xffffff, 1.9);
-    this.sun.position.set(0.5, -1, 1.4);
-    this.scene.add(this.sky, this.sun);
+    this.controls.addEventListener("change", () => {
+      this.resolution.turn();
+      this.ask();
+    });
     this.trail = new Trail();
     this.theme = "dark";
     this.follows = false;
@@ -38,6 +39,7 @@ export class View {
     this.frames = 0;
     this.onPick = onPick;
     this.watchPicks();
+    warmUp(this.renderer, this.camera);
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
   }
@@ -75,6 +77,7 @@ export class View {
 
   setPath(path) {
     this.path?.root.removeFromParent();
+    this.path?.line.dispose();
     this.path = path;
     if (path) this.machine?.frames.workpiece.add(path.root);
     this.apply();
@@ -97,6 +100,8 @@ export class View {
     const size = this.machine.size;
     const colours = palette[this.theme];
     this.floor = new GridHelper(12 * size, 24, colours.floorMajor, colours.floor);
+    this.floor.material.dispose();
+    this.floor.material = lineMaterial();
     this.floor.rotation.x = Math.PI / 2;
     this.floor.position.z = this.machine.floor - 0.12 * size;
     this.scene.add(this.floor);
@@ -105,10 +110,10 @@ export class View {
   // The tip, and the cone about the pole in which the redundant joint has no direction of its own.
   drawMarks() {
     const { machine, description } = this;
-    const dot = new Mesh(new SphereGeometry(0.022 * machine.size, 20, 14), new MeshBasicMaterial({ color: 0xff5a36 }));
+    const dot = new Mesh(new SphereGeometry(0.022 * machine.size, 20, 14), plainMaterial(0xff5a36));
     machine.frames.tip.add(dot);
     if (description.redundant_joint < 0) return;
-    this.coneMaterial = new MeshBasicMaterial({ color: 0xf5a524, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false });
+    this.coneMaterial = plainMaterial(0xf5a524, 0.16);
     const kHalf = 0.05;
     this.cone = machine.solids.cone(new Vector3(), new Vector3(...description.pole), kHalf, 1.3 * machine.size, this.coneMaterial);
     machine.frames.workpiece.add(this.cone);
@@ -132,7 +137,7 @@ export class View {
   }
 
   setAtPole(isAtPole) {
-    if (this.coneMaterial) this.coneMaterial.opacity = isAtPole ? 0.5 : 0.12;
+    if (this.coneMaterial) this.coneMaterial.uniforms.opacity.value = isAtPole ? 0.5 : 0.12;
   }
 
   show(what, isShown) {
@@ -149,11 +154,7 @@ export class View {
       this.path.fan.visible = this.shown.fan;
     }
     if (!this.machine) return;
-    const { materials, edge } = this.machine.solids;
-    const ofMachine = new Set([...Object.values(materials), edge]);
-    this.machine.root.traverse((one) => {
-      if (ofMachine.has(one.material)) one.visible = this.shown.machine;
-    });
+    this.machine.bodies.show(this.shown.machine);
   }
 
   // ---- the camera
@@ -161,8 +162,7 @@ export class View {
   box(name) {
     const box = new Box3();
     if (name === "part" && this.path) {
-      this.path.line.geometry.computeBoundingBox();
-      box.copy(this.path.line.geometry.boundingBox).applyMatrix4(this.machine.frames.workpiece.matrixWorld);
+      box.copy(this.path.bounds).applyMatrix4(this.machine.frames.workpiece.matrixWorld);
       return box.expandByScalar(0.3 * this.machine.size);
     }
     const { machine } = this;
@@ -225,11 +225,23 @@ export class View {
   ask() {
     if (this.isAsked) return;
     this.isAsked = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame((now_ms) => {
       this.isAsked = false;
-      this.frames += 1;
-      this.renderer.render(this.scene, this.camera);
+      this.resolution.picture(now_ms);
+      this.draw();
     });
+  }
+
+  draw() {
+    const pixel = (this.camera.fov * Math.PI) / 180 / this.canvas.height;
+    for (const line of this.lines()) line.setDetail(this.camera, pixel);
+    this.frames += 1;
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  // The long lines that are shown.
+  lines() {
+    return [this.shown.path && this.path?.line, this.shown.trail && this.trail.line].filter(Boolean);
   }
 
   watchPicks() {
@@ -247,9 +259,8 @@ export class View {
     const ray = new Raycaster();
     ray.setFromCamera(at, this.camera);
     ray.params.Line.threshold = 0.012 * this.camera.position.distanceTo(this.controls.target);
-    const lines = [this.path?.line, this.trail.line].filter((line) => line?.visible);
-    const hit = ray.intersectObjects(lines, false)[0];
-    this.onPick?.(hit ? { index: hit.index, isPath: hit.object === this.path?.line } : null);
+    const hits = this.lines().map((line) => ({ line, hit: line.pick(ray) })).filter(({ hit }) => hit);
+    const nearest = hits.sort((a, b) => a.hit.distance - b.hit.distance)[0];
+    this.onPick?.(nearest ? { isPath: nearest.line === this.path?.line, index: nearest.hit.index } : null);
   }
-
 }

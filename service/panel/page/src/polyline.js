@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// A long line as one thing, whose stretches are drawn as finely as their distance from the camera asks for.
+import { Box3, BufferAttribute, BufferGeometry, Line, Sphere } from "three";
+import { Detail } from "./detail.js";
+import { lineMaterial } from "./materials.js";
+
+export const kStretch = 4096;
+const kSeen_px = 0.5;
+const material = lineMaterial();
+
+export class Polyline {
+  constructor(capacity) {
+    const attribute = (array, size, isShare) => new BufferAttribute(array, size, isShare);
+    this.geometry = new BufferGeometry();
+    this.geometry.setAttribute("position", attribute(new Float32Array(3 * capacity), 3, false));
+    this.geometry.setAttribute("color", attribute(new Uint8Array(3 * capacity), 3, true));
+    this.index = attribute(new Uint32Array(capacity), 1, false);
+    this.geometry.setIndex(this.index);
+    this.line = new Line(this.geometry, material);
+    this.line.frustumCulled = false;
+    this.clear();
+  }
+
+  clear() {
+    this.count = 0;
+    this.stretches = [];
+    this.draw(0);
+  }
+
+  // The first `count` of these indices are drawn.
+  draw(count) {
+    this.drawn = count;
+    this.geometry.setDrawRange(0, count);
+  }
+
+  // All points at once; `colour`: bytes, linear.
+  set(position, colour) {
+    this.clear();
+    this.write(0, position, colour);
+    this.count = position.length / 3;
+    for (let first = 0; first < this.count; first += kStretch) this.close(first, Math.min(first + kStretch, this.count));
+    this.rebuild();
+  }
+
+  // One point more, behind the last. Only what is new goes to the graphics card.
+  add(point, tint) {
+    this.write(this.count, point, tint);
+    this.index.array[this.drawn] = this.count;
+    this.index.addUpdateRange(this.drawn, 1);
+    this.index.needsUpdate = true;
+    this.count += 1;
+    this.draw(this.drawn + 1);
+    if (this.count % kStretch === 0) this.close(this.count - kStretch, this.count);
+  }
+
+  write(at, position, colour) {
+    const { attributes } = this.geometry;
+    for (const [attribute, values] of [[attributes.position, position], [attributes.color, colour]]) {
+      attribute.array.set(values, 3 * at);
+      attribute.addUpdateRange(3 * at, values.length);
+      attribute.needsUpdate = true;
+    }
+  }
+
+  // Nothing is added to that stretch any more.
+  close(first, end) {
+    const { position, color } = this.geometry.attributes;
+    const points = position.array.subarray(3 * first, 3 * end);
+    const ball = new Box3().setFromArray(points).getBoundingSphere(new Sphere());
+    this.stretches.push({ end, ball, detail: new Detail(points, color.array.subarray(3 * first, 3 * end), end - first), level: null });
+  }
+
+  // Its first `count` points go, whole stretches.
+  drop(count) {
+    const { position, color } = this.geometry.attributes;
+    for (const attribute of [position, color]) {
+      attribute.array.copyWithin(0, 3 * count);
+      attribute.clearUpdateRanges();
+      attribute.needsUpdate = true;
+    }
+    this.count -= count;
+    this.stretches = this.stretches.slice(count / kStretch).map((one) => ({ ...one, end: one.end - count }));
+    this.rebuild();
+  }
+
+  // Before each picture; `pixel`: the angle that one has.
+  setDetail(camera, pixel) {
+    const ball = new Sphere();
+    let isChanged = false;
+    for (const stretch of this.stretches) {
+      const { center, radius } = ball.copy(stretch.ball).applyMatrix4(this.line.matrixWorld);
+      const near_mm = Math.max(center.distanceTo(camera.position) - radius, camera.near);
+      const level = stretch.detail.at(kSeen_px * pixel * near_mm);
+      isChanged ||= level !== stretch.level;
+      stretch.level = level;
+    }
+    if (isChanged) this.rebuild();
+  }
+
+  rebuild() {
+    const { array } = this.index;
+    let drawn = 0, first = 0;
+    for (const { end, level } of this.stretches) {
+      if (level) for (const i of level) array[drawn++] = first + i;
+      else for (let i = first; i < end; ++i) array[drawn++] = i;
+      first = end;
+    }
+    for (let i = first; i < this.count; ++i) array[drawn++] = i;
+    this.index.clearUpdateRanges();
+    this.index.addUpdateRange(0, drawn);
+    this.index.needsUpdate = true;
+    this.draw(drawn);
+  }
+
+  // Where a ray meets it, of all its points: `hit.index` is the point's number.
+  pick(raycaster) {
+    this.geometry.setIndex(null);
+    this.geometry.setDrawRange(0, this.count);
+    this.geometry.boundingSphere = null;
+    const [hit] = raycaster.intersectObject(this.line, false);
+    this.geometry.setIndex(this.index);
+    this.draw(this.drawn);
+    return hit;
+  }
+
+  dispose() {
+    this.line.removeFromParent();
+    this.geometry.dispose();
+  }
+}
