@@ -22,6 +22,9 @@ typedef struct meridian_drive_output {
   double velocity; /* of the position, for feed-forward */
   int is_homing;   /* MERIDIAN_HOMING_BY_DRIVE: the drive searches by itself */
   int is_reset;    /* the operator resets a fault: clear your own */
+  /* From the position before to this one by the service's clock: setpoints come unevenly, two in
+   * one period or none. Who interpolates goes by this, not by the period. */
+  double elapsed_s;
 } meridian_drive_output;
 
 /* What one axis reports in one period. read() finds it filled with what most report: no velocity,

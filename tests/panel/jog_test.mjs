@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine that is jogged from a browser rests wherever the hand is lost. MERIDIAN_PANEL_JOGS: how often each (1).
+// A machine that is jogged from a browser rests wherever the hand is lost. MERIDIAN_PANEL_JOGS: how often each (1);
+// MERIDIAN_PANEL_ENDS: these only, as in `kEnds`, with commas between.
 import { familyOf, openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, drawAt, enabled, must, picture, runTests, stateOf } from "./page_hand.mjs";
+import { afterStalls, drawAt, enabled, HostStalled, must, picture, runTests, stateOf } from "./page_hand.mjs";
 import { pictures, plant, playwright } from "./browser_case.mjs";
 
 const kTimes = Number(process.env.MERIDIAN_PANEL_JOGS ?? 1);
@@ -32,7 +33,10 @@ async function press(page) {
 async function restAfter(cut, end) {
   const begin = Date.now();
   await cut();
-  await until("the machine rests", () => plant.status().state === "Ready", 3000);
+  let state;
+  const isAtRest = await until("the machine rests", () => (state = plant.status().state) === "Ready", 3000).then(() => true, () => false);
+  if (state === "Fault") throw new HostStalled("a drive was not heard");
+  must(isAtRest, `${end}: still ${state}`);
   const took = Date.now() - begin, at = joint();
   await sleep(300);
   must(joint() === at, `${end}: it still moves`);
@@ -84,7 +88,7 @@ async function jogEndsWhen(session, name) {
 await runTests(plant, pictures, async (session, run) => {
   await plant.start();
   session.open = await openBrowser(playwright, plant);
-  for (const name of Object.keys(kEnds)) {
+  for (const name of process.env.MERIDIAN_PANEL_ENDS?.split(",") ?? Object.keys(kEnds)) {
     await run(`JogEndsWith: ${name}`, jogEndsWhen, session, name);
     if (name === "let go") await picture(session.open.page, pictures, "panel-jog");
   }

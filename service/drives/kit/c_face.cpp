@@ -36,7 +36,7 @@ class CHardware : public drive::Hardware {
   }
   void write(int axis, const drive::Output& output) noexcept override {
     const meridian_drive_output c{output.is_on, output.position, output.velocity, output.is_homing,
-                                  output.is_reset};
+                                  output.is_reset, output.elapsed_s};
     c_.write(c_.user, axis, &c);
   }
   void exchange(double dt_s) noexcept override {

@@ -31,9 +31,10 @@ class CFace : public testing::Test {
       }
     });
   }
-  ~CFace() override {
+  ~CFace() override { stop(); }
+  void stop() {
     is_stopping_ = true;
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
 
   const support::PrivateDomain domain_;
@@ -53,6 +54,9 @@ TEST_F(CFace, MotorsInCFollowAService) {
   EXPECT_NEAR(service.feedback.position[0], 0.99, 1e-9);
   EXPECT_EQ(meridian_drives_axis_count(drives_.get()), 1);
   EXPECT_EQ(meridian_drives_cycle_ns(drives_.get()), 1'000'000);
+  stop();
+  EXPECT_GT(motors_.elapsed_s, 0.1) << "150 cycles were commanded";
+  EXPECT_LT(motors_.elapsed_s, 1);
 }
 
 TEST(CFaceAtTheStart, WhatIsWrongIsSaidInWords) {

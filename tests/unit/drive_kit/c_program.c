@@ -10,6 +10,7 @@ static void read_axis(void* user, int axis, meridian_drive_reading* reading) {
 static void write_axis(void* user, int axis, const meridian_drive_output* output) {
   struct c_motors* motors = user;
   motors->output[axis] = *output;
+  if (axis == 0 && output->is_on) motors->elapsed_s += output->elapsed_s;
   if (output->is_on) motors->position[axis] = output->position;
 }
 

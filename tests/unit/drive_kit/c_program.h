@@ -11,6 +11,7 @@ extern "C" {
 /* Motors in C that stand at once where they are told to. */
 struct c_motors {
   double position[6];
+  double elapsed_s; /* of axis 0 while it was on, by the service's clock */
   int periods, is_stop_open, reports;
   int stops_after; /* periods; 0: never */
   meridian_probe probe;
