@@ -81,6 +81,36 @@ const leftOut = (page) => page.evaluate(() => {
   return { off, drawn };
 });
 
+async function aHiddenTabKeepsNoListOfNews({ page }) {
+  const ranges = await page.evaluate(() => {
+    const Line = meridian.view.trail.line.constructor, line = new Line(8192);
+    for (let i = 0; i < 5000; ++i) line.add([i, 0, 0], [1, 2, 3]);
+    const { array, updateRanges } = line.index;
+    return { count: updateRanges.length, end: Math.max(...updateRanges.map((one) => one.start + one.count)), drawn: line.drawn, last: array[4999] };
+  });
+  must(ranges.count <= 256 && ranges.end === 5000 && ranges.drawn === 5000 && ranges.last === 4999, JSON.stringify(ranges));
+}
+
+// A body from a file takes the place of what was drawn of its link, and stands beside the part.
+async function aMeshTakesThePlaceOfItsLink({ page }) {
+  const corners = await page.evaluate(() => {
+    const { machine } = meridian.view, { faces } = machine.bodies;
+    const { constructor: Geometry, attributes: { position: { constructor: Attribute } } } = faces.geometry;
+    const count = () => faces.geometry.attributes.position.count;
+    const triangle = () => {
+      const geometry = new Geometry();
+      for (const name of ["position", "normal"]) geometry.setAttribute(name, new Attribute(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), 3));
+      return geometry;
+    };
+    const plain = count();
+    machine.addMesh("part", triangle());
+    const withPart = count();
+    machine.addMesh(machine.scene.joints.at(-1).name, triangle());
+    return { plain, withPart, withLink: count(), tool: machine.tool.parent !== null };
+  });
+  must(corners.withPart === corners.plain + 3 && corners.withLink < corners.plain && corners.tool, JSON.stringify(corners));
+}
+
 // What this browser draws of a page with a WebGL canvas of that size that it only clears: the host's share of the figure.
 async function emptyCanvas(browser, { width, height }) {
   const page = await (await browser.newContext({ viewport: kLarge })).newPage();
@@ -130,5 +160,7 @@ await runTests(plant, pictures, async (session, run) => {
   await run("ThePageIsSmall", thePageIsSmall);
   session.open = await openBrowser(playwright, plant);
   await run("TheFirstPictureComesSoon", theFirstPictureComesSoon, session.open);
+  await run("AHiddenTabKeepsNoListOfNews", aHiddenTabKeepsNoListOfNews, session.open);
+  await run("AMeshTakesThePlaceOfItsLink", aMeshTakesThePlaceOfItsLink, session.open);
   await run("ALongPathTurns", aLongPathTurns, session.open);
 });

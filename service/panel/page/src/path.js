@@ -54,4 +54,11 @@ export class Path {
     fan.visible = false;
     return fan;
   }
+
+  dispose() {
+    this.root.removeFromParent();
+    this.line.dispose();
+    this.fan.geometry.dispose();
+    this.fan.material.dispose();
+  }
 }

@@ -5,7 +5,21 @@ import { Detail } from "./detail.js";
 import { lineMaterial } from "./materials.js";
 
 export const kStretch = 4096;
-const kSeen_px = 0.5;
+const kSeen_px = 0.5, kMaxRanges = 256;
+
+// These numbers go to the graphics card with the next picture. A hidden tab draws none: its ranges become one.
+export function mark(attribute, from, count) {
+  const { updateRanges } = attribute;
+  if (updateRanges.length >= kMaxRanges) {
+    const first = Math.min(...updateRanges.map(({ start }) => start));
+    const end = Math.max(...updateRanges.map((one) => one.start + one.count));
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(first, end - first);
+  }
+  attribute.addUpdateRange(from, count);
+  attribute.needsUpdate = true;
+}
+
 const material = lineMaterial();
 
 export class Polyline {
@@ -46,8 +60,7 @@ export class Polyline {
   add(point, tint) {
     this.write(this.count, point, tint);
     this.index.array[this.drawn] = this.count;
-    this.index.addUpdateRange(this.drawn, 1);
-    this.index.needsUpdate = true;
+    mark(this.index, this.drawn, 1);
     this.count += 1;
     this.draw(this.drawn + 1);
     if (this.count % kStretch === 0) this.close(this.count - kStretch, this.count);
@@ -57,8 +70,7 @@ export class Polyline {
     const { attributes } = this.geometry;
     for (const [attribute, values] of [[attributes.position, position], [attributes.color, colour]]) {
       attribute.array.set(values, 3 * at);
-      attribute.addUpdateRange(3 * at, values.length);
-      attribute.needsUpdate = true;
+      mark(attribute, 3 * at, values.length);
     }
   }
 
@@ -75,8 +87,7 @@ export class Polyline {
     const { position, color } = this.geometry.attributes;
     for (const attribute of [position, color]) {
       attribute.array.copyWithin(0, 3 * count);
-      attribute.clearUpdateRanges();
-      attribute.needsUpdate = true;
+      mark(attribute, 0, 3 * (this.count - count));
     }
     this.count -= count;
     this.stretches = this.stretches.slice(count / kStretch).map((one) => ({ ...one, end: one.end - count }));
@@ -106,9 +117,7 @@ export class Polyline {
       first = end;
     }
     for (let i = first; i < this.count; ++i) array[drawn++] = i;
-    this.index.clearUpdateRanges();
-    this.index.addUpdateRange(0, drawn);
-    this.index.needsUpdate = true;
+    mark(this.index, 0, drawn);
     this.draw(drawn);
   }
 

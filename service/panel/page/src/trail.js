@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Color, Group, LineSegments } from "three";
 import { bytesOf } from "./colour.js";
 import { lineMaterial } from "./materials.js";
-import { kStretch, Polyline } from "./polyline.js";
+import { kStretch, mark, Polyline } from "./polyline.js";
 
 // Halves are whole stretches, with a whole number of the fan's rays.
 const kPoints = 32 * kStretch;
@@ -71,8 +71,7 @@ export class Trail {
     const { position, color } = this.fanGeometry.attributes;
     for (const [attribute, values] of [[position, point], [color, tint]]) {
       attribute.array.set(values, 3 * this.fanCount);
-      attribute.addUpdateRange(3 * this.fanCount, 3);
-      attribute.needsUpdate = true;
+      mark(attribute, 3 * this.fanCount, 3);
     }
     this.fanCount += 1;
   }
@@ -84,8 +83,7 @@ export class Trail {
     this.fanCount -= kFanPoints / 2;
     for (const attribute of Object.values(this.fanGeometry.attributes)) {
       attribute.array.copyWithin(0, 3 * (kFanPoints / 2));
-      attribute.clearUpdateRanges();
-      attribute.needsUpdate = true;
+      mark(attribute, 0, 3 * this.fanCount);
     }
   }
 }

@@ -76,8 +76,7 @@ export class View {
   }
 
   setPath(path) {
-    this.path?.root.removeFromParent();
-    this.path?.line.dispose();
+    this.path?.dispose();
     this.path = path;
     if (path) this.machine?.frames.workpiece.add(path.root);
     this.apply();
