@@ -92,6 +92,7 @@ typedef struct meridian_drive_hardware {
   int (*act)(void* user, const meridian_drive_action* action, char* why, size_t why_size);
   void (*report)(void* user, const char* text);
   meridian_probe (*probe)(void* user); /* of the same instant as the positions */
+  int (*is_guard_open)(void* user);    /* a guard of the work space */
 } meridian_drive_hardware;
 
 typedef struct meridian_drive_axis {

@@ -74,6 +74,8 @@ class Hardware {
   virtual void exchange(double dt_s) noexcept { static_cast<void>(dt_s); }
   /// Whether the stop input is open.
   [[nodiscard]] virtual bool is_emergency_stop() noexcept { return false; }
+  /// Whether a guard of the work space is open; where nobody says so it is shut.
+  [[nodiscard]] virtual bool is_guard_open() noexcept { return false; }
   /// The touch probe, of the same instant as the positions that read() gives.
   [[nodiscard]] virtual Probe probe() noexcept { return Probe::kNone; }
   /// One period of a search: HomingMethod::kByDrive and kByCallback. Who does not override it finds

@@ -60,6 +60,7 @@ void make_stacks_small() {
   if (machine.empty()) throw StartError("no machine: give --machine FILE or name it in --service");
   parts.model = config::load_machine(machine);
   parts.homing = config::load_homing(machine, parts.model.joint_count);
+  parts.monitoring = config::load_monitoring(machine, parts.model);
   parts.machine_file = text::read_whole(machine).value_or("");
   if (!options.frame.empty()) {
     config::place_workpiece(parts.model, config::parse_frame(options.frame));

@@ -23,6 +23,7 @@
 #include "service/daemon/threads/realtime.hpp"
 #include "service/daemon/threads/telemetry_thread.hpp"
 #include "service/machine/file/homing_file.hpp"
+#include "service/machine/file/monitoring_file.hpp"
 #include "service/machine/file/service_file.hpp"
 #include "service/recording/telemetry/audit_log.hpp"
 #include "service/recording/telemetry/set_up_file.hpp"
@@ -38,6 +39,7 @@ struct ServiceParts {
   ToolTable tools;
   config::ServiceConfig service;
   config::HomingConfig homing;
+  monitoring::Limits monitoring;
   std::uint32_t domain = 0;
   std::string recording;                ///< path; empty: none
   std::filesystem::path state_folder;   ///< of the journal; empty: none is kept

@@ -27,6 +27,20 @@ void drive_command_fields(Way way, Message& message, Wire& wire) {
   way(message.sample, wire.sample);
 }
 
+/// Two inputs share an octet: a guard is bit 1, the stop input any other.
+constexpr std::uint8_t kStopBit = 1, kGuardBit = 2;
+
+template <class Message, class Wire>
+void input_bits(ToWire /*way*/, const Message& message, Wire& wire) {
+  wire.is_emergency_stop = static_cast<std::uint8_t>((message.is_emergency_stop ? kStopBit : 0) |
+                                                     (message.is_guard_open ? kGuardBit : 0));
+}
+template <class Message, class Wire>
+void input_bits(FromWire /*way*/, Message& message, const Wire& wire) {
+  message.is_emergency_stop = (wire.is_emergency_stop & ~kGuardBit) != 0;
+  message.is_guard_open = (wire.is_emergency_stop & kGuardBit) != 0;
+}
+
 template <class Way, class Message, class Wire>
 void drive_feedback_fields(Way way, Message& message, Wire& wire) {
   way(message.drive_group, wire.drive_group);
@@ -38,7 +52,7 @@ void drive_feedback_fields(Way way, Message& message, Wire& wire) {
   way(message.statusword, wire.statusword);
   way(message.error, wire.error);
   way(message.referenced_mask, wire.referenced_mask);
-  way(message.is_emergency_stop, wire.is_emergency_stop);
+  input_bits(way, message, wire);
   way(message.probe, wire.probe);
   way(message.mode_display, wire.mode_display);
 }

@@ -198,6 +198,7 @@ struct DriveFeedback {
   std::array<std::uint16_t, kMaxJoints> error{};
   std::uint32_t referenced_mask = 0;
   bool is_emergency_stop = false;
+  bool is_guard_open = false;
   ProbeInput probe = ProbeInput::kNone;
   std::array<std::uint8_t, kMaxJoints> mode_display{};  ///< 0: the drive does not say
 };

@@ -11,6 +11,7 @@
 
 #include "bench/cycle_workload.hpp"
 #include "bench/ik_workload.hpp"
+#include "bench/monitoring_workload.hpp"
 #include "bench/planner_workload.hpp"
 #include "bench/setpoint_workload.hpp"
 #include "bench/smooth_workload.hpp"
@@ -44,6 +45,10 @@ int main(int argc, char** argv) {
     checksum = meridian::bench::run_setpoints(meridian::bench::SetpointsOf::kPole, count);
   } else if (workload == "trace_off") {
     checksum = meridian::bench::run_trace_off(count);
+  } else if (workload == "monitoring") {
+    checksum = meridian::bench::run_monitoring(count, false);
+  } else if (workload == "monitoring_all") {
+    checksum = meridian::bench::run_monitoring(count, true);
   } else if (workload == "planner") {
     checksum = meridian::bench::run_planner(count);
   } else if (workload == "smooth_block") {

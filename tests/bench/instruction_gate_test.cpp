@@ -128,6 +128,10 @@ TEST(InstructionGate, TheDearestCycleOfASmoothCutOverWindows) {
 }
 TEST(InstructionGate, SetpointOnASpline) { expect_within_budget("setpoint_spline", 20000); }
 TEST(InstructionGate, SetpointBesideThePole) { expect_within_budget("setpoint_pole", 20000); }
+TEST(InstructionGate, MonitoringBesideACycle) { expect_within_budget("monitoring", 8000); }
+TEST(InstructionGate, MonitoringOfEverythingBesideACycle) {
+  expect_within_budget("monitoring_all", 8000);
+}
 TEST(InstructionGate, TracingThatIsOff) { expect_within_budget("trace_off", 8000); }
 TEST(InstructionGate, Planner) { expect_within_budget("planner", 100); }
 TEST(InstructionGate, SmoothPlannerPerBlock) { expect_within_budget("smooth_block", 55); }

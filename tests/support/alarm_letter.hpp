@@ -27,6 +27,24 @@ namespace meridian::test {
       return "P";
     case Alarm::kSetpointsUnheard:
       return "U";
+    case Alarm::kDrivesAstray:
+      return "A";
+    case Alarm::kStandstill:
+      return "S";
+    case Alarm::kJointSpeed:
+      return "V";
+    case Alarm::kTipSpeed:
+      return "Y";
+    case Alarm::kPositionWindow:
+      return "W";
+    case Alarm::kDriveModel:
+      return "M";
+    case Alarm::kFeedbackJump:
+      return "J";
+    case Alarm::kFeedbackFrozen:
+      return "Z";
+    case Alarm::kFeedbackTooFast:
+      return "Q";
     default:
       return "alarm " + std::to_string(static_cast<int>(alarm));
   }

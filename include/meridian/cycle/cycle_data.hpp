@@ -72,6 +72,7 @@ struct Feedback {
   std::uint32_t fault_mask = 0;          ///< drives in fault
   std::uint32_t referenced_mask = 0;     ///< joints with a valid reference
   bool emergency_stop = false;           ///< reported, and not taken back since
+  bool is_guard_open = false;            ///< reported of a guard of the work space
   ProbeInput probe = ProbeInput::kNone;  ///< kContact as soon as one group says so
   std::int64_t emergency_ns = 0;         ///< arrival of the newest report that says so; 0: none
   std::uint32_t homing_mask = 0;         ///< drives that are in homing mode, and of these
@@ -159,6 +160,14 @@ enum class Alarm : std::uint8_t {
   kNoContact,         ///< a probing move came to its end without contact (Ready, not FaultStop)
   kContact,           ///< the probe touched something, and the motion was no probing move
   kProbeLost,         ///< the probe is connected no more, during a probing move
+  kStandstill,        ///< monitoring: a joint left its place where it was to stand
+  kJointSpeed,        ///< monitoring: a joint is faster than its mode allows
+  kTipSpeed,          ///< monitoring: the tip is; no joint
+  kPositionWindow,    ///< monitoring: a joint is outside of the window of its mode
+  kDriveModel,        ///< monitoring: a joint is not where the model of its drive is
+  kFeedbackJump,      ///< monitoring: a position jumped farther than the joint can move
+  kFeedbackFrozen,    ///< monitoring: a position stays the same while the joint is led on
+  kFeedbackTooFast,   ///< monitoring: positions pass faster than the joint can move
 };
 
 /// Why a verb was refused.
@@ -184,6 +193,7 @@ enum class Refusal : std::uint8_t {
   kNotJournalled,     ///< the set-up could not be written to where it survives the service
   kNoProbe,           ///< the drives report no probe that is connected
   kProbeContact,      ///< the probe is in contact before the move begins
+  kGuardOpen,         ///< with an open guard the machine is jogged, and nothing else
 };
 
 /// Leaves the cycle as numbers and becomes words in service/recording/telemetry.

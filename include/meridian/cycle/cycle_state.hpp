@@ -40,6 +40,13 @@ struct ActionAnswer {
   bool is_done = false;  ///< false: refused
 };
 
+/// What the monitoring beside the cycle found (meridian/monitoring): it stops the machine.
+struct MonitoringAlarm {
+  Alarm alarm = Alarm::kNone;
+  int joint = 0;
+  double value = 0;
+};
+
 /// Everything that one cycle knows about the world; time is an argument.
 struct CycleInputs {
   Feedback feedback;                ///< newest; arrival_ns 0: none yet
@@ -54,6 +61,7 @@ struct CycleInputs {
   JogOrder jog;               ///< newest of the operator who jogs
   std::uint64_t session = 0;  ///< open session, 0: none; starvation ends by itself only in its own
   double tool_length_mm = 0;  ///< of the tool in the spindle, where no program moves it
+  MonitoringAlarm monitoring;
 };
 static_assert(std::is_trivially_copyable_v<CycleInputs>);
 

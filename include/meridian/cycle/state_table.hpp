@@ -92,7 +92,7 @@ inline constexpr std::array<Row, kStateCount> kTable{{
 }
 
 [[nodiscard]] constexpr const char* name_of(Refusal refusal) noexcept {
-  constexpr std::array<const char*, 21> kNames{"none",
+  constexpr std::array<const char*, 22> kNames{"none",
                                                "wrong state",
                                                "not referenced",
                                                "no program",
@@ -112,8 +112,9 @@ inline constexpr std::array<Row, kStateCount> kTable{{
                                                "drives astray",
                                                "not journalled",
                                                "no probe",
-                                               "probe in contact"};
-  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kProbeContact) + 1);
+                                               "probe in contact",
+                                               "guard open"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Refusal::kGuardOpen) + 1);
   const auto i = static_cast<std::size_t>(refusal);
   return i < kNames.size() ? kNames[i] : "unknown";
 }

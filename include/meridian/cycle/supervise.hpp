@@ -326,6 +326,12 @@ inline void stop_jogging_from_drives(Cycle& c) noexcept {
   c.periods = 1;
 }
 
+/// The narrow port of the monitoring: it says what it found, and the machine stops.
+[[gnu::noinline]] inline void take_monitoring(Cycle& c) noexcept {
+  const MonitoringAlarm& found = c.in.monitoring;
+  if (is_enabled(c.state.state)) raise(c, found.alarm, found.joint, found.value);
+}
+
 /// Looks at everything that may end in a FaultStop, before anything moves.
 inline void supervise(Cycle& c) noexcept {
   const bool is_bridged = c.in.lost_periods <= static_cast<std::uint32_t>(c.machine.bridge_cycles);
@@ -343,6 +349,7 @@ inline void supervise(Cycle& c) noexcept {
     c.periods = 1;
   }
   check_drives(c);
+  if (c.in.monitoring.alarm != Alarm::kNone) take_monitoring(c);
 }
 
 }  // namespace meridian

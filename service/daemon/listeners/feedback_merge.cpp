@@ -48,6 +48,7 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
   place->arrival_ns = now_ns;
   place->has_only_stop = sample.joint_mask == 0;
   place->is_emergency_stop = sample.is_emergency_stop;
+  place->is_guard_open = sample.is_guard_open;
   place->probe = sample.probe <= ProbeInput::kContact ? sample.probe : ProbeInput::kNone;
   bind(*place, now_ns, may_hand_over);
   take_joints(sample, place->joints());
@@ -110,6 +111,7 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
   feedback_.emergency_ns = feedback_.emergency_stop ? stopped_ns_ : 0;
   feedback_.probe = ProbeInput::kNone;
+  feedback_.is_guard_open = false;
   for (const DriveSource& source : sources_.places) {
     if (source.writer == 0) continue;
     if (source.is_emergency_stop) {
@@ -122,6 +124,7 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
     }
     if (source.joints() == 0 && !source.has_only_stop) continue;
     feedback_.probe = std::max(feedback_.probe, source.probe);
+    feedback_.is_guard_open = feedback_.is_guard_open || source.is_guard_open;
     if (oldest == nullptr || source.arrival_ns < oldest->arrival_ns) oldest = &source;
     if (source.joints() == 0) continue;
     if (deafest == nullptr || source.cycle_seen < deafest->cycle_seen) deafest = &source;

@@ -20,8 +20,8 @@ namespace meridian::interpolator {
 /// contested. The stop input of every source counts, whatever else is taken from it, until DDS says
 /// that its writer is gone. One that has nothing but a stop input is missed like a drive when it
 /// falls silent; one whose joints this machine has not is not. The probe of every source that is
-/// missed counts: it is in contact as soon as one says so.
-/// Proof: tests/unit/daemon/feedback_merge_test.cpp.
+/// missed counts: it is in contact as soon as one says so; so does a guard, which is open as soon
+/// as one says so. Proof: tests/unit/daemon/feedback_merge_test.cpp.
 class FeedbackMerge {
  public:
   /// Where both speak within it, sources contest a joint; who says nothing for longer is silent.

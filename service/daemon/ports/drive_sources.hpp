@@ -22,6 +22,7 @@ struct DriveSource {
   std::int64_t first_ns = 0, arrival_ns = 0;  ///< of its first and its newest sample
   bool has_only_stop = false;                 ///< it has no joint of any machine: a stop input
   bool is_emergency_stop = false;
+  bool is_guard_open = false;
   ProbeInput probe = ProbeInput::kNone;
 
   /// The joints that the machine takes from it.

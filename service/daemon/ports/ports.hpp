@@ -195,6 +195,7 @@ struct Ports {
   std::atomic<std::uint64_t> commands_dropped{0}, replies_dropped{0};
   std::atomic<double> spindle_tool_mm{0};      ///< gauge line to tip of the tool in the spindle
   std::atomic<std::uint32_t> spindle_tool{0};  ///< its number; 0: the one of the machine file
+  std::atomic<bool> is_guard_open{false};      ///< only jogging is allowed; never in a dry run
   std::atomic<bool> is_tool_changing{false};   ///< that may be another one by now
   SetUpPorts set_up;
   QueueMarkWord queue_mark;          ///< intake to planner: what of `blocks` is good

@@ -52,6 +52,7 @@ void Supervisor::run() noexcept {
                            std::memory_order_relaxed);
     take_commands();
     take_enabling_changes();
+    report_guard();
     take_jogs();
     take_actions_done();
     take_events();

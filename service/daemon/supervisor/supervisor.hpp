@@ -114,6 +114,8 @@ class Supervisor {
   [[nodiscard]] Refusal check_turn(const Pending& command) const noexcept;
   /// Why nothing may move now: an enabling device is required, and none is pressed.
   [[nodiscard]] bool lacks_enabling(Verb verb) const noexcept;
+  /// Why it may not move by itself: a guard of the work space is open.
+  [[nodiscard]] bool is_guarded_off(Verb verb) const noexcept;
   [[nodiscard]] bool is_within_quota(std::uint64_t participant, std::uint64_t source);
   void delay_reset(const Pending& command);
   /// What a command of verb `frame` says; an unknown word where that was lost.
@@ -162,6 +164,8 @@ class Supervisor {
   /// Where the participant runs, in words; remembered.
   [[nodiscard]] const std::string& identity_of(const Pending& command);
   void take_enabling_changes();
+  /// Says when a guard opens or shuts.
+  void report_guard();
   void notice(const std::string& text, bool is_for_status);
   void publish_action(const Event& event);
   void take_actions_done();
@@ -213,6 +217,7 @@ class Supervisor {
   std::atomic<bool> is_switching_off_{false}, is_off_{false};
   std::int64_t asked_off_ns_ = 0, looked_ns_ = 0;
   std::uint32_t enabling_losses_ = 0;  ///< that were reported
+  bool was_guard_open_ = false;
   struct EnablingDevice {
     std::uint64_t source = 0;
     std::string name;

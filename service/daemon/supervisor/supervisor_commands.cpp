@@ -124,10 +124,16 @@ Refusal Supervisor::check_turn(const Pending& command) const noexcept {
   const dds::CommandRequest& request = command.request;
   if (request.verb == Verb::kEnable && is_pending(Verb::kDryRun)) return Refusal::kStale;
   if (is_set_up_stale(request)) return Refusal::kStale;
+  if (is_guarded_off(request.verb)) return Refusal::kGuardOpen;
   if (lacks_enabling(request.verb)) return Refusal::kNoEnablingDevice;
   const std::uint64_t stop_status = ports_.stop_status.load(std::memory_order_acquire);
   const bool is_before_stop = request.status_seen <= stop_status;
   return leads_to_motion(request.verb) && is_before_stop ? Refusal::kOvertaken : Refusal::kNone;
+}
+
+bool Supervisor::is_guarded_off(Verb verb) const noexcept {
+  const bool is_by_itself = leads_to_motion(verb) && verb != Verb::kEnable && verb != Verb::kJog;
+  return is_by_itself && ports_.is_guard_open.load(std::memory_order_relaxed);
 }
 
 bool Supervisor::lacks_enabling(Verb verb) const noexcept {

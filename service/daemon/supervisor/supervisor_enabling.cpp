@@ -43,6 +43,14 @@ void Supervisor::take_enabling_changes() {
          true);
 }
 
+void Supervisor::report_guard() {
+  const bool is_open = ports_.is_guard_open.load(std::memory_order_relaxed);
+  if (std::exchange(was_guard_open_, is_open) == is_open) return;
+  notice(is_open ? "a guard is open: what moved is held, and only jogging is allowed, slowly"
+                 : "the guard is shut",
+         is_open);
+}
+
 /// What finds no room is lost: telemetry is held up by then, and motion is not.
 void Supervisor::notice(const std::string& text, bool is_for_status) {
   Notice notice{.is_warning = is_for_status, .is_for_status = is_for_status, .text = {}};

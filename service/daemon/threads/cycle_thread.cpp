@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "meridian/cycle/state_table.hpp"
+#include "service/daemon/monitoring/set_up_jog.hpp"
 #include "service/daemon/ports/monotonic.hpp"
 
 namespace meridian::interpolator {
@@ -25,11 +26,12 @@ void push_or_count(SpscRing<Item, N>& ring, const Item& item,
 }  // namespace
 
 CycleThread::CycleThread(const MachineModel& model, const CycleOptions& options,
-                         Ports& ports) noexcept
+                         const monitoring::Limits& limits, Ports& ports) noexcept
     : model_(model),
       ports_(ports),
       state_(options, rate_bounds(model)),
       motion_(ports.motion),
+      monitor_(limits),
       spans_(ports.spans != nullptr ? &ports.spans->cycle : nullptr) {}
 
 void CycleThread::run() noexcept {
@@ -59,9 +61,11 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   inputs_.lost_periods = period.lost;
   inputs_.computation_ns = computation_ns_;
   watch_enabling(now_ns);
+  watch_guard();
   inputs_.has_command = ports_.commands.try_pop(inputs_.command);
   inputs_.session = ports_.session.load(std::memory_order_relaxed);
   inputs_.tool_length_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
+  inputs_.monitoring = monitor_.check(model_, inputs_, output_.record, state_.is_dry_run);
 }
 
 void CycleThread::hand_over() noexcept {
@@ -109,6 +113,17 @@ void CycleThread::watch_enabling(std::int64_t now_ns) noexcept {
   ports_.enabling.look(now_ns);
   const bool can_be_held = effect_of(state_.state, Verb::kHold).effect == Effect::kGo;
   if (!can_be_held || !ports_.enabling.holds_back()) return;
+  ports_.commands.stage_stop(Verb::kHold, ports_.commands.next_request());
+}
+
+/// With an open guard the machine is jogged, and nothing else; a dry run moves nothing.
+void CycleThread::watch_guard() noexcept {
+  const bool is_open = inputs_.feedback.is_guard_open && !state_.is_dry_run;
+  ports_.is_guard_open.store(is_open, std::memory_order_relaxed);
+  if (!is_open) return;
+  slow_down(inputs_.jog, model_, monitor_.monitor().limits(), output_.record.joints);
+  const bool can_be_held = effect_of(state_.state, Verb::kHold).effect == Effect::kGo;
+  if (!can_be_held || state_.state == State::kJogging) return;
   ports_.commands.stage_stop(Verb::kHold, ports_.commands.next_request());
 }
 

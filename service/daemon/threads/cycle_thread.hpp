@@ -5,6 +5,7 @@
 
 #include "meridian/cycle/step.hpp"
 #include "meridian/kinematics/machine_model.hpp"
+#include "service/daemon/monitoring/cycle_monitor.hpp"
 #include "service/daemon/ports/cycle_clock.hpp"
 #include "service/daemon/ports/ports.hpp"
 
@@ -14,7 +15,8 @@ namespace meridian::interpolator {
 /// system calls are the sleep and the publisher's wake. Proof: tests/integration/counters_test.cpp.
 class CycleThread {
  public:
-  CycleThread(const MachineModel& model, const CycleOptions& options, Ports& ports) noexcept;
+  CycleThread(const MachineModel& model, const CycleOptions& options,
+              const monitoring::Limits& limits, Ports& ports) noexcept;
 
   /// Before run(): where the workpiece lies.
   void set_up(const SetUpInForce& in_force) noexcept { place(model_, in_force); }
@@ -29,6 +31,8 @@ class CycleThread {
   void show() noexcept;
   void show_drives_asked() noexcept;
   void watch_enabling(std::int64_t now_ns) noexcept;
+  /// Holds what an open guard forbids, and slows down the jog.
+  void watch_guard() noexcept;
   void report_spans() noexcept;
 
   MachineModel model_;
@@ -37,6 +41,7 @@ class CycleThread {
   MotionReader motion_;
   CycleInputs inputs_;
   StepOutput output_;
+  CycleMonitor monitor_;
   CycleView view_;
   DrivesAsked drives_asked_;  ///< as it was shown last
   std::int32_t computation_ns_ = 0;

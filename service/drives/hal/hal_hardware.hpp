@@ -30,6 +30,7 @@ class HalHardware final : public drive::Hardware {
   void write(int axis, const drive::Output& output) noexcept override;
   void exchange(double dt_s) noexcept override;
   [[nodiscard]] bool is_emergency_stop() noexcept override { return report_.is_stopped != 0; }
+  [[nodiscard]] bool is_guard_open() noexcept override { return report_.is_guard_open != 0; }
   [[nodiscard]] drive::Probe probe() noexcept override;
   [[nodiscard]] drive::HomingStep home(int axis, const drive::HomingView& view) noexcept override;
 

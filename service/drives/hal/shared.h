@@ -66,11 +66,11 @@ struct meridian_hal_report {
   uint32_t index_count[MERIDIAN_HAL_JOINTS];   // pulses so far
   uint32_t fault_mask;                         // amplifier faults
   uint32_t homed_mask;
-  uint32_t is_stopped;  // the emergency stop chain is open
-  uint32_t is_lost;     // setpoints stayed away: ramped down and off
-  uint64_t order_done;  // number of the newest order that is done
-  uint32_t probe;       // 0 none connected, 1 free, 2 in contact
-  uint32_t reserved;
+  uint32_t is_stopped;     // the emergency stop chain is open
+  uint32_t is_lost;        // setpoints stayed away: ramped down and off
+  uint64_t order_done;     // number of the newest order that is done
+  uint32_t probe;          // 0 none connected, 1 free, 2 in contact
+  uint32_t is_guard_open;  // of the work space
 };
 
 /// The parts that are guarded, each by the lock in front of it: odd while it is written.

@@ -45,6 +45,9 @@ class CHardware : public drive::Hardware {
   [[nodiscard]] bool is_emergency_stop() noexcept override {
     return c_.is_emergency_stop != nullptr && c_.is_emergency_stop(c_.user) != 0;
   }
+  [[nodiscard]] bool is_guard_open() noexcept override {
+    return c_.is_guard_open != nullptr && c_.is_guard_open(c_.user) != 0;
+  }
   [[nodiscard]] drive::Probe probe() noexcept override {
     const int said = c_.probe != nullptr ? c_.probe(c_.user) : 0;
     const bool is_known = said == static_cast<int>(drive::Probe::kFree) ||

@@ -197,6 +197,7 @@ void Group::work(int periods, Hardware& hardware) noexcept {
 
 void Group::see_inputs(Hardware& hardware) noexcept {
   is_emergency_stop_ = hardware.is_emergency_stop();
+  is_guard_open_ = hardware.is_guard_open();
   probe_ = static_cast<ProbeInput>(hardware.probe());
 }
 
@@ -215,6 +216,7 @@ dds::DriveFeedback Group::feedback() noexcept {
   feedback.cycle_seen = has_setpoint_ ? newest_.setpoint.cycle : 0;
   feedback.service_id = pin_.master().service_id;
   feedback.is_emergency_stop = is_emergency_stop_;
+  feedback.is_guard_open = is_guard_open_;
   feedback.probe = probe_;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const FollowingAxis& axis = axes_[i];

@@ -107,7 +107,7 @@ class Group : public Receiver {
   std::uint64_t reached_cycle_ = 0;   ///< to which setpoint or bridge has led the axes
   std::int64_t periods_since_ = 0;    ///< own periods since then
   std::uint64_t sample_ = 0, setpoints_seen_ = 0, periods_bridged_ = 0;
-  bool is_emergency_stop_ = false;
+  bool is_emergency_stop_ = false, is_guard_open_ = false;
   ProbeInput probe_ = ProbeInput::kNone;
 };
 

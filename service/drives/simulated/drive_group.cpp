@@ -105,6 +105,11 @@ void DriveGroup::inject_now(const Injection& injection) noexcept {
     case Injection::Kind::kEmergency:
       is_emergency_stop_ = true;
       return;
+    case Injection::Kind::kGuard:
+      is_guard_open_ = true;
+      return;
+    case Injection::Kind::kCreep:
+      return report_faults_.creep(i, injection.value * group_.cycle_s());
     case Injection::Kind::kUnreferenced:
       return report_faults_.lose_reference(i);
     case Injection::Kind::kMute:
@@ -140,7 +145,7 @@ void DriveGroup::mend() noexcept {
     servo.sick_time_constant_s = std::nullopt;
     group_.axis(static_cast<int>(i)).set_power(true);
   }
-  is_silent_ = is_dead_ = is_emergency_stop_ = false;
+  is_silent_ = is_dead_ = is_emergency_stop_ = is_guard_open_ = false;
   report_faults_ = {};
   report_wire_ = {};
   setpoint_faults_ = {};
@@ -155,6 +160,7 @@ bool DriveGroup::reports(dds::DriveFeedback& report) {
 dds::DriveFeedback DriveGroup::feedback() noexcept {
   dds::DriveFeedback feedback = group_.feedback();
   feedback.is_emergency_stop = is_emergency_stop_;
+  feedback.is_guard_open = is_guard_open_;
   report_faults_.apply(feedback);
   return feedback;
 }

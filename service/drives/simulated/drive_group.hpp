@@ -64,7 +64,7 @@ class DriveGroup : public drive::Receiver {
   drive::Group group_;
   std::vector<Injection> injections_;
   double enabled_s_ = 0;
-  bool is_silent_ = false, is_dead_ = false, is_emergency_stop_ = false;
+  bool is_silent_ = false, is_dead_ = false, is_emergency_stop_ = false, is_guard_open_ = false;
   ReportFaults report_faults_;
   ReportWire report_wire_;
   bool has_reported_ = false;  ///< in this period

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = Injection::Kind;
 
-constexpr std::array<InjectionWord, 19> kWords{{
+constexpr std::array<InjectionWord, 21> kWords{{
     {Kind::kFault, "fault", true, 0, nullptr, "the drive reports a fault of its own"},
     {Kind::kBlocked, "blocked", true, 0, nullptr, "its shaft is stuck"},
     {Kind::kSilence, "silence", false, 0, nullptr, "no drive reports any more"},
@@ -34,6 +34,8 @@ constexpr std::array<InjectionWord, 19> kWords{{
     {Kind::kStale, "stale", false, 10, "periods", "reports arrive so late from then on"},
     {Kind::kDoubled, "doubled", false, 0, nullptr, "every report arrives twice"},
     {Kind::kSwapped, "swapped", false, 0, nullptr, "every other report is overtaken by the next"},
+    {Kind::kGuard, "guard", false, 0, nullptr, "a guard of the work space opens"},
+    {Kind::kCreep, "creep", true, 5, "mm or deg per second", "the position that it reports creeps"},
     {Kind::kMend, "mend", false, 0, nullptr, "all of that is as it was"},
 }};
 
@@ -52,7 +54,8 @@ constexpr std::array<InjectionWord, 19> kWords{{
 }
 
 [[nodiscard]] double inside(const InjectionWord& word, double value, const JointSpec& drive) {
-  if (word.kind == Kind::kSpike && drive.is_rotary) return units::rad_from_deg(value);
+  const bool is_distance = word.kind == Kind::kSpike || word.kind == Kind::kCreep;
+  if (is_distance && drive.is_rotary) return units::rad_from_deg(value);
   return word.kind == Kind::kLag ? value * 1e-3 : value;
 }
 
@@ -102,7 +105,8 @@ Expected<Injection, std::string> parse_injection(const std::string& text,
   if (has_value && !(read_number(value, injection.value) && std::abs(injection.value) <= 1e6)) {
     return refuse(std::string("behind = stand ") + word->unit);
   }
-  if (word->kind != Kind::kSpike && injection.value < 0) return refuse("its value is not negative");
+  const bool is_signed = word->kind == Kind::kSpike || word->kind == Kind::kCreep;
+  if (!is_signed && injection.value < 0) return refuse("its value is not negative");
   injection.value = inside(*word, injection.value, drive_spec(model, injection.drive));
   return injection;
 }

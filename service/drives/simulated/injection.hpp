@@ -32,6 +32,8 @@ struct Injection {
     kStale,         ///< reports arrive `value` periods late from now on
     kDoubled,       ///< every report arrives twice
     kSwapped,       ///< every other report is overtaken by the one behind it
+    kGuard,         ///< a guard of the work space opens
+    kCreep,         ///< the reported position of `drive` creeps by `value` mm or rad per second
     kMend           ///< everything of the above is as it was
   };
   Kind kind = Kind::kFault;

@@ -26,6 +26,9 @@ class ReportFaults {
   /// In the next report only.
   void add_once(std::size_t i, double by) noexcept { spike_[i] += by; }
 
+  /// Every report is off by `by` more than the one before.
+  void creep(std::size_t i, double by) noexcept { creep_[i] = by; }
+
   void apply(dds::DriveFeedback& feedback) noexcept {
     for (std::size_t i = 0; i < kMaxJoints; ++i) {
       const std::uint32_t bit = 1U << i;
@@ -33,7 +36,8 @@ class ReportFaults {
       if ((no_number_mask_ & bit) != 0) {
         feedback.position[i] = std::numeric_limits<double>::quiet_NaN();
       }
-      feedback.position[i] += spike_[i];
+      crept_[i] += creep_[i];
+      feedback.position[i] += spike_[i] + crept_[i];
     }
     spike_ = {};
     feedback.joint_mask &= ~mute_mask_;
@@ -44,7 +48,7 @@ class ReportFaults {
  private:
   std::uint32_t frozen_mask_ = 0, no_number_mask_ = 0, mute_mask_ = 0, unreferenced_mask_ = 0;
   bool is_cycle_left_out_ = false;
-  JointVector frozen_{}, spike_{};
+  JointVector frozen_{}, spike_{}, creep_{}, crept_{};
 };
 
 }  // namespace meridian::drives

@@ -12,6 +12,7 @@
 #include "service/machine/file/mesh_file.hpp"
 #include "service/machine/file/kinematics_file.hpp"
 #include "service/machine/file/machine_name.hpp"
+#include "service/machine/file/monitoring_file.hpp"
 #include "service/machine/file/positions_file.hpp"
 #include "service/machine/file/section.hpp"
 #include "service/machine/file/stage_file.hpp"
@@ -197,6 +198,7 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   (void)read_homing(file.section_or("homing"), model.joint_count);
   (void)read_positions(file, model);
   (void)read_meshes(file, model);
+  (void)read_monitoring(file.section_or("monitoring"), model);
   file.finish();
   return model;
 }

@@ -157,7 +157,7 @@ MessageType cycle_type(const MachineModel& model, const Contents& contents) {
     add_enum(text, "state", static_cast<State>(kStateCount - 1));
     add_enum(text, "kind", MotionKind::kUnwind);
   }
-  if (contents.has_alarm) add_enum(text, "alarm", Alarm::kProbeLost);
+  if (contents.has_alarm) add_enum(text, "alarm", Alarm::kFeedbackTooFast);
   const std::string positions = fields_of("float64", limited_names(model));
   const std::string velocities = fields_of("float32", limited_names(model));
   const std::string feedback = fields_of("float64", drive_names(model));

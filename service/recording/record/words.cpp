@@ -21,16 +21,38 @@ constexpr auto kStates =
                    "fault_stop"sv, "fault"sv, "jogging"sv, "homing"sv, "stepping"sv});
 static_assert(kStates.size() == kStateCount);
 
-constexpr auto kAlarms =
-    std::to_array({"none"sv,          "not_finite"sv,        "travel"sv,
-                   "step"sv,          "unreachable"sv,       "drive_fault"sv,
-                   "feedback_lost"sv, "following_error"sv,   "emergency_stop"sv,
-                   "periods_lost"sv,  "enable_timeout"sv,    "action_failed"sv,
-                   "homing_failed"sv, "homing_timeout"sv,    "reference_lost"sv,
-                   "drive_enabled"sv, "setpoints_unheard"sv, "drives_astray"sv,
-                   "keep_out"sv,      "tip_box"sv,           "no_contact"sv,
-                   "contact"sv,       "probe_lost"sv});
-static_assert(kAlarms.size() == static_cast<std::size_t>(Alarm::kProbeLost) + 1);
+constexpr auto kAlarms = std::to_array({"none"sv,
+                                        "not_finite"sv,
+                                        "travel"sv,
+                                        "step"sv,
+                                        "unreachable"sv,
+                                        "drive_fault"sv,
+                                        "feedback_lost"sv,
+                                        "following_error"sv,
+                                        "emergency_stop"sv,
+                                        "periods_lost"sv,
+                                        "enable_timeout"sv,
+                                        "action_failed"sv,
+                                        "homing_failed"sv,
+                                        "homing_timeout"sv,
+                                        "reference_lost"sv,
+                                        "drive_enabled"sv,
+                                        "setpoints_unheard"sv,
+                                        "drives_astray"sv,
+                                        "keep_out"sv,
+                                        "tip_box"sv,
+                                        "no_contact"sv,
+                                        "contact"sv,
+                                        "probe_lost"sv,
+                                        "standstill"sv,
+                                        "joint_speed"sv,
+                                        "tip_speed"sv,
+                                        "position_window"sv,
+                                        "drive_model"sv,
+                                        "feedback_jump"sv,
+                                        "feedback_frozen"sv,
+                                        "feedback_too_fast"sv});
+static_assert(kAlarms.size() == static_cast<std::size_t>(Alarm::kFeedbackTooFast) + 1);
 
 template <class Enum, std::size_t N>
 [[nodiscard]] std::optional<Enum> find(const std::array<std::string_view, N>& words,
@@ -69,6 +91,13 @@ bool is_of_joint(Alarm alarm) noexcept {
     case Alarm::kDriveEnabled:
     case Alarm::kSetpointsUnheard:
     case Alarm::kDrivesAstray:
+    case Alarm::kStandstill:
+    case Alarm::kJointSpeed:
+    case Alarm::kPositionWindow:
+    case Alarm::kDriveModel:
+    case Alarm::kFeedbackJump:
+    case Alarm::kFeedbackFrozen:
+    case Alarm::kFeedbackTooFast:
       return true;
     default:
       return false;

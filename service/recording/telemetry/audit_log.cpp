@@ -72,7 +72,7 @@ std::string to_line(const AuditEntry& entry) {
     add("argument", text::json_number("%.9g", entry.argument));
     add("result", entry.is_accepted ? R"("accepted")" : R"("refused")");
     if (!entry.is_accepted) {
-      add("refusal", json_text(name_or_number(entry.refusal, Refusal::kProbeContact)));
+      add("refusal", json_text(name_or_number(entry.refusal, Refusal::kGuardOpen)));
     }
   }
   add("state", json_text(name_or_number(entry.state, State(kStateCount - 1))));

@@ -156,6 +156,9 @@ std::string describe(Verb verb, Refusal refusal, State state, double argument,
       why = verb == Verb::kResume ? "the probe is in contact; abort, jog it free, start again"
                                   : "the probe is in contact; move it free, then repeat";
       break;
+    case Refusal::kGuardOpen:
+      why = "a guard of the work space is open; shut it, or jog";
+      break;
     case Refusal::kNoEnablingDevice:
       why = "an enabling device is required and none is pressed; press it, then repeat";
       break;

@@ -219,7 +219,8 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       break;
     case Alarm::kTipBox:
       text = fmt::format(
-          "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; reset and "
+          "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; reset "
+          "and "
           "jog the tip back; without an alarm before it report this as a bug",
           "XYZ"[joint >= 0 && joint < 3 ? joint : 0], value);
       break;
@@ -235,6 +236,53 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       text =
           "the probe is connected no more; look at its plug, its battery and its receiver, then "
           "reset";
+      break;
+    case Alarm::kStandstill:
+      text = fmt::format(
+          "joint {} moved by {} where it was to stand; look for a drive that creeps, a brake or a "
+          "load, then reset",
+          name, measured);
+      break;
+    case Alarm::kJointSpeed:
+      text = fmt::format(
+          "joint {} was led or pushed by {} per second with an open guard; jog slower or shut it, "
+          "then reset",
+          name, measured);
+      break;
+    case Alarm::kTipSpeed:
+      text = fmt::format(
+          "the tip moved at {:.4g} mm/min with an open guard; jog slower or shut it, then reset",
+          units::per_min_from_per_s(value));
+      break;
+    case Alarm::kPositionWindow:
+      text = fmt::format("joint {} is at {}, outside of its window; reset, enable and jog it back",
+                         name, measured);
+      break;
+    case Alarm::kDriveModel:
+      text = fmt::format(
+          "drive {} is {} off the model of it; look for a blocked axis, a weak drive, or a lag "
+          "that "
+          "[monitoring] of the machine file does not know",
+          name, measured);
+      break;
+    case Alarm::kFeedbackJump:
+      text = fmt::format(
+          "drive {} reports a jump of {}, farther than it can move; look at its encoder and cable, "
+          "then home it",
+          name, measured);
+      break;
+    case Alarm::kFeedbackFrozen:
+      text = fmt::format(
+          "drive {} reports the same position although it was led on by {}; look at its encoder, "
+          "its "
+          "coupling and its reports",
+          name, measured);
+      break;
+    case Alarm::kFeedbackTooFast:
+      text = fmt::format(
+          "drive {} reports {} per second, faster than it can move; look at its encoder and its "
+          "scale, then reset",
+          name, measured);
       break;
     case Alarm::kEmergencyStop:
       text = "emergency stop input is open; release it, then reset";

@@ -243,6 +243,17 @@ TEST(StepFaults, ASetpointThatLeavesTravelIsNeverSent) {
   }
 }
 
+TEST(StepFaults, WhatTheMonitoringFindsStopsTheMachineOnThePath) {
+  Program p;
+  start_long_cut(p);
+  p.world.run_for(0.3);
+  p.world.in.monitoring = {Alarm::kDriveModel, 2, 0.7};
+  p.world.run();
+  expect_fault_on_path(p, Alarm::kDriveModel);
+  EXPECT_EQ(p.world.last(EventCode::kAlarm).b, 2U);
+  EXPECT_EQ(p.world.last(EventCode::kAlarm).x, 0.7);
+}
+
 TEST(StepFaults, ASetpointThatTakesTheTipOutOfItsBoxIsNeverSent) {
   Program p;  // its plan knows no box
   const auto tip_of = [&p](const JointVector& joints) {

@@ -113,6 +113,18 @@ TEST_F(SupervisorTest, DropsAFloodOfOneParticipantReportsItOnceAndObeysItsStops)
   EXPECT_TRUE(take(Verb::kFeedOverride)) << "others are heard";
 }
 
+TEST_F(SupervisorTest, RefusesWhatMovesByItselfWithAnOpenGuard) {
+  ports_->is_guard_open = true;
+  show(State::kLoaded, false);
+  ask(Verb::kStart);
+  EXPECT_TRUE(has_reply(Verb::kStart, Refusal::kGuardOpen));
+  show(State::kReady, false);
+  ask(Verb::kHome);
+  EXPECT_TRUE(has_reply(Verb::kHome, Refusal::kGuardOpen));
+  ask(Verb::kJog);
+  EXPECT_TRUE(take(Verb::kJog)) << "the hand may";
+}
+
 TEST_F(SupervisorTest, RefusesWhatMovesWithoutAnEnablingDeviceWhereOneIsRequired) {
   ports_->enabling.set_up(true, 300'000'000);
   show(State::kLoaded, false);

@@ -115,6 +115,23 @@ TEST(FeedbackMerge, KeepsAnOpenStopInputInAFlood) {
   EXPECT_TRUE(merge.feedback().emergency_stop);
 }
 
+TEST(FeedbackMerge, HasAnOpenGuardAsLongAsOneSourceSaysSo) {
+  FeedbackMerge merge;
+  dds::DriveFeedback own = sample(1, 0b11111, 1), box = sample(2, 0, 1);
+  ASSERT_TRUE(merge.take(own, 7, kMilli));
+  EXPECT_FALSE(merge.feedback().is_guard_open) << "where nobody says so it is shut";
+  box.is_guard_open = true;
+  ASSERT_TRUE(merge.take(box, 8, kMilli));
+  own.sample = 2;
+  ASSERT_TRUE(merge.take(own, 7, 2 * kMilli));
+  EXPECT_TRUE(merge.feedback().is_guard_open) << "an input without drives";
+  EXPECT_FALSE(merge.feedback().emergency_stop);
+  box.sample = 2;
+  box.is_guard_open = false;
+  ASSERT_TRUE(merge.take(box, 8, 3 * kMilli));
+  EXPECT_FALSE(merge.feedback().is_guard_open);
+}
+
 TEST(FeedbackMerge, IsInContactAsSoonAsOneSourceSaysSo) {
   FeedbackMerge merge;
   dds::DriveFeedback own = sample(1, 0b11111, 1), box = sample(2, 0, 1);

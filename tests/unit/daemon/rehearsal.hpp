@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "meridian/cycle/homing.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/daemon/listeners/feedback_merge.hpp"
+#include "service/daemon/monitoring/cycle_monitor.hpp"
 #include "service/daemon/ports/drive_words.hpp"
 #include "service/drives/simulated/drive_group.hpp"
 #include "support/cycle_world.hpp"
@@ -32,13 +34,18 @@ inline const PathLimits kRehearsalLimits{100, 1500, 30000};
 
 /// Cycle, drives and what joins them, in one process and in step: no wire and no clock.
 struct Rehearsal {
-  explicit Rehearsal(const std::vector<drives::HomingPlan>& homing = {})
-      : group(model, {}, homing) {
+  explicit Rehearsal(const std::vector<drives::HomingPlan>& homing = {},
+                     const MachineModel& machine = machine_at_begin())
+      : model(machine), group(model, {}, homing) {
     world.are_drives_alive = false;  // these are
     report();
   }
 
   void cycle() {
+    if (monitor) {
+      world.in.monitoring =
+          monitor->check(model, world.in, world.out.record, world.state.is_dry_run);
+    }
     const CycleRecord& record = world.run();
     dds::SetpointSample setpoint;
     setpoint.setpoint = record.setpoint;
@@ -144,12 +151,13 @@ struct Rehearsal {
     return true;
   }
 
-  MachineModel model = machine_at_begin();
+  MachineModel model;
   CycleWorld world{model};
   MadePlan plan{model, *world.port, kRehearsalBegin};
   drives::DriveGroup group;
   interpolator::FeedbackMerge merge;
-  ProbeInput probe = ProbeInput::kNone;  ///< what the drives report of it
+  std::optional<interpolator::CycleMonitor> monitor;  ///< none: nothing is monitored
+  ProbeInput probe = ProbeInput::kNone;               ///< what the drives report of it
   bool is_resetting = false;
   int injected = 0;
 

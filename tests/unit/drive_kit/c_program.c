@@ -24,6 +24,8 @@ static int is_emergency_stop(void* user) { return ((struct c_motors*)user)->is_s
 
 static meridian_probe probe(void* user) { return ((struct c_motors*)user)->probe; }
 
+static int is_guard_open(void* user) { return ((struct c_motors*)user)->is_guard_open; }
+
 static void home(void* user, int axis, const meridian_homing_view* view,
                  meridian_homing_step* step) {
   struct c_motors* motors = user;
@@ -47,7 +49,8 @@ static void report(void* user, const char* text) {
 
 meridian_drive_hardware c_hardware(struct c_motors* motors) {
   const meridian_drive_hardware hardware = {
-      motors, read_axis, write_axis, exchange, is_emergency_stop, home, act, report, probe};
+      motors, read_axis, write_axis, exchange, is_emergency_stop,
+      home,   act,       report,     probe,    is_guard_open};
   return hardware;
 }
 

@@ -12,7 +12,7 @@ extern "C" {
 struct c_motors {
   double position[6];
   double elapsed_s; /* of axis 0 while it was on, by the service's clock */
-  int periods, is_stop_open, reports;
+  int periods, is_stop_open, is_guard_open, reports;
   int stops_after; /* periods; 0: never */
   meridian_probe probe;
   volatile int is_stopping;

@@ -101,6 +101,14 @@ TEST_F(PartOfAMachine, TheStopInputIsReported) {
   EXPECT_TRUE(group_.feedback().is_emergency_stop);
 }
 
+TEST_F(PartOfAMachine, AnOpenGuardIsReported) {
+  group_.work(1, motors_);
+  EXPECT_FALSE(group_.feedback().is_guard_open);
+  motors_.is_a_guard_open = true;
+  group_.work(1, motors_);
+  EXPECT_TRUE(group_.feedback().is_guard_open);
+}
+
 TEST_F(PartOfAMachine, TheTouchProbeIsReported) {
   for (const drive::Probe probe : {Probe::kNone, Probe::kFree, Probe::kContact}) {
     motors_.touch_probe = probe;

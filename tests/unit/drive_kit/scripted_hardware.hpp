@@ -21,6 +21,7 @@ class ScriptedHardware : public drive::Hardware {
   }
   void exchange(double dt_s) noexcept override { exchanged_s += dt_s; }
   [[nodiscard]] bool is_emergency_stop() noexcept override { return is_stop_open; }
+  [[nodiscard]] bool is_guard_open() noexcept override { return is_a_guard_open; }
   [[nodiscard]] drive::Probe probe() noexcept override { return touch_probe; }
   [[nodiscard]] drive::HomingStep home(int axis, const drive::HomingView& view) noexcept override {
     last_axis = axis;
@@ -35,7 +36,7 @@ class ScriptedHardware : public drive::Hardware {
   drive::HomingStep next_step;  ///< `target`: how far from the last one
   drive::HomingView last_view;
   int last_axis = -1;
-  bool is_stuck = false, is_stop_open = false;
+  bool is_stuck = false, is_stop_open = false, is_a_guard_open = false;
   drive::Probe touch_probe = drive::Probe::kNone;
   double exchanged_s = 0;
 };

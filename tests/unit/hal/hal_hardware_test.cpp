@@ -102,6 +102,14 @@ TEST_F(HalSide, ATouchProbeIsReported) {
   EXPECT_EQ(hardware_.probe(), drive::Probe::kContact);
 }
 
+TEST_F(HalSide, AnOpenGuardIsReported) {
+  period({.is_on = true});
+  EXPECT_FALSE(hardware_.is_guard_open());
+  report_.is_guard_open = 1;
+  period({.is_on = true});
+  EXPECT_TRUE(hardware_.is_guard_open());
+}
+
 TEST_F(HalSide, FaultStopAndLostSetpointsAreReported) {
   report_.fault_mask = 0b01;
   period({.is_on = true});

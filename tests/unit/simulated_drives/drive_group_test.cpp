@@ -160,6 +160,19 @@ TEST_F(Group, InjectsSilenceAndTheStopInput) {
   EXPECT_TRUE(group_.feedback().is_emergency_stop);
 }
 
+TEST_F(Group, InjectsAnOpenGuardAndAPositionThatCreeps) {
+  enable();
+  const double stood = group_.feedback().position[0];
+  group_.inject_now({Injection::Kind::kGuard, 0, 0});
+  group_.inject_now({Injection::Kind::kCreep, 0, 0, 5});
+  EXPECT_TRUE(group_.feedback().is_guard_open);
+  for (int n = 0; n < 99; ++n) (void)group_.feedback();
+  EXPECT_NEAR(group_.feedback().position[0] - stood, 101 * 5e-3, 1e-9);
+  group_.inject_now({Injection::Kind::kMend, 0, 0});
+  EXPECT_FALSE(group_.feedback().is_guard_open);
+  EXPECT_NEAR(group_.feedback().position[0], stood, 1e-9);
+}
+
 TEST_F(Group, AStallOfItsOwnLeadsOnNoFartherThanTheBridge) {
   enable();
   send(1, kSetpointEnabled, 100);

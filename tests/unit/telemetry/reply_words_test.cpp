@@ -15,7 +15,7 @@ std::string refused(Verb verb, Refusal refusal, State state, double argument = 0
 }
 
 TEST(ReplyWords, TellTheRemedyWithEveryRefusal) {
-  constexpr int kLast = static_cast<int>(Refusal::kProbeContact);
+  constexpr int kLast = static_cast<int>(Refusal::kGuardOpen);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     EXPECT_STRNE(name_of(static_cast<Refusal>(refusal)), "unknown") << refusal;
     for (int state = 0; state < kStateCount; ++state) {

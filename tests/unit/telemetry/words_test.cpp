@@ -96,7 +96,7 @@ TEST(Words, LeaveWholePartsOfAnApproachOutWhereThereIsNoRoomForThem) {
 TEST(Words, SayEveryAlarmDifferently) {
   const MachineModel model = test::lai_machine();
   std::set<std::string> texts;
-  constexpr int kLast = static_cast<int>(Alarm::kProbeLost);
+  constexpr int kLast = static_cast<int>(Alarm::kFeedbackTooFast);
   for (int alarm = 0; alarm <= kLast; ++alarm) {
     texts.insert(describe(static_cast<Alarm>(alarm), 1, 2.5, 0, model));
   }

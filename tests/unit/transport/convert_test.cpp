@@ -68,6 +68,23 @@ TEST(Convert, CarriesEveryFieldOfFeedbackAndDriveCommand) {
   EXPECT_EQ(command.sample, command_back.sample);
 }
 
+TEST(Convert, CarriesStopInputAndGuardInOneOctet) {
+  for (const std::uint8_t octet : std::initializer_list<std::uint8_t>{0, 1, 2, 3}) {
+    meridian_wire_Feedback wire{};
+    wire.is_emergency_stop = octet;
+    DriveFeedback feedback;
+    from_wire(wire, feedback);
+    EXPECT_EQ(feedback.is_emergency_stop, (octet & 1) != 0);
+    EXPECT_EQ(feedback.is_guard_open, (octet & 2) != 0);
+    EXPECT_EQ(there_and_back<DriveFeedback>(wire).is_emergency_stop, octet);
+  }
+  meridian_wire_Feedback other{};
+  other.is_emergency_stop = 4;
+  DriveFeedback feedback;
+  from_wire(other, feedback);
+  EXPECT_TRUE(feedback.is_emergency_stop) << "what is not known stops";
+}
+
 /// How many bytes of a noisy wire struct do not come back: those of flags (made 0 or 1), of text
 /// ends and of padding. A field that is not carried adds its own.
 template <class Message, class Wire>

@@ -40,7 +40,7 @@ struct joint_pins {
 struct pins {
   struct joint_pins joint[MERIDIAN_HAL_JOINTS];
   hal_bit_t *emc_enable_in, *user_enable_out, *user_request_enable, *is_lost;
-  hal_bit_t *probe_connected, *probe_contact;
+  hal_bit_t *probe_connected, *probe_contact, *guard_open;
   hal_bit_t *spindle_on, *spindle_forward, *spindle_reverse, *spindle_at_speed;
   hal_float_t* spindle_speed;
   hal_bit_t *coolant_mist, *coolant_flood;
@@ -213,6 +213,7 @@ static void update(void* unused, long period_ns) {
   ++report.number;
   report.time_ns = now_ns;
   report.is_stopped = !*pins->emc_enable_in;
+  report.is_guard_open = *pins->guard_open;
   report.probe = !*pins->probe_connected ? 0 : *pins->probe_contact ? 2 : 1;
   memcpy(report.position, feedback, sizeof report.position);
   meridian_hal_write(&shared->report_lock, &shared->report, &report, sizeof report);
@@ -243,6 +244,7 @@ static int make_machine_pins(void) {
                     {&pins->is_lost, HAL_OUT, "setpoints-lost"},
                     {&pins->probe_connected, HAL_IN, "probe-connected"},
                     {&pins->probe_contact, HAL_IN, "probe-contact"},
+                    {&pins->guard_open, HAL_IN, "guard-open"},
                     {&pins->spindle_on, HAL_OUT, "spindle-on"},
                     {&pins->spindle_forward, HAL_OUT, "spindle-forward"},
                     {&pins->spindle_reverse, HAL_OUT, "spindle-reverse"},

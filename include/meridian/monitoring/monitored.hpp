@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+/// What goes into the monitoring of a machine, and what comes out. This room includes nothing but
+/// the standard library: it shares no code with planner and cycle, so that one mistake is not made
+/// twice. Everything is plain, of fixed size and fed once a cycle. Units: mm or rad, s.
+/// docs/monitoring.md says what each function is for. It is no safety function. RT: cycle.
+namespace meridian::monitoring {
+
+inline constexpr std::size_t kAxes = 6;
+using Values = std::array<double, kAxes>;  ///< by axis, machine order
+using Point = std::array<double, 3>;       ///< over the base, mm
+
+/// What the machine is doing.
+enum class Motion : std::uint8_t {
+  kOff,     ///< drives are off, or on their way on or off
+  kHoming,  ///< drives search for their references by themselves
+  kRest,    ///< every axis is to stand
+  kHand,    ///< an operator jogs, hold-to-run
+  kProgram  ///< it moves by itself, or comes to rest from that
+};
+
+/// What is monitored for.
+enum class Mode : std::uint8_t {
+  kOff,        ///< nothing
+  kAutomatic,  ///< motion behind shut guards
+  kSetUp,      ///< motion by hand with an open guard
+  kStandstill  ///< nothing may move
+};
+
+/// What is allowed of one axis.
+struct AxisLimits {
+  double speed = 0;          ///< that it can have at most
+  double set_up_speed = 0;   ///< with an open guard
+  double standstill = 0;     ///< so far it may leave its place in standstill
+  double frozen = 0;         ///< led on by more than this its position has to change
+  double window_margin = 0;  ///< of both windows
+  bool has_window = false;   ///< false: an endless axis without one
+  double low = 0, high = 0;  ///< window in automatic mode
+  double set_up_low = 0, set_up_high = 0;
+  bool has_model = false;      ///< the three below count
+  double time_constant_s = 0;  ///< of the drive: at speed v it is v * time_constant_s behind
+  int delay_cycles = 0;        ///< setpoints are followed so much later
+  double model_error = 0;      ///< so far it may be off the model
+};
+
+/// What is allowed of a machine.
+struct Limits {
+  int axis_count = 0;
+  double cycle_s = 0.001;
+  double set_up_tip_speed = 2000.0 / 60;  ///< mm/s, with an open guard
+  double guard_stop_s = 2;                ///< what moved when a guard opened has so long to stop
+  double settle_s = 0.5;                  ///< from rest of the setpoint to standstill
+  std::array<AxisLimits, kAxes> axes{};
+};
+
+/// One cycle.
+struct Inputs {
+  Motion motion = Motion::kOff;
+  bool is_guard_open = false;
+  bool has_report = false;       ///< every axis reports a finite position, not long ago
+  int periods = 1;               ///< since the cycle before; more where some were lost
+  std::uint64_t cycle = 0;       ///< number of `commanded`
+  Values commanded{};            ///< as sent last
+  std::uint64_t cycle_seen = 0;  ///< of the newest setpoint that the drives took
+  std::int64_t arrival_ns = 0;   ///< of the report
+  std::uint32_t known_mask = 0;  ///< axes that know where they are
+  Values measured{};
+  Point tip{};  ///< of the measured axes
+};
+
+enum class Finding : std::uint8_t {
+  kNone,
+  kStandstill,
+  kAxisSpeed,
+  kTipSpeed,  ///< `axis` means nothing
+  kPositionWindow,
+  kDriveModel,
+  kJump,
+  kFrozen,
+  kTooFast
+};
+
+/// What was found first in a cycle. `value`: how far, where, or how fast.
+struct Result {
+  Finding finding = Finding::kNone;
+  int axis = 0;
+  double value = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<Limits> && std::is_trivially_copyable_v<Inputs>);
+
+}  // namespace meridian::monitoring

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/monitoring/plausible_feedback.hpp"
+
+#include <gtest/gtest.h>
+
+#include "unit/monitoring/monitored_axes.hpp"
+
+namespace meridian::monitoring {
+namespace {
+
+using test::MonitoredAxes;
+
+MonitoredAxes running() {
+  MonitoredAxes axes;
+  axes.in.motion = Motion::kProgram;
+  axes.in.commanded[0] = axes.in.measured[0] = -50;
+  EXPECT_EQ(axes.run(0.2, 100).finding, Finding::kNone);
+  return axes;
+}
+
+TEST(PlausibleFeedback, FindsAPositionThatJumpedFartherThanTheAxisCanMove) {
+  MonitoredAxes axes = running();
+  axes.in.measured[0] += 3;
+  const Result result = axes.cycle();
+  EXPECT_EQ(result.finding, Finding::kJump);
+  EXPECT_EQ(result.value, 3);
+}
+
+TEST(PlausibleFeedback, TakesReportsThatWereLateForNoJump) {
+  MonitoredAxes axes = running();
+  for (int late = 0; late < 20; ++late) {
+    axes.in.commanded[0] += 0.3;
+    ++axes.in.cycle;
+    ASSERT_EQ(axes.monitor.check(axes.in).finding, Finding::kNone);
+  }
+  axes.in.measured[0] = axes.in.commanded[0];  // 6 mm on, twenty periods later
+  EXPECT_EQ(axes.cycle().finding, Finding::kNone);
+}
+
+TEST(PlausibleFeedback, LooksForNoJumpBehindLostPeriods) {
+  MonitoredAxes axes = running();
+  axes.in.periods = 40;
+  (void)axes.cycle();
+  axes.in.periods = 1;
+  axes.in.commanded[0] = axes.in.measured[0] += 10;
+  EXPECT_EQ(axes.cycle().finding, Finding::kNone);
+}
+
+TEST(PlausibleFeedback, FindsAPositionThatStaysWhileTheSetpointGoesOn) {
+  MonitoredAxes axes = running();
+  Result result;
+  int cycles = 0;
+  for (; cycles < 100 && result.finding == Finding::kNone; ++cycles) {
+    axes.in.commanded[0] += 0.1;
+    result = axes.cycle();
+  }
+  EXPECT_EQ(result.finding, Finding::kFrozen);
+  EXPECT_NEAR(cycles, 22, 2) << "behind 2 mm at 100 mm/s";
+}
+
+TEST(PlausibleFeedback, TakesAnAxisThatRestsForNoFrozenOne) {
+  MonitoredAxes axes = running();
+  EXPECT_EQ(axes.run(1).finding, Finding::kNone);
+  EXPECT_EQ(axes.run(0.2, 100).finding, Finding::kNone) << "and goes on";
+}
+
+TEST(PlausibleFeedback, FindsPositionsThatPassFasterThanTheAxisCan) {
+  MonitoredAxes axes;
+  axes.in.motion = Motion::kProgram;
+  axes.in.commanded[0] = axes.in.measured[0] = -50;
+  EXPECT_EQ(axes.run(0.1, 300).finding, Finding::kNone) << "its limit";
+  EXPECT_EQ(axes.run(0.1, -300).finding, Finding::kNone);
+  const Result result = axes.run(0.15, 420);
+  EXPECT_EQ(result.finding, Finding::kTooFast);
+  EXPECT_GT(result.value, 300 * kOvershoot);
+}
+
+}  // namespace
+}  // namespace meridian::monitoring
