@@ -220,8 +220,7 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
     case Alarm::kTipBox:
       text = fmt::format(
           "a setpoint would take the tip out of the tip box, {} at {:.6g} mm over the base; reset "
-          "and "
-          "jog the tip back; without an alarm before it report this as a bug",
+          "and jog the tip back; without an alarm before it report this as a bug",
           "XYZ"[joint >= 0 && joint < 3 ? joint : 0], value);
       break;
     case Alarm::kNoContact:
@@ -262,7 +261,7 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
       text = fmt::format(
           "drive {} is {} off the model of it; look for a blocked axis, a weak drive, or a lag "
           "that "
-          "[monitoring] of the machine file does not know",
+          "is not that of the machine file's [monitoring]",
           name, measured);
       break;
     case Alarm::kFeedbackJump:
@@ -274,8 +273,7 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
     case Alarm::kFeedbackFrozen:
       text = fmt::format(
           "drive {} reports the same position although it was led on by {}; look at its encoder, "
-          "its "
-          "coupling and its reports",
+          "its coupling and its reports",
           name, measured);
       break;
     case Alarm::kFeedbackTooFast:
