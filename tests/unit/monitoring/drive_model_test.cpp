@@ -73,6 +73,15 @@ TEST(DriveModel, DelaysSetpointsAsTheDriveDoes) {
       << "the drive is ahead of a model that waits for four periods";
 }
 
+TEST(DriveModel, SaysNothingOfAnAxisThatHasNoneBesideOneThatHas) {
+  MonitoredAxes axes(limits_with_a_model(0.5));
+  axes.in.motion = Motion::kProgram;
+  for (int n = 0; n < 300; ++n) {
+    axes.in.commanded[1] = axes.in.measured[1] += 0.5e-3;
+    ASSERT_EQ(axes.cycle().finding, Finding::kNone);
+  }
+}
+
 TEST(DriveModel, SaysNothingWhereTheMachineFileKnowsNoLag) {
   Limits limits = limits_with_a_model(0.001);
   limits.axes[0].has_model = false;
