@@ -326,10 +326,12 @@ inline void stop_jogging_from_drives(Cycle& c) noexcept {
   c.periods = 1;
 }
 
-/// The narrow port of the monitoring: it says what it found, and the machine stops.
+/// The narrow port of the monitoring: it says what it found, and the machine stops. One that stops
+/// already keeps the alarm that it stops for.
 [[gnu::noinline]] inline void take_monitoring(Cycle& c) noexcept {
   const MonitoringAlarm& found = c.in.monitoring;
-  if (is_enabled(c.state.state)) raise(c, found.alarm, found.joint, found.value);
+  const bool is_stopping = c.state.state == State::kFaultStop;
+  if (is_enabled(c.state.state) && !is_stopping) raise(c, found.alarm, found.joint, found.value);
 }
 
 /// Looks at everything that may end in a FaultStop, before anything moves.

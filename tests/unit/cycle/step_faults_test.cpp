@@ -254,6 +254,17 @@ TEST(StepFaults, WhatTheMonitoringFindsStopsTheMachineOnThePath) {
   EXPECT_EQ(p.world.last(EventCode::kAlarm).x, 0.7);
 }
 
+TEST(StepFaults, WhatTheMonitoringFindsInAMachineThatStopsIsNoAlarmOfItsOwn) {
+  Program p;
+  start_long_cut(p);
+  p.world.run_for(0.3);
+  p.world.in.feedback.fault_mask = 1;
+  p.world.in.monitoring = {Alarm::kFeedbackFrozen, 0, 5};
+  p.world.run();
+  expect_fault_on_path(p, Alarm::kDriveFault);
+  EXPECT_EQ(p.world.count(EventCode::kAlarm), 1);
+}
+
 TEST(StepFaults, ASetpointThatTakesTheTipOutOfItsBoxIsNeverSent) {
   Program p;  // its plan knows no box
   const auto tip_of = [&p](const JointVector& joints) {
