@@ -130,6 +130,11 @@ void append_probe(std::string& text, const dds::Status& status) {
   append(text, "probe     %s\n", is_in_contact ? "in contact" : "free");
 }
 
+/// "guard     open", as long as one is.
+void append_guard(std::string& text, const dds::Status& status) {
+  if (status.is_guard_open) text += "guard     open: only jogging is allowed\n";
+}
+
 /// "free", as JSON has it.
 const char* word_of(ProbeInput probe) {
   switch (probe) {
@@ -264,6 +269,7 @@ std::string describe(const dds::Status& status, const dds::MachineInfo& machine,
   text += "\n";
   if (tool) append_tool(text, *tool, status);
   append_probe(text, status);
+  append_guard(text, status);
   append(text, "cycles    %llu run, %llu lost; %s, %s\n", Count{status.cycles_run},
          Count{status.periods_lost},
          status.realtime_mode == dds::RealtimeMode::kEnforced ? "real time" : "best effort",
@@ -303,6 +309,7 @@ std::string to_json(const dds::Status& status, const dds::MachineInfo& machine,
   text += "\"keep_out\":" + keep_out_json(machine) + ",";
   text += "\"tip_box\":" + tip_box_json(machine) + ",";
   append(text, "\"probe\":\"%s\",\"contacts\":%u,", word_of(status.probe), status.contacts);
+  append(text, "\"guard_open\":%s,", status.is_guard_open ? "true" : "false");
   append(text, "\"program\":%s,", json_quoted(status.program).c_str());
   append(text, "\"station\":%s,", json_quoted(status.station).c_str());
   append(text,

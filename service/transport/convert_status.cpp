@@ -61,6 +61,7 @@ void status_fields(Way way, Message& message, Wire& wire) {
   way(message.drives_enabled_mask, wire.drives_enabled_mask);
   way(message.drives_fault_mask, wire.drives_fault_mask);
   way(message.probe, wire.probe);
+  way(message.is_guard_open, wire.is_guard_open);
   way(message.stops, wire.stops);
   way(message.contacts, wire.contacts);
   way(message.contact_periods, wire.contact_periods);

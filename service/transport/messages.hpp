@@ -274,6 +274,7 @@ struct Status {
   std::uint32_t drives_enabled_mask = 0;
   std::uint32_t drives_fault_mask = 0;
   ProbeInput probe = ProbeInput::kNone;
+  bool is_guard_open = false;
   std::uint32_t stops = 0;            ///< hold, abort and disable that were obeyed, so far
   std::uint32_t contacts = 0;         ///< of probing moves, since the service started
   std::uint32_t contact_periods = 0;  ///< of the newest: between its two reports

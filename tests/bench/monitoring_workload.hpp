@@ -32,7 +32,7 @@ inline std::uint64_t run_monitoring(int count, bool is_all) {
             .model_error = 1e3};
   }
   limits.set_up_tip_speed = 1e6;
-  interpolator::CycleMonitor monitor(limits);
+  interpolator::CycleMonitor monitor(limits, 0.1);
   CycleInputs in;
   CycleRecord last;
   in.feedback.joint_mask = in.feedback.referenced_mask = in.feedback.enabled_mask = 31;
@@ -42,8 +42,10 @@ inline std::uint64_t run_monitoring(int count, bool is_all) {
   for (int i = 1; i <= count; ++i) {
     last.setpoint.cycle = in.feedback.cycle_seen = static_cast<std::uint64_t>(i);
     in.now_ns = in.feedback.arrival_ns = i * machine.cycle_ns;
+    in.feedback.joint_arrival_ns.fill(in.now_ns);
+    in.feedback.joint_cycle_seen.fill(in.feedback.cycle_seen);
     last.joints[0] = in.feedback.position[0] = 1e-3 * i;
-    const MonitoringAlarm alarm = monitor.check(machine, in, last, false);
+    const MonitoringAlarm alarm = monitor.check(machine, in, last, false, 0);
     sum += static_cast<std::uint64_t>(alarm.alarm) + 1;
   }
   return sum;

@@ -51,6 +51,7 @@ TEST(OpenGuard, HoldsTheProgramRefusesToGoOnAndLetsTheHandMoveSlowly) {
   EXPECT_TRUE(eventually([&] {
     return plant.status().message.find("a guard is open") != std::string::npos;
   })) << plant.status().message;
+  EXPECT_TRUE(plant.status().is_guard_open);
   const auto resume = plant.say(Verb::kResume);
   ASSERT_TRUE(resume);
   EXPECT_EQ(resume->refusal, Refusal::kGuardOpen) << resume->text;
@@ -85,6 +86,9 @@ TEST(OpenGuard, LetsTheProgramGoOnOnceItIsShut) {
   console.write("guard\n");
   ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
   console.write("mend\n");
+  EXPECT_TRUE(eventually([&] { return plant.status().message == "the guard is shut"; }))
+      << plant.status().message;
+  EXPECT_FALSE(plant.status().is_guard_open);
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kResume, 0, Refusal::kGuardOpen));
   EXPECT_TRUE(plant.wait_for(State::kRunning)) << plant.standing();
 }

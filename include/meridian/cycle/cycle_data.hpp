@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -72,7 +73,7 @@ struct Feedback {
   std::uint32_t fault_mask = 0;          ///< drives in fault
   std::uint32_t referenced_mask = 0;     ///< joints with a valid reference
   bool emergency_stop = false;           ///< reported, and not taken back since
-  bool is_guard_open = false;            ///< reported of a guard of the work space
+  bool is_guard_open = false;            ///< of the work space: reported, or no longer reported
   ProbeInput probe = ProbeInput::kNone;  ///< kContact as soon as one group says so
   std::int64_t emergency_ns = 0;         ///< arrival of the newest report that says so; 0: none
   std::uint32_t homing_mask = 0;         ///< drives that are in homing mode, and of these
@@ -84,6 +85,8 @@ struct Feedback {
   std::uint8_t oldest_joint = 0;   ///< lowest of the group that `arrival_ns` is of; kNoJoint: it
                                    ///< has none, but the stop input
   std::uint8_t deafest_joint = 0;  ///< lowest of the group that `cycle_seen` is of
+  std::array<std::int64_t, kMaxJoints> joint_arrival_ns{};   ///< of each joint's own group
+  std::array<std::uint64_t, kMaxJoints> joint_cycle_seen{};  ///< the same
 };
 
 /// The newest word of the operator who jogs; every one has a larger `sample`.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "meridian/cycle/cycle_data.hpp"
@@ -61,6 +62,8 @@ struct CycleInputs {
   JogOrder jog;               ///< newest of the operator who jogs
   std::uint64_t session = 0;  ///< open session, 0: none; starvation ends by itself only in its own
   double tool_length_mm = 0;  ///< of the tool in the spindle, where no program moves it
+  /// A jog goes no faster, mm/s or rad/s of what it moves: the set-up mode of an open guard.
+  double max_jog_speed = std::numeric_limits<double>::infinity();
   MonitoringAlarm monitoring;
 };
 static_assert(std::is_trivially_copyable_v<CycleInputs>);

@@ -154,8 +154,10 @@ enum class JogStep : std::uint8_t {
   take_order(c);
   choose_axis(c);
   const bool is_held = !jogging.is_let_go && is_in_hand(jogging);
+  const double fastest = c.in.max_jog_speed;
+  const double velocity = std::clamp(jogging.order.velocity, -fastest, fastest);
   for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
-    follow(jogging.axis, is_held ? jogging.order.velocity : 0, c.dt);
+    follow(jogging.axis, is_held ? velocity : 0, c.dt);
   }
   if (!put_jogged(c)) return JogStep::kNoJoints;
   if (!jogging.is_let_go || !jogging.axis.is_at_rest()) return JogStep::kGoesOn;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "meridian/monitoring/drive_model.hpp"
 #include "meridian/monitoring/mode.hpp"
 #include "meridian/monitoring/plausible_feedback.hpp"
@@ -16,19 +18,18 @@ namespace meridian::monitoring {
 /// tests/unit/monitoring/, tests/unit/daemon/monitoring_phases_test.cpp.
 class Monitor {
  public:
-  explicit Monitor(const Limits& limits = {}) noexcept : limits_(limits), model_(limits) {}
+  explicit Monitor(const Limits& limits = {}) noexcept
+      : limits_(limits), window_(limits), model_(limits) {}
 
   [[nodiscard]] Result check(const Inputs& in) noexcept {
-    const Mode mode = mode_tracker_.find(limits_, in);
-    if (mode != mode_ || !in.has_report) window_.restart();
-    mode_ = mode;
+    mode_ = mode_tracker_.find(limits_, in);
     sent_.put(in.cycle, in.commanded);
     Result result = check_reports(in);
     const auto add = [&result](const Result& next) {
       if (result.finding == Finding::kNone) result = next;
     };
-    add(standstill_.check(limits_, in, mode));
-    add(position_window_.check(limits_, in, mode));
+    add(standstill_.check(limits_, in, mode_));
+    add(position_window_.check(limits_, in, mode_));
     return result;
   }
 
@@ -36,24 +37,21 @@ class Monitor {
   [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
 
  private:
-  /// What only a new report can show.
+  /// What reports say in the course of time.
   [[nodiscard]] Result check_reports(const Inputs& in) noexcept {
     // Drives that home give their positions new names.
     if (mode_ == Mode::kOff || in.motion == Motion::kHoming || !in.has_report) {
       clock_.restart();
       plausible_.restart();
       model_.restart();
+      window_.restart();
       return {};
     }
-    if (!clock_.take(limits_, in)) return {};
-    if (clock_.is_paused()) {
-      window_.restart();
-    } else {
-      window_.add(limits_, in, clock_.elapsed_s());
-    }
-    const Result plausible =
-        plausible_.check(limits_, sent_, in, clock_.elapsed_s(), clock_.is_paused());
-    const Result model = model_.check(limits_, sent_, in);
+    restart_window(in);
+    window_.add(in);
+    const std::uint32_t fresh = clock_.take(limits_, in);
+    const Result plausible = plausible_.check(limits_, sent_, in, clock_, fresh);
+    const Result model = model_.check(limits_, sent_, in, fresh);
     if (plausible.finding != Finding::kNone) return plausible;
     const Result fast = check_too_fast(limits_, window_);
     if (fast.finding != Finding::kNone) return fast;
@@ -61,9 +59,19 @@ class Monitor {
     return limited.finding != Finding::kNone ? limited : model;
   }
 
+  /// What moved fast behind a shut guard is not held against the hand: the window begins anew with
+  /// the first set-up mode since the guard opened. Behind rests between two jogs it goes on.
+  void restart_window(const Inputs& in) noexcept {
+    if (!in.is_guard_open) is_set_up_ = false;
+    if (mode_ != Mode::kSetUp || is_set_up_) return;
+    is_set_up_ = true;
+    window_.restart();
+  }
+
   Limits limits_;
   ModeTracker mode_tracker_;
   Mode mode_ = Mode::kOff;
+  bool is_set_up_ = false;  ///< there was set-up mode since the guard opened
   ReportClock clock_;
   SentPositions sent_;
   Standstill standstill_;

@@ -67,11 +67,11 @@ struct Inputs {
   int periods = 1;               ///< since the cycle before; more where some were lost
   std::uint64_t cycle = 0;       ///< number of `commanded`
   Values commanded{};            ///< as sent last
-  std::uint64_t cycle_seen = 0;  ///< of the newest setpoint that the drives took
-  std::int64_t arrival_ns = 0;   ///< of the report
   std::uint32_t known_mask = 0;  ///< axes that know where they are
   Values measured{};
-  Point tip{};  ///< of the measured axes
+  std::array<std::int64_t, kAxes> arrival_ns{};   ///< of the newest report of each axis
+  std::array<std::uint64_t, kAxes> cycle_seen{};  ///< newest setpoint that its drive had taken then
+  Point tip{};                                    ///< of the measured axes; only its changes count
 };
 
 enum class Finding : std::uint8_t {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
+#include "meridian/monitoring/report_clock.hpp"
 #include "meridian/monitoring/sent_positions.hpp"
 #include "meridian/monitoring/speed_window.hpp"
 
@@ -12,53 +15,56 @@ namespace meridian::monitoring {
 inline constexpr double kOvershoot = 1.25;
 
 /// Plausibility of feedback: a jump is farther from the report before than the axis can move in the
-/// time between, with kSlackPeriods of slack; frozen is a position that stays the same to the last
-/// bit while the setpoints that were taken lead on; too fast is a mean speed that the axis cannot
-/// have. RT: cycle. Proof: tests/unit/monitoring/plausible_feedback_test.cpp.
+/// time that ReportClock allows; frozen is a position that stays the same to the last bit while the
+/// setpoints that were taken lead on; too fast is a mean speed that the axis cannot have.
+/// RT: cycle. Proof: tests/unit/monitoring/plausible_feedback_test.cpp.
 class PlausibleFeedback {
  public:
-  void restart() noexcept { has_last_ = false; }
+  void restart() noexcept { axes_ = {}; }
 
-  /// Takes a new report, `elapsed_s` after the one before. `is_paused`: reports come in no rhythm.
+  /// Takes the new reports of the axes `fresh`.
   [[nodiscard]] Result check(const Limits& limits, const SentPositions& sent, const Inputs& in,
-                             double elapsed_s, bool is_paused) noexcept {
-    const Values* const taken = sent.find(in.cycle_seen);
-    const double time_s = elapsed_s + limits.cycle_s * kSlackPeriods;
+                             const ReportClock& clock, std::uint32_t fresh) noexcept {
     Result result;
-    for (int i = 0; i < limits.axis_count && has_last_; ++i) {
+    for (int i = 0; i < limits.axis_count; ++i) {
       const auto n = static_cast<std::size_t>(i);
-      const AxisLimits& axis = limits.axes[n];
-      const double step = in.measured[n] - last_[n];
-      if (!is_paused && std::abs(step) > axis.speed * kOvershoot * time_s) {
-        result = {Finding::kJump, i, step};
-        break;
-      }
-      if (step != 0 || !has_led_) continue;
-      const double led = taken != nullptr ? (*taken)[n] - led_from_[n] : 0;
-      if (std::abs(led) > axis.frozen) {
-        result = {Finding::kFrozen, i, led};
-        break;
-      }
+      if ((fresh >> n & 1U) == 0) continue;
+      const Values* const taken = sent.find(in.cycle_seen[n]);
+      const double* const led = taken != nullptr ? &(*taken)[n] : nullptr;
+      const Result next = check_axis(limits, i, in.measured[n], led, clock.allowed_s(n));
+      if (result.finding == Finding::kNone) result = next;
     }
-    remember(limits, in, taken);
     return result;
   }
 
  private:
-  void remember(const Limits& limits, const Inputs& in, const Values* taken) noexcept {
-    for (int i = 0; i < limits.axis_count; ++i) {
-      const auto n = static_cast<std::size_t>(i);
-      const bool has_changed = !has_last_ || in.measured[n] != last_[n] || !has_led_;
-      if (has_changed && taken != nullptr) led_from_[n] = (*taken)[n];
+  struct Axis {
+    bool has_last = false, has_led = false;
+    double last = 0;
+    double led_from = 0;  ///< the setpoint when the position changed last
+  };
+
+  /// `led`: the setpoint that the drive had taken; nullptr: not known.
+  [[nodiscard]] Result check_axis(const Limits& limits, int i, double at, const double* led,
+                                  double allowed_s) noexcept {
+    const AxisLimits& allowed = limits.axes[static_cast<std::size_t>(i)];
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    const double step = at - axis.last;
+    const bool has_changed = !axis.has_last || step != 0 || !axis.has_led;
+    Result result;
+    if (axis.has_last && std::abs(step) > allowed.speed * kOvershoot * allowed_s) {
+      result = {Finding::kJump, i, step};
+    } else if (!has_changed && led != nullptr && std::abs(*led - axis.led_from) > allowed.frozen) {
+      result = {Finding::kFrozen, i, *led - axis.led_from};
     }
-    has_led_ = taken != nullptr;
-    last_ = in.measured;
-    has_last_ = true;
+    if (has_changed && led != nullptr) axis.led_from = *led;
+    axis.has_led = led != nullptr;
+    axis.last = at;
+    axis.has_last = true;
+    return result;
   }
 
-  bool has_last_ = false, has_led_ = false;
-  Values last_{};
-  Values led_from_{};  ///< the setpoint of each axis when its position changed last
+  std::array<Axis, kAxes> axes_{};
 };
 
 /// Positions that pass faster than an axis can move. RT: cycle.
@@ -67,8 +73,9 @@ class PlausibleFeedback {
   if (!window.is_full()) return {};
   for (int i = 0; i < limits.axis_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    const double speed = window.axis_speed(n);
-    if (std::abs(speed) > limits.axes[n].speed * kOvershoot) return {Finding::kTooFast, i, speed};
+    if (window.is_faster(n, limits.axes[n].speed * kOvershoot)) {
+      return {Finding::kTooFast, i, window.axis_speed(n)};
+    }
   }
   return {};
 }

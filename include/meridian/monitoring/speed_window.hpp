@@ -5,66 +5,90 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "meridian/monitoring/report_clock.hpp"
 
 namespace meridian::monitoring {
 
-/// Mean speeds by two reports kSpan_s or 32 periods apart, so that the steps of an encoder and late
-/// reports weigh little. RT: cycle. Proof: tests/unit/monitoring/limited_speed_test.cpp.
+/// Mean speeds over kSpan_s or kSpans periods, whichever is longer, by the times of the two reports
+/// at its ends: steps of an encoder and late reports weigh little, and nothing adds up. Lost
+/// periods make it longer. kSlackPeriods are added to the time, so that a late report is no speed:
+/// what it says is a sixteenth too low at most. RT: cycle. Proof:
+/// tests/unit/monitoring/limited_speed_test.cpp.
 class SpeedWindow {
  public:
   static constexpr double kSpan_s = 0.064;
+  static constexpr std::size_t kSpans = 64;
 
-  void restart() noexcept { count_ = 0; }
-  /// Takes a new report, `elapsed_s` after the one before.
-  void add(const Limits& limits, const Inputs& in, double elapsed_s) noexcept {
-    const double span = std::max(kSpan_s, limits.cycle_s * static_cast<double>(kPlaces));
-    clock_s_ = count_ == 0 ? 0 : clock_s_ + elapsed_s;
-    now_ = {clock_s_, in.measured, in.tip};
-    slack_s_ = limits.cycle_s * kSlackPeriods;
-    const double step = span / static_cast<double>(kPlaces - 1);
-    if (count_ != 0 && clock_s_ - last_s_ < step) return;
-    last_s_ = clock_s_;
+  explicit SpeedWindow(const Limits& limits) noexcept
+      : cycle_s_(limits.cycle_s),
+        slack_s_(limits.cycle_s * kSlackPeriods),
+        stride_(std::max(1, static_cast<int>(std::lround(kSpan_s / static_cast<double>(kSpans) /
+                                                         limits.cycle_s)))) {}
+  void restart() noexcept { count_ = 0, skipped_ = 0; }
+  /// Takes one cycle.
+  void add(const Inputs& in) noexcept {
+    now_ = {in.measured, in.tip, in.arrival_ns, in.cycle_seen};
+    if (++skipped_ < stride_ && count_ != 0) return;
+    skipped_ = 0;
+    before_ = kept_[count_ % kPlaces];
     kept_[count_ % kPlaces] = now_;
     ++count_;
   }
-  /// Whether the window is full: only then do speeds mean something.
-  [[nodiscard]] bool is_full() const noexcept { return count_ >= kPlaces; }
-  [[nodiscard]] double axis_speed(std::size_t i) const noexcept {
-    return (now_.measured[i] - oldest().measured[i]) / time();
+  /// Whether there were reports for the whole span: only then do speeds mean something.
+  [[nodiscard]] bool is_full() const noexcept { return count_ > kSpans; }
+  [[nodiscard]] bool is_faster(std::size_t i, double speed) const noexcept {
+    const double moved = std::abs(now_.measured[i] - before_.measured[i]);
+    return moved > speed * slack_s_ && moved > speed * time_s(i);  // at rest the first is enough
   }
-  [[nodiscard]] double tip_speed() const noexcept {
-    const Point &a = oldest().tip, &b = now_.tip;
-    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / time();
+  [[nodiscard]] double axis_speed(std::size_t i) const noexcept {
+    return (now_.measured[i] - before_.measured[i]) / time_s(i);
+  }
+  /// Of the first `axis_count` axes' tip, by the longest of their times.
+  [[nodiscard]] double tip_speed(int axis_count) const noexcept {
+    double longest_s = slack_s_;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(axis_count); ++i) {
+      longest_s = std::max(longest_s, time_s(i));
+    }
+    return distance(now_.tip, before_.tip) / longest_s;
   }
 
  private:
-  static constexpr std::size_t kPlaces = 32;
+  static constexpr std::size_t kPlaces = kSpans;
   struct Kept {
-    double time_s = 0;
     Values measured{};
     Point tip{};
+    std::array<std::int64_t, kAxes> arrival_ns{};
+    std::array<std::uint64_t, kAxes> cycle_seen{};
   };
-  [[nodiscard]] const Kept& oldest() const noexcept { return kept_[count_ % kPlaces]; }
-  [[nodiscard]] double time() const noexcept { return clock_s_ - oldest().time_s + slack_s_; }
+  [[nodiscard]] static double distance(const Point& a, const Point& b) noexcept {
+    const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
+    return std::sqrt(x * x + y * y + z * z);
+  }
+  [[nodiscard]] double time_s(std::size_t i) const noexcept {
+    return slack_s_ + time_between(cycle_s_, now_.arrival_ns[i], before_.arrival_ns[i],
+                                   now_.cycle_seen[i], before_.cycle_seen[i]);
+  }
 
-  std::array<Kept, kPlaces> kept_{};
-  Kept now_;
+  double cycle_s_, slack_s_;
+  int stride_, skipped_ = 0;  ///< cycles between two that are kept
   std::size_t count_ = 0;
-  double clock_s_ = 0, last_s_ = 0, slack_s_ = 0;
+  std::array<Kept, kPlaces> kept_{};
+  Kept now_, before_;
 };
 
 /// Limited speed of axes and tip, in set-up mode. RT: cycle.
 [[nodiscard]] inline Result check_limited_speed(const Limits& limits, const SpeedWindow& window,
                                                 Mode mode) noexcept {
   if (mode != Mode::kSetUp || !window.is_full()) return {};
-  const double tip = window.tip_speed();
+  const double tip = window.tip_speed(limits.axis_count);
   if (tip > limits.set_up_tip_speed) return {Finding::kTipSpeed, 0, tip};
   for (int i = 0; i < limits.axis_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    const double speed = window.axis_speed(n);
-    if (std::abs(speed) > limits.axes[n].set_up_speed) return {Finding::kAxisSpeed, i, speed};
+    if (window.is_faster(n, limits.axes[n].set_up_speed)) {
+      return {Finding::kAxisSpeed, i, window.axis_speed(n)};
+    }
   }
   return {};
 }

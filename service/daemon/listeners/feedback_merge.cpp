@@ -8,6 +8,23 @@
 
 namespace meridian::interpolator {
 
+namespace {
+
+/// What stays of a source that is gone: its guard, which counts as open.
+[[nodiscard]] DriveSource remains_of(const DriveSource& source) noexcept {
+  if (!source.has_guard) return {};
+  DriveSource guard;
+  guard.writer = source.writer;
+  guard.group = source.group;
+  guard.sample = source.sample;
+  guard.first_ns = source.first_ns;
+  guard.arrival_ns = source.arrival_ns;
+  guard.has_guard = guard.is_guard_open = true;
+  return guard;
+}
+
+}  // namespace
+
 DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group,
                                        std::int64_t now_ns) noexcept {
   for (DriveSource& source : sources_.places) {
@@ -18,7 +35,8 @@ DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group
   }
   DriveSource* idlest = nullptr;
   for (DriveSource& source : sources_.places) {
-    const bool counts = source.bound_mask != 0 || source.has_only_stop || source.is_emergency_stop;
+    const bool has_input = source.has_only_stop || source.is_emergency_stop || source.has_guard;
+    const bool counts = source.bound_mask != 0 || has_input;
     if (counts || now_ns - source.arrival_ns <= kSilence_ns) continue;
     if (idlest == nullptr || source.arrival_ns < idlest->arrival_ns) idlest = &source;
   }
@@ -33,6 +51,7 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
   if (place == nullptr) {
     sources_.is_full = true;
     if (sample.is_emergency_stop) stopped_ns_ = now_ns;
+    if (sample.is_guard_open) opened_ns_ = now_ns;
     merge(now_ns);
     return true;
   }
@@ -49,7 +68,9 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
   place->has_only_stop = sample.joint_mask == 0;
   place->is_emergency_stop = sample.is_emergency_stop;
   place->is_guard_open = sample.is_guard_open;
+  place->has_guard = place->has_guard || sample.is_guard_open;
   place->probe = sample.probe <= ProbeInput::kContact ? sample.probe : ProbeInput::kNone;
+  take_guard(*place, now_ns);
   bind(*place, now_ns, may_hand_over);
   take_joints(sample, place->joints());
   merge(now_ns);
@@ -68,11 +89,22 @@ void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand
   source.bound_mask |= source.claimed_mask & ~kept;
 }
 
+void FeedbackMerge::take_guard(DriveSource& source, std::int64_t now_ns) noexcept {
+  for (DriveSource& other : sources_.places) {
+    const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
+    if (!other.has_guard || !is_silent || other.group != source.group) continue;
+    other.has_guard = other.is_guard_open = false;
+    source.has_guard = true;
+    const bool is_missed = other.bound_mask != 0 || other.has_only_stop;
+    if (!is_missed && !other.is_emergency_stop) other = {};
+  }
+}
+
 void FeedbackMerge::forget(std::uint64_t writer, std::int64_t now_ns, bool is_off) noexcept {
   bool has_more = false;
   for (DriveSource& source : sources_.places) {
     const bool is_missed = !is_off && (source.bound_mask != 0 || source.has_only_stop);
-    if (source.writer == writer && !is_missed) source = {};
+    if (source.writer == writer && !is_missed) source = remains_of(source);
     has_more = has_more || source.writer == 0;
   }
   if (has_more) sources_.is_full = false;
@@ -104,6 +136,16 @@ void FeedbackMerge::take_joints(const dds::DriveFeedback& sample, std::uint32_t 
   }
 }
 
+/// Stop input and guard count, whatever else is taken from a source.
+void FeedbackMerge::merge_inputs(const DriveSource& source, std::int64_t now_ns) noexcept {
+  if (source.is_emergency_stop) {
+    feedback_.emergency_stop = true;
+    feedback_.emergency_ns = std::max(feedback_.emergency_ns, source.arrival_ns);
+  }
+  const bool is_silent = now_ns - source.arrival_ns > kSilence_ns;
+  if (source.is_guard_open || (source.has_guard && is_silent)) feedback_.is_guard_open = true;
+}
+
 void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   const DriveSource* oldest = nullptr;
   const DriveSource* deafest = nullptr;
@@ -111,24 +153,25 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
   feedback_.emergency_ns = feedback_.emergency_stop ? stopped_ns_ : 0;
   feedback_.probe = ProbeInput::kNone;
-  feedback_.is_guard_open = false;
+  feedback_.is_guard_open = opened_ns_ != 0 && now_ns - opened_ns_ <= kSilence_ns;
   for (const DriveSource& source : sources_.places) {
     if (source.writer == 0) continue;
-    if (source.is_emergency_stop) {
-      feedback_.emergency_stop = true;
-      feedback_.emergency_ns = std::max(feedback_.emergency_ns, source.arrival_ns);
-    }
+    merge_inputs(source, now_ns);
     for (const DriveSource& other : sources_.places) {
       if (other.writer == 0) continue;
       feedback_.contested_mask |= contested(source, other, now_ns, kSilence_ns);
     }
     if (source.joints() == 0 && !source.has_only_stop) continue;
     feedback_.probe = std::max(feedback_.probe, source.probe);
-    feedback_.is_guard_open = feedback_.is_guard_open || source.is_guard_open;
     if (oldest == nullptr || source.arrival_ns < oldest->arrival_ns) oldest = &source;
     if (source.joints() == 0) continue;
     if (deafest == nullptr || source.cycle_seen < deafest->cycle_seen) deafest = &source;
     feedback_.joint_mask |= source.joints();
+    for (std::uint32_t left = source.joints(); left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      feedback_.joint_arrival_ns[i] = source.arrival_ns;
+      feedback_.joint_cycle_seen[i] = source.cycle_seen;
+    }
   }
   const auto lowest = [](const DriveSource* source) noexcept {
     const bool has_joint = source != nullptr && source->joints() != 0;
@@ -143,6 +186,7 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   words_.fault_mask = feedback_.fault_mask;
   words_.contested_mask = feedback_.contested_mask;
   words_.probe = feedback_.probe;
+  words_.is_guard_open = feedback_.is_guard_open;
   words_.oldest_group = oldest != nullptr ? oldest->group : 0;
   words_.oldest_mask = oldest != nullptr ? oldest->joints() : 0;
 }

@@ -20,8 +20,12 @@ namespace meridian::interpolator {
 /// contested. The stop input of every source counts, whatever else is taken from it, until DDS says
 /// that its writer is gone. One that has nothing but a stop input is missed like a drive when it
 /// falls silent; one whose joints this machine has not is not. The probe of every source that is
-/// missed counts: it is in contact as soon as one says so; so does a guard, which is open as soon
-/// as one says so. Proof: tests/unit/daemon/feedback_merge_test.cpp.
+/// missed counts: it is in contact as soon as one says so.
+///
+/// A guard is open as soon as any source says so, whatever else is taken from it. A source that
+/// once said so has a guard: where it is silent, or gone, that is open, until it speaks again or
+/// another writer does for its group. Proof: tests/unit/daemon/feedback_merge_test.cpp,
+/// tests/unit/daemon/feedback_guard_test.cpp.
 class FeedbackMerge {
  public:
   /// Where both speak within it, sources contest a joint; who says nothing for longer is silent.
@@ -49,13 +53,17 @@ class FeedbackMerge {
   [[nodiscard]] DriveSource* find_place(std::uint64_t writer, std::uint32_t group,
                                         std::int64_t now_ns) noexcept;
   void bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept;
+  /// A guard of the group of `source` whose writer is silent is its from now on.
+  void take_guard(DriveSource& source, std::int64_t now_ns) noexcept;
   void take_joints(const dds::DriveFeedback& sample, std::uint32_t joints) noexcept;
   void merge(std::int64_t now_ns) noexcept;
+  void merge_inputs(const DriveSource& source, std::int64_t now_ns) noexcept;
 
   std::uint32_t joints_;  ///< of the machine
   std::uint64_t service_id_;
   DriveSources sources_;
   std::int64_t stopped_ns_ = 0;  ///< when one without a place said last that its stop input is open
+  std::int64_t opened_ns_ = 0;   ///< the same of its guard
   Feedback feedback_;
   DriveWords words_;
 };

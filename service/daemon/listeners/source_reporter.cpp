@@ -34,7 +34,7 @@ SourceReporter::Known& SourceReporter::know(const DriveSource& source, const Nam
   } else if (source.claimed_mask == 0) {
     say(Weight::kWarning, known.name +
                               " reports no drive that this machine has: nothing of it counts but "
-                              "its stop input");
+                              "its stop input and guard");
   }
   return known_.emplace_back(std::move(known));
 }
@@ -74,14 +74,25 @@ void SourceReporter::report_contest(Known& known, const DriveSource& source,
     mask |= both;
     if ((both & ~known.contested_mask) == 0) continue;
     say(Weight::kError,
-        fmt::format("two report {}: {} keeps them; {} is refused, and nothing of it counts but its "
-                    "stop input. The machine is not enabled while both report: end one of them",
-                    telemetry::drive_names(both, model_), known_name(owner), known.name));
+        fmt::format(
+            "two report {}: {} keeps them; {} is refused, and nothing of it counts but its "
+            "stop input and guard. The machine is not enabled while both report: end one of them",
+            telemetry::drive_names(both, model_), known_name(owner), known.name));
   }
   const std::uint32_t before = std::exchange(known.contested_mask, mask);
   if (before != 0 && mask == 0) {
     say(Weight::kNews, known.name + " reports no other one's drives any more");
   }
+}
+
+void SourceReporter::report_guard(Known& known, const DriveSource& source, std::int64_t now_ns,
+                                  const Say& say) {
+  const bool is_silent = now_ns - source.arrival_ns > FeedbackMerge::kSilence_ns;
+  const bool is_lost = source.has_guard && is_silent;
+  if (std::exchange(known.is_guard_lost, is_lost) || !is_lost) return;
+  say(Weight::kError, known.name +
+                          " says nothing any more: its guard counts as open until it does, or "
+                          "another one for its group");
 }
 
 void SourceReporter::look(const DriveSources& sources, std::int64_t now_ns, const NameOf& name_of,
@@ -93,6 +104,7 @@ void SourceReporter::look(const DriveSources& sources, std::int64_t now_ns, cons
     known.is_here = true;
     report_bound(known, source, say);
     report_master(known, source, commanders, say);
+    report_guard(known, source, now_ns, say);
   }
   for (Known& known : known_) {
     if (!known.is_here) say(Weight::kNews, known.name + " is gone");
@@ -105,7 +117,7 @@ void SourceReporter::look(const DriveSources& sources, std::int64_t now_ns, cons
   if (sources.is_full && !std::exchange(is_full_reported_, true)) {
     say(Weight::kError,
         fmt::format("more than {} sources report drives: of the others nothing counts but the stop "
-                    "input",
+                    "input and guard",
                     sources.places.size()));
   }
 }

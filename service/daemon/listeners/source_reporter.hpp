@@ -40,6 +40,7 @@ class SourceReporter {
     std::uint32_t contested_mask = 0;
     std::uint64_t master = 0;  ///< other service that its drives obey; 0: none
     bool is_here = false;
+    bool is_guard_lost = false;
   };
 
   Known& know(const DriveSource& source, const NameOf& name_of, const Say& say);
@@ -48,6 +49,8 @@ class SourceReporter {
                      const Say& say) const;
   void report_contest(Known& known, const DriveSource& source, const DriveSources& sources,
                       std::int64_t now_ns, const Say& say) const;
+  static void report_guard(Known& known, const DriveSource& source, std::int64_t now_ns,
+                           const Say& say);
   [[nodiscard]] std::string known_name(const DriveSource& source) const;
 
   const MachineModel& model_;

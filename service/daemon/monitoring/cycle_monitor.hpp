@@ -14,8 +14,10 @@
 /// Where the monitoring meets the cycle: plain values go in, an alarm comes out.
 namespace meridian::interpolator {
 
-/// What a state means for the monitoring. In a dry run drives are off.
-[[nodiscard]] constexpr monitoring::Motion motion_of(State state, bool is_dry_run) noexcept {
+/// What a state means for the monitoring; `is_homing`: a drive is in homing mode, which may also be
+/// brought to its end by an abort or a FaultStop. In a dry run drives are off.
+[[nodiscard]] constexpr monitoring::Motion motion_of(State state, bool is_dry_run,
+                                                     bool is_homing) noexcept {
   using monitoring::Motion;
   if (is_dry_run) return Motion::kOff;
   switch (state) {
@@ -38,9 +40,10 @@ namespace meridian::interpolator {
     case State::kRunning:
     case State::kHolding:
     case State::kStarving:
+      return Motion::kProgram;
     case State::kAborting:
     case State::kFaultStop:
-      return Motion::kProgram;
+      return is_homing ? Motion::kHoming : Motion::kProgram;
   }
   return Motion::kOff;
 }
@@ -75,37 +78,64 @@ namespace meridian::interpolator {
 /// RT: cycle. Proof: tests/unit/daemon/monitoring_phases_test.cpp.
 class CycleMonitor {
  public:
-  explicit CycleMonitor(const monitoring::Limits& limits) noexcept : monitor_(limits) {}
+  /// `timeout_s`: reports older than it say nothing; that they are lost is the cycle's to find.
+  CycleMonitor(const monitoring::Limits& limits, double timeout_s) noexcept
+      : timeout_ns_(std::llround(timeout_s * 1e9)), monitor_(limits) {}
 
-  /// `next`: what step() is about to get; `last`: what it gave last.
+  /// `next`: what step() is about to get; `last`: what it gave last; `homing_mask`: drives that it
+  /// asks to home.
   [[nodiscard]] MonitoringAlarm check(const MachineModel& machine, const CycleInputs& next,
-                                      const CycleRecord& last, bool is_dry_run) noexcept {
-    fill(machine, next, last, is_dry_run);
+                                      const CycleRecord& last, bool is_dry_run,
+                                      std::uint32_t homing_mask) noexcept {
+    const std::uint32_t homing = homing_mask | next.feedback.homing_mask;
+    in_.motion = motion_of(last.state, is_dry_run, (homing & all_joints(machine)) != 0);
+    fill(machine, next, last);
     const monitoring::Result result = monitor_.check(in_);
     return {alarm_of(result.finding), result.axis, result.value};
   }
   [[nodiscard]] const monitoring::Monitor& monitor() const noexcept { return monitor_; }
 
  private:
-  /// Reports older than this say nothing; that they are lost is the cycle's to find.
-  static constexpr std::int64_t kOld_ns = 200'000'000;
-
-  void fill(const MachineModel& machine, const CycleInputs& next, const CycleRecord& last,
-            bool is_dry_run) noexcept {
+  void fill(const MachineModel& machine, const CycleInputs& next,
+            const CycleRecord& last) noexcept {
     const Feedback& f = next.feedback;
     const std::uint32_t all = all_joints(machine);
-    in_.motion = motion_of(last.state, is_dry_run);
     in_.is_guard_open = f.is_guard_open;
     in_.periods = 1 + static_cast<int>(next.lost_periods);
     in_.cycle = last.setpoint.cycle;
     in_.commanded = last.joints;
-    in_.cycle_seen = f.cycle_seen;
-    in_.arrival_ns = f.arrival_ns;
     in_.known_mask = f.referenced_mask;
-    in_.measured = has_stage(machine) ? joints_of(machine, f.position) : f.position;
-    in_.has_report = f.arrival_ns != 0 && (f.joint_mask & all) == all &&
-                     next.now_ns - f.arrival_ns <= kOld_ns && are_finite(machine, in_.measured);
-    if (f.is_guard_open) in_.tip = tip_over_base(machine, next.tool_length_mm, in_.measured);
+    in_.arrival_ns = f.joint_arrival_ns;
+    in_.cycle_seen = f.joint_cycle_seen;
+    if (has_stage(machine)) {  // a joint depends on several drives: it is as old as the oldest
+      in_.measured = joints_of(machine, f.position);
+      in_.arrival_ns.fill(f.arrival_ns);
+      in_.cycle_seen.fill(f.cycle_seen);
+    } else {
+      in_.measured = f.position;
+    }
+    in_.has_report =
+        (f.joint_mask & all) == all && are_new(machine, next) && are_finite(machine, in_.measured);
+    if (f.is_guard_open && in_.has_report) follow_tip(machine, next.tool_length_mm);
+  }
+  /// The tip of the measured joints; another tool is no motion of it.
+  void follow_tip(const MachineModel& machine, double tool_length_mm) noexcept {
+    const Array3 tip = tip_over_base(machine, tool_length_mm, in_.measured);
+    if (tool_length_mm != tool_length_mm_) {
+      const Array3 before = tip_over_base(machine, tool_length_mm_, in_.measured);
+      for (std::size_t i = 0; i < tip.size(); ++i) tip_offset_[i] += before[i] - tip[i];
+      tool_length_mm_ = tool_length_mm;
+    }
+    for (std::size_t i = 0; i < tip.size(); ++i) in_.tip[i] = tip[i] + tip_offset_[i];
+  }
+  /// Time that the host stalled does not count against the drives.
+  [[nodiscard]] bool are_new(const MachineModel& machine, const CycleInputs& next) const noexcept {
+    const std::int64_t allowed_ns = timeout_ns_ + next.lost_periods * machine.cycle_ns;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
+      const std::int64_t arrival_ns = in_.arrival_ns[i];
+      if (arrival_ns == 0 || next.now_ns - arrival_ns > allowed_ns) return false;
+    }
+    return true;
   }
   [[nodiscard]] static bool are_finite(const MachineModel& machine, const JointVector& q) noexcept {
     for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
@@ -114,6 +144,9 @@ class CycleMonitor {
     return true;
   }
 
+  std::int64_t timeout_ns_;
+  double tool_length_mm_ = 0;  ///< that in_.tip is of
+  Array3 tip_offset_{};        ///< between that tip and the one that is followed, tools changing
   monitoring::Monitor monitor_;
   monitoring::Inputs in_;
 };

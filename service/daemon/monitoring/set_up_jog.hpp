@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
-#include "meridian/cycle/cycle_data.hpp"
+#include "meridian/cycle/cycle_state.hpp"
 #include "meridian/cycle/jog_path.hpp"
+#include "meridian/geometry/jet.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/monitoring/monitored.hpp"
 
@@ -14,38 +16,64 @@
 /// RT: cycle. Proof: tests/unit/daemon/set_up_jog_test.cpp.
 namespace meridian::interpolator {
 
-inline constexpr double kSetUpShare = 0.9;     ///< servo loops overshoot
-inline constexpr double kTiltReach_mm = 1000;  ///< the tip rests, axes turn about it so far away
+inline constexpr double kSetUpShare = 0.9;  ///< servo loops overshoot
 
-/// Greatest jog speed of joint `joint` at `q` that keeps joint and tip inside their limits.
-[[nodiscard]] inline double set_up_jog_speed(const MachineModel& machine,
-                                             const monitoring::Limits& limits, int joint,
-                                             const JointVector& q, double tool_length_mm) noexcept {
-  constexpr double kStep = 1e-4;
-  const auto n = static_cast<std::size_t>(joint);
-  JointVector next = q;
-  next[n] += kStep;
-  const Array3 a = tip_over_base(machine, tool_length_mm, q);
-  const Array3 b = tip_over_base(machine, tool_length_mm, next);
-  const double slope = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) / kStep;
-  double speed = limits.axes[n].set_up_speed;
-  if (slope > 0) speed = std::min(speed, limits.set_up_tip_speed / slope);
-  return kSetUpShare * speed;
+/// Greatest speed at which joints that move by their first derivatives keep the limits of set-up
+/// mode: of each joint, and of the tip over the base.
+[[nodiscard]] inline double set_up_speed(const MachineModel& machine,
+                                         const monitoring::Limits& limits,
+                                         const Joints<Jet<1>>& moving,
+                                         double tool_length_mm) noexcept {
+  double speed = std::numeric_limits<double>::infinity();
+  const auto keep = [&speed](double limit, double slope) {
+    if (slope > 0) speed = std::min(speed, kSetUpShare * limit / slope);
+  };
+  for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
+    keep(limits.axes[i].set_up_speed, std::abs(moving[i].derivative(1)));
+  }
+  const auto tip = tip_over_base(machine, tool_length_mm, moving);
+  keep(limits.set_up_tip_speed,
+       std::hypot(tip[0].derivative(1), tip[1].derivative(1), tip[2].derivative(1)));
+  return speed;
 }
 
-/// Slows `order` down to what is allowed with an open guard. `q`: the joints, as commanded last.
-inline void slow_down(JogOrder& order, const MachineModel& machine,
-                      const monitoring::Limits& limits, const JointVector& q) noexcept {
+/// The same along the path of a tool that is jogged, where it is and a little ahead of it either
+/// way: beside the pole its slopes grow. 0 where there are no joints.
+[[nodiscard]] inline double set_up_tool_speed(const MachineModel& machine,
+                                              const monitoring::Limits& limits,
+                                              const CycleState& state,
+                                              double tool_length_mm) noexcept {
+  constexpr double kAhead_mm = 0.5, kAhead_rad = 0.005;
+  const Jogging& jogging = state.jogging;
+  const double ahead = jogging.way.is_tilt ? kAhead_rad : kAhead_mm;
   double speed = 0;
-  if (!order.is_tool) {
-    if (order.joint >= machine.joint_count) return;
-    speed = set_up_jog_speed(machine, limits, order.joint, q, order.tool_length_mm);
-  } else if (order.joint >= static_cast<int>(ToolAxis::kTiltX)) {
-    speed = kSetUpShare * limits.set_up_tip_speed / kTiltReach_mm;
-  } else {
-    speed = kSetUpShare * limits.set_up_tip_speed;
+  for (const double offset : {0.0, ahead, -ahead}) {
+    const double s = jogging.axis.at.q + offset;
+    const bool is_inside = s >= jogging.axis.low && s <= jogging.axis.high;
+    const auto at = joints_on(machine, jogging.way, Jet<1>::variable(s), state.joints);
+    if (at.status != SolveStatus::kOk || (offset != 0 && !is_inside)) continue;
+    const double here = set_up_speed(machine, limits, at.q, tool_length_mm);
+    speed = offset == 0 ? here : std::min(speed, here);
   }
-  order.velocity = std::clamp(order.velocity, -speed, speed);
+  return speed;
+}
+
+/// Greatest jog speed with an open guard, of the joint or the tool that is jogged; no limit where
+/// nothing is.
+[[nodiscard]] inline double set_up_jog_speed(const MachineModel& machine,
+                                             const monitoring::Limits& limits,
+                                             const CycleState& state,
+                                             double tool_length_mm) noexcept {
+  const Jogging& jogging = state.jogging;
+  if (!jogging.is_ready) return std::numeric_limits<double>::infinity();
+  if (jogging.joint >= kMaxJoints) {
+    return set_up_tool_speed(machine, limits, state, tool_length_mm);
+  }
+  Joints<Jet<1>> moving;
+  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = Jet<1>(state.joints[i]);
+  const auto n = static_cast<std::size_t>(jogging.joint);
+  moving[n] = Jet<1>::variable(state.joints[n]);
+  return set_up_speed(machine, limits, moving, tool_length_mm);
 }
 
 }  // namespace meridian::interpolator

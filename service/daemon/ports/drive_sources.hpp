@@ -23,6 +23,7 @@ struct DriveSource {
   bool has_only_stop = false;                 ///< it has no joint of any machine: a stop input
   bool is_emergency_stop = false;
   bool is_guard_open = false;
+  bool has_guard = false;  ///< it said once that a guard is open: its silence is an open guard
   ProbeInput probe = ProbeInput::kNone;
 
   /// The joints that the machine takes from it.

@@ -138,6 +138,7 @@ struct DriveWords {
   std::uint32_t oldest_group = 0;    ///< that has not reported for the longest
   std::uint32_t oldest_mask = 0;     ///< its drives; 0: it has none, but the stop input
   ProbeInput probe = ProbeInput::kNone;
+  bool is_guard_open = false;
 };
 
 struct Ports {
@@ -195,7 +196,7 @@ struct Ports {
   std::atomic<std::uint64_t> commands_dropped{0}, replies_dropped{0};
   std::atomic<double> spindle_tool_mm{0};      ///< gauge line to tip of the tool in the spindle
   std::atomic<std::uint32_t> spindle_tool{0};  ///< its number; 0: the one of the machine file
-  std::atomic<bool> is_guard_open{false};      ///< only jogging is allowed; never in a dry run
+  std::atomic<bool> is_guard_open{false};      ///< only jogging is allowed, but for a dry run
   std::atomic<bool> is_tool_changing{false};   ///< that may be another one by now
   SetUpPorts set_up;
   QueueMarkWord queue_mark;          ///< intake to planner: what of `blocks` is good

@@ -133,7 +133,8 @@ Refusal Supervisor::check_turn(const Pending& command) const noexcept {
 
 bool Supervisor::is_guarded_off(Verb verb) const noexcept {
   const bool is_by_itself = leads_to_motion(verb) && verb != Verb::kEnable && verb != Verb::kJog;
-  return is_by_itself && ports_.is_guard_open.load(std::memory_order_relaxed);
+  const bool is_open = ports_.is_guard_open.load(std::memory_order_relaxed);
+  return is_by_itself && is_open && !view_.is_dry_run;
 }
 
 bool Supervisor::lacks_enabling(Verb verb) const noexcept {

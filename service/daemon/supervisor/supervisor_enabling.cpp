@@ -46,9 +46,11 @@ void Supervisor::take_enabling_changes() {
 void Supervisor::report_guard() {
   const bool is_open = ports_.is_guard_open.load(std::memory_order_relaxed);
   if (std::exchange(was_guard_open_, is_open) == is_open) return;
-  notice(is_open ? "a guard is open: what moved is held, and only jogging is allowed, slowly"
-                 : "the guard is shut",
-         is_open);
+  if (!is_open) return notice("the guard is shut", true);
+  notice(view_.is_dry_run ? "a guard is open; the dry run goes on"
+                          : "a guard is open: what moved is held, and only jogging is allowed, "
+                            "slowly",
+         true);
 }
 
 /// What finds no room is lost: telemetry is held up by then, and motion is not.

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <ctime>
+#include <limits>
 
 #include "meridian/cycle/state_table.hpp"
 #include "service/daemon/monitoring/set_up_jog.hpp"
@@ -31,7 +32,7 @@ CycleThread::CycleThread(const MachineModel& model, const CycleOptions& options,
       ports_(ports),
       state_(options, rate_bounds(model)),
       motion_(ports.motion),
-      monitor_(limits),
+      monitor_(limits, options.feedback_timeout_s),
       spans_(ports.spans != nullptr ? &ports.spans->cycle : nullptr) {}
 
 void CycleThread::run() noexcept {
@@ -61,11 +62,12 @@ void CycleThread::gather(const Period& period, std::int64_t now_ns) noexcept {
   inputs_.lost_periods = period.lost;
   inputs_.computation_ns = computation_ns_;
   watch_enabling(now_ns);
+  inputs_.tool_length_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
   watch_guard();
   inputs_.has_command = ports_.commands.try_pop(inputs_.command);
   inputs_.session = ports_.session.load(std::memory_order_relaxed);
-  inputs_.tool_length_mm = ports_.spindle_tool_mm.load(std::memory_order_relaxed);
-  inputs_.monitoring = monitor_.check(model_, inputs_, output_.record, state_.is_dry_run);
+  inputs_.monitoring = monitor_.check(model_, inputs_, output_.record, state_.is_dry_run,
+                                      asked_of(state_.homing).mode_mask);
 }
 
 void CycleThread::hand_over() noexcept {
@@ -118,10 +120,12 @@ void CycleThread::watch_enabling(std::int64_t now_ns) noexcept {
 
 /// With an open guard the machine is jogged, and nothing else; a dry run moves nothing.
 void CycleThread::watch_guard() noexcept {
-  const bool is_open = inputs_.feedback.is_guard_open && !state_.is_dry_run;
+  const bool is_open = inputs_.feedback.is_guard_open;
   ports_.is_guard_open.store(is_open, std::memory_order_relaxed);
-  if (!is_open) return;
-  slow_down(inputs_.jog, model_, monitor_.monitor().limits(), output_.record.joints);
+  inputs_.max_jog_speed = std::numeric_limits<double>::infinity();
+  if (!is_open || state_.is_dry_run) return;
+  const monitoring::Limits& limits = monitor_.monitor().limits();
+  inputs_.max_jog_speed = set_up_jog_speed(model_, limits, state_, inputs_.tool_length_mm);
   const bool can_be_held = effect_of(state_.state, Verb::kHold).effect == Effect::kGo;
   if (!can_be_held || state_.state == State::kJogging) return;
   ports_.commands.stage_stop(Verb::kHold, ports_.commands.next_request());

@@ -121,6 +121,7 @@ void TelemetryThread::publish_status(std::int64_t now_ns) {
   status.drives_enabled_mask = words_.enabled_mask;
   status.drives_fault_mask = words_.fault_mask;
   status.probe = words_.probe;
+  status.is_guard_open = words_.is_guard_open;
   status.blocks_queued = static_cast<std::uint32_t>(ports_.blocks.size());
   status.pieces_queued = static_cast<std::uint32_t>(ports_.motion.times.size());
   const bool is_begun = is_on_path(record.state) || is_in_program(record.state);

@@ -110,6 +110,7 @@ void add_health(json& out, const dds::Status& status) {
   out["open_network"] = status.is_open_network;
   out["enabling_required"] = status.is_enabling_required;
   out["enabling_devices"] = status.enabling_devices;
+  out["guard_open"] = status.is_guard_open;
   out["auxiliary_ignored"] = status.is_auxiliary_ignored;
   out["cycles"] = status.cycles_run;
   out["periods_lost"] = status.periods_lost;

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
+#include "meridian/cycle/cycle_state.hpp"
 #include "meridian/cycle/drive_state.hpp"
 
 namespace meridian::record {
@@ -53,6 +55,8 @@ constexpr auto kAlarms = std::to_array({"none"sv,
                                         "feedback_frozen"sv,
                                         "feedback_too_fast"sv});
 static_assert(kAlarms.size() == static_cast<std::size_t>(Alarm::kFeedbackTooFast) + 1);
+static_assert(kAlarms.size() <= std::numeric_limits<decltype(CycleState::alarms_reported)>::digits,
+              "CycleState::alarms_reported has a bit for each alarm");
 
 template <class Enum, std::size_t N>
 [[nodiscard]] std::optional<Enum> find(const std::array<std::string_view, N>& words,

@@ -46,6 +46,15 @@ TEST(StatusText, TellsAlarmJointLineAndTheBlockInWhichTheMachineRests) {
   EXPECT_NE(text.find("\nalarm     following_error\n"), std::string::npos) << text;
 }
 
+TEST(StatusText, TellsOfAGuardAsLongAsItIsOpen) {
+  dds::Status status;
+  EXPECT_EQ(describe(status, machine_of_a_stage()).find("guard"), std::string::npos);
+  EXPECT_NE(to_json(status, machine_of_a_stage()).find("\"guard_open\":false"), std::string::npos);
+  status.is_guard_open = true;
+  EXPECT_NE(describe(status, machine_of_a_stage()).find("\nguard     open"), std::string::npos);
+  EXPECT_NE(to_json(status, machine_of_a_stage()).find("\"guard_open\":true"), std::string::npos);
+}
+
 TEST(StatusText, TellsNoAlarmWhereThereIsNone) {
   dds::Status status = faulty_status();
   status.alarm = Alarm::kNone;

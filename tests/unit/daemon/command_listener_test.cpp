@@ -125,6 +125,28 @@ TEST_F(SupervisorTest, RefusesWhatMovesByItselfWithAnOpenGuard) {
   EXPECT_TRUE(take(Verb::kJog)) << "the hand may";
 }
 
+TEST_F(SupervisorTest, SaysWhenAGuardOpensAndShutsAndThatADryRunGoesOn) {
+  Notice notice;
+  const auto says = [&](const std::string& text) {
+    return comes([&] { return ports_->notices.try_pop(notice); }) && notice.is_for_status &&
+           std::string(notice.text.data()).find(text) == 0;
+  };
+  show(State::kReady, false);
+  ports_->is_guard_open = true;
+  EXPECT_TRUE(says("a guard is open: what moved is held")) << notice.text.data();
+  ports_->is_guard_open = false;
+  EXPECT_TRUE(says("the guard is shut")) << "in the place of what the status said";
+  show(State::kLoaded, true);
+  ask(Verb::kFeedOverride, 0.5);
+  ASSERT_TRUE(take(Verb::kFeedOverride)) << "it knows of the dry run by now";
+  while (ports_->notices.try_pop(notice)) {
+  }
+  ports_->is_guard_open = true;
+  EXPECT_TRUE(says("a guard is open; the dry run goes on")) << notice.text.data();
+  ask(Verb::kStart);
+  EXPECT_TRUE(take(Verb::kStart)) << "nothing moves in a dry run";
+}
+
 TEST_F(SupervisorTest, RefusesWhatMovesWithoutAnEnablingDeviceWhereOneIsRequired) {
   ports_->enabling.set_up(true, 300'000'000);
   show(State::kLoaded, false);

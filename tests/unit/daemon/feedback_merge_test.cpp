@@ -3,24 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/daemon/feedback_sample.hpp"
+
 namespace meridian::interpolator {
 namespace {
 
-constexpr std::uint16_t kEnabled = 0x27, kFault = 0x08;
-constexpr std::int64_t kMilli = 1'000'000;
+using test::kMilli;
+using test::sample;
 
-dds::DriveFeedback sample(std::uint32_t group, std::uint32_t mask, std::uint64_t number) {
-  dds::DriveFeedback feedback;
-  feedback.drive_group = group;
-  feedback.joint_mask = mask;
-  feedback.sample = number;
-  feedback.cycle_seen = 100 + number;
-  for (std::size_t i = 0; i < kMaxJoints; ++i) {
-    feedback.position[i] = 10.0 * group + static_cast<double>(i);
-    feedback.statusword[i] = kEnabled;
-  }
-  return feedback;
-}
+constexpr std::uint16_t kFault = 0x08;
 
 TEST(FeedbackMerge, JoinsGroupsAndIsAsOldAsTheOldest) {
   FeedbackMerge merge;
@@ -115,21 +106,14 @@ TEST(FeedbackMerge, KeepsAnOpenStopInputInAFlood) {
   EXPECT_TRUE(merge.feedback().emergency_stop);
 }
 
-TEST(FeedbackMerge, HasAnOpenGuardAsLongAsOneSourceSaysSo) {
+TEST(FeedbackMerge, KnowsOfEachJointWhenItsOwnGroupReported) {
   FeedbackMerge merge;
-  dds::DriveFeedback own = sample(1, 0b11111, 1), box = sample(2, 0, 1);
-  ASSERT_TRUE(merge.take(own, 7, kMilli));
-  EXPECT_FALSE(merge.feedback().is_guard_open) << "where nobody says so it is shut";
-  box.is_guard_open = true;
-  ASSERT_TRUE(merge.take(box, 8, kMilli));
-  own.sample = 2;
-  ASSERT_TRUE(merge.take(own, 7, 2 * kMilli));
-  EXPECT_TRUE(merge.feedback().is_guard_open) << "an input without drives";
-  EXPECT_FALSE(merge.feedback().emergency_stop);
-  box.sample = 2;
-  box.is_guard_open = false;
-  ASSERT_TRUE(merge.take(box, 8, 3 * kMilli));
-  EXPECT_FALSE(merge.feedback().is_guard_open);
+  ASSERT_TRUE(merge.take(sample(1, 0b00111, 1), 7, kMilli));
+  ASSERT_TRUE(merge.take(sample(2, 0b11000, 4), 8, 2 * kMilli));
+  EXPECT_EQ(merge.feedback().joint_arrival_ns[2], kMilli);
+  EXPECT_EQ(merge.feedback().joint_arrival_ns[3], 2 * kMilli);
+  EXPECT_EQ(merge.feedback().joint_cycle_seen[2], 101U);
+  EXPECT_EQ(merge.feedback().joint_cycle_seen[3], 104U);
 }
 
 TEST(FeedbackMerge, IsInContactAsSoonAsOneSourceSaysSo) {

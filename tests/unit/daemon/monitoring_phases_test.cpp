@@ -72,7 +72,7 @@ std::string found_in(const Phase& phase, const Unseen& unseen) {
   const drives::HomingPlan homing{.is_referenced = !phase.is_unreferenced};
   auto plant = std::make_unique<Rehearsal>(std::vector<drives::HomingPlan>(5, homing),
                                            machine_without_bounds());
-  plant->monitor.emplace(limits_of_phases(unseen));
+  plant->monitor.emplace(limits_of_phases(unseen), 0.1);
   phase.begin(*plant);
   const State begun = plant->world.now();
   EXPECT_TRUE(begun == State::kFaultStop || plant->world.state.alarm == Alarm::kNone);
@@ -90,6 +90,41 @@ std::string found_in(const Phase& phase, const Unseen& unseen) {
   plant->wait(0.5);  // drives that move in Fault are an alarm of their own
   expect_recovery(*plant);
   return is_fault ? letter_of(alarm) : "·";
+}
+
+TEST(MonitoringPhases, FindsNothingWhereAHomingIsBrokenOffByTheOperatorOrAFault) {
+  for (const char* const end : {"abort", "emergency"}) {
+    SCOPED_TRACE(end);
+    const drives::HomingPlan homing{.is_referenced = false};
+    auto plant = std::make_unique<Rehearsal>(std::vector<drives::HomingPlan>(5, homing),
+                                             machine_without_bounds());
+    plant->monitor.emplace(limits_of_phases(kUnseen[3]), 0.1);
+    plant->world.in.session = 0;
+    ASSERT_TRUE(plant->enable());
+    plant->say(Verb::kHome);
+    plant->wait(0.1);
+    ASSERT_EQ(plant->world.now(), State::kHoming);
+    if (*end == 'a') {
+      plant->say(Verb::kAbort);
+    } else {
+      plant->inject(end);
+    }
+    for (int n = 0; n < 1500; ++n) {
+      plant->cycle();
+      ASSERT_EQ(plant->world.in.monitoring.alarm, Alarm::kNone)
+          << static_cast<int>(plant->world.in.monitoring.alarm) << " in state "
+          << static_cast<int>(plant->world.now()) << ", cycle " << n;
+    }
+  }
+}
+
+TEST(MonitoringPhases, CallADriveThatHomesHomingWhateverTheStateSays) {
+  using interpolator::motion_of;
+  EXPECT_EQ(motion_of(State::kAborting, false, true), monitoring::Motion::kHoming);
+  EXPECT_EQ(motion_of(State::kFaultStop, false, true), monitoring::Motion::kHoming);
+  EXPECT_EQ(motion_of(State::kAborting, false, false), monitoring::Motion::kProgram);
+  EXPECT_EQ(motion_of(State::kReady, false, true), monitoring::Motion::kRest) << "whoever says so";
+  EXPECT_EQ(motion_of(State::kHoming, true, true), monitoring::Motion::kOff) << "a dry run";
 }
 
 std::string what_is_found_in_phases() {

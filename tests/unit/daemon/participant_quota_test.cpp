@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "service/daemon/ports/monotonic.hpp"
+
 namespace meridian::interpolator {
 namespace {
 
 using Result = ParticipantQuota::Result;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 /// How many of `count` commands are allowed, sent over `span_ns` from `from_ns` on.
 int allowed(ParticipantQuota& quota, std::uint64_t participant, int count, std::int64_t from_ns,

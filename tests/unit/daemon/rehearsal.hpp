@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/daemon/listeners/feedback_merge.hpp"
 #include "service/daemon/monitoring/cycle_monitor.hpp"
+#include "service/daemon/monitoring/set_up_jog.hpp"
 #include "service/daemon/ports/drive_words.hpp"
 #include "service/drives/simulated/drive_group.hpp"
 #include "support/cycle_world.hpp"
@@ -43,8 +45,10 @@ struct Rehearsal {
 
   void cycle() {
     if (monitor) {
+      watch_guard();
       world.in.monitoring =
-          monitor->check(model, world.in, world.out.record, world.state.is_dry_run);
+          monitor->check(model, world.in, world.out.record, world.state.is_dry_run,
+                         asked_of(world.state.homing).mode_mask);
     }
     const CycleRecord& record = world.run();
     dds::SetpointSample setpoint;
@@ -159,10 +163,19 @@ struct Rehearsal {
   std::optional<interpolator::CycleMonitor> monitor;  ///< none: nothing is monitored
   ProbeInput probe = ProbeInput::kNone;               ///< what the drives report of it
   bool is_resetting = false;
+  bool is_jog_slowed = false;  ///< with an open guard, as the service does
   int injected = 0;
 
  private:
   static constexpr std::uint64_t kService = 7, kParticipant = 41;
+  /// As CycleThread does, but that nobody holds what an open guard forbids.
+  void watch_guard() {
+    const auto& limits = monitor->monitor().limits();
+    world.in.max_jog_speed =
+        is_jog_slowed && world.in.feedback.is_guard_open
+            ? interpolator::set_up_jog_speed(model, limits, world.state, world.in.tool_length_mm)
+            : std::numeric_limits<double>::infinity();
+  }
   void report() {
     for (dds::DriveFeedback sample; group.reports(sample);) {
       merge.take(sample, 7, world.in.now_ns);

@@ -54,6 +54,17 @@ TEST_F(TellerTest, SaysOnceWhoReportsAndWhoIsGone) {
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 is gone"});
 }
 
+TEST_F(TellerTest, SaysOnceThatAGuardCountsAsOpenBecauseNobodySpeaksOfIt) {
+  source(0, 11, 0b11, 0b11).has_guard = true;
+  (void)look();
+  now_ns_ += 300 * kTick_ns;
+  EXPECT_EQ(look(), Said{"drive group 3 of process 11 says nothing any more: its guard counts as "
+                         "open until it does, or another one for its group"});
+  EXPECT_EQ(look(), Said{});
+  source(0, 11, 0b11, 0b11);
+  EXPECT_EQ(look(), Said{});
+}
+
 TEST_F(TellerTest, NamesBothWhereTwoReportTheSameDrive) {
   source(0, 11, 0b11, 0b11);
   (void)look();

@@ -3,7 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <deque>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include "unit/monitoring/monitored_axes.hpp"
 
@@ -21,6 +27,7 @@ Limits limits_with_a_model(double error_mm, int delay_cycles = 0) {
   limits.axes[0].model_error = error_mm;
   limits.axes[0].delay_cycles = delay_cycles;
   limits.axes[0].frozen = 50;
+  limits.axes[0].has_window = false;
   return limits;
 }
 
@@ -42,8 +49,8 @@ Result ramp(MonitoredAxes& axes, double lag_s, double& largest_lag) {
     u += speed * 1e-3;
     axes.in.commanded[0] = u;
     axes.in.cycle += 1;
-    axes.in.cycle_seen = axes.in.cycle - 1;
-    axes.in.arrival_ns = static_cast<std::int64_t>(axes.in.cycle) * 1'000'000;
+    axes.in.cycle_seen.fill(axes.in.cycle - 1);
+    axes.in.arrival_ns.fill(static_cast<std::int64_t>(axes.in.cycle) * 1'000'000);
     const Result result = axes.monitor.check(axes.in);
     if (first.finding == Finding::kNone) first = result;
   }
@@ -71,6 +78,79 @@ TEST(DriveModel, DelaysSetpointsAsTheDriveDoes) {
   EXPECT_EQ(ramp(right, kLag_s, lag).finding, Finding::kNone);
   EXPECT_EQ(ramp(delayed, kLag_s, lag).finding, Finding::kDriveModel)
       << "the drive is ahead of a model that waits for four periods";
+}
+
+/// A drive of its own period beside the service: setpoints reach it up to `late_s` late and `lost`
+/// of them, in every `every` cycles, never; it bridges what is missing by the last velocity.
+struct Wire {
+  double late_s = 0;
+  int lost = 0, every = 150;
+};
+
+/// The first finding of a ramp over `wire` with a drive of `lag_s`.
+Result ramp_over(const Wire& wire, MonitoredAxes& axes, double lag_s) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> late(0, std::max(wire.late_s, 1e-12));
+  std::deque<std::pair<int, double>> on_their_way;
+  std::vector<double> at{0}, speeds{0};
+  double y1 = 0, y2 = 0, target = 0, arrival_s = 0;
+  int taken = 0;
+  axes.in.motion = Motion::kProgram;
+  axes.in.cycle = 0;
+  Result first;
+  for (int n = 1; n < 1600; ++n) {
+    speeds.push_back(n < 100 ? 0 : 200 * std::pow(std::sin((n - 100) * 3.14159e-3 / 0.4), 2));
+    at.push_back(at.back() + speeds.back() * 1e-3);
+    // The drive's period ahead of the cycle: it takes what has come, or bridges.
+    int newest = taken;
+    for (; !on_their_way.empty() && on_their_way.front().second <= n * 1e-3 - 1e-9;
+         on_their_way.pop_front()) {
+      newest = on_their_way.front().first;
+    }
+    const auto k = static_cast<std::size_t>(newest);
+    target = newest > taken ? at[k] : target + speeds[k] * 1e-3;
+    taken = newest;
+    for (int step = 0; step < 100; ++step) {
+      y2 += (y1 - y2) * 2 / lag_s * 1e-5;
+      y1 += (target - y1) * 2 / lag_s * 1e-5;
+    }
+    const bool is_lost = n % wire.every >= wire.every - wire.lost;
+    if (is_lost) {
+      ++axes.in.periods;
+      continue;
+    }
+    axes.in.measured[0] = y2;
+    axes.in.cycle = static_cast<std::uint64_t>(n - 1);  // sent in the cycle before
+    axes.in.commanded[0] = at[static_cast<std::size_t>(n - 1)];
+    axes.in.cycle_seen.fill(static_cast<std::uint64_t>(taken));
+    axes.in.arrival_ns.fill(std::int64_t{n} * 1'000'000);
+    const Result result = axes.monitor.check(axes.in);
+    axes.in.periods = 1;
+    if (first.finding == Finding::kNone) first = result;
+    arrival_s = std::max(arrival_s, n * 1e-3 + late(random));
+    on_their_way.emplace_back(n, arrival_s);
+  }
+  return first;
+}
+
+TEST(DriveModel, FindsNothingInADriveThatBridgesAndOneThatIsSlow) {
+  for (const double lag_s : {0.002, 0.02, 0.1}) {
+    for (const Wire& wire : {Wire{}, Wire{.late_s = 1.5e-3}, Wire{.late_s = 4e-3},
+                             Wire{.lost = 1, .every = 90}, Wire{.lost = 3}, Wire{.lost = 40}}) {
+      SCOPED_TRACE(testing::Message()
+                   << lag_s << " s, " << wire.late_s << " s late, " << wire.lost << " lost");
+      Limits limits = limits_with_a_model(0.05);
+      limits.axes[0].time_constant_s = lag_s;
+      MonitoredAxes axes(limits);
+      EXPECT_EQ(ramp_over(wire, axes, lag_s).finding, Finding::kNone);
+    }
+  }
+}
+
+TEST(DriveModel, FindsAWrongLagOnAMachineThatLosesAPeriodAgainAndAgain) {
+  MonitoredAxes axes(limits_with_a_model(0.5));
+  const Wire wire{.lost = 1, .every = 90};
+  EXPECT_EQ(ramp_over(wire, axes, 1.3 * kLag_s).finding, Finding::kDriveModel);
 }
 
 TEST(DriveModel, SaysNothingOfAnAxisThatHasNoneBesideOneThatHas) {

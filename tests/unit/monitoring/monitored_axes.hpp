@@ -36,8 +36,8 @@ struct MonitoredAxes {
   /// One cycle with a report of its own, of the setpoint before.
   monitoring::Result cycle() {
     in.cycle += static_cast<std::uint64_t>(in.periods);
-    in.cycle_seen = in.cycle - 1;
-    in.arrival_ns = static_cast<std::int64_t>(in.cycle) * 1'000'000;
+    in.cycle_seen.fill(in.cycle - 1);
+    in.arrival_ns.fill(static_cast<std::int64_t>(in.cycle) * 1'000'000);
     return monitor.check(in);
   }
   /// Axis 0 moves with the setpoint, `speed` mm/s, its tip along; the first finding of it.

@@ -37,13 +37,50 @@ TEST(PlausibleFeedback, TakesReportsThatWereLateForNoJump) {
   EXPECT_EQ(axes.cycle().finding, Finding::kNone);
 }
 
-TEST(PlausibleFeedback, LooksForNoJumpBehindLostPeriods) {
+TEST(PlausibleFeedback, TakesReportsOfBeforeAndBehindAStallForNoJump) {
   MonitoredAxes axes = running();
   axes.in.periods = 40;
-  (void)axes.cycle();
+  (void)axes.cycle();  // the oldest of a heap
   axes.in.periods = 1;
   axes.in.commanded[0] = axes.in.measured[0] += 10;
   EXPECT_EQ(axes.cycle().finding, Finding::kNone);
+}
+
+TEST(PlausibleFeedback, FindsAJumpOnAMachineThatLosesAPeriodAgainAndAgain) {
+  MonitoredAxes axes = running();
+  for (int n = 0; n < 5; ++n) {
+    axes.in.periods = 2;
+    EXPECT_EQ(axes.cycle().finding, Finding::kNone);
+    axes.in.periods = 1;
+    EXPECT_EQ(axes.run(0.05).finding, Finding::kNone);
+  }
+  axes.in.measured[0] += 3;
+  EXPECT_EQ(axes.cycle().finding, Finding::kJump);
+}
+
+TEST(PlausibleFeedback, FindsTheJumpOfOneGroupOfDrivesWhileAnotherIsSlow) {
+  MonitoredAxes axes = running();
+  for (int n = 0; n < 20; ++n) {  // axis 1 reports every tenth period
+    const auto arrival = axes.in.arrival_ns[1];
+    const auto seen = axes.in.cycle_seen[1];
+    axes.in.cycle += 1;
+    axes.in.cycle_seen.fill(axes.in.cycle - 1);
+    axes.in.arrival_ns.fill(static_cast<std::int64_t>(axes.in.cycle) * 1'000'000);
+    if (n % 10 != 0) axes.in.arrival_ns[1] = arrival, axes.in.cycle_seen[1] = seen;
+    if (n == 17) axes.in.measured[0] += 3;
+    const Result result = axes.monitor.check(axes.in);
+    EXPECT_EQ(result.finding, n == 17 ? Finding::kJump : Finding::kNone) << n;
+  }
+}
+
+TEST(PlausibleFeedback, StartsAnewBehindAHomingThatRenamesPositions) {
+  MonitoredAxes axes = running();
+  axes.in.motion = Motion::kHoming;
+  (void)axes.cycle();
+  axes.in.commanded[0] = axes.in.measured[0] = 80;
+  (void)axes.cycle();
+  axes.in.motion = Motion::kRest;
+  EXPECT_EQ(axes.run(0.3).finding, Finding::kNone);
 }
 
 TEST(PlausibleFeedback, FindsAPositionThatStaysWhileTheSetpointGoesOn) {

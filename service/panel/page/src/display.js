@@ -160,6 +160,7 @@ export class Display {
     if (frame.optional_stop) modes.push("optional stop");
     if (frame.auxiliary_ignored) modes.push("actions are ignored");
     if (frame.enabling_required) modes.push(`enabling: ${frame.enabling_devices} pressed`);
+    if (frame.guard_open) modes.push("guard open: jog only");
     setText(byId("modes"), modes.join(" \u00b7 "));
   }
 
