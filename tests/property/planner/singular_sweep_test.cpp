@@ -131,20 +131,35 @@ TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
     std::printf("  %d refused: %s\n", count, reason.c_str());
 }
 
-/// A pass along the base axis, 1 um beside it, that ends where the next span asks for another yaw.
-/// The yaw jumped by a degree there.
-TEST(SingularSeed, WhereAPassDoesNotMeetTheNextSpanTheBlockIsRefusedAndNothingJumps) {
-  constexpr std::uint32_t kSeed = 1016;
+/// Passes along the base axis, closely beside it, on which the roll runs out of travel with the yaw
+/// at rest. They were refused: behind them the exact yaw would have jumped.
+TEST(SingularSeed, AlongTheBaseAxisTheYawTurnsWhereTheRollRunsOutOfTravel) {
+  struct Along {
+    std::uint32_t seed;
+    double beside_mm;
+    Transition transition;
+  };
   MachineModel robot = config::load_machine(shipped_file("robot-6r"));
   config::place_workpiece(robot, config::parse_frame("0,0,0"));
-  const auto blocks = ShoulderPass(robot, kSeed).program(Pass::kAlong, 1e-3);
-  const JointVector start = joints_of(robot, blocks[0]);
-  SmoothTrace trace = plan_smooth(robot, blocks, start, {Transition::kSmooth, 0, 0}, true);
-  trace.joints = end_of(robot, trace, start);
-  const LimitUse use = measure_limits(robot, sample(robot, trace, 1e-3, 0.5, start), 1e-3);
-  EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
-  if (trace.last.status == PlanStatus::kRefused) {
-    EXPECT_EQ(trace.last.reject.code, RejectCode::kDiscontinuous);
+  for (const auto& [seed, beside_mm, transition] : {
+           Along{1016, 1e-3, Transition::kSmooth},
+           Along{1016, 1e-6, Transition::kExactStop},
+           Along{1016, 1e-9, Transition::kExactStop},
+           Along{1022, 1e-6, Transition::kExactStop},
+           Along{1022, 1e-9, Transition::kExactStop},
+           Along{1045, 1e-9, Transition::kExactStop},
+       }) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed << " beside " << beside_mm);
+    const auto blocks = ShoulderPass(robot, seed).program(Pass::kAlong, beside_mm);
+    const JointVector start = joints_of(robot, blocks[0]);
+    SmoothTrace trace = plan_smooth(robot, blocks, start, {transition, 0, 0}, true);
+    EXPECT_EQ(trace.last.status, PlanStatus::kOk);
+    trace.joints = end_of(robot, trace, start);
+    const auto setpoints = sample(robot, trace, 1e-3, 0.5, start);
+    const LimitUse use = measure_limits(robot, setpoints, 1e-3);
+    EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
+    EXPECT_LT(farthest_off(robot, blocks, trace, setpoints), kShare);
+    EXPECT_LT(trace.duration_s(), kLongest_s) << "it creeps";
   }
 }
 

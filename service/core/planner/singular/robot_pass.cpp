@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
 #include "service/core/planner/singular/pole_time.hpp"
@@ -19,6 +19,8 @@ constexpr int kWidths = 18;
 constexpr double kNarrower = 0.6;
 constexpr int kSamples = 96, kFirstSamples = 12;
 constexpr std::size_t kKinks = 192;
+constexpr int kRestTurns = 12;  // to each side, of a joint that is to rest elsewhere
+constexpr double kRestTurn_rad = std::numbers::pi / kRestTurns;
 constexpr double kMaxTipError_mm = 1e-7;
 constexpr double kMaxBend_rad = 1e3;  // roll'' h² at an end, beyond it the end is no guide
 constexpr double kSamePoint_mm = 1e-4;
@@ -37,6 +39,8 @@ class Search {
   RobotPass run() noexcept {
     const RobotPass found = search();
     if (found.end > found.begin) return found;
+    const RobotPass turned = search_turned();
+    if (turned.end > turned.begin) return turned;
     looks_behind_ = false;  // joints leave travel there whatever is chosen
     return search();
   }
@@ -61,6 +65,41 @@ class Search {
       }
     }
     return found;
+  }
+
+  /// Where the joint at rest leads others out of their travel: passes after which it rests at
+  /// another value, some of them so short that it turns next to standstill.
+  [[nodiscard]] RobotPass search_turned() noexcept {
+    constexpr double kShares[] = {1, 0.3, 0.1, 0.03, 0.01};
+    RobotPass best;
+    if (range_.at_to != PassEnd::kAtRest) return best;
+    double best_time = kNever;
+    for (const double share : kShares) {
+      for (int n = 0; n < 2 * kRestTurns; ++n) {
+        rest_turn_ = (n % 2 == 0 ? 1 : -1) * kRestTurn_rad * (1 + n / 2);
+        RobotPass pass = pass_over(range_.nearest - range_.from);
+        pass.end = range_.nearest + share * (range_.to - range_.nearest);
+        if (!fit(pass) || !is_inside(pass, kFirstSamples)) continue;
+        const double time = time_on(pass);
+        if (!(time < best_time) || !is_inside(pass, kSamples) || !is_inside_at_kinks(pass))
+          continue;
+        if (!rests_on(pass)) continue;
+        best_time = time;
+        best = pass;
+      }
+      if (best.end > best.begin) break;
+    }
+    rest_turn_ = 0;
+    return best;
+  }
+  /// Whether the joint may rest behind the pass as far as the range goes.
+  [[nodiscard]] bool rests_on(const RobotPass& pass) const noexcept {
+    if (!(pass.end < range_.to)) return true;
+    RobotPass rest = pass;
+    rest.begin = pass.end;
+    rest.end = range_.to;
+    rest.joint.fill(pass.joint.back());
+    return is_inside(rest, kSamples);
   }
 
   [[nodiscard]] double begin_at(double width) const noexcept {
@@ -122,7 +161,7 @@ class Search {
       a2 = in.q[joint_].derivative(2) * h * h;
       for (std::size_t i = 0; i < reference.size(); ++i) reference[i] = value_of(in.q[i]);
     }
-    double to = from + 0.5 * a1, b1 = 0, b2 = 0;  // an end: comes to rest
+    double to = from + 0.5 * a1 + rest_turn_, b1 = 0, b2 = 0;  // an end: comes to rest
     if (range_.at_to == PassEnd::kAtRest) {
       pass.branch_after = pass.branch_before;
     } else {
@@ -130,7 +169,7 @@ class Search {
                              pose_of<Jet<2>>(task_.spans.span_at(pass.end), pass.end),
                              pass.branch_after, reference);
       if (out.status != SolveStatus::kOk) return false;
-      to = value_of(out.q[joint_]);
+      to = inside_travel(value_of(out.q[joint_]));
       b1 = out.q[joint_].derivative(1) * h;
       b2 = out.q[joint_].derivative(2) * h * h;
     }
@@ -139,6 +178,15 @@ class Search {
         from, from + a1 / 5, from + 0.4 * a1 + a2 / 20, to - 0.4 * b1 + b2 / 20, to - b1 / 5, to};
     reference_ = reference;
     return true;
+  }
+
+  /// `value`, or the winding of it inside travel.
+  [[nodiscard]] double inside_travel(double value) const noexcept {
+    const JointSpec& spec = task_.model.joints[static_cast<std::size_t>(joint_)];
+    return is_inside_travel(spec, value, kTravelMargin)
+               ? value
+               : unwind_inside(value, value, spec.limits.travel_min, spec.limits.travel_max,
+                               kTravelMargin);
   }
 
   /// A stretch of the exact way.
@@ -235,51 +283,11 @@ class Search {
   std::array<double, kKinks> kinks_{};  // u
   std::size_t kink_count_ = 0;
   bool looks_behind_ = true;
+  double rest_turn_ = 0;     // by which the joint is to rest elsewhere
   JointVector reference_{};  // at the begin of the pass that was fitted last
 };
 
-/// How much farther the arm may stretch until its elbow is straight, mm.
-double reach_left(const PassCourse& course, const ToolPose& pose) noexcept {
-  const RobotKinematics& robot = course.model.robot;
-  const auto wrist =
-      robot::wrist_point<double>(robot, course.tool_length_mm, pose_in_machine(course.model, pose));
-  return robot.upper_arm_mm + robot.forearm_mm - std::hypot(wrist[0], wrist[1], wrist[2]);
-}
-
 }  // namespace
-
-double singular_distance(const MachineModel& model, double tool_length_mm, Singularity at,
-                         const ToolPose& pose, int branch, const JointVector& joints) noexcept {
-  const bool is_there =
-      at == Singularity::kWrist ? has_wrist_roll(model) : model.family == MachineFamily::kRobot;
-  if (!is_there) return kNever;
-  const ToolPose in_machine = pose_in_machine(model, pose);
-  return at == Singularity::kWrist
-             ? robot::wrist_distance(model.robot, tool_length_mm, in_machine, branch, joints)
-             : robot::shoulder_distance(model.robot, tool_length_mm, in_machine);
-}
-
-bool is_near_singularity(const PassCourse& course, const ToolPose& pose) noexcept {
-  constexpr double kNear_rad = 0.35, kNear_mm = 100, kNearStraight_mm = 10;
-  const auto distance = [&](Singularity at) {
-    return singular_distance(course.model, course.tool_length_mm, at, pose, course.branch,
-                             course.joints);
-  };
-  return distance(Singularity::kWrist) < kNear_rad || distance(Singularity::kShoulder) < kNear_mm ||
-         reach_left(course, pose) < kNearStraight_mm;
-}
-
-bool comes_near_singularity(const PassCourse& course, const ToolPose& from,
-                            const ClBlock& block) noexcept {
-  constexpr double kStep_mm = 10, kMaxSteps = 256;
-  const ToolPose end{to_vector(block.tip_mm), to_vector(block.axis)};
-  const PathPiece path = block.is_arc ? make_arc(from, end, block) : make_line(from, end);
-  const int steps = static_cast<int>(std::clamp(path.length / kStep_mm, 4.0, kMaxSteps));
-  for (int k = 0; k <= steps; ++k) {
-    if (is_near_singularity(course, pose_at(path, path.length * k / steps))) return true;
-  }
-  return false;
-}
 
 RobotPass find_robot_pass(const PassTask& task, const PassRange& range) noexcept {
   return Search(task, range).run();

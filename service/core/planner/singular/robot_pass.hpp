@@ -86,8 +86,10 @@ struct PassCourse {
 /// Picks the pass with the least time between `from` and `to`. Candidates are quintics of the
 /// redundant joint that meet the exact way with two derivatives at both ends, out on the same
 /// branch or on the one with the bend, or the arm, turned over: straight through, the joint hardly
-/// turns. One that leaves the tolerance about the programmed path, or whose joints leave travel, is
-/// none. Bounded work, no memory. Source: docs/motion.md, section 2. Proof:
+/// turns. Where the nearest winding is outside travel, the joint turns the other way round; where a
+/// joint at rest leads another one out of travel, it turns to where it may rest. One that leaves
+/// the tolerance about the programmed path, or whose joints leave travel, is none. Bounded work, no
+/// memory. Source: docs/motion.md, section 2. Proof:
 /// tests/property/planner/robot_passes_test.cpp.
 [[nodiscard]] RobotPass find_robot_pass(const PassTask& task, const PassRange& range) noexcept;
 
