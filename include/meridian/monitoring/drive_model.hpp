@@ -38,7 +38,7 @@ struct TwoLags {
 ///
 /// Where a drive had to bridge setpoints, or took more or fewer of them than cycles went by, it is
 /// ahead of the model or behind it by as many periods at the speed of its setpoint. The bound is
-/// wider by that way, twice, and what is added dies out as the drive's own lag does: the model is
+/// wider by twice that travel, and what is added dies out as the drive's own lag does: the model is
 /// never switched off. So it is behind the first report, for a drive that moves then.
 /// RT: cycle. Proof: tests/unit/monitoring/drive_model_test.cpp.
 class DriveModel {
@@ -112,12 +112,12 @@ class DriveModel {
     } else {
       const std::uint64_t taken = seen - axis.cycle;
       const std::uint64_t uneven = std::max(taken, axis.waited) - std::min(taken, axis.waited);
-      double way = std::abs(axis.step), missed = 0;
+      double travel = std::abs(axis.step), missed = 0;
       while (axis.cycle < seen) {
         missed += advance(limits.axes[n], axis, n, sent);
-        way = std::max(way, std::abs(axis.step));
+        travel = std::max(travel, std::abs(axis.step));
       }
-      const double added = 2 * way * (static_cast<double>(uneven) + missed);
+      const double added = 2 * travel * (static_cast<double>(uneven) + missed);
       axis.wider.first += added;
       axis.wider.second += added;
     }

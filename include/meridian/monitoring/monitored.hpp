@@ -35,7 +35,7 @@ enum class Mode : std::uint8_t {
 
 /// What is allowed of one axis.
 struct AxisLimits {
-  double speed = 0;          ///< that it can have at most
+  double speed = 0;          ///< its maximum
   double set_up_speed = 0;   ///< with an open guard
   double standstill = 0;     ///< so far it may leave its place in standstill
   double frozen = 0;         ///< led on by more than this its position has to change

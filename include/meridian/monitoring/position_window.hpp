@@ -13,39 +13,46 @@ namespace meridian::monitoring {
 class PositionWindow {
  public:
   [[nodiscard]] Result check(const Limits& limits, const Inputs& in, Mode mode) noexcept {
-    if (mode == Mode::kOff || !in.has_report) {
-      known_mask_ = 0;
-      return {};
-    }
+    const std::uint32_t known = mode == Mode::kOff || !in.has_report ? 0 : in.known_mask;
+    automatic_.known_mask &= mode == Mode::kSetUp ? 0 : known;
+    set_up_.known_mask &= in.is_guard_open ? known : 0;
+    if (mode == Mode::kOff || !in.has_report) return {};
     const bool is_set_up = mode == Mode::kSetUp;
-    if (is_set_up != is_set_up_) known_mask_ = 0;
-    is_set_up_ = is_set_up;
+    Edges& edges = is_set_up ? set_up_ : automatic_;
     Result result;
     for (int i = 0; i < limits.axis_count; ++i) {
       const auto n = static_cast<std::size_t>(i);
       if (!limits.axes[n].has_window || (in.known_mask >> n & 1U) == 0) continue;
-      if (!check_axis(limits.axes[n], n, in.measured[n]) && result.finding == Finding::kNone) {
-        result = {Finding::kPositionWindow, i, in.measured[n]};
+      const AxisLimits& axis = limits.axes[n];
+      const double low = is_set_up ? axis.set_up_low : axis.low;
+      const double high = is_set_up ? axis.set_up_high : axis.high;
+      const double at = in.measured[n];
+      edges.take(n, low, high, at);
+      const bool is_inside =
+          at >= edges.low[n] - axis.window_margin && at <= edges.high[n] + axis.window_margin;
+      if (!is_inside && result.finding == Finding::kNone) {
+        result = {Finding::kPositionWindow, i, at};
       }
     }
-    known_mask_ = in.known_mask;
+    edges.known_mask = in.known_mask;
     return result;
   }
 
  private:
-  /// Whether the axis is inside of its window, or no farther out than it was.
-  [[nodiscard]] bool check_axis(const AxisLimits& axis, std::size_t n, double at) noexcept {
-    const double low = is_set_up_ ? axis.set_up_low : axis.low;
-    const double high = is_set_up_ ? axis.set_up_high : axis.high;
-    const bool is_new = (known_mask_ >> n & 1U) == 0;
-    low_[n] = std::min(low, is_new ? at : std::max(low_[n], at));
-    high_[n] = std::max(high, is_new ? at : std::min(high_[n], at));
-    return at >= low_[n] - axis.window_margin && at <= high_[n] + axis.window_margin;
-  }
+  /// How far out an axis may be: the window, or where it was when the window came into force.
+  struct Edges {
+    std::uint32_t known_mask = 0;  ///< axes whose values are of now
+    Values low{}, high{};
 
-  std::uint32_t known_mask_ = 0;  ///< axes whose `low_` and `high_` are of now
-  bool is_set_up_ = false;
-  Values low_{}, high_{};
+    void take(std::size_t n, double window_low, double window_high, double at) noexcept {
+      const bool is_new = (known_mask >> n & 1U) == 0;
+      low[n] = std::min(window_low, is_new ? at : std::max(low[n], at));
+      high[n] = std::max(window_high, is_new ? at : std::min(high[n], at));
+    }
+  };
+
+  Edges automatic_;
+  Edges set_up_;  ///< from the first jog behind an open guard on, until that is shut
 };
 
 }  // namespace meridian::monitoring

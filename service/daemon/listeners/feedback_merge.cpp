@@ -40,8 +40,21 @@ DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group
     if (counts || now_ns - source.arrival_ns <= kSilence_ns) continue;
     if (idlest == nullptr || source.arrival_ns < idlest->arrival_ns) idlest = &source;
   }
+  if (idlest == nullptr) idlest = find_lost_guard(now_ns);
   if (idlest != nullptr) *idlest = {};
   return idlest;
+}
+
+/// Full of guards that are gone: that one is open counts from now on without saying whose.
+DriveSource* FeedbackMerge::find_lost_guard(std::int64_t now_ns) noexcept {
+  for (DriveSource& source : sources_.places) {
+    const bool is_missed =
+        source.bound_mask != 0 || source.has_only_stop || source.is_emergency_stop;
+    if (is_missed || !source.has_guard || now_ns - source.arrival_ns <= kSilence_ns) continue;
+    is_guard_lost_ = true;
+    return &source;
+  }
+  return nullptr;
 }
 
 bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
@@ -92,7 +105,9 @@ void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand
 void FeedbackMerge::take_guard(DriveSource& source, std::int64_t now_ns) noexcept {
   for (DriveSource& other : sources_.places) {
     const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
-    if (!other.has_guard || !is_silent || other.group != source.group) continue;
+    // Only who came behind the silence: who spoke all the while is another one.
+    const bool is_heir = other.group == source.group && source.first_ns > other.arrival_ns;
+    if (!other.has_guard || !is_silent || !is_heir) continue;
     other.has_guard = other.is_guard_open = false;
     source.has_guard = true;
     const bool is_missed = other.bound_mask != 0 || other.has_only_stop;
@@ -153,7 +168,8 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   feedback_.emergency_stop = stopped_ns_ != 0 && now_ns - stopped_ns_ <= kSilence_ns;
   feedback_.emergency_ns = feedback_.emergency_stop ? stopped_ns_ : 0;
   feedback_.probe = ProbeInput::kNone;
-  feedback_.is_guard_open = opened_ns_ != 0 && now_ns - opened_ns_ <= kSilence_ns;
+  const bool is_guard_heard = opened_ns_ != 0 && now_ns - opened_ns_ <= kSilence_ns;
+  feedback_.is_guard_open = is_guard_lost_ || is_guard_heard;
   for (const DriveSource& source : sources_.places) {
     if (source.writer == 0) continue;
     merge_inputs(source, now_ns);

@@ -52,6 +52,7 @@ class FeedbackMerge {
   /// The place of this source, a free one, or one whose source is silent and takes part in nothing.
   [[nodiscard]] DriveSource* find_place(std::uint64_t writer, std::uint32_t group,
                                         std::int64_t now_ns) noexcept;
+  [[nodiscard]] DriveSource* find_lost_guard(std::int64_t now_ns) noexcept;
   void bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept;
   /// A guard of the group of `source` whose writer is silent is its from now on.
   void take_guard(DriveSource& source, std::int64_t now_ns) noexcept;
@@ -64,6 +65,7 @@ class FeedbackMerge {
   DriveSources sources_;
   std::int64_t stopped_ns_ = 0;  ///< when one without a place said last that its stop input is open
   std::int64_t opened_ns_ = 0;   ///< the same of its guard
+  bool is_guard_lost_ = false;   ///< one is gone that there was no place for any more
   Feedback feedback_;
   DriveWords words_;
 };

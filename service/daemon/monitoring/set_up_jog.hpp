@@ -37,8 +37,8 @@ inline constexpr double kSetUpShare = 0.9;  ///< servo loops overshoot
   return speed;
 }
 
-/// The same along the path of a tool that is jogged, where it is and a little ahead of it either
-/// way: beside the pole its slopes grow. 0 where there are no joints.
+/// The same along the path of a tool that is jogged, where it is and a little ahead of it in both
+/// directions: beside the pole its slopes grow. 0 where there are no joints.
 [[nodiscard]] inline double set_up_tool_speed(const MachineModel& machine,
                                               const monitoring::Limits& limits,
                                               const CycleState& state,

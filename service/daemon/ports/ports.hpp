@@ -97,6 +97,7 @@ struct EnablingChange {
 /// Something for the log, and where it is for the operator for the status too.
 struct Notice {
   bool is_warning = false, is_for_status = false;
+  bool is_over = false;  ///< what the notice before said: the status keeps neither
   std::array<char, dds::kMaxText + 1> text{};  ///< zero-terminated
 };
 

@@ -46,7 +46,8 @@ void Supervisor::take_enabling_changes() {
 void Supervisor::report_guard() {
   const bool is_open = ports_.is_guard_open.load(std::memory_order_relaxed);
   if (std::exchange(was_guard_open_, is_open) == is_open) return;
-  if (!is_open) return notice("the guard is shut", true);
+  if (!is_open)
+    return push({.is_for_status = true, .is_over = true, .text = {}}, "the guard is shut");
   notice(view_.is_dry_run ? "a guard is open; the dry run goes on"
                           : "a guard is open: what moved is held, and only jogging is allowed, "
                             "slowly",
@@ -55,7 +56,10 @@ void Supervisor::report_guard() {
 
 /// What finds no room is lost: telemetry is held up by then, and motion is not.
 void Supervisor::notice(const std::string& text, bool is_for_status) {
-  Notice notice{.is_warning = is_for_status, .is_for_status = is_for_status, .text = {}};
+  push({.is_warning = is_for_status, .is_for_status = is_for_status, .text = {}}, text);
+}
+
+void Supervisor::push(Notice notice, const std::string& text) {
   std::memcpy(notice.text.data(), text.data(), std::min(text.size(), notice.text.size() - 1));
   (void)ports_.notices.try_push(notice);
 }

@@ -136,8 +136,8 @@ void TelemetryThread::drain() {
     log_->log(notice.is_warning ? spdlog::level::warn : spdlog::level::info, "{}",
               notice.text.data());
     if (!notice.is_for_status) continue;
-    notice_ = notice.text.data();
-    if (status_.alarm == Alarm::kNone) status_.message = notice_;
+    if (status_.alarm == Alarm::kNone) status_.message = notice.text.data();
+    notice_ = notice.is_over ? "" : notice.text.data();
     has_news_ = true;
   }
   Event event;

@@ -78,7 +78,7 @@ void read_window(Section& section, const std::string& prefix, const MachineModel
 void read_windows(Section& section, const MachineModel& model, monitoring::Limits& limits) {
   using monitoring::AxisLimits;
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
-    limits.axes[i].has_window = !model.joints[i].is_endless;
+    limits.axes[i].has_window = !model.joints[i].is_endless;  // its number of turns has no end
     limits.axes[i].window_margin = model.joints[i].limits.following_error;
   }
   read_window(section, "window_", model, &AxisLimits::low, &AxisLimits::high, limits);

@@ -77,6 +77,31 @@ TEST(GuardOfFeedback, TakesTheSilenceOfAGuardForAnOpenOne) {
   EXPECT_FALSE(guard.is_open_at(320)) << "it speaks again";
 }
 
+TEST(GuardOfFeedback, IsNotShutByDrivesOfTheSameGroupThatSpokeAllTheWhile) {
+  for (const std::uint32_t mask : {0U, 0b100000U}) {
+    GuardBeside guard(1, mask);
+    EXPECT_TRUE(guard.is_open_at(150));
+    EXPECT_TRUE(guard.is_open_at(300)) << mask << ": its cable is cut while it is open";
+    EXPECT_TRUE(guard.is_open_at(9000)) << mask;
+    guard.merge.forget(8, 9001 * kMilli, true);
+    EXPECT_TRUE(guard.is_open_at(9002)) << mask << ": its program is gone";
+  }
+}
+
+TEST(GuardOfFeedback, LeavesRoomForDrivesHoweverManyGuardsAreGone) {
+  FeedbackMerge merge(0b11111);
+  for (std::uint32_t group = 2; group < 40; ++group) {
+    dds::DriveFeedback box = sample(group, 0, 1);
+    box.is_guard_open = true;
+    const std::int64_t now_ns = static_cast<std::int64_t>(group) * 300 * kMilli;
+    (void)merge.take(box, 8, now_ns);
+    merge.forget(8, now_ns + kMilli, true);
+  }
+  ASSERT_TRUE(merge.take(sample(1, 0b11111, 1), 7, 20'000 * kMilli, true));
+  EXPECT_EQ(merge.feedback().joint_mask, 0b11111U);
+  EXPECT_TRUE(merge.feedback().is_guard_open);
+}
+
 TEST(GuardOfFeedback, KeepsAGuardOpenWhoseWriterIsGone) {
   for (const bool is_off : {false, true}) {
     GuardBeside guard(2, 0);

@@ -11,6 +11,7 @@ namespace {
 Finding at(PositionWindow& window, double position, Mode mode, std::uint32_t known_mask = 1) {
   Inputs in;
   in.has_report = true;
+  in.is_guard_open = mode == Mode::kSetUp || mode == Mode::kStandstill;
   in.known_mask = known_mask;
   in.measured[0] = position;
   return window.check(test::two_axes(), in, mode).finding;
@@ -37,6 +38,27 @@ TEST(PositionWindow, IsThatOfSetUpOnceTheGuardIsOpen) {
   EXPECT_EQ(at(window, 50, Mode::kAutomatic), Finding::kNone);
   EXPECT_EQ(at(window, 50, Mode::kSetUp), Finding::kNone) << "it stood there";
   EXPECT_EQ(at(window, 51, Mode::kSetUp), Finding::kPositionWindow);
+}
+
+TEST(PositionWindow, IsNotLeftStepByStepOfManyJogs) {
+  PositionWindow window;
+  double position = 10;  // the edge of the set-up window; its margin is 0.5
+  Finding found = Finding::kNone;
+  for (int jog = 0; jog < 4 && found == Finding::kNone; ++jog) {
+    EXPECT_EQ(at(window, position, Mode::kStandstill), Finding::kNone);
+    position += 0.3;
+    found = at(window, position, Mode::kSetUp);
+  }
+  EXPECT_EQ(found, Finding::kPositionWindow);
+  EXPECT_LT(position, 11);
+}
+
+TEST(PositionWindow, OfSetUpBeginsAnewWithTheGuard) {
+  PositionWindow window;
+  EXPECT_EQ(at(window, 0, Mode::kSetUp), Finding::kNone);
+  EXPECT_EQ(at(window, 0, Mode::kAutomatic), Finding::kNone) << "it is shut";
+  EXPECT_EQ(at(window, 50, Mode::kAutomatic), Finding::kNone);
+  EXPECT_EQ(at(window, 50, Mode::kSetUp), Finding::kNone) << "it stood there when it opened";
 }
 
 TEST(PositionWindow, SaysNothingOfAnAxisThatDoesNotKnowWhereItIs) {

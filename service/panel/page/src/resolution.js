@@ -9,7 +9,7 @@ export class Resolution {
     this.ask = ask;
     this.full = Math.min(window.devicePixelRatio, 2);
     this.share = 1;
-    this.isTurning = false;
+    this.isTurning = this.isFast = false;
     renderer.setPixelRatio(this.full);
   }
 
@@ -19,6 +19,9 @@ export class Resolution {
     this.rest = setTimeout(() => this.stop(), kRest_ms);
     if (this.isTurning) return;
     this.isTurning = true;
+    // The turn before may have been slow for another reason.
+    if (this.isFast) this.share = Math.min(1, this.share / kCoarser);
+    this.isFast = false;
     this.last = null;
     this.mean_ms = kSlow_ms / 2;
     if (this.share < 1) this.set(this.share);
@@ -35,6 +38,7 @@ export class Resolution {
     const took_ms = this.last === null ? this.mean_ms : Math.min(now_ms - this.last, 4 * kSlow_ms);
     this.last = now_ms;
     this.mean_ms += 0.2 * (took_ms - this.mean_ms);
+    this.isFast = this.mean_ms < 0.7 * kSlow_ms;
     if (this.mean_ms < kSlow_ms || this.share <= kMinShare) return;
     this.share = Math.max(kCoarser * this.share, kMinShare);
     this.mean_ms = kSlow_ms / 2;

@@ -29,7 +29,7 @@ export class View {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => {
-      this.resolution.turn();
+      if (!this.isFollowing) this.resolution.turn();
       this.ask();
     });
     this.trail = new Trail();
@@ -199,7 +199,9 @@ export class View {
     const tip = new Vector3().setFromMatrixPosition(this.machine.frames.tip.matrixWorld);
     this.camera.position.add(tip.clone().sub(this.controls.target));
     this.controls.target.copy(tip);
+    this.isFollowing = true;
     this.controls.update();
+    this.isFollowing = false;
   }
 
   // Where on the canvas the tip is, in pixels of the page.
