@@ -51,6 +51,8 @@ std::ostream& operator<<(std::ostream& out, const Gate& gate) { return out << ga
       {"instructions_cycle", "instruction_gate_test", "*.Cycle"},
       {"instructions_cycle_single_block", "instruction_gate_test", "*SeeksTheEnd*"},
       {"instructions_cycle_over_windows", "instruction_gate_test", "*TheDearestCycle*"},
+      {"instructions_monitoring", "instruction_gate_test", "*.MonitoringBesideACycle"},
+      {"instructions_monitoring_all", "instruction_gate_test", "*MonitoringOfEverything*"},
       {"instructions_setpoint_spline", "instruction_gate_test", "*SetpointOnASpline"},
       {"instructions_setpoint_pole", "instruction_gate_test", "*SetpointBesideThePole"},
       {"instructions_planner", "instruction_gate_test", "*.Planner"},
