@@ -15,7 +15,7 @@ const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 // A body that hangs on a joint is carried by it and by those below it: where the drawn tip goes, one at the tip goes too.
 function meshesHangWhereTheySay(scene, poses) {
   const machine = new Machine(scene, "dark");
-  const drawnOf = () => { let count = 0; machine.root.traverse((one) => (count += one.userData.isDrawn ? 1 : 0)); return count; };
+  const drawnOf = () => { let count = 0; machine.root.traverse((one) => (count += one.userData.edges ? 1 : 0)); return count; };
   const before = drawnOf(), last = scene.head.at(-1);
   if (!last) return true;
   machine.setTool(poses[0].tool);
@@ -23,9 +23,12 @@ function meshesHangWhereTheySay(scene, poses) {
   machine.addMesh(scene.joints[last.joint].name, new BoxGeometry(1, 1, 1).translate(...tipAtZero.toArray()));
   machine.addMesh("part", new BoxGeometry(1, 1, 1));
   machine.addMesh("no such link", new BoxGeometry(1, 1, 1));
-  const body = machine.frames.head.at(-1).children.find((one) => one.isMesh);
-  const blank = machine.frames.workpiece.children.find((one) => one.isMesh);
-  return Boolean(body) && Boolean(blank) && drawnOf() < before && poses.every(({ joints }) => {
+  const fromFile = (one) => one.userData.faces && !one.userData.edges;
+  const body = machine.frames.head.at(-1).children.find(fromFile);
+  const blank = machine.frames.workpiece.children.find(fromFile);
+  // The faces that are drawn know the frames of both.
+  const isCarried = [body, blank].every((one) => one && machine.bodies.frames.value.includes(one.parent.matrixWorld));
+  return isCarried && drawnOf() < before && poses.every(({ joints }) => {
     machine.setJoints(joints);
     const at = new Vector3(...tipAtZero.toArray()).applyMatrix4(body.matrixWorld);
     return at.distanceTo(new Vector3().setFromMatrixPosition(machine.frames.tip.matrixWorld)) <= kTip_mm;
