@@ -21,20 +21,24 @@ namespace {
 constexpr double kShare = 1 + 1e-6;  // of a limit or a tolerance, with what rounding adds
 constexpr double kLongest_s = 60;    // the longest program takes 3 s at its feed, and 61 rests
 
+enum class Where { kWrist, kShoulder, kBoth };
+
 struct Sweep {
   const char* name;
   const char* machine;
-  bool is_wrist;
+  Where where;
   Transition transition;
 
   [[nodiscard]] std::unique_ptr<SingularPass> draw(const MachineModel& robot,
                                                    std::uint32_t seed) const {
-    if (is_wrist) return std::make_unique<WristPass>(robot, seed);
+    if (where == Where::kWrist) return std::make_unique<WristPass>(robot, seed);
+    if (where == Where::kBoth) return std::make_unique<BothPass>(robot, seed);
     return std::make_unique<ShoulderPass>(robot, seed);
   }
-  /// Distances to pass at: degrees or mm; the last is what times are compared with.
+  /// Distances to pass at: degrees or mm, at both degrees and mm; the last is what times are
+  /// compared with.
   [[nodiscard]] std::vector<double> beside() const {
-    if (is_wrist) return {0, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 5};
+    if (where == Where::kWrist) return {0, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 5};
     return {0, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 9e-3, 0.012, 0.03, 0.1, 1, 5};
   }
 };
@@ -87,7 +91,7 @@ TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
         SCOPED_TRACE(testing::Message()
                      << "seed " << seed << " " << kPassNames[static_cast<int>(pass)] << " beside "
                      << beside[k]);
-        const double by = sweep.is_wrist ? units::rad_from_deg(beside[k]) : beside[k];
+        const double by = sweep.where == Where::kWrist ? units::rad_from_deg(beside[k]) : beside[k];
         const auto blocks = singular->program(pass, by);
         const JointVector start = joints_of(robot, blocks[0]);
         SmoothTrace trace = plan_smooth(robot, blocks, start, {sweep.transition, 0, 0}, true);
@@ -131,31 +135,49 @@ TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
     std::printf("  %d refused: %s\n", count, reason.c_str());
 }
 
-/// A pass along the base axis, 1 um beside it, that ends where the next span asks for another yaw.
-/// The yaw jumped by a degree there.
-TEST(SingularSeed, WhereAPassDoesNotMeetTheNextSpanTheBlockIsRefusedAndNothingJumps) {
-  constexpr std::uint32_t kSeed = 1016;
+/// Passes along the base axis, closely beside it, on which the roll runs out of travel with the yaw
+/// at rest. They were refused: behind them the exact yaw would have jumped.
+TEST(SingularSeed, AlongTheBaseAxisTheYawTurnsWhereTheRollRunsOutOfTravel) {
+  struct Along {
+    std::uint32_t seed;
+    double beside_mm;
+    Transition transition;
+  };
   MachineModel robot = config::load_machine(shipped_file("robot-6r"));
   config::place_workpiece(robot, config::parse_frame("0,0,0"));
-  const auto blocks = ShoulderPass(robot, kSeed).program(Pass::kAlong, 1e-3);
-  const JointVector start = joints_of(robot, blocks[0]);
-  SmoothTrace trace = plan_smooth(robot, blocks, start, {Transition::kSmooth, 0, 0}, true);
-  trace.joints = end_of(robot, trace, start);
-  const LimitUse use = measure_limits(robot, sample(robot, trace, 1e-3, 0.5, start), 1e-3);
-  EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
-  if (trace.last.status == PlanStatus::kRefused) {
-    EXPECT_EQ(trace.last.reject.code, RejectCode::kDiscontinuous);
+  for (const auto& [seed, beside_mm, transition] : {
+           Along{1016, 1e-3, Transition::kSmooth},
+           Along{1016, 1e-6, Transition::kExactStop},
+           Along{1016, 1e-9, Transition::kExactStop},
+           Along{1022, 1e-6, Transition::kExactStop},
+           Along{1022, 1e-9, Transition::kExactStop},
+           Along{1045, 1e-9, Transition::kExactStop},
+       }) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed << " beside " << beside_mm);
+    const auto blocks = ShoulderPass(robot, seed).program(Pass::kAlong, beside_mm);
+    const JointVector start = joints_of(robot, blocks[0]);
+    SmoothTrace trace = plan_smooth(robot, blocks, start, {transition, 0, 0}, true);
+    EXPECT_EQ(trace.last.status, PlanStatus::kOk);
+    trace.joints = end_of(robot, trace, start);
+    const auto setpoints = sample(robot, trace, 1e-3, 0.5, start);
+    const LimitUse use = measure_limits(robot, setpoints, 1e-3);
+    EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
+    EXPECT_LT(farthest_off(robot, blocks, trace, setpoints), kShare);
+    EXPECT_LT(trace.duration_s(), kLongest_s) << "it creeps";
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Of, SingularSweep,
-    testing::Values(Sweep{"WristSmooth", "robot-6r", true, Transition::kSmooth},
-                    Sweep{"WristExactStop", "robot-6r", true, Transition::kExactStop},
-                    Sweep{"ShoulderSmooth", "robot-6r", false, Transition::kSmooth},
-                    Sweep{"ShoulderExactStop", "robot-6r", false, Transition::kExactStop},
-                    Sweep{"ShoulderOf5RSmooth", "robot-5r", false, Transition::kSmooth},
-                    Sweep{"ShoulderOf5RExactStop", "robot-5r", false, Transition::kExactStop}),
+    testing::Values(
+        Sweep{"WristSmooth", "robot-6r", Where::kWrist, Transition::kSmooth},
+        Sweep{"WristExactStop", "robot-6r", Where::kWrist, Transition::kExactStop},
+        Sweep{"ShoulderSmooth", "robot-6r", Where::kShoulder, Transition::kSmooth},
+        Sweep{"ShoulderExactStop", "robot-6r", Where::kShoulder, Transition::kExactStop},
+        Sweep{"BothSmooth", "robot-6r", Where::kBoth, Transition::kSmooth},
+        Sweep{"BothExactStop", "robot-6r", Where::kBoth, Transition::kExactStop},
+        Sweep{"ShoulderOf5RSmooth", "robot-5r", Where::kShoulder, Transition::kSmooth},
+        Sweep{"ShoulderOf5RExactStop", "robot-5r", Where::kShoulder, Transition::kExactStop}),
     [](const testing::TestParamInfo<Sweep>& sweep) { return sweep.param.name; });
 
 }  // namespace
