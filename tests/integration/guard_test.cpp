@@ -34,9 +34,8 @@ namespace {
   return fastest;
 }
 
-TEST(OpenGuard, HoldsTheProgramRefusesToGoOnAndLetsTheHandMoveSlowly) {
-  Plant plant;
-  InputPipe console;
+/// Service, drives that `console` speaks to, and a program that runs.
+void run_a_program(Plant& plant, InputPipe& console) {
   plant.start_service();
   plant.start_drives({}, &console);
   ASSERT_TRUE(plant.enable()) << plant.service().said();
@@ -46,6 +45,12 @@ TEST(OpenGuard, HoldsTheProgramRefusesToGoOnAndLetsTheHandMoveSlowly) {
   ASSERT_TRUE(plant.wait_for(State::kLoaded)) << plant.standing();
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.standing();
+}
+
+TEST(OpenGuard, HoldsTheProgramRefusesToGoOnAndLetsTheHandMoveSlowly) {
+  Plant plant;
+  InputPipe console;
+  ASSERT_NO_FATAL_FAILURE(run_a_program(plant, console));
   console.write("guard\n");
   EXPECT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
   EXPECT_TRUE(eventually([&] {
@@ -74,15 +79,7 @@ TEST(OpenGuard, HoldsTheProgramRefusesToGoOnAndLetsTheHandMoveSlowly) {
 TEST(OpenGuard, LetsTheProgramGoOnOnceItIsShut) {
   Plant plant;
   InputPipe console;
-  plant.start_service();
-  plant.start_drives({}, &console);
-  ASSERT_TRUE(plant.enable()) << plant.service().said();
-  ASSERT_TRUE(plant.stream(small_program(60, 100), [](const stream::Station& station) {
-    return station.state() == stream::StationState::kComplete;
-  }));
-  ASSERT_TRUE(plant.wait_for(State::kLoaded)) << plant.standing();
-  ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
-  ASSERT_TRUE(plant.wait_for(State::kRunning)) << plant.standing();
+  ASSERT_NO_FATAL_FAILURE(run_a_program(plant, console));
   console.write("guard\n");
   ASSERT_TRUE(plant.wait_for(State::kHeld)) << plant.standing();
   console.write("mend\n");

@@ -12,14 +12,14 @@ namespace {
 
 /// What stays of a source that is gone: its guard, which counts as open.
 [[nodiscard]] DriveSource remains_of(const DriveSource& source) noexcept {
-  if (!source.has_guard) return {};
+  if (source.guard == GuardInput::kNone) return {};
   DriveSource guard;
   guard.writer = source.writer;
   guard.group = source.group;
   guard.sample = source.sample;
   guard.first_ns = source.first_ns;
   guard.arrival_ns = source.arrival_ns;
-  guard.has_guard = guard.is_guard_open = true;
+  guard.guard = GuardInput::kOpen;
   return guard;
 }
 
@@ -35,7 +35,8 @@ DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group
   }
   DriveSource* idlest = nullptr;
   for (DriveSource& source : sources_.places) {
-    const bool has_input = source.has_only_stop || source.is_emergency_stop || source.has_guard;
+    const bool has_input =
+        source.has_only_stop || source.is_emergency_stop || source.guard != GuardInput::kNone;
     const bool counts = source.bound_mask != 0 || has_input;
     if (counts || now_ns - source.arrival_ns <= kSilence_ns) continue;
     if (idlest == nullptr || source.arrival_ns < idlest->arrival_ns) idlest = &source;
@@ -50,7 +51,8 @@ DriveSource* FeedbackMerge::find_lost_guard(std::int64_t now_ns) noexcept {
   for (DriveSource& source : sources_.places) {
     const bool is_missed =
         source.bound_mask != 0 || source.has_only_stop || source.is_emergency_stop;
-    if (is_missed || !source.has_guard || now_ns - source.arrival_ns <= kSilence_ns) continue;
+    if (is_missed || source.guard == GuardInput::kNone || now_ns - source.arrival_ns <= kSilence_ns)
+      continue;
     is_guard_lost_ = true;
     return &source;
   }
@@ -80,8 +82,11 @@ bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
   place->arrival_ns = now_ns;
   place->has_only_stop = sample.joint_mask == 0;
   place->is_emergency_stop = sample.is_emergency_stop;
-  place->is_guard_open = sample.is_guard_open;
-  place->has_guard = place->has_guard || sample.is_guard_open;
+  if (sample.is_guard_open) {
+    place->guard = GuardInput::kOpen;
+  } else if (place->guard == GuardInput::kOpen) {
+    place->guard = GuardInput::kShut;
+  }
   place->probe = sample.probe <= ProbeInput::kContact ? sample.probe : ProbeInput::kNone;
   take_guard(*place, now_ns);
   bind(*place, now_ns, may_hand_over);
@@ -107,9 +112,9 @@ void FeedbackMerge::take_guard(DriveSource& source, std::int64_t now_ns) noexcep
     const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
     // Only who came behind the silence: who spoke all the while is another one.
     const bool is_heir = other.group == source.group && source.first_ns > other.arrival_ns;
-    if (!other.has_guard || !is_silent || !is_heir) continue;
-    other.has_guard = other.is_guard_open = false;
-    source.has_guard = true;
+    if (other.guard == GuardInput::kNone || !is_silent || !is_heir) continue;
+    other.guard = GuardInput::kNone;
+    if (source.guard == GuardInput::kNone) source.guard = GuardInput::kShut;
     const bool is_missed = other.bound_mask != 0 || other.has_only_stop;
     if (!is_missed && !other.is_emergency_stop) other = {};
   }
@@ -158,7 +163,8 @@ void FeedbackMerge::merge_inputs(const DriveSource& source, std::int64_t now_ns)
     feedback_.emergency_ns = std::max(feedback_.emergency_ns, source.arrival_ns);
   }
   const bool is_silent = now_ns - source.arrival_ns > kSilence_ns;
-  if (source.is_guard_open || (source.has_guard && is_silent)) feedback_.is_guard_open = true;
+  const bool is_lost = source.guard == GuardInput::kShut && is_silent;
+  if (source.guard == GuardInput::kOpen || is_lost) feedback_.is_guard_open = true;
 }
 
 void FeedbackMerge::merge(std::int64_t now_ns) noexcept {

@@ -88,7 +88,7 @@ void SourceReporter::report_contest(Known& known, const DriveSource& source,
 void SourceReporter::report_guard(Known& known, const DriveSource& source, std::int64_t now_ns,
                                   const Say& say) {
   const bool is_silent = now_ns - source.arrival_ns > FeedbackMerge::kSilence_ns;
-  const bool is_lost = source.has_guard && is_silent;
+  const bool is_lost = source.guard != GuardInput::kNone && is_silent;
   if (std::exchange(known.is_guard_lost, is_lost) || !is_lost) return;
   say(Weight::kError, known.name +
                           " says nothing any more: its guard counts as open until it does, or "

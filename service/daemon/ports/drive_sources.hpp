@@ -10,6 +10,13 @@
 
 namespace meridian::interpolator {
 
+/// What a source says of a guard of the work space.
+enum class GuardInput : std::uint8_t {
+  kNone,  ///< it never said that one is open: it may have none
+  kShut,  ///< it has one, which is shut; its silence is an open guard
+  kOpen
+};
+
 /// One writer's word on one drive group.
 struct DriveSource {
   std::uint64_t writer = 0;  ///< dds::SampleInfo::source; 0: place is free
@@ -22,8 +29,7 @@ struct DriveSource {
   std::int64_t first_ns = 0, arrival_ns = 0;  ///< of its first and its newest sample
   bool has_only_stop = false;                 ///< it has no joint of any machine: a stop input
   bool is_emergency_stop = false;
-  bool is_guard_open = false;
-  bool has_guard = false;  ///< it said once that a guard is open: its silence is an open guard
+  GuardInput guard = GuardInput::kNone;
   ProbeInput probe = ProbeInput::kNone;
 
   /// The joints that the machine takes from it.

@@ -96,8 +96,12 @@ struct EnablingChange {
 
 /// Something for the log, and where it is for the operator for the status too.
 struct Notice {
-  bool is_warning = false, is_for_status = false;
-  bool is_over = false;  ///< what the notice before said: the status keeps neither
+  enum class Kind : std::uint8_t {
+    kNews,     ///< for the log
+    kWarning,  ///< for log and status; it stays there as the reason of a stop
+    kOver      ///< for both: what the notice before said is over
+  };
+  Kind kind = Kind::kNews;
   std::array<char, dds::kMaxText + 1> text{};  ///< zero-terminated
 };
 

@@ -166,8 +166,7 @@ class Supervisor {
   void take_enabling_changes();
   /// Says when a guard opens or shuts.
   void report_guard();
-  void notice(const std::string& text, bool is_for_status);
-  void push(Notice notice, const std::string& text);
+  void notice(const std::string& text, Notice::Kind kind);
   void publish_action(const Event& event);
   void take_actions_done();
   void settle_action(bool is_done);

@@ -103,7 +103,7 @@ bool Supervisor::is_within_quota(std::uint64_t participant, std::uint64_t source
   if (result == ParticipantQuota::Result::kFirstBeyond) {
     notice("commands beyond 200 a second are dropped, stops alone are obeyed: " +
                dds::describe_source(participant_, commands_.reader(), source),
-           true);
+           Notice::Kind::kWarning);
   }
   return false;
 }

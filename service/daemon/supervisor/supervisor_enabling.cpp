@@ -17,16 +17,16 @@ void Supervisor::take_enabling_changes() {
       case Beat::kBegun:
         enabling_devices_[enabling_devices_at_++ % enabling_devices_.size()] = {change.source,
                                                                                 change.name.data()};
-        notice(device + " is pressed", false);
+        notice(device + " is pressed", Notice::Kind::kNews);
         break;
       case Beat::kReleased:
-        notice(device + " was released: what moved is held", true);
+        notice(device + " was released: what moved is held", Notice::Kind::kWarning);
         break;
       case Beat::kLeft:
-        notice(device + " has left", false);
+        notice(device + " has left", Notice::Kind::kNews);
         break;
       case Beat::kNoRoom:
-        notice(device + " does not count: there are too many of them", true);
+        notice(device + " does not count: there are too many of them", Notice::Kind::kWarning);
         break;
       case Beat::kKnown:
         break;
@@ -40,26 +40,22 @@ void Supervisor::take_enabling_changes() {
                    [source](const EnablingDevice& known) { return known.source == source; });
   notice("enabling device of " + (device != enabling_devices_.end() ? device->name : "somebody") +
              " fell silent: what moved is held; press it again, then resume",
-         true);
+         Notice::Kind::kWarning);
 }
 
 void Supervisor::report_guard() {
   const bool is_open = ports_.is_guard_open.load(std::memory_order_relaxed);
   if (std::exchange(was_guard_open_, is_open) == is_open) return;
-  if (!is_open)
-    return push({.is_for_status = true, .is_over = true, .text = {}}, "the guard is shut");
+  if (!is_open) return notice("the guard is shut", Notice::Kind::kOver);
   notice(view_.is_dry_run ? "a guard is open; the dry run goes on"
                           : "a guard is open: what moved is held, and only jogging is allowed, "
                             "slowly",
-         true);
+         Notice::Kind::kWarning);
 }
 
 /// What finds no room is lost: telemetry is held up by then, and motion is not.
-void Supervisor::notice(const std::string& text, bool is_for_status) {
-  push({.is_warning = is_for_status, .is_for_status = is_for_status, .text = {}}, text);
-}
-
-void Supervisor::push(Notice notice, const std::string& text) {
+void Supervisor::notice(const std::string& text, Notice::Kind kind) {
+  Notice notice{.kind = kind, .text = {}};
   std::memcpy(notice.text.data(), text.data(), std::min(text.size(), notice.text.size() - 1));
   (void)ports_.notices.try_push(notice);
 }

@@ -133,11 +133,11 @@ void TelemetryThread::drain() {
     recorder_.take(planned);
   }
   for (Notice notice; ports_.notices.try_pop(notice);) {
-    log_->log(notice.is_warning ? spdlog::level::warn : spdlog::level::info, "{}",
-              notice.text.data());
-    if (!notice.is_for_status) continue;
+    log_->log(notice.kind == Notice::Kind::kWarning ? spdlog::level::warn : spdlog::level::info,
+              "{}", notice.text.data());
+    if (notice.kind == Notice::Kind::kNews) continue;
     if (status_.alarm == Alarm::kNone) status_.message = notice.text.data();
-    notice_ = notice.is_over ? "" : notice.text.data();
+    notice_ = notice.kind == Notice::Kind::kOver ? "" : notice.text.data();
     has_news_ = true;
   }
   Event event;

@@ -98,7 +98,7 @@ TEST_F(SupervisorTest, DropsAFloodOfOneParticipantReportsItOnceAndObeysItsStops)
   int reports = 0;
   for (Notice notice; ports_->notices.try_pop(notice);) {
     reports += std::string(notice.text.data()).find("beyond 200 a second") != std::string::npos;
-    EXPECT_TRUE(notice.is_for_status);
+    EXPECT_EQ(notice.kind, Notice::Kind::kWarning);
   }
   EXPECT_EQ(reports, 1);
   dds::Participant other({.domain = domain_.id(), .machine = model_.name});
@@ -128,7 +128,7 @@ TEST_F(SupervisorTest, RefusesWhatMovesByItselfWithAnOpenGuard) {
 TEST_F(SupervisorTest, SaysWhenAGuardOpensAndShutsAndThatADryRunGoesOn) {
   Notice notice;
   const auto says = [&](const std::string& text) {
-    return comes([&] { return ports_->notices.try_pop(notice); }) && notice.is_for_status &&
+    return comes([&] { return ports_->notices.try_pop(notice); }) && notice.kind != Notice::Kind::kNews &&
            std::string(notice.text.data()).find(text) == 0;
   };
   show(State::kReady, false);

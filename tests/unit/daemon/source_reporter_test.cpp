@@ -55,7 +55,7 @@ TEST_F(TellerTest, SaysOnceWhoReportsAndWhoIsGone) {
 }
 
 TEST_F(TellerTest, SaysOnceThatAGuardCountsAsOpenBecauseNobodySpeaksOfIt) {
-  source(0, 11, 0b11, 0b11).has_guard = true;
+  source(0, 11, 0b11, 0b11).guard = GuardInput::kShut;
   (void)look();
   now_ns_ += 300 * kTick_ns;
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 says nothing any more: its guard counts as "
