@@ -20,6 +20,7 @@ inline std::uint64_t run_monitoring(int count, bool is_all) {
     axis = {.speed = 1e3,
             .set_up_speed = 1e3,
             .standstill = 1e3,
+            .drive_speed = 1e3,
             .frozen = 1e3,
             .window_margin = 1e3,
             .has_window = true,
@@ -44,7 +45,7 @@ inline std::uint64_t run_monitoring(int count, bool is_all) {
     in.now_ns = in.feedback.arrival_ns = i * machine.cycle_ns;
     in.feedback.joint_arrival_ns.fill(in.now_ns);
     in.feedback.joint_cycle_seen.fill(in.feedback.cycle_seen);
-    last.joints[0] = in.feedback.position[0] = 1e-3 * i;
+    last.setpoint.position[0] = in.feedback.position[0] = 1e-3 * i;
     const MonitoringAlarm alarm = monitor.check(machine, in, last, false, 0);
     sum += static_cast<std::uint64_t>(alarm.alarm) + 1;
   }

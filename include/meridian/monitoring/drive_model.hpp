@@ -11,7 +11,7 @@
 
 namespace meridian::monitoring {
 
-/// Two equal lags one behind the other, which settle v * time constant behind an input of speed v.
+/// Two equal lags in series, which settle v * time constant behind an input of speed v.
 /// With e1 = u - y1 and e2 = u - y2 over a period dt of an input u that stands, w = 2 / time
 /// constant:
 ///
@@ -32,14 +32,14 @@ struct TwoLags {
   }
 };
 
-/// Following error against a model of each drive in the place of a constant: a delay, and behind it
-/// two lags. The model runs through every setpoint up to the one that a report names, so a late
-/// report is no error.
+/// Following error of each drive, in its own coordinate, against a model of it and not a constant:
+/// a delay, and behind it two lags. The model runs through every setpoint up to the one that a
+/// report names, so a late report is no error.
 ///
 /// Where a drive had to bridge setpoints, or took more or fewer of them than cycles went by, it is
 /// ahead of the model or behind it by as many periods at the speed of its setpoint. The bound is
 /// wider by twice that travel, and what is added dies out as the drive's own lag does: the model is
-/// never switched off. So it is behind the first report, for a drive that moves then.
+/// never switched off. So it is after the first report, for a drive that moves then.
 /// RT: cycle. Proof: tests/unit/monitoring/drive_model_test.cpp.
 class DriveModel {
  public:
@@ -56,7 +56,7 @@ class DriveModel {
     for (Axis& axis : axes_) axis.is_running = false;
   }
 
-  /// Takes one cycle and the new reports of the axes `fresh`.
+  /// Adds one cycle and the new reports of the drives `fresh`.
   [[nodiscard]] Result check(const Limits& limits, const SentPositions& sent, const Inputs& in,
                              std::uint32_t fresh) noexcept {
     Result result;
@@ -65,8 +65,8 @@ class DriveModel {
       if (!limits.axes[n].has_model) continue;
       axes_[n].waited += static_cast<std::uint64_t>(in.periods);
       if ((fresh >> n & 1U) == 0) continue;
-      take_report(limits, n, sent, in);
-      const double error = in.measured[n] - axes_[n].model.second;
+      add_report(limits, n, sent, in);
+      const double error = in.reported[n] - axes_[n].model.second;
       const double bound = limits.axes[n].model_error + axes_[n].wider.second;
       if (std::abs(error) > bound && result.finding == Finding::kNone) {
         result = {Finding::kDriveModel, i, error};
@@ -75,7 +75,7 @@ class DriveModel {
     return result;
   }
 
-  /// By how much the bound of axis `i` is wider than AxisLimits::model_error now.
+  /// By how much the bound of drive `i` is wider than AxisLimits::model_error now.
   [[nodiscard]] double wider(std::size_t i) const noexcept { return axes_[i].wider.second; }
 
  private:
@@ -96,14 +96,14 @@ class DriveModel {
     axis.has_input = false;
     axis.cycle = in.cycle_seen[n];
     axis.missing = 0;
-    axis.input = axis.model.first = axis.model.second = in.measured[n];
+    axis.input = axis.model.first = axis.model.second = in.reported[n];
     axis.step = 0;
-    axis.wider.first = limits.speed * limits.time_constant_s;  // its first lag is not known
+    axis.wider.first = limits.drive_speed * limits.time_constant_s;  // its first lag is not known
     axis.wider.second = 0;
   }
 
-  void take_report(const Limits& limits, std::size_t n, const SentPositions& sent,
-                   const Inputs& in) noexcept {
+  void add_report(const Limits& limits, std::size_t n, const SentPositions& sent,
+                  const Inputs& in) noexcept {
     Axis& axis = axes_[n];
     const std::uint64_t seen = in.cycle_seen[n];
     const bool is_known = axis.is_running && seen >= axis.cycle && seen - axis.cycle <= kCatchUp;
@@ -124,7 +124,7 @@ class DriveModel {
     axis.waited = 0;
   }
 
-  /// One period on, by the setpoint of the cycle behind `Axis::cycle`; 1 where there was none.
+  /// One period on, by the setpoint of the cycle after `Axis::cycle`; 1 where there was none.
   static double advance(const AxisLimits& limits, Axis& axis, std::size_t n,
                         const SentPositions& sent) noexcept {
     const auto delay = static_cast<std::uint64_t>(std::max(0, limits.delay_cycles));

@@ -14,29 +14,29 @@ class ModeTracker {
     const bool is_still = in.motion == Motion::kRest || in.motion == Motion::kOff;
     if (!in.is_guard_open) {
       open_s_ = 0;
-      is_guarded_ = true;
+      counts_as_shut_ = true;
     } else {
       open_s_ += limits.cycle_s * in.periods;
-      if (is_still || open_s_ > limits.guard_stop_s) is_guarded_ = false;
+      if (is_still || open_s_ > limits.guard_stop_s) counts_as_shut_ = false;
     }
     switch (in.motion) {
       case Motion::kOff:
         return Mode::kOff;
       case Motion::kRest:
         return Mode::kStandstill;
-      case Motion::kHand:
-        return is_guarded_ ? Mode::kAutomatic : Mode::kSetUp;
+      case Motion::kJog:
+        return counts_as_shut_ ? Mode::kAutomatic : Mode::kSetUp;
       case Motion::kHoming:
-        return is_guarded_ ? Mode::kOff : Mode::kStandstill;
+        return counts_as_shut_ ? Mode::kOff : Mode::kStandstill;
       case Motion::kProgram:
-        return is_guarded_ ? Mode::kAutomatic : Mode::kStandstill;
+        return counts_as_shut_ ? Mode::kAutomatic : Mode::kStandstill;
     }
     return Mode::kOff;
   }
 
  private:
   double open_s_ = 0;
-  bool is_guarded_ = true;
+  bool counts_as_shut_ = true;
 };
 
 }  // namespace meridian::monitoring

@@ -39,7 +39,7 @@ class Monitor {
  private:
   /// What reports say in the course of time.
   [[nodiscard]] Result check_reports(const Inputs& in) noexcept {
-    // Drives that home give their positions new names.
+    // Drives that home renumber their positions.
     if (mode_ == Mode::kOff || in.motion == Motion::kHoming || !in.has_report) {
       clock_.restart();
       plausible_.restart();
@@ -49,7 +49,7 @@ class Monitor {
     }
     restart_window(in);
     window_.add(in);
-    const std::uint32_t fresh = clock_.take(limits_, in);
+    const std::uint32_t fresh = clock_.add(limits_, in);
     const Result plausible = plausible_.check(limits_, sent_, in, clock_, fresh);
     const Result model = model_.check(limits_, sent_, in, fresh);
     if (plausible.finding != Finding::kNone) return plausible;
@@ -59,8 +59,8 @@ class Monitor {
     return limited.finding != Finding::kNone ? limited : model;
   }
 
-  /// What moved fast behind a shut guard is not held against the hand: the window begins anew with
-  /// the first set-up mode since the guard opened. Behind rests between two jogs it goes on.
+  /// What moved fast behind a shut guard does not count for a jog: the window begins anew with the
+  /// first set-up mode since the guard opened. After rests between two jogs it goes on.
   void restart_window(const Inputs& in) noexcept {
     if (!in.is_guard_open) is_set_up_ = false;
     if (mode_ != Mode::kSetUp || is_set_up_) return;

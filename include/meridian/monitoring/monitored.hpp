@@ -9,6 +9,8 @@
 /// What goes into the monitoring of a machine, and what comes out. This room includes nothing but
 /// the standard library: it shares no code with planner and cycle, so that one mistake is not made
 /// twice. Everything is plain, of fixed size and fed once a cycle. Units: mm or rad, s.
+/// An axis has a drive of the same index, which is what moves it unless there is a stage between:
+/// limits and values of drives are marked as such.
 /// docs/monitoring.md says what each function is for. It is no safety function. RT: cycle.
 namespace meridian::monitoring {
 
@@ -21,7 +23,7 @@ enum class Motion : std::uint8_t {
   kOff,     ///< drives are off, or on their way on or off
   kHoming,  ///< drives search for their references by themselves
   kRest,    ///< every axis is to stand
-  kHand,    ///< an operator jogs, hold-to-run
+  kJog,     ///< an operator jogs, hold-to-run
   kProgram  ///< it moves by itself, or comes to rest from that
 };
 
@@ -29,16 +31,17 @@ enum class Motion : std::uint8_t {
 enum class Mode : std::uint8_t {
   kOff,        ///< nothing
   kAutomatic,  ///< motion behind shut guards
-  kSetUp,      ///< motion by hand with an open guard
+  kSetUp,      ///< jogs with an open guard
   kStandstill  ///< nothing may move
 };
 
-/// What is allowed of one axis.
+/// What is allowed of one axis and its drive.
 struct AxisLimits {
   double speed = 0;          ///< its maximum
   double set_up_speed = 0;   ///< with an open guard
-  double standstill = 0;     ///< so far it may leave its place in standstill
-  double frozen = 0;         ///< led on by more than this its position has to change
+  double standstill = 0;     ///< so far it may leave its position in standstill
+  double drive_speed = 0;    ///< maximum of its drive
+  double frozen = 0;         ///< led on by more than this its drive has to change its position
   double window_margin = 0;  ///< of both windows
   bool has_window = false;   ///< false: an endless axis without one
   double low = 0, high = 0;  ///< window in automatic mode
@@ -46,7 +49,7 @@ struct AxisLimits {
   bool has_model = false;      ///< the three below count
   double time_constant_s = 0;  ///< of the drive: at speed v it is v * time_constant_s behind
   int delay_cycles = 0;        ///< setpoints are followed so much later
-  double model_error = 0;      ///< so far it may be off the model
+  double model_error = 0;      ///< so far the drive may be off the model
 };
 
 /// What is allowed of a machine.
@@ -66,9 +69,10 @@ struct Inputs {
   bool has_report = false;       ///< every axis reports a finite position, not long ago
   int periods = 1;               ///< since the cycle before; more where some were lost
   std::uint64_t cycle = 0;       ///< number of `commanded`
-  Values commanded{};            ///< as sent last
+  Values commanded{};            ///< setpoints of the drives, as sent last
   std::uint32_t known_mask = 0;  ///< axes that know where they are
-  Values measured{};
+  Values reported{};             ///< positions of the drives
+  Values measured{};             ///< of the axes, from those of the drives
   std::array<std::int64_t, kAxes> arrival_ns{};   ///< of the newest report of each axis
   std::array<std::uint64_t, kAxes> cycle_seen{};  ///< newest setpoint that its drive had taken then
   Point tip{};                                    ///< of the measured axes; only its changes count
@@ -85,6 +89,12 @@ enum class Finding : std::uint8_t {
   kFrozen,
   kTooFast
 };
+
+/// Whether `Result::axis` is a drive.
+[[nodiscard]] constexpr bool is_of_drive(Finding finding) noexcept {
+  return finding == Finding::kDriveModel || finding == Finding::kJump ||
+         finding == Finding::kFrozen;
+}
 
 /// What was found first in a cycle. `value`: how far, where, or how fast.
 struct Result {

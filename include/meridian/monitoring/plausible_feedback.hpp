@@ -11,18 +11,18 @@
 
 namespace meridian::monitoring {
 
-/// Servo loops overshoot: an axis may report to be faster than its limit by this factor.
+/// Servo loops overshoot: a drive may report to be faster than its limit by this factor.
 inline constexpr double kOvershoot = 1.25;
 
-/// Plausibility of feedback: a jump is farther from the report before than the axis can move in the
-/// time that ReportClock allows; frozen is a position that stays the same to the last bit while the
-/// setpoints that were taken lead on; too fast is a mean speed that the axis cannot have.
-/// RT: cycle. Proof: tests/unit/monitoring/plausible_feedback_test.cpp.
+/// Plausibility of feedback: a jump is farther from the report before than the drive can move in
+/// the time that ReportClock allows; frozen is a position that stays the same to the last bit while
+/// the setpoints that were taken lead on; too fast is a mean speed that the axis cannot have. RT:
+/// cycle. Proof: tests/unit/monitoring/plausible_feedback_test.cpp.
 class PlausibleFeedback {
  public:
   void restart() noexcept { axes_ = {}; }
 
-  /// Takes the new reports of the axes `fresh`.
+  /// Adds the new reports of the drives `fresh`.
   [[nodiscard]] Result check(const Limits& limits, const SentPositions& sent, const Inputs& in,
                              const ReportClock& clock, std::uint32_t fresh) noexcept {
     Result result;
@@ -31,7 +31,7 @@ class PlausibleFeedback {
       if ((fresh >> n & 1U) == 0) continue;
       const Values* const taken = sent.find(in.cycle_seen[n]);
       const double* const led = taken != nullptr ? &(*taken)[n] : nullptr;
-      const Result next = check_axis(limits, i, in.measured[n], led, clock.allowed_s(n));
+      const Result next = check_axis(limits, i, in.reported[n], led, clock.allowed_s(n));
       if (result.finding == Finding::kNone) result = next;
     }
     return result;
@@ -52,7 +52,7 @@ class PlausibleFeedback {
     const double step = at - axis.last;
     const bool has_changed = !axis.has_last || step != 0 || !axis.has_led;
     Result result;
-    if (axis.has_last && std::abs(step) > allowed.speed * kOvershoot * allowed_s) {
+    if (axis.has_last && std::abs(step) > allowed.drive_speed * kOvershoot * allowed_s) {
       result = {Finding::kJump, i, step};
     } else if (!has_changed && led != nullptr && std::abs(*led - axis.led_from) > allowed.frozen) {
       result = {Finding::kFrozen, i, *led - axis.led_from};

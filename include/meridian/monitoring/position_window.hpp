@@ -27,7 +27,7 @@ class PositionWindow {
       const double low = is_set_up ? axis.set_up_low : axis.low;
       const double high = is_set_up ? axis.set_up_high : axis.high;
       const double at = in.measured[n];
-      edges.take(n, low, high, at);
+      edges.update(n, low, high, at);
       const bool is_inside =
           at >= edges.low[n] - axis.window_margin && at <= edges.high[n] + axis.window_margin;
       if (!is_inside && result.finding == Finding::kNone) {
@@ -44,7 +44,7 @@ class PositionWindow {
     std::uint32_t known_mask = 0;  ///< axes whose values are of now
     Values low{}, high{};
 
-    void take(std::size_t n, double window_low, double window_high, double at) noexcept {
+    void update(std::size_t n, double window_low, double window_high, double at) noexcept {
       const bool is_new = (known_mask >> n & 1U) == 0;
       low[n] = std::min(window_low, is_new ? at : std::max(low[n], at));
       high[n] = std::max(window_high, is_new ? at : std::min(high[n], at));
@@ -52,7 +52,7 @@ class PositionWindow {
   };
 
   Edges automatic_;
-  Edges set_up_;  ///< from the first jog behind an open guard on, until that is shut
+  Edges set_up_;  ///< from the first jog with an open guard on, until that is shut
 };
 
 }  // namespace meridian::monitoring

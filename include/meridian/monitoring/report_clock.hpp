@@ -31,9 +31,9 @@ class ReportClock {
  public:
   static constexpr double kGap_s = 0.1;
 
-  /// Takes one cycle; the axes whose report is new, a bit for each. Of the first report of an axis
-  /// allowed_s() is 0.
-  [[nodiscard]] std::uint32_t take(const Limits& limits, const Inputs& in) noexcept {
+  /// Adds one cycle; returns the axes whose report is new, a bit for each. Of the first report of
+  /// an axis allowed_s() is 0.
+  [[nodiscard]] std::uint32_t add(const Limits& limits, const Inputs& in) noexcept {
     std::uint32_t fresh = 0;
     const double passed_s = limits.cycle_s * in.periods;
     for (int i = 0; i < limits.axis_count; ++i) {
@@ -43,7 +43,7 @@ class ReportClock {
       axis.gap_age_s += passed_s;
       if (in.arrival_ns[n] == axis.arrival_ns) continue;
       fresh |= 1U << n;
-      take_report(limits, axis, in.arrival_ns[n], in.cycle_seen[n]);
+      add_report(limits, axis, in.arrival_ns[n], in.cycle_seen[n]);
     }
     return fresh;
   }
@@ -60,8 +60,8 @@ class ReportClock {
     double gap_s = 0, gap_age_s = 0;  ///< longest silence of late, and how long ago it ended
     double allowed_s = 0;
   };
-  static void take_report(const Limits& limits, Axis& axis, std::int64_t arrival_ns,
-                          std::uint64_t cycle_seen) noexcept {
+  static void add_report(const Limits& limits, Axis& axis, std::int64_t arrival_ns,
+                         std::uint64_t cycle_seen) noexcept {
     const double gap_s = axis.waited_s - limits.cycle_s;
     if (gap_s >= axis.gap_s || axis.gap_age_s > kGap_s) {
       axis.gap_s = std::max(0.0, gap_s);

@@ -14,21 +14,21 @@ namespace meridian::monitoring {
 class SentPositions {
  public:
   void put(std::uint64_t cycle, const Values& commanded) noexcept {
-    sent_[cycle % kPlaces] = {cycle, commanded};
+    sent_[cycle % kCapacity] = {cycle, commanded};
   }
   /// nullptr: none was sent in that cycle, or long ago.
   [[nodiscard]] const Values* find(std::uint64_t cycle) const noexcept {
-    const Sent& sent = sent_[cycle % kPlaces];
+    const Sent& sent = sent_[cycle % kCapacity];
     return cycle != 0 && sent.cycle == cycle ? &sent.commanded : nullptr;
   }
 
  private:
-  static constexpr std::size_t kPlaces = 256;
+  static constexpr std::size_t kCapacity = 256;
   struct Sent {
     std::uint64_t cycle = 0;
     Values commanded{};
   };
-  std::array<Sent, kPlaces> sent_{};
+  std::array<Sent, kCapacity> sent_{};
 };
 
 }  // namespace meridian::monitoring

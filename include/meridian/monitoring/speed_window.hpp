@@ -11,33 +11,34 @@
 
 namespace meridian::monitoring {
 
-/// Mean speeds over kSpan_s or kSpans periods, whichever is longer, by the times of the two reports
-/// at its ends: steps of an encoder and late reports weigh little, and nothing adds up. Lost
-/// periods make it longer. kSlackPeriods are added to the time, so that a late report is no speed:
-/// what it says is a sixteenth too low at most. RT: cycle. Proof:
+/// Mean speeds over kWindow_s or kWindowPeriods periods, whichever is longer, by the times of the
+/// two reports at its ends: steps of an encoder and late reports weigh little, and nothing adds up.
+/// Lost periods make it longer. kSlackPeriods are added to the time, so that a late report is no
+/// speed: what it says is a sixteenth too low at most. RT: cycle. Proof:
 /// tests/unit/monitoring/limited_speed_test.cpp.
 class SpeedWindow {
  public:
-  static constexpr double kSpan_s = 0.064;
-  static constexpr std::size_t kSpans = 64;
+  static constexpr double kWindow_s = 0.064;
+  static constexpr std::size_t kWindowPeriods = 64;
 
   explicit SpeedWindow(const Limits& limits) noexcept
       : cycle_s_(limits.cycle_s),
         slack_s_(limits.cycle_s * kSlackPeriods),
-        stride_(std::max(1, static_cast<int>(std::lround(kSpan_s / static_cast<double>(kSpans) /
-                                                         limits.cycle_s)))) {}
+        stride_(std::max(
+            1, static_cast<int>(std::lround(kWindow_s / static_cast<double>(kWindowPeriods) /
+                                            limits.cycle_s)))) {}
   void restart() noexcept { count_ = 0, skipped_ = 0; }
   /// Takes one cycle.
   void add(const Inputs& in) noexcept {
     now_ = {in.measured, in.tip, in.arrival_ns, in.cycle_seen};
     if (++skipped_ < stride_ && count_ != 0) return;
     skipped_ = 0;
-    before_ = kept_[count_ % kPlaces];
-    kept_[count_ % kPlaces] = now_;
+    before_ = kept_[count_ % kWindowPeriods];
+    kept_[count_ % kWindowPeriods] = now_;
     ++count_;
   }
-  /// Whether there were reports for the whole span: only then do speeds mean something.
-  [[nodiscard]] bool is_full() const noexcept { return count_ > kSpans; }
+  /// Whether there were reports for the whole window: only then do speeds mean something.
+  [[nodiscard]] bool is_full() const noexcept { return count_ > kWindowPeriods; }
   [[nodiscard]] bool is_faster(std::size_t i, double speed) const noexcept {
     const double moved = std::abs(now_.measured[i] - before_.measured[i]);
     return moved > speed * slack_s_ && moved > speed * time_s(i);  // at rest the first is enough
@@ -55,7 +56,6 @@ class SpeedWindow {
   }
 
  private:
-  static constexpr std::size_t kPlaces = kSpans;
   struct Kept {
     Values measured{};
     Point tip{};
@@ -74,7 +74,7 @@ class SpeedWindow {
   double cycle_s_, slack_s_;
   int stride_, skipped_ = 0;  ///< cycles between two that are kept
   std::size_t count_ = 0;
-  std::array<Kept, kPlaces> kept_{};
+  std::array<Kept, kWindowPeriods> kept_{};
   Kept now_, before_;
 };
 

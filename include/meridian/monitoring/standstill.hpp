@@ -14,16 +14,16 @@ class Standstill {
   [[nodiscard]] Result check(const Limits& limits, const Inputs& in, Mode mode) noexcept {
     if (mode != Mode::kStandstill) {
       time_s_ = 0;
-      has_place_ = false;
+      is_settled_ = false;
       return {};
     }
     time_s_ += limits.cycle_s * in.periods;
     if (!in.has_report || time_s_ < limits.settle_s) return {};
-    if (!has_place_) place_ = in.measured;
-    has_place_ = true;
+    if (!is_settled_) rest_position_ = in.measured;
+    is_settled_ = true;
     for (int i = 0; i < limits.axis_count; ++i) {
       const auto n = static_cast<std::size_t>(i);
-      const double moved = in.measured[n] - place_[n];
+      const double moved = in.measured[n] - rest_position_[n];
       if (std::abs(moved) > limits.axes[n].standstill) return {Finding::kStandstill, i, moved};
     }
     return {};
@@ -31,8 +31,8 @@ class Standstill {
 
  private:
   double time_s_ = 0;
-  bool has_place_ = false;
-  Values place_{};
+  bool is_settled_ = false;
+  Values rest_position_{};
 };
 
 }  // namespace meridian::monitoring

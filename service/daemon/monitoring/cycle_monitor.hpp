@@ -35,7 +35,7 @@ namespace meridian::interpolator {
     case State::kHoming:
       return Motion::kHoming;
     case State::kJogging:
-      return Motion::kHand;
+      return Motion::kJog;
     case State::kApproaching:
     case State::kRunning:
     case State::kHolding:
@@ -91,11 +91,19 @@ class CycleMonitor {
     in_.motion = motion_of(last.state, is_dry_run, (homing & all_joints(machine)) != 0);
     fill(machine, next, last);
     const monitoring::Result result = monitor_.check(in_);
-    return {alarm_of(result.finding), result.axis, result.value};
+    return {alarm_of(result.finding), number_of(machine, result), result.value};
   }
   [[nodiscard]] const monitoring::Monitor& monitor() const noexcept { return monitor_; }
 
  private:
+  /// As alarms count: the joint, or behind the joints the drive of a stage.
+  [[nodiscard]] static int number_of(const MachineModel& machine,
+                                     const monitoring::Result& result) noexcept {
+    if (!has_stage(machine) || !monitoring::is_of_drive(result.finding)) return result.axis;
+    if (result.axis == machine.stage.linear_joint) return machine.joint_count;
+    if (result.axis == machine.stage.rotary_joint) return machine.joint_count + 1;
+    return result.axis;
+  }
   void fill(const MachineModel& machine, const CycleInputs& next,
             const CycleRecord& last) noexcept {
     const Feedback& f = next.feedback;
@@ -103,10 +111,11 @@ class CycleMonitor {
     in_.is_guard_open = f.is_guard_open;
     in_.periods = 1 + static_cast<int>(next.lost_periods);
     in_.cycle = last.setpoint.cycle;
-    in_.commanded = last.joints;
+    in_.commanded = last.setpoint.position;
     in_.known_mask = f.referenced_mask;
     in_.arrival_ns = f.joint_arrival_ns;
     in_.cycle_seen = f.joint_cycle_seen;
+    in_.reported = f.position;
     if (has_stage(machine)) {  // a joint depends on several drives: it is as old as the oldest
       in_.measured = joints_of(machine, f.position);
       in_.arrival_ns.fill(f.arrival_ns);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::config {
@@ -18,19 +19,32 @@ constexpr double kShareOfFollowingError = 0.2;
   return joint.is_rotary ? units::kDegree_rad : 1.0;
 }
 
-/// A key for linear joints in mm, one for rotary joints in degrees; where the file has neither,
-/// what `otherwise` says of each joint stands.
-void read_distance(Section& section, const std::string& name, const MachineModel& model,
-                   double monitoring::AxisLimits::*place, double share,
+/// The joints, or the drives, of a machine in its order.
+using Specs = std::vector<JointSpec>;
+
+[[nodiscard]] Specs joints_in(const MachineModel& model) {
+  return {model.joints.begin(), model.joints.begin() + model.joint_count};
+}
+
+[[nodiscard]] Specs drives_in(const MachineModel& model) {
+  Specs drives;
+  for (int i = 0; i < model.joint_count; ++i) drives.push_back(drive_spec(model, i));
+  return drives;
+}
+
+/// A key for what is linear in mm, one for what is rotary in degrees; where the file has neither, a
+/// `share` of each following error.
+void read_distance(Section& section, const std::string& name, const Specs& specs,
+                   double monitoring::AxisLimits::*distance, double share,
                    monitoring::Limits& limits) {
   for (const bool is_rotary : {false, true}) {
     const std::string key = name + (is_rotary ? "_deg" : "_mm");
     const double said = section.number_or(key, 0, {1e-6, 1e4});
-    for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
-      const JointSpec& joint = model.joints[i];
-      if (joint.is_rotary != is_rotary) continue;
-      const double otherwise = share * joint.limits.following_error;
-      limits.axes[i].*place = section.has(key) ? said * unit_of(joint) : otherwise;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      const JointSpec& spec = specs[i];
+      if (spec.is_rotary != is_rotary) continue;
+      const double otherwise = share * spec.limits.following_error;
+      limits.axes[i].*distance = section.has(key) ? said * unit_of(spec) : otherwise;
     }
   }
 }
@@ -90,14 +104,14 @@ void read_windows(Section& section, const MachineModel& model, monitoring::Limit
 void read_model(Section& section, const MachineModel& model, monitoring::Limits& limits) {
   const int delay = section.integer_or("drive_delay_cycles", 0, 0, 64);
   const auto count = static_cast<std::size_t>(model.joint_count);
-  read_distance(section, "model_error", model, &monitoring::AxisLimits::model_error,
+  read_distance(section, "model_error", drives_in(model), &monitoring::AxisLimits::model_error,
                 kShareOfFollowingError, limits);
   if (!section.has("drive_time_constant_ms")) {
     (void)section.text_or("drive_time_constant_ms", "");  // known, and not there
     return;
   }
   const auto lags = section.numbers("drive_time_constant_ms", count, count, {0, 1e4},
-                                    "give each joint, in machine order, the lag of its drive");
+                                    "give each drive, in machine order, its lag");
   for (std::size_t i = 0; i < count; ++i) {
     limits.axes[i].has_model = true;
     limits.axes[i].time_constant_s = lags[i] * 1e-3;
@@ -121,11 +135,12 @@ monitoring::Limits read_monitoring(Section section, const MachineModel& model) {
   limits.settle_s = section.number_or("settle_s", limits.settle_s, {0.01, 60});
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
     limits.axes[i].speed = model.joints[i].limits.velocity;
+    limits.axes[i].drive_speed = drive_spec(model, static_cast<int>(i)).limits.velocity;
     limits.axes[i].set_up_speed = model.joints[i].is_rotary ? rotary : linear;
   }
-  read_distance(section, "standstill", model, &monitoring::AxisLimits::standstill,
+  read_distance(section, "standstill", joints_in(model), &monitoring::AxisLimits::standstill,
                 kShareOfFollowingError, limits);
-  read_distance(section, "frozen", model, &monitoring::AxisLimits::frozen, 1, limits);
+  read_distance(section, "frozen", drives_in(model), &monitoring::AxisLimits::frozen, 1, limits);
   read_windows(section, model, limits);
   read_model(section, model, limits);
   section.finish();

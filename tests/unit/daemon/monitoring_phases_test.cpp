@@ -18,7 +18,7 @@ namespace meridian::test {
 namespace {
 
 /// What is in force beside limited speed, standstill and plausibility.
-enum class Also { kNothing, kModel, kWindowAlone };
+enum class Also { kNothing, kModel, kWindowAlone, kJointSpeedAlone, kSetUpWindowAlone };
 
 /// Something that only the monitoring can find, or that nobody may find.
 struct Unseen {
@@ -27,8 +27,10 @@ struct Unseen {
   Also also = Also::kModel;
 };
 
-constexpr std::array<Unseen, 13> kUnseen{{{"`creep=5`", "creep:*=5", Also::kNothing},
+constexpr std::array<Unseen, 15> kUnseen{{{"`creep=5`", "creep:*=5", Also::kNothing},
                                           {"`guard`, nobody holds", "guard", Also::kNothing},
+                                          {"`guard`, joints", "guard", Also::kJointSpeedAlone},
+                                          {"`guard`, window", "guard", Also::kSetUpWindowAlone},
                                           {"`creep=90`, window", "creep:*=90", Also::kWindowAlone},
                                           {"`creep=5`, model", "creep:*=5"},
                                           {"`lag`, model", "lag:*=500"},
@@ -53,8 +55,15 @@ constexpr std::array<Unseen, 13> kUnseen{{{"`creep=5`", "creep:*=5", Also::kNoth
   auto limits = config::load_monitoring(MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml", model);
   limits.guard_stop_s = 0.05;
   limits.settle_s = 0.1;
+  const bool is_window = unseen.also == Also::kSetUpWindowAlone;
+  if (is_window || unseen.also == Also::kJointSpeedAlone) limits.set_up_tip_speed = 1e4;
   for (std::size_t i = 0; i < 5; ++i) {
     monitoring::AxisLimits& axis = limits.axes[i];
+    if (is_window) {
+      axis.standstill = axis.set_up_speed = 1e4;
+      axis.set_up_low = axis.set_up_high = model.joints[i].home;
+      axis.window_margin = 0.1;
+    }
     axis.has_model = unseen.also == Also::kModel;
     axis.time_constant_s = 0.002;  // of the simulated drives
     axis.model_error = i < 3 ? 0.5 : 0.005;
@@ -98,7 +107,7 @@ TEST(MonitoringPhases, FindsNothingWhereAHomingIsBrokenOffByTheOperatorOrAFault)
     const drives::HomingPlan homing{.is_referenced = false};
     auto plant = std::make_unique<Rehearsal>(std::vector<drives::HomingPlan>(5, homing),
                                              machine_without_bounds());
-    plant->monitor.emplace(limits_of_phases(kUnseen[3]), 0.1);
+    plant->monitor.emplace(limits_of_phases({"model", ""}), 0.1);
     plant->world.in.session = 0;
     ASSERT_TRUE(plant->enable());
     plant->say(Verb::kHome);
@@ -143,7 +152,7 @@ std::string what_is_found_in_phases() {
 
 TEST(MonitoringPhases, EndAsTheDocumentSaysWithTheConstantBoundsWideOpen) {
   if (!kIsTimed) {  // a sanitizer sees the same code in some of the pairs
-    for (std::size_t n = 0; n < kUnseen.size() * kMachinePhases.size(); n += 13) {
+    for (std::size_t n = 0; n < kUnseen.size() * kMachinePhases.size(); n += 17) {
       (void)found_in(kMachinePhases[n % kMachinePhases.size()], kUnseen[n % kUnseen.size()]);
     }
     return;

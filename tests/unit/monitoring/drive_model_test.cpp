@@ -51,7 +51,7 @@ Result ramp(MonitoredAxes& axes, double lag_s, double& largest_lag) {
     axes.in.cycle += 1;
     axes.in.cycle_seen.fill(axes.in.cycle - 1);
     axes.in.arrival_ns.fill(static_cast<std::int64_t>(axes.in.cycle) * 1'000'000);
-    const Result result = axes.monitor.check(axes.in);
+    const Result result = axes.check();
     if (first.finding == Finding::kNone) first = result;
   }
   return first;
@@ -124,7 +124,7 @@ Result ramp_over(const Wire& wire, MonitoredAxes& axes, double lag_s) {
     axes.in.commanded[0] = at[static_cast<std::size_t>(n - 1)];
     axes.in.cycle_seen.fill(static_cast<std::uint64_t>(taken));
     axes.in.arrival_ns.fill(std::int64_t{n} * 1'000'000);
-    const Result result = axes.monitor.check(axes.in);
+    const Result result = axes.check();
     axes.in.periods = 1;
     if (first.finding == Finding::kNone) first = result;
     arrival_s = std::max(arrival_s, n * 1e-3 + late(random));

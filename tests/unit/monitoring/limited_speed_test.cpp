@@ -22,7 +22,7 @@ constexpr double kSetUpSpeed = 2000.0 / 60;  // mm/s
 MonitoredAxes wide_axes() {
   Limits limits = test::two_axes();
   limits.axes[0].has_window = false;
-  limits.axes[0].speed = 1e3;
+  limits.axes[0].speed = limits.axes[0].drive_speed = 1e3;
   return MonitoredAxes(limits);
 }
 
@@ -31,11 +31,11 @@ MonitoredAxes jogged_with_an_open_guard() {
   axes.in.is_guard_open = true;
   axes.in.motion = Motion::kRest;
   (void)axes.cycle();
-  axes.in.motion = Motion::kHand;
+  axes.in.motion = Motion::kJog;
   return axes;
 }
 
-TEST(LimitedSpeed, LetsTheHandMoveTheTipWithTwoMetresAMinute) {
+TEST(LimitedSpeed, LetsAJogMoveTheTipWithTwoMetresAMinute) {
   MonitoredAxes axes = jogged_with_an_open_guard();
   EXPECT_EQ(axes.run(0.3, kSetUpSpeed).finding, Finding::kNone);
 }
@@ -61,7 +61,7 @@ TEST(LimitedSpeed, FindsAnAxisThatIsTooFastWhereTheTipIsNot) {
 
 TEST(LimitedSpeed, SaysNothingBehindShutGuards) {
   MonitoredAxes axes;
-  axes.in.motion = Motion::kHand;
+  axes.in.motion = Motion::kJog;
   EXPECT_EQ(axes.run(0.3, 250).finding, Finding::kNone);
 }
 
@@ -71,7 +71,7 @@ TEST(LimitedSpeed, IsNoFasterBehindReportsThatCameTogether) {
   for (int late = 0; late < 10; ++late) {  // reports of ten periods before: nothing new comes
     axes.in.commanded[0] += kSetUpSpeed * 1e-3;
     ++axes.in.cycle;
-    ASSERT_EQ(axes.monitor.check(axes.in).finding, Finding::kNone);
+    ASSERT_EQ(axes.check().finding, Finding::kNone);
   }
   EXPECT_EQ(axes.run(0.12, kSetUpSpeed).finding, Finding::kNone);
 }
@@ -96,7 +96,7 @@ Result jogged_over_a_slow_wire(double speed, double late_s) {
       axes.in.cycle_seen.fill(100 + static_cast<std::uint64_t>(report));
     }
     ++axes.in.cycle;
-    const Result result = axes.monitor.check(axes.in);
+    const Result result = axes.check();
     if (first.finding == Finding::kNone) first = result;
   }
   return first;
@@ -147,7 +147,7 @@ TEST(LimitedSpeed, GoesOnBehindTheRestsBetweenTwoJogs) {
   MonitoredAxes axes = jogged_with_an_open_guard();
   Result first;
   for (int n = 0; n < 20 && first.finding == Finding::kNone; ++n) {
-    axes.in.motion = Motion::kHand;
+    axes.in.motion = Motion::kJog;
     first = axes.run(0.04, 5 * kSetUpSpeed);
     axes.in.motion = Motion::kRest;
     if (first.finding == Finding::kNone) first = axes.run(0.01);
@@ -155,14 +155,14 @@ TEST(LimitedSpeed, GoesOnBehindTheRestsBetweenTwoJogs) {
   EXPECT_EQ(first.finding, Finding::kTipSpeed) << "jerks that are shorter than the window";
 }
 
-TEST(LimitedSpeed, HoldsNothingOfBeforeAgainstTheHand) {
+TEST(LimitedSpeed, CountsNothingOfBeforeTheJog) {
   MonitoredAxes axes = wide_axes();
   axes.in.motion = Motion::kProgram;
   EXPECT_EQ(axes.run(0.2, 250).finding, Finding::kNone);
   axes.in.is_guard_open = true;
   axes.in.motion = Motion::kRest;
   EXPECT_EQ(axes.run(0.002).finding, Finding::kNone);
-  axes.in.motion = Motion::kHand;
+  axes.in.motion = Motion::kJog;
   EXPECT_EQ(axes.run(0.2, 10).finding, Finding::kNone);
 }
 

@@ -8,7 +8,7 @@
 namespace meridian::monitoring {
 namespace {
 
-Mode mode_behind(ModeTracker& tracker, Motion motion, bool is_open, int cycles = 1) {
+Mode mode_after(ModeTracker& tracker, Motion motion, bool is_open, int cycles = 1) {
   const Limits limits = test::two_axes();
   Inputs in;
   in.motion = motion;
@@ -20,34 +20,34 @@ Mode mode_behind(ModeTracker& tracker, Motion motion, bool is_open, int cycles =
 
 TEST(MonitoringMode, FollowsTheMotionBehindShutGuards) {
   ModeTracker tracker;
-  EXPECT_EQ(mode_behind(tracker, Motion::kOff, false), Mode::kOff);
-  EXPECT_EQ(mode_behind(tracker, Motion::kHoming, false), Mode::kOff);
-  EXPECT_EQ(mode_behind(tracker, Motion::kRest, false), Mode::kStandstill);
-  EXPECT_EQ(mode_behind(tracker, Motion::kHand, false), Mode::kAutomatic);
-  EXPECT_EQ(mode_behind(tracker, Motion::kProgram, false), Mode::kAutomatic);
+  EXPECT_EQ(mode_after(tracker, Motion::kOff, false), Mode::kOff);
+  EXPECT_EQ(mode_after(tracker, Motion::kHoming, false), Mode::kOff);
+  EXPECT_EQ(mode_after(tracker, Motion::kRest, false), Mode::kStandstill);
+  EXPECT_EQ(mode_after(tracker, Motion::kJog, false), Mode::kAutomatic);
+  EXPECT_EQ(mode_after(tracker, Motion::kProgram, false), Mode::kAutomatic);
 }
 
-TEST(MonitoringMode, AllowsNothingButTheHandWithAnOpenGuard) {
+TEST(MonitoringMode, AllowsNothingButAJogWithAnOpenGuard) {
   ModeTracker tracker;
-  EXPECT_EQ(mode_behind(tracker, Motion::kRest, true), Mode::kStandstill);
-  EXPECT_EQ(mode_behind(tracker, Motion::kHand, true), Mode::kSetUp);
-  EXPECT_EQ(mode_behind(tracker, Motion::kProgram, true), Mode::kStandstill);
-  EXPECT_EQ(mode_behind(tracker, Motion::kHoming, true), Mode::kStandstill);
-  EXPECT_EQ(mode_behind(tracker, Motion::kProgram, false), Mode::kAutomatic) << "it is shut";
+  EXPECT_EQ(mode_after(tracker, Motion::kRest, true), Mode::kStandstill);
+  EXPECT_EQ(mode_after(tracker, Motion::kJog, true), Mode::kSetUp);
+  EXPECT_EQ(mode_after(tracker, Motion::kProgram, true), Mode::kStandstill);
+  EXPECT_EQ(mode_after(tracker, Motion::kHoming, true), Mode::kStandstill);
+  EXPECT_EQ(mode_after(tracker, Motion::kProgram, false), Mode::kAutomatic) << "it is shut";
 }
 
 TEST(MonitoringMode, GivesWhatMovedWhenTheGuardOpenedTimeToStop) {
   ModeTracker tracker;
-  EXPECT_EQ(mode_behind(tracker, Motion::kProgram, false), Mode::kAutomatic);
-  EXPECT_EQ(mode_behind(tracker, Motion::kProgram, true, 1999), Mode::kAutomatic);
-  EXPECT_EQ(mode_behind(tracker, Motion::kProgram, true, 2), Mode::kStandstill);
+  EXPECT_EQ(mode_after(tracker, Motion::kProgram, false), Mode::kAutomatic);
+  EXPECT_EQ(mode_after(tracker, Motion::kProgram, true, 1999), Mode::kAutomatic);
+  EXPECT_EQ(mode_after(tracker, Motion::kProgram, true, 2), Mode::kStandstill);
 }
 
 TEST(MonitoringMode, GivesNoTimeOnceTheMachineHasComeToRest) {
   ModeTracker tracker;
-  EXPECT_EQ(mode_behind(tracker, Motion::kHand, true), Mode::kAutomatic);
-  EXPECT_EQ(mode_behind(tracker, Motion::kRest, true), Mode::kStandstill);
-  EXPECT_EQ(mode_behind(tracker, Motion::kHand, true), Mode::kSetUp);
+  EXPECT_EQ(mode_after(tracker, Motion::kJog, true), Mode::kAutomatic);
+  EXPECT_EQ(mode_after(tracker, Motion::kRest, true), Mode::kStandstill);
+  EXPECT_EQ(mode_after(tracker, Motion::kJog, true), Mode::kSetUp);
 }
 
 }  // namespace

@@ -31,13 +31,13 @@ TEST(PlausibleFeedback, TakesReportsThatWereLateForNoJump) {
   for (int late = 0; late < 20; ++late) {
     axes.in.commanded[0] += 0.3;
     ++axes.in.cycle;
-    ASSERT_EQ(axes.monitor.check(axes.in).finding, Finding::kNone);
+    ASSERT_EQ(axes.check().finding, Finding::kNone);
   }
   axes.in.measured[0] = axes.in.commanded[0];  // 6 mm on, twenty periods later
   EXPECT_EQ(axes.cycle().finding, Finding::kNone);
 }
 
-TEST(PlausibleFeedback, TakesReportsOfBeforeAndBehindAStallForNoJump) {
+TEST(PlausibleFeedback, TakesReportsOfBeforeAndAfterAStallForNoJump) {
   MonitoredAxes axes = running();
   axes.in.periods = 40;
   (void)axes.cycle();  // the oldest of a heap
@@ -68,12 +68,12 @@ TEST(PlausibleFeedback, FindsTheJumpOfOneGroupOfDrivesWhileAnotherIsSlow) {
     axes.in.arrival_ns.fill(static_cast<std::int64_t>(axes.in.cycle) * 1'000'000);
     if (n % 10 != 0) axes.in.arrival_ns[1] = arrival, axes.in.cycle_seen[1] = seen;
     if (n == 17) axes.in.measured[0] += 3;
-    const Result result = axes.monitor.check(axes.in);
+    const Result result = axes.check();
     EXPECT_EQ(result.finding, n == 17 ? Finding::kJump : Finding::kNone) << n;
   }
 }
 
-TEST(PlausibleFeedback, StartsAnewBehindAHomingThatRenamesPositions) {
+TEST(PlausibleFeedback, StartsAnewAfterAHomingThatRenamesPositions) {
   MonitoredAxes axes = running();
   axes.in.motion = Motion::kHoming;
   (void)axes.cycle();
@@ -92,7 +92,7 @@ TEST(PlausibleFeedback, FindsAPositionThatStaysWhileTheSetpointGoesOn) {
     result = axes.cycle();
   }
   EXPECT_EQ(result.finding, Finding::kFrozen);
-  EXPECT_NEAR(cycles, 22, 2) << "behind 2 mm at 100 mm/s";
+  EXPECT_NEAR(cycles, 22, 2) << "after 2 mm at 100 mm/s";
 }
 
 TEST(PlausibleFeedback, TakesAnAxisThatRestsForNoFrozenOne) {
