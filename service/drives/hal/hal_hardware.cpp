@@ -16,6 +16,7 @@ constexpr std::uint16_t kErrorDevice = 0x5000, kErrorCommunication = 0x7500,
                         kErrorSetpointsStopped = 0x8700;
 /// HAL's servo thread says nothing for so long, and for the bridge: it does not run.
 constexpr std::int64_t kSilent_ns = 50'000'000;
+constexpr const char* kHalIsStopped = "HAL is stopped, or its servo thread does not run";
 
 [[nodiscard]] std::int64_t monotonic_ns() noexcept {
   timespec now{};
@@ -69,7 +70,8 @@ HalHardware::HalHardware(meridian_hal_shared& shared, const std::vector<drive::A
   for (const meridian_hal_setpoint& old : shared_.setpoints) {
     setpoint_.number = std::max(setpoint_.number, old.number);
   }
-  order_done_ = shared_.order.number;
+  report_.number = shared_.report.number;  // what stands there may be of a HAL that is gone
+  order_over_ = shared_.order.number;
 }
 
 void HalHardware::take_report() noexcept {
@@ -78,7 +80,8 @@ void HalHardware::take_report() noexcept {
   if (meridian_hal_read(&shared_.report_lock, &shared_.report, &report, sizeof report) == 0) return;
   report_ = report;
   if (report_.number != before) heard_ns_ = monotonic_ns();
-  order_done_.store(report_.order_done, std::memory_order_release);
+  order_result_.store(report_.order_result, std::memory_order_relaxed);
+  order_over_.store(report_.order_over, std::memory_order_release);
 }
 
 bool HalHardware::hear(std::int64_t now_ns) noexcept {
@@ -171,19 +174,28 @@ std::string HalHardware::act(const drive::Action& action, const std::atomic<bool
   if (action.kind == drive::ActionKind::kStop) return "";
   const meridian_hal_action kind = action_of(action.kind);
   if (kind == MERIDIAN_HAL_NO_ACTION) return "HAL has no pin for " + action.words;
-  meridian_hal_order order = shared_.order;
-  ++order.number;
-  order.action = kind;
-  order.value = action.value;
-  meridian_hal_write(&shared_.order_lock, &shared_.order, &order, sizeof order);
-  while (order_done_.load(std::memory_order_acquire) != order.number) {
-    if (is_stopping) return "meridian-hal ends";
-    if (!may_act_.load(std::memory_order_relaxed)) {
-      return "HAL is stopped, or its servo thread does not run";
+  if (!may_act_.load(std::memory_order_relaxed)) return kHalIsStopped;
+  const std::uint64_t number = give_order(kind, action.value);
+  while (order_over_.load(std::memory_order_acquire) != number) {
+    const bool may_act = may_act_.load(std::memory_order_relaxed);
+    if (is_stopping || !may_act) {
+      // A HAL that comes back later must not run what was reported as failed.
+      (void)give_order(MERIDIAN_HAL_NO_ACTION, 0);
+      return is_stopping ? "meridian-hal ends" : kHalIsStopped;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  return "";
+  const bool is_done = order_result_.load(std::memory_order_relaxed) == MERIDIAN_HAL_ORDER_DONE;
+  return is_done ? "" : kHalIsStopped;
+}
+
+std::uint64_t HalHardware::give_order(meridian_hal_action action, double value) noexcept {
+  meridian_hal_order order{};
+  order.number = shared_.order.number + 1;
+  order.action = action;
+  order.value = value;
+  meridian_hal_write(&shared_.order_lock, &shared_.order, &order, sizeof order);
+  return order.number;
 }
 
 }  // namespace meridian::hal

@@ -37,7 +37,8 @@ class HalHardware final : public drive::Hardware {
   /// The library knows where the axis is: its index pulse is asked for no more.
   void set_referenced(int axis, bool is_referenced) noexcept;
 
-  /// An action of the program; waits until HAL has done it. Another thread calls it.
+  /// An action of the program; waits until HAL has done it, or was stopped: that one is over then.
+  /// Another thread calls it. Returns why it failed; empty: done.
   [[nodiscard]] std::string act(const drive::Action& action, const std::atomic<bool>& is_stopping);
 
  private:
@@ -50,6 +51,8 @@ class HalHardware final : public drive::Hardware {
     bool is_on = false, is_referenced = false, was_homed = false, has_new_reference = false;
   };
   void take_report() noexcept;
+  /// Returns the order's number.
+  std::uint64_t give_order(meridian_hal_action action, double value) noexcept;
 
   meridian_hal_shared& shared_;
   std::vector<Joint> joints_;
@@ -61,7 +64,8 @@ class HalHardware final : public drive::Hardware {
   std::int64_t heard_ns_ = 0;  ///< when the newest report came
   bool is_alive_ = false;
   std::atomic<bool> may_act_{false};
-  std::atomic<std::uint64_t> order_done_{0};
+  std::atomic<std::uint64_t> order_over_{0};
+  std::atomic<std::uint32_t> order_result_{0};  ///< of that one
 };
 
 }  // namespace meridian::hal

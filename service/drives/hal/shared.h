@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 #define MERIDIAN_HAL_FILE "/meridian-hal-"  // and the name of the machine: POSIX shared memory
-#define MERIDIAN_HAL_MAGIC 0x4D484C32u      // "MHL2": another layout, another magic
+#define MERIDIAN_HAL_MAGIC 0x4D484C33u      // "MHL3": another layout, another magic
 #define MERIDIAN_HAL_JOINTS 6
 #define MERIDIAN_HAL_KEPT 8  // setpoints that the component can look back on
 
@@ -28,7 +28,7 @@ struct meridian_hal_setup {
 };
 
 enum meridian_hal_action {
-  MERIDIAN_HAL_NO_ACTION,
+  MERIDIAN_HAL_NO_ACTION,  // the process gave an order up: everything off
   MERIDIAN_HAL_SPINDLE_OFF,
   MERIDIAN_HAL_SPINDLE_CLOCKWISE,         // value: rev/min
   MERIDIAN_HAL_SPINDLE_COUNTERCLOCKWISE,  // value: rev/min
@@ -36,6 +36,11 @@ enum meridian_hal_action {
   MERIDIAN_HAL_COOLANT_MIST,
   MERIDIAN_HAL_COOLANT_FLOOD,
   MERIDIAN_HAL_TOOL_CHANGE  // value: tool number
+};
+
+enum meridian_hal_order_result {
+  MERIDIAN_HAL_ORDER_DONE = 1,
+  MERIDIAN_HAL_ORDER_FAILED  // stopped, or given to a component that is gone: it never runs again
 };
 
 /// One period of the process: where the joints are to be at its end.
@@ -68,9 +73,11 @@ struct meridian_hal_report {
   uint32_t homed_mask;
   uint32_t is_stopped;     // the emergency stop chain is open
   uint32_t is_lost;        // setpoints stayed away: ramped down and off
-  uint64_t order_done;     // number of the newest order that is done
+  uint64_t order_over;     // number of the newest order that is over
+  uint32_t order_result;   // its enum meridian_hal_order_result
   uint32_t probe;          // 0 none connected, 1 free, 2 in contact
   uint32_t is_guard_open;  // of the work space
+  uint32_t reserved;
 };
 
 /// The parts that are guarded, each by the lock in front of it: odd while it is written.

@@ -153,6 +153,23 @@ TEST_F(Follow, AComponentThatIsLoadedUnderARunningProcessStaysOff) {
   }
 }
 
+TEST_F(Follow, AProcessThatIsGoneIsNoticedWithEveryJointOff) {
+  step(1 * kPeriod_ns);
+  EXPECT_TRUE(follow_.is_silent) << "none was there yet";
+  for (int n = 2; n <= 5; ++n) {
+    send(n, false);
+    step(n * kPeriod_ns);
+    EXPECT_FALSE(follow_.is_silent);
+  }
+  for (int n = 6; n <= 9; ++n) step(n * kPeriod_ns);
+  EXPECT_FALSE(follow_.is_silent) << "inside the bridge";
+  step(10 * kPeriod_ns);
+  EXPECT_TRUE(follow_.is_silent);
+  send(11, false);
+  step(11 * kPeriod_ns);
+  EXPECT_FALSE(follow_.is_silent);
+}
+
 TEST_F(Follow, OffItIsWhereTheJointIs) {
   send(1, false);
   feedback_[0] = 7;

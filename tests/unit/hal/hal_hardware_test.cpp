@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <time.h>
 
+#include <climits>
 #include <thread>
 
 #include "service/drives/hal/hal_memory.hpp"
@@ -178,7 +179,8 @@ TEST_F(HalSide, ActionsWaitUntilHalHasDoneThem) {
   std::atomic<bool> is_stopping{false}, is_over{false};
   std::thread hal([&] {
     while (!is_over) {
-      report_.order_done = shared_.order.number;
+      report_.order_over = shared_.order.number;
+      report_.order_result = MERIDIAN_HAL_ORDER_DONE;
       report();
       (void)hardware_.hear(monotonic_ns());
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -193,6 +195,64 @@ TEST_F(HalSide, ActionsWaitUntilHalHasDoneThem) {
   hal.join();
   const drive::Action word{.kind = drive::ActionKind::kVendorWord, .text = "M88", .words = "M88"};
   EXPECT_EQ(hardware_.act(word, is_stopping), "HAL has no pin for M88");
+}
+
+/// HAL's side in a thread: reports until the end, with orders over as `result` says; 0: they never
+/// are. It opens the chain behind `stop_after` reports.
+class HalThatReports {
+ public:
+  HalThatReports(meridian_hal_shared& shared, HalHardware& hardware, std::uint32_t result,
+                 int stop_after = INT_MAX)
+      : thread_([=, &shared, &hardware](const std::stop_token& end) {
+          meridian_hal_report report{};
+          report.number = 1000;
+          for (int n = 0; !end.stop_requested(); ++n) {
+            ++report.number;
+            report.order_result = result;
+            if (result != 0) report.order_over = shared.order.number;
+            report.is_stopped = n > stop_after ? 1 : 0;
+            meridian_hal_write(&shared.report_lock, &shared.report, &report, sizeof report);
+            (void)hardware.hear(monotonic_ns());
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          }
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+const drive::Action kSpindle{
+    .kind = drive::ActionKind::kSpindleClockwise, .value = 8000, .text = "", .words = "spindle"};
+constexpr const char* kStopped = "HAL is stopped, or its servo thread does not run";
+
+TEST_F(HalSide, AnOrderThatHalStoppedHasFailed) {
+  period({});
+  const std::atomic<bool> is_stopping{false};
+  const HalThatReports hal(shared_, hardware_, MERIDIAN_HAL_ORDER_FAILED);
+  EXPECT_EQ(hardware_.act(kSpindle, is_stopping), kStopped);
+}
+
+TEST_F(HalSide, AnOrderThatIsGivenUpIsTakenBack) {
+  period({});
+  const std::atomic<bool> is_stopping{false};
+  const HalThatReports hal(shared_, hardware_, 0, 20);
+  EXPECT_EQ(hardware_.act(kSpindle, is_stopping), kStopped);
+  EXPECT_EQ(shared_.order.action, static_cast<std::uint32_t>(MERIDIAN_HAL_NO_ACTION));
+  EXPECT_EQ(shared_.order.number, 2U);
+}
+
+TEST_F(HalSide, NoOrderIsWrittenForAHalThatDoesNotRun) {
+  const std::atomic<bool> is_stopping{false};
+  EXPECT_EQ(hardware_.act(kSpindle, is_stopping), kStopped);
+  EXPECT_EQ(shared_.order.number, 0U);
+}
+
+TEST_F(HalSide, AReportOfAHalThatIsGoneIsNoSignOfLife) {
+  report();
+  HalHardware next(shared_, axes(), kPeriod_ns, 3 * kPeriod_ns);
+  EXPECT_FALSE(next.hear(monotonic_ns()));
+  report();
+  EXPECT_TRUE(next.hear(monotonic_ns()));
 }
 
 TEST(HalMemory, BothSidesSeeTheSame) {

@@ -88,6 +88,7 @@ void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal
   const struct meridian_hal_setpoint* const newest = kept(me, me->newest);
   const int64_t at_ns = now_ns - setup->period_ns;
   const int is_lost = newest == 0 || now_ns - newest->end_ns > setup->bridge_ns + setup->period_ns;
+  me->is_silent = is_lost;
   for (int i = 0; i < MERIDIAN_HAL_JOINTS; ++i) {
     const int is_wanted = newest != 0 && (newest->on_mask >> i & 1u) != 0;
     switch (me->phase[i]) {

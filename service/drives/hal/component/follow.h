@@ -24,6 +24,7 @@ struct meridian_hal_follow {
   double position[MERIDIAN_HAL_JOINTS];
   double velocity[MERIDIAN_HAL_JOINTS];
   int64_t time_ns;  // of the step before
+  int is_silent;    // no setpoint for longer than the bridge, whether joints are on or off
 };
 
 /// One period of the servo thread at `now_ns`. Positions are those of one setpoint period ago: so

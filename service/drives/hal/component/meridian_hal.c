@@ -23,6 +23,7 @@
 // clang-format on
 
 #include "service/drives/hal/component/follow.h"
+#include "service/drives/hal/component/orders.h"
 
 MODULE_LICENSE("GPL");
 MODULE_DESCRIPTION("Drives of a Meridian machine");
@@ -48,15 +49,12 @@ struct pins {
   hal_s32_t *tool_prep_number, *tool_number;
 };
 
-enum tool_step { TOOL_IDLE, TOOL_PREPARES, TOOL_CHANGES, TOOL_RELEASES };
-
 static int component = -1;
 static struct pins* pins = 0;
 static struct meridian_hal_shared* shared = 0;
 static struct meridian_hal_follow follow;
 static struct meridian_hal_report report;
-static struct meridian_hal_order order;
-static enum tool_step tool_step = TOOL_IDLE;
+static struct meridian_hal_orders orders;
 static int was_index_asked[MERIDIAN_HAL_JOINTS];
 static double named_offset[MERIDIAN_HAL_JOINTS];  // what a reset at the index has renamed
 
@@ -101,96 +99,55 @@ static void hear_index(int i, double raw, double moved_on) {
   *joint->index_enable = 0;
 }
 
-/// 1: the order is done.
-static int work_tool(void) {
-  switch (tool_step) {
-    case TOOL_IDLE:
-      *pins->tool_prep_number = (hal_s32_t)order.value;
-      *pins->tool_prepare = 1;
-      tool_step = TOOL_PREPARES;
-      return 0;
-    case TOOL_PREPARES:
-      if (!*pins->tool_prepared) return 0;
-      *pins->tool_prepare = 0;
-      *pins->tool_change = 1;
-      tool_step = TOOL_CHANGES;
-      return 0;
-    case TOOL_CHANGES:
-      if (!*pins->tool_changed) return 0;
-      *pins->tool_number = *pins->tool_prep_number;
-      *pins->tool_change = 0;
-      tool_step = TOOL_RELEASES;
-      return 0;
-    case TOOL_RELEASES:
-      if (*pins->tool_changed) return 0;
-      tool_step = TOOL_IDLE;
-      return 1;
-  }
-  return 0;
-}
-
-static void turn_spindle(int is_forward, int is_reverse) {
-  *pins->spindle_forward = is_forward;
-  *pins->spindle_reverse = is_reverse;
-  *pins->spindle_on = is_forward || is_reverse;
-  *pins->spindle_speed = is_forward ? order.value : is_reverse ? -order.value : 0;
-}
-
-/// 1: the order is done.
-static int work_order(void) {
-  switch (order.action) {
-    case MERIDIAN_HAL_SPINDLE_OFF:
-      turn_spindle(0, 0);
-      return 1;
-    case MERIDIAN_HAL_SPINDLE_CLOCKWISE:
-      turn_spindle(1, 0);
-      return *pins->spindle_at_speed;
-    case MERIDIAN_HAL_SPINDLE_COUNTERCLOCKWISE:
-      turn_spindle(0, 1);
-      return *pins->spindle_at_speed;
-    case MERIDIAN_HAL_COOLANT_OFF:
-      *pins->coolant_mist = *pins->coolant_flood = 0;
-      return 1;
-    case MERIDIAN_HAL_COOLANT_MIST:
-      *pins->coolant_mist = 1;
-      return 1;
-    case MERIDIAN_HAL_COOLANT_FLOOD:
-      *pins->coolant_flood = 1;
-      return 1;
-    case MERIDIAN_HAL_TOOL_CHANGE:
-      return work_tool();
-    default:
-      return 1;
-  }
+static void set_orders(void) {
+  const struct meridian_hal_order_outputs* const out = &orders.out;
+  *pins->spindle_forward = out->turn == MERIDIAN_HAL_TURNS_FORWARD;
+  *pins->spindle_reverse = out->turn == MERIDIAN_HAL_TURNS_REVERSE;
+  *pins->spindle_on = out->turn != MERIDIAN_HAL_STANDS;
+  *pins->spindle_speed = out->spindle_speed;
+  *pins->coolant_mist = out->mist;
+  *pins->coolant_flood = out->flood;
+  *pins->tool_prepare = out->tool_prepare;
+  *pins->tool_change = out->tool_change;
+  *pins->tool_prep_number = out->tool_prep_number;
+  *pins->tool_number = out->tool_number;
 }
 
 static void work_orders(void) {
-  struct meridian_hal_order seen;
-  if (meridian_hal_read(&shared->order_lock, &shared->order, &seen, sizeof seen) &&
-      seen.number != order.number) {
-    order = seen;
-    tool_step = TOOL_IDLE;
+  const struct meridian_hal_order_inputs in = {
+      .is_stopped = !*pins->emc_enable_in || report.is_lost,
+      .is_at_speed = *pins->spindle_at_speed,
+      .is_tool_prepared = *pins->tool_prepared,
+      .is_tool_changed = *pins->tool_changed};
+  meridian_hal_orders_step(&orders, shared, &in);
+  set_orders();
+}
+
+/// The process is not up yet, or is of another version.
+static void switch_off(void) {
+  for (int i = 0; i < joints; ++i) {
+    *pins->joint[i].enable = *pins->joint[i].home_request = *pins->joint[i].index_enable = 0;
+    *pins->joint[i].velocity = 0;
+    follow.phase[i] = MERIDIAN_HAL_LOST;
   }
-  const int is_stopped = !*pins->emc_enable_in || report.is_lost;
-  if (is_stopped) {
-    turn_spindle(0, 0);
-    *pins->coolant_mist = *pins->coolant_flood = 0;
-    *pins->tool_prepare = *pins->tool_change = 0;
-    tool_step = TOOL_IDLE;
-    return;
-  }
-  if (order.number != report.order_done && work_order()) report.order_done = order.number;
+  meridian_hal_orders_stop(&orders);
+  orders.state = MERIDIAN_HAL_ORDERS_UNKNOWN;
+  set_orders();
+  *pins->is_lost = 1;
+  *pins->user_enable_out = 0;
 }
 
 static void update(void* unused, long period_ns) {
   (void)unused;
   const struct meridian_hal_setup setup = shared->setup;
-  if (setup.magic != MERIDIAN_HAL_MAGIC)
-    return;  // the process is not up yet, or of another version
+  if (setup.magic != MERIDIAN_HAL_MAGIC) {
+    switch_off();
+    return;
+  }
   const int64_t now_ns = rtapi_get_time();
   const double dt_s = 1e-9 * (double)period_ns;
   double feedback[MERIDIAN_HAL_JOINTS] = {0};
-  report.fault_mask = report.homed_mask = report.is_lost = 0;
+  report.fault_mask = report.homed_mask = 0;
   for (int i = 0; i < joints; ++i) {
     const double raw = *pins->joint[i].feedback * unit_of(&setup, i);
     hear_index(i, raw, follow.velocity[i] * dt_s);
@@ -199,6 +156,7 @@ static void update(void* unused, long period_ns) {
     if (*pins->joint[i].homed) report.homed_mask |= 1u << i;
   }
   meridian_hal_step(&follow, shared, &setup, now_ns, feedback);
+  report.is_lost = follow.is_silent != 0;
   for (int i = 0; i < joints; ++i) {
     const enum meridian_hal_phase phase = follow.phase[i];
     if (phase == MERIDIAN_HAL_LOST || phase == MERIDIAN_HAL_RAMPS) report.is_lost = 1;
@@ -210,6 +168,8 @@ static void update(void* unused, long period_ns) {
   const struct meridian_hal_setpoint* const newest =
       &follow.kept[follow.newest % MERIDIAN_HAL_KEPT];
   *pins->user_request_enable = newest->reset_mask != 0;
+  report.order_over = meridian_hal_order_over(&orders);
+  report.order_result = orders.result;
   ++report.number;
   report.time_ns = now_ns;
   report.is_stopped = !*pins->emc_enable_in;
