@@ -4,6 +4,7 @@
 //
 //     fast_reader DOMAIN JOINT_STATES: ends after so many joint states, or after 30 s
 #include <fastcdr/Cdr.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <stdio.h>
 
 #include <atomic>
@@ -19,7 +20,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <memory>
 #include <string>
 #include <thread>
@@ -82,11 +82,12 @@ class Printer : public fast::DataReaderListener {
   Print print_;
 };
 
-std::int64_t read_header(eprosima::fastcdr::Cdr& cdr) {
+std::int64_t read_header(eprosima::fastcdr::Cdr& cdr, std::string* frame_id = nullptr) {
   std::int32_t seconds = 0;
   std::uint32_t nanoseconds = 0;
   std::string frame;
   cdr >> seconds >> nanoseconds >> frame;
+  if (frame_id != nullptr) *frame_id = frame;
   return std::int64_t{seconds} * 1'000'000'000 + nanoseconds;
 }
 
@@ -95,11 +96,11 @@ void print_joint_state(eprosima::fastcdr::Cdr& cdr) {
   std::vector<std::string> names;
   std::vector<double> position, velocity, effort;
   cdr >> names >> position >> velocity >> effort;
-  std::printf("joint_state %lld", static_cast<long long>(stamp));
+  std::printf("joint_state %lld %zu", static_cast<long long>(stamp), velocity.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
-    std::printf(" %s %.17g %.17g", names[i].c_str(), position[i],
-                i < velocity.size() ? velocity[i] : 0.0);
+    std::printf(" %s %.17g", names[i].c_str(), position[i]);
   }
+  for (const double value : velocity) std::printf(" %.17g", value);
   std::puts("");
 }
 
@@ -108,12 +109,15 @@ void print_transforms(eprosima::fastcdr::Cdr& cdr, const char* word) {
   cdr >> count;
   std::printf("%s", word);
   for (std::uint32_t i = 0; i < count; ++i) {
-    (void)read_header(cdr);
-    std::string child;
-    double numbers[7];
+    std::string parent, child;
+    (void)read_header(cdr, &parent);
     cdr >> child;
-    for (double& number : numbers) cdr >> number;
-    std::printf(" %s", child.c_str());
+    std::printf(" %s %s", parent.c_str(), child.c_str());
+    double number = 0;
+    for (int i = 0; i < 7; ++i) {  // translation, then the quaternion x y z w
+      cdr >> number;
+      std::printf(" %.17g", number);
+    }
   }
   std::puts("");
 }

@@ -9,7 +9,7 @@ namespace meridian::bridge {
 namespace {
 
 constexpr std::int64_t kDiagnosticsPeriod_ns = 1'000'000'000, kStale_ns = 2'000'000'000;
-constexpr int kWaitingReports = 64;  ///< of several groups of drives, between two steps
+constexpr int kWaiting = 64;  ///< of several groups of drives, or services, between two steps
 
 /// Whether ROS 2 has a description of the machine that does not hold any more.
 [[nodiscard]] bool is_outdated(const MachineModel& published, const MachineModel& now) {
@@ -24,8 +24,8 @@ RosBridge::RosBridge(dds::Participant& machine, dds::Participant& ros, const Mac
                      BridgeTime now)
     : machines_(machine),
       statuses_(machine),
-      setpoints_(machine),
-      feedbacks_(machine, {}, kWaitingReports),
+      setpoints_(machine, {}, kWaiting),
+      feedbacks_(machine, {}, kWaiting),
       publisher_(ros, model, now.system_ns),
       drives_(model.joint_count) {}
 
@@ -33,30 +33,32 @@ void RosBridge::take(BridgeTime now) {
   dds::DriveFeedback feedback;
   while (feedbacks_.take(feedback)) {
     drives_.add(feedback, now.steady_ns);
+    sent_.follow(feedback.service_id);
     is_news_ = true;
   }
   drives_.pass(now.steady_ns);
-  dds::SetpointSample setpoint;
-  while (setpoints_.take(setpoint)) {
-    if ((setpoint.setpoint.flags & kSetpointDry) != 0) continue;  // nobody follows it
-    setpoint_ = setpoint.setpoint;
-    is_news_ = true;
-  }
   dds::Status status;
   if (followed_status_.take(statuses_, status)) {
     status_ = status;
     status_ns_ = now.steady_ns;
+    if (!drives_.all()) sent_.follow(status.service_id);
   }
+  dds::SetpointSample setpoint;
+  while (setpoints_.take(setpoint)) {
+    if (sent_.add(setpoint, now.steady_ns)) is_news_ = true;
+  }
+  sent_.pass(now.steady_ns);
   if (status_ && now.steady_ns - status_ns_ > kStale_ns) status_.reset();
 }
 
 void RosBridge::publish_joints(std::int64_t system_ns) {
   const MachineModel& model = publisher_.model();
   const std::optional<JointVector> reported = drives_.all();
-  if (!reported && !setpoint_) return;
-  const JointVector joints = joints_of(model, reported ? *reported : setpoint_->position);
-  const JointVector velocity =
-      setpoint_ ? joint_velocity_of(model, joints, setpoint_->velocity) : JointVector{};
+  const std::optional<Setpoint>& sent = sent_.get();
+  if (!reported && !sent) return;
+  const JointVector joints = joints_of(model, reported ? *reported : sent->position);
+  std::optional<JointVector> velocity;
+  if (sent) velocity = joint_velocity_of(model, joints, sent->velocity);
   publisher_.publish_joints(system_ns, joints, velocity);
 }
 

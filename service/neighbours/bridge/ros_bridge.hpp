@@ -6,6 +6,7 @@
 
 #include "service/neighbours/bridge/drive_positions.hpp"
 #include "service/neighbours/bridge/ros_publisher.hpp"
+#include "service/neighbours/bridge/sent_setpoint.hpp"
 #include "service/transport/followed.hpp"
 #include "service/transport/messages.hpp"
 #include "service/transport/reader.hpp"
@@ -47,7 +48,7 @@ class RosBridge {
   dds::Followed<dds::Status> followed_status_;
   RosPublisher publisher_;
   DrivePositions drives_;
-  std::optional<Setpoint> setpoint_;
+  SentSetpoint sent_;
   std::optional<dds::Status> status_;
   std::int64_t status_ns_ = 0, diagnosed_ns_ = 0;
   bool is_news_ = false;  ///< a position came since the last step

@@ -37,11 +37,12 @@ void RosPublisher::describe(const MachineModel& model, std::int64_t time_ns) {
 }
 
 void RosPublisher::publish_joints(std::int64_t time_ns, const JointVector& joints,
-                                  const JointVector& velocity) {
+                                  const std::optional<JointVector>& velocity) {
   const LimitedVector position = limited_of(model_, joints);
   LimitedVector speed{};
-  for (std::size_t i = 0; i < velocity.size(); ++i) speed[i] = velocity[i];
-  ros::put_joint_state(message_, time_ns, model_, position, has_stage(model_) ? nullptr : &speed);
+  const bool has_speed = velocity && !has_stage(model_);
+  for (std::size_t i = 0; has_speed && i < velocity->size(); ++i) speed[i] = (*velocity)[i];
+  ros::put_joint_state(message_, time_ns, model_, position, has_speed ? &speed : nullptr);
   send(joint_states_);
   moving_.clear();
   for (const scene::LinkFrame& frame : frames_.at(joints, model_.tool_length_mm)) {

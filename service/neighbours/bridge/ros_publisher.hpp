@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
@@ -27,8 +28,9 @@ class RosPublisher {
 
   /// Describes the machine anew: another work frame, another tool.
   void describe(const MachineModel& model, std::int64_t time_ns);
-  /// Where the joints are, and how fast; drives of a stage follow from them.
-  void publish_joints(std::int64_t time_ns, const JointVector& joints, const JointVector& velocity);
+  /// Where the joints are, and how fast where that is known; drives of a stage follow from them.
+  void publish_joints(std::int64_t time_ns, const JointVector& joints,
+                      const std::optional<JointVector>& velocity);
   void publish_diagnostics(std::int64_t time_ns, const std::vector<Diagnosis>& all);
 
   [[nodiscard]] const MachineModel& model() const noexcept { return model_; }
