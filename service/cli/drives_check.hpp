@@ -5,6 +5,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
+#include "service/drives/simulated/drive_check.hpp"
 #include "service/transport/participant.hpp"
 
 namespace meridian::cli {
@@ -12,6 +13,6 @@ namespace meridian::cli {
 /// `meridian drives --check`: plays the service against the drives of `participant`'s machine and
 /// prints which rules they break. Returns the exit code.
 [[nodiscard]] int check_drives(const dds::ParticipantOptions& participant,
-                               const MachineModel& model);
+                               const MachineModel& model, drives::Operator operator_is);
 
 }  // namespace meridian::cli

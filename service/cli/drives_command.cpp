@@ -34,7 +34,7 @@ struct DrivesOptions {
   std::string lag = "second";
   double time_constant_ms = 2;
   bool has_no_actions = false, is_refusing_actions = false, is_quiet = false, has_console = false;
-  bool is_beside_others = false, is_open_network = false, is_check = false;
+  bool is_beside_others = false, is_open_network = false, is_check = false, has_operator = false;
   double action_delay_s = 0.2;
   std::vector<std::string> injections;
   std::string probe;                                        ///< file of what a probe can touch
@@ -127,7 +127,10 @@ int run_drives(const DrivesOptions& options) {
           simulated.has_priority ? dds::Transport::kLoopbackRealtime : dds::Transport::kLoopback,
       .open_network =
           options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused};
-  if (options.is_check) return check_drives(place, model);
+  if (options.is_check) {
+    return check_drives(place, model,
+                        options.has_operator ? drives::Operator::kThere : drives::Operator::kAway);
+  }
   dds::Participant participant(place);
   if (participant.is_open_network()) {
     std::fprintf(stderr, "meridian drives: OPEN NETWORK: whoever reaches it may send setpoints\n");
@@ -214,10 +217,15 @@ void add(CLI::App& app, int& exit_code) {
                    "A touch probe is in the spindle: file (TOML) of its stylus and of what it "
                    "can touch")
       ->type_name("FILE");
-  command->add_flag("--check", options->is_check,
-                    "Check somebody's drives, which run already, instead: play the service against "
-                    "them and name the rules that they break. The first linear drive moves by some "
-                    "centimetres");
+  CLI::Option* const check = command->add_flag(
+      "--check", options->is_check,
+      "Check somebody's drives, which run already, instead: play the service against "
+      "them and name the rules that they break. The first linear drive moves by some "
+      "centimetres");
+  command
+      ->add_flag("--emergency-stop", options->has_operator,
+                 "With --check: you open and close the emergency stop when it says so")
+      ->needs(check);
   command->add_flag("-q,--quiet", options->is_quiet, "Say only begin and end");
   command->callback([options, &exit_code] { exit_code = run_drives(*options); });
 }

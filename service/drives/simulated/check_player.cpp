@@ -27,18 +27,18 @@ void CheckPlayer::find(Rule rule, const std::string& seen) {
 
 void CheckPlayer::tick(const Also& also) {
   constexpr std::int64_t kBetweenClaims = 500, kLongestSilence = 60;
-  if (!is_gone) {
+  if (saying != Saying::kNothing) {
     if (ticks_ % kBetweenClaims == 0) {
       dds::MachineInfo machine;
       machine.name = model_.name;
-      machine.service_id = kServiceId;
+      machine.service_id = service_id_;
       machine.is_serving = true;
       machine.bridge_cycles = kBridge;
       drives_.say(Speaker::kService, machine);
     }
     say_commands();
     cycle_ += 2;
-    if (!is_mute) say_setpoint();
+    say_setpoint();
   }
   if (also) also(drives_);
   reports_.clear();
@@ -71,17 +71,34 @@ void CheckPlayer::say_commands() {
     command.drive = static_cast<std::uint8_t>(i);
     command.controlword = words[at];
     command.mode = modes[at];
-    command.service_id = kServiceId;
+    command.service_id = service_id_;
     command.sample = ++command_;
     drives_.say(Speaker::kService, command);
   }
 }
 
 void CheckPlayer::say_setpoint() {
-  dds::SetpointSample sample = odd_setpoint();
-  --sample.setpoint.cycle;
-  sign(sample);
-  drives_.say(Speaker::kService, sample);
+  if (saying == Saying::kNoSetpoints) return;
+  if (saying != Saying::kLastSetpointAgain) {
+    last_ = odd_setpoint();
+    --last_.setpoint.cycle;
+    sign(last_, service_id_);
+  }
+  drives_.say(Speaker::kService, last_);
+  if (saying == Saying::kSetpointsTwice) drives_.say(Speaker::kService, last_);
+}
+
+void CheckPlayer::end_service() {
+  drives_.end(Speaker::kService);
+  saying = Saying::kNothing;
+}
+
+void CheckPlayer::restart_service() {
+  drives_.begin(Speaker::kService);
+  service_id_ = kRestartedId;
+  saying = Saying::kAll;
+  cycle_ = 0;
+  ticks_ = reported_ = 0;  // it says at once who it is
 }
 
 dds::SetpointSample CheckPlayer::odd_setpoint() const {
@@ -91,7 +108,7 @@ dds::SetpointSample CheckPlayer::odd_setpoint() const {
   sample.setpoint.position = target;
   sample.setpoint.velocity = velocity;
   sample.setpoint.flags = flags;
-  sign(sample);
+  sign(sample, service_id_);
   return sample;
 }
 
@@ -124,6 +141,9 @@ void CheckPlayer::read(const dds::DriveFeedback& report) {
   newest.joint_mask |= report.joint_mask;
   newest.cycle_seen = report.cycle_seen;
   newest.service_id = report.service_id;
+  const std::uint32_t group = 1U << (report.drive_group % 32U);
+  stopped_groups_ = report.is_emergency_stop ? stopped_groups_ | group : stopped_groups_ & ~group;
+  newest.is_emergency_stop = stopped_groups_ != 0;
   if (report.cycle_seen % 2 == 1) has_seen_odd = true;
   for (int i = 0; i < count(); ++i) {
     const auto at = static_cast<std::size_t>(i);

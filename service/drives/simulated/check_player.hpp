@@ -15,13 +15,22 @@
 
 namespace meridian::drives {
 
+/// What the service that is played says in a period.
+enum class Saying : std::uint8_t {
+  kAll,
+  kSetpointsTwice,     ///< each comes again at once, the very same
+  kLastSetpointAgain,  ///< no new one
+  kNoSetpoints,
+  kNothing  ///< no service is there
+};
+
 /// Plays a service for drives that are checked, a period at a time: says what is set here, and
 /// reads the reports. Setpoints have even cycles; odd ones belong to what drives must drop.
 class CheckPlayer {
  public:
   static constexpr int kBridge = 20;      ///< lost setpoints that it wants bridged
   static constexpr int kPatience = 3000;  ///< periods for what a drive may take its time for
-  static constexpr std::uint64_t kServiceId = 0xC4EC, kOtherId = 0x07E2;
+  static constexpr std::uint64_t kServiceId = 0xC4EC, kOtherId = 0x07E2, kRestartedId = 0x4E57;
   using Also = std::function<void(CheckedDrives&)>;  ///< said behind the setpoint of a period
 
   CheckPlayer(const MachineModel& model, CheckedDrives& drives);
@@ -31,14 +40,18 @@ class CheckPlayer {
   std::array<std::uint8_t, kMaxJoints> modes{};
   JointVector target{}, velocity{};
   std::uint16_t flags = 0;
-  bool is_mute = false;  ///< no setpoints
-  bool is_gone = false;  ///< no service
+  Saying saying = Saying::kAll;
 
   void tick(const Also& also = {});
   void ticks(int count, const Also& also = {});
   /// Until `is_reached`, at most so many periods; whether it was.
   [[nodiscard]] bool until(const std::function<bool()>& is_reached, int periods);
   void say_word(std::uint16_t word) { words.fill(word); }
+  void ask(Wish wish) { drives_.ask(wish); }
+  /// The service is gone with everything of it.
+  void end_service();
+  /// Another service comes, as kRestartedId, and counts from the beginning.
+  void restart_service();
 
   /// A setpoint as this service would send it next, with an odd cycle and `words` made right.
   [[nodiscard]] dds::SetpointSample odd_setpoint() const;
@@ -60,7 +73,7 @@ class CheckPlayer {
   void stand();
 
   void find(Rule rule, const std::string& seen);  ///< a rule is broken; the first time counts
-  dds::DriveFeedback newest;                      ///< of all groups together
+  dds::DriveFeedback newest;  ///< of all groups together; emergency stop: of any
   bool has_seen_odd = false;  ///< cycle_seen was one of those that are to be dropped
   bool is_disturbed = false;  ///< this program overslept
   std::vector<Finding> findings;
@@ -73,7 +86,9 @@ class CheckPlayer {
   const MachineModel& model_;
   CheckedDrives& drives_;
   double dt_s_;
-  std::uint64_t cycle_ = 1000, command_ = 0;
+  std::uint64_t service_id_ = kServiceId, cycle_ = 1000, command_ = 0;
+  std::uint32_t stopped_groups_ = 0;  ///< that report the emergency stop
+  dds::SetpointSample last_;
   std::int64_t ticks_ = 0, reported_ = 0;
   std::array<std::uint16_t, kMaxJoints> said_words_{};
   std::array<std::uint8_t, kMaxJoints> said_modes_{};

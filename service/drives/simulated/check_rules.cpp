@@ -14,6 +14,7 @@ constexpr const char* kSent = "docs/topics.md, Drives check what they are sent";
 constexpr const char* kDry = "docs/topics.md, A setpoint is followed by its flags";
 constexpr const char* kStates = "docs/drive-library.md, CiA 402";
 constexpr const char* kLost = "docs/drive-library.md, Setpoints";
+constexpr const char* kEmergency = "docs/drive-library.md, Emergency input";
 constexpr const char* kHomes = "docs/drive-library.md, Homing";
 
 constexpr std::array kRules{
@@ -33,6 +34,8 @@ constexpr std::array kRules{
              "a setpoint without the flag 1 is not followed", kDry},
     RuleText{Rule::kFollows, "follows", "drives follow inside their following error", kSent},
     RuleText{Rule::kOrder, "order", "a setpoint that is not newer than the last is dropped", kSent},
+    RuleText{Rule::kDoubled, "doubled", "a setpoint that comes twice, or again and again, is one",
+             kSent},
     RuleText{Rule::kChecksum, "checksum", "a setpoint with a wrong checksum is dropped", kSent},
     RuleText{Rule::kLate, "late", "a setpoint that the wire held back is dropped", kSent},
     RuleText{Rule::kDryRun, "dry-run", "a setpoint of a dry run is passed over", kDry},
@@ -62,8 +65,15 @@ constexpr std::array kRules{
              "a drive that searches has no reference until it has found one", kHomes},
     RuleText{Rule::kReferenceFound, "reference-found",
              "a search ends with a reference, or says that there is none", kHomes},
+    RuleText{Rule::kEmergencyStop, "emergency-stop",
+             "an open emergency stop is reported for as long as it is open", kEmergency},
     RuleText{Rule::kKeepsMaster, "keeps-master",
              "a service that is there keeps drives that are off", kMaster},
+    RuleText{Rule::kGoneInMotion, "gone-in-motion",
+             "a service that is gone while drives are on ends in fault 8700h, by bridge and ramp",
+             kLost},
+    RuleText{Rule::kRestart, "restart",
+             "a service that starts again is obeyed when the drives are off, not before", kMaster},
     RuleText{Rule::kFreesMaster, "frees-master", "drives that are off are free when it is gone",
              kMaster},
     RuleText{Rule::kNextMaster, "next-master", "the next service is obeyed", kMaster},

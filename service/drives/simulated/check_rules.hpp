@@ -22,6 +22,7 @@ enum class Rule : std::uint8_t {
   kNotEnabledSetpoint,
   kFollows,
   kOrder,
+  kDoubled,
   kChecksum,
   kLate,
   kDryRun,
@@ -45,12 +46,15 @@ enum class Rule : std::uint8_t {
   kHomingCycle,
   kReferenceLost,
   kReferenceFound,
+  kEmergencyStop,
   kKeepsMaster,
+  kGoneInMotion,
+  kRestart,
   kFreesMaster,
   kNextMaster
 };
 
-/// A rule as people are told of it.
+/// A rule as people read it.
 struct RuleText {
   Rule rule;
   const char* name;  ///< one word, for lists

@@ -31,12 +31,12 @@ void DriveCheck::check_following() {
   for (int n = 0; n < 50; ++n) lead(0.2 * limit_);
   speed_up(0);
   player_.ticks(200);
-  const double way = player_.target[mover_] - begin,
+  const double distance = player_.target[mover_] - begin,
                off = player_.target[mover_] - player_.newest.position[mover_];
-  if (std::abs(off) > std::min(tolerance, 0.1 * std::abs(way)) ||
+  if (std::abs(off) > std::min(tolerance, 0.1 * std::abs(distance)) ||
       !player_.are_all(DriveState::kOperationEnabled)) {
     player_.find(Rule::kFollows,
-                 "it is " + std::to_string(off) + " mm off after " + std::to_string(way));
+                 "it is " + std::to_string(off) + " mm off after " + std::to_string(distance));
   }
 }
 
@@ -89,6 +89,26 @@ void DriveCheck::check_all_dropped() {
   dropped("others' setpoints", Rule::kForeignSetpoint, Speaker::kOther, [](auto&) {});
 }
 
+void DriveCheck::check_doubled() {
+  if (!walk_up()) return;
+  const double velocity = 0.2 * limit_;
+  player_.saying = Saying::kSetpointsTwice;
+  speed_up(velocity);
+  for (int n = 0; n < 50; ++n) lead(velocity);
+  speed_up(0);
+  player_.ticks(200);
+  const double off = std::abs(player_.target[mover_] - player_.newest.position[mover_]);
+  const double far = 0.1 * velocity * 150 * player_.dt_s();  // of the whole motion
+  if (off > far || !player_.are_all(DriveState::kOperationEnabled)) {
+    return player_.find(Rule::kDoubled, "each sent twice, it is " + std::to_string(off) +
+                                            " mm off, in " + name_of(player_.state(0)));
+  }
+  player_.saying = Saying::kLastSetpointAgain;
+  const bool ends = player_.until([this] { return player_.are_all(DriveState::kFault); }, 1000);
+  player_.saying = Saying::kAll;
+  if (!ends) player_.find(Rule::kDoubled, "the last one, sent again and again, keeps it on");
+}
+
 void DriveCheck::check_bridge() {
   if (!walk_up()) return;
   constexpr int kGap = CheckPlayer::kBridge - 8;
@@ -96,16 +116,16 @@ void DriveCheck::check_bridge() {
   speed_up(velocity);
   for (int n = 0; n < 50; ++n) lead(velocity);
   const double begin = player_.newest.position[mover_];
-  player_.is_mute = true;
+  player_.saying = Saying::kNoSetpoints;
   for (int n = 0; n < kGap; ++n) lead(velocity);
-  player_.is_mute = false;
-  const double way = std::abs(player_.newest.position[mover_] - begin);
+  player_.saying = Saying::kAll;
+  const double distance = std::abs(player_.newest.position[mover_] - begin);
   for (int n = 0; n < 20; ++n) lead(velocity);
   speed_up(0);
   if (!player_.are_all(DriveState::kOperationEnabled)) {
     player_.find(Rule::kBridge, "the drives left operation after " + std::to_string(kGap) +
                                     " lost setpoints of " + std::to_string(CheckPlayer::kBridge));
-  } else if (way < 0.6 * velocity * kGap * player_.dt_s()) {
+  } else if (distance < 0.6 * velocity * kGap * player_.dt_s()) {
     player_.find(Rule::kBridge, "the drive stopped while setpoints were lost");
   }
 }
@@ -113,41 +133,84 @@ void DriveCheck::check_bridge() {
 void DriveCheck::check_watchdog() {
   if (!walk_up()) return;
   const double velocity = 0.5 * limit_;
-  const JointLimits& limits = drive_spec(player_.model(), static_cast<int>(mover_)).limits;
   speed_up(velocity);
   for (int n = 0; n < 20; ++n) lead(velocity);
   const double last = player_.target[mover_];
-  player_.is_mute = true;
+  player_.saying = Saying::kNoSetpoints;
   const auto is_fault = [this] { return player_.are_all(DriveState::kFault); };
   const bool ends = player_.until(is_fault, CheckPlayer::kPatience);
   player_.ticks(100);
-  const double way = direction_ * (player_.newest.position[mover_] - last);
-  player_.is_mute = false;
+  player_.saying = Saying::kAll;
   if (!ends) return player_.find(Rule::kWatchdog, "it goes on without setpoints");
   if (player_.newest.error[mover_] != drive::kErrorSetpointsStopped) {
     player_.find(Rule::kWatchdog, "error " + in_hex(player_.newest.error[mover_]));
   }
+  check_stopping_distance(Rule::kRamp, last, velocity);
+}
+
+/// From the last setpoint to rest: the bridge, then the ramp.
+void DriveCheck::check_stopping_distance(Rule rule, double last, double velocity) {
+  const JointLimits& limits = drive_spec(player_.model(), static_cast<int>(mover_)).limits;
+  const double distance = direction_ * (player_.newest.position[mover_] - last);
   const double bridge = velocity * CheckPlayer::kBridge * player_.dt_s();
   const double ramp = velocity * velocity / (2 * limits.fault_acceleration);
   const double slack = 8 * velocity * player_.dt_s();
-  if (way < bridge + 0.4 * ramp || way > bridge + 2 * ramp + slack) {
-    player_.find(Rule::kRamp, "it stopped " + std::to_string(way) +
-                                  " mm after the last setpoint; bridge " + std::to_string(bridge) +
-                                  ", ramp " + std::to_string(ramp));
+  if (distance < bridge + 0.4 * ramp || distance > bridge + 2 * ramp + slack) {
+    player_.find(rule, "it stopped " + std::to_string(distance) +
+                           " mm after the last setpoint; bridge " + std::to_string(bridge) +
+                           ", ramp " + std::to_string(ramp));
+  }
+}
+
+/// The service is gone in the motion, and starts again at once.
+void DriveCheck::check_restart() {
+  if (!walk_up()) return;
+  const double velocity = 0.5 * limit_;
+  player_.is_disturbed = false;
+  speed_up(velocity);
+  const double last = player_.target[mover_];
+  player_.end_service();
+  player_.tick();
+  player_.restart_service();
+  player_.say_word(0x06);
+  player_.flags = 0;
+  player_.stand();
+  const auto is_over = [this] {
+    return player_.are_all(DriveState::kFault) || player_.are_all(DriveState::kReadyToSwitchOn) ||
+           player_.are_all(DriveState::kSwitchOnDisabled);
+  };
+  const bool ends = player_.until(is_over, CheckPlayer::kPatience);
+  if (player_.are_all(DriveState::kReadyToSwitchOn)) {
+    return player_.find(Rule::kRestart, "its 06h was obeyed while the drives were on");
+  }
+  if (!ends || player_.newest.error[mover_] != drive::kErrorSetpointsStopped) {
+    player_.find(Rule::kGoneInMotion, !ends ? "it goes on without a service"
+                                            : "error " + in_hex(player_.newest.error[mover_]));
+  }
+  player_.ticks(100);
+  if (!player_.is_disturbed) check_stopping_distance(Rule::kGoneInMotion, last, velocity);
+  const auto is_obeyed = [this] { return player_.newest.service_id == CheckPlayer::kRestartedId; };
+  if (!player_.until(is_obeyed, CheckPlayer::kPatience)) {
+    const bool is_kept = player_.newest.service_id == CheckPlayer::kServiceId;
+    return player_.find(is_kept ? Rule::kFreesMaster : Rule::kRestart,
+                        "service_id " + std::to_string(player_.newest.service_id));
+  }
+  if (walk_up() && !player_.is_heard()) {
+    player_.find(Rule::kRestart, "its setpoints, which count anew, are not taken");
   }
 }
 
 void DriveCheck::check_refused(Rule rule, std::uint16_t error, const Spoil& spoil) {
   if (!walk_up()) return;
   const double stood = player_.newest.position[mover_];
-  player_.is_mute = true;  // a good one that comes in the same period would hide it
+  player_.saying = Saying::kNoSetpoints;  // a good one that comes in the same period would hide it
   player_.ticks(3, [&](CheckedDrives& drives) {
     dds::SetpointSample sample = player_.odd_setpoint();
     spoil(sample);
     CheckPlayer::sign(sample);
     drives.say(Speaker::kService, sample);
   });
-  player_.is_mute = false;
+  player_.saying = Saying::kAll;
   const auto is_refused = [this] {
     const DriveState state = player_.state(static_cast<int>(mover_));
     return state == DriveState::kFault || state == DriveState::kFaultReaction;

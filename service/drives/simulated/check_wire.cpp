@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/drives/simulated/check_wire.hpp"
 
+#include <utility>
+
 namespace meridian::drives {
 
-CheckWire::CheckWire(const dds::ParticipantOptions& options, std::int64_t cycle_ns)
-    : other_(options),
+CheckWire::CheckWire(const dds::ParticipantOptions& options, std::int64_t cycle_ns,
+                     std::function<void(Wish)> ask)
+    : options_(options),
+      ask_(std::move(ask)),
+      other_(options),
       reports_(other_.participant, {}, kDepth),
       service_(std::make_unique<Voice>(options)),
       pace_(cycle_ns) {}
@@ -23,6 +28,10 @@ void CheckWire::say(Speaker who, const dds::SetpointSample& setpoint) {
 
 void CheckWire::end(Speaker who) {
   if (who == Speaker::kService) service_.reset();
+}
+
+void CheckWire::begin(Speaker who) {
+  if (who == Speaker::kService) service_ = std::make_unique<Voice>(options_);
 }
 
 bool CheckWire::period(std::vector<dds::DriveFeedback>& reports) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,13 +16,16 @@ namespace meridian::drives {
 /// Drives on the wire, checked at the machine's cycle time by two participants of this process.
 class CheckWire : public CheckedDrives {
  public:
-  /// Throws DdsError.
-  CheckWire(const dds::ParticipantOptions& options, std::int64_t cycle_ns);
+  /// `ask`: reaches the operator, and does not wait. Throws DdsError.
+  CheckWire(const dds::ParticipantOptions& options, std::int64_t cycle_ns,
+            std::function<void(Wish)> ask);
 
   void say(Speaker who, const dds::MachineInfo& machine) override;
   void say(Speaker who, const dds::DriveCommand& command) override;
   void say(Speaker who, const dds::SetpointSample& setpoint) override;
   void end(Speaker who) override;
+  void begin(Speaker who) override;
+  void ask(Wish wish) override { ask_(wish); }
   [[nodiscard]] bool period(std::vector<dds::DriveFeedback>& reports) override;
   [[nodiscard]] std::int64_t now_ns() const override { return drive::monotonic_ns(); }
 
@@ -38,6 +42,8 @@ class CheckWire : public CheckedDrives {
   }
 
   static constexpr int kDepth = 64;  ///< reports that wait
+  dds::ParticipantOptions options_;
+  std::function<void(Wish)> ask_;
   Voice other_;
   dds::Reader<dds::DriveFeedback> reports_;
   std::unique_ptr<Voice> service_;

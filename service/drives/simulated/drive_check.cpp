@@ -35,12 +35,12 @@ void DriveCheck::step(const char* what, const std::function<void()>& body) {
   result_.unproven.emplace_back(what);
 }
 
-CheckReport DriveCheck::run() {
-  player_.is_gone = true;
+CheckReport DriveCheck::run(Operator operator_is) {
+  player_.saying = Saying::kNothing;
   result_.has_drives =
       player_.until([this] { return player_.is_any_reported(); }, 2 * CheckPlayer::kPatience);
   if (!result_.has_drives) return result_;
-  player_.is_gone = false;
+  player_.saying = Saying::kAll;
   player_.ticks(100);
   const std::uint32_t all = (1U << static_cast<unsigned>(player_.count())) - 1;
   if ((player_.newest.joint_mask & all) != all) {
@@ -53,6 +53,7 @@ CheckReport DriveCheck::run() {
   step("enabling", [this] { check_enabling(); });
   step("following", [this] { check_following(); });
   check_all_dropped();
+  step("doubled setpoints", [this] { check_doubled(); });
   step("others' commands", [this] { check_foreign_commands(); });
   step("bridge", [this] { check_bridge(); });
   step("setpoints that stay away", [this] { check_watchdog(); });
@@ -60,7 +61,10 @@ CheckReport DriveCheck::run() {
   check_all_refused();
   step("begin", [this] { check_begin(); });
   step("homing", [this] { check_homing(); });
+  if (operator_is == Operator::kThere) check_emergency_stop();
   step("two services", [this] { check_masters(); });
+  if (report_) report_("a service that starts again in motion");
+  check_restart();
   if (report_) report_("the next service");
   check_next_master();  // once: the service is gone, and overslept periods change nothing
   result_.findings = player_.findings;
@@ -69,7 +73,7 @@ CheckReport DriveCheck::run() {
 
 bool DriveCheck::rest() {
   constexpr int kTries = 4;
-  player_.is_mute = false;
+  player_.saying = Saying::kAll;
   player_.flags = 0;
   player_.modes.fill(dds::kCyclicPositionMode);
   player_.stand();
@@ -96,10 +100,10 @@ bool DriveCheck::rest() {
 
 bool DriveCheck::walk_up() {
   if (!rest()) return false;
-  const std::pair<std::uint16_t, DriveState> ways[] = {{0x06, DriveState::kReadyToSwitchOn},
-                                                       {0x07, DriveState::kSwitchedOn},
-                                                       {0x0F, DriveState::kOperationEnabled}};
-  for (const auto& [word, state] : ways) {
+  const std::pair<std::uint16_t, DriveState> steps[] = {{0x06, DriveState::kReadyToSwitchOn},
+                                                        {0x07, DriveState::kSwitchedOn},
+                                                        {0x0F, DriveState::kOperationEnabled}};
+  for (const auto& [word, state] : steps) {
     player_.say_word(word);
     if (player_.until([this, to = state] { return player_.are_all(to); }, CheckPlayer::kPatience))
       continue;
@@ -123,16 +127,16 @@ void DriveCheck::check_states() {
   if (!player_.are_all(DriveState::kSwitchOnDisabled)) {
     player_.find(Rule::kNoJump, "0Fh led out of switch on disabled");
   }
-  const std::pair<Rule, std::pair<std::uint16_t, DriveState>> ways[] = {
+  const std::pair<Rule, std::pair<std::uint16_t, DriveState>> commands[] = {
       {Rule::kShutdown, {0x06, DriveState::kReadyToSwitchOn}},
       {Rule::kDisableVoltage, {0x00, DriveState::kSwitchOnDisabled}},
       {Rule::kQuickStop, {0x02, DriveState::kQuickStop}}};
-  for (const auto& [rule, way] : ways) {
+  for (const auto& [rule, command] : commands) {
     if (!walk_up()) return;
-    player_.say_word(way.first);
-    const DriveState to = way.second;
+    player_.say_word(command.first);
+    const DriveState to = command.second;
     if (player_.until([this, to] { return player_.are_all(to); }, 500)) continue;
-    player_.find(rule, in_hex(way.first) + " leads to " + name_of(player_.state(0)));
+    player_.find(rule, in_hex(command.first) + " leads to " + name_of(player_.state(0)));
   }
 }
 
@@ -143,10 +147,10 @@ void DriveCheck::check_enabling() {
   for (int i = 0; i < player_.count(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const JointSpec& spec = drive_spec(player_.model(), i);
-    const double way = std::abs(player_.newest.position[at] - stood[at]);
-    if (way > (spec.is_rotary ? 1e-3 : 0.1)) {
+    const double distance = std::abs(player_.newest.position[at] - stood[at]);
+    if (distance > (spec.is_rotary ? 1e-3 : 0.1)) {
       player_.find(Rule::kStandsWhenEnabled,
-                   "drive " + spec.name + " moved by " + std::to_string(way));
+                   "drive " + spec.name + " moved by " + std::to_string(distance));
     }
   }
   if (!player_.is_heard()) {
@@ -169,10 +173,10 @@ void DriveCheck::check_foreign_commands() {
 
 void DriveCheck::check_reset() {
   if (!walk_up()) return;
-  player_.is_mute = true;
+  player_.saying = Saying::kNoSetpoints;
   const auto is_fault = [this] { return player_.are_all(DriveState::kFault); };
   if (!player_.until(is_fault, CheckPlayer::kPatience)) return;
-  player_.is_mute = false;
+  player_.saying = Saying::kAll;
   player_.flags = 0;
   for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F}) {
     player_.say_word(word);
@@ -190,12 +194,12 @@ void DriveCheck::check_reset() {
     player_.ticks(60);
   }
   if (!player_.are_all(DriveState::kOperationEnabled)) return;  // slower than that: not to be seen
-  player_.is_mute = true;
+  player_.saying = Saying::kNoSetpoints;
   if (!player_.until(is_fault, 500))
     player_.find(Rule::kResetEdge, "bit 7 that stays set keeps it out of fault");
   player_.ticks(120);
   if (!is_fault()) player_.find(Rule::kResetEdge, "bit 7 that stays set resets a new fault");
-  player_.is_mute = false;
+  player_.saying = Saying::kAll;
 }
 
 void DriveCheck::check_homing() {
@@ -247,11 +251,32 @@ void DriveCheck::check_masters() {
   }
 }
 
+/// The operator opens the stop of drives that are on and stand, and closes it again.
+void DriveCheck::check_emergency_stop() {
+  constexpr int kMinute = 60'000, kHeld = 200;
+  if (report_) report_("emergency stop");
+  if (!walk_up()) return;
+  const auto is_open = [this] { return player_.newest.is_emergency_stop; };
+  if (is_open()) return player_.find(Rule::kEmergencyStop, "it is reported before it is opened");
+  player_.ask(Wish::kOpenEmergencyStop);
+  if (!player_.until(is_open, kMinute)) {
+    return player_.find(Rule::kEmergencyStop, "it was opened, and no report says so");
+  }
+  for (int n = 0; n < kHeld; ++n) {
+    player_.tick();
+    if (!is_open()) player_.find(Rule::kEmergencyStop, "it is open, and a report says it is not");
+  }
+  player_.say_word(0x00);
+  player_.ask(Wish::kCloseEmergencyStop);
+  if (!player_.until([&] { return !is_open(); }, kMinute)) {
+    player_.find(Rule::kEmergencyStop, "it was closed, and no report says so");
+  }
+}
+
 void DriveCheck::check_next_master() {
   player_.say_word(0x06);
   player_.ticks(60);
-  player_.tick([](CheckedDrives& drives) { drives.end(Speaker::kService); });
-  player_.is_gone = true;
+  player_.end_service();
   if (!player_.until([this] { return player_.newest.service_id == 0; }, CheckPlayer::kPatience)) {
     player_.find(Rule::kFreesMaster, "service_id " + std::to_string(player_.newest.service_id));
   }

@@ -15,6 +15,8 @@ struct CheckReport {
   std::vector<std::string> unproven;  ///< steps in which this program overslept again and again
 };
 
+enum class Operator : std::uint8_t { kAway, kThere };
+
 /// Checks drives by playing the service against them: walks them up, leads them, loses setpoints,
 /// sends what they must drop and refuse, and lets another service come. The first linear drive
 /// moves by some centimetres towards the middle of its travel. Proof:
@@ -24,7 +26,8 @@ class DriveCheck {
   /// `report`: hears what is checked.
   DriveCheck(const MachineModel& model, CheckedDrives& drives,
              std::function<void(const std::string&)> report = {});
-  [[nodiscard]] CheckReport run();
+  /// The emergency stop is checked where the operator is there to open and close it.
+  [[nodiscard]] CheckReport run(Operator operator_is = Operator::kAway);
 
  private:
   using Spoil = std::function<void(dds::SetpointSample&)>;
@@ -45,7 +48,11 @@ class DriveCheck {
   void check_all_refused();
   void check_begin();
   void check_homing();
+  void check_doubled();
+  void check_emergency_stop();
   void check_masters();
+  void check_restart();
+  void check_stopping_distance(Rule rule, double last, double velocity);
   void check_next_master();
   void speed_up(double to);
   void lead(double velocity);

@@ -10,6 +10,7 @@
 
 #include "support/machines.hpp"
 #include "unit/simulated_drives/faulty_drives.hpp"
+#include "unit/simulated_drives/naive_drives.hpp"
 
 namespace meridian::drives {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 CheckReport check(const std::string& fault) {
   const MachineModel model = test::lai_machine();
   test::FaultyDrives drives(model, fault);
-  return DriveCheck(model, drives).run();
+  return DriveCheck(model, drives).run(Operator::kThere);
 }
 
 std::string names(const CheckReport& report) {
@@ -33,6 +34,22 @@ TEST(DriveCheck, DrivesOfTheLibraryBreakNoRule) {
   EXPECT_TRUE(report.has_drives);
   EXPECT_EQ(names(report), "");
   EXPECT_TRUE(report.unproven.empty());
+}
+
+/// Positions that are copied are no drive: everything that keeps a machine safe is missing.
+TEST(DriveCheck, ANaiveClientThatOnlyCopiesPositionsBreaksEveryRuleOfSafety) {
+  const MachineModel model = test::lai_machine();
+  test::NaiveDrives drives(model);
+  const CheckReport report = DriveCheck(model, drives).run(Operator::kThere);
+  std::set<Rule> broken;
+  for (const Finding& one : report.findings) broken.insert(one.rule);
+  for (const Rule rule :
+       {Rule::kNotEnabledSetpoint, Rule::kOrder, Rule::kDoubled, Rule::kChecksum, Rule::kLate,
+        Rule::kDryRun, Rule::kForeignSetpoint, Rule::kForeignCommand, Rule::kBridge,
+        Rule::kWatchdog, Rule::kNoNumber, Rule::kTravel, Rule::kVelocity, Rule::kStep, Rule::kBegin,
+        Rule::kEmergencyStop, Rule::kKeepsMaster, Rule::kRestart, Rule::kFreesMaster}) {
+    EXPECT_TRUE(broken.contains(rule)) << text_of(rule).name << " of " << names(report);
+  }
 }
 
 struct Fault {
@@ -54,6 +71,7 @@ constexpr Fault kFaults[] = {
     {"follows-all", Rule::kNotEnabledSetpoint},
     {"does-not-follow", Rule::kFollows},
     {"no-order", Rule::kOrder},
+    {"takes-the-same-again", Rule::kDoubled},
     {"no-checksum", Rule::kChecksum},
     {"no-age", Rule::kLate},
     {"follows-dry-runs", Rule::kDryRun},
@@ -77,18 +95,22 @@ constexpr Fault kFaults[] = {
     {"no-disable", Rule::kDisableVoltage},
     {"no-shutdown", Rule::kShutdown},
     {"no-homing-mode", Rule::kModeDisplay},
-    {"mode-not-told", Rule::kModeDisplay},
+    {"mode-not-reported", Rule::kModeDisplay},
     {"no-cycle-in-homing", Rule::kHomingCycle},
     {"keeps-its-reference", Rule::kReferenceLost},
     {"loses-its-reference", Rule::kReferenceFound},
     {"takes-the-newest-when-off", Rule::kKeepsMaster},
+    {"hides-its-stop", Rule::kEmergencyStop},
+    {"forgets-its-stop", Rule::kEmergencyStop},
+    {"drops-off-when-alone", Rule::kGoneInMotion},
+    {"obeys-a-restarted-service", Rule::kRestart},
     {"takes-commands-of-all", Rule::kForeignCommand},
     {"keeps-a-service-that-is-gone", Rule::kFreesMaster},
 };
 
 class FaultyClient : public testing::TestWithParam<Fault> {};
 
-TEST_P(FaultyClient, IsToldByTheNameOfItsRuleFirst) {
+TEST_P(FaultyClient, IsNamedByItsRuleFirst) {
   const CheckReport report = check(GetParam().name);
   ASSERT_FALSE(report.findings.empty());
   EXPECT_EQ(report.findings.front().rule, GetParam().rule)

@@ -32,15 +32,34 @@ class FaultyDrives : public drives::CheckedDrives {
   void say(drives::Speaker who, const dds::DriveCommand& command) override;
   void say(drives::Speaker who, const dds::SetpointSample& setpoint) override;
   void end(drives::Speaker who) override {
-    if (who == drives::Speaker::kService) is_service_there_ = false;
+    if (who != drives::Speaker::kService) return;
+    if (is("drops-off-when-alone")) {
+      for (int i = 0; i < model_.joint_count; ++i) {
+        (void)group_->take({.drive = static_cast<std::uint8_t>(i),
+                            .service_id = group_->pin().master().service_id},
+                           service_);
+      }
+    }
+    is_service_there_ = false;
   }
+  void begin(drives::Speaker who) override {
+    if (who != drives::Speaker::kService) return;
+    is_service_there_ = is_restarted_ = true;
+    service_ = 43;
+  }
+  void ask(drives::Wish wish) override { is_stop_open_ = wish == drives::Wish::kOpenEmergencyStop; }
   [[nodiscard]] bool period(std::vector<dds::DriveFeedback>& reports) override;
   [[nodiscard]] std::int64_t now_ns() const override { return now_ns_; }
 
  private:
   [[nodiscard]] bool is(const char* fault) const { return fault_ == fault; }
-  [[nodiscard]] static std::uint64_t number_of(drives::Speaker who) {
-    return who == drives::Speaker::kService ? 41 : 42;
+  [[nodiscard]] std::uint64_t number_of(drives::Speaker who) const {
+    return who == drives::Speaker::kService ? service_ : 42;
+  }
+  [[nodiscard]] bool is_master_there() const {
+    const std::uint64_t master = group_->pin().master().participant;
+    return master == 42 || (is_service_there_ && master == service_) ||
+           is("keeps-a-service-that-is-gone");
   }
   [[nodiscard]] drive::GroupSpec spec();
   [[nodiscard]] dds::DriveFeedback report();
@@ -50,9 +69,10 @@ class FaultyDrives : public drives::CheckedDrives {
   drives::SimulatedServos servos_;
   const MachineModel& model_;
   std::optional<drive::Group> group_;
-  bool is_service_there_ = true;
+  bool is_service_there_ = true, is_restarted_ = false, is_stop_open_ = false;
+  std::uint64_t service_ = 41;  ///< participant of the service that is played
   std::int64_t now_ns_ = 1'000'000'000;
-  std::uint64_t newest_ = 0, stuck_cycle_ = 0;
+  std::uint64_t newest_ = 0, heard_ = 0, stuck_cycle_ = 0;
   std::optional<dds::SetpointSample> last_;
   std::uint16_t word_ = 0;
   int periods_ = 0, mutes_ = 0;
@@ -96,6 +116,10 @@ inline void FaultyDrives::say(drives::Speaker who, const dds::DriveCommand& aske
     sender = group_->pin().master().participant;
     command.service_id = group_->pin().master().service_id;
   }
+  if (is("obeys-a-restarted-service") && is_restarted_ && !group_->is_off()) {
+    sender = group_->pin().master().participant;
+    command.service_id = group_->pin().master().service_id;
+  }
   if (is("trusts-the-id") && command.service_id == group_->pin().master().service_id) {
     sender = group_->pin().master().participant;
   }
@@ -136,6 +160,11 @@ inline void FaultyDrives::say(drives::Speaker who, const dds::SetpointSample& se
   if (is("no-checksum")) sign();
   if (is("no-order") && s.cycle <= newest_) s.cycle = newest_ + 1, sign();
   if (is("no-age")) arrival_ns = 0;
+  if (is("takes-the-same-again") && who == drives::Speaker::kService && s.cycle == heard_) {
+    s.cycle = newest_ + 1, sign();
+    arrival_ns = 0;
+  }
+  if (who == drives::Speaker::kService) heard_ = setpoint.setpoint.cycle;
   if (is("follows-dry-runs") && (s.flags & kSetpointDry) != 0) s.flags = kSetpointEnabled, sign();
   if (is("follows-all") && s.flags == 0 && (word_ & 0x0F) == 0x0F) {
     s.flags = kSetpointEnabled;
@@ -165,10 +194,9 @@ inline bool FaultyDrives::period(std::vector<dds::DriveFeedback>& reports) {
     }
     again.velocity.fill(0);
     last_->crc = dds::setpoint_crc(again, group_->pin().master().service_id);
-    (void)group_->take(*last_, 41, 0);
+    (void)group_->take(*last_, service_, 0);
   }
-  const bool is_kept = is("keeps-a-service-that-is-gone");
-  group_->see_master(is_service_there_ || is_kept || group_->pin().master().participant == 42);
+  group_->see_master(is_master_there());
   group_->work(1, servos_);
   if (is("rare") && periods_ % 100 != 0) return true;
   reports.push_back(report());
@@ -186,9 +214,11 @@ inline dds::DriveFeedback FaultyDrives::report() {
   if (is("sample-stands")) report.sample = 5;
   if (is("no-number-reported")) report.position[3] = std::numeric_limits<double>::quiet_NaN();
   if (is("nobody-named")) report.service_id = 0;
+  report.is_emergency_stop = is_stop_open_ && !is("hides-its-stop");
+  if (is("forgets-its-stop") && is_stop_open_) report.is_emergency_stop = periods_ % 40 == 0;
   if (is("no-cycle")) report.cycle_seen = 0;
   if (is("no-cycle-in-homing") && is_homing) report.cycle_seen = stuck_cycle_;
-  if (is("mode-not-told")) report.mode_display.fill(dds::kCyclicPositionMode);
+  if (is("mode-not-reported")) report.mode_display.fill(dds::kCyclicPositionMode);
   if (is("keeps-its-reference")) report.referenced_mask = 31;
   if (is("loses-its-reference") && is_homing) report.referenced_mask &= ~1U;
   if (is("does-not-follow")) report.position.fill(0);
