@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/drives/hal/hal_hardware.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
+
+#include "service/drives/kit/pace.hpp"
 
 namespace meridian::hal {
 namespace {
@@ -17,12 +17,6 @@ constexpr std::uint16_t kErrorDevice = 0x5000, kErrorCommunication = 0x7500,
 /// HAL's servo thread says nothing for so long, and for the bridge: it does not run.
 constexpr std::int64_t kSilent_ns = 50'000'000;
 constexpr const char* kHalIsStopped = "HAL is stopped, or its servo thread does not run";
-
-[[nodiscard]] std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  (void)::clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
-}
 
 [[nodiscard]] meridian_hal_action action_of(drive::ActionKind kind) noexcept {
   switch (kind) {
@@ -79,7 +73,7 @@ void HalHardware::take_report() noexcept {
   meridian_hal_report report;
   if (meridian_hal_read(&shared_.report_lock, &shared_.report, &report, sizeof report) == 0) return;
   report_ = report;
-  if (report_.number != before) heard_ns_ = monotonic_ns();
+  if (report_.number != before) heard_ns_ = drive::monotonic_ns();
   order_result_.store(report_.order_result, std::memory_order_relaxed);
   order_over_.store(report_.order_over, std::memory_order_release);
 }
@@ -109,11 +103,11 @@ void HalHardware::write(int axis, const drive::Output& output) noexcept {
   const bool is_pulse = joint.index_count != report_.index_count[i];
   set(setpoint_.index_mask, joint.homing == drive::HomingMethod::kByIndex && output.is_on &&
                                 !joint.is_referenced && !is_pulse);
-  if (!output.is_homing) joint.was_homed = true;  // what it says now is of before
+  if (!output.is_homing) joint.homed_pin = HomedPin::kOfBefore;
 }
 
 void HalHardware::exchange(double dt_s) noexcept {
-  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t now_ns = drive::monotonic_ns();
   setpoint_.end_ns = grid_.end_of(now_ns, setpoint_.on_mask != 0 ? elapsed_s_ : dt_s);
   ++setpoint_.number;
   meridian_hal_write(&shared_.setpoint_lock,
@@ -134,10 +128,11 @@ drive::Reading HalHardware::read(int axis) noexcept {
   if ((setpoint_.homing_mask & bit) != 0) {
     const bool is_homed = (report_.homed_mask & bit) != 0;
     const double step = joint.position - before;
-    joint.has_new_reference = is_homed && !joint.was_homed;
+    joint.homed_pin = !is_homed                           ? HomedPin::kLow
+                      : joint.homed_pin == HomedPin::kLow ? HomedPin::kRisen
+                                                          : HomedPin::kOfBefore;
     const bool is_jump = joint.farthest_step > 0 && std::abs(step) > joint.farthest_step;
-    if (is_jump || joint.has_new_reference) joint.hidden += step;
-    joint.was_homed = is_homed;
+    if (is_jump || joint.homed_pin == HomedPin::kRisen) joint.hidden += step;
   }
   drive::Reading reading;
   reading.position = joint.position - joint.hidden;
@@ -158,8 +153,8 @@ drive::Probe HalHardware::probe() noexcept {
 drive::HomingStep HalHardware::home(int axis, const drive::HomingView& view) noexcept {
   Joint& joint = joints_[static_cast<std::size_t>(axis)];
   drive::HomingStep step{drive::HomingState::kSearching, view.position, 0, 0};
-  if (view.is_begin || !joint.has_new_reference) return step;
-  joint.has_new_reference = false;
+  if (view.is_begin || joint.homed_pin != HomedPin::kRisen) return step;
+  joint.homed_pin = HomedPin::kOfBefore;
   step.state = drive::HomingState::kAttained;
   step.shift = joint.hidden;
   joint.hidden = 0;

@@ -42,13 +42,19 @@ class HalHardware final : public drive::Hardware {
   [[nodiscard]] std::string act(const drive::Action& action, const std::atomic<bool>& is_stopping);
 
  private:
+  enum class HomedPin : std::uint8_t {
+    kOfBefore,  ///< high from before this search, or reported already
+    kLow,       ///< what rises now is of this search
+    kRisen      ///< the search has found a reference
+  };
   struct Joint {
     drive::HomingMethod homing = drive::HomingMethod::kNone;
     double farthest_step = 0;  ///< in one period
     double position = 0;       ///< as HAL has it
     double hidden = 0;         ///< what a search has renamed and home() has not reported
     std::uint32_t index_count = 0;
-    bool is_on = false, is_referenced = false, was_homed = false, has_new_reference = false;
+    HomedPin homed_pin = HomedPin::kLow;
+    bool is_on = false, is_referenced = false;
   };
   void take_report() noexcept;
   /// Returns the order's number.

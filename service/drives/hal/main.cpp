@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // meridian-hal: the joints of LinuxCNC's HAL as the drives of a machine. It speaks DDS with the
 // service, and shared memory with the component `meridian_hal`; docs/linuxcnc.md.
-#include <pthread.h>
-#include <sched.h>
 #include <sys/mman.h>
-#include <time.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -21,6 +18,7 @@
 #include "service/drives/hal/hal_hardware.hpp"
 #include "service/drives/hal/hal_memory.hpp"
 #include "service/drives/hal/homing_option.hpp"
+#include "service/drives/kit/pace.hpp"
 #include "service/machine/file/machine_file.hpp"
 
 namespace meridian::hal {
@@ -28,25 +26,9 @@ namespace {
 
 std::atomic<bool> is_stopping{false};
 
-[[nodiscard]] std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  (void)::clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
-}
-
 void say(const std::string& text) {
   std::puts(text.c_str());
   std::fflush(stdout);
-}
-
-/// Whether a thread of this process may be of real-time class.
-[[nodiscard]] bool may_be_realtime() {
-  bool may = false;
-  std::thread([&] {
-    const sched_param lowest{.sched_priority = 1};
-    may = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &lowest) == 0;
-  }).join();
-  return may;
 }
 
 /// For how long HAL goes on without a setpoint: what the machine file says; in best effort 50 ms,
@@ -55,7 +37,7 @@ void say(const std::string& text) {
   constexpr std::int64_t kBestEffort_ns = 50'000'000;
   if (asked_ms > 0) return static_cast<std::int64_t>(1e6 * asked_ms);
   const std::int64_t of_machine = model.bridge_cycles * model.cycle_ns;
-  if (may_be_realtime()) return of_machine;
+  if (drive::may_have_priority(1)) return of_machine;
   say("no right to threads of real-time class: HAL bridges 50 ms without a setpoint");
   return std::max(of_machine, kBestEffort_ns);
 }
@@ -68,10 +50,10 @@ void say(const std::string& text) {
 }
 
 [[nodiscard]] bool wait_for_hal(HalHardware& hardware, const std::string& machine) {
-  if (!hardware.hear(monotonic_ns())) {
+  if (!hardware.hear(drive::monotonic_ns())) {
     say("waiting for HAL: loadrt meridian_hal machine=" + machine + ", addf meridian.update");
   }
-  while (!is_stopping && !hardware.hear(monotonic_ns())) {
+  while (!is_stopping && !hardware.hear(drive::monotonic_ns())) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return !is_stopping;

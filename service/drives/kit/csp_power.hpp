@@ -17,16 +17,16 @@ class CspPower {
   void see(std::uint16_t statusword) noexcept {
     state_ = drive_state(statusword);
     if (state_ == DriveState::kOperationEnabled) {
-      was_enabled_ = was_wanted_;
-    } else if (was_enabled_ && !is_fault()) {
-      has_dropped_ = true;
+      if (wish_ == Wish::kOn) wish_ = Wish::kFulfilled;
+    } else if (wish_ == Wish::kFulfilled && !is_fault()) {
+      wish_ = Wish::kDropped;
     }
   }
 
   /// Object 6040h for this period, without the bits of a mode.
   [[nodiscard]] std::uint16_t controlword(bool is_wanted, bool is_reset) noexcept {
-    if (!is_wanted) was_enabled_ = has_dropped_ = false;
-    was_wanted_ = is_wanted;
+    if (!is_wanted) wish_ = Wish::kOff;
+    if (is_wanted && wish_ == Wish::kOff) wish_ = Wish::kOn;
     reset_periods_ = state_ == DriveState::kFault && is_reset ? reset_periods_ + 1 : 0;
     switch (state_) {
       case DriveState::kFault:
@@ -51,17 +51,25 @@ class CspPower {
   [[nodiscard]] bool is_fault() const noexcept {
     return state_ == DriveState::kFault || state_ == DriveState::kFaultReaction;
   }
-  [[nodiscard]] bool has_dropped() const noexcept { return has_dropped_; }
+  [[nodiscard]] bool has_dropped() const noexcept { return wish_ == Wish::kDropped; }
 
  private:
-  [[nodiscard]] bool may_go_on() const noexcept { return was_wanted_ && !has_dropped_; }
+  enum class Wish : std::uint8_t {
+    kOff,
+    kOn,         ///< wanted on, and not enabled yet
+    kFulfilled,  ///< it was enabled since
+    kDropped     ///< it left that by itself
+  };
+  [[nodiscard]] bool may_go_on() const noexcept {
+    return wish_ == Wish::kOn || wish_ == Wish::kFulfilled;
+  }
 
   static constexpr std::uint16_t kDisableVoltage = 0x00, kShutdown = 0x06, kSwitchOn = 0x07,
                                  kEnableOperation = 0x0F, kFaultReset = 0x80;
   static constexpr unsigned kResetHalf = 16;  ///< periods of low, then of high
 
   DriveState state_ = DriveState::kNotReady;
-  bool was_wanted_ = false, was_enabled_ = false, has_dropped_ = false;
+  Wish wish_ = Wish::kOff;
   unsigned reset_periods_ = 0;
 };
 

@@ -19,14 +19,6 @@
 namespace meridian::drive {
 namespace {
 
-/// Whether threads may have a real-time class here.
-[[nodiscard]] bool may_have_priority(int priority) {
-  if (priority <= 0) return false;
-  bool may = false;
-  std::thread([&] { may = set_priority(priority); }).join();
-  return may;
-}
-
 [[nodiscard]] dds::ParticipantOptions participant_of(const Options& options) {
   return {.domain = options.domain,
           .machine = options.machine,

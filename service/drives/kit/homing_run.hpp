@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "meridian/drive_axis.hpp"
@@ -27,7 +28,9 @@ class HomingRun {
         is_referenced_(spec.is_referenced) {}
 
   [[nodiscard]] bool is_referenced() const noexcept { return is_referenced_; }
-  [[nodiscard]] bool is_searching() const noexcept { return state_ == State::kSearching; }
+  [[nodiscard]] bool is_searching() const noexcept {
+    return state_ == State::kBegins || state_ == State::kSearching;
+  }
   [[nodiscard]] bool is_by_drive() const noexcept { return spec_.method == HomingMethod::kByDrive; }
   /// Whether the library keeps what positions are called more; else the hardware does.
   [[nodiscard]] bool owns_names() const noexcept { return spec_.method == HomingMethod::kByIndex; }
@@ -35,11 +38,11 @@ class HomingRun {
   /// What bit 4 of the controlword asks for, in homing mode and operation enabled.
   void ask(bool is_start) noexcept {
     if (is_start && !was_start_) {
-      state_ = State::kSearching;
-      is_referenced_ = has_index_ = false;
-      is_begin_ = true;
+      state_ = State::kBegins;
+      is_referenced_ = false;
+      index_.reset();
       searched_ = 0;
-    } else if (!is_start && state_ == State::kSearching) {
+    } else if (!is_start && is_searching()) {
       state_ = State::kIdle;  // interrupted
     }
     was_start_ = is_start;
@@ -50,8 +53,8 @@ class HomingRun {
   /// One period in homing mode. Where nothing is searched, an axis that still moves ramps down.
   [[nodiscard]] HomingStep work(HomingView view, const Reading& reading, int axis,
                                 Hardware& hardware) noexcept {
-    if (state_ != State::kSearching) return ramp(view, 0);
-    view.is_begin = std::exchange(is_begin_, false);
+    if (!is_searching()) return ramp(view, 0);
+    view.is_begin = std::exchange(state_, State::kSearching) == State::kBegins;
     switch (spec_.method) {
       case HomingMethod::kNone:
         return end({HomingState::kAttained, view.target, 0, 0});
@@ -72,6 +75,7 @@ class HomingRun {
     switch (state_) {
       case State::kIdle:
         return kStatusTargetReached;
+      case State::kBegins:
       case State::kSearching:
         return 0;
       case State::kAttained:
@@ -83,7 +87,7 @@ class HomingRun {
   }
 
  private:
-  enum class State : std::uint8_t { kIdle, kSearching, kAttained, kFailed };
+  enum class State : std::uint8_t { kIdle, kBegins, kSearching, kAttained, kFailed };
 
   [[nodiscard]] HomingStep end(const HomingStep& step) noexcept {
     if (step.state == HomingState::kAttained) state_ = State::kAttained;
@@ -91,28 +95,26 @@ class HomingRun {
     is_referenced_ = state_ == State::kAttained;
     return step;
   }
-  /// Leads the target on, its velocity on the way to `wanted`.
+  /// Leads the target on, its velocity towards `wanted`.
   [[nodiscard]] HomingStep ramp(const HomingView& view, double wanted) noexcept {
-    const double before = velocity_, most = acceleration_ * view.dt_s;
-    velocity_ += std::clamp(wanted - velocity_, -most, most);
+    const double before = velocity_, max_change = acceleration_ * view.dt_s;
+    velocity_ += std::clamp(wanted - velocity_, -max_change, max_change);
     const bool stands = before == 0 && velocity_ == 0;
-    const double way = stands ? 0 : 0.5 * (before + velocity_) * view.dt_s;
-    return {HomingState::kSearching, stands ? view.target : view.target + way, velocity_, 0};
+    const double distance = stands ? 0 : 0.5 * (before + velocity_) * view.dt_s;
+    return {HomingState::kSearching, stands ? view.target : view.target + distance, velocity_, 0};
   }
   [[nodiscard]] HomingStep search_index(const HomingView& view, const Reading& reading) noexcept {
-    if (!has_index_ && reading.is_index && !view.is_begin) {
-      has_index_ = true;
-      index_ = reading.index_position;
-    }
+    if (!index_ && reading.is_index && !view.is_begin) index_ = reading.index_position;
     const bool is_beyond = spec_.search_distance > 0 && searched_ > spec_.search_distance;
-    HomingStep step = ramp(view, has_index_ || is_beyond ? 0 : spec_.search_velocity);
+    HomingStep step = ramp(view, index_ || is_beyond ? 0 : spec_.search_velocity);
     searched_ += std::abs(step.target - view.target);
     if (step.velocity != 0) return step;
-    if (has_index_) {
+    if (index_) {
       step.state = HomingState::kAttained;
-      step.shift = spec_.index_position - index_;
+      step.shift = spec_.index_position - *index_;
     } else {
-      step.state = HomingState::kFailed;  // it went all the way, or has no velocity to go with
+      step.state =
+          HomingState::kFailed;  // it went the whole distance, or has no velocity to go with
     }
     return step;
   }
@@ -120,8 +122,9 @@ class HomingRun {
   HomingSpec spec_;
   double acceleration_;
   State state_ = State::kIdle;
-  bool is_referenced_, was_start_ = false, is_begin_ = false, has_index_ = false;
-  double index_ = 0, searched_ = 0, velocity_ = 0;
+  bool is_referenced_, was_start_ = false;
+  std::optional<double> index_;  ///< where the pulse was
+  double searched_ = 0, velocity_ = 0;
 };
 
 }  // namespace meridian::drive

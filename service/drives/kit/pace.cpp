@@ -5,6 +5,8 @@
 #include <sched.h>
 #include <time.h>
 
+#include <thread>
+
 namespace meridian::drive {
 namespace {
 
@@ -28,6 +30,13 @@ bool set_priority(int priority) noexcept {
   const sched_param param{.sched_priority = priority};
   const int policy = priority > 0 ? SCHED_FIFO : SCHED_OTHER;
   return ::pthread_setschedparam(::pthread_self(), policy, &param) == 0;
+}
+
+bool may_have_priority(int priority) {
+  if (priority <= 0) return false;
+  bool may = false;
+  std::thread([&] { may = set_priority(priority); }).join();
+  return may;
 }
 
 Pace::Pace(std::int64_t period_ns) noexcept

@@ -27,6 +27,9 @@ class Pace {
 /// it.
 bool set_priority(int priority) noexcept;
 
+/// Whether threads of this process may have that priority; false for 0. Context: start-up.
+[[nodiscard]] bool may_have_priority(int priority);
+
 /// The calling thread, and those that it starts, off the last processor: a service on this host
 /// uses it for its cycle.
 void keep_off_last_processor() noexcept;

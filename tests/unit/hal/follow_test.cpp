@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 1'000'000, kBridge_ns = 3'000'000;
 constexpr double kAmplitude = 20, kOmega = 10;  // mm, rad/s: 200 mm/s, 2000 mm/s²
 
-[[nodiscard]] double way(double t) { return kAmplitude * std::sin(kOmega * t); }
+[[nodiscard]] double position_at(double t) { return kAmplitude * std::sin(kOmega * t); }
 [[nodiscard]] double speed(double t) { return kAmplitude * kOmega * std::cos(kOmega * t); }
 
 class Follow : public testing::Test {
@@ -29,7 +29,7 @@ class Follow : public testing::Test {
     meridian_hal_setpoint one{};
     one.number = static_cast<std::uint64_t>(n);
     one.end_ns = n * kPeriod_ns;
-    one.position[0] = way(t);
+    one.position[0] = position_at(t);
     one.velocity[0] = is_on ? speed(t) : 0;
     one.on_mask = is_on ? 1 : 0;
     meridian_hal_write(&shared_.setpoint_lock, &shared_.setpoints[n % MERIDIAN_HAL_KEPT], &one,
@@ -70,7 +70,7 @@ TEST_F(Follow, PositionsAreThoseOfOnePeriodAgoWhateverThePeriodsAre) {
       }
       step(now);
       ASSERT_EQ(follow_.phase[0], MERIDIAN_HAL_FOLLOWS);
-      const double wanted = way(1e-9 * static_cast<double>(now - kPeriod_ns));
+      const double wanted = position_at(1e-9 * static_cast<double>(now - kPeriod_ns));
       if (now < 8 * kPeriod_ns) {
         before = position();
         continue;
@@ -90,7 +90,8 @@ TEST_F(Follow, BeyondTheNewestSetpointItsVelocityLeadsFromItsPosition) {
   }
   for (int n = 11; n <= 60; ++n) {  // each comes when its time is over already
     step(n * kPeriod_ns + 900'000);
-    EXPECT_NEAR(position(), way(1e-9 * static_cast<double>((n - 1) * kPeriod_ns + 900'000)), 2e-3);
+    EXPECT_NEAR(position(), position_at(1e-9 * static_cast<double>((n - 1) * kPeriod_ns + 900'000)),
+                2e-3);
     send(n);
   }
 }
@@ -110,7 +111,7 @@ TEST_F(Follow, LateSetpointsAreBridgedByTheVelocity) {
   }
   send(13);
   step(14 * kPeriod_ns);
-  EXPECT_NEAR(position(), way(0.013), 1e-6);
+  EXPECT_NEAR(position(), position_at(0.013), 1e-6);
 }
 
 TEST_F(Follow, SetpointsThatStayAwayRampDownAndStayOffUntilTheProcessSaysOff) {
@@ -130,7 +131,7 @@ TEST_F(Follow, SetpointsThatStayAwayRampDownAndStayOffUntilTheProcessSaysOff) {
     before = position();
   }
   EXPECT_EQ(follow_.phase[0], MERIDIAN_HAL_LOST);
-  // 200 mm/s: five periods of bridge at the most, then 200² / (2 · 5000) = 4 mm.
+  // 200 mm/s: at most five periods of bridge, then 200² / (2 · 5000) = 4 mm.
   EXPECT_LT(position() - from, 5 * 0.2 + 4 + 0.1);
   for (int n = 81; n <= 90; ++n) {  // the process comes back as if nothing had been
     send(n);

@@ -21,21 +21,21 @@ static const struct meridian_hal_setpoint* ends_after(const struct meridian_hal_
 }
 
 /// The cubic through positions and velocities of both ends. Where it is farther from the straight
-/// line than the largest acceleration bends a way, the velocities do not belong to the positions:
+/// line than the largest acceleration bends a path, the velocities do not belong to the positions:
 /// the straight line then.
 static void between(const struct meridian_hal_setpoint* from,
                     const struct meridian_hal_setpoint* to, double acceleration, int64_t at_ns,
                     int joint, double* position, double* velocity) {
   const double length_s = 1e-9 * (double)(to->end_ns - from->end_ns);
   const double s = length_s > 0 ? 1e-9 * (double)(at_ns - from->end_ns) / length_s : 1;
-  const double p0 = from->position[joint], way = to->position[joint] - p0;
+  const double p0 = from->position[joint], distance = to->position[joint] - p0;
   const double v0 = from->velocity[joint] * length_s, v1 = to->velocity[joint] * length_s;
-  const double curve = v0 + v1 - 2 * way, steep = 3 * way - 2 * v0 - v1;
-  const double line = p0 + s * way, cubic = p0 + s * (v0 + s * (steep + s * curve));
+  const double curve = v0 + v1 - 2 * distance, steep = 3 * distance - 2 * v0 - v1;
+  const double line = p0 + s * distance, cubic = p0 + s * (v0 + s * (steep + s * curve));
   const double off = cubic < line ? line - cubic : cubic - line;
   const int is_smooth = off <= acceleration * length_s * length_s / 8;
   *position = is_smooth ? cubic : line;
-  const double slope = is_smooth ? v0 + s * (2 * steep + 3 * s * curve) : way;
+  const double slope = is_smooth ? v0 + s * (2 * steep + 3 * s * curve) : distance;
   *velocity = length_s > 0 ? slope / length_s : 0;
 }
 
