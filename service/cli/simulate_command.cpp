@@ -65,6 +65,7 @@ class Explaining {
   Explaining(const Options& options, const MachineModel& model)
       : options_(options), model_(model), picture_(model), view_(model, options.html) {
     cause_.tool_length_mm = model.tool_length_mm;
+    cause_.cause = static_cast<std::uint8_t>(simulate::Cause::kWaiting);  // nothing is explained yet
     if (!options.explain_table.empty()) {
       table_.emplace(options.explain_table).out() << simulate::explained_header(model);
     }
@@ -78,8 +79,11 @@ class Explaining {
         },
         [this](const simulate::ExplainedCycle& cycle) {
           if (!options_.picture.empty()) picture_.add(cycle);
-          cause_ = {cycle.programmed_mm_per_s, cycle.limit, cycle.tool_length_mm};
-        });
+          const auto cause = cycle.cause ? static_cast<std::uint8_t>(*cycle.cause)
+                                         : panel::RunView::kUndecided;
+          cause_ = {cycle.programmed_mm_per_s, cycle.limit, cause, cycle.tool_length_mm};
+        },
+        [this](simulate::Cause cause) { view_.decide(static_cast<std::uint8_t>(cause)); });
   }
 
   [[nodiscard]] simulate::Explainer* explainer() { return explainer_ ? &*explainer_ : nullptr; }

@@ -6,7 +6,7 @@
 namespace meridian::panel {
 namespace {
 
-static_assert(sizeof(ProgramPath::Point) == 44 && std::endian::native == std::endian::little,
+static_assert(sizeof(ProgramPath::Point) == 4 * (14 + kMaxJoints) && std::endian::native == std::endian::little,
               "the page reads points as they lie here: service/panel/page/src/program_path.js");
 
 [[nodiscard]] std::array<float, 3> to_float(const Vector3& v) {
@@ -28,13 +28,26 @@ void ProgramPath::add(const CycleRecord& record, const Cause& cause) {
   point.tip_mm = to_float(pose.tip);
   point.axis = to_float(pose.axis);
   point.feed_mm_per_min = static_cast<float>(passed_s > 0 ? kPerMinute * path_mm_ / passed_s : 0);
+  point.programmed_mm_per_min = static_cast<float>(kPerMinute * cause.programmed_mm_per_s);
   point.line = record.setpoint.line;
+  point.block = static_cast<std::uint32_t>(record.sequence);
   point.limit = cause.limit;
+  point.cause = cause.cause;
+  for (std::size_t i = 0; i < point.joints.size(); ++i) {
+    point.joints[i] = static_cast<float>(record.joints[i]);
+  }
   points_.push_back(point);
   point_s_ = time_s_;
   path_mm_ = 0;
   since_ = 0;
   if (points_.size() >= kMaxPoints) halve();
+}
+
+void ProgramPath::decide(std::uint32_t cause) noexcept {
+  for (auto point = points_.rbegin(); point != points_.rend(); ++point) {
+    if (point->cause != kUndecided) return;
+    point->cause = cause;
+  }
 }
 
 /// The second of every two points stays, with the feed of both.

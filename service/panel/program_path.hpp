@@ -25,15 +25,21 @@ class ProgramPath {
     float plan_time_s = 0;                  ///< as in the status
     std::array<float, 3> tip_mm{}, axis{};  ///< in the workpiece frame
     float feed_mm_per_min = 0;              ///< mean since the point before
-    std::uint32_t line = 0;
-    std::uint32_t limit = 0;  ///< simulate::LimitId
+    float programmed_mm_per_min = 0;
+    std::uint32_t line = 0, block = 0;
+    std::uint32_t limit = 0;                ///< simulate::LimitId
+    std::uint32_t cause = kUndecided;       ///< simulate::Cause
+    std::array<float, kMaxJoints> joints{};  ///< mm, rad
   };
+  static constexpr std::uint32_t kUndecided = 255;
 
   /// What is known of a cycle beside its record.
   struct Cause {
     double time_s = 0;   ///< that the cycle took
     double path_mm = 0;  ///< of the tip in it
+    double programmed_mm_per_s = 0;
     std::uint32_t limit = 0;
+    std::uint32_t cause = kUndecided;
     double tool_length_mm = 0;
   };
 
@@ -41,6 +47,8 @@ class ProgramPath {
   explicit ProgramPath(const MachineModel& model) : model_(model) {}
 
   void add(const CycleRecord& record, const Cause& cause);
+  /// The cause of the newest points, as far back as they have none.
+  void decide(std::uint32_t cause) noexcept;
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }
   /// All points, one after the other, as a page reads them.

@@ -16,6 +16,20 @@
 namespace meridian::panel {
 namespace {
 
+static_assert(static_cast<int>(simulate::Cause::kPole) == 3 &&
+                  static_cast<int>(simulate::Cause::kRest) == 4 &&
+                  static_cast<int>(simulate::Cause::kUnwinding) == 7,
+              "the page names them: service/panel/page/src/held.js");
+
+[[nodiscard]] ProgramPath::Cause seen(const simulate::ExplainedCycle& cycle) {
+  return {.time_s = cycle.time_s,
+          .path_mm = cycle.way_mm,
+          .programmed_mm_per_s = cycle.programmed_mm_per_s,
+          .limit = cycle.limit,
+          .cause = cycle.cause ? static_cast<std::uint32_t>(*cycle.cause) : ProgramPath::kUndecided,
+          .tool_length_mm = cycle.tool_length_mm};
+}
+
 /// Thrown through the simulator by who is to end it.
 struct Overtaken {};
 
@@ -91,9 +105,9 @@ std::optional<SimulatedProgram> simulate_program(const std::string& file,
   cl::ClReader program(input, file, reader);
   ProgramPath path(model);
   CycleRecord record;
-  simulate::Explainer explainer(model, {}, [&](const simulate::ExplainedCycle& cycle) {
-    path.add(record, {cycle.time_s, cycle.way_mm, cycle.limit, cycle.tool_length_mm});
-  });
+  simulate::Explainer explainer(
+      model, {}, [&](const simulate::ExplainedCycle& cycle) { path.add(record, seen(cycle)); },
+      [&path](simulate::Cause cause) { path.decide(static_cast<std::uint32_t>(cause)); });
   simulate::SimulateOptions options;
   options.explainer = &explainer;
   options.settings.retracts_first = reader.first_line > 0;

@@ -85,6 +85,13 @@ void RunView::keep(const Setpoint& setpoint, const Cause& cause, const Pose<doub
   since_ = 0;
 }
 
+void RunView::decide(std::uint8_t cause) noexcept {
+  for (auto sample = samples_.rbegin(); sample != samples_.rend(); ++sample) {
+    if (sample->cause.cause != kUndecided) return;
+    sample->cause.cause = cause;
+  }
+}
+
 /// Every other sample goes; the next one takes its shares and its path.
 void RunView::halve() {
   std::size_t kept = 1;
@@ -110,7 +117,8 @@ std::string RunView::html(const ToolTable& tools, const Words& words) const {
   if (marker == std::string_view::npos) return "";
   json columns = {{"time", json::array()},   {"line", json::array()},
                   {"feed", json::array()},   {"programmed", json::array()},
-                  {"limit", json::array()},  {"tool", json::array()},
+                  {"limit", json::array()},  {"cause", json::array()},
+                  {"tool", json::array()},
                   {"tip", json::array()},    {"axis", json::array()},
                   {"joints", json::array()}, {"shares", json::array()}};
   const int count = model_.joint_count;
@@ -120,6 +128,7 @@ std::string RunView::html(const ToolTable& tools, const Words& words) const {
     columns["feed"].push_back(rounded(sample.feed_mm_per_s * 60, 1e-2));
     columns["programmed"].push_back(rounded(sample.cause.programmed_mm_per_s * 60, 1e-2));
     columns["limit"].push_back(sample.cause.limit);
+    columns["cause"].push_back(sample.cause.cause);
     columns["tool"].push_back(rounded(sample.cause.tool_length_mm, 1e-6));
     for (std::size_t i = 0; i < 3; ++i) {
       columns["tip"].push_back(rounded(sample.pose.tip[i], 1e-5));

@@ -23,10 +23,13 @@ class RunView {
  public:
   static constexpr std::size_t kMaxSamples = 12000;
 
+  static constexpr std::uint8_t kUndecided = 255;
+
   /// What is known of a cycle beside its setpoint.
   struct Cause {
     double programmed_mm_per_s = 0;  ///< 0: no feed is programmed
-    std::uint8_t limit = 0;          ///< place in `limits` of html()
+    std::uint8_t limit = 0;          ///< index in `limits` of html()
+    std::uint8_t cause = kUndecided;  ///< simulate::Cause
     double tool_length_mm = 0;
   };
 
@@ -35,6 +38,8 @@ class RunView {
 
   /// The next cycle that was sent.
   void add(const Setpoint& setpoint, const Cause& cause);
+  /// The cause of the newest cycles, as far back as they have none.
+  void decide(std::uint8_t cause) noexcept;
 
   /// What the file says beside the picture.
   struct Words {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "service/analysis/simulate/held_by.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/panel/program_path.hpp"
 #include "service/text/whole_file.hpp"
@@ -66,6 +67,33 @@ TEST(ProgramPreview, ThePathOfACutRunsAtItsFeedThroughItsPoints) {
   for (const auto& point : points) fastest = std::max(fastest, point.feed_mm_per_min);
   EXPECT_NEAR(static_cast<double>(fastest), 1200, 3);
   EXPECT_EQ(run->limits[1], "feed");
+}
+
+TEST(ProgramPreview, APointKnowsItsBlockItsFeedItsJointsAndWhatHeldIt) {
+  const Part part("GOTO/0,0,50,0,0,1\nGOTO/40,0,50,0,0,1\nGOTO/40,30,50,0,0,1\n");
+  const auto here = machine();
+  const auto run = simulate_program(part.file(), reader_for(here, 0), here, kNeverOvertaken);
+  ASSERT_TRUE(run);
+  const auto points = points_in(run->path);
+  ASSERT_GT(points.size(), 1000U);
+  for (const auto& point : points) {
+    EXPECT_NE(point.cause, ProgramPath::kUndecided);
+    JointVector joints{};
+    for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = static_cast<double>(point.joints[i]);
+    const Vector3 tip = forward(here.model, here.model.tool_length_mm, joints).tip;
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(tip[k], static_cast<double>(point.tip_mm[static_cast<std::size_t>(k)]), 1e-2);
+    }
+  }
+  const auto& middle = points[points.size() / 2];
+  EXPECT_FLOAT_EQ(middle.programmed_mm_per_min, 1200);
+  EXPECT_GT(points.back().block, points.front().block);
+  // It sets off from a rest and comes to one; at its feed nothing is lost.
+  const auto cause = [](simulate::Cause one) { return static_cast<std::uint32_t>(one); };
+  EXPECT_EQ(points[points.size() - 5].cause, cause(simulate::Cause::kRest));
+  EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const auto& point) {
+    return point.cause == cause(simulate::Cause::kFeed) && point.limit == simulate::kFeedLimit;
+  }));
 }
 
 TEST(ProgramPreview, ASimulationThatIsOvertakenEnds) {

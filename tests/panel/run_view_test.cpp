@@ -52,6 +52,17 @@ TEST(RunView, TheFeedIsTheTipsPathByItsTime) {
   EXPECT_NEAR(columns["tip"][3 * 50].get<double>(), 2.5, 1e-6);
 }
 
+TEST(RunView, WhatHeldCyclesThatBrakeIsKnownBehindThem) {
+  RunView view(seen_machine());
+  run(view, 10, 0.05);
+  view.decide(4);
+  run(view, 5, 0.05);
+  const json cause = report_in(view.html({}, {}))["columns"]["cause"];
+  ASSERT_EQ(cause.size(), 15U);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(cause[i], 4);
+  for (std::size_t i = 10; i < 15; ++i) EXPECT_EQ(cause[i], RunView::kUndecided);
+}
+
 TEST(RunView, AnotherToolIsNoPath) {
   RunView view(seen_machine());
   run(view, 100, 0.05, 50);

@@ -39,11 +39,13 @@ Cause ExplainedBlock::main_cause() const noexcept {
   return static_cast<Cause>(find_main(lost_by_cause, by_cause, time_s));
 }
 
-Explainer::Explainer(const MachineModel& model, TakeBlock take_block, TakeCycle take_cycle)
+Explainer::Explainer(const MachineModel& model, TakeBlock take_block, TakeCycle take_cycle,
+                     TakeCause take_cause)
     : model_(model),
       limits_(model),
       take_block_(std::move(take_block)),
       take_cycle_(std::move(take_cycle)),
+      take_cause_(std::move(take_cause)),
       period_s_(static_cast<double>(model.cycle_ns) * 1e-9) {}
 
 void Explainer::add_block(const ClBlock& block, double programmed_feed, double tip_length_mm,
@@ -126,7 +128,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
     const Open* const open = find(block);
     take_cycle_({period_s_, way_mm, way_mm / period_s_,
                  open != nullptr ? open->block.programmed_mm_per_s : 0, view.limit,
-                 tool_length_mm});
+                 tool_length_mm, cause});
   }
   ++explanation_.cycles;
   explanation_.time_s = period_s_ * static_cast<double>(explanation_.cycles);
@@ -244,6 +246,7 @@ void Explainer::decide(Cause cause) {
     }
   }
   undecided_.clear();
+  if (take_cause_) take_cause_(cause);
 }
 
 void Explainer::book(Open& open, LimitId limit, Cause cause, double time_s, double lost_s) {

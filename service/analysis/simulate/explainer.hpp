@@ -20,6 +20,7 @@ struct ExplainedCycle {
   double feed_mm_per_s = 0, programmed_mm_per_s = 0;
   LimitId limit = kNoLimit;
   double tool_length_mm = 0;
+  std::optional<Cause> cause;  ///< nothing: it lies ahead, see TakeCause
 };
 
 /// Follows a run cycle by cycle and accounts its time to blocks, limits and causes. A stretch that
@@ -35,8 +36,11 @@ class Explainer {
 
   using TakeBlock = std::function<void(const ExplainedBlock&)>;
   using TakeCycle = std::function<void(const ExplainedCycle&)>;
-  /// Either may be empty. `take_block` gets every block of the program, in order.
-  Explainer(const MachineModel& model, TakeBlock take_block, TakeCycle take_cycle);
+  /// The cause of all cycles so far that had none.
+  using TakeCause = std::function<void(Cause)>;
+  /// Each may be empty. `take_block` gets every block of the program, in order.
+  Explainer(const MachineModel& model, TakeBlock take_block, TakeCycle take_cycle,
+            TakeCause take_cause = {});
 
   /// A block that is going to be planned, in order. `programmed_feed`: before the machine limited
   /// it. Lengths of its way: of the tip, and as the path counts it (50 mm per rad of axis).
@@ -98,6 +102,7 @@ class Explainer {
   LimitMap limits_;
   TakeBlock take_block_;
   TakeCycle take_cycle_;
+  TakeCause take_cause_;
   double period_s_;
   std::deque<Open> open_;  ///< by sequence, the first may be running
   std::deque<Undecided> undecided_;

@@ -21,6 +21,10 @@ class ViewFile {
   void add(const Setpoint& setpoint, const panel::RunView::Cause& cause) {
     if (view_) view_->add(setpoint, cause);
   }
+  /// The cause of the newest cycles, as far back as they have none.
+  void decide(std::uint8_t cause) noexcept {
+    if (view_) view_->decide(cause);
+  }
   /// Writes the file; a message where that fails.
   [[nodiscard]] std::string write(const ToolTable& tools, const panel::RunView::Words& words) const;
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <numeric>
 #include <sstream>
@@ -19,7 +20,7 @@ namespace {
 struct Explained {
   test::SimulatedRun run;
   std::vector<ExplainedBlock> blocks;
-  std::vector<ExplainedCycle> cycles;
+  std::vector<ExplainedCycle> cycles;  ///< causes that lay ahead filled in
   Explanation whole;
 
   [[nodiscard]] const ExplainedBlock& at_line(std::uint32_t line) const {
@@ -33,7 +34,12 @@ struct Explained {
   Explained out;
   Explainer explainer(
       model, [&out](const ExplainedBlock& block) { out.blocks.push_back(block); },
-      [&out](const ExplainedCycle& cycle) { out.cycles.push_back(cycle); });
+      [&out](const ExplainedCycle& cycle) { out.cycles.push_back(cycle); },
+      [&out](Cause cause) {
+        for (ExplainedCycle& cycle : out.cycles) {
+          if (!cycle.cause) cycle.cause = cause;
+        }
+      });
   options.explainer = &explainer;
   out.run = test::run_simulation(text, model, options);
   out.whole = explainer.explanation();
@@ -86,6 +92,17 @@ TEST_P(Explain, ChargesEveryCycleToABlockOnceAndTellsEveryBlockInOrder) {
   EXPECT_NEAR(out.whole.time_s, out.run.report.program_s, 1e-6);
   EXPECT_NEAR(lost, out.whole.lost_s, 1e-9);
   EXPECT_NEAR(way, 140, 0.1);
+  // Every cycle has its cause in the end, and all together those of the whole.
+  std::array<double, kCauses> by_cause{};
+  for (const ExplainedCycle& cycle : out.cycles) {
+    ASSERT_TRUE(cycle.cause);
+    by_cause[static_cast<std::size_t>(*cycle.cause)] += cycle.time_s;
+  }
+  for (std::size_t cause = 0; cause < kCauses; ++cause) {
+    double time_s = 0;
+    for (const auto& of_limit : out.whole.shares) time_s += of_limit[cause].time_s;
+    EXPECT_NEAR(by_cause[cause], time_s, 1e-6) << name_of(static_cast<Cause>(cause));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Transitions, Explain,

@@ -2,34 +2,26 @@
 // A whole path at once, each stretch in the colour of what held it.
 import { Box3, BufferAttribute, BufferGeometry, Color, Group, LineSegments } from "three";
 import { bytesOf } from "./colour.js";
+import { heldColour } from "./held.js";
 import { lineMaterial } from "./materials.js";
 import { Polyline } from "./polyline.js";
 
-// Of limits by their number: nothing and the feed are calm, joints are not.
-const kCalm = ["#6b7a8c", "#37d67a", "#22b8cf"];
-const kJoints = ["#ff5d5d", "#f5a524", "#c084fc", "#4c8dff", "#ff8ac2", "#b8e04a", "#ffd166", "#8ee3f5"];
-
-// Limits are numbered 0 none, 1 feed, 2 the machine's feed, then three orders of each joint.
-export function limitColour(limit) {
-  return limit < 3 ? kCalm[limit] : kJoints[Math.floor((limit - 3) / 3) % kJoints.length];
-}
-
-function coloursOf(limit) {
+function coloursOf(held) {
   const bytes = new Map();
-  const colours = new Uint8Array(3 * limit.length);
-  for (let i = 0; i < limit.length; ++i) {
-    if (!bytes.has(limit[i])) bytes.set(limit[i], bytesOf(new Color(limitColour(limit[i]))));
-    colours.set(bytes.get(limit[i]), 3 * i);
+  const colours = new Uint8Array(3 * held.length);
+  for (let i = 0; i < held.length; ++i) {
+    if (!bytes.has(held[i])) bytes.set(held[i], bytesOf(new Color(heldColour(held[i]))));
+    colours.set(bytes.get(held[i]), 3 * i);
   }
   return colours;
 }
 
 export class Path {
   constructor(columns) {
-    const { tip, axis, limit } = columns;
-    const count = limit.length;
+    const { tip, axis, held } = columns;
+    const count = held.length;
     this.root = new Group();
-    const position = new Float32Array(tip), colours = coloursOf(limit);
+    const position = new Float32Array(tip), colours = coloursOf(held);
     this.bounds = new Box3().setFromArray(position);
     this.line = new Polyline(count);
     this.line.set(position, colours);

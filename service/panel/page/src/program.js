@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program: dropped, checked, shown, loaded. Loading moves nothing; Start does.
 import { byId, element, setText } from "./dom.js";
+import { legendRows } from "./legend.js";
 import { Listing } from "./listing.js";
-import { limitColour, Path } from "./path.js";
+import { heldName } from "./held.js";
+import { Path } from "./path.js";
 import { ProgramPath } from "./program_path.js";
-import { clock, fixed } from "./units.js";
+import { clock, fixed, shown, unit } from "./units.js";
 
 const kPhases = {
   none: ["", ""], checking: ["checking", "busy"], refused: ["does not fit", "bad"], ready: ["checked", "good"], streaming: ["loaded", "good"],
@@ -141,20 +143,18 @@ export class Program {
   }
 
   drawLimits() {
-    const rows = this.path.byLimit().slice(0, 6).map(([limit, seconds]) => {
-      const dot = element("i");
-      dot.style.background = limitColour(limit);
-      const name = limit === 0 ? "nothing (rest, rapid)" : this.program.limits[limit];
-      return element("li", {}, dot, element("span", {}, name), element("b", {}, `${fixed((100 * seconds) / this.path.duration, 0)} %`));
-    });
-    byId("program-limits").replaceChildren(...rows);
+    byId("program-limits").replaceChildren(...legendRows(this.path.byHeld().slice(0, 8), this.path.duration, this.program.limits));
   }
 
   // A point of the path that was clicked.
   pick(i) {
     const { path, program } = this;
-    const held = path.limit[i] > 0 ? `, held by ${program.limits[path.limit[i]]}` : "";
-    setText(byId("picked"), `line ${path.line[i]}: ${fixed(path.feed[i], 0)} mm/min${held}, ${clock(path.time[i])} into the program`);
+    const held = path.held[i] > 0 ? `, held by ${heldName(path.held[i], program.limits)}` : "";
+    const programmed = path.programmed[i] > 0 ? ` of ${fixed(path.programmed[i], 0)}` : "";
+    const { joints } = this.panel.view.description;
+    const values = path.joints(i, joints.length);
+    const where = joints.map((joint, k) => `${joint.name} ${fixed(shown(joint, values[k]), 3)} ${unit(joint)}`).join(", ");
+    setText(byId("picked"), `line ${path.line[i]}, block ${path.block[i]}: ${fixed(path.feed[i], 0)}${programmed} mm/min${held}, ${clock(path.time[i])} into the program; ${where}`);
     this.listing.show(path.line[i]);
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated path as the panel's process sends it: points of 11 numbers of 32 bits (service/panel/program_path.hpp).
-const kWords = 11;
+// The simulated path as the panel's process sends it: points of 20 numbers of 32 bits (service/panel/program_path.hpp).
+import { heldAt, timeByHeld } from "./held.js";
+
+const kWords = 20, kJoints = 14;
 
 export class ProgramPath {
   constructor(buffer) {
@@ -10,8 +12,12 @@ export class ProgramPath {
     this.time = column(reals, 0);
     this.planTime = column(reals, 1);
     this.feed = column(reals, 8);
-    this.line = column(counts, 9);
-    this.limit = column(counts, 10);
+    this.programmed = column(reals, 9);
+    this.line = column(counts, 10);
+    this.block = column(counts, 11);
+    this.limit = column(counts, 12);
+    this.held = column(counts, 13).map((cause, i) => heldAt(this.limit[i], cause));
+    this.reals = reals;
     this.tip = new Float32Array(3 * this.count);
     this.axis = new Float32Array(3 * this.count);
     for (let i = 0; i < this.count; ++i) {
@@ -53,12 +59,13 @@ export class ProgramPath {
     return sum;
   }
 
-  // Seconds at each limit, longest first: [limit, seconds].
-  byLimit() {
-    const held = new Map();
-    for (let i = 1; i < this.count; ++i) {
-      held.set(this.limit[i], (held.get(this.limit[i]) ?? 0) + this.time[i] - this.time[i - 1]);
-    }
-    return [...held].sort((a, b) => b[1] - a[1]);
+  // Seconds by what held the feed, longest first: [held, seconds].
+  byHeld() {
+    return timeByHeld(this.held, this.time);
+  }
+
+  // Of point `i`, the first `count`; mm, rad.
+  joints(i, count) {
+    return this.reals.subarray(kWords * i + kJoints, kWords * i + kJoints + count);
   }
 }

@@ -2,7 +2,9 @@
 // A run that lies in the page itself: scrub through time, see machine, feed and limits at that moment.
 import uPlot from "uplot";
 import { byId, element, setShare, setText } from "./dom.js";
-import { limitColour, Path } from "./path.js";
+import { heldAt, heldName, jointColour, timeByHeld } from "./held.js";
+import { legendRows } from "./legend.js";
+import { Path } from "./path.js";
 import { clock, fixed } from "./units.js";
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -19,7 +21,8 @@ export class Report {
     document.title = report.title;
     setText(byId("program"), report.title);
     setText(byId("station"), `${this.count} samples, ${clock(this.columns.time.at(-1) ?? 0)}`);
-    this.path = new Path(this.columns);
+    this.held = this.columns.limit.map((limit, i) => heldAt(limit, this.columns.cause[i]));
+    this.path = new Path({ ...this.columns, held: this.held });
     view.setMachine(report.scene);
     view.setPath(this.path);
     this.drawWords();
@@ -36,19 +39,9 @@ export class Report {
     setText(byId("summary"), this.report.summary);
   }
 
-  // Time by what held the feed, longest first.
   drawLegend() {
-    const { limit, time } = this.columns;
-    const held = new Map();
-    for (let i = 1; i < this.count; ++i) held.set(limit[i], (held.get(limit[i]) ?? 0) + time[i] - time[i - 1]);
-    const total = time.at(-1) || 1;
-    const rows = [...held].sort((a, b) => b[1] - a[1]).slice(0, 8).map(([number, seconds]) => {
-      const dot = element("i");
-      dot.style.background = limitColour(number);
-      const name = number === 0 ? "nothing (rest, approach)" : this.report.limits[number];
-      return element("li", {}, dot, element("span", {}, name), element("b", {}, `${fixed((100 * seconds) / total, 0)} %`));
-    });
-    byId("legend").replaceChildren(...rows);
+    const { time } = this.columns;
+    byId("legend").replaceChildren(...legendRows(timeByHeld(this.held, time).slice(0, 8), time.at(-1) || 1, this.report.limits));
   }
 
   chart(id, series, data, top) {
@@ -70,7 +63,7 @@ export class Report {
         { label: "programmed", stroke: style("--soft"), width: 1, dash: [5, 4] },
         { label: "feed, mm/min", stroke: style("--accent"), width: 1.5 },
       ], [time, programmed.map((value) => (value > 0 ? value : null)), feed]),
-      this.chart("chart-shares", joints.map((joint, i) => ({ label: joint.name, stroke: limitColour(3 + 3 * i), width: 1.2 })),
+      this.chart("chart-shares", joints.map((joint, i) => ({ label: joint.name, stroke: jointColour(i), width: 1.2 })),
         [time, ...joints.map((_, i) => time.map((__, k) => shares[k * joints.length + i]))], 1.1),
     ];
     new ResizeObserver(() => {
@@ -136,13 +129,12 @@ export class Report {
     const joints = report.scene.joints;
     const slice = (name, width) => columns[name].slice(i * width, (i + 1) * width);
     const q = slice("joints", joints.length), share = slice("shares", joints.length);
-    const limit = columns.limit[i];
     this.view.setJoints(q, columns.tool[i]);
     this.display.setPosition({ tip: slice("tip", 3), axis: slice("axis", 3), tool_length: columns.tool[i] });
     setText(byId("feed"), fixed(columns.feed[i], 0));
     setText(byId("feed-programmed"), columns.programmed[i] > 0 ? `of ${fixed(columns.programmed[i], 0)}` : "");
     setShare(byId("feed-bar"), columns.programmed[i] > 0 ? Math.min(1, columns.feed[i] / columns.programmed[i]) : 0);
-    setText(byId("held-by"), limit === 0 ? "" : `held by: ${report.limits[limit]}`);
+    setText(byId("held-by"), this.held[i] === 0 ? "" : `held by: ${heldName(this.held[i], report.limits)}`);
     this.display.setJoints({ joints: q, shares: share.map((value) => [value, 0, 0]), limiting: "" });
     setText(byId("line"), columns.line[i] > 0 ? `line ${columns.line[i]}` : "");
     setText(byId("moment"), `${fixed(columns.time[i], 2)} s`);

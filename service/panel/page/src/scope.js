@@ -2,7 +2,7 @@
 // The joints as on an oscilloscope: two plots over one time, at the rate of the wire, live or of a recording.
 import uPlot from "uplot";
 import { byId, element, setText } from "./dom.js";
-import { limitColour } from "./path.js";
+import { jointColour } from "./held.js";
 import { kMaxBytes, readRecording } from "./recording.js";
 import { kQuantities, ScopeBuffer } from "./scope_buffer.js";
 import { mcapOf } from "./scope_mcap.js";
@@ -48,7 +48,7 @@ export class Scope {
     this.chosen = scene.joints.map((_, i) => i);
     const toggles = scene.joints.map((joint, i) => {
       const button = element("button", { type: "button", "aria-pressed": "true" }, joint.name);
-      button.style.setProperty("--dot", limitColour(3 + 3 * i));
+      button.style.setProperty("--dot", jointColour(i));
       button.addEventListener("click", () => {
         const isOn = button.getAttribute("aria-pressed") !== "true";
         button.setAttribute("aria-pressed", String(isOn));
@@ -59,7 +59,7 @@ export class Scope {
     });
     byId("scope-joints").replaceChildren(...toggles);
     byId("scope-state").replaceChildren(...["Running", "Holding", "Held", "Starving", "FaultStop", "Fault", "Ready"].map((value) => element("option", { value }, value)));
-    this.rebuild();
+    this.offerQuantities();
   }
 
   // ---- what comes in
@@ -116,8 +116,19 @@ export class Scope {
     return this.report("armed");
   }
 
+  // What the wire does not carry is offered of recordings alone.
+  offerQuantities() {
+    const isLive = this.buffer === this.live;
+    for (const id of ["scope-quantity-1", "scope-quantity-2"]) {
+      for (const option of byId(id).options) option.hidden = option.disabled = isLive && kQuantities[option.value].isRecorded === true;
+      if (byId(id).selectedOptions[0].disabled) byId(id).value = "feed";
+    }
+    this.rebuild();
+  }
+
   goLive() {
     this.buffer = this.live;
+    this.offerQuantities();
     byId("scope-live").hidden = true;
     this.pause(false);
   }
@@ -130,6 +141,7 @@ export class Scope {
       return this.report(error.message);
     }
     byId("scope-live").hidden = false;
+    this.offerQuantities();
     this.pause(true);
     return this.report(`${file.name}: ${this.buffer.count} cycles`);
   }
@@ -168,7 +180,7 @@ export class Scope {
     const { perJoint, label } = kQuantities[quantity];
     const axis = { stroke: () => style("--soft"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, font: "12px sans-serif" };
     const series = perJoint
-      ? this.chosen.map((k) => ({ label: this.scene.joints[k].name, stroke: limitColour(3 + 3 * k), width: 1.4, value: (_, v) => (v === null ? "" : `${v.toPrecision(5)} ${unit(this.scene.joints[k])}`) }))
+      ? this.chosen.map((k) => ({ label: this.scene.joints[k].name, stroke: jointColour(k), width: 1.4, value: (_, v) => (v === null ? "" : `${v.toPrecision(5)} ${unit(this.scene.joints[k])}`) }))
       : [{ label, stroke: style("--accent"), width: 1.4 }];
     return new uPlot({
       width: Math.max(box.clientWidth, 100), height: Math.max(box.clientHeight - 34, 80), title: "",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of the joints cycle by cycle, and what follows from them by finite differences. The oldest half goes where it is full.
+// What is recorded alone is not on the wire.
 import { shown } from "./units.js";
 
 export const kQuantities = {
@@ -9,7 +10,7 @@ export const kQuantities = {
   jerk: { label: "jerk", perJoint: true, order: 3 },
   following: { label: "following error", perJoint: true },
   feed: { label: "feed, mm/min", perJoint: false },
-  lateness: { label: "lateness, \u00b5s", perJoint: false },
+  lateness: { label: "lateness, \u00b5s", perJoint: false, isRecorded: true },
 };
 
 export class ScopeBuffer {
