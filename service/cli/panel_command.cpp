@@ -63,9 +63,10 @@ int serve(Options& options) {
   options.panel.examine_host = [] {
     return to_json(examine_host(process::last_cpu(), cyclone_uri(), nullptr));
   };
-  panel::run_panel(participant, options.panel, stop_flag(), [&](std::uint16_t port) {
+  panel::run_panel(participant, options.panel, stop_flag(), [&](const panel::PanelOpened& opened) {
     std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
-                static_cast<unsigned>(port));
+                static_cast<unsigned>(opened.port));
+    if (!opened.refusal.empty()) std::printf("it only watches: %s\n", opened.refusal.c_str());
     if (!options.panel.public_host.empty()) {
       std::printf("and behind its TLS proxy at https://%s/\n", options.panel.public_host.c_str());
     }

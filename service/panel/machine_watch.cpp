@@ -34,7 +34,7 @@ constexpr std::uintmax_t kMaxMeshBytes = 32 << 20;
 MachineWatch::MachineWatch(dds::Participant& participant, Hub& hub, Files files)
     : hub_(hub),
       machines_(participant),
-      statuses_(participant),
+      statuses_(participant, {}, 0, dds::Delivery::kNewest),
       setpoints_(participant, {}, kDepth),
       feedbacks_(participant, {}, kDepth),
       latencies_(participant),
@@ -97,8 +97,11 @@ std::optional<dds::MachineInfo> MachineWatch::machine() const {
 void MachineWatch::take_machine() {
   dds::MachineInfo info;
   while (machines_.take(info)) {
-    const bool is_followed = !status_ || info.service_id == status_->service_id;
-    if (!info.is_serving || !is_followed) continue;
+    if (!info.is_serving) continue;
+    if (status_ && info.service_id != status_->service_id) {
+      next_ = info;
+      continue;
+    }
     if (!machine_ || !is_same_machine(*machine_, info)) adopt(info);
   }
 }
@@ -130,6 +133,10 @@ void MachineWatch::take_status() {
   heard_ = now;
   status_ = std::move(status);
   newest_status_ = status_->status_sequence;
+  if (next_ && next_->service_id == status_->service_id) {
+    adopt(*next_);
+    next_.reset();
+  }
   if (!model_ || !machine_ || machine_->service_id != status_->service_id) return;
   auxiliaries_.follow(*status_);
   if (news_.add(*status_, *model_, std::chrono::system_clock::now())) {

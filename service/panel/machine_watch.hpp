@@ -79,6 +79,7 @@ class MachineWatch {
   std::filesystem::path mesh_folder_;
   std::vector<config::Mesh> meshes_;  ///< of machine_, under machine_mutex_
   std::optional<dds::MachineInfo> machine_;
+  std::optional<dds::MachineInfo> next_;  ///< of a service that is not followed yet
   std::optional<dds::Status> status_;
   std::optional<dds::Latency> latency_;
   std::unique_ptr<MachineModel> model_;  ///< motion_ refers to it

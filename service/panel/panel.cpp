@@ -108,11 +108,24 @@ struct Sources {
   return handler;
 }
 
+/// Why there is none: an identity that may not command makes a panel that watches. Throws DdsError
+/// where it is not the identity that is refused.
+[[nodiscard]] std::string open_desk(dds::Participant& participant, const std::string& name,
+                                    std::optional<OperatorDesk>& desk) {
+  try {
+    desk.emplace(participant, name);
+    return "";
+  } catch (const dds::DdsError& error) {
+    if (!participant.is_secured()) throw;
+    return error.what();
+  }
+}
+
 }  // namespace
 
 void run_panel(dds::Participant& participant, const PanelOptions& options,
                const std::atomic<bool>& is_ending,
-               const std::function<void(std::uint16_t)>& on_ready) {
+               const std::function<void(const PanelOpened&)>& on_ready) {
   constexpr std::chrono::milliseconds kBetweenPolls{20};
   Hub hub;
   CostlyParts costly(options.examine_host);
@@ -123,8 +136,9 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
   std::optional<ProgramDesk> programs;
   std::optional<ActionDesk> actions;
   std::optional<OperatorPages> pages;
-  if (!options.is_watching) {
-    desk.emplace(participant, options.operator_name);
+  std::string refusal;
+  if (!options.is_watching) refusal = open_desk(participant, options.operator_name, desk);
+  if (desk) {
     programs.emplace(
         participant, hub, [&watch] { return watch.machine(); }, options.station_name);
     if (options.answers_actions) actions.emplace(participant, hub);
@@ -139,7 +153,7 @@ void run_panel(dds::Participant& participant, const PanelOptions& options,
     };
     const Server server(hub, {options.port, options.public_host, options.token},
                         std::move(handler));
-    on_ready(server.port());
+    on_ready({server.port(), refusal});
     while (!is_ending) {
       watch.poll();
       if (actions) actions->poll(watch.status());

@@ -24,11 +24,16 @@ struct PanelOptions {
   bool is_watching = false;      ///< the page has no buttons, and nothing that it says is passed on
 };
 
-/// Serves the page of one machine until `is_ending`. `on_ready` gets the port. Throws DdsError,
-/// ServerError and TokenError. Never touches motion: what a page asks for goes the way of `meridian
+/// What a panel says of itself when it is there.
+struct PanelOpened {
+  std::uint16_t port = 0;
+  std::string refusal;  ///< why its identity may not command, so that it only watches; else empty
+};
+
+/// Serves the page of one machine until `is_ending`. Throws DdsError, ServerError and TokenError. Never touches motion: what a page asks for goes the way of `meridian
 /// ctl`.
 void run_panel(dds::Participant& participant, const PanelOptions& options,
                const std::atomic<bool>& is_ending,
-               const std::function<void(std::uint16_t)>& on_ready);
+               const std::function<void(const PanelOpened&)>& on_ready);
 
 }  // namespace meridian::panel

@@ -16,6 +16,14 @@ struct SampleInfo {
   std::uint64_t source = 0;  ///< writer that sent it, see Reader::has_source
 };
 
+/// How a reader gets what a reliable topic carries.
+enum class Delivery : std::uint8_t {
+  kOfTopic,
+  /// Best effort and volatile: what was lost on the way is not waited for. For who shows what a
+  /// service repeats many times a second: what comes next never waits for what is over.
+  kNewest
+};
+
 /// Receives `Message` on its topic with the topic's QoS (topics.cpp). One thread takes at a time.
 template <class Message>
 class Reader {
@@ -26,7 +34,7 @@ class Reader {
   /// samples of an instance wait to be taken, 0: as many as the topic says. Where the topic says
   /// one, of two who write the same instance only the later is seen.
   explicit Reader(Participant& participant, std::function<void(Reader&)> on_data = {},
-                  int depth = 0);
+                  int depth = 0, Delivery delivery = Delivery::kOfTopic);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

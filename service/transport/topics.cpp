@@ -157,13 +157,18 @@ struct Reader<Message>::Impl {
 };
 
 template <class Message>
-Reader<Message>::Reader(Participant& participant, std::function<void(Reader&)> on_data, int depth)
+Reader<Message>::Reader(Participant& participant, std::function<void(Reader&)> on_data, int depth,
+                        Delivery delivery)
     : impl_(std::make_unique<Impl>()) {
   impl_->on_data = std::move(on_data);
   impl_->owner = this;
   impl_->reader = make_endpoint<Message>(
       participant, Side::kReader, impl_->topic, [&](dds_entity_t topic, dds_qos_t* qos) {
         if (depth > 0) dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+        if (delivery == Delivery::kNewest) {
+          dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+          dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
+        }
         return dds_create_reader(participant.subscriber(), topic, qos, nullptr);
       });
   if (impl_->on_data) {

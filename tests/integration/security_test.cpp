@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "integration/plant.hpp"
@@ -149,6 +151,7 @@ class Security : public testing::Test {
 
   static void expect_roles_enforced();
   static void expect_programs_refused();
+  static void expect_a_viewers_panel_watches();
   static void cut_a_program();
 
   [[nodiscard]] static std::string domain() { return std::to_string(domain_->id()); }
@@ -207,6 +210,22 @@ void Security::expect_roles_enforced() {
   }
 }
 
+/// The role is that of the identity. A build without the panel has nothing to show.
+void Security::expect_a_viewers_panel_watches() {
+  if (run("ours/viewer", {"panel", "--help"}).first != 0) return;
+  for (const auto& [role, watches] : {std::pair{"viewer", true}, {"operator", false}}) {
+    const Running panel = tool(std::string("ours/") + role, std::string("panel-") + role,
+                               {"panel", "--port", "0", "--timeout", "20"});
+    EXPECT_TRUE(eventually(
+        [&panel] { return panel->said().find("http://127.0.0.1") != std::string::npos; },
+        milliseconds(25'000)))
+        << panel->said();
+    std::this_thread::sleep_for(milliseconds(200));
+    EXPECT_EQ(panel->said().find("it only watches: ") != std::string::npos, watches)
+        << panel->said();
+  }
+}
+
 /// The programs themselves say what is refused, and the remedy.
 void Security::expect_programs_refused() {
   const auto command = run("ours/viewer", {"ctl", "hold"});
@@ -218,6 +237,7 @@ void Security::expect_programs_refused() {
       run("ours/operator", {"stream", MERIDIAN_SOURCE_DIR "/deploy/parts/blossom.apt"});
   EXPECT_NE(stream.first, 0);
   EXPECT_NE(stream.second.find("meridian/cl_"), std::string::npos) << stream.second;
+  expect_a_viewers_panel_watches();
   const auto stranger = run("", {"status", "--timeout", "2"});
   EXPECT_NE(stranger.first, 0) << stranger.second;
   EXPECT_NE(stranger.second.find("no service answers"), std::string::npos) << stranger.second;

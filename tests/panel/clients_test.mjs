@@ -7,15 +7,12 @@ import { writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { cpuSecondsOf, memoryOf, Plant, sleep, until } from "./plant.mjs";
 import { must, runTests } from "./page_hand.mjs";
+import { upgrade } from "./raw_http.mjs";
 
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
 const plant = new Plant(bin, source, "lai.toml");
 const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.5);
 const kClients = 10, kMaxMemory_kib = 64 * 1024, kMaxShare = 0.25;
-
-const upgrade = (host) =>
-  `GET /live HTTP/1.1\r\nHost: ${host}\r\nOrigin: http://${host}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
-  "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
 
 // A page that reads all it gets; a frozen one reads nothing behind the handshake.
 function page(isFrozen) {
@@ -38,6 +35,29 @@ function afterStall(station, stalls) {
   console.log("  again, the host stalled");
 }
 
+// How often the cycle computed for at most each bound, s, since the service began.
+async function computation() {
+  const text = await (await fetch(new URL("/metrics", plant.url))).text();
+  const rows = text.matchAll(/^meridian_latency_seconds_bucket\{[^}]*stage="cycle computation",le="([\d.e-]+)"\} (\d+)$/gm);
+  return Array.from(rows, ([, bound, count]) => ({ bound: Number(bound), count: Number(count) }));
+}
+
+// The median, us, of what came between two of those.
+function medianBetween(before, after) {
+  const counts = after.map(({ count }, i) => count - before[i].count), half = counts.at(-1) / 2;
+  const at = counts.findIndex((count) => count >= half);
+  const [low, below] = at > 0 ? [after[at - 1].bound, counts[at - 1]] : [0, 0];
+  return 1e6 * (low + ((after[at].bound - low) * (half - below)) / (counts[at] - below));
+}
+
+// While parts are cut, with pages or without.
+async function cutsFor(minutes) {
+  const before = await computation(), cut = cutsForever();
+  await sleep(60000 * minutes);
+  const median_us = medianBetween(before, await computation());
+  return { median_us, parts: await cut.end() };
+}
+
 // A program that is long enough: the sample part again and again, by ctl and stream alone.
 function cutsForever() {
   let isOver = false, count = 0, stalls = 0;
@@ -56,14 +76,14 @@ function cutsForever() {
 
 async function manyPagesAndAFrozenOneDisturbNothing() {
   plant.tool("ctl", "enable", "--wait", "Ready", "--domain", plant.domain);
+  const alone = await cutsFor(0.2);
   const pages = [page(true), ...Array.from({ length: kClients }, () => page(false))];
   await until("pages get frames", () => pages.slice(1).every((one) => one.bytes > 10000));
-  const cut = cutsForever();
   const began = Date.now(), used = cpuSecondsOf(plant.panel.pid);
-  await sleep(60000 * kMinutes);
+  const { median_us, parts } = await cutsFor(kMinutes);
   const share = (cpuSecondsOf(plant.panel.pid) - used) / ((Date.now() - began) / 1000), memory = memoryOf(plant.panel.pid);
-  const parts = await cut.end();
-  console.log(`  ${kMinutes} min, ${kClients} pages and a frozen one, ${parts} parts cut: panel ${(100 * share).toFixed(1)} % of a core, ${memory} KiB`);
+  console.log(`  ${kMinutes} min, ${kClients} pages and a frozen one, ${parts} parts cut: panel ${(100 * share).toFixed(1)} % of a core, ${memory} KiB; a cycle computes for ${median_us.toFixed(2)} us, ${alone.median_us.toFixed(2)} without pages`);
+  must(median_us <= 1.5 * alone.median_us + 1, "the cycle computes longer with pages");
   must(pages.slice(1).every((one) => !one.destroyed && one.bytes > 100000), "a page was left behind");
   must(memory < kMaxMemory_kib, `the panel takes ${memory} KiB`);
   must(share < kMaxShare, `the panel takes ${share} of a core`);

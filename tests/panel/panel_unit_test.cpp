@@ -142,7 +142,20 @@ TEST(Motion, FeedbackIsComparedWithTheSetpointThatItSaw) {
   EXPECT_NEAR(motion.following()[0], 0.25, 1e-12);
 }
 
-TEST(News, AnAlarmIsToldOnceWithItsRemedy) {
+TEST(News, AnAlarmOfAProgramNamesItsLineAndBlock) {
+  News news;
+  dds::Status status;
+  status.alarm = Alarm::kDriveFault;
+  status.alarm_joint = 0;
+  status.alarm_line = 9;
+  status.block = 2;
+  EXPECT_TRUE(news.add(status, trunnion(), {}));
+  const std::string& text = news.items().back().text;
+  EXPECT_NE(text.find("line 9"), std::string::npos) << text;
+  EXPECT_NE(text.find("block 2"), std::string::npos) << text;
+}
+
+TEST(News, AnAlarmIsReportedOnceWithItsRemedy) {
   News news;
   dds::Status status;
   status.service_id = 7;

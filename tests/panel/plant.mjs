@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A service, its drives and a panel in a domain of their own, and a browser in front of it.
 import { spawn, execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { closeSync, existsSync, fstatSync, mkdtempSync, openSync, readdirSync, readFileSync, readSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { connect } from "node:net";
 import { tmpdir } from "node:os";
@@ -51,6 +51,19 @@ export class Plant {
     return text.startsWith("{") ? JSON.parse(text) : { state: "" };
   }
 
+  // The newest rows of the service's recording, some thirty thousand cycles: texts by the name of their column.
+  newestRows() {
+    const file = openSync(this.recording), kTail = 1 << 23;
+    const read = (from, count) => {
+      const bytes = Buffer.alloc(count);
+      return bytes.toString("latin1", 0, readSync(file, bytes, 0, count, from));
+    };
+    const names = read(0, 4096).split("\n")[0].split(","), size = fstatSync(file).size;
+    const lines = read(Math.max(0, size - kTail), Math.min(size, kTail)).split("\n").slice(1, -1);
+    closeSync(file);
+    return lines.map((line) => Object.fromEntries(line.split(",").map((text, i) => [names[i], text])));
+  }
+
   // `tool`: a number that the table has beside its own.
   async start({ tool } = {}) {
     this.recording = join(this.folder, "recording.csv");
@@ -59,10 +72,20 @@ export class Plant {
     const own = tool ? `\n[[tool]]\nnumber = ${tool}\nlength_mm = 100\nradius_mm = 5\n` : "";
     writeFileSync(this.tools, readFileSync(join(this.source, "deploy/tools.toml"), "utf8") + own);
     writeFileSync(service, readFileSync(join(this.source, "deploy/service.toml"), "utf8"));
-    this.spawn("meridiand", "--machine", this.machine, "--service", service, "--domain", this.domain, "--best-effort", "--record",
-      this.recording);
+    this.startService();
     this.drives = this.spawn("meridian", "drives", "--machine", this.machine, "--domain", this.domain, "--console");
     this.panel = await this.startPanel();
+  }
+
+  startService() {
+    this.service = this.spawn("meridiand", "--machine", this.machine, "--service", join(this.folder, "service.toml"), "--domain", this.domain,
+      "--best-effort", "--record", this.recording);
+  }
+
+  async restartService() {
+    this.service.kill("SIGTERM");
+    await this.service.ended;
+    this.startService();
   }
 
   // The sample part, made once.

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "service/machine/file/config_error.hpp"
+#include "service/machine/file/machine_file.hpp"
 #include "service/panel/program_text.hpp"
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/limits_sum.hpp"
+#include "service/protocol/tools_sum.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -22,6 +24,12 @@ void run_at_lowest_priority() {
 
 [[nodiscard]] std::uint64_t frame_of(const dds::MachineInfo& info) {
   return stream::frame_sum(info.frame_rotation, info.frame_origin_mm, info.work_frames);
+}
+
+/// Of the tool table that the machine has; 0: of none.
+[[nodiscard]] std::uint64_t tools_of(const dds::MachineInfo& info) {
+  if (info.tool_file.empty()) return 0;
+  return stream::tools_sum(config::parse_tools(info.tool_file, "tool table of the service"));
 }
 
 constexpr const char* kStreams = "a program is streamed: abort it, or end the stream, first";
@@ -104,6 +112,9 @@ Outcome ProgramDesk::load() {
   if (stream::limits_sum(machine->soft_limits) != limits_) {
     return {false, "the soft limits are others than at the check: check the program again"};
   }
+  if (tools_of(*machine) != tools_) {
+    return {false, "the tool table is another one than at the check: check the program again"};
+  }
   stream::StreamOptions options;
   options.file = folder_.file();
   options.station = view_.station;
@@ -112,6 +123,7 @@ Outcome ProgramDesk::load() {
   options.is_waiting_for_end = true;
   options.frame = frame_;
   options.limits = limits_;
+  options.tools = tools_;
   if (view_.first_line > 0) options.policies |= dds::kPolicyRetractFirst;
   if (stream_.joinable()) stream_.join();
   is_unloading_ = false;
@@ -191,6 +203,7 @@ void ProgramDesk::run_check(const Job& job) {
     reader_ = reader;
     frame_ = frame_of(*info);
     limits_ = stream::limits_sum(info->soft_limits);
+    tools_ = machine.tools ? stream::tools_sum(*machine.tools) : 0;
   });
   if (is_overtaken(job)) return;
   if (is_refused) {

@@ -96,7 +96,7 @@ class ProgramDesk {
   View view_;
   Hub::Text path_;
   cl::ClReaderOptions reader_;  ///< of the program that was checked, and the frame of that check
-  std::uint64_t frame_ = 0, limits_ = 0, path_count_ = 0;
+  std::uint64_t frame_ = 0, limits_ = 0, tools_ = 0, path_count_ = 0;
   std::optional<Job> job_;  ///< that waits
   std::atomic<std::uint64_t> newest_job_{0};
   std::atomic<bool> is_ending_{false}, is_unloading_{false};

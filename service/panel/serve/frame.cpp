@@ -10,7 +10,6 @@
 #include "meridian/kinematics/limited.hpp"
 #include "service/panel/json_text.hpp"
 #include "service/recording/record/words.hpp"
-#include "service/recording/telemetry/words.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -70,8 +69,7 @@ using nlohmann::json;
   if (status.alarm == Alarm::kNone) return nullptr;
   return {{"name", record::word(status.alarm)},
           {"line", status.alarm_line},
-          {"text", telemetry::describe(status.alarm, status.alarm_joint, status.alarm_value,
-                                       status.alarm_line, model)}};
+          {"text", alarm_text(status, model)}};
 }
 
 /// What the machine's table of verbs lets an operator ask for in this state; what that table cannot

@@ -7,6 +7,13 @@
 
 namespace meridian::panel {
 
+std::string alarm_text(const dds::Status& status, const MachineModel& model) {
+  std::string text = telemetry::describe(status.alarm, status.alarm_joint, status.alarm_value,
+                                         status.alarm_line, model);
+  if (status.alarm_line > 0) text += ", block " + std::to_string(status.block);
+  return text;
+}
+
 void News::push(Severity severity, const std::string& text,
                 std::chrono::system_clock::time_point now) {
   add({0, now, severity, NewsSource::kMachine, text});
@@ -27,10 +34,7 @@ bool News::add(const dds::Status& status, const MachineModel& model,
     message_.clear();
   }
   if (status.alarm != alarm_ && status.alarm != Alarm::kNone) {
-    push(Severity::kAlarm,
-         telemetry::describe(status.alarm, status.alarm_joint, status.alarm_value,
-                             status.alarm_line, model),
-         now);
+    push(Severity::kAlarm, alarm_text(status, model), now);
   }
   if (status.message != message_ && !status.message.empty()) {
     push(status.alarm != Alarm::kNone ? Severity::kWarning : Severity::kNews, status.message, now);

@@ -25,6 +25,9 @@ struct NewsItem {
   std::string text;
 };
 
+/// The alarm in force in words: joint, remedy, line, and the block of the program that ran.
+[[nodiscard]] std::string alarm_text(const dds::Status& status, const MachineModel& model);
+
 /// What the machine said since the panel began, and what a history adds, newest last: a page that
 /// is loaded again shows it all. At most kKept items; one thread. Proof: tests/panel/panel_unit_test.cpp.
 class News {

@@ -82,6 +82,23 @@ TEST(Exchange, GivesALateJoinerTheNewestOfEveryInstance) {
   }));
 }
 
+TEST(Exchange, GivesAReaderOfTheNewestWhatComesNextAndNothingThatWas) {
+  const support::PrivateDomain domain;
+  Participant participant({.domain = domain.id(), .machine = "m"});
+  Writer<Status> writer(participant);
+  Status status;
+  status.status_sequence = 1;
+  ASSERT_TRUE(writer.write(status));
+  Participant late({.domain = domain.id(), .machine = "m"});
+  Reader<Status> reader(late, {}, 0, Delivery::kNewest);
+  Status seen;
+  ASSERT_TRUE(eventually([&] {
+    ++status.status_sequence;
+    return writer.write(status) && reader.take(seen);
+  }));
+  EXPECT_GT(seen.status_sequence, 1U);
+}
+
 /// Resident memory of this process, kB.
 long resident_kB() {
   long total = 0, resident = 0;

@@ -11,7 +11,9 @@ export class Actions {
     const rows = open.map(({ id, line, text }) => {
       const button = (done, words) => {
         const made = element("button", { type: "button", class: done ? "go" : "" }, words);
-        made.addEventListener("click", () => this.operate.request({ do: "answer", action: id, done }));
+        const answer = () => this.operate.request({ do: "answer", action: id, done });
+        const question = [`${text}: is it done?`, "The program goes on along its path.", ""];
+        made.addEventListener("click", () => (done ? this.operate.confirm(question, answer) : answer()));
         return made;
       };
       return element("div", {}, element("b", {}, text), element("span", {}, `line ${line}: the program waits until it is done`),

@@ -68,7 +68,7 @@ export class Jog {
     this.held = { button, plan, id: ++this.grips };
     button.classList.add("held");
     this.beat();
-    this.timer = setInterval(() => this.beat(), kBeat_ms);
+    if (this.held) this.timer = setInterval(() => this.beat(), kBeat_ms);
   }
 
   beat() {

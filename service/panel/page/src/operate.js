@@ -4,10 +4,13 @@ import { byId, setText } from "./dom.js";
 import { fixed } from "./units.js";
 
 // Asked once more before they go out: they may move the machine.
+const goesOn = ["Go on?", "The machine goes on along the path.", ""];
 const kConfirmed = {
   start: (frame) => ["Start the program?", `${frame.program}: the machine moves to its first point.`, frame.message],
   resume: () => ["Resume?", "The machine goes on along the path.", ""],
   home: () => ["Home all joints?", "Every drive looks for its reference by itself.", ""],
+  feed_override: (frame, share) => (frame.session && frame.feed_override === 0 && share > 0 ? goesOn : null),
+  rapid_override: (frame, share) => (frame.session && frame.rapid_override === 0 && share > 0 ? goesOn : null),
 };
 
 export class Operate {
@@ -15,6 +18,7 @@ export class Operate {
     this.link = link;
     this.seen = seen;
     this.id = 0;
+    this.asked = null;
     this.dialog = byId("confirm");
     for (const button of document.querySelectorAll("[data-verb]")) {
       button.addEventListener("click", () => this.press(button.dataset.verb));
@@ -25,13 +29,15 @@ export class Operate {
     for (const [verb, id] of [["feed_override", "feed-slider"], ["rapid_override", "rapid-slider"]]) {
       const slider = byId(id);
       slider.addEventListener("input", () => setText(byId(`${id}-text`), `${slider.value} %`));
-      slider.addEventListener("change", () => this.ask(verb, Number(slider.value) / 100));
+      slider.addEventListener("change", () => this.press(verb, Number(slider.value) / 100));
     }
     byId("take-over").addEventListener("click", () => link.say({ do: "take_over", id: 0 }));
     byId("confirm-yes").addEventListener("click", () => this.dialog.close("yes"));
     byId("confirm-no").addEventListener("click", () => this.dialog.close("no"));
     this.dialog.addEventListener("close", () => {
-      if (this.dialog.returnValue === "yes") this.ask(this.dialog.dataset.verb, 0);
+      const { asked } = this;
+      this.asked = null;
+      if (this.dialog.returnValue === "yes") asked.onYes();
     });
     // A hold is never wrong.
     document.addEventListener("keydown", (event) => {
@@ -39,18 +45,28 @@ export class Operate {
     });
   }
 
-  press(verb) {
-    const frame = this.seen();
-    const words = kConfirmed[verb];
-    if (!words || !frame) return this.ask(verb, 0);
-    const [title, text, message] = words(frame);
+  press(verb, argument = 0) {
+    const frame = this.seen(), words = frame && kConfirmed[verb]?.(frame, argument);
+    if (words) this.confirm(words, () => this.ask(verb, argument));
+    else this.ask(verb, argument);
+  }
+
+  // Asks once more, of the machine as it is seen now: a machine that changes meanwhile takes the question back.
+  confirm([title, text, message], onYes) {
+    this.asked = { frame: this.seen(), onYes };
     setText(byId("confirm-title"), title);
     setText(byId("confirm-text"), text);
     setText(byId("confirm-message"), message);
-    this.dialog.dataset.verb = verb;
     this.dialog.returnValue = "no";
-    this.dialog.showModal();
-    return undefined;
+    if (!this.dialog.open) this.dialog.showModal();
+  }
+
+  takeBack(frame) {
+    const before = this.asked.frame, approach = ({ state, message }) => state === "Loaded" && message;
+    const isAsSeen = before && ["service", "epoch", "state", "program"].every((name) => frame[name] === before[name]);
+    if (isAsSeen && approach(frame) === approach(before)) return;
+    this.dialog.close("no");
+    this.report(false, "the machine changed while it was asked: look again");
   }
 
   ask(verb, argument) {
@@ -78,6 +94,7 @@ export class Operate {
   }
 
   setFrame(frame) {
+    if (this.asked) this.takeBack(frame);
     for (const button of document.querySelectorAll("[data-verb]")) {
       button.disabled = !this.isOperator || !frame.can.includes(button.dataset.verb);
     }

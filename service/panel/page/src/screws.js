@@ -57,10 +57,14 @@ export class Frames {
     this.base.updateMatrixWorld(true);
   }
 
+  tipInScene() {
+    return new Vector3().setFromMatrixPosition(this.tip.matrixWorld);
+  }
+
   // Tip and tool axis in the workpiece frame, of the pictures' own transforms.
   pose() {
     const toWorkpiece = this.workpiece.matrixWorld.clone().invert();
-    const tip = new Vector3().setFromMatrixPosition(this.tip.matrixWorld).applyMatrix4(toWorkpiece);
+    const tip = this.tipInScene().applyMatrix4(toWorkpiece);
     const axis = new Vector3(...this.scene.axis)
       .transformDirection(this.tip.matrixWorld)
       .transformDirection(toWorkpiece);

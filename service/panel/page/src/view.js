@@ -8,6 +8,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Machine } from "./machine.js";
 import { lineMaterial, plainMaterial } from "./materials.js";
 import { loadMesh } from "./mesh.js";
+import { pixelOf } from "./pixel.js";
 import { Resolution } from "./resolution.js";
 import { palette } from "./shapes.js";
 import { Trail } from "./trail.js";
@@ -17,6 +18,9 @@ const kViews = {
   iso: [0.85, -1.25, 0.75], front: [0, -1, 0.0001], right: [1, 0, 0.0001], top: [0, -0.0001, 1],
   part: [0.85, -1.25, 0.75],
 };
+
+// While the camera turns, two pixels are seen as one.
+const kSeenTurning = 2;
 
 export class View {
   constructor(canvas, onPick) {
@@ -166,7 +170,7 @@ export class View {
     }
     const { machine } = this;
     const centre = new Vector3().setFromMatrixPosition(machine.frames.workpiece.matrixWorld);
-    const tip = new Vector3().setFromMatrixPosition(machine.frames.tip.matrixWorld);
+    const tip = machine.frames.tipInScene();
     const around = 2.6 * machine.size;
     for (const point of [centre, tip]) box.expandByPoint(point);
     box.expandByVector(new Vector3(around, around, around));
@@ -196,7 +200,7 @@ export class View {
   }
 
   followTip() {
-    const tip = new Vector3().setFromMatrixPosition(this.machine.frames.tip.matrixWorld);
+    const tip = this.machine.frames.tipInScene();
     this.camera.position.add(tip.clone().sub(this.controls.target));
     this.controls.target.copy(tip);
     this.isFollowing = true;
@@ -206,10 +210,8 @@ export class View {
 
   // Where on the canvas the tip is, in pixels of the page.
   tipPixel() {
-    this.camera.updateMatrixWorld();
-    const at = new Vector3().setFromMatrixPosition(this.machine.frames.tip.matrixWorld).project(this.camera);
     const { clientWidth, clientHeight } = this.canvas;
-    return [((at.x + 1) / 2) * clientWidth, ((1 - at.y) / 2) * clientHeight];
+    return pixelOf(this.machine.frames.tipInScene(), this.camera, clientWidth, clientHeight);
   }
 
   // ---- drawing and clicks
@@ -234,7 +236,8 @@ export class View {
   }
 
   draw() {
-    const pixel = (this.camera.fov * Math.PI) / 180 / this.canvas.height;
+    const seen = this.resolution.isTurning ? kSeenTurning : 1;
+    const pixel = (seen * this.camera.fov * Math.PI) / 180 / this.canvas.height;
     for (const line of this.lines()) line.setDetail(this.camera, pixel);
     this.frames += 1;
     this.renderer.render(this.scene, this.camera);
