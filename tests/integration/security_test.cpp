@@ -213,7 +213,7 @@ void Security::expect_roles_enforced() {
 /// The role is that of the identity. A build without the panel has nothing to show.
 void Security::expect_a_viewers_panel_watches() {
   if (run("ours/viewer", {"panel", "--help"}).first != 0) return;
-  for (const auto& [role, watches] : {std::pair{"viewer", true}, {"operator", false}}) {
+  for (const auto& [role, watches] : {std::pair{"viewer", true}, {"panel", false}}) {
     const Running panel = tool(std::string("ours/") + role, std::string("panel-") + role,
                                {"panel", "--port", "0", "--timeout", "20"});
     EXPECT_TRUE(eventually(

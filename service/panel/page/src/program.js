@@ -5,6 +5,7 @@ import { legendRows } from "./legend.js";
 import { Listing } from "./listing.js";
 import { heldName } from "./held.js";
 import { Path } from "./path.js";
+import { PlanOffset } from "./plan_offset.js";
 import { ProgramPath } from "./program_path.js";
 import { clock, fixed, shown, unit } from "./units.js";
 
@@ -169,13 +170,21 @@ export class Program {
     const isOurs = this.isRunning(frame);
     if (isOurs && frame.line > 0) this.listing.show(frame.line);
     const isOnPath = isOurs && this.path && frame.plan_time_s > 0;
-    setText(byId("block-to-go"), isOnPath ? `${fixed(this.path.distanceToGo(frame.plan_time_s, frame.line, frame.tip), 1)} mm` : "\u2013");
+    if (!isOnPath) this.offset = null;
+    else if (this.offset?.path !== this.path) this.offset = new PlanOffset(this.path);
+    this.offset?.see(frame);
+    setText(byId("block-to-go"), isOnPath ? `${fixed(this.path.distanceToGo(this.planTime(frame), frame.line, frame.tip), 1)} mm` : "\u2013");
     setText(byId("to-go"), isOnPath ? `to go ${clock(this.toGo(frame))}` : "");
+  }
+
+  // Where the simulated plan is when the machine's is where the frame says.
+  planTime(frame) {
+    return frame.plan_time_s - (this.offset?.value ?? 0);
   }
 
   // An override below 100 % stretches what is left.
   toGo(frame) {
     const rate = Math.min(frame.feed_override, 1);
-    return rate > 0 ? this.path.toGo(frame.plan_time_s) / rate : Infinity;
+    return rate > 0 ? this.path.toGo(this.planTime(frame)) / rate : Infinity;
   }
 }

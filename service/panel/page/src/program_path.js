@@ -4,6 +4,17 @@ import { heldAt, timeByHeld } from "./held.js";
 
 const kWords = 20, kJoints = 14;
 
+// The first index whose value is not below `value`; values do not fall.
+function lowerBound(values, value) {
+  let low = 0, high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (values[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
 export class ProgramPath {
   constructor(buffer) {
     const reals = new Float32Array(buffer), counts = new Uint32Array(buffer);
@@ -30,15 +41,13 @@ export class ProgramPath {
     return this.count > 0 ? this.time[this.count - 1] : 0;
   }
 
-  // The first point at or behind that time of the plan.
+  // The first point at or behind that time of the plan, and of that block or one behind it.
   find(planTime) {
-    let low = 0, high = this.count;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.planTime[middle] < planTime) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+    return lowerBound(this.planTime, planTime);
+  }
+
+  findBlock(block) {
+    return lowerBound(this.block, block);
   }
 
   // How long the program still takes at 100 % when its plan has come to `planTime`.
