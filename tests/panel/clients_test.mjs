@@ -6,7 +6,7 @@ import { execFileSync, spawn } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { cpuSecondsOf, memoryOf, Plant, sleep, until } from "./plant.mjs";
-import { must, runTests } from "./page_hand.mjs";
+import { kOfStalls, must, runTests } from "./page_hand.mjs";
 import { upgrade } from "./raw_http.mjs";
 
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
@@ -29,7 +29,7 @@ function page(isFrozen) {
 
 // A host that stalls for longer than drives bridge ends a part in a fault, with pages or without.
 function afterStall(station, stalls) {
-  must(plant.status().alarm_name === "drive_fault" && stalls <= 1 + kMinutes / 5, `the part was not cut to its end: ${station.text}`);
+  must(kOfStalls.includes(plant.status().alarm_name) && stalls <= 1 + kMinutes / 5, `the part was not cut to its end: ${station.text}`);
   plant.tool("ctl", "reset", "--domain", plant.domain);
   plant.tool("ctl", "enable", "--wait", "Ready", "--domain", plant.domain);
   console.log("  again, the host stalled");

@@ -2,12 +2,10 @@
 // A machine that is jogged from a browser rests wherever the hand is lost. MERIDIAN_PANEL_JOGS: how often each (1);
 // MERIDIAN_PANEL_ENDS: these only, as in `kEnds`, with commas between.
 import { familyOf, openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, drawAt, enabled, HostStalled, must, picture, runTests, stateOf } from "./page_hand.mjs";
+import { afterStalls, drawAt, enabled, HostStalled, kOfStalls, must, picture, runTests, stateOf } from "./page_hand.mjs";
 import { pictures, plant, playwright } from "./browser_case.mjs";
 
 const kTimes = Number(process.env.MERIDIAN_PANEL_JOGS ?? 1);
-// The alarms of a host that stalls for longer than drives bridge.
-const kOfStalls = ["drive_fault", "feedback_lost", "setpoints_unheard"];
 // Towards the middle of the travel: how often it may be is not bounded by its ends.
 const buttonFrom = (at) => `.jog-row:first-child button:${at > 0 ? "first" : "last"}-of-type`;
 const joint = () => plant.status().b3_mm;

@@ -9,6 +9,7 @@ export const must = (isTrue, words) => {
 
 export const stateOf = (page) => page.textContent("#state");
 // A host that stalls for longer than drives bridge ends a run in a fault, on any machine: that run counts for nothing.
+export const kOfStalls = ["drive_fault", "feedback_lost", "setpoints_unheard", "following_error"];
 export class HostStalled extends Error {}
 export const inState = (page, state, ms) =>
   until(`state ${state}`, async () => {
