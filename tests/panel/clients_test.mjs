@@ -7,12 +7,12 @@ import { writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { cpuSecondsOf, memoryOf, Plant, sleep, until } from "./plant.mjs";
 import { kOfStalls, must, runTests } from "./page_hand.mjs";
-import { upgrade } from "./raw_http.mjs";
+import { frame, upgrade } from "./raw_http.mjs";
 
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
 const plant = new Plant(bin, source, "lai.toml");
 const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.5);
-const kClients = 10, kMaxMemory_kib = 64 * 1024, kMaxShare = 0.25;
+const kClients = 10, kMaxMemory_kib = 64 * 1024, kMaxShare = 0.25, kPong = 10;
 
 // A page that reads all it gets; a frozen one reads nothing behind the handshake.
 function page(isFrozen) {
@@ -20,6 +20,9 @@ function page(isFrozen) {
   const socket = connect(Number(port), hostname, () => socket.write(upgrade(host)));
   socket.bytes = 0;
   socket.on("error", () => {});
+  // A browser answers pings by itself; who does not is hung up on after some.
+  const pongs = isFrozen ? undefined : setInterval(() => socket.write(frame("", kPong)), 5000);
+  socket.on("close", () => clearInterval(pongs));
   socket.on("data", (data) => {
     socket.bytes += data.length;
     if (isFrozen) socket.pause();
