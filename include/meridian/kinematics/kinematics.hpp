@@ -287,20 +287,26 @@ template <class S>
 /// nearest to `reference`: with the roll of a 6R robot at `free` the tip is that of `pose`, the
 /// axis the nearest that it has with that roll, on the front and the elbow of `branch`; with
 /// robot::kYawDriven in `branch` and the yaw at `free` the axis is that of `pose`, the tip the
-/// nearest in the arm plane. Frame: W. RT: cycle. Proof: tests/property/kinematics.
+/// nearest in the arm plane; with robot::kRollDrivenToo as well, and the roll of a 6R robot at
+/// `roll`, axis and tip are the nearest that there are. Frame: W. RT: cycle. Proof:
+/// tests/property/kinematics.
 template <class S>
 [[nodiscard]] inline Solution<S> solve_driven(const MachineModel& model, double tool_length_mm,
-                                              const Pose<S>& pose, const S& free, int branch,
-                                              const JointVector& reference) noexcept {
+                                              const Pose<S>& pose, const S& free, const S& roll,
+                                              int branch, const JointVector& reference) noexcept {
   if (model.family != MachineFamily::kRobot) {
     return solve_held(model, tool_length_mm, pose, free);
   }
   const Pose<S> any = pose_in_machine(model, pose);
   const Pose<S> in_machine{any.tip, detail::made_unit(any.axis)};
   const int driven = driven_joint(model, branch);
+  const bool is_roll_too = (branch & robot::kRollDrivenToo) != 0;
   Solution<S> out{{}, SolveStatus::kUnreachable};
   bool is_solved = false;
-  if (driven == robot::kYaw) {
+  if (is_roll_too) {
+    is_solved = robot::solve_with_both(model.robot, tool_length_mm, in_machine, branch, free, roll,
+                                       reference, out.q);
+  } else if (driven == robot::kYaw) {
     is_solved = robot::solve_with_yaw(model.robot, tool_length_mm, in_machine, branch, free,
                                       reference, out.q);
   } else if (driven >= 0) {
@@ -309,10 +315,19 @@ template <class S>
   }
   if (!is_solved || !detail::all_finite(out.q)) return out;
   for (int joint = 0; joint < model.joint_count; ++joint) {
-    if (joint != driven) detail::wind(out.q, joint, reference);
+    const bool is_driven = joint == driven || (is_roll_too && joint == robot::kRoll);
+    if (!is_driven) detail::wind(out.q, joint, reference);
   }
   out.status = SolveStatus::kOk;
   return out;
+}
+
+/// The same where no roll is driven beside the yaw.
+template <class S>
+[[nodiscard]] inline Solution<S> solve_driven(const MachineModel& model, double tool_length_mm,
+                                              const Pose<S>& pose, const S& free, int branch,
+                                              const JointVector& reference) noexcept {
+  return solve_driven(model, tool_length_mm, pose, free, free, branch, reference);
 }
 
 /// Moves every rotary joint that has travel to the winding inside it that is nearest to

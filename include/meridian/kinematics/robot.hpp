@@ -34,8 +34,9 @@ enum Joint6 { kRoll = 3, kBend, kSpin };
 inline constexpr int kBranchCount = 8;
 inline constexpr int kBack = 1, kFlip = 4;  ///< bits of a branch
 
-/// Bit of a branch with a driven joint: it is the yaw, and not the roll.
-inline constexpr int kYawDriven = 8;
+/// Bits of a branch with a driven joint: it is the yaw, and not the roll; it is the yaw, and the
+/// roll is driven as well.
+inline constexpr int kYawDriven = 8, kRollDrivenToo = 16;
 
 /// Nearer to a wrist singularity than this the joint without a direction of its own is held. The
 /// wrist point follows the axis asked for, so the tip is off by up to this angle times the tool.
@@ -51,6 +52,13 @@ struct BranchSigns {
 };
 [[nodiscard]] constexpr BranchSigns signs_of(int branch) noexcept {
   return {branch & 1 ? -1.0 : 1.0, branch & 2 ? -1.0 : 1.0, branch & 4 ? -1.0 : 1.0};
+}
+
+/// Bits of the branch that joints stand on: over the back, and with the bend turned over.
+[[nodiscard]] inline int branch_bits(const RobotKinematics& k, const JointVector& q) noexcept {
+  const double rho =
+      k.upper_arm_mm * std::cos(q[kShoulder]) + k.forearm_mm * std::cos(q[kShoulder] + q[kElbow]);
+  return (rho < 0 ? kBack : 0) | (k.has_spherical_wrist && q[kBend] < 0 ? kFlip : 0);
 }
 
 /// Directions of the arm: er horizontal away from the base axis, en normal to the arm plane.
@@ -239,6 +247,19 @@ template <class S>
 /// tenth in the middle of the reach.
 inline constexpr int kRollRounds = 12;
 
+/// Sets the bend that brings the tool nearest to `axis`, seen from the arm, with the roll `r`.
+/// Returns the axis that the wrist has then.
+template <class S>
+[[nodiscard]] inline Vec3<S> bend_to(const Vec3<S>& axis, const SinCos<S>& r,
+                                     Joints<S>& q) noexcept {
+  const SinCos<S> e = sin_cos(S(q[kShoulder] + q[kElbow]));
+  const S x = -(e.cos * axis[0] + e.sin * axis[2]), z = e.sin * axis[0] - e.cos * axis[2];
+  q[kBend] = atan2(S(z * r.cos + axis[1] * r.sin), x);
+  const SinCos<S> bend = sin_cos(q[kBend]);
+  const S along = bend.cos, across = -(bend.sin * r.sin), up = bend.sin * r.cos;
+  return {S(e.sin * up - e.cos * along), S(0.0) - across, S(0.0) - (e.sin * along + e.cos * up)};
+}
+
 /// The joints of a 6R robot with its roll at `roll`, the front and the elbow of `branch`: the tip
 /// is that of `pose` as far as the rounds settle, the axis the nearest that the wrist has with that
 /// roll; the bend takes the sign that fits. Returns whether the pose is in reach; so near to the
@@ -254,18 +275,48 @@ template <class S>
     q = {};
     const ArmSolution<S> arm = solve_arm(k, tool_length_mm, wanted, signs_of(branch), reference, q);
     if (!arm.is_reachable) return false;
-    const Vec3<S> a = arm.frame.to_arm(pose.axis);
-    const SinCos<S> e = sin_cos(S(q[kShoulder] + q[kElbow]));
-    const S x = -(e.cos * a[0] + e.sin * a[2]), z = e.sin * a[0] - e.cos * a[2];
-    q[kBend] = atan2(S(z * r.cos + a[1] * r.sin), x);
-    const SinCos<S> bend = sin_cos(q[kBend]);
-    const S along = bend.cos, across = -(bend.sin * r.sin), up = bend.sin * r.cos;
-    wanted.axis = arm.frame.from_arm(S(e.sin * up - e.cos * along), S(0.0) - across,
-                                     S(0.0) - (e.sin * along + e.cos * up));
+    const Vec3<S> axis = bend_to(arm.frame.to_arm(pose.axis), r, q);
+    wanted.axis = arm.frame.from_arm(axis[0], axis[1], axis[2]);
   }
   q[kRoll] = roll;
   q[kSpin] = S(reference[kSpin]);
   return true;
+}
+
+/// The joints of a 6R robot with its yaw at `yaw` and its roll at `roll`, the elbow of `branch`:
+/// the axis is the nearest that the wrist has there, the tip the nearest in the arm plane with that
+/// axis. Both places may be singular. Returns whether the pose is in reach. Windings are the
+/// caller's. RT: cycle. Proof: tests/property/kinematics.
+template <class S>
+[[nodiscard, gnu::noinline]] inline bool solve_with_both(const RobotKinematics& k,
+                                                         double tool_length_mm, const Pose<S>& pose,
+                                                         int branch, const S& yaw, const S& roll,
+                                                         const JointVector& reference,
+                                                         Joints<S>& q) noexcept {
+  const SinCos<S> r = sin_cos(roll);
+  ArmSolution<S> arm;
+  arm.frame.yaw = sin_cos(yaw);
+  const Vec3<S> asked = arm.frame.to_arm(pose.axis);
+  Pose<S> wanted = pose;  // its axis: the one that the wrist gives
+  for (int round = 0; round < kRollRounds; ++round) {
+    q = {};
+    const Vec3<S> w = arm.frame.to_arm(wrist_point(k, tool_length_mm, wanted));
+    solve_in_plane(k, w[0], w[2], signs_of(branch).elbow, arm, q);
+    if (!arm.is_reachable) return false;
+    const Vec3<S> axis = bend_to(asked, r, q);
+    wanted.axis = arm.frame.from_arm(axis[0], axis[1], axis[2]);
+  }
+  q[kYaw] = yaw;
+  q[kRoll] = roll;
+  q[kSpin] = S(reference[kSpin]);
+  return true;
+}
+
+/// The angle from the tool `t`, seen from the arm, to the forearm's line.
+[[nodiscard]] inline double angle_to_forearm(const Vec3<double>& t, const JointVector& q) noexcept {
+  const SinCos<double> e = sin_cos(q[kShoulder] + q[kElbow]);
+  const double x = e.cos * t[0] + e.sin * t[2], z = e.cos * t[2] - e.sin * t[0];
+  return atan2(hypot(t[1], z), std::abs(x));
 }
 
 /// The angle from the tool to the forearm's line, where the wrist of a 6R robot is singular, with
@@ -275,11 +326,16 @@ template <class S>
                                            const JointVector& reference) noexcept {
   JointVector q{};
   const auto arm = solve_arm(k, tool_length_mm, pose, signs_of(branch), reference, q);
-  if (!arm.is_reachable) return std::numbers::pi;
-  const SinCos<double> e = sin_cos(q[kShoulder] + q[kElbow]);
-  const double x = e.cos * arm.tool[0] + e.sin * arm.tool[2];
-  const double z = e.cos * arm.tool[2] - e.sin * arm.tool[0];
-  return atan2(hypot(arm.tool[1], z), std::abs(x));
+  return arm.is_reachable ? angle_to_forearm(arm.tool, q) : std::numbers::pi;
+}
+
+/// The same with the yaw at `yaw`, as solve_with_yaw() has it.
+[[nodiscard]] inline double wrist_distance_at_yaw(const RobotKinematics& k, double tool_length_mm,
+                                                  const Pose<double>& pose, int branch,
+                                                  double yaw) noexcept {
+  JointVector q{};
+  if (!solve_with_yaw(k, tool_length_mm, pose, branch, yaw, q, q)) return std::numbers::pi;
+  return atan2(std::abs(std::sin(q[kBend])), std::abs(std::cos(q[kBend])));
 }
 
 /// sqrt(det JᵀJ), eq. 5.6 and 5.10: zero with the wrist on the base axis, the arm stretched or

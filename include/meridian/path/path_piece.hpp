@@ -63,8 +63,8 @@ struct PathPiece {
                          ///< normal, φ = turn·s/length
   Array3 arc_centre{};   ///< kArc: tip(s) = centre + cos(ψ) x + sin(ψ) y + rise·s/length, ψ =
                          ///< sweep·s/length
-  Array3 arc_x{};        ///< centre to the arc's begin, radius long
-  Array3 arc_y{};        ///< normal × arc_x
+  Array3 arc_x{};        ///< centre to the arc's begin, radius long; kSpline: roll_quintic()
+  Array3 arc_y{};        ///< normal × arc_x; kSpline: roll_quintic()
   double arc_sweep = 0;
   double free_begin = 0, free_end = 0;  ///< is_free_driven
   /// is_azimuthal: tip and axis stand at fraction x(s) of their way instead of s/length. With
@@ -83,6 +83,13 @@ struct PathPiece {
   BlockMarks marks;          ///< blocks that end on the piece
 };
 static_assert(std::is_trivially_copyable_v<PathPiece>);
+
+/// Returns the roll over a kSpline piece that says robot::kRollDrivenToo in its branch. It is where
+/// an arc has its radius: few pieces have one, and all are copied. RT: cycle.
+[[nodiscard]] constexpr FreeQuintic roll_quintic(const PathPiece& piece) noexcept {
+  const auto &a = piece.arc_x, &b = piece.arc_y;
+  return {a[0], a[1], a[2], b[0], b[1], b[2]};
+}
 
 /// Length that a turn of the tool axis by one radian counts for in the path length s.
 inline constexpr double kAxisLength_mm_per_rad = 50.0;

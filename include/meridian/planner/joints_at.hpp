@@ -10,6 +10,18 @@
 
 namespace meridian {
 
+/// Returns the joints of a kSpline `piece` with a driven redundant joint at `pose`, `share` of its
+/// length along it. RT: cycle. Proof: tests/unit/planner/joints_at_test.cpp.
+template <class S>
+[[nodiscard]] inline Solution<S> driven_joints_at(const MachineModel& model, const PathPiece& piece,
+                                                  const Pose<S>& pose, const S& share,
+                                                  const JointVector& reference) noexcept {
+  const S free = quintic_at(piece.free_quintic, share);
+  const bool is_roll_too = (piece.branch & robot::kRollDrivenToo) != 0;
+  const S roll = is_roll_too ? quintic_at(roll_quintic(piece), share) : free;
+  return solve_driven(model, piece.tool_length_mm, pose, free, roll, piece.branch, reference);
+}
+
 /// Returns the joints of `piece` at path length `s`, rotary joints in the winding nearest to
 /// `reference`: the joints at the last evaluated place of the path, joints_begin for the first one.
 ///
@@ -30,9 +42,7 @@ template <class S>
   }
   const Pose<S> pose = pose_at(piece, s);
   if (piece.kind == PathKind::kSpline && piece.is_free_driven) {
-    return solve_driven(model, piece.tool_length_mm, pose,
-                        quintic_at(piece.free_quintic, S(s / piece.length)), piece.branch,
-                        reference);
+    return driven_joints_at(model, piece, pose, S(s / piece.length), reference);
   }
   if (piece.is_free_driven || piece.kind == PathKind::kTurn) {
     const double by = piece.free_end - piece.free_begin;

@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <random>
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/units.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "support/program_end.hpp"
 
@@ -139,6 +141,74 @@ class ShoulderPass : public SingularPass {
 
   Vector3 wrist_, way_, axis_, turn_;
   double rise_mm_ = 0;
+};
+
+/// The wrist point comes over the base axis and the tool into line with the forearm of a 6R robot,
+/// in the same place or up to three blocks later or earlier; beside both, or beside one and exactly
+/// through the other.
+class BothPass : public SingularPass {
+ public:
+  BothPass(const MachineModel& robot, std::uint32_t seed) : SingularPass(robot, seed) {
+    const double elbow = between(0.6, 1.6);
+    at_ = {between(-1.4, 1.4), bent(elbow), -elbow, between(-1.0, 1.0), 0, 0};
+    way_ = {-std::cos(at_[robot::kYaw]), -std::sin(at_[robot::kYaw]), 0};
+    constexpr int kShifts[] = {0, 0, 1, -1, 3, -3};
+    shift_ = kShifts[seed % std::size(kShifts)] / 30.0;
+    const auto kind = seed / std::size(kShifts) % 3;
+    shoulder_share_ = kind == 1 ? 0 : 1;
+    wrist_share_ = kind == 2 ? 0 : 1;
+    rise_mm_ = between(-10, 10);
+    elbow_turn_ = between(-0.1, 0.1);
+    const ToolPose there = forward(robot, robot.tool_length_mm, at_);
+    wrist_ = wrist_of(there);
+    axis_ = in_line(shift_, there.axis);
+    const Vector3 any{between(-1, 1), between(-1, 1), between(-1, 1)};
+    spin_ = any.cross(axis_).normalized();
+  }
+
+ private:
+  static constexpr double kSweep_rad = 0.17, kSweep_mm = 60;
+  /// The shoulder that has the wrist point over the base axis, of arms that are equally long.
+  static double bent(double elbow) { return units::rad_from_deg(90) + elbow / 2; }
+  [[nodiscard]] double lever_mm() const { return robot_.robot.wrist_mm + robot_.tool_length_mm; }
+  [[nodiscard]] Vector3 wrist_of(const ToolPose& pose) const {
+    return pose.tip + lever_mm() * pose.axis;
+  }
+  [[nodiscard]] Vector3 wrist_at(double share) const {
+    return wrist_ + share * (kSweep_mm * way_ + rise_mm_ * Vector3::UnitZ());
+  }
+  /// The axis in line with the forearm at `share` of the way, with any axis near it.
+  [[nodiscard]] Vector3 in_line(double share, const Vector3& near) const {
+    const ToolPose pose{wrist_at(share) - lever_mm() * near, near};
+    const int branch = share > 0 ? robot::kBack : 0;
+    JointVector q = share == 0 ? at_ : solve(robot_, robot_.tool_length_mm, pose, branch, at_).q;
+    q[robot::kBend] = 0;
+    return forward(robot_, robot_.tool_length_mm, q).axis;
+  }
+  [[nodiscard]] ToolPose across(double share, double beside) const override {
+    const Vector3 across_way(-way_.y(), way_.x(), 0);
+    const double turn = (share - shift_) * kSweep_rad;
+    const double off = std::tan(units::rad_from_deg(beside)) * wrist_share_;
+    const Vector3 on = std::cos(turn) * axis_ + std::sin(turn) * spin_.cross(axis_);
+    const Vector3 axis = (on + off * spin_).normalized();
+    const Vector3 wrist = wrist_at(share) + beside * shoulder_share_ * across_way;
+    return {wrist - lever_mm() * axis, axis};
+  }
+  [[nodiscard]] ToolPose along(double share, double beside) const override {
+    JointVector q = at_;
+    const double elbow = -at_[robot::kElbow] + share * elbow_turn_;
+    q[robot::kElbow] = -elbow;
+    q[robot::kShoulder] = bent(elbow);
+    q[robot::kBend] = units::rad_from_deg(beside) * wrist_share_;
+    const ToolPose on = forward(robot_, robot_.tool_length_mm, q);
+    return {on.tip + beside * shoulder_share_ * way_, on.axis};
+  }
+
+  JointVector at_{};
+  Vector3 way_, wrist_, axis_, spin_;
+  double shift_ = 0;                             // of the wrist's place, shares
+  double shoulder_share_ = 1, wrist_share_ = 1;  // of what it is beside
+  double rise_mm_ = 0, elbow_turn_ = 0;
 };
 
 }  // namespace meridian::test

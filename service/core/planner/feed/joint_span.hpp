@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "meridian/kinematics/robot.hpp"
 #include "meridian/path/band_span.hpp"
 #include "meridian/path/path_piece.hpp"
 #include "meridian/planner/pole_ease.hpp"
@@ -16,6 +17,7 @@ struct JointSpan {
   int branch = 0;               ///< of the inverse kinematics, where not driven
   bool is_free_driven = false;  ///< the redundant joint is a quintic of x, the tilt follows
   FreeQuintic free{};           ///< Bernstein values over [0, length], rad
+  FreeQuintic roll{};           ///< of the roll, where `branch` says that it is driven too
   double axis_deviation_rad =
       0;  ///< largest angle by which driving the redundant joint moves the axis
   EaseReason reason = EaseReason::kBeside;  ///< why, where driven
@@ -43,6 +45,10 @@ struct JointSpan {
   piece.branch = static_cast<std::uint8_t>(span.branch);
   piece.is_free_driven = span.is_free_driven;
   piece.free_quintic = span.free;
+  if ((span.branch & robot::kRollDrivenToo) != 0) {
+    piece.arc_x = {span.roll[0], span.roll[1], span.roll[2]};
+    piece.arc_y = {span.roll[3], span.roll[4], span.roll[5]};
+  }
   piece.marks = span.marks;
   return piece;
 }

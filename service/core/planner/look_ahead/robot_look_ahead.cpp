@@ -25,7 +25,7 @@ class Course {
  public:
   Course(const MachineModel& model, const AheadSlack& slack, const RobotStart& start) noexcept
       : model_(model), slack_(slack), at_(start) {
-    inside_ = place_at(at_.pose);
+    inside_ = bits_at(at_.pose);
   }
 
   /// False: it ends on the way.
@@ -57,40 +57,38 @@ class Course {
  private:
   enum class Move { kDone, kTooFar, kEnds };
 
-  /// The singular place that the pose lies at within the slack, if there is one.
-  [[nodiscard]] const Singularity* place_at(const ToolPose& pose) const noexcept {
-    static constexpr Singularity kPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
-    for (const Singularity& at : kPlaces) {
-      const double near = at == Singularity::kWrist ? slack_.axis_rad : slack_.tip_mm;
-      if (distance(at, pose) < near) return &at;
-    }
-    return nullptr;
+  /// The bits of a branch that are free at the pose: it lies at their singular places, within the
+  /// slack.
+  [[nodiscard]] int bits_at(const ToolPose& pose) const noexcept {
+    const bool over_base = distance(Singularity::kShoulder, pose) < slack_.tip_mm;
+    const bool in_line = distance(Singularity::kWrist, pose) < slack_.axis_rad;
+    return (over_base ? robot::kBack : 0) | (in_line ? robot::kFlip : 0);
   }
   [[nodiscard]] double distance(Singularity at, const ToolPose& pose) const noexcept {
     return singular_distance(model_, at_.tool_length_mm, at, pose, at_.branch, at_.joints);
   }
 
   [[nodiscard]] Move move_to(const ToolPose& pose, bool may_halve) noexcept {
-    const Singularity* const inside = place_at(pose);
-    if (inside != nullptr) {  // the redundant joint rests, whatever the others do
-      inside_ = inside;
+    const int inside = bits_at(pose);
+    if (inside != 0) {  // the redundant joints rest, whatever the others do
+      inside_ |= inside;
       return Move::kDone;
     }
-    const Singularity* const left = std::exchange(inside_, nullptr);
+    const int left = std::exchange(inside_, 0);
     int branch = at_.branch;
     auto to = solve_on(pose, branch);
-    if (left != nullptr) {
-      const int over = branch ^ (*left == Singularity::kWrist ? robot::kFlip : robot::kBack);
-      const auto other = solve_on(pose, over);
+    if (left == 0 && may_halve && to.status != SolveStatus::kUnreachable &&
+        turn_to(to.q) > kMaxTurn_rad) {
+      return Move::kTooFar;
+    }
+    for (const int over : {robot::kBack, robot::kFlip, robot::kBack | robot::kFlip}) {
+      if ((over & left) != over) continue;
+      const auto other = solve_on(pose, at_.branch ^ over);
       const bool is_better =
           is_inside(other) && (!is_inside(to) || turn_to(other.q) < turn_to(to.q));
-      if (is_better) {
-        to = other;
-        branch = over;
-      }
-    } else if (may_halve && to.status != SolveStatus::kUnreachable &&
-               turn_to(to.q) > kMaxTurn_rad) {
-      return Move::kTooFar;
+      if (!is_better) continue;
+      to = other;
+      branch = at_.branch ^ over;
     }
     if (!is_inside(to)) return Move::kEnds;
     at_.joints = to.q;
@@ -117,7 +115,7 @@ class Course {
   const MachineModel& model_;
   AheadSlack slack_;
   RobotStart at_;
-  const Singularity* inside_ = nullptr;
+  int inside_ = 0;  // bits that are free
   int steps_ = 0;
 };
 

@@ -72,11 +72,31 @@ bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
          pole_distance(model, axis) < kOnPoleTolerances * tolerance().axis_rad;
 }
 
+/// The joints at rest on `branch`. Where a joint of a robot has no direction of its own it is where
+/// it stands, and only the branch that it stands on has a solution.
+Solution<double> SmoothPlanner::Workspace::solve_at_rest(const RestToRestPlanner::Junction& at,
+                                                         int branch) const noexcept {
+  const AheadSlack slack = pass_slack(model, {tolerance().tip_mm, pole_tolerance_rad()});
+  const double bend_sine = std::abs(std::sin(at.joints[robot::kBend]));
+  const double off_base = singular_distance(model, at.tool_length_mm, Singularity::kShoulder,
+                                            at.pose, branch, at.joints);
+  const bool over_base = off_base < kOnPoleTolerances * slack.tip_mm;
+  const bool in_line = has_wrist_roll(model) && bend_sine < kOnPoleTolerances * slack.axis_rad;
+  if (!over_base && !in_line) return solve(model, at.tool_length_mm, at.pose, branch, at.joints);
+  const int stands = robot::branch_bits(model.robot, at.joints);
+  if (((branch ^ stands) & (robot::kBack | robot::kFlip)) != 0) {
+    return {{}, SolveStatus::kUnreachable};
+  }
+  const Singularity where = in_line ? Singularity::kBoth : Singularity::kShoulder;
+  return solve_driven(model, at.tool_length_mm, at.pose, at.joints[robot::kYaw],
+                      at.joints[robot::kRoll], driven_branch(where, branch), at.joints);
+}
+
 int SmoothPlanner::Workspace::find_branch(const RestToRestPlanner::Junction& at) const noexcept {
   double nearest = std::numeric_limits<double>::infinity();
   int best = 0;
   for (int branch = 0; branch < branch_count(model); ++branch) {
-    const auto found = solve(model, at.tool_length_mm, at.pose, branch, at.joints);
+    const auto found = solve_at_rest(at, branch);
     if (found.status == SolveStatus::kUnreachable) continue;
     double off = 0;
     for (int i = 0; i < model.joint_count; ++i) {

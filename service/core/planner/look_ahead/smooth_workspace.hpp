@@ -65,6 +65,8 @@ struct SmoothPlanner::Workspace {
   /// a run of its own where a robot comes near a singular place.
   [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
   /// The solution that the joints at the last rest are nearest to.
+  [[nodiscard]] Solution<double> solve_at_rest(const RestToRestPlanner::Junction& at,
+                                               int branch) const noexcept;
   [[nodiscard]] int find_branch(const RestToRestPlanner::Junction& at) const noexcept;
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
   void begin_run(const ClBlock& cut) noexcept;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "service/core/planner/singular/pole_zone.hpp"
@@ -10,20 +12,39 @@ namespace meridian {
 
 /// Singular places of a robot at which a joint has no direction of its own.
 enum class Singularity : std::uint8_t {
-  kWrist,    ///< 6R: the tool in line with the forearm; the roll is redundant, the axis may give
-  kShoulder  ///< the wrist point over the base axis; the yaw is redundant, the tip may give
+  kWrist,     ///< 6R: the tool in line with the forearm; the roll is redundant, the axis may give
+  kShoulder,  ///< the wrist point over the base axis; the yaw is redundant, the tip may give
+  kBoth       ///< 6R: the two in one pass
 };
+/// Those that have a distance: kWrist and kShoulder.
 inline constexpr int kSingularities = 2;
+inline constexpr Singularity kSingularPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
+/// Of what there is for either of them.
+[[nodiscard]] constexpr std::size_t index_of(Singularity at) noexcept {
+  return static_cast<std::size_t>(at);
+}
+
+/// Whether passing `at` drives the redundant joint of `one`, kWrist or kShoulder.
+[[nodiscard]] constexpr bool drives(Singularity at, Singularity one) noexcept {
+  return at == one || at == Singularity::kBoth;
+}
+
+/// The other of kWrist and kShoulder.
+[[nodiscard]] constexpr Singularity other_of(Singularity one) noexcept {
+  return one == Singularity::kWrist ? Singularity::kShoulder : Singularity::kWrist;
+}
 
 /// A stretch of path beside a singular place of a robot on which its redundant joint is driven and
 /// the others follow. At the wrist the tip is exact and the axis inside its tolerance, at the
-/// shoulder the axis is exact and the tip inside its tolerance. Outside it the joints follow the
-/// path.
+/// shoulder the axis is exact and the tip inside its tolerance, at both neither is exact. Outside
+/// it the joints follow the path.
 struct RobotPass {
   double begin = 0, end = 0;  ///< u; equal: none
   FreeQuintic joint{};        ///< the redundant one: Bernstein values over [begin, end]
+  FreeQuintic roll{};         ///< at both: `joint` is the yaw, and this the roll
   int branch_before = 0, branch_after = 0;
-  double deviation = 0;  ///< largest from the programmed path: of the axis, rad, or the tip, mm
+  std::array<bool, kSingularities> rests{};  ///< the joint of that place, at the end
+  double axis_deviation_rad = 0;             ///< largest from the programmed axis
 };
 
 /// How a pass meets an end of its range.
@@ -32,12 +53,18 @@ enum class PassEnd : std::uint8_t {
   kAtRest   ///< at that end, which is singular and where the machine rests: any joint value
 };
 
-/// Where a pass may lie: about `nearest`, between `from` and `to`.
+/// The same at both ends; kAtRest at the begin: the redundant joint begins as it stands.
+struct PassEnds {
+  PassEnd from = PassEnd::kOnPath, to = PassEnd::kOnPath;
+};
+
+/// Where a pass may lie: from ahead of `nearest` to behind `last_nearest`, between `from` and `to`.
 struct PassRange {
   Singularity at = Singularity::kWrist;
-  double nearest = 0, from = 0, to = 0;
-  PassEnd at_from = PassEnd::kOnPath;  ///< kAtRest: the redundant joint begins as it stands
-  PassEnd at_to = PassEnd::kOnPath;
+  double nearest = 0, last_nearest = 0;
+  double from = 0, to = 0;
+  std::array<PassEnds, kSingularities>
+      ends{};            ///< of the roll at the wrist, the yaw at the shoulder
   int branch = 0;        ///< on the way in
   JointVector joints{};  ///< at `from`
 };
@@ -58,7 +85,15 @@ inline constexpr double kPassReach_mm = 20;
 
 /// The branch that solve_driven() asks for where the redundant joint of `at` is driven.
 [[nodiscard]] constexpr int driven_branch(Singularity at, int branch) noexcept {
-  return at == Singularity::kShoulder ? branch | robot::kYawDriven : branch;
+  switch (at) {
+    case Singularity::kShoulder:
+      return branch | robot::kYawDriven;
+    case Singularity::kBoth:
+      return branch | robot::kYawDriven | robot::kRollDrivenToo;
+    case Singularity::kWrist:
+      break;
+  }
+  return branch;
 }
 
 /// How far `pose` in W is from the singular place with the front and the elbow of `branch`: the
@@ -86,10 +121,9 @@ struct PassCourse {
 /// Picks the pass with the least time between `from` and `to`. Candidates are quintics of the
 /// redundant joint that meet the exact way with two derivatives at both ends, out on the same
 /// branch or on the one with the bend, or the arm, turned over: straight through, the joint hardly
-/// turns. Where the nearest winding is outside travel, the joint turns the other way round; where a
-/// joint at rest leads another one out of travel, it turns to where it may rest. One that leaves
-/// the tolerance about the programmed path, or whose joints leave travel, is none. Bounded work, no
-/// memory. Source: docs/motion.md, section 2. Proof:
+/// turns. Where the nearest winding is outside travel, the joint turns the other way round. One
+/// that leaves the tolerance about the programmed path, or whose joints leave travel, is none.
+/// Bounded work, no memory. Source: docs/motion.md, section 2. Proof:
 /// tests/property/planner/robot_passes_test.cpp.
 [[nodiscard]] RobotPass find_robot_pass(const PassTask& task, const PassRange& range) noexcept;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "meridian/kinematics/kinematics.hpp"
@@ -20,13 +21,15 @@ constexpr double kMinPassPart_mm = 1e-6;
 constexpr double kPassOutOfReach_rad = 0.6, kPassOutOfReach_mm = 100;
 /// Of the tip, where nothing may give: kPoleEase_rad at the end of a tool.
 constexpr double kExactTip_mm = 1e-3;
-constexpr Singularity kPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
 
 bool is_robot(const MachineModel& model) noexcept { return model.family == MachineFamily::kRobot; }
 
-std::size_t index_of(Singularity at) noexcept { return static_cast<std::size_t>(at); }
-
 }  // namespace
+
+AheadSlack pass_slack(const MachineModel& model, const AheadSlack& asked) noexcept {
+  if (model.pole_policy == PolePolicy::kExact) return {kExactTip_mm, kPoleEase_rad};
+  return {std::max(asked.tip_mm, kExactTip_mm), std::max(asked.axis_rad, kPoleEase_rad)};
+}
 
 RobotPasses::RobotPasses(const MachineModel& model)
     : model_(model),
@@ -37,9 +40,9 @@ RobotPasses::RobotPasses(const MachineModel& model)
 void RobotPasses::begin(const Start& start) noexcept {
   is_used_ = is_robot(model_);
   is_exact_ = model_.pole_policy == PolePolicy::kExact;
-  axis_tolerance_rad_ =
-      is_exact_ ? kPoleEase_rad : std::max(start.axis_tolerance_rad, kPoleEase_rad);
-  tip_tolerance_mm_ = is_exact_ ? kExactTip_mm : std::max(start.tip_tolerance_mm, kExactTip_mm);
+  const AheadSlack slack = pass_slack(model_, {start.tip_tolerance_mm, start.axis_tolerance_rad});
+  axis_tolerance_rad_ = slack.axis_rad;
+  tip_tolerance_mm_ = slack.tip_mm;
   tool_length_mm_ = start.tool_length_mm;
   axes_.begin(start.pose.axis);
   tips_.begin(start.pose.tip);
@@ -48,7 +51,8 @@ void RobotPasses::begin(const Start& start) noexcept {
   emitted_x_ = 0;
   known_ = start.joints;
   branch_ = start.branch;
-  is_finished_ = has_pass_ = is_held_ = is_waiting_ = false;
+  is_held_ = {};
+  is_finished_ = has_pass_ = is_waiting_ = false;
 }
 
 void RobotPasses::push(const JointSpan& span) noexcept {
@@ -66,9 +70,8 @@ void RobotPasses::measure(Held& held) const noexcept {
   for (std::size_t k = 0; k < kProbes; ++k) {
     const double x = held.span.band.length * static_cast<double>(k) / kProbes;
     const ToolPose pose = pose_on(held.span.band.c, x);
-    for (const Singularity at : kPlaces) {
-      held.distance[index_of(at)][k] =
-          singular_distance(model_, tool_length_mm_, at, pose, branch_, known_);
+    for (const Singularity at : kSingularPlaces) {
+      held.distance[index_of(at)][k] = distance_of_pose(at, pose, branch_);
     }
   }
 }
@@ -105,9 +108,21 @@ double RobotPasses::emitted_u() const noexcept {
   return spans_[spans_.begin_index()].span.band.u0 + emitted_x_;
 }
 
-double RobotPasses::distance_at(Singularity at, double u) const noexcept {
-  const ToolPose pose = pose_of<double>(span_at(u), u);
-  return singular_distance(model_, tool_length_mm_, at, pose, branch_, known_);
+/// Over the base axis the yaw may be driven, and the wrist comes into line with it as it is.
+double RobotPasses::distance_of_pose(Singularity at, const ToolPose& pose,
+                                     int branch) const noexcept {
+  const double exact = singular_distance(model_, tool_length_mm_, at, pose, branch, known_);
+  if (at != Singularity::kWrist || !has_wrist_roll(model_)) return exact;
+  const ToolPose in_machine = pose_in_machine(model_, pose);
+  const bool is_over_base =
+      robot::shoulder_distance(model_.robot, tool_length_mm_, in_machine) < tip_tolerance_mm_;
+  if (!is_over_base) return exact;
+  return std::min(exact, robot::wrist_distance_at_yaw(model_.robot, tool_length_mm_, in_machine,
+                                                      branch, known_[robot::kYaw]));
+}
+
+double RobotPasses::distance_at(Singularity at, double u, int branch) const noexcept {
+  return distance_of_pose(at, pose_of<double>(span_at(u), u), branch);
 }
 
 bool RobotPasses::is_minimum(Singularity at, std::int64_t probe) const noexcept {
@@ -120,14 +135,14 @@ bool RobotPasses::is_minimum(Singularity at, std::int64_t probe) const noexcept 
 }
 
 /// About a probe, by golden section between its neighbours.
-double RobotPasses::refine_minimum(Singularity at, std::int64_t probe) const noexcept {
+double RobotPasses::refine_minimum(Singularity at, std::int64_t probe, int branch) const noexcept {
   constexpr double kGolden = 0.3819660112501051;
   constexpr int kRounds = 50;
   double low = probe > kProbes * spans_.begin_index() ? u_of(probe - 1) : u_of(probe);
   double high = probe + 1 < end_probe() ? u_of(probe + 1) : end_u();
   for (int n = 0; n < kRounds; ++n) {
     const double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
-    if (distance_at(at, a) <= distance_at(at, b)) {
+    if (distance_at(at, a, branch) <= distance_at(at, b, branch)) {
       high = b;
     } else {
       low = a;
@@ -138,48 +153,22 @@ double RobotPasses::refine_minimum(Singularity at, std::int64_t probe) const noe
 
 void RobotPasses::scan() noexcept {
   while (!has_pass_) {
-    if (is_held_) {
-      if (!settle(at_, emitted_u())) return;
+    if (const auto at = held_at()) {
+      if (!settle(*at, emitted_u())) return;
       continue;
     }
     const std::int64_t known = is_finished_ ? end_probe() : end_probe() - 1;
     if (probe_ >= known) return;
-    for (const Singularity at : kPlaces) {
+    for (const Singularity at : kSingularPlaces) {
       if (!is_minimum(at, probe_)) continue;
-      const double nearest = refine_minimum(at, probe_);
-      if (!(distance_at(at, nearest) < tolerance(at))) continue;
+      const double nearest = refine_minimum(at, probe_, branch_);
+      const bool is_behind = probe_ > 0 && nearest < emitted_u();  // a pass has been there
+      if (is_behind || !(distance_at(at, nearest) < tolerance(at))) continue;
       if (!settle(at, nearest)) return;
       if (has_pass_) break;
     }
     if (!has_pass_) ++probe_;
   }
-}
-
-bool RobotPasses::settle(Singularity at, double nearest) noexcept {
-  const double wanted = nearest + kPassReach_mm, end = end_u();
-  if (end < wanted && !is_finished_ && !spans_.is_full()) return false;
-  PassRange range;
-  range.at = at;
-  range.nearest = nearest;
-  range.from = is_held_ ? nearest : std::max(emitted_u(), nearest - kPassReach_mm);
-  range.to = std::min(wanted, end);
-  const double singular = kOnPoleTolerances * tolerance(at);
-  const bool is_path_begin = range.from <= 0;
-  const auto is_singular = [&](double u) { return distance_at(at, u) < singular; };
-  const bool begins_at_rest = is_held_ || (is_path_begin && is_singular(range.from));
-  range.at_from = begins_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath;
-  range.at_to = is_singular(range.to) ? PassEnd::kAtRest : PassEnd::kOnPath;
-  range.branch = branch_;
-  range.joints = follow_to(range.from);
-  const PassTask task{
-      model_,   *this, axes_, tips_, tool_length_mm_, axis_tolerance_rad_, tip_tolerance_mm_,
-      is_exact_};
-  pass_ = find_robot_pass(task, range);
-  at_ = at;
-  has_pass_ = pass_.end > pass_.begin;
-  is_held_ = has_pass_ && range.at_to == PassEnd::kAtRest;
-  while (has_pass_ && probe_ < end_probe() && u_of(probe_) <= pass_.end) ++probe_;
-  return true;
 }
 
 JointVector RobotPasses::follow_to(double u) const noexcept {
@@ -197,7 +186,7 @@ JointVector RobotPasses::follow_to(double u) const noexcept {
 
 bool RobotPasses::may_emit() const noexcept {
   if (has_pass_ || spans_.is_full()) return true;
-  if (is_held_) return false;
+  if (held_at()) return false;
   if (is_finished_ && probe_ >= end_probe()) return true;
   const Held& front = spans_[spans_.begin_index()];
   const double end = front.span.band.u0 + front.span.band.length;
@@ -236,13 +225,15 @@ void RobotPasses::emit() noexcept {
     const double h = pass_.end - pass_.begin;
     out_.is_free_driven = true;
     out_.branch = driven_branch(at_, branch_);
-    out_.free = part_of(pass_.joint, begin <= pass_.begin ? 0 : (begin - pass_.begin) / h,
-                        end >= pass_.end ? 1 : (end - pass_.begin) / h);
-    out_.axis_deviation_rad = at_ == Singularity::kWrist ? pass_.deviation : 0;
+    const double from = begin <= pass_.begin ? 0 : (begin - pass_.begin) / h;
+    const double to = end >= pass_.end ? 1 : (end - pass_.begin) / h;
+    out_.free = part_of(pass_.joint, from, to);
+    out_.roll = part_of(pass_.roll, from, to);
+    out_.axis_deviation_rad = pass_.axis_deviation_rad;
     out_.reason =
         pass_.branch_after != pass_.branch_before ? EaseReason::kThrough : EaseReason::kBeside;
     joints = solve_driven(model_, tool_length_mm_, pose_of<double>(span, end), out_.free.back(),
-                          out_.branch, known_)
+                          out_.roll.back(), out_.branch, known_)
                  .q;
   } else {
     joints = follow_to(end);

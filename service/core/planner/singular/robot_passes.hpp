@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <optional>
 
 #include "meridian/path/band_spline.hpp"
 #include "service/core/path/index_ring.hpp"
@@ -10,6 +12,9 @@
 #include "service/core/planner/singular/robot_pass.hpp"
 
 namespace meridian {
+
+/// What passes may leave of the tolerances `asked` about the programmed path.
+[[nodiscard]] AheadSlack pass_slack(const MachineModel& model, const AheadSlack& asked) noexcept;
 
 /// From spans of the path to spans that the joints of a robot follow. Where the tool comes into
 /// line with the forearm within the axis tolerance, the roll is driven from one side to the other
@@ -62,7 +67,12 @@ class RobotPasses : private SpanLookup {
   [[nodiscard]] const BandSpan& span_at(double u) const noexcept override;
   [[nodiscard]] double u_of(std::int64_t probe) const noexcept;
   [[nodiscard]] double distance_of(Singularity at, std::int64_t probe) const noexcept;
-  [[nodiscard]] double distance_at(Singularity at, double u) const noexcept;
+  [[nodiscard]] double distance_of_pose(Singularity at, const ToolPose& pose,
+                                        int branch) const noexcept;
+  [[nodiscard]] double distance_at(Singularity at, double u, int branch) const noexcept;
+  [[nodiscard]] double distance_at(Singularity at, double u) const noexcept {
+    return distance_at(at, u, branch_);
+  }
   [[nodiscard]] double tolerance(Singularity at) const noexcept {
     return at == Singularity::kWrist ? axis_tolerance_rad_ : tip_tolerance_mm_;
   }
@@ -72,10 +82,27 @@ class RobotPasses : private SpanLookup {
 
   /// Decides about minima of the distance as far as enough of what follows is there.
   void scan() noexcept;
-  /// Takes a pass about `nearest`, if there is one; false: not enough of what follows is there.
+  /// Takes a pass about `nearest`, if there is one: of both singular places where the other one is
+  /// as near. False: not enough of what follows is there.
   [[nodiscard]] bool settle(Singularity at, double nearest) noexcept;
+  /// What a pass is about, and how far it may lead.
+  struct PlaceOfPass {
+    double nearest = 0, last_nearest = 0;
+    double limit = std::numeric_limits<double>::infinity();
+  };
+  [[nodiscard]] bool try_pass(Singularity at, const PlaceOfPass& place) noexcept;
+  /// The same with joints at rest at its end where that is nearer than so many `tolerances`.
+  [[nodiscard]] bool try_resting(Singularity at, const PlaceOfPass& place,
+                                 double tolerances) noexcept;
+  /// Where the path is nearest to the other singular place, if that is inside its tolerance ahead
+  /// of `to`; the pass is about `from`.
+  [[nodiscard]] std::optional<double> find_other(Singularity at, double from,
+                                                 double to) const noexcept;
+  /// Whose joint rests behind the last pass, as the path is singular there.
+  [[nodiscard]] std::optional<Singularity> held_at() const noexcept;
   [[nodiscard]] bool is_minimum(Singularity at, std::int64_t probe) const noexcept;
-  [[nodiscard]] double refine_minimum(Singularity at, std::int64_t probe) const noexcept;
+  [[nodiscard]] double refine_minimum(Singularity at, std::int64_t probe,
+                                      int branch) const noexcept;
   [[nodiscard]] bool is_out_of_reach(const Held& held) const noexcept;
   [[nodiscard]] JointVector follow_to(double u) const noexcept;
   [[nodiscard]] bool may_emit() const noexcept;
@@ -92,7 +119,8 @@ class RobotPasses : private SpanLookup {
   JointVector known_{};     ///< joints at emitted_u()
   int branch_ = 0;          ///< where spans are handed out
   bool has_pass_ = false;
-  bool is_held_ = false;  ///< behind the pass the joint rests, the path still singular
+  /// Behind the pass the joint of that place rests, the path still singular.
+  std::array<bool, kSingularities> is_held_{};
   Singularity at_ = Singularity::kWrist;  ///< the place of pass_
   RobotPass pass_;
   bool is_waiting_ = false;  ///< not used: the span to hand on is in out_

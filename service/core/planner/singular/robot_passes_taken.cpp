@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/singular/pole_bounds.hpp"
+#include "service/core/planner/singular/robot_passes.hpp"
+
+/// Which passes a robot takes: of one singular place or of both. Part of RobotPasses.
+namespace meridian {
+namespace {
+
+/// Nearer to the base axis than this the arm turns too much with the tool for a pass of the wrist
+/// alone.
+constexpr double kNearShoulder_mm = 200;
+/// Of a tolerance, nearer than which a joint may rest in the singular place.
+constexpr double kMayRestTolerances = 0.95;
+constexpr double kNoDistance = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+std::optional<Singularity> RobotPasses::held_at() const noexcept {
+  const bool wrist = is_held_[index_of(Singularity::kWrist)];
+  const bool shoulder = is_held_[index_of(Singularity::kShoulder)];
+  if (!wrist && !shoulder) return {};
+  if (wrist && shoulder) return Singularity::kBoth;
+  return wrist ? Singularity::kWrist : Singularity::kShoulder;
+}
+
+std::optional<double> RobotPasses::find_other(Singularity at, double from,
+                                              double to) const noexcept {
+  if (!has_wrist_roll(model_) || at == Singularity::kBoth) return {};
+  const Singularity other = other_of(at);
+  const double here = emitted_u();
+  if (distance_at(other, here) < kOnPoleTolerances * tolerance(other)) return here;
+  std::optional<double> nearest;
+  const auto look_on = [&](int branch, double begin) {
+    const auto distance = [&](std::int64_t probe) {
+      return probe < end_probe() ? distance_at(other, u_of(probe), branch) : kNoDistance;
+    };
+    double before = kNoDistance;
+    for (std::int64_t probe = probe_; probe < end_probe() && u_of(probe) <= to; ++probe) {
+      const double there = distance(probe);
+      const bool is_lowest = there <= before && there <= distance(probe + 1);
+      before = there;
+      if (!is_lowest) continue;
+      const double u = refine_minimum(other, probe, branch);
+      if (u < begin || !(distance_at(other, u, branch) < tolerance(other))) continue;
+      nearest = std::min(u, nearest.value_or(u));
+      return;
+    }
+  };
+  look_on(branch_, here);
+  // Behind the base axis the arm may stand on its other side.
+  if (at == Singularity::kShoulder) look_on(branch_ ^ robot::kBack, from);
+  return nearest;
+}
+
+bool RobotPasses::settle(Singularity at, double nearest) noexcept {
+  const double end = end_u();
+  if (end < nearest + kPassReach_mm && !is_finished_ && !spans_.is_full()) return false;
+  const auto other = find_other(at, nearest, nearest + kPassReach_mm);
+  const double last = std::max(nearest, other.value_or(nearest));
+  if (end < last + kPassReach_mm && !is_finished_ && !spans_.is_full()) return false;
+  const double first = std::min(nearest, other.value_or(nearest));
+  if (other && try_pass(Singularity::kBoth, {first, last})) return true;
+  PlaceOfPass alone{nearest, nearest};
+  if (other && *other > nearest) alone.limit = 0.5 * (nearest + *other);
+  if (try_pass(at, alone)) return true;
+  const bool is_wrist_beside_shoulder =
+      at == Singularity::kWrist && !other &&
+      distance_at(Singularity::kShoulder, nearest) < kNearShoulder_mm;
+  if (is_wrist_beside_shoulder) (void)try_pass(Singularity::kBoth, alone);
+  if (!has_pass_) is_held_ = {};
+  return true;
+}
+
+bool RobotPasses::try_pass(Singularity at, const PlaceOfPass& place) noexcept {
+  // Inside the tolerance a joint may rest, but closely beside the singular place it has to.
+  return try_resting(at, place, kOnPoleTolerances) || try_resting(at, place, kMayRestTolerances);
+}
+
+bool RobotPasses::try_resting(Singularity at, const PlaceOfPass& place,
+                              double tolerances) noexcept {
+  PassRange range;
+  range.at = at;
+  range.nearest = place.nearest;
+  range.last_nearest = place.last_nearest;
+  range.from = held_at() ? emitted_u() : std::max(emitted_u(), place.nearest - kPassReach_mm);
+  range.to = std::min({place.last_nearest + kPassReach_mm, place.limit, end_u()});
+  bool rests = false;
+  for (const Singularity one : kSingularPlaces) {
+    const auto is_within = [&](double u, double share) {
+      return distance_at(one, u) < share * tolerance(one);
+    };
+    const bool begins_at_rest =
+        is_held_[index_of(one)] || (range.from <= 0 && is_within(range.from, kOnPoleTolerances));
+    const bool ends_at_rest = is_within(range.to, tolerances);
+    rests |= ends_at_rest && drives(at, one);
+    range.ends[index_of(one)] = {begins_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath,
+                                 ends_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath};
+  }
+  if (tolerances > kOnPoleTolerances && !rests) return false;  // as before
+  // With the roll at rest, and the path too, the yaw needs no slope: the tip may give.
+  const PassEnds& roll = range.ends[index_of(Singularity::kWrist)];
+  PassEnds& yaw = range.ends[index_of(Singularity::kShoulder)];
+  if (at == Singularity::kBoth && range.from <= 0 && roll.from == PassEnd::kAtRest) {
+    yaw.from = PassEnd::kAtRest;
+  }
+  if (at == Singularity::kBoth && is_finished_ && !(range.to < end_u()) &&
+      roll.to == PassEnd::kAtRest) {
+    yaw.to = PassEnd::kAtRest;
+  }
+  range.branch = branch_;
+  range.joints = follow_to(range.from);
+  const PassTask task{
+      model_,   *this, axes_, tips_, tool_length_mm_, axis_tolerance_rad_, tip_tolerance_mm_,
+      is_exact_};
+  const RobotPass pass = find_robot_pass(task, range);
+  if (!(pass.end > pass.begin)) return false;
+  pass_ = pass;
+  at_ = at;
+  has_pass_ = true;
+  is_held_ = pass.rests;
+  while (probe_ < end_probe() && u_of(probe_) <= pass_.end) ++probe_;
+  if (at != Singularity::kBoth && place.limit < place.last_nearest + kPassReach_mm) --probe_;
+  return true;
+}
+
+}  // namespace meridian
