@@ -6,12 +6,18 @@
 
 namespace meridian {
 
-/// Why the tool axis was moved off the programmed one beside the pole.
+/// Why the tool axis was moved off the programmed one beside the pole, or a robot's singularity.
 enum class EaseReason : std::uint8_t {
   kThrough,  ///< straight through the pole, out on the other branch: the redundant joint hardly
              ///< turns
   kBeside,   ///< past it on the same branch, the redundant joint on a shorter way
-  kOnPole    ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
+  kOnPole,   ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
+  kThroughWrist,  ///< of a robot: out with the bend turned over
+  kPastWrist,
+  kThroughShoulder,  ///< out with the arm turned over
+  kPastShoulder,
+  kThroughBoth,  ///< wrist and shoulder in one pass, out with either turned over
+  kPastBoth
 };
 
 /// A stretch of path on which the axis was moved beside the pole, by blocks.
@@ -32,6 +38,18 @@ static_assert(std::is_trivially_copyable_v<PoleEase>);
       return "past the pole";
     case EaseReason::kOnPole:
       return "on the pole";
+    case EaseReason::kThroughWrist:
+      return "through the wrist singularity";
+    case EaseReason::kPastWrist:
+      return "past the wrist singularity";
+    case EaseReason::kThroughShoulder:
+      return "through the shoulder singularity";
+    case EaseReason::kPastShoulder:
+      return "past the shoulder singularity";
+    case EaseReason::kThroughBoth:
+      return "through the wrist and shoulder singularities";
+    case EaseReason::kPastBoth:
+      return "past the wrist and shoulder singularities";
   }
   return "";
 }

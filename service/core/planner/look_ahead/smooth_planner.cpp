@@ -32,7 +32,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   w.window.begin(w.slack());
   w.looked_at = 0;
   w.is_looking = has_branches(w.model);
-  w.pose = w.plain.junction().pose;
+  w.pose = w.programmed = w.plain.junction().pose;
   w.joints = at_rest;
 }
 
@@ -124,7 +124,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
       w.note(result.unwinding);
-      w.pose = w.plain.junction().pose;
+      w.pose = w.programmed = w.plain.junction().pose;
       w.joints = w.plain.joints();
       if (result.axis_deviation_rad > 0) {
         w.plain_eases.push_over_oldest({block.sequence, block.sequence, block.line, block.line,
@@ -136,7 +136,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   if (!w.is_running) w.begin_run(*cut);
   w.run.take(*cut);
   if (!w.is_smooth()) w.run.finish();
-  w.pose = {to_vector(cut->tip_mm), to_vector(cut->axis)};
+  w.pose = w.programmed = {to_vector(cut->tip_mm), to_vector(cut->axis)};
   (void)w.publish(writer);
   return w.is_refused ? w.refusal : PlanResult{};
 }

@@ -23,6 +23,7 @@ namespace meridian {
 /// Where a run starts, and the names that its pieces get.
 struct RunStart {
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+  ToolPose programmed = pose;  ///< `pose` may be off it by the tolerance
   JointVector joints{};
   int branch = 0;
   /// The axis stays on the pole all the way: the redundant joint is held, nothing is sought about

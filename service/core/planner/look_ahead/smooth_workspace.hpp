@@ -64,9 +64,9 @@ struct SmoothPlanner::Workspace {
   /// `block` as it can be run on through, or nothing where it is done at rest. In exact stop it is
   /// a run of its own where a robot comes near a singular place.
   [[nodiscard]] std::optional<ClBlock> smoothable(ClBlock block) const noexcept;
-  /// The solution that the joints at the last rest are nearest to.
   [[nodiscard]] Solution<double> solve_at_rest(const RestToRestPlanner::Junction& at,
                                                int branch) const noexcept;
+  /// The solution that the joints at the last rest are nearest to.
   [[nodiscard]] int find_branch(const RestToRestPlanner::Junction& at) const noexcept;
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
   void begin_run(const ClBlock& cut) noexcept;
@@ -110,6 +110,7 @@ struct SmoothPlanner::Workspace {
   SmoothRun run;
   SmoothSettings settings;
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
+  ToolPose programmed = pose;                        ///< the same, where a pass ended beside it
   JointVector joints{};
   bool is_running = false;
   bool is_for_plain = false;  ///< the block that waits for room goes from rest to rest

@@ -44,6 +44,7 @@ struct RobotPass {
   FreeQuintic roll{};         ///< at both: `joint` is the yaw, and this the roll
   int branch_before = 0, branch_after = 0;
   std::array<bool, kSingularities> rests{};  ///< the joint of that place, at the end
+  bool is_turned = false;                    ///< next to standstill, from rest to rest
   double axis_deviation_rad = 0;             ///< largest from the programmed axis
 };
 
@@ -64,9 +65,11 @@ struct PassRange {
   double nearest = 0, last_nearest = 0;
   double from = 0, to = 0;
   std::array<PassEnds, kSingularities>
-      ends{};            ///< of the roll at the wrist, the yaw at the shoulder
-  int branch = 0;        ///< on the way in
-  JointVector joints{};  ///< at `from`
+      ends{};                  ///< of the roll at the wrist, the yaw at the shoulder
+  bool may_turn = false;       ///< a joint that rests at the begin may turn there
+  bool may_be_narrow = false;  ///< of both, from rest: each for itself would do no better
+  int branch = 0;              ///< on the way in
+  JointVector joints{};        ///< at `from`
 };
 
 /// What stays the same along a path.

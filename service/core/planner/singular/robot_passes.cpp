@@ -22,6 +22,18 @@ constexpr double kPassOutOfReach_rad = 0.6, kPassOutOfReach_mm = 100;
 /// Of the tip, where nothing may give: kPoleEase_rad at the end of a tool.
 constexpr double kExactTip_mm = 1e-3;
 
+EaseReason reason_of(Singularity at, bool is_through) noexcept {
+  switch (at) {
+    case Singularity::kWrist:
+      return is_through ? EaseReason::kThroughWrist : EaseReason::kPastWrist;
+    case Singularity::kShoulder:
+      return is_through ? EaseReason::kThroughShoulder : EaseReason::kPastShoulder;
+    case Singularity::kBoth:
+      break;
+  }
+  return is_through ? EaseReason::kThroughBoth : EaseReason::kPastBoth;
+}
+
 bool is_robot(const MachineModel& model) noexcept { return model.family == MachineFamily::kRobot; }
 
 }  // namespace
@@ -52,6 +64,7 @@ void RobotPasses::begin(const Start& start) noexcept {
   known_ = start.joints;
   branch_ = start.branch;
   is_held_ = {};
+  turns_ = 0;
   is_finished_ = has_pass_ = is_waiting_ = false;
 }
 
@@ -114,11 +127,11 @@ double RobotPasses::distance_of_pose(Singularity at, const ToolPose& pose,
   const double exact = singular_distance(model_, tool_length_mm_, at, pose, branch, known_);
   if (at != Singularity::kWrist || !has_wrist_roll(model_)) return exact;
   const ToolPose in_machine = pose_in_machine(model_, pose);
-  const bool is_over_base =
-      robot::shoulder_distance(model_.robot, tool_length_mm_, in_machine) < tip_tolerance_mm_;
-  if (!is_over_base) return exact;
-  return std::min(exact, robot::wrist_distance_at_yaw(model_.robot, tool_length_mm_, in_machine,
-                                                      branch, known_[robot::kYaw]));
+  const double off_base = robot::shoulder_distance(model_.robot, tool_length_mm_, in_machine);
+  if (!(off_base < tip_tolerance_mm_)) return exact;
+  const double driven = robot::wrist_distance_at_yaw(model_.robot, tool_length_mm_, in_machine,
+                                                     branch, known_[robot::kYaw]);
+  return off_base < kOnPoleTolerances * tip_tolerance_mm_ ? driven : std::min(exact, driven);
 }
 
 double RobotPasses::distance_at(Singularity at, double u, int branch) const noexcept {
@@ -230,8 +243,7 @@ void RobotPasses::emit() noexcept {
     out_.free = part_of(pass_.joint, from, to);
     out_.roll = part_of(pass_.roll, from, to);
     out_.axis_deviation_rad = pass_.axis_deviation_rad;
-    out_.reason =
-        pass_.branch_after != pass_.branch_before ? EaseReason::kThrough : EaseReason::kBeside;
+    out_.reason = reason_of(at_, pass_.branch_after != pass_.branch_before);
     joints = solve_driven(model_, tool_length_mm_, pose_of<double>(span, end), out_.free.back(),
                           out_.roll.back(), out_.branch, known_)
                  .q;

@@ -89,6 +89,7 @@ class RobotPasses : private SpanLookup {
   struct PlaceOfPass {
     double nearest = 0, last_nearest = 0;
     double limit = std::numeric_limits<double>::infinity();
+    bool may_be_narrow = false;
   };
   [[nodiscard]] bool try_pass(Singularity at, const PlaceOfPass& place) noexcept;
   /// The same with joints at rest at its end where that is nearer than so many `tolerances`.
@@ -98,6 +99,8 @@ class RobotPasses : private SpanLookup {
   /// of `to`; the pass is about `from`.
   [[nodiscard]] std::optional<double> find_other(Singularity at, double from,
                                                  double to) const noexcept;
+  [[nodiscard]] std::optional<double> find_wrist_straight_through(double from,
+                                                                  double to) const noexcept;
   /// Whose joint rests behind the last pass, as the path is singular there.
   [[nodiscard]] std::optional<Singularity> held_at() const noexcept;
   [[nodiscard]] bool is_minimum(Singularity at, std::int64_t probe) const noexcept;
@@ -121,6 +124,7 @@ class RobotPasses : private SpanLookup {
   bool has_pass_ = false;
   /// Behind the pass the joint of that place rests, the path still singular.
   std::array<bool, kSingularities> is_held_{};
+  int turns_ = 0;                         ///< passes in a row that turned joints at rest
   Singularity at_ = Singularity::kWrist;  ///< the place of pass_
   RobotPass pass_;
   bool is_waiting_ = false;  ///< not used: the span to hand on is in out_
