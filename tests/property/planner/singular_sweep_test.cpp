@@ -135,36 +135,76 @@ TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
     std::printf("  %d refused: %s\n", count, reason.c_str());
 }
 
+struct DrawnPass {
+  std::uint32_t seed;
+  Pass pass;
+  double beside;  // mm, at both places degrees as well
+  Transition transition;
+};
+
+/// Runs to its end, inside limits and tolerances.
+template <class Drawn>
+void expect_passed(const DrawnPass& drawn) {
+  SCOPED_TRACE(testing::Message() << "seed " << drawn.seed << " "
+                                  << kPassNames[static_cast<int>(drawn.pass)] << " beside "
+                                  << drawn.beside);
+  MachineModel robot = config::load_machine(shipped_file("robot-6r"));
+  config::place_workpiece(robot, config::parse_frame("0,0,0"));
+  const auto blocks = Drawn(robot, drawn.seed).program(drawn.pass, drawn.beside);
+  const JointVector start = joints_of(robot, blocks[0]);
+  SmoothTrace trace = plan_smooth(robot, blocks, start, {drawn.transition, 0, 0}, true);
+  EXPECT_EQ(trace.last.status, PlanStatus::kOk);
+  trace.joints = end_of(robot, trace, start);
+  const auto setpoints = sample(robot, trace, 1e-3, 0.5, start);
+  const LimitUse use = measure_limits(robot, setpoints, 1e-3);
+  EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
+  EXPECT_LT(farthest_off(robot, blocks, trace, setpoints), kShare);
+  EXPECT_LT(trace.duration_s(), kLongest_s) << "it creeps";
+}
+
 /// Passes along the base axis, closely beside it, on which the roll runs out of travel with the yaw
 /// at rest. They were refused: behind them the exact yaw would have jumped.
 TEST(SingularSeed, AlongTheBaseAxisTheYawTurnsWhereTheRollRunsOutOfTravel) {
-  struct Along {
-    std::uint32_t seed;
-    double beside_mm;
-    Transition transition;
-  };
-  MachineModel robot = config::load_machine(shipped_file("robot-6r"));
-  config::place_workpiece(robot, config::parse_frame("0,0,0"));
-  for (const auto& [seed, beside_mm, transition] : {
-           Along{1016, 1e-3, Transition::kSmooth},
-           Along{1016, 1e-6, Transition::kExactStop},
-           Along{1016, 1e-9, Transition::kExactStop},
-           Along{1022, 1e-6, Transition::kExactStop},
-           Along{1022, 1e-9, Transition::kExactStop},
-           Along{1045, 1e-9, Transition::kExactStop},
+  for (const DrawnPass& drawn : {
+           DrawnPass{1016, Pass::kAlong, 1e-3, Transition::kSmooth},
+           DrawnPass{1016, Pass::kAlong, 1e-6, Transition::kExactStop},
+           DrawnPass{1016, Pass::kAlong, 1e-9, Transition::kExactStop},
+           DrawnPass{1022, Pass::kAlong, 1e-6, Transition::kExactStop},
+           DrawnPass{1022, Pass::kAlong, 1e-9, Transition::kExactStop},
+           DrawnPass{1045, Pass::kAlong, 1e-9, Transition::kExactStop},
        }) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed << " beside " << beside_mm);
-    const auto blocks = ShoulderPass(robot, seed).program(Pass::kAlong, beside_mm);
-    const JointVector start = joints_of(robot, blocks[0]);
-    SmoothTrace trace = plan_smooth(robot, blocks, start, {transition, 0, 0}, true);
-    EXPECT_EQ(trace.last.status, PlanStatus::kOk);
-    trace.joints = end_of(robot, trace, start);
-    const auto setpoints = sample(robot, trace, 1e-3, 0.5, start);
-    const LimitUse use = measure_limits(robot, setpoints, 1e-3);
-    EXPECT_LT(std::max({use.v, use.a, use.j}), kShare) << use.where;
-    EXPECT_LT(farthest_off(robot, blocks, trace, setpoints), kShare);
-    EXPECT_LT(trace.duration_s(), kLongest_s) << "it creeps";
+    expect_passed<ShoulderPass>(drawn);
   }
+}
+
+/// Programs that start over the base axis, or with the wrist in line, and lead off.
+TEST(SingularSeed, YawAndRollFirstTurnAtRestWhereAProgramStartsInBothPlaces) {
+  for (const DrawnPass& drawn : {
+           DrawnPass{3012, Pass::kOff, 0.1, Transition::kSmooth},
+           DrawnPass{3012, Pass::kOff, 9e-3, Transition::kSmooth},
+           DrawnPass{3006, Pass::kOff, 1e-4, Transition::kSmooth},
+           DrawnPass{5005, Pass::kOff, 9e-3, Transition::kSmooth},
+       }) {
+    expect_passed<BothPass>(drawn);
+  }
+}
+
+/// A block that ends beside its point, by nearly the tolerance: the next one's passes keep the
+/// tolerance to the point, and lead on from where the machine stands.
+TEST(SingularSeed, InExactStopPassesOfBothPlacesKeepTheToleranceFromBlockToBlock) {
+  for (const DrawnPass& drawn : {
+           DrawnPass{2001, Pass::kThrough, 9e-3, Transition::kExactStop},
+           DrawnPass{2002, Pass::kThrough, 9e-3, Transition::kExactStop},
+           DrawnPass{2004, Pass::kThrough, 9e-3, Transition::kExactStop},
+           DrawnPass{5001, Pass::kAlong, 9e-3, Transition::kExactStop},
+       }) {
+    expect_passed<BothPass>(drawn);
+  }
+}
+
+TEST(SingularSeed, BothPlacesArePassedStraightThroughBesideOneOfThem) {
+  expect_passed<BothPass>({3001, Pass::kThrough, 5e-3, Transition::kSmooth});
+  expect_passed<BothPass>({3005, Pass::kAlong, 0, Transition::kSmooth});
 }
 
 INSTANTIATE_TEST_SUITE_P(

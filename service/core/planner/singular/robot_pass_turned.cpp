@@ -159,8 +159,8 @@ double RobotPassSearch::straight_yaw(double yaw) const noexcept {
 }
 
 bool RobotPassSearch::is_in_line(double yaw, double within_rad) const noexcept {
-  const ToolPose pose = pose_in_machine(
-      task_.model, pose_of<double>(task_.spans.span_at(range_.from), range_.from));
+  const ToolPose pose =
+      pose_in_machine(task_.model, pose_of<double>(task_.spans.span_at(range_.from), range_.from));
   return robot::wrist_distance_at_yaw(task_.model.robot, task_.tool_length_mm, pose, range_.branch,
                                       yaw) < within_rad;
 }
