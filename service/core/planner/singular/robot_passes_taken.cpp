@@ -139,9 +139,12 @@ bool RobotPasses::try_resting(Singularity at, const PlaceOfPass& place,
     const auto is_within = [&](double u, double share) {
       return distance_at(one, u) < share * tolerance(one);
     };
-    const bool begins_at_rest =
-        is_held_[index_of(one)] || (range.from <= 0 && is_within(range.from, kMayRestTolerances));
     const bool ends_at_rest = is_within(range.to, tolerances);
+    // Where the path leads off from rest, any joint inside the tolerance will do to begin with.
+    const double may_rest =
+        is_within(range.to, kMayRestTolerances) ? tolerances : kMayRestTolerances;
+    const bool begins_at_rest =
+        is_held_[index_of(one)] || (range.from <= 0 && is_within(range.from, may_rest));
     rests |= (begins_at_rest || ends_at_rest) && drives(at, one);
     range.ends[index_of(one)] = {begins_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath,
                                  ends_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath};
