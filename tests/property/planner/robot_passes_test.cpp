@@ -57,6 +57,19 @@ TEST_P(RobotPasses, OverTheBaseAxisKeepTheLimitsOfEveryJoint) {
   }
 }
 
+TEST_P(RobotPasses, OfTheWristAreReportedByItsName) {
+  MachineModel robot = config::load_machine(shipped_file("robot-6r"));
+  config::place_workpiece(robot, config::parse_frame("0,0,0"));
+  const auto blocks = WristPass(robot, 1).program(Pass::kThrough, units::rad_from_deg(0.05));
+  const SmoothTrace trace =
+      plan_smooth(robot, blocks, joints_of(robot, blocks[0]), {GetParam(), 0, 0}, true);
+  ASSERT_FALSE(trace.eases.empty());
+  for (const PoleEase& ease : trace.eases) {
+    EXPECT_TRUE(ease.reason == EaseReason::kThroughWrist || ease.reason == EaseReason::kPastWrist)
+        << name_of(ease.reason);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, RobotPasses,
                          testing::Values(Transition::kSmooth, Transition::kExactStop),
                          [](const testing::TestParamInfo<Transition>& transition) {

@@ -239,8 +239,9 @@ void RobotPasses::emit() noexcept {
     out_.free = part_of(pass_.joint, begin <= pass_.begin ? 0 : (begin - pass_.begin) / h,
                         end >= pass_.end ? 1 : (end - pass_.begin) / h);
     out_.axis_deviation_rad = at_ == Singularity::kWrist ? pass_.deviation : 0;
-    out_.reason =
-        pass_.branch_after != pass_.branch_before ? EaseReason::kThrough : EaseReason::kBeside;
+    // Over the base axis the tool axis stays as programmed, and nothing is reported.
+    out_.reason = pass_.branch_after != pass_.branch_before ? EaseReason::kThroughWrist
+                                                            : EaseReason::kPastWrist;
     joints = solve_driven(model_, tool_length_mm_, pose_of<double>(span, end), out_.free.back(),
                           out_.branch, known_)
                  .q;
