@@ -132,8 +132,8 @@ class Files {
     if (csv_) (void)csv_->write(row);
     if (mcap_) mcap_->add(row);
   }
-  void tell(const dds::Status& status) {
-    if (mcap_) mcap_->tell(status.state, status.alarm, status.alarm_joint);
+  void add(const dds::Status& status) {
+    if (mcap_) mcap_->add(status.state, status.alarm, status.alarm_joint);
   }
   /// What was lost.
   [[nodiscard]] std::optional<record::RecordError> close() {
@@ -152,13 +152,13 @@ class Files {
 };
 
 /// The machine with its kinematics, for an MCAP file: of the file behind --machine, else of the one
-/// that the service tells. Throws config::ConfigError.
+/// that the service reports. Throws config::ConfigError.
 [[nodiscard]] MachineModel whole_model(const LiveOptions& options, const dds::MachineInfo& info) {
   if (options.mcap.empty()) return {};
   if (!options.machine.machine.empty()) return load_machine(options.machine);
   if (!info.machine_file.empty()) return stream::served_model(info);
   throw config::ConfigError({.file = info.name,
-                             .value = "its service does not tell the machine file, which is long",
+                             .value = "its service does not report the machine file, which is long",
                              .remedy = "name the file behind --machine"});
 }
 
@@ -199,7 +199,7 @@ int record_live(LiveOptions& options) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
     if (followed.take(statuses, status)) {
       end.see(status);
-      files.tell(status);
+      files.add(status);
       service_id = status.service_id;
     }
     is_last = stop_flag().load() ||

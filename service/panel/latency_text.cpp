@@ -50,7 +50,7 @@ constexpr double kFirst_us = 0.256;
   return bins;
 }
 
-/// The figure of that name, µs; nothing where a histogram does not tell it.
+/// The figure of that name, µs; nothing where a histogram does not have it.
 [[nodiscard]] std::optional<double> figure_of(const Histogram& histogram, std::string_view name) {
   if (name == "p50") return us_of(histogram.percentile_ns(0.5));
   if (name == "p99") return us_of(histogram.percentile_ns(0.99));

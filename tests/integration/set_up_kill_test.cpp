@@ -24,14 +24,14 @@ namespace {
   return set_up ? *set_up : telemetry::SetUp();
 }
 
-/// What the machine tells is `acknowledged`.
-void expect_reported(const dds::MachineInfo& told, const telemetry::SetUp& acknowledged) {
+/// What the machine reports is `acknowledged`.
+void expect_reported(const dds::MachineInfo& reported, const telemetry::SetUp& acknowledged) {
   const WorkFrames& frames = acknowledged.frames;
-  EXPECT_TRUE(std::equal(told.work_frames.begin(), told.work_frames.end(), frames.rows().begin(),
-                         frames.rows().end()));
-  EXPECT_EQ(told.work_frame, frames.active());
-  EXPECT_EQ(told.tool_file, acknowledged.tools.value_or(""));
-  EXPECT_EQ(told.soft_limits, acknowledged.limits);
+  EXPECT_TRUE(std::equal(reported.work_frames.begin(), reported.work_frames.end(),
+                         frames.rows().begin(), frames.rows().end()));
+  EXPECT_EQ(reported.work_frame, frames.active());
+  EXPECT_EQ(reported.tool_file, acknowledged.tools.value_or(""));
+  EXPECT_EQ(reported.soft_limits, acknowledged.limits);
 }
 
 TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {

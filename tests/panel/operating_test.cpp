@@ -151,7 +151,7 @@ TEST_F(OperatorPagesTest, OnePageOperatesAndEveryPageStops) {
   EXPECT_EQ(asked_[1].verb, Verb::kHold);
 }
 
-TEST_F(OperatorPagesTest, AnotherPageTakesOverAndTheFirstIsTold) {
+TEST_F(OperatorPagesTest, AnotherPageTakesOverAndTheFirstIsNotified) {
   pages_.open(one_);
   pages_.open(two_);
   pages_.read(one_, ask("enable"));

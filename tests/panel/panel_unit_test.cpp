@@ -142,7 +142,7 @@ TEST(Motion, FeedbackIsComparedWithTheSetpointThatItSaw) {
   EXPECT_NEAR(motion.following()[0], 0.25, 1e-12);
 }
 
-TEST(News, AnAlarmIsToldOnceWithItsRemedy) {
+TEST(News, AnAlarmIsReportedOnceWithItsRemedy) {
   News news;
   dds::Status status;
   status.service_id = 7;

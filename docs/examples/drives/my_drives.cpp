@@ -18,7 +18,7 @@ std::string act(const Action& action) {  // your spindle, coolant and tool chang
 }
 std::atomic<bool> is_stopping{false};
 
-/// my_drives MACHINE [DOMAIN]: drives whose motors stand at once where they are told to.
+/// my_drives MACHINE [DOMAIN]: drives whose motors stand at once where they are commanded.
 int main(int count, char** arguments) try {
   for (int end : {SIGINT, SIGTERM}) std::signal(end, [](int) { is_stopping = true; });
   Motors motors;

@@ -80,7 +80,7 @@ class RestToRestPlanner {
   void look_at(std::span<const ClBlock> ahead, double tip_slack_mm = 0,
                double axis_slack_rad = 0) noexcept;
 
-  /// Who tells how far ways behind a block that ends off the pole carry; nullptr: look_at() does.
+  /// Who reports how far ways behind a block that ends off the pole carry; nullptr: look_at() does.
   /// Where it waits for blocks, plan() gives kNoRoom and needs_ahead() is true.
   void ask(PoleLookAhead* foresight) noexcept;
   [[nodiscard]] bool needs_ahead() const noexcept;
@@ -119,7 +119,7 @@ class RestToRestPlanner {
   };
   [[nodiscard]] Junction junction() const noexcept;
   /// Goes on at rest from where another planner brought the machine, within rounding of a pose that
-  /// junction() would tell. Only where no block waits for room.
+  /// junction() would report. Only where no block waits for room.
   void continue_at(const Junction& junction) noexcept;
 
   /// Turns the redundant joint back off the part, where the tool rests, to the best winding that

@@ -45,7 +45,7 @@ struct SmoothSettings {
 ///
 /// What is taken up while the operator asks for more than 100 % (MotionWriter::feed_override()) is
 /// planned for that much of the programmed feed, up to MachineModel::max_feed_override; joints and
-/// the machine's highest feed bound it as always. take_feed_mark() tells from where on, and with
+/// the machine's highest feed bound it as always. take_feed_mark() says from where on, and with
 /// replay_feed() the plan is the same again.
 ///
 /// A machine with a redundant joint: branch and winding at the begin of a program are those that
@@ -80,8 +80,8 @@ class SmoothPlanner {
   [[nodiscard]] PlanResult plan(const ClBlock& block, MotionWriter& writer) noexcept;
 
   /// Publishes what is ready, without a new block: where the port was full, or the machine ran dry
-  /// and has to be sent on. kRefused, with the block: found on the way, told again by plan(); else
-  /// kOk.
+  /// and has to be sent on. kRefused, with the block: found on the way, reported again by plan();
+  /// else kOk.
   [[nodiscard]] PlanResult advance(MotionWriter& writer) noexcept;
 
   /// Not 0: something is not planned because blocks are missing that are only looked at; a number

@@ -15,7 +15,7 @@ struct Unwinding {
   double retract_mm = 0;       ///< how far the tool leaves the part
 };
 
-/// Tells of every winding whether what follows an unwinding keeps travel on it.
+/// Reports for every winding whether what follows an unwinding keeps travel on it.
 class WindingTrial {
  public:
   virtual ~WindingTrial() = default;

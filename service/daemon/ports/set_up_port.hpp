@@ -63,8 +63,8 @@ struct LimitsArrival {
   LimitsOrder order{};
 };
 
-/// The paths of the set-up. The commands thread stores it for the cycle, then tells that; when the
-/// cycle has accepted it, for the others, and waits until the status says so. Everybody has a
+/// The paths of the set-up. The commands thread stores it for the cycle, then announces that; when
+/// the cycle has accepted it, for the others, and waits until the status says so. Everybody has a
 /// machine model and tools of its own, and changes them itself, between two programs.
 struct SetUpPorts {
   SpscRing<FrameArrival, 16> orders;    ///< receive thread to commands

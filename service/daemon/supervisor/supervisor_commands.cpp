@@ -243,7 +243,7 @@ void Supervisor::answer(const Event& event) {
   }
 }
 
-/// The cycle answers words, as opposed to stops, in the order in which they were told it. What was
+/// The cycle answers words, as opposed to stops, in the order in which it received them. What was
 /// lost of its answers may have been obeyed: it is not obeyed again where it is repeated.
 void Supervisor::give_up_older(const Event& event) {
   for (Pending& pending : pending_) {

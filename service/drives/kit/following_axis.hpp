@@ -81,7 +81,7 @@ class FollowingAxis {
   double accepted_ = 0;        ///< position of the last setpoint that it follows
   bool is_following_ = false;  ///< took an enabled setpoint since operation was enabled
   bool has_power_ = true;
-  bool is_on_ = false;  ///< the power stage is told to be on
+  bool is_on_ = false;  ///< the power stage is commanded on
   bool is_reset_asked_ = false, is_reset_waiting_ = false;
 };
 

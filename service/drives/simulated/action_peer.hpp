@@ -28,7 +28,7 @@ class ActionPeer {
     done.id = due_.front().action.id;
     done.service_id = due_.front().action.service_id;
     done.is_done = !is_refusing_;
-    if (is_refusing_) done.text = "refused: the simulated PLC was told to";
+    if (is_refusing_) done.text = "refused: the simulated PLC was set to";
     due_.pop_front();
     return done;
   }

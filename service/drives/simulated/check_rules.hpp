@@ -50,7 +50,7 @@ enum class Rule : std::uint8_t {
   kNextMaster
 };
 
-/// A rule as people are told of it.
+/// A rule as people read it.
 struct RuleText {
   Rule rule;
   const char* name;  ///< one word, for lists

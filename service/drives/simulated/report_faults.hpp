@@ -21,7 +21,7 @@ class ReportFaults {
   void make_no_number(std::size_t i) noexcept { no_number_mask_ |= 1U << i; }
   void mute(std::size_t i) noexcept { mute_mask_ |= 1U << i; }
   void lose_reference(std::size_t i) noexcept { unreferenced_mask_ |= 1U << i; }
-  /// Reports do not tell the setpoint that was taken last.
+  /// Reports do not name the setpoint that was taken last.
   void leave_out_cycle() noexcept { is_cycle_left_out_ = true; }
   /// In the next report only.
   void add_once(std::size_t i, double by) noexcept { spike_[i] += by; }

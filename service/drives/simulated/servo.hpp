@@ -11,7 +11,7 @@ enum class LagKind : std::uint8_t {
   kSecondOrder,  ///< position and velocity loop, critically damped: the velocity is smooth
 };
 
-/// How a drive lags behind what it is told. At constant velocity v both kinds settle at a following
+/// How a drive lags behind its setpoint. At constant velocity v both kinds settle at a following
 /// error of v · time_constant_s; 0 follows at once.
 struct ServoLag {
   LagKind kind = LagKind::kSecondOrder;

@@ -43,7 +43,7 @@ struct SimulatedDrivesReport {
 /// `is_stopping`. Wake-ups keep phase; lost periods of this process are worked in one step. `say`
 /// gets news for the operator: states of drives, actions; while it takes its time the drives stand
 /// still (LineReporter). Takes bridge_cycles from the machine
-/// topic where a service tells it. Throws DdsError at start.
+/// topic where a service reports it. Throws DdsError at start.
 SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const MachineModel& model,
                                            const SimulatedDrivesOptions& options,
                                            const std::atomic<bool>& is_stopping,

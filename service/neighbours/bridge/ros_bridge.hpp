@@ -13,7 +13,7 @@
 
 namespace meridian::bridge {
 
-/// The times of one step. ROS stamps messages with the system's clock; ages are told by the
+/// The times of one step. ROS stamps messages with the system's clock; ages are reported by the
 /// monotonic one.
 struct BridgeTime {
   std::int64_t steady_ns = 0, system_ns = 0;

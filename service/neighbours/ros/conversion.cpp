@@ -110,7 +110,7 @@ class EventMerge {
     }
     if (report.rows++ == 0) first_ns = row.due_ns;
     if (auto error = events.write_up_to(row)) return error;
-    if (!file.write(row)) return std::nullopt;  // close() tells
+    if (!file.write(row)) return std::nullopt;  // see close()
   }
   if (report.rows == 0) return RecordError{recording.path(), 0, "no cycle is in it", ""};
   report.length_s = 1e-9 * static_cast<double>(row.due_ns - first_ns);

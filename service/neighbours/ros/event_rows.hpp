@@ -8,7 +8,7 @@
 
 namespace meridian::ros {
 
-/// The events that rows tell by being other than the row before: states, alarms, programs, drives,
+/// The events that rows show by being other than the row before: states, alarms, programs, drives,
 /// cycles that are missing. Proof: tests/unit/ros/event_test.cpp.
 class EventRows {
  public:

@@ -14,7 +14,7 @@
 /// meridian_msgs are made for the machine, with its joints for names of fields.
 namespace meridian::ros {
 
-/// What a file of rows tells beside the joints; what it does not tell has no field.
+/// What a file of rows holds beside the joints; what it does not hold has no field.
 struct Contents {
   bool has_velocity = true;
   bool has_state = true;         ///< state, kind, block, rate and times of the cycle

@@ -37,7 +37,7 @@ class MotionFile {
   [[nodiscard]] static bool has_time(std::int64_t due_ns) noexcept;
   /// Adds the messages of a row that has_time(). False once a write failed; they are dropped then.
   bool write(const record::RecordingRow& row);
-  /// Adds what rows do not tell.
+  /// Adds what rows do not hold.
   void write_event(std::int64_t time_ns, Level level, const std::string& source,
                    const std::string& text);
   /// Hands what waits to the system: what is lost where the process is killed.

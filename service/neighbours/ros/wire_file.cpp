@@ -60,7 +60,7 @@ void WireFile::add(const record::WireRow& seen) {
   (void)file_->end_chunk();
 }
 
-void WireFile::tell(State state, Alarm alarm, int joint) {
+void WireFile::add(State state, Alarm alarm, int joint) {
   if (state_ != state) {
     file_->write_event(now_ns_, is_bad(state) ? Level::kError : Level::kInfo, "state",
                        std::string(record::word(state)));

@@ -25,9 +25,9 @@ class WireFile {
       const std::string& path, const MachineModel& model);
 
   void add(const record::WireRow& seen);
-  /// What the newest status says; told where it is other than before. `joint`: place in
+  /// What the newest status says; written where it is other than before. `joint`: place in
   /// limited.hpp.
-  void tell(State state, Alarm alarm, int joint);
+  void add(State state, Alarm alarm, int joint);
   [[nodiscard]] std::optional<record::RecordError> close() { return file_->close(); }
 
  private:

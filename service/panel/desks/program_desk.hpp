@@ -57,7 +57,7 @@ class ProgramDesk {
 
   /// How far it has come with a program.
   enum class Phase : std::uint8_t { kNone, kChecking, kRefused, kReady, kStreaming };
-  /// All that pages are told of the program.
+  /// All that pages get of the program.
   struct View {
     Phase phase = Phase::kNone;
     ProgramFolder::Program program;

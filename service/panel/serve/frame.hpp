@@ -9,7 +9,7 @@
 #include "service/panel/serve/news.hpp"
 #include "service/transport/messages.hpp"
 
-/// What the page is told, as JSON texts; their members are listed in docs/panel.md.
+/// What the page gets, as JSON texts; their members are listed in docs/panel.md.
 namespace meridian::panel {
 
 /// {"t":"frame", ...}: one status, with tip and tool axis by forward() and what `motion` gathered.

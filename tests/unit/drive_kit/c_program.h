@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* Motors in C that stand at once where they are told to. */
+/* Motors in C that stand at once where they are commanded. */
 struct c_motors {
   double position[6];
   double elapsed_s; /* of axis 0 while it was on, by the service's clock */

@@ -8,7 +8,7 @@
 
 namespace meridian::test {
 
-/// Motors that stand at once where they are told to, and report what a test wants.
+/// Motors that stand at once where they are commanded, and report what a test wants.
 class ScriptedHardware : public drive::Hardware {
  public:
   [[nodiscard]] drive::Reading read(int axis) noexcept override {

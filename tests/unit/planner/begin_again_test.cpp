@@ -66,7 +66,7 @@ TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFo
 }
 
 /// Nobody waits for a block that will not come to hear of one that was refused.
-TEST(SmoothPlanner, TellsAtOnceOfARefusalThatItFindsWithoutABlock) {
+TEST(SmoothPlanner, ReportsAtOnceARefusalThatItFindsWithoutABlock) {
   const MachineModel model = test::lai_machine();
   const auto port = std::make_unique<MotionPort>();
   MotionWriter writer(*port);

@@ -118,7 +118,7 @@ TEST_F(Conversion, TakesRecordingsOfTheWire) {
   EXPECT_EQ(refusal(), "");
   EXPECT_EQ(count("/cycle"), 50U);
   EXPECT_EQ(count("/drives"), 2U);
-  EXPECT_EQ(count("/events"), 0U) << "the wire tells no state";
+  EXPECT_EQ(count("/events"), 0U) << "the wire has no state";
 }
 
 TEST_F(Conversion, RefusesWhatIsNoRecording) {

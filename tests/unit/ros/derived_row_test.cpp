@@ -26,7 +26,7 @@ class Derived : public testing::Test {
   const double period_ = 1e-9 * static_cast<double>(model_.cycle_ns);
 };
 
-TEST_F(Derived, TellsTheFeedOfTheTipBetweenNeighbours) {
+TEST_F(Derived, ReportsTheFeedOfTheTipBetweenNeighbours) {
   add(1, 0);
   EXPECT_EQ(derived_.feed_mm_per_s(), 0);
   add(2, 0.05);

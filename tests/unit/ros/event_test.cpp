@@ -56,7 +56,7 @@ class Events : public testing::Test {
   record::RecordingRow row_;
 };
 
-TEST_F(Events, TellStatesAlarmsAndTheEmergencyStopWhenTheyChange) {
+TEST_F(Events, ReportStatesAlarmsAndTheEmergencyStopWhenTheyChange) {
   add();
   add();
   row_.state = State::kFaultStop;
@@ -76,7 +76,7 @@ TEST_F(Events, TellStatesAlarmsAndTheEmergencyStopWhenTheyChange) {
                          "20 drives: emergency stop over", "20 alarm: none"}));
 }
 
-TEST_F(Events, TellMissingCyclesNewOnesAndPrograms) {
+TEST_F(Events, ReportMissingCyclesNewOnesAndPrograms) {
   add();
   row_.cycle += 3;
   add();
@@ -88,7 +88,7 @@ TEST_F(Events, TellMissingCyclesNewOnesAndPrograms) {
                                       "30 cycle: cycles begin anew", "20 cycle: epoch 5"}));
 }
 
-TEST_F(Events, TellWhatADriveSaysWhenItSaysSomethingElse) {
+TEST_F(Events, ReportWhatADriveSaysWhenItSaysSomethingElse) {
   row_.statusword.fill(0x1237);
   add();
   row_.statusword[2] = 0x1637;  // a bit that is no state

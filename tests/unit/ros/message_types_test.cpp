@@ -31,7 +31,7 @@ TEST(MessageTypes, MakeNamesOfFieldsThatNoTwoJointsShare) {
       (std::vector<std::string>{"x", "x_2", "joint_2nd", "joint___", "a_b", "header_2", "joint_"}));
 }
 
-TEST(MessageTypes, HaveNoFieldForWhatARecordingDoesNotTell) {
+TEST(MessageTypes, HaveNoFieldForWhatARecordingDoesNotHold) {
   const MachineModel model = test::lai_machine();
   Contents wire{.has_velocity = false, .has_state = false};
   const std::string least = cycle_type(model, wire).text;

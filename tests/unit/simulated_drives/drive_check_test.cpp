@@ -77,7 +77,7 @@ constexpr Fault kFaults[] = {
     {"no-disable", Rule::kDisableVoltage},
     {"no-shutdown", Rule::kShutdown},
     {"no-homing-mode", Rule::kModeDisplay},
-    {"mode-not-told", Rule::kModeDisplay},
+    {"mode-not-reported", Rule::kModeDisplay},
     {"no-cycle-in-homing", Rule::kHomingCycle},
     {"keeps-its-reference", Rule::kReferenceLost},
     {"loses-its-reference", Rule::kReferenceFound},
@@ -88,7 +88,7 @@ constexpr Fault kFaults[] = {
 
 class FaultyClient : public testing::TestWithParam<Fault> {};
 
-TEST_P(FaultyClient, IsToldByTheNameOfItsRuleFirst) {
+TEST_P(FaultyClient, IsReportedByTheNameOfItsRuleFirst) {
   const CheckReport report = check(GetParam().name);
   ASSERT_FALSE(report.findings.empty());
   EXPECT_EQ(report.findings.front().rule, GetParam().rule)

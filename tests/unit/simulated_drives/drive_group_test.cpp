@@ -20,7 +20,7 @@ TEST_F(Group, StandsAtHomeAndReportsEveryJoint) {
   EXPECT_EQ(feedback.sample + 1, group.feedback().sample);
 }
 
-TEST_F(Group, FollowsSetpointsAndTellsTheirCycle) {
+TEST_F(Group, FollowsSetpointsAndReportsTheirCycle) {
   enable();
   send(1);
   group_.work(1);

@@ -188,7 +188,7 @@ inline dds::DriveFeedback FaultyDrives::report() {
   if (is("nobody-named")) report.service_id = 0;
   if (is("no-cycle")) report.cycle_seen = 0;
   if (is("no-cycle-in-homing") && is_homing) report.cycle_seen = stuck_cycle_;
-  if (is("mode-not-told")) report.mode_display.fill(dds::kCyclicPositionMode);
+  if (is("mode-not-reported")) report.mode_display.fill(dds::kCyclicPositionMode);
   if (is("keeps-its-reference")) report.referenced_mask = 31;
   if (is("loses-its-reference") && is_homing) report.referenced_mask &= ~1U;
   if (is("does-not-follow")) report.position.fill(0);

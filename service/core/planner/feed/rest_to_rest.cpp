@@ -93,7 +93,7 @@ struct RestToRestPlanner::Workspace {
   /// Whether `fault` is one that turning the redundant joint back may help.
   [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
   /// Stages an unwinding from `next`, to a winding that `trial` lets pass, or without one with
-  /// `block` behind it; or tells why that cannot be: `fault` of the block without one.
+  /// `block` behind it; or says why that cannot be: `fault` of the block without one.
   [[nodiscard]] PathFault unwind(const ClBlock& block, const PathFault& fault,
                                  const WindingTrial* trial) noexcept;
   /// The last motion staged ends `block`.

@@ -99,7 +99,7 @@ void RollingFeed::resume_from(std::int64_t cell) noexcept {
 
 bool RollingFeed::try_plan() noexcept {
   grid_.drop_before(next_ - history_);
-  (void)grid_.make_cells();  // fault() tells
+  (void)grid_.make_cells();  // see fault()
   if (is_done() || grid_.last() < window_end()) return false;
   ++count_.windows;
   window_rounds_ = 0;

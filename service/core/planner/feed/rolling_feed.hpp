@@ -60,7 +60,7 @@ class RollingFeed {
  public:
   RollingFeed(const MachineModel& model, const FeedSettings& settings);
 
-  /// Starts a path, at rest at its begin, on `branch` of the inverse kinematics; `joints` tell the
+  /// Starts a path, at rest at its begin, on `branch` of the inverse kinematics; `joints` give the
   /// windings.
   void begin(const JointVector& joints, int branch, double tool_length_mm) noexcept;
 

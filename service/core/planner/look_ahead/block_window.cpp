@@ -57,8 +57,8 @@ void BlockWindow::ask(const Start& start, std::span<const AheadWay> ways) noexce
   asked_ = start;
   follows_ = find_first(start.sequence + (start.is_on_its_way ? 0 : 1));
   most_ = kMaxFollowed;
-  if (const std::uint64_t told = reported_for(start.sequence); told > 0) {
-    const int followed = static_cast<int>(std::min<std::uint64_t>(told, kWaiting));
+  if (const std::uint64_t reported = reported_for(start.sequence); reported > 0) {
+    const int followed = static_cast<int>(std::min<std::uint64_t>(reported, kWaiting));
     most_ = start.is_on_its_way ? followed : followed - 1;
   }
   look_.begin(start.tool_length_mm, start.pose, slack_, ways);

@@ -14,14 +14,14 @@
 
 namespace meridian {
 
-/// The blocks of a program about the one that is planned next, and what they tell of ways behind
+/// The blocks of a program about the one that is planned next, and what they say of ways behind
 /// the pole.
 ///
 ///      planned, the last kKept        wait, at most kWaiting
 ///     ├────────────────────────────┼───────────────────────────┤
 ///            ▲ question: followed ──▶ until settled, kWaiting blocks on, or the end
 ///
-/// What is told depends on the blocks alone, but where look_no_further() was called: that is
+/// What is reported depends on the blocks alone, but where look_no_further() was called: that is
 /// marked. Fixed store. Context: planner thread.
 class BlockWindow : public PoleLookAhead {
  public:
@@ -34,7 +34,7 @@ class BlockWindow : public PoleLookAhead {
   void begin(const AheadSlack& slack) noexcept;
   /// No block comes any more.
   void end() noexcept { is_whole_ = true; }
-  /// From now on looks that are told there go on over as many blocks. `marks` must stay.
+  /// From now on looks that are recorded there go on over as many blocks. `marks` must stay.
   void replay(std::span<const FeedMark> marks) noexcept { marks_ = marks; }
 
   [[nodiscard]] std::size_t waiting() const noexcept {
@@ -60,7 +60,7 @@ class BlockWindow : public PoleLookAhead {
   [[nodiscard]] bool is_missing() noexcept { return questions_ > 0 && !look(); }
   /// How many there were.
   [[nodiscard]] std::uint64_t questions() const noexcept { return questions_; }
-  /// The question is answered with the blocks that are there: what has to be told of it.
+  /// The question is answered with the blocks that are there: what has to be recorded of it.
   [[nodiscard]] std::optional<FeedMark> look_no_further() noexcept;
 
  private:
@@ -71,7 +71,7 @@ class BlockWindow : public PoleLookAhead {
 
   /// Where block `sequence` is, or else the oldest one kept behind it.
   [[nodiscard]] std::int64_t find_first(std::uint64_t sequence) const noexcept;
-  /// FeedMark::looked_at of a look at `sequence`, if one was told; else 0.
+  /// FeedMark::looked_at of a look at `sequence`, if one was recorded; else 0.
   [[nodiscard]] std::uint64_t reported_for(std::uint64_t sequence) const noexcept;
   /// `block` from where the ways start.
   [[nodiscard]] ClBlock rest_of(ClBlock block) const noexcept;

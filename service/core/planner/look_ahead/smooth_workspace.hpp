@@ -82,7 +82,7 @@ struct SmoothPlanner::Workspace {
     if (looked_at > 0) raise.note_look({.looked_at = looked_at, .is_late = is_late});
     is_looking = false;
   }
-  /// What is planned waits for blocks behind it: they tell which way past the pole carries.
+  /// What is planned waits for blocks behind it: they say which way past the pole carries.
   [[nodiscard]] bool awaits_ahead() noexcept {
     return (is_running ? run.needs_ahead() : plain.needs_ahead()) && window.is_missing();
   }

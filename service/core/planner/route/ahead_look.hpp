@@ -10,8 +10,8 @@
 
 namespace meridian {
 
-/// How many blocks each of some ways on carries, told block by block, for who waits for them: as
-/// long as no joint and no drive of a stage is outside its travel (AheadFollower follows each
+/// How many blocks each of some ways on carries, reported block by block, for who waits for them:
+/// as long as no joint and no drive of a stage is outside its travel (AheadFollower follows each
 /// branch). The machine has a redundant joint. Bounded by the blocks, no memory. Units: mm, rad, s.
 class AheadLook {
  public:

@@ -8,7 +8,7 @@
 
 namespace meridian {
 
-/// Follows the joints over the spans of a smooth path and tells where the redundant joint would
+/// Follows the joints over the spans of a smooth path and finds where the redundant joint would
 /// leave its travel: at nine places of every span or more, so that no turn is missed. What it may
 /// do between two places counts as well, by how much its slope changes there:
 ///

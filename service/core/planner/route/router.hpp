@@ -53,7 +53,7 @@ class Router {
     slack_ = slack;
   }
 
-  /// Who tells of blocks behind those that are routed; nullptr: only look_at() does. What it does
+  /// Who reports blocks behind those that are routed; nullptr: only look_at() does. What it does
   /// not know yet leaves needs_ahead() true: route() is to be called again then.
   void ask(PoleLookAhead* foresight) noexcept { foresight_ = foresight; }
   [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
@@ -145,7 +145,7 @@ class Router {
   using AheadWays = std::array<AheadWay, kMaxWays>;
   [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
   static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;
-  /// The same by what the foresight tells, where there is one.
+  /// The same by what the foresight reports, where there is one.
   void look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                    Ways& ways) noexcept;
   [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;

@@ -28,11 +28,11 @@ inline constexpr std::string_view kActionAnsweredWord = "action_answered";
 inline constexpr std::string_view kContactFoundWord = "contact_found";
 /// Of the planner: it begins a program (at a factor of 1, with a tool so long in the spindle as the
 /// next column says); it plans for a feed override above 100 %, the argument,
-/// from the block and span of it on that two more columns tell (FeedMark).
+/// from the block and span of it on that two more columns name (FeedMark).
 inline constexpr std::string_view kPlanBegunWord = "plan_begun";
 inline constexpr std::string_view kFeedPlannedWord = "feed_planned";
 /// And over how many blocks it chose branch and winding, the argument: the first, or those from a
-/// block on that one more column tells.
+/// block on that one more column names.
 inline constexpr std::string_view kPlanLookedWord = "plan_looked";
 
 /// Whether the motion follows from it, beside the program: an accepted verb, lost periods, an
