@@ -73,16 +73,16 @@ async function theColoursAgreeWithExplain({ page }) {
   await page.click("#tab-program");
   await page.setInputFiles("#program-file", plant.part());
   await phase(page, "ready", 60000);
-  const held = await until("the path", () => page.evaluate(() => {
+  const { byLine: held, byHeld } = await until("the path", () => page.evaluate(() => {
     const { path } = meridian.program, byLine = {};
     if (path === null) return null;
     for (let i = 1; i < path.count; ++i) {
       const one = (byLine[path.line[i]] ??= {});
       one[path.limit[i]] = (one[path.limit[i]] ?? 0) + path.time[i] - path.time[i - 1];
     }
-    return byLine;
+    return { byLine, byHeld: Object.fromEntries(path.byHeld()) };
   }));
-  await theCausesAgree(page, head, rows);
+  causesAgree(byHeld, head, rows);
   let compared = 0;
   for (const row of rows) {
     const values = shares.map((at) => Number(row[at])), top = Math.max(...values), drawn = held[Number(row[line])];
@@ -98,8 +98,7 @@ async function theColoursAgreeWithExplain({ page }) {
 }
 
 // Rests and singularities have colours of their own: as long as the explanation says.
-async function theCausesAgree(page, head, rows) {
-  const drawn = await page.evaluate(() => Object.fromEntries(meridian.program.path.byHeld()));
+function causesAgree(drawn, head, rows) {
   const explained = (name) => rows.reduce((sum, row) => sum + Number(row[head.indexOf(name)]) * Number(row[head.indexOf("time_s")]), 0);
   for (const [held, name] of [[259, "why_pole"], [260, "why_rest"]]) {
     const seconds = explained(name);
