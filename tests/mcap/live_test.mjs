@@ -10,13 +10,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { load, McapFile } from "./mcap_file.mjs";
 
 const [meridian, meridiand, source, fetched, folder] = process.argv.slice(2);
-let libraries;
-try {
-  libraries = load(fetched);
-} catch (error) {
-  console.log(`skipped: npm has not fetched the reader (${error.code})`);
-  process.exit(77);
-}
+const libraries = load(fetched);
 
 const joints = { b3: "b3_mm", b2: "b2_mm", b4: "b4_mm", theta1: "theta1_rad", theta2: "theta2_rad" };
 const machine = join(source, "deploy/machines/lai.toml"), faults = join(folder, "faults");

@@ -4,15 +4,20 @@ import { closeSync, fstatSync, openSync, readSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
-// What npm fetched, or a reason why it is not there.
+// What npm fetched; where it has not, the test ends as skipped.
 export function load(fetched) {
   const require = createRequire(join(fetched, "package.json"));
-  return {
-    core: require("@mcap/core"),
-    rosmsg: require("@foxglove/rosmsg"),
-    serialization: require("@foxglove/rosmsg2-serialization"),
-    fzstd: require("fzstd"),
-  };
+  try {
+    return {
+      core: require("@mcap/core"),
+      rosmsg: require("@foxglove/rosmsg"),
+      serialization: require("@foxglove/rosmsg2-serialization"),
+      fzstd: require("fzstd"),
+    };
+  } catch (error) {
+    console.log(`skipped: npm has not fetched the reader (${error.code})`);
+    return process.exit(77);
+  }
 }
 
 export class McapFile {
