@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that the pages are easy to read: no sentence is too long, and a page's sentences are short on average.
+
+    readability.py SOURCE
+
+Reads README.md and every page below docs, and prints a table of them. Code in a sentence counts as one
+word. Code blocks, formulas, tables and headings are not read. An item of a list is a sentence of its own.
+"""
+import pathlib
+import re
+import sys
+
+MAX_MEAN = 24  # words a sentence, over a page
+MAX_WORDS = 60  # in a sentence
+BLOCK = re.compile(r"\A---\n.*?^---$|^ *```.*?^ *```$|<!--.*?-->", re.M | re.S)
+IMAGE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
+LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+CODE = re.compile(r"(`+)(?:(?!\1|\n\n).)+\1", re.S)
+FORMULA = re.compile(r"\$\$.*?\$\$", re.S)
+SYMBOL = re.compile(r"\$[^$\n]+\$")
+TAG = re.compile(r"</?[a-z][^>\n]*>|\*\*?")
+ITEM = re.compile(r" *(?:[*+-]|\d+\.) +")
+END = re.compile(r"[.!?][)\]\"'”]*$")
+BEGIN = re.compile(r"[(\[\"“]*[A-Z`\d]")
+NO_END = {"e.g.", "i.e.", "etc.", "cf.", "vs."}
+
+
+def paragraphs(text):
+    """The paragraphs and items of lists of a page, each as its words with their lines."""
+    for pattern, short in ((BLOCK, ""), (CODE, "`c`"), (FORMULA, ""), (SYMBOL, "`c`"), (IMAGE, "")):
+        text = pattern.sub(lambda one: short + "\n" * one.group().count("\n"), text)
+    text = TAG.sub("", LINK.sub(r"\1", re.sub(r"^( *)\* ", r"\1- ", text, flags=re.M)))
+    words, margin = [], 0
+    for number, line in enumerate(text.split("\n"), 1):
+        indent = len(line) - len(line.lstrip())
+        item = ITEM.match(line)
+        is_code = not words and indent >= margin + 4 and not item
+        is_prose = not is_code and not re.match(r"\s*([#|]|$)", line)
+        if item or not is_prose:
+            yield words
+            words = []
+        if item:
+            margin = len(item.group())
+        elif line.strip() and indent == 0 and not words:
+            margin = 0
+        if is_prose:
+            found = (line[margin:] if item else line.lstrip("> ")).split()
+            words += [(word, number) for word in found if re.search(r"[\w`]", word)]
+    yield words
+
+
+def sentences(text):
+    """The sentences of a page: the line that each begins in, and its words."""
+    for words in paragraphs(text):
+        begin = 0
+        for i, (word, _) in enumerate(words, 1):
+            if i == len(words) or (END.search(word) and word not in NO_END and BEGIN.match(words[i][0])):
+                yield words[begin][1], [each for each, _ in words[begin:i]]
+                begin = i
+
+
+def main(root):
+    findings = []
+    print(f"{'page':46} sentences  mean words  longest")
+    for page in [root / "README.md", *sorted((root / "docs").rglob("*.md"))]:
+        name, found = page.relative_to(root), list(sentences(page.read_text()))
+        counts = [len(words) for _, words in found] or [0]
+        mean = sum(counts) / len(counts)
+        print(f"{str(name):46} {len(found):9}  {mean:10.1f}  {max(counts):7}")
+        if mean > MAX_MEAN:
+            findings.append(f"{name}:1: {mean:.1f} words in a sentence on average, {MAX_MEAN} at most")
+        findings += [f"{name}:{line}: {len(words)} words in a sentence, {MAX_WORDS} at most: {' '.join(words[:8])} ..."
+                     for line, words in found if len(words) > MAX_WORDS]
+    print("\n".join(findings or ["every page is short enough"]))
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1])))
