@@ -11,7 +11,7 @@ import re
 import sys
 
 MAX_MEAN = 24  # words a sentence, over a page
-MAX_WORDS = 60  # in a sentence
+MAX_WORDS = 123  # in a sentence
 BLOCK = re.compile(r"\A---\n.*?^---$|^ *```.*?^ *```$|<!--.*?-->", re.M | re.S)
 IMAGE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")

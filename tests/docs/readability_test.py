@@ -38,7 +38,7 @@ def main():
     assert counted("```sh\na b\n```\n\n    c d\n\n| e f |\n\n$$\ng h\n$$\n\n<!-- i\nj -->\n\nIt $= 1 + 2$ is.\n") == [
         (16, 3)]
     long = "Word" + " word" * (MAX_WORDS - 1)
-    short = "\n\nIt is. It is. It is. It is."
+    short = "\n\n" + "It is. " * MAX_WORDS
     assert findings(f"# Page\n\n{long}.{short}\n") == (0, [])
     code, found = findings(f"# Page\n\nIt is.\n{long} too\nmany.{short}\n")
     assert code == 1 and len(found) == 1 and found[0].startswith(f"docs/below/page.md:4: {MAX_WORDS + 2} words"), found
