@@ -10,14 +10,14 @@ import pathlib
 import re
 import sys
 
-MAX_MEAN = 24  # words a sentence, over a page
-MAX_WORDS = 123  # in a sentence
+MAX_MEAN = 19  # words a sentence, over a page
+MAX_WORDS = 47  # in a sentence
+LONGER = {"docs/linuxcnc.md": 123}  # pages that are still to be shortened
 BLOCK = re.compile(r"\A---\n.*?^---$|^ *```.*?^ *```$|<!--.*?-->", re.M | re.S)
 IMAGE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 CODE = re.compile(r"(`+)(?:(?!\1|\n\n).)+\1", re.S)
 FORMULA = re.compile(r"\$\$.*?\$\$", re.S)
-SYMBOL = re.compile(r"\$[^$\n]+\$")
 TAG = re.compile(r"</?[a-z][^>\n]*>|\*\*?")
 ITEM = re.compile(r" *(?:[*+-]|\d+\.) +")
 END = re.compile(r"[.!?][)\]\"'”]*$")
@@ -27,7 +27,7 @@ NO_END = {"e.g.", "i.e.", "etc.", "cf.", "vs."}
 
 def paragraphs(text):
     """The paragraphs and items of lists of a page, each as its words with their lines."""
-    for pattern, short in ((BLOCK, ""), (CODE, "`c`"), (FORMULA, ""), (SYMBOL, "`c`"), (IMAGE, "")):
+    for pattern, short in ((BLOCK, ""), (CODE, "`c`"), (FORMULA, ""), (re.compile(r"\$[^$\n]+\$"), "`c`"), (IMAGE, "")):
         text = pattern.sub(lambda one: short + "\n" * one.group().count("\n"), text)
     text = TAG.sub("", LINK.sub(r"\1", re.sub(r"^( *)\* ", r"\1- ", text, flags=re.M)))
     words, margin = [], 0
@@ -63,14 +63,14 @@ def main(root):
     findings = []
     print(f"{'page':46} sentences  mean words  longest")
     for page in [root / "README.md", *sorted((root / "docs").rglob("*.md"))]:
-        name, found = page.relative_to(root), list(sentences(page.read_text()))
+        name, found = str(page.relative_to(root)), list(sentences(page.read_text()))
+        allowed = LONGER.get(name, MAX_WORDS)
         counts = [len(words) for _, words in found] or [0]
-        mean = sum(counts) / len(counts)
-        print(f"{str(name):46} {len(found):9}  {mean:10.1f}  {max(counts):7}")
+        print(f"{name:46} {len(found):9}  {(mean := sum(counts) / len(counts)):10.1f}  {max(counts):7}")
         if mean > MAX_MEAN:
             findings.append(f"{name}:1: {mean:.1f} words in a sentence on average, {MAX_MEAN} at most")
-        findings += [f"{name}:{line}: {len(words)} words in a sentence, {MAX_WORDS} at most: {' '.join(words[:8])} ..."
-                     for line, words in found if len(words) > MAX_WORDS]
+        findings += [f"{name}:{line}: {len(words)} words in a sentence, {allowed} at most: {' '.join(words[:8])} ..."
+                     for line, words in found if len(words) > allowed]
     print("\n".join(findings or ["every page is short enough"]))
     return 1 if findings else 0
 
