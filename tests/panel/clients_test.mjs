@@ -67,8 +67,8 @@ function cutsForever() {
   const loop = (async () => {
     while (!isOver) {
       const station = plant.spawn("meridian", "stream", plant.part(), "--domain", plant.domain, "--wait-end");
-      await until("Loaded", () => plant.status().state === "Loaded", 30000);
-      plant.tool("ctl", "start", "--domain", plant.domain);
+      const isLoaded = await until("Loaded", () => (plant.status().state === "Loaded" ? "yes" : station.exitCode !== null && "no"), 30000);
+      if (isLoaded === "yes") plant.tool("ctl", "start", "--domain", plant.domain);
       if ((await station.ended) === 0) ++count;
       else afterStall(station, ++stalls);
     }

@@ -46,15 +46,16 @@ async function theFirstPictureComesSoon({ page }) {
   must(took < kMaxFirst_ms, `the first picture came after ${took} ms`);
 }
 
-// The camera goes round; every frame that is drawn counts.
+// The camera goes round, as far away as it is; every frame that is drawn counts.
 const framesPerSecond = (page, seconds) => page.evaluate(async (duration_ms) => {
   const { view } = meridian;
+  const { target } = view.controls, aside = view.camera.position.distanceTo(target) * Math.SQRT1_2;
   const begin = performance.now(), drawn = view.frames;
   for (;;) {
     const now = await new Promise((done) => requestAnimationFrame(done));
     if (now - begin > duration_ms) return (1000 * (view.frames - drawn)) / (now - begin);
-    const angle = 0.001 * (now - begin), { target } = view.controls, distance = view.camera.position.distanceTo(target);
-    view.camera.position.set(target.x + 0.7 * distance * Math.cos(angle), target.y + 0.7 * distance * Math.sin(angle), target.z + 0.7 * distance);
+    const angle = 0.001 * (now - begin);
+    view.camera.position.set(target.x + aside * Math.cos(angle), target.y + aside * Math.sin(angle), target.z + aside);
     view.controls.update();
     view.ask();
   }
@@ -80,6 +81,50 @@ const leftOut = (page) => page.evaluate(() => {
   }
   return { off, drawn };
 });
+
+// A line of three stretches along x, seen from above one end of it: the stretch that the picture does not have is left out.
+async function whatIsOutsideThePictureIsLeftOut({ page }) {
+  const drawn = await page.evaluate(() => {
+    const { camera, trail } = meridian.view;
+    const kStretch = 4096, kCount = 3 * kStretch;
+    const line = new trail.line.constructor(kCount), points = new Float32Array(3 * kCount);
+    for (let i = 0; i < kCount; ++i) points.set([i, (i % 2) * 50, 0], 3 * i);
+    line.set(points, new Uint8Array(3 * kCount));
+    const eye = camera.clone();
+    const from = (height) => {
+      eye.position.set(0, 0, height);
+      eye.up.set(0, 1, 0);
+      eye.lookAt(0, 0, 0);
+      eye.updateMatrixWorld();
+      line.setDetail(eye, 1e-6);
+      return line.drawn;
+    };
+    return { near: from(500), far: from(45000), again: from(500), kStretch, kCount };
+  });
+  must(drawn.near === drawn.kStretch && drawn.again === drawn.kStretch && drawn.far === drawn.kCount, JSON.stringify(drawn));
+}
+
+// A turn where a processor draws takes fewer pixels and no edges that are smoothed; at rest both come back.
+async function aTurnIsDrawnPlainlyAndItsEndIsSmooth({ page }) {
+  const seen = await page.evaluate(async () => {
+    const { view } = meridian, smooth = view.smoothEdges.constructor.prototype, own = smooth.draw;
+    let smoothed = 0;
+    view.smoothEdges.draw = (...words) => (++smoothed, own.apply(view.smoothEdges, words));
+    const pictures = (count) => new Promise((done) => {
+      const next = () => (count-- > 0 ? (view.controls.dispatchEvent({ type: "change" }), requestAnimationFrame(next)) : done());
+      next();
+    });
+    await pictures(4);
+    const turning = { smoothed, width: view.canvas.width };
+    await new Promise((done) => setTimeout(done, 1500));
+    const rest = { smoothed, width: view.canvas.width };
+    delete view.smoothEdges.draw;
+    return { turning, rest, isSlow: view.isSlow, samples: view.smoothEdges.target.samples, width: view.canvas.clientWidth };
+  });
+  must(seen.isSlow && seen.samples === 4, `the browser draws in software: ${JSON.stringify(seen)}`);
+  must(seen.turning.smoothed === 0 && seen.turning.width < 0.6 * seen.width, JSON.stringify(seen));
+  must(seen.rest.smoothed > 0 && seen.rest.width === seen.width, JSON.stringify(seen));
+}
 
 async function aHiddenTabKeepsNoListOfNews({ page }) {
   const ranges = await page.evaluate(() => {
@@ -160,6 +205,8 @@ await runTests(plant, pictures, async (session, run) => {
   await run("ThePageIsSmall", thePageIsSmall);
   session.open = await openBrowser(playwright, plant);
   await run("TheFirstPictureComesSoon", theFirstPictureComesSoon, session.open);
+  await run("WhatIsOutsideThePictureIsLeftOut", whatIsOutsideThePictureIsLeftOut, session.open);
+  await run("ATurnIsDrawnPlainlyAndItsEndIsSmooth", aTurnIsDrawnPlainlyAndItsEndIsSmooth, session.open);
   await run("AHiddenTabKeepsNoListOfNews", aHiddenTabKeepsNoListOfNews, session.open);
   await run("AMeshTakesThePlaceOfItsLink", aMeshTakesThePlaceOfItsLink, session.open);
   await run("ALongPathTurns", aLongPathTurns, session.open);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // A long line as one thing, whose stretches are drawn as finely as their distance from the camera asks for.
-import { Box3, BufferAttribute, BufferGeometry, Line, Sphere } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Frustum, Line, Matrix4, Sphere } from "three";
 import { Detail } from "./detail.js";
 import { lineMaterial } from "./materials.js";
 
 export const kStretch = 4096;
 const kSeen_px = 0.5, kMaxRanges = 256;
+const kNothing = [];
+
+// What that camera has in its picture.
+const seenBy = (camera) =>
+  new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
 
 // These numbers go to the graphics card with the next picture. A hidden tab draws none: its ranges become one.
 export function mark(attribute, from, count) {
@@ -94,14 +99,14 @@ export class Polyline {
     this.rebuild();
   }
 
-  // Before each picture; `pixel`: the angle that one has.
+  // Before each picture; `pixel`: the angle that one has. A stretch outside the picture is left out.
   setDetail(camera, pixel) {
-    const ball = new Sphere();
+    const ball = new Sphere(), seen = seenBy(camera);
     let isChanged = false;
     for (const stretch of this.stretches) {
       const { center, radius } = ball.copy(stretch.ball).applyMatrix4(this.line.matrixWorld);
       const near_mm = Math.max(center.distanceTo(camera.position) - radius, camera.near);
-      const level = stretch.detail.at(kSeen_px * pixel * near_mm);
+      const level = seen.intersectsSphere(ball) ? stretch.detail.at(kSeen_px * pixel * near_mm) : kNothing;
       isChanged ||= level !== stretch.level;
       stretch.level = level;
     }

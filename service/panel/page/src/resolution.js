@@ -3,12 +3,12 @@
 const kSlow_ms = 31, kCoarser = 0.8, kMinShare = 0.45, kRest_ms = 180;
 
 export class Resolution {
-  // `ask`: asks for another picture.
-  constructor(renderer, ask) {
+  // `isSlow`: the first turn begins with as few pixels as there may be. `ask`: asks for another picture.
+  constructor(renderer, isSlow, ask) {
     this.renderer = renderer;
     this.ask = ask;
     this.full = Math.min(window.devicePixelRatio, 2);
-    this.share = 1;
+    this.share = isSlow ? kMinShare : 1;
     this.isTurning = this.isFast = false;
     renderer.setPixelRatio(this.full);
   }
@@ -29,7 +29,7 @@ export class Resolution {
 
   stop() {
     this.isTurning = false;
-    if (this.share < 1) this.set(1);
+    this.set(1);
   }
 
   // Before each picture, with the time of the browser's frame.

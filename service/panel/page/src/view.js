@@ -11,6 +11,7 @@ import { loadMesh } from "./mesh.js";
 import { pixelOf } from "./pixel.js";
 import { Resolution } from "./resolution.js";
 import { palette } from "./shapes.js";
+import { isDrawnByProcessor, SmoothEdges } from "./smooth_edges.js";
 import { Trail } from "./trail.js";
 import { warmUp } from "./warm_up.js";
 
@@ -25,8 +26,10 @@ const kSeenTurning = 2;
 export class View {
   constructor(canvas, onPick) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.resolution = new Resolution(this.renderer, () => this.ask());
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true });
+    this.isSlow = isDrawnByProcessor(this.renderer);
+    this.smoothEdges = new SmoothEdges(this.renderer);
+    this.resolution = new Resolution(this.renderer, this.isSlow, () => this.ask());
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(32, 1, 1, 50000);
     this.camera.up.set(0, 0, 1);
@@ -238,9 +241,11 @@ export class View {
   draw() {
     const seen = this.resolution.isTurning ? kSeenTurning : 1;
     const pixel = (seen * this.camera.fov * Math.PI) / 180 / this.canvas.height;
+    this.camera.updateMatrixWorld();
     for (const line of this.lines()) line.setDetail(this.camera, pixel);
     this.frames += 1;
-    this.renderer.render(this.scene, this.camera);
+    if (this.isSlow && this.resolution.isTurning) this.renderer.render(this.scene, this.camera);
+    else this.smoothEdges.draw(this.scene, this.camera);
   }
 
   // The long lines that are shown.
