@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace {
 
@@ -36,9 +37,27 @@ class Follow : public testing::Test {
                        sizeof one);
   }
   void step(std::int64_t now_ns) {
-    meridian_hal_step(&follow_, &shared_, &setup_, now_ns, feedback_);
+    meridian_hal_step(&follow_, &shared_, &setup_, now_ns, thread_ns_, feedback_);
   }
   [[nodiscard]] double position() const { return follow_.position[0]; }
+  /// Periods up to `last`, each sent in time, a step in each.
+  void run_to(int last) {
+    begin(2);
+    for (int n = 3; n <= last; ++n) {
+      send(n);
+      step((n - 1) * kPeriod_ns);
+    }
+  }
+  /// How far the farthest of the steps at these times leads an axis without lag.
+  [[nodiscard]] double farthest_step(const std::vector<std::int64_t>& times) {
+    double farthest = 0;
+    for (const std::int64_t now_ns : times) {
+      const double before = feedback_[0] = position();
+      step(now_ns);
+      farthest = std::max(farthest, std::abs(position() - before));
+    }
+    return farthest;
+  }
   /// Off, then on from period `first` on; the servo thread at its begin.
   void begin(int first) {
     send(first - 1, false);
@@ -50,6 +69,7 @@ class Follow : public testing::Test {
   meridian_hal_shared shared_{};
   meridian_hal_setup setup_{};
   meridian_hal_follow follow_{};
+  std::int64_t thread_ns_ = kPeriod_ns;  // of HAL's servo thread
   double feedback_[MERIDIAN_HAL_JOINTS] = {};
 };
 
@@ -57,13 +77,14 @@ TEST_F(Follow, PositionsAreThoseOfOnePeriodAgoWhateverThePeriodsAre) {
   for (const std::int64_t servo_ns : {250'000, 700'000, 1'000'000, 1'300'000, 2'000'000}) {
     follow_ = {};
     shared_ = {};
+    thread_ns_ = servo_ns;
     begin(2);
     std::mt19937 engine(11);
     std::uniform_int_distribution<std::int64_t> late(0, 900'000);
     int sent = 2;
     std::int64_t next_ns = 2 * kPeriod_ns + late(engine);  // the period that ends at 3 is written
     double before = 0;
-    for (std::int64_t now = 3 * kPeriod_ns; now < 1500 * kPeriod_ns; now += servo_ns) {
+    for (std::int64_t now = 2 * kPeriod_ns + servo_ns; now < 1500 * kPeriod_ns; now += servo_ns) {
       while (next_ns <= now) {
         send(++sent);
         next_ns = sent * kPeriod_ns + late(engine);
@@ -83,11 +104,8 @@ TEST_F(Follow, PositionsAreThoseOfOnePeriodAgoWhateverThePeriodsAre) {
 }
 
 TEST_F(Follow, BeyondTheNewestSetpointItsVelocityLeadsFromItsPosition) {
-  begin(2);
-  for (int n = 3; n <= 10; ++n) {
-    send(n);
-    step((n - 1) * kPeriod_ns);
-  }
+  run_to(10);
+  step(10 * kPeriod_ns + 500'000);
   for (int n = 11; n <= 60; ++n) {  // each comes when its time is over already
     step(n * kPeriod_ns + 900'000);
     EXPECT_NEAR(position(), position_at(1e-9 * static_cast<double>((n - 1) * kPeriod_ns + 900'000)),
@@ -97,11 +115,7 @@ TEST_F(Follow, BeyondTheNewestSetpointItsVelocityLeadsFromItsPosition) {
 }
 
 TEST_F(Follow, LateSetpointsAreBridgedByTheVelocity) {
-  begin(2);
-  for (int n = 3; n <= 10; ++n) {
-    send(n);
-    step((n - 1) * kPeriod_ns);
-  }
+  run_to(10);
   double before = position();
   for (int n = 10; n <= 13; ++n) {  // nothing comes
     step(n * kPeriod_ns);
@@ -115,11 +129,7 @@ TEST_F(Follow, LateSetpointsAreBridgedByTheVelocity) {
 }
 
 TEST_F(Follow, SetpointsThatStayAwayRampDownAndStayOffUntilTheProcessSaysOff) {
-  begin(2);
-  for (int n = 3; n <= 10; ++n) {
-    send(n);
-    step((n - 1) * kPeriod_ns);
-  }
+  run_to(10);
   const double from = position();
   double before = from, last_step = 0.2;
   for (int n = 10; n <= 80; ++n) {
@@ -144,6 +154,66 @@ TEST_F(Follow, SetpointsThatStayAwayRampDownAndStayOffUntilTheProcessSaysOff) {
   send(92);
   step(92 * kPeriod_ns);
   EXPECT_EQ(follow_.phase[0], MERIDIAN_HAL_FOLLOWS);
+}
+
+/// Times of HAL's calls behind a stall that ends at `end`: it makes up for what it missed at once.
+std::vector<std::int64_t> calls_after_stall(int missed, int end, int ordinary) {
+  std::vector<std::int64_t> times;
+  for (int i = 0; i <= missed; ++i) times.push_back(end * kPeriod_ns + i * 1'000);
+  for (int n = end + 1; n <= end + ordinary; ++n) times.push_back(n * kPeriod_ns);
+  return times;
+}
+
+TEST_F(Follow, AStallOfTheServoThreadIsNoJumpAndIsCaughtUpOnThePath) {
+  constexpr int kStalls[] = {3, 10, 40};
+  for (const int missed : kStalls) {
+    follow_ = {};
+    shared_ = {};
+    run_to(10);
+    const int end = 9 + missed;
+    for (int n = 11; n <= end + 1; ++n) send(n);  // the process goes on
+    double farthest = 0;
+    for (const std::int64_t now_ns : calls_after_stall(missed, end, 1000)) {
+      if (now_ns % kPeriod_ns == 0) send(static_cast<int>(now_ns / kPeriod_ns) + 1);
+      farthest = std::max(farthest, farthest_step({now_ns}));
+      ASSERT_EQ(follow_.phase[0], MERIDIAN_HAL_FOLLOWS);
+      const double led_s = 1e-9 * static_cast<double>(follow_.time_ns - kPeriod_ns);
+      ASSERT_NEAR(position(), position_at(led_s), 1e-6) << "on the path, " << missed << " missed";
+    }
+    EXPECT_LE(farthest, 2.26 * 0.2) << "two periods at 200 mm/s, and an eighth; missed " << missed;
+    EXPECT_NEAR(position(), position_at(1e-9 * static_cast<double>((end + 999) * kPeriod_ns)), 1e-4)
+        << "caught up";
+  }
+}
+
+TEST_F(Follow, ARampBehindAStallBeginsWhereAndAsFastAsTheJointWasLed) {
+  run_to(10);
+  const double from = position();
+  EXPECT_LE(farthest_step(calls_after_stall(200, 209, 100)), 2 * 0.2);
+  EXPECT_EQ(follow_.phase[0], MERIDIAN_HAL_LOST);
+  EXPECT_NEAR(position() - from, 199 * 199 / (2 * 5000.0), 0.05) << "the ramp, and nothing else";
+}
+
+TEST_F(Follow, AStallInTheRampDoesNotLengthenIt) {
+  for (const int missed : {5, 60, 900}) {
+    follow_ = {};
+    shared_ = {};
+    run_to(10);
+    for (int n = 10; n <= 20; ++n) step(n * kPeriod_ns);
+    ASSERT_EQ(follow_.phase[0], MERIDIAN_HAL_RAMPS);
+    const double from = position(), speed = follow_.velocity[0];
+    EXPECT_LE(farthest_step(calls_after_stall(missed, 20 + missed, 100)), 2 * 0.2);
+    EXPECT_NEAR(position() - from, speed * speed / (2 * 5000), 1e-9) << missed;
+  }
+}
+
+TEST_F(Follow, AStallBehindWhichSetpointsAreGoneRampsDown) {
+  run_to(10);
+  const int missed = MERIDIAN_HAL_KEPT + 20, end = 9 + missed;
+  for (int n = 11; n <= end + 1; ++n) send(n);
+  EXPECT_LE(farthest_step({end * kPeriod_ns}), 2 * 0.2);
+  EXPECT_EQ(follow_.phase[0], MERIDIAN_HAL_RAMPS);
+  EXPECT_TRUE(follow_.is_silent) << "nothing turns meanwhile";
 }
 
 TEST_F(Follow, AComponentThatIsLoadedUnderARunningProcessStaysOff) {

@@ -20,6 +20,30 @@ static const struct meridian_hal_setpoint* ends_after(const struct meridian_hal_
   return out;
 }
 
+/// The setpoints that come next at `at_ns` were overwritten by newer ones.
+static int is_overtaken(const struct meridian_hal_follow* me, int64_t at_ns) {
+  const struct meridian_hal_setpoint* const oldest =
+      &me->kept[(me->newest + 1) % MERIDIAN_HAL_KEPT];
+  return oldest->number > 0 && oldest->end_ns > at_ns;
+}
+
+static int is_led(const struct meridian_hal_follow* me) {
+  for (int i = 0; i < MERIDIAN_HAL_JOINTS; ++i) {
+    if (me->phase[i] == MERIDIAN_HAL_FOLLOWS || me->phase[i] == MERIDIAN_HAL_RAMPS) return 1;
+  }
+  return 0;
+}
+
+int64_t meridian_hal_time(struct meridian_hal_follow* me, int64_t now_ns, int64_t thread_ns) {
+  const int64_t measured = now_ns - me->called_ns, longest = 2 * thread_ns;
+  const int64_t step = measured < longest ? measured : longest;
+  const int64_t late = is_led(me) ? now_ns - me->time_ns - step : 0;
+  const int64_t slowly = late * step / (64 * thread_ns), fastest = step / 8;
+  me->called_ns = now_ns;
+  me->time_ns = now_ns - late + (slowly < fastest ? slowly : fastest);
+  return step;
+}
+
 /// The cubic through positions and velocities of both ends. Where it is farther from the straight
 /// line than the largest acceleration bends a path, the velocities do not belong to the positions:
 /// the straight line then.
@@ -46,7 +70,8 @@ static void ramp_down(struct meridian_hal_follow* me, const struct meridian_hal_
   // Without an acceleration it stands at once.
   const double after = step > 0 && speed > step ? speed - step : 0;
   me->velocity[joint] = before < 0 ? -after : after;
-  if (step > 0) me->position[joint] += 0.5 * (before + me->velocity[joint]) * dt_s;
+  const double moving_s = speed > step ? dt_s : speed / setup->fault_acceleration[joint];
+  if (step > 0) me->position[joint] += 0.5 * (before + me->velocity[joint]) * moving_s;
   if (after == 0) me->phase[joint] = MERIDIAN_HAL_LOST;
 }
 
@@ -73,21 +98,27 @@ static void bridge(struct meridian_hal_follow* me, const struct meridian_hal_set
       newest->position[joint] + newest->velocity[joint] * 1e-9 * (double)(at_ns - newest->end_ns);
 }
 
-void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal_shared* shared,
-                       const struct meridian_hal_setup* setup, int64_t now_ns,
-                       const double* feedback) {
-  struct meridian_hal_setpoint copy[MERIDIAN_HAL_KEPT];
-  if (meridian_hal_read(&shared->setpoint_lock, shared->setpoints, copy, sizeof copy)) {
-    memcpy(me->kept, copy, sizeof copy);
-    for (int i = 0; i < MERIDIAN_HAL_KEPT; ++i) {
-      if (copy[i].number > me->newest) me->newest = copy[i].number;
-    }
+static void read_setpoints(struct meridian_hal_follow* me,
+                           const struct meridian_hal_shared* shared) {
+  if (!meridian_hal_read(&shared->setpoint_lock, shared->setpoints, me->incoming,
+                         sizeof me->incoming)) {
+    return;
   }
-  const double dt_s = me->time_ns > 0 ? 1e-9 * (double)(now_ns - me->time_ns) : 0;
-  me->time_ns = now_ns;
+  memcpy(me->kept, me->incoming, sizeof me->kept);
+  for (int i = 0; i < MERIDIAN_HAL_KEPT; ++i) {
+    if (me->kept[i].number > me->newest) me->newest = me->kept[i].number;
+  }
+}
+
+void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal_shared* shared,
+                       const struct meridian_hal_setup* setup, int64_t now_ns, int64_t thread_ns,
+                       const double* feedback) {
+  read_setpoints(me, shared);
+  const double dt_s = 1e-9 * (double)meridian_hal_time(me, now_ns, thread_ns);
   const struct meridian_hal_setpoint* const newest = kept(me, me->newest);
-  const int64_t at_ns = now_ns - setup->period_ns;
-  const int is_lost = newest == 0 || now_ns - newest->end_ns > setup->bridge_ns + setup->period_ns;
+  const int64_t at_ns = me->time_ns - setup->period_ns;
+  const int is_lost = newest == 0 || is_overtaken(me, at_ns) ||
+                      now_ns - newest->end_ns > setup->bridge_ns + setup->period_ns;
   me->is_silent = is_lost;
   for (int i = 0; i < MERIDIAN_HAL_JOINTS; ++i) {
     const int is_wanted = newest != 0 && (newest->on_mask >> i & 1u) != 0;

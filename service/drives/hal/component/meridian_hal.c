@@ -137,7 +137,7 @@ static void switch_off(void) {
   *pins->user_enable_out = 0;
 }
 
-static void update(void* unused, long period_ns) {
+static void update(void* unused, long thread_ns) {
   (void)unused;
   const struct meridian_hal_setup setup = shared->setup;
   if (setup.magic != MERIDIAN_HAL_MAGIC) {
@@ -145,7 +145,7 @@ static void update(void* unused, long period_ns) {
     return;
   }
   const int64_t now_ns = rtapi_get_time();
-  const double dt_s = 1e-9 * (double)period_ns;
+  const double dt_s = 1e-9 * (double)(now_ns - report.time_ns);
   double feedback[MERIDIAN_HAL_JOINTS] = {0};
   report.fault_mask = report.homed_mask = 0;
   for (int i = 0; i < joints; ++i) {
@@ -155,7 +155,7 @@ static void update(void* unused, long period_ns) {
     if (*pins->joint[i].fault) report.fault_mask |= 1u << i;
     if (*pins->joint[i].homed) report.homed_mask |= 1u << i;
   }
-  meridian_hal_step(&follow, shared, &setup, now_ns, feedback);
+  meridian_hal_step(&follow, shared, &setup, now_ns, thread_ns, feedback);
   report.is_lost = follow.is_silent != 0;
   for (int i = 0; i < joints; ++i) {
     const enum meridian_hal_phase phase = follow.phase[i];
