@@ -152,7 +152,14 @@ void FollowingAxis::take_target(const AxisInput& input, double dt_s) noexcept {
     return;
   }
   if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
-  if (is_following_) target_ += target_velocity_ * std::min(input.bridged_s, dt_s);
+  if (is_following_) bridge(std::min(input.bridged_s, dt_s), dt_s);
+}
+
+/// Goes on with the sent velocity, and slows down in lost periods for which the bridge is too
+/// short: a ramp that follows goes on from there.
+void FollowingAxis::bridge(double bridged_s, double dt_s) noexcept {
+  target_ += target_velocity_ * bridged_s;
+  if (bridged_s < dt_s) ramp_down(dt_s - bridged_s);
 }
 
 /// In homing mode setpoints lead nowhere, but a service that sends none any more is gone.
@@ -185,14 +192,15 @@ void FollowingAxis::refuse(std::uint16_t error, double dt_s) noexcept {
   ramp_down(dt_s);
 }
 
-/// Slows the target down with the joint's FaultStop acceleration.
+/// Slows the target down with the joint's FaultStop acceleration; without one it stands at once.
 void FollowingAxis::ramp_down(double dt_s) noexcept {
-  const double step =
-      (limits_.fault_acceleration > 0 ? limits_.fault_acceleration : INFINITY) * dt_s;
-  const double before = target_velocity_;
-  target_velocity_ = std::copysign(std::max(0.0, std::abs(before) - step), before);
-  if (target_velocity_ == 0) target_velocity_ = 0;  // no minus zero
-  target_ += 0.5 * (before + target_velocity_) * dt_s;
+  const double acceleration =
+      limits_.fault_acceleration > 0 ? limits_.fault_acceleration : INFINITY;
+  const double before = target_velocity_, speed = std::abs(before);
+  const double moving_s = std::min(dt_s, speed / acceleration);
+  const double after = moving_s < dt_s ? 0 : std::max(0.0, speed - acceleration * dt_s);
+  target_velocity_ = after > 0 ? std::copysign(after, before) : 0;
+  target_ += 0.5 * (before + target_velocity_) * moving_s;
 }
 
 std::uint16_t FollowingAxis::statusword() const noexcept {

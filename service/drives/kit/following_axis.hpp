@@ -58,6 +58,7 @@ class FollowingAxis {
  private:
   void take_mode(std::uint8_t mode) noexcept;
   void take_target(const AxisInput& input, double dt_s) noexcept;
+  void bridge(double bridged_s, double dt_s) noexcept;
   void refuse(std::uint16_t error, double dt_s) noexcept;
   void search(const AxisInput& input, double dt_s, int axis, Hardware& hardware) noexcept;
   void miss_setpoints(double dt_s) noexcept;

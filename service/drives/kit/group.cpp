@@ -170,7 +170,8 @@ void Group::work(int periods, Hardware& hardware) noexcept {
   // one on, when a service that the same host held up has sent again.
   periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
   periods_slept_ = is_new_ ? 0 : periods - 1;
-  // However long this side slept, the sent velocity leads on no farther than the bridge.
+  // However long this side slept, the sent velocity leads on no farther than the bridge: behind it
+  // comes the ramp.
   if (is_new_) bridge_left_ = bridge_cycles_;
   const int bridged = is_new_ ? 0 : std::min(periods, bridge_left_);
   bridge_left_ -= bridged;

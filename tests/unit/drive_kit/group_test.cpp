@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <initializer_list>
+#include <utility>
 
 #include "support/heap_watch.hpp"
 #include "unit/drive_kit/scripted_hardware.hpp"
@@ -42,7 +44,8 @@ class PartOfAMachine : public testing::Test {
       for (std::uint8_t drive = 0; drive < 5; ++drive) (void)command(drive, word);
     }
   }
-  Drop send(double step, std::uint16_t flags = kSetpointEnabled, std::uint64_t sender = kMaster) {
+  Drop send(double step, std::uint16_t flags = kSetpointEnabled, std::uint64_t sender = kMaster,
+            double velocity = 0) {
     dds::SetpointSample sample;
     sample.setpoint.cycle = ++cycle_;
     sample.setpoint.due_ns = static_cast<std::int64_t>(cycle_) * 1'000'000;
@@ -51,6 +54,7 @@ class PartOfAMachine : public testing::Test {
       position_[i] += step * static_cast<double>(i);
       sample.setpoint.position[i] = position_[i];
     }
+    sample.setpoint.velocity.fill(velocity);
     sample.crc = dds::setpoint_crc(sample.setpoint, kService);
     return group_.take(sample, sender, sample.setpoint.due_ns);
   }
@@ -176,6 +180,41 @@ TEST_F(PartOfAMachine, TheTimeBetweenTwoPositionsIsThatOfTheServicesCycles) {
 TEST_F(PartOfAMachine, LostPeriodsOfItsOwnAreOneExchange) {
   group_.work(4, motors_);
   EXPECT_DOUBLE_EQ(motors_.exchanged_s, 4e-3);
+}
+
+/// The bridge is 3 cycles. Its end is one of the periods that this side lost, or not.
+TEST_F(PartOfAMachine, TheRampBehindTheBridgeBeginsAtTheSentVelocityHoweverManyPeriodsAreLost) {
+  constexpr double kStep = 0.05, kVelocity = 100, kAcceleration = 5000;  // mm, of joint 2
+  for (int bridged = 0; bridged <= 3; ++bridged) {
+    for (int lost = 0; lost <= 30; ++lost) {
+      Group group{joints_2_and_4()};
+      std::swap(group, group_);
+      motors_ = {};
+      position_ = {};
+      enable();
+      for (int n = 0; n < 5; ++n) {
+        (void)send(kStep, kSetpointEnabled, kMaster, kVelocity);
+        group_.work(1, motors_);
+      }
+      const double begin = motors_.outputs[0].position;
+      for (int n = 0; group_.axis(0).state() != DriveState::kFault; ++n) {
+        ASSERT_LT(n, 50);
+        const Output before = motors_.outputs[0];
+        group_.work(n == bridged ? 1 + lost : 1, motors_);
+        const Output& now = motors_.outputs[0];
+        const double dt_s = now.elapsed_s;
+        const double off =
+            now.position - before.position - 0.5 * (before.velocity + now.velocity) * dt_s;
+        EXPECT_LE(before.velocity - now.velocity, kAcceleration * dt_s + 1e-9)
+            << bridged << " " << lost;
+        EXPECT_LE(std::abs(off), kAcceleration * dt_s * dt_s / 8 + 1e-9) << bridged << " " << lost;
+      }
+      EXPECT_EQ(group_.axis(0).error(), kErrorSetpointsStopped);
+      EXPECT_NEAR(motors_.outputs[0].position - begin,
+                  0.3 + kVelocity * kVelocity / (2 * kAcceleration), 1e-9)
+          << "the bridge and the ramp, " << bridged << " " << lost;
+    }
+  }
 }
 
 TEST_F(PartOfAMachine, NoPeriodMakesAHeapCallWhateverComes) {
