@@ -27,18 +27,14 @@ void CheckPlayer::find(Rule rule, const std::string& seen) {
 
 void CheckPlayer::tick(const Also& also) {
   constexpr std::int64_t kBetweenClaims = 500, kLongestSilence = 60;
-  if (saying != Saying::kNothing) {
-    if (ticks_ % kBetweenClaims == 0) {
-      dds::MachineInfo machine;
-      machine.name = model_.name;
-      machine.service_id = service_id_;
-      machine.is_serving = true;
-      machine.bridge_cycles = kBridge;
-      drives_.say(Speaker::kService, machine);
-    }
+  if (saying == Saying::kNothing) {
+    spoken_ = 0;
+  } else {
+    if (spoken_ % kBetweenClaims == 0) say_claim();
     say_commands();
     cycle_ += 2;
     say_setpoint();
+    ++spoken_;
   }
   if (also) also(drives_);
   reports_.clear();
@@ -59,12 +55,21 @@ bool CheckPlayer::until(const std::function<bool()>& is_reached, int periods) {
   return is_reached();
 }
 
+void CheckPlayer::say_claim() {
+  dds::MachineInfo machine;
+  machine.name = model_.name;
+  machine.service_id = service_id_;
+  machine.is_serving = true;
+  machine.bridge_cycles = kBridge;
+  drives_.say(Speaker::kService, machine);
+}
+
 void CheckPlayer::say_commands() {
   constexpr std::int64_t kRepeat = 100;
   for (int i = 0; i < count(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const bool is_same = words[at] == said_words_[at] && modes[at] == said_modes_[at];
-    if (is_same && ticks_ % kRepeat != 0) continue;
+    if (is_same && spoken_ % kRepeat != 0) continue;
     said_words_[at] = words[at];
     said_modes_[at] = modes[at];
     dds::DriveCommand command;
@@ -98,7 +103,7 @@ void CheckPlayer::restart_service() {
   service_id_ = kRestartedId;
   saying = Saying::kAll;
   cycle_ = 0;
-  ticks_ = reported_ = 0;  // it says at once who it is
+  spoken_ = 0;
 }
 
 dds::SetpointSample CheckPlayer::odd_setpoint() const {

@@ -79,6 +79,7 @@ class CheckPlayer {
   std::vector<Finding> findings;
 
  private:
+  void say_claim();  ///< who it is, and for how long drives are to bridge
   void say_commands();
   void say_setpoint();
   void read(const dds::DriveFeedback& report);
@@ -90,6 +91,7 @@ class CheckPlayer {
   std::uint32_t stopped_groups_ = 0;  ///< that report the emergency stop
   dds::SetpointSample last_;
   std::int64_t ticks_ = 0, reported_ = 0;
+  std::int64_t spoken_ = 0;  ///< periods since the service began to speak
   std::array<std::uint16_t, kMaxJoints> said_words_{};
   std::array<std::uint8_t, kMaxJoints> said_modes_{};
   std::map<std::uint32_t, std::uint64_t> samples_;  ///< newest, by group
