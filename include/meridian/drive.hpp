@@ -54,7 +54,7 @@ struct AxisStatus {
 
 struct Counts {
   std::uint64_t periods = 0;
-  std::uint64_t periods_lost = 0;  ///< of run(), or told to work()
+  std::uint64_t periods_lost = 0;  ///< of run(), or as work() was called with
   std::uint64_t periods_bridged = 0;
   std::uint64_t setpoints = 0;     ///< taken
   std::uint64_t dropped = 0;       ///< commands and setpoints of others, doubled, late or spoilt

@@ -136,7 +136,7 @@ struct Homing {
   enum class Phase : std::uint8_t {
     kBegin,   ///< drives are asked for homing mode
     kSearch,  ///< they move until they find their references
-    kHalt,    ///< they are told to stop searching
+    kHalt,    ///< they are commanded to stop searching
     kLeave,   ///< asked to follow setpoints again, which stand where they report to be
     kSettle   ///< until they have seen the setpoint that stays
   };
@@ -233,7 +233,7 @@ struct CycleState {
   MotionKind motion = MotionKind::kApproach;
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
-  bool has_block = false;  ///< kBlockStarted was told for `sequence` and kBlockDone was not
+  bool has_block = false;  ///< kBlockStarted was emitted for `sequence`, kBlockDone was not
 
   double barrier_time = 0;  ///< s at the dwell or action in force
   ActionState action = ActionState::kNotReported;
@@ -267,8 +267,8 @@ inline void take_over_feedback(Cycle& c) noexcept {
   c.state.latched_drives = c.drives.position;
 }
 
-/// Adds an event; cycle, line and epoch are filled in. RT: cycle.
-inline void tell(const Cycle& c, EventCode code, std::uint64_t a = 0, std::uint64_t b = 0,
+/// Emits an event; cycle, line and epoch are filled in. RT: cycle.
+inline void emit(const Cycle& c, EventCode code, std::uint64_t a = 0, std::uint64_t b = 0,
                  double x = 0) noexcept {
   if (c.out.event_count == kMaxEvents) {
     ++c.out.events_dropped;
@@ -277,10 +277,10 @@ inline void tell(const Cycle& c, EventCode code, std::uint64_t a = 0, std::uint6
   c.out.events[c.out.event_count++] = {code, c.in.cycle, a, b, x, c.state.line, c.state.epoch};
 }
 
-/// Enters `next` and tells it; nothing happens if the machine is there already. RT: cycle.
+/// Enters `next` and reports it; nothing happens if the machine is there already. RT: cycle.
 inline void enter(const Cycle& c, State next) noexcept {
   if (c.state.state == next) return;
-  tell(c, EventCode::kStateChanged, static_cast<std::uint64_t>(next),
+  emit(c, EventCode::kStateChanged, static_cast<std::uint64_t>(next),
        static_cast<std::uint64_t>(c.state.state));
   c.state.state = next;
   c.state.state_time = 0;

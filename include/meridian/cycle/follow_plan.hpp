@@ -53,17 +53,17 @@ inline void aim_rate(Cycle& c) noexcept {
 
 /// An action that was refused or timed out: Held with an alarm; a resume asks for it again.
 inline void fail_action(Cycle& c) noexcept {
-  tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed), 0,
+  emit(c, EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed), 0,
        c.state.barrier_time);
   c.state.action = ActionState::kNotReported;
   c.state.barrier_time = 0;
   enter(c, State::kHeld);
 }
 
-/// One period at an action: told once, then waited for.
+/// One period at an action: it is reported once, then waited for.
 inline void wait_for_action(Cycle& c) noexcept {
   if (c.state.action == ActionState::kNotReported) {
-    tell(c, EventCode::kActionDue, c.state.sequence, c.state.line);
+    emit(c, EventCode::kActionDue, c.state.sequence, c.state.line);
     c.state.action = ActionState::kWaiting;
   } else if (c.state.action == ActionState::kDone) {
     leave_barrier(c);
@@ -77,7 +77,7 @@ inline void wait_for_action(Cycle& c) noexcept {
 /// optional one is no action: the action peer does not hear of it.
 inline void stop_at_barrier(Cycle& c) noexcept {
   if (c.reader.piece()->kind == TimeKind::kStop) {
-    tell(c, EventCode::kActionDue, c.state.sequence, c.state.line);
+    emit(c, EventCode::kActionDue, c.state.sequence, c.state.line);
   }
   enter(c, State::kHeld);
 }
@@ -103,7 +103,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
       if (may_touch_yet(c)) return;
       report_block_done(c);
       end_probing(c);
-      tell(c, EventCode::kProgramEnd, piece.sequence);
+      emit(c, EventCode::kProgramEnd, piece.sequence);
       c.reader.advance();
       c.state.piece_time = 0;
       enter(c, State::kReady);

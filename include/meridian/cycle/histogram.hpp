@@ -97,7 +97,7 @@ class Histogram {
   }
   [[nodiscard]] std::uint64_t sum_ns() const noexcept { return sum_; }
 
-  /// Puts a histogram together again from what it told: buckets one by one, then sum and maximum.
+  /// Restores a histogram from what it reported: buckets one by one, then sum and maximum.
   void restore_bucket(std::size_t index, std::uint64_t values) noexcept {
     if (index >= kBuckets) return;
     count_ += values - buckets_[index];

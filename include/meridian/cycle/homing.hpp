@@ -87,9 +87,9 @@ inline void halt_homing(Cycle& c) noexcept {
   if (homing.phase <= Homing::Phase::kSearch) enter_phase(homing, Homing::Phase::kHalt);
 }
 
-/// Tells why `joint` has no reference and gives the rest of the homing up.
+/// Reports why `joint` has no reference and gives the rest of the homing up.
 inline void fail_homing(Cycle& c, Alarm alarm, std::uint32_t joints) noexcept {
-  tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm),
+  emit(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm),
        static_cast<std::uint64_t>(std::countr_zero(joints)), c.state.homing.time);
   c.state.homing.has_failed = true;
   halt_homing(c);
@@ -128,7 +128,7 @@ inline void watch_search(Cycle& c) noexcept {
 [[nodiscard]] inline bool finish_group(Cycle& c) noexcept {
   Homing& homing = c.state.homing;
   const std::uint32_t referenced = homing.busy & c.drives.referenced_mask;
-  if (!homing.has_failed && referenced != 0) tell(c, EventCode::kJointsHomed, referenced);
+  if (!homing.has_failed && referenced != 0) emit(c, EventCode::kJointsHomed, referenced);
   if (take_group(c.machine, c.state.options, homing)) return true;
   homing = {};
   return false;

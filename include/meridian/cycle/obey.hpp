@@ -31,7 +31,7 @@ inline void drop_program(Cycle& c) noexcept {
   c.state.action = ActionState::kNotReported;
   c.state.epoch = static_cast<std::uint16_t>(c.state.epoch + 1);
   c.reader.set_epoch(c.state.epoch);
-  tell(c, EventCode::kEpochAdvanced, c.state.epoch);
+  emit(c, EventCode::kEpochAdvanced, c.state.epoch);
 }
 
 /// Begins or ends the dry run: what was sent for the one is not run as the other, and where the
@@ -231,8 +231,8 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
   return is_overtaken ? Refusal::kOvertaken : Refusal::kNone;
 }
 
-/// Does what the command asks for, or refuses it; either is told with the request's number. Rare:
-/// out of the way of the cycles between.
+/// Does what the command asks for, or refuses it; either is reported with the request's number.
+/// Rare: out of the way of the cycles between.
 [[gnu::noinline]] inline void obey_word(Cycle& c) noexcept {
   const Command& command = c.in.command;
   const VerbEffect effect = effect_of(c.state.state, command.verb);
@@ -241,11 +241,11 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
   if (refusal == Refusal::kNone) refusal = condition_of_kind(c, command);
   if (refusal == Refusal::kNone) refusal = is_asked ? take_up(c, command) : effect.refusal;
   if (refusal != Refusal::kNone) {
-    tell(c, EventCode::kRefused, command.request, static_cast<std::uint64_t>(command.verb),
+    emit(c, EventCode::kRefused, command.request, static_cast<std::uint64_t>(command.verb),
          static_cast<double>(refusal));
     return;
   }
-  tell(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb),
+  emit(c, EventCode::kAccepted, command.request, static_cast<std::uint64_t>(command.verb),
        command.argument);
   if (effect.effect == Effect::kGo) go(c, effect.next, command);
   if (command.verb == Verb::kFeedOverride) {

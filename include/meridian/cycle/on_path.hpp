@@ -52,23 +52,23 @@ inline void rest(Cycle& c) noexcept {
   c.state.on_path.ds = c.state.on_path.dds = c.state.on_path.ddds = 0;
 }
 
-/// Tells which block ended and which began, if the piece in force belongs to another one.
+/// Reports which block ended and which began, if the piece in force belongs to another one.
 inline void report_block(Cycle& c) noexcept {
   const TimePiece& piece = *c.reader.piece();
   if (c.state.has_block && c.state.sequence == piece.sequence) return;
   if (piece.sequence < c.state.single_block.next_block) return;  // the path piece began in it
-  if (c.state.has_block) tell(c, EventCode::kBlockDone, c.state.sequence, c.state.line);
+  if (c.state.has_block) emit(c, EventCode::kBlockDone, c.state.sequence, c.state.line);
   c.state.has_block = piece.kind != TimeKind::kEnd;
   c.state.sequence = piece.sequence;
   c.state.line = piece.line;
-  if (c.state.has_block) tell(c, EventCode::kBlockStarted, piece.sequence, piece.line);
+  if (c.state.has_block) emit(c, EventCode::kBlockStarted, piece.sequence, piece.line);
 }
 
-/// Tells that the block in force is done; nothing happens if there is none.
+/// Reports that the block in force is done; nothing happens if there is none.
 inline void report_block_done(Cycle& c) noexcept {
   if (!c.state.has_block) return;
   c.state.has_block = false;
-  tell(c, EventCode::kBlockDone, c.state.sequence, c.state.line);
+  emit(c, EventCode::kBlockDone, c.state.sequence, c.state.line);
 }
 
 /// Leaves the piece in force and goes to the one that follows. False if none is there: the plan

@@ -70,10 +70,10 @@ inline void keep_free_report(const Cycle& c) noexcept {
 inline void report_contact(const Cycle& c) noexcept {
   for (int i = 0; i < c.machine.joint_count; ++i) {
     const auto joint = static_cast<std::size_t>(i);
-    tell(c, EventCode::kContactJoint, joint, 1, c.state.probing.free_joints[joint]);
-    tell(c, EventCode::kContactJoint, joint, 0, c.feedback[joint]);
+    emit(c, EventCode::kContactJoint, joint, 1, c.state.probing.free_joints[joint]);
+    emit(c, EventCode::kContactJoint, joint, 0, c.feedback[joint]);
   }
-  tell(c, EventCode::kContactFound, periods_of_contact(c), 0, c.state.stop.is_active ? 1 : 0);
+  emit(c, EventCode::kContactFound, periods_of_contact(c), 0, c.state.stop.is_active ? 1 : 0);
 }
 
 /// Begins to seek contact, or not: the program that starts is a probing move, or is none.
@@ -142,7 +142,7 @@ inline void begin_probing(const Cycle& c, bool is_probing) noexcept {
 inline void end_probing(const Cycle& c) noexcept {
   const bool is_sought = c.state.probing.state == ProbeState::kSeeking;
   c.state.probing.state = ProbeState::kOff;
-  if (is_sought) tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kNoContact));
+  if (is_sought) emit(c, EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kNoContact));
 }
 
 }  // namespace meridian

@@ -215,7 +215,7 @@ inline void follow_braking_rate(Cycle& c) noexcept {
   single.is_braking = !is_over;
 }
 
-/// Behind a rest in mid-motion: tells the block that begins, where its end is in sight.
+/// After a rest in mid-motion: reports the block that begins, if its end is in sight.
 inline void begin_next_block(Cycle& c) noexcept {
   for (std::size_t n = 0; const PathPiece* path = c.reader.path_ahead(n); ++n) {
     if (n == static_cast<std::size_t>(kMaxPieces)) return;
@@ -225,7 +225,7 @@ inline void begin_next_block(Cycle& c) noexcept {
       c.state.has_block = true;
       c.state.sequence = sequence;
       c.state.line = path->marks.at[i].line;
-      tell(c, EventCode::kBlockStarted, sequence, c.state.line);
+      emit(c, EventCode::kBlockStarted, sequence, c.state.line);
       return;
     }
   }

@@ -27,7 +27,7 @@ inline void take_action_answer(Cycle& c) noexcept {
                           c.in.action.sequence == c.state.sequence;
   if (!is_awaited) return;
   c.state.action = c.in.action.is_done ? ActionState::kDone : ActionState::kRefused;
-  tell(c, EventCode::kActionAnswered, c.state.sequence, 0, c.in.action.is_done ? 1 : 0);
+  emit(c, EventCode::kActionAnswered, c.state.sequence, 0, c.in.action.is_done ? 1 : 0);
 }
 
 /// The drives went on with the last velocity for the periods that were lost: feedback of that
@@ -278,7 +278,7 @@ inline void write_record(Cycle& c) noexcept {
   sent.drive_velocity = out.setpoint.velocity;
 }
 
-/// Computes one setpoint: takes in what is known, obeys, moves, guards, and tells.
+/// Computes one setpoint: takes in what is known, obeys, moves, guards, and reports.
 ///
 /// `in.cycle` grows by 1 + `in.lost_periods` from call to call; plan time goes on by as many
 /// periods, without output for those that were lost. The first call finds `state` in Off. The

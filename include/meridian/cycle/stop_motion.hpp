@@ -328,7 +328,7 @@ inline void finish_stop(Cycle& c) noexcept {
   const StopInProgress& stop = c.state.stop;
   rest(c);
   if (stop.stopping_time > 0) {
-    tell(c, EventCode::kStopped, static_cast<std::uint64_t>(stop.stopping_time * 1e9), 0,
+    emit(c, EventCode::kStopped, static_cast<std::uint64_t>(stop.stopping_time * 1e9), 0,
          stop.stopping_distance);
   }
   c.state.stop = {};

@@ -32,17 +32,17 @@ namespace meridian {
          age <= c.state.options.feedback_timeout_s + c.dt * c.in.lost_periods;
 }
 
-/// Tells an alarm, once until the next reset.
+/// Reports an alarm, once until the next reset.
 inline void report_alarm(Cycle& c, Alarm alarm, int joint, double value) noexcept {
   const std::uint32_t bit = 1U << static_cast<unsigned>(alarm);
   if ((c.state.alarms_reported & bit) != 0) return;
   c.state.alarms_reported |= bit;
-  tell(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm), static_cast<std::uint64_t>(joint),
+  emit(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm), static_cast<std::uint64_t>(joint),
        value);
 }
 
-/// Tells an alarm and goes to FaultStop on the path, or with drives that are homing told to stop;
-/// one that is going on goes on.
+/// Reports an alarm and enters FaultStop: on the path, or by commanding drives that are homing to
+/// stop. A FaultStop that is going on continues.
 inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexcept {
   report_alarm(c, alarm, joint, value);
   if (c.state.state == State::kFaultStop) return;
@@ -339,7 +339,7 @@ inline void supervise(Cycle& c) noexcept {
   const bool is_bridged = c.in.lost_periods <= static_cast<std::uint32_t>(c.machine.bridge_cycles);
   if (c.in.lost_periods > 0) {
     c.state.periods_lost += c.in.lost_periods;
-    tell(c, EventCode::kPeriodsLost, c.in.lost_periods, is_bridged ? 1 : 0);
+    emit(c, EventCode::kPeriodsLost, c.in.lost_periods, is_bridged ? 1 : 0);
   }
   if (!is_enabled(c.state.state)) return;
   if (!is_bridged) {

@@ -18,7 +18,7 @@ struct LaiTable {
   double b1 = 0, a2 = 0, a3 = 0, l3 = 0, l4 = 0, b5 = 0, l5 = 0;
 };
 
-/// Returns what of the table can be told from outside, eq. 2.1. Proof: tests/golden.
+/// Returns what of the table can be measured from outside, eq. 2.1. Proof: tests/golden.
 [[nodiscard]] constexpr LaiKinematics lai_from_table(const LaiTable& table) noexcept {
   return {.pivot_mm = table.l5,
           .e_mm = table.a3 + table.b5 + table.l4,

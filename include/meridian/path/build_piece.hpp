@@ -14,7 +14,7 @@
 namespace meridian {
 
 /// A straight way of the tip with the axis on the great circle. The axes are unit vectors and not
-/// opposite (find_great_circle() tells).
+/// opposite (find_great_circle() checks it).
 [[nodiscard]] PathPiece make_line(const ToolPose& begin, const ToolPose& end) noexcept;
 
 /// The arc or helix of `block` from `begin`. Radius and begin are those of the actual begin; what

@@ -14,7 +14,7 @@
 #include "support/draws.hpp"
 
 /// Feed overrides above 100 %, planned for: joints keep their limits, the tip never exceeds the
-/// feed times the override in force, and the plan is the same again from what the planner told.
+/// feed times the override in force, and the plan is the same again from what the planner reported.
 namespace meridian::test::feed_raise {
 namespace {
 

@@ -206,11 +206,11 @@ TEST(RateFilter, KnowsThePlanTimeThatBrakingTakes) {
     filter.reset(unit(draw));
     filter.aim(unit(draw));
     (void)filter.advance(0.3 * unit(draw));
-    const double told = filter.plan_time_to_rest();
+    const double predicted = filter.plan_time_to_rest();
     filter.aim(0);
     double passed = 0;
     while (!filter.is_settled()) passed += filter.advance(1e-3);
-    EXPECT_NEAR(told, passed, 1e-12);
+    EXPECT_NEAR(predicted, passed, 1e-12);
   }
 }
 

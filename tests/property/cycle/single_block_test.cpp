@@ -16,7 +16,7 @@ namespace meridian::test::single_block {
 namespace {
 
 /// Sequences of the events with that code, in order.
-std::vector<std::uint64_t> told(const CycleWorld& world, EventCode code) {
+std::vector<std::uint64_t> sequences_of(const CycleWorld& world, EventCode code) {
   std::vector<std::uint64_t> out;
   for (const Event& event : world.events) {
     if (event.code == code) out.push_back(event.a);
@@ -38,8 +38,8 @@ TEST(SingleBlock, RestsBehindEveryBlockInOrderWithinTolerance) {
     EXPECT_TRUE(run.is_over());
     EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
     EXPECT_EQ(run.world.state.starvations, 0u);
-    EXPECT_EQ(told(run.world, EventCode::kBlockStarted), every_block(job));
-    EXPECT_EQ(told(run.world, EventCode::kBlockDone), every_block(job));
+    EXPECT_EQ(sequences_of(run.world, EventCode::kBlockStarted), every_block(job));
+    EXPECT_EQ(sequences_of(run.world, EventCode::kBlockDone), every_block(job));
     test::expect_within_limits(run.world, 0, false, worst);
     for (const auto& [sequence, joints] : rests) {
       const ToolPose at = forward(job.machine, job.machine.tool_length_mm, joints);

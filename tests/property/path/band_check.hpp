@@ -31,7 +31,7 @@ struct BandRun {
   }
 };
 
-/// The path through `blocks` from the first on; `take` tells after which blocks spans are taken.
+/// The path through `blocks` from the first on; `take` says after which blocks spans are taken.
 template <class Take>
 BandRun run_band(BandSpline& spline, const std::vector<ClBlock>& blocks,
                  const BandTolerance& tolerance, Take take) {
@@ -58,7 +58,7 @@ inline double distance(const ToolPose& a, const ToolPose& b, const BandTolerance
                   angle_between(a.axis, b.axis) / tolerance.axis_rad);
 }
 
-/// The programmed path: lines of the tip with the axis on the great circle, told apart from the
+/// The programmed path: lines of the tip with the axis on the great circle, independent of the
 /// smoother's own polyline.
 class ProgrammedPath {
  public:

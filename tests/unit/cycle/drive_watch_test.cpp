@@ -101,7 +101,7 @@ TEST(DriveWatch, IsAnAlarmOfItsOwnInFaultAndInDisabling) {
   }
 }
 
-TEST(DriveWatch, TellsTheNextTimeAgain) {
+TEST(DriveWatch, ReportsTheNextTimeAgain) {
   Idle idle(State::kFault);
   idle.run(1);
   for (int n = 1; n <= 3; ++n) {

@@ -27,9 +27,9 @@ TEST(Histogram, GivesPercentilesThatAreAtMostAThirtySecondTooLargeAndNeverTooSma
   for (const double share : {0.001, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0}) {
     const double rank = std::ceil(share * static_cast<double>(values.size()));
     const auto exact = static_cast<double>(values[static_cast<std::size_t>(rank) - 1]);
-    const auto told = static_cast<double>(histogram.percentile_ns(share));
-    EXPECT_GE(told, exact) << share;
-    EXPECT_LE(told, exact * (1 + 1.0 / 32)) << share;
+    const auto reported = static_cast<double>(histogram.percentile_ns(share));
+    EXPECT_GE(reported, exact) << share;
+    EXPECT_LE(reported, exact * (1 + 1.0 / 32)) << share;
   }
   EXPECT_EQ(histogram.max_ns(), values.back());
 }
@@ -87,7 +87,7 @@ TEST(Histogram, CountsWhatALateOneKeptFromBeingMeasured) {
   EXPECT_EQ(endless.count(), 1U + Histogram::kMaxOmitted);
 }
 
-TEST(Histogram, TellsWhatWasCountedSinceACopy) {
+TEST(Histogram, HoldsWhatWasCountedSinceACopy) {
   Histogram whole;
   for (int i = 1; i <= 100; ++i) whole.record(i * 1000);
   const Histogram before = whole;

@@ -74,9 +74,9 @@ class Homed : public testing::Test {
   std::uint32_t last_mask = 0;
   std::vector<int> order;  ///< in which drives began to search
   int broken = -1, lost = -1;
-  int failed_before = -1;  ///< still tells the error of the time before until it searches
+  int failed_before = -1;  ///< still reports its previous error until it searches
   int late = -1;           ///< changes its mode 20 cycles after the others
-  int coast = 0;           ///< cycles that drives take to stand when they are told to
+  int coast = 0;           ///< cycles that drives take to stand when they are halted
   double sag = 0;          ///< by which drive 2 is behind the setpoints that it follows
   bool is_deaf = false, keeps_error = false;
 };
@@ -130,7 +130,7 @@ TEST_F(Homed, ADriveThatFindsNoReferenceEndsItWithAnAlarmAndWithoutAFault) {
   EXPECT_EQ(order, (std::vector<int>{0, 1})) << "who came after it did not begin";
 }
 
-TEST_F(Homed, ADriveThatSearchesTooLongIsTold) {
+TEST_F(Homed, ADriveThatSearchesTooLongIsReported) {
   hand.world.state.options.homing_timeout_s = 0.5;
   lost = 0;
   home(3);
@@ -140,7 +140,7 @@ TEST_F(Homed, ADriveThatSearchesTooLongIsTold) {
   EXPECT_GT(alarm().x, 0.5);
 }
 
-TEST_F(Homed, DrivesThatKnowNoHomingModeAreTold) {
+TEST_F(Homed, DrivesThatKnowNoHomingModeAreReported) {
   is_deaf = true;
   home(16);
   ASSERT_TRUE(run_until(State::kReady, 5));

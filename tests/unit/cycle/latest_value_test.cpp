@@ -28,7 +28,7 @@ TEST(LatestValue, KeepsOnlyTheNewest) {
   EXPECT_EQ(value, 5);
 }
 
-TEST(LatestValue, TellsEachValueOnceAndKeepsIt) {
+TEST(LatestValue, ReportsEachValueOnceAndKeepsIt) {
   LatestValue<int> port;
   port.store(3);
   EXPECT_TRUE(port.refresh());

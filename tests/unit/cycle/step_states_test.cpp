@@ -263,7 +263,7 @@ TEST(Step, OverridesOutOfRangeAreRefusedAndThoseInForceStay) {
   EXPECT_EQ(p.world.state.rapid_override, 1.0);
 }
 
-TEST(Step, TakesAnOverrideUpToTheMachinesHighestAndTellsThePlanner) {
+TEST(Step, AcceptsAnOverrideUpToTheMachinesMaximumAndReportsItToThePlanner) {
   Program p;
   p.world.machine.max_feed_override = 1.2;
   p.world.command(Verb::kFeedOverride, 1.2);

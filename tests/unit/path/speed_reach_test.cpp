@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// A straight line of cuts along x, one vertex each, which ask for what they are told to.
+/// A straight line of cuts along x, one vertex each, each with the feed that the test gives it.
 class Line {
  public:
   Line() { line_->begin({Vector3::Zero(), Vector3::UnitZ()}, {}); }
