@@ -15,7 +15,7 @@
 namespace meridian::panel {
 namespace {
 
-/// Cyclic topics keep so many samples between two polls: a quarter of a second at 2 kHz.
+/// Cyclic topics keep so many samples between two statuses: a quarter of a second at 2 kHz.
 constexpr int kDepth = 512;
 /// A service speaks twenty times a second; one that was silent for so long is gone.
 constexpr std::chrono::milliseconds kSilent{1500};
@@ -107,15 +107,16 @@ void MachineWatch::take_machine() {
 }
 
 void MachineWatch::take_motion() {
-  dds::SetpointSample setpoint;
-  while (setpoints_.take(setpoint)) {
-    const bool is_its = motion_ && status_ &&
-                        setpoint.crc == dds::setpoint_crc(setpoint.setpoint, status_->service_id);
-    if (is_its) motion_->add(setpoint.setpoint);
+  std::vector<Setpoint> setpoints;
+  dds::SetpointSample sample;
+  while (setpoints_.take(sample)) {
+    const bool is_its = sample.crc == dds::setpoint_crc(sample.setpoint, status_->service_id);
+    if (is_its) setpoints.push_back(sample.setpoint);
   }
+  motion_->add(setpoints, status_->tool_length_mm);
   dds::DriveFeedback feedback;
   while (feedbacks_.take(feedback)) {
-    if (motion_) motion_->add_feedback(feedback.cycle_seen, feedback.joint_mask, feedback.position);
+    motion_->add_feedback(feedback.cycle_seen, feedback.joint_mask, feedback.position);
   }
 }
 
@@ -138,6 +139,7 @@ void MachineWatch::take_status() {
     next_.reset();
   }
   if (!model_ || !machine_ || machine_->service_id != status_->service_id) return;
+  take_motion();
   auxiliaries_.follow(*status_);
   if (news_.add(*status_, *model_, std::chrono::system_clock::now())) {
     hub_.publish(Hub::kNews, news_text(news_));
@@ -185,7 +187,6 @@ void MachineWatch::publish_metrics() {
 
 void MachineWatch::poll() {
   take_machine();
-  take_motion();
   take_actions();
   take_history();  // what was before stands before what is said now
   take_status();

@@ -54,6 +54,7 @@ class MachineWatch {
   using Clock = std::chrono::steady_clock;
 
   void take_machine();
+  /// What was sent since the status before: the newest one says with which tool.
   void take_motion();
   void take_status();
   void take_latency();

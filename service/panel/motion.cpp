@@ -10,6 +10,14 @@ namespace {
 /// Frames are made 25 times a second; of a page that was silent for longer the rest is left out.
 constexpr std::size_t kMaxTrail = 512, kMaxSamples = 1024;
 
+/// Where the last rest of `setpoints` begins; 0: nothing rests in them.
+[[nodiscard]] std::size_t last_rest(std::span<const Setpoint> setpoints) {
+  for (std::size_t i = setpoints.size(); i-- > 1;) {
+    if (setpoints[i].position == setpoints[i - 1].position) return i;
+  }
+  return 0;
+}
+
 }  // namespace
 
 Motion::Motion(const MachineModel& model, int trail_every)
@@ -22,6 +30,14 @@ void Motion::set_tool_length(double tool_length_mm) noexcept {
   if (tool_length_mm == tool_length_mm_) return;
   tool_length_mm_ = tool_length_mm;
   if (joints_) tip_ = forward(model_, tool_length_mm_, *joints_).tip;
+}
+
+void Motion::add(std::span<const Setpoint> setpoints, double tool_length_mm) {
+  const bool is_changed = tool_length_mm != tool_length_mm_;
+  const std::size_t change = is_changed ? last_rest(setpoints) : 0;
+  for (const Setpoint& setpoint : setpoints.first(change)) add(setpoint);
+  set_tool_length(tool_length_mm);
+  for (const Setpoint& setpoint : setpoints.subspan(change)) add(setpoint);
 }
 
 void Motion::add(const Setpoint& setpoint) {

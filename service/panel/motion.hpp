@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "meridian/cycle/cycle_data.hpp"
@@ -34,10 +35,11 @@ class Motion {
   /// `model` must live on. Every `trail_every` cycles a point of the trail.
   explicit Motion(const MachineModel& model, int trail_every = 8);
 
-  /// The tip is now at the end of another tool: that is no path.
-  void set_tool_length(double tool_length_mm) noexcept;
   /// Takes the next setpoint; older ones than the last are passed over.
   void add(const Setpoint& setpoint);
+  /// Takes the setpoints since the status before; `tool_length_mm` is the tool at their end. Tools
+  /// change at rest, so another tool than before is in use from the last rest on.
+  void add(std::span<const Setpoint> setpoints, double tool_length_mm);
   /// Takes feedback: `cycle_seen` names the setpoint that it is compared with.
   void add_feedback(std::uint64_t cycle_seen, std::uint32_t joint_mask,
                     const JointVector& position);
@@ -58,6 +60,8 @@ class Motion {
     JointVector position{};
   };
   void differentiate(const JointVector& joints, bool is_next);
+  /// The tip is now at the end of another tool: that is no path.
+  void set_tool_length(double tool_length_mm) noexcept;
 
   const MachineModel& model_;
   int trail_every_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 
 #include "service/machine/file/machine_file.hpp"
@@ -119,9 +120,25 @@ TEST(Motion, ALostCycleMakesNoFalseAcceleration) {
 TEST(Motion, AnotherToolIsNoFeed) {
   Motion motion(trunnion());
   motion.add(setpoint_at(1, 0));
-  motion.set_tool_length(trunnion().tool_length_mm + 25);
-  motion.add(setpoint_at(2, 0.1));
+  motion.add(std::array{setpoint_at(2, 0.1)}, trunnion().tool_length_mm + 25);
   EXPECT_NEAR(motion.samples().back().feed_mm_per_s, 100, 1e-6);
+}
+
+TEST(Motion, AToolChangesAtTheLastRest) {
+  Motion motion(trunnion(), 1);
+  const double before = trunnion().tool_length_mm;
+  motion.add(std::array{setpoint_at(1, 0)}, before);
+  motion.add(std::array{setpoint_at(2, 0.1), setpoint_at(3, 0.2), setpoint_at(4, 0.2),
+                        setpoint_at(5, 0.3)},
+             before + 25);
+  const auto& trail = motion.trail();
+  ASSERT_EQ(trail.size(), 5U);
+  for (std::size_t i = 1; i < 3; ++i) {
+    EXPECT_NEAR(trail[i].pose.tip[2], trail[0].pose.tip[2], 1e-12) << i;
+  }
+  for (std::size_t i = 3; i < 5; ++i) {
+    EXPECT_NEAR(trail[i].pose.tip[2], trail[0].pose.tip[2] - 25, 1e-9) << i;
+  }
 }
 
 TEST(Motion, TheTrailIsForwardKinematics) {
