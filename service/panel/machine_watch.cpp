@@ -67,6 +67,7 @@ void MachineWatch::adopt(const dds::MachineInfo& info) {
                            info.soft_limits, meshes);
   } catch (const config::ConfigError&) {
     // Its file does not fit the topic, or another version wrote it: shown without a picture.
+    if (!motion_) model_ = std::make_unique<MachineModel>(stream::named_model(info));
   }
   {
     const std::lock_guard lock(machine_mutex_);
@@ -139,14 +140,19 @@ void MachineWatch::take_status() {
     next_.reset();
   }
   if (!model_ || !machine_ || machine_->service_id != status_->service_id) return;
-  take_motion();
   auxiliaries_.follow(*status_);
   if (news_.add(*status_, *model_, std::chrono::system_clock::now())) {
     hub_.publish(Hub::kNews, news_text(news_));
   }
-  hub_.publish(Hub::kFrame, frame_text(*status_, *model_, status_->tool_length_mm, *motion_,
-                                         auxiliaries_));
+  hub_.publish(Hub::kFrame, next_frame());
+}
+
+std::string MachineWatch::next_frame() {
+  if (!motion_) return bare_frame_text(*status_, *model_, auxiliaries_);
+  take_motion();
+  std::string text = frame_text(*status_, *model_, *motion_, auxiliaries_);
   motion_->clear();
+  return text;
 }
 
 void MachineWatch::take_latency() {

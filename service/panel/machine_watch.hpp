@@ -57,6 +57,8 @@ class MachineWatch {
   /// What was sent since the status before: the newest one says with which tool.
   void take_motion();
   void take_status();
+  /// The frame of the newest status.
+  [[nodiscard]] std::string next_frame();
   void take_latency();
   void take_actions();
   /// What the audit log says, once a second: all that it knows of the time before the panel; of
@@ -83,8 +85,8 @@ class MachineWatch {
   std::optional<dds::MachineInfo> next_;  ///< of a service that is not followed yet
   std::optional<dds::Status> status_;
   std::optional<dds::Latency> latency_;
-  std::unique_ptr<MachineModel> model_;  ///< motion_ refers to it
-  std::unique_ptr<Motion> motion_;
+  std::unique_ptr<MachineModel> model_;  ///< motion_ refers to it; without that, names alone
+  std::unique_ptr<Motion> motion_;       ///< nothing: the kinematics are not known
   std::vector<probe::Budget> budgets_ = known_budgets();
   News news_;
   Auxiliaries auxiliaries_;

@@ -1,9 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/protocol/served_model.hpp"
 
+#include <algorithm>
+
 #include "service/machine/file/machine_file.hpp"
 
 namespace meridian::stream {
+namespace {
+
+[[nodiscard]] JointSpec spec_of(const dds::JointInfo& joint) {
+  JointSpec spec;
+  spec.name = joint.name;
+  spec.is_rotary = joint.is_rotary;
+  spec.is_endless = joint.is_endless;
+  spec.limits = joint.limits;
+  spec.home = joint.home;
+  return spec;
+}
+
+}  // namespace
 
 MachineModel whole_model(const dds::MachineInfo& info) {
   MachineModel model = config::parse_machine(info.machine_file, info.name);
@@ -22,6 +37,19 @@ MachineModel whole_model(const dds::MachineInfo& info) {
 MachineModel served_model(const dds::MachineInfo& info) {
   MachineModel model = whole_model(info);
   shrink_travel(model, travel_under(info.soft_limits, model));
+  return model;
+}
+
+MachineModel named_model(const dds::MachineInfo& info) {
+  MachineModel model;
+  model.name = info.name;
+  model.cycle_ns = info.cycle_ns;
+  model.joint_count = static_cast<int>(std::min<std::size_t>(info.joint_count, kMaxJoints));
+  std::transform(info.joints.begin(), info.joints.end(), model.joints.begin(), spec_of);
+  std::transform(info.stage_drives.begin(), info.stage_drives.end(), model.stage_drives.begin(),
+                 spec_of);
+  // Which stage it is makes no difference to its names.
+  if (info.stage_drive_count > 0) model.stage.kind = StageKind::kTwoSlider;
   return model;
 }
 

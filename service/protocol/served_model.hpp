@@ -16,6 +16,10 @@ namespace meridian::stream {
 /// The same with the travel that soft limits leave it, by which programs are checked.
 [[nodiscard]] MachineModel served_model(const dds::MachineInfo& info);
 
+/// Names, kinds and limits of its joints and drives alone, for who shows a machine whose file did
+/// not fit the topic: it has no kinematics.
+[[nodiscard]] MachineModel named_model(const dds::MachineInfo& info);
+
 /// Where the zeros of its work frames lie in the frame of the kinematics, mm, by their numbers.
 [[nodiscard]] std::map<int, Vector3> served_work_zeros(const dds::MachineInfo& info);
 

@@ -125,5 +125,21 @@ TEST_F(MachineWatchTest, DrawsEverySetpointWithTheToolOfItsOwnTime) {
   EXPECT_NEAR(shorter[0], forward(model_, model_.tool_length_mm, JointVector{}).tip[2], 1e-6);
 }
 
+TEST_F(MachineWatchTest, AMachineFileThatIsTooLongLeavesStateAlarmAndVerbs) {
+  info_.machine_file.clear();
+  info_.joint_count = 1;
+  info_.joints[0].name = "X";
+  publish_machine();
+  EXPECT_TRUE(json::parse(*hub_.newest(Hub::kMachine)).at("scene").is_null());
+  status_.state = State::kFault;
+  status_.alarm = Alarm::kFollowingError;
+  status_.alarm_joint = 0;
+  const json frame = next_frame();
+  EXPECT_EQ(frame.at("state"), "Fault");
+  EXPECT_NE(frame.at("alarm").at("text").get<std::string>().find("X"), std::string::npos);
+  EXPECT_EQ(frame.at("can").at(0), "reset");
+  EXPECT_FALSE(frame.contains("tip"));
+}
+
 }  // namespace
 }  // namespace meridian::panel

@@ -118,23 +118,30 @@ void add_health(json& out, const dds::Status& status) {
   out["fault_mask"] = status.drives_fault_mask;
 }
 
-}  // namespace
+void add_motion(json& out, const dds::Status& status, const MachineModel& model,
+                const Motion& motion) {
+  const Pose<double> pose = forward(model, status.tool_length_mm, status.joints);
+  out["tip"] = pose.tip;
+  out["axis"] = pose.axis;
+  out["joints"] = to_json(status.joints, model.joint_count);
+  out["now"] = motion.joints() ? to_json(*motion.joints(), model.joint_count) : json(nullptr);
+  out["following"] = to_json(motion.following(), model.joint_count);
+  out["shares"] = shares_json(motion, model.joint_count);
+  out["trail"] = trail_json(motion);
+  out["samples"] = samples_json(motion, model.joint_count);
+}
 
-std::string frame_text(const dds::Status& status, const MachineModel& model, double tool_length_mm,
-                       const Motion& motion, const Auxiliaries& auxiliaries) {
-  const Pose<double> pose = forward(model, tool_length_mm, status.joints);
+[[nodiscard]] json bare_frame(const dds::Status& status, const MachineModel& names,
+                              const Auxiliaries& auxiliaries) {
   // 64-bit numbers as text: a page has doubles.
   json out = {{"t", "frame"},
               {"service", std::to_string(status.service_id)},
               {"sequence", status.status_sequence},
               {"epoch", status.epoch},
               {"state", state_name(status.state)},
-              {"alarm", alarm_json(status, model)},
+              {"alarm", alarm_json(status, names)},
               {"message", status.message},
-              {"tip", pose.tip},
-              {"axis", pose.axis},
-              {"joints", to_json(status.joints, model.joint_count)},
-              {"tool_length", tool_length_mm},
+              {"tool_length", status.tool_length_mm},
               {"tool", status.tool},
               {"work_frame", status.work_frame},
               {"spindle", auxiliaries.spindle()},
@@ -144,18 +151,27 @@ std::string frame_text(const dds::Status& status, const MachineModel& model, dou
               {"feed_achieved", status.feed_achieved_mm_per_min},
               {"feed_override", status.feed_override},
               {"rapid_override", status.rapid_override},
-              {"limiting", held_by(status, model)},
+              {"limiting", held_by(status, names)},
               {"at_pole", status.is_at_pole},
               {"branch", status.branch}};
   out["can"] = allowed_json(status.state);
   add_program(out, status);
   add_health(out, status);
-  out["now"] = motion.joints() ? to_json(*motion.joints(), model.joint_count) : json(nullptr);
-  out["following"] = to_json(motion.following(), model.joint_count);
-  out["shares"] = shares_json(motion, model.joint_count);
-  out["trail"] = trail_json(motion);
-  out["samples"] = samples_json(motion, model.joint_count);
+  return out;
+}
+
+}  // namespace
+
+std::string frame_text(const dds::Status& status, const MachineModel& model, const Motion& motion,
+                       const Auxiliaries& auxiliaries) {
+  json out = bare_frame(status, model, auxiliaries);
+  add_motion(out, status, model, motion);
   return json_text(out);
+}
+
+std::string bare_frame_text(const dds::Status& status, const MachineModel& names,
+                            const Auxiliaries& auxiliaries) {
+  return json_text(bare_frame(status, names, auxiliaries));
 }
 
 std::string news_text(const News& news) {

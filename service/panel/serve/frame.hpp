@@ -13,10 +13,13 @@
 namespace meridian::panel {
 
 /// {"t":"frame", ...}: one status, with tip and tool axis by forward() and what `motion` gathered.
-/// `tool_length_mm` is the tool in the spindle; `auxiliaries` what is asked of spindle and coolant.
+/// `auxiliaries` is what is asked of spindle and coolant.
 [[nodiscard]] std::string frame_text(const dds::Status& status, const MachineModel& model,
-                                     double tool_length_mm, const Motion& motion,
-                                     const Auxiliaries& auxiliaries = {});
+                                     const Motion& motion, const Auxiliaries& auxiliaries = {});
+
+/// The same without anything that takes kinematics, of which `names` has none.
+[[nodiscard]] std::string bare_frame_text(const dds::Status& status, const MachineModel& names,
+                                          const Auxiliaries& auxiliaries = {});
 
 /// {"t":"news", "items": [...]}
 [[nodiscard]] std::string news_text(const News& news);

@@ -69,9 +69,12 @@ export class Display {
     this.frame = frame;
     document.body.dataset.tone = kTones[frame.state] ?? "off";
     setText(byId("state"), frame.state === "FaultStop" ? "Fault stop" : frame.state);
-    this.setPosition(frame);
+    if (frame.joints) {
+      this.setPosition(frame);
+      this.setJoints(frame);
+    }
+    this.setTool(frame);
     this.setFeed(frame);
-    this.setJoints(frame);
     this.setProgram(frame);
     this.setHealth(frame);
     const alarm = byId("alarm");
@@ -82,6 +85,9 @@ export class Display {
   setPosition(frame) {
     ["x", "y", "z"].forEach((name, i) => setText(byId(`tip-${name}`), fixed(frame.tip[i], 3)));
     ["i", "j", "k"].forEach((name, i) => setText(byId(`axis-${name}`), fixed(frame.axis[i], 4)));
+  }
+
+  setTool(frame) {
     setText(byId("tool-length"), `${frame.tool > 0 ? `${frame.tool}, ` : ""}${fixed(frame.tool_length, 3)} mm`);
     setText(byId("work-frame"), frame.work_frame > 0 ? String(frame.work_frame) : "machine file");
   }

@@ -72,6 +72,7 @@ const receive = {
   machine(message) {
     display.setMachine(message);
     byId("no-picture").hidden = message.scene !== null;
+    byId("jog-toggle").disabled = message.scene === null;
     panel.operate.setMachine(message.scene);
     if (!message.scene) return;
     view.setMachine(message.scene);
@@ -85,11 +86,8 @@ const receive = {
     panel.operate.setFrame(frame);
     panel.jog.setFrame(frame);
     panel.program.setFrame(frame);
-    panel.scope.setFrame(frame);
     view.setAtPole(frame.at_pole);
-    view.setJoints(frame.now ?? frame.joints, frame.tool_length);
-    const top = Math.max(frame.feed_programmed, 1);
-    view.trail.add(frame.trail, frame.feed_achieved / top);
+    if (frame.joints) setMotion(frame);
   },
   news: (message) => display.setNews(message.items),
   reply: (message) => panel.operate.setReply(message),
@@ -108,6 +106,14 @@ const receive = {
     display.setSilent("Silent");
   },
 };
+
+// What takes kinematics: a machine whose file is too long for its topic has none here.
+function setMotion(frame) {
+  panel.scope.setFrame(frame);
+  view.setJoints(frame.now ?? frame.joints, frame.tool_length);
+  const top = Math.max(frame.feed_programmed, 1);
+  view.trail.add(frame.trail, frame.feed_achieved / top);
+}
 
 function connect() {
   panel.operate = new Operate(link, () => panel.frame);

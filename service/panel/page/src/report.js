@@ -130,7 +130,8 @@ export class Report {
     const slice = (name, width) => columns[name].slice(i * width, (i + 1) * width);
     const q = slice("joints", joints.length), share = slice("shares", joints.length);
     this.view.setJoints(q, columns.tool[i]);
-    this.display.setPosition({ tip: slice("tip", 3), axis: slice("axis", 3), tool_length: columns.tool[i] });
+    this.display.setPosition({ tip: slice("tip", 3), axis: slice("axis", 3) });
+    this.display.setTool({ tool_length: columns.tool[i] });
     setText(byId("feed"), fixed(columns.feed[i], 0));
     setText(byId("feed-programmed"), columns.programmed[i] > 0 ? `of ${fixed(columns.programmed[i], 0)}` : "");
     setShare(byId("feed-bar"), columns.programmed[i] > 0 ? Math.min(1, columns.feed[i] / columns.programmed[i]) : 0);
