@@ -46,6 +46,20 @@ class RosBridgeOnTheWire : public testing::Test {
       early_.push_back(*line);
     ASSERT_TRUE(line) << "the reader of Fast DDS did not start";
   }
+  void wait_for_reader() const {
+    const auto patience = std::chrono::steady_clock::now() + seconds(20);
+    while (bridge_.joint_state_readers() == 0 && std::chrono::steady_clock::now() < patience) {
+      std::this_thread::sleep_for(milliseconds(20));
+    }
+    ASSERT_EQ(bridge_.joint_state_readers(), 1);
+    std::this_thread::sleep_for(milliseconds(500));  // the reader has heard of the writer too
+  }
+  void step_to_the_end() {
+    for (int n = 1; n <= kStates; ++n) {
+      step(n);
+      std::this_thread::sleep_for(milliseconds(2));
+    }
+  }
   [[nodiscard]] JointVector position_of(int step) const {
     JointVector out{};
     for (int i = 0; i < model_.joint_count; ++i) {
@@ -153,16 +167,8 @@ class RosBridgeOnTheWire : public testing::Test {
 };
 
 TEST_F(RosBridgeOnTheWire, FastDdsReadsEveryJointStateAndFrameWithItsNumbers) {
-  const auto patience = std::chrono::steady_clock::now() + seconds(20);
-  while (bridge_.joint_state_readers() == 0 && std::chrono::steady_clock::now() < patience) {
-    std::this_thread::sleep_for(milliseconds(20));
-  }
-  ASSERT_EQ(bridge_.joint_state_readers(), 1);
-  std::this_thread::sleep_for(milliseconds(500));  // the reader has heard of the writer too
-  for (int n = 1; n <= kStates; ++n) {
-    step(n);
-    std::this_thread::sleep_for(milliseconds(2));
-  }
+  wait_for_reader();
+  step_to_the_end();
   const RosCounts counts = bridge_.counts();
   EXPECT_EQ(counts.joint_states, static_cast<std::uint64_t>(kStates));
   EXPECT_EQ(counts.refused, 0U);
@@ -200,6 +206,23 @@ TEST_F(RosBridgeOnTheWire, FastDdsReadsEveryJointStateAndFrameWithItsNumbers) {
   EXPECT_EQ(statics, 1) << "for who comes late";
   EXPECT_EQ(descriptions, 1);
   EXPECT_GE(diagnostics, 1);
+}
+
+TEST_F(RosBridgeOnTheWire, TheToolFrameIsAtTheTipOfTheToolInTheSpindle) {
+  dds::Writer<dds::Status> statuses(service_);
+  wait_for_reader();
+  dds::Status status;
+  status.service_id = kService;
+  model_.tool_length_mm += 40;
+  status.tool_length_mm = model_.tool_length_mm;
+  ASSERT_TRUE(statuses.write(status));
+  step_to_the_end();
+  std::string newest;
+  for (const std::string& line : lines_to_the_end()) {
+    if (line.rfind("tf_static ", 0) == 0) newest = line;
+  }
+  std::istringstream in(newest.substr(newest.find(' ') + 1));
+  expect_frames(in, JointVector{}, Frames::kFixed);
 }
 
 }  // namespace

@@ -62,17 +62,30 @@ void RosBridge::publish_joints(std::int64_t system_ns) {
   publisher_.publish_joints(system_ns, joints, velocity);
 }
 
+std::optional<MachineModel> RosBridge::newly_served() {
+  dds::MachineInfo info;
+  if (!followed_machine_.take(machines_, info) || info.machine_file.empty()) return std::nullopt;
+  try {
+    return stream::served_model(info);
+  } catch (const config::ConfigError&) {
+    return std::nullopt;  // another version wrote it: what was described first stays
+  }
+}
+
+void RosBridge::describe(std::int64_t system_ns) {
+  const MachineModel& described = publisher_.model();
+  std::optional<MachineModel> model = newly_served();
+  // The machine topic has the tool of the machine file, the status the one in the spindle.
+  const double tool_length_mm = status_ ? status_->tool_length_mm : described.tool_length_mm;
+  if (!model && tool_length_mm == described.tool_length_mm) return;
+  if (!model) model = described;
+  model->tool_length_mm = tool_length_mm;
+  if (is_outdated(described, *model)) publisher_.describe(*model, system_ns);
+}
+
 void RosBridge::work(BridgeTime now) {
   take(now);
-  dds::MachineInfo info;
-  if (followed_machine_.take(machines_, info) && !info.machine_file.empty()) {
-    try {
-      const MachineModel model = stream::served_model(info);
-      if (is_outdated(publisher_.model(), model)) publisher_.describe(model, now.system_ns);
-    } catch (const config::ConfigError&) {
-      // Another version wrote it: what was described first stays.
-    }
-  }
+  describe(now.system_ns);
   if (is_news_) publish_joints(now.system_ns);
   is_news_ = false;
   if (now.steady_ns - diagnosed_ns_ < kDiagnosticsPeriod_ns) return;

@@ -38,6 +38,10 @@ class RosBridge {
 
  private:
   void take(BridgeTime now);
+  /// The machine as its service has it, where it said so since the last step.
+  [[nodiscard]] std::optional<MachineModel> newly_served();
+  /// Describes the machine anew where its frame or the tool in its spindle is another.
+  void describe(std::int64_t system_ns);
   void publish_joints(std::int64_t system_ns);
 
   dds::Reader<dds::MachineInfo> machines_;
