@@ -13,6 +13,8 @@ const kConfirmed = {
   rapid_override: (frame, share) => (frame.session && frame.rapid_override === 0 && share > 0 ? goesOn : null),
 };
 
+export const kOnlyWatches = "This panel only watches.";
+
 export class Operate {
   constructor(link, seen) {
     this.link = link;
@@ -41,7 +43,7 @@ export class Operate {
     });
     // A hold is never wrong.
     document.addEventListener("keydown", (event) => {
-      if (event.key === "Escape" && !this.dialog.open) this.ask("hold", 0);
+      if (event.key === "Escape" && !this.dialog.open && !this.isWatching) this.ask("hold", 0);
     });
   }
 
@@ -98,9 +100,9 @@ export class Operate {
     for (const button of document.querySelectorAll("[data-verb]")) {
       button.disabled = !this.isOperator || !frame.can.includes(button.dataset.verb);
     }
-    // Stops are everybody's.
+    // Stops are everybody's who may ask for anything.
     for (const verb of ["hold", "abort"]) {
-      document.querySelector(`[data-verb="${verb}"]`).disabled = !frame.can.includes(verb);
+      document.querySelector(`[data-verb="${verb}"]`).disabled = this.isWatching || !frame.can.includes(verb);
     }
     for (const button of document.querySelectorAll("[data-switch]")) {
       button.disabled = !this.isOperator || !frame.can.includes(button.dataset.switch);
@@ -121,9 +123,10 @@ export class Operate {
 
   setOperator(who) {
     this.isOperator = who === "you" || who === "nobody";
+    this.isWatching = who === "watching";
     document.body.dataset.operator = who;
     byId("take-over").hidden = who !== "another";
-    setText(byId("who"), { another: "Another page operates this machine.", watching: "This panel only watches." }[who] ?? "");
+    setText(byId("who"), { another: "Another page operates this machine.", watching: kOnlyWatches }[who] ?? "");
   }
 
   setReply(message) {

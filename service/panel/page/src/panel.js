@@ -95,7 +95,7 @@ const receive = {
   program: (message) => panel.program.setProgram(message),
   operator(message) {
     panel.operate.setOperator(message.who);
-    panel.program.setKey(message.key);
+    panel.program.setOperator(message);
   },
   latency(message) {
     display.setLatency(message.stages);

@@ -4,6 +4,7 @@ import { byId, element, setText } from "./dom.js";
 import { legendRows } from "./legend.js";
 import { Listing } from "./listing.js";
 import { heldName } from "./held.js";
+import { kOnlyWatches } from "./operate.js";
 import { Path } from "./path.js";
 import { PlanOffset } from "./plan_offset.js";
 import { ProgramPath } from "./program_path.js";
@@ -37,7 +38,7 @@ export class Program {
   }
 
   wireDrops() {
-    const show = (isShown) => (byId("drop").hidden = !isShown);
+    const show = (isShown) => (byId("drop").hidden = !isShown || this.panel.operate.isWatching);
     const hasFile = (event) => event.dataTransfer?.types.includes("Files");
     window.addEventListener("dragover", (event) => {
       if (!hasFile(event)) return;
@@ -53,12 +54,14 @@ export class Program {
     });
   }
 
-  setKey(key) {
+  setOperator({ who, key }) {
     this.key = key;
+    if (who === "watching") setText(byId("program-hint"), `${kOnlyWatches} Programs are checked and loaded on one that operates.`);
   }
 
   async send(file) {
     const { operate, tabs } = this.panel;
+    if (operate.isWatching) return operate.report(false, `${kOnlyWatches} The program was not sent.`);
     tabs.show("tab-program");
     byId("program-line").value = "0";
     try {
@@ -67,6 +70,7 @@ export class Program {
     } catch {
       operate.report(false, "the panel does not answer: the program was not sent");
     }
+    return undefined;
   }
 
   // ---- what the panel's process says of it
