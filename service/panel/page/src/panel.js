@@ -4,6 +4,7 @@ import { Actions } from "./actions.js";
 import { Display } from "./display.js";
 import { Jog } from "./jog.js";
 import { Link } from "./link.js";
+import { NoView } from "./no_view.js";
 import { Operate } from "./operate.js";
 import { Program } from "./program.js";
 import { Report } from "./report.js";
@@ -24,14 +25,32 @@ const link = embedded ? null : new Link((message) => receive[message.t]?.(messag
   display.setSilent("No link");
 });
 const display = new Display();
-const view = new View(byId("picture"), (hit) => {
+const view = makeView();
+const panel = { link, display, view, frame: null, sequence: 0 };
+window.meridian = panel;
+
+// ---- the picture
+function makeView() {
+  try {
+    return new View(byId("picture"), pick);
+  } catch (error) {
+    console.warn(error);
+    explainNoPicture("This browser has no WebGL, which the picture takes. All else on this page works.");
+    return new NoView();
+  }
+}
+
+function pick(hit) {
   if (hit?.isPath) return (panel.report ?? panel.program).pick(hit.index);
   const line = hit ? view.trail.lines[hit.index] : 0;
   byId("picked").textContent = line > 0 ? `line ${line}` : "";
   return undefined;
-});
-const panel = { link, display, view, frame: null, sequence: 0 };
-window.meridian = panel;
+}
+
+function explainNoPicture(text) {
+  byId("no-picture").hidden = text === "";
+  byId("no-picture").textContent = text;
+}
 
 // ---- dark and light
 function setTheme(theme) {
@@ -71,7 +90,7 @@ for (const button of document.querySelectorAll("[data-show]")) {
 const receive = {
   machine(message) {
     display.setMachine(message);
-    byId("no-picture").hidden = message.scene !== null;
+    if (view instanceof View) explainNoPicture(message.scene ? "" : "The machine's file is longer than its topic carries: no picture.");
     byId("jog-toggle").disabled = message.scene === null;
     panel.operate.setMachine(message.scene);
     if (!message.scene) return;
