@@ -31,6 +31,7 @@ enum class Rule : std::uint8_t {
   kBridge,
   kWatchdog,
   kRamp,
+  kKilled,
   kFaultStays,
   kFaultReset,
   kResetEdge,

@@ -148,58 +148,6 @@ void DriveCheck::check_watchdog() {
   check_stopping_distance(Rule::kRamp, last, velocity);
 }
 
-/// From the last setpoint to rest: the bridge, then the ramp.
-void DriveCheck::check_stopping_distance(Rule rule, double last, double velocity) {
-  const JointLimits& limits = drive_spec(player_.model(), static_cast<int>(mover_)).limits;
-  const double distance = direction_ * (player_.newest.position[mover_] - last);
-  const double bridge = velocity * CheckPlayer::kBridge * player_.dt_s();
-  const double ramp = velocity * velocity / (2 * limits.fault_acceleration);
-  const double slack = 8 * velocity * player_.dt_s();
-  if (distance < bridge + 0.4 * ramp || distance > bridge + 2 * ramp + slack) {
-    player_.find(rule, "it stopped " + std::to_string(distance) +
-                           " mm after the last setpoint; bridge " + std::to_string(bridge) +
-                           ", ramp " + std::to_string(ramp));
-  }
-}
-
-/// The service is gone in the motion, and starts again at once.
-void DriveCheck::check_restart() {
-  if (!walk_up()) return;
-  const double velocity = 0.5 * limit_;
-  player_.is_disturbed = false;
-  speed_up(velocity);
-  const double last = player_.target[mover_];
-  player_.end_service();
-  player_.tick();
-  player_.restart_service();
-  player_.say_word(0x06);
-  player_.flags = 0;
-  player_.stand();
-  const auto is_over = [this] {
-    return player_.are_all(DriveState::kFault) || player_.are_all(DriveState::kReadyToSwitchOn) ||
-           player_.are_all(DriveState::kSwitchOnDisabled);
-  };
-  const bool ends = player_.until(is_over, CheckPlayer::kPatience);
-  if (player_.are_all(DriveState::kReadyToSwitchOn)) {
-    return player_.find(Rule::kRestart, "its 06h was obeyed while the drives were on");
-  }
-  if (!ends || player_.newest.error[mover_] != drive::kErrorSetpointsStopped) {
-    player_.find(Rule::kGoneInMotion, !ends ? "it goes on without a service"
-                                            : "error " + in_hex(player_.newest.error[mover_]));
-  }
-  player_.ticks(100);
-  if (!player_.is_disturbed) check_stopping_distance(Rule::kGoneInMotion, last, velocity);
-  const auto is_obeyed = [this] { return player_.newest.service_id == CheckPlayer::kRestartedId; };
-  if (!player_.until(is_obeyed, CheckPlayer::kPatience)) {
-    const bool is_kept = player_.newest.service_id == CheckPlayer::kServiceId;
-    return player_.find(is_kept ? Rule::kFreesMaster : Rule::kRestart,
-                        "service_id " + std::to_string(player_.newest.service_id));
-  }
-  if (walk_up() && !player_.is_heard()) {
-    player_.find(Rule::kRestart, "its setpoints, which count anew, are not taken");
-  }
-}
-
 void DriveCheck::check_refused(Rule rule, std::uint16_t error, const Spoil& spoil) {
   if (!walk_up()) return;
   const double stood = player_.newest.position[mover_];

@@ -57,6 +57,7 @@ CheckReport DriveCheck::run(Operator operator_is) {
   step("others' commands", [this] { check_foreign_commands(); });
   step("bridge", [this] { check_bridge(); });
   step("setpoints that stay away", [this] { check_watchdog(); });
+  step("a service that is killed in motion", [this] { check_killed(); });
   step("reset of faults", [this] { check_reset(); });
   check_all_refused();
   step("begin", [this] { check_begin(); });

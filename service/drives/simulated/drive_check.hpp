@@ -43,6 +43,7 @@ class DriveCheck {
   void check_foreign_commands();
   void check_bridge();
   void check_watchdog();
+  void check_killed();
   void check_reset();
   void check_refused(Rule rule, std::uint16_t error, const Spoil& spoil);
   void check_all_refused();

@@ -43,11 +43,26 @@ TEST(DriveCheck, ANaiveClientThatOnlyCopiesPositionsBreaksEveryRuleOfSafety) {
   const CheckReport report = DriveCheck(model, drives).run(Operator::kThere);
   std::set<Rule> broken;
   for (const Finding& one : report.findings) broken.insert(one.rule);
-  for (const Rule rule :
-       {Rule::kNotEnabledSetpoint, Rule::kOrder, Rule::kDoubled, Rule::kChecksum, Rule::kLate,
-        Rule::kDryRun, Rule::kForeignSetpoint, Rule::kForeignCommand, Rule::kBridge,
-        Rule::kWatchdog, Rule::kNoNumber, Rule::kTravel, Rule::kVelocity, Rule::kStep, Rule::kBegin,
-        Rule::kEmergencyStop, Rule::kKeepsMaster, Rule::kRestart, Rule::kFreesMaster}) {
+  for (const Rule rule : {Rule::kNotEnabledSetpoint,
+                          Rule::kOrder,
+                          Rule::kDoubled,
+                          Rule::kChecksum,
+                          Rule::kLate,
+                          Rule::kDryRun,
+                          Rule::kForeignSetpoint,
+                          Rule::kForeignCommand,
+                          Rule::kBridge,
+                          Rule::kWatchdog,
+                          Rule::kKilled,
+                          Rule::kNoNumber,
+                          Rule::kTravel,
+                          Rule::kVelocity,
+                          Rule::kStep,
+                          Rule::kBegin,
+                          Rule::kEmergencyStop,
+                          Rule::kKeepsMaster,
+                          Rule::kRestart,
+                          Rule::kFreesMaster}) {
     EXPECT_TRUE(broken.contains(rule)) << text_of(rule).name << " of " << names(report);
   }
 }
@@ -83,6 +98,9 @@ constexpr Fault kFaults[] = {
     {"other-error", Rule::kWatchdog},
     {"no-ramp", Rule::kRamp},
     {"long-ramp", Rule::kRamp},
+    {"jumps-into-its-ramp", Rule::kKilled},
+    {"jumps-back-after-its-ramp", Rule::kKilled},
+    {"creeps-after-its-ramp", Rule::kKilled},
     {"resets-by-itself", Rule::kFaultStays},
     {"no-reset", Rule::kFaultReset},
     {"resets-by-level", Rule::kResetEdge},

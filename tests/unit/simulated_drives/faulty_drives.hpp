@@ -75,7 +75,7 @@ class FaultyDrives : public drives::CheckedDrives {
   std::uint64_t newest_ = 0, heard_ = 0, stuck_cycle_ = 0;
   std::optional<dds::SetpointSample> last_;
   std::uint16_t word_ = 0;
-  int periods_ = 0, mutes_ = 0;
+  int periods_ = 0, mutes_ = 0, in_ramp_ = 0, in_fault_ = 0;
 };
 
 inline drive::GroupSpec FaultyDrives::spec() {
@@ -214,6 +214,15 @@ inline dds::DriveFeedback FaultyDrives::report() {
   if (is("sample-stands")) report.sample = 5;
   if (is("no-number-reported")) report.position[3] = std::numeric_limits<double>::quiet_NaN();
   if (is("nobody-named")) report.service_id = 0;
+  const DriveState state = group_->axis(0).state();
+  const bool is_silent = group_->axis(0).error() == drive::kErrorSetpointsStopped;
+  in_fault_ = state == DriveState::kFault ? in_fault_ + 1 : 0;
+  in_ramp_ = state == DriveState::kFaultReaction || in_fault_ > 0 ? in_ramp_ + 1 : 0;
+  if (is("jumps-into-its-ramp") && in_ramp_ > 0) {  // and comes back slowly
+    report.position[0] += std::max(0.0, 4 - 0.1 * in_ramp_);
+  }
+  if (is("jumps-back-after-its-ramp") && is_silent && in_fault_ > 0) report.position[0] -= 0.5;
+  if (is("creeps-after-its-ramp")) report.position[0] += 0.004 * in_fault_;
   report.is_emergency_stop = is_stop_open_ && !is("hides-its-stop");
   if (is("forgets-its-stop") && is_stop_open_) report.is_emergency_stop = periods_ % 40 == 0;
   if (is("no-cycle")) report.cycle_seen = 0;
