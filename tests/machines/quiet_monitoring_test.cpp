@@ -120,6 +120,8 @@ int number_of(const PatternRun& run, int drive) {
   return drive;
 }
 
+constexpr int kAnyNumber = -1;
+
 /// Each drive of each machine over each wire has `fault` from `from` on: exactly `alarm` of that
 /// drive, and not before.
 void expect_found(const PatternRun& run, const monitoring::Limits& limits, const Injected& injected,
@@ -127,7 +129,9 @@ void expect_found(const PatternRun& run, const monitoring::Limits& limits, const
   for (const Wire wire : kWires) {
     const MonitoredMachine machine = replay(run, limits, wire, injected);
     EXPECT_EQ(machine.found().alarm, alarm) << describe(run, wire, machine);
-    EXPECT_EQ(static_cast<int>(machine.found().joint), number) << describe(run, wire, machine);
+    if (number != kAnyNumber) {
+      EXPECT_EQ(static_cast<int>(machine.found().joint), number) << describe(run, wire, machine);
+    }
     EXPECT_GE(machine.found_in_cycle(), injected.from) << describe(run, wire, machine);
   }
 }
@@ -204,12 +208,10 @@ TEST(QuietMonitoring, FindsReportsOfAnyDriveThatCreepAtRestAsNoStandstill) {
 TEST(QuietMonitoring, FindsReportsOfAnyDriveThatRunAwayAsTooFast) {
   for (const PatternRun& run : runs()) {
     for (int drive = 0; drive < run.model.joint_count; ++drive) {
-      SCOPED_TRACE(drive);
-      for (const Wire wire : kWires) {
-        const MonitoredMachine machine =
-            replay(run, default_limits(run), wire, {DriveFault::kRunaway, drive, kFaultCycle});
-        EXPECT_EQ(machine.found().alarm, Alarm::kFeedbackTooFast) << describe(run, wire, machine);
-      }
+      const int number = number_of(run, drive);
+      const bool is_slider = number >= run.model.joint_count;  // its joint may be too fast first
+      expect_found(run, default_limits(run), {DriveFault::kRunaway, drive, kFaultCycle},
+                   Alarm::kFeedbackTooFast, is_slider ? kAnyNumber : number);
     }
   }
 }

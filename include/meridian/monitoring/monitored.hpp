@@ -59,6 +59,7 @@ struct Limits {
   double set_up_tip_speed = 2000.0 / 60;  ///< mm/s, with an open guard
   double guard_stop_s = 2;                ///< what moved when a guard opened has so long to stop
   double settle_s = 0.5;                  ///< from rest of the setpoint to standstill
+  bool has_stage = false;                 ///< drives move an axis together
   std::array<AxisLimits, kAxes> axes{};
 };
 
@@ -87,13 +88,14 @@ enum class Finding : std::uint8_t {
   kDriveModel,
   kJump,
   kFrozen,
-  kTooFast
+  kDriveTooFast,
+  kAxisTooFast
 };
 
 /// Whether `Result::axis` is a drive.
 [[nodiscard]] constexpr bool is_of_drive(Finding finding) noexcept {
   return finding == Finding::kDriveModel || finding == Finding::kJump ||
-         finding == Finding::kFrozen;
+         finding == Finding::kFrozen || finding == Finding::kDriveTooFast;
 }
 
 /// What was found first in a cycle. `value`: how far, where, or how fast.

@@ -16,8 +16,8 @@ inline constexpr double kOvershoot = 1.25;
 
 /// Plausibility of feedback: a jump is farther from the report before than the drive can move in
 /// the time that ReportClock allows; frozen is a position that stays the same to the last bit while
-/// the setpoints that were taken lead on; too fast is a mean speed that the axis cannot have. RT:
-/// cycle. Proof: tests/unit/monitoring/plausible_feedback_test.cpp.
+/// the setpoints that were taken lead on; too fast is a mean speed that the drive, or the axis,
+/// cannot have. RT: cycle. Proof: tests/unit/monitoring/plausible_feedback_test.cpp.
 class PlausibleFeedback {
  public:
   void restart() noexcept { axes_ = {}; }
@@ -67,14 +67,21 @@ class PlausibleFeedback {
   std::array<Axis, kAxes> axes_{};
 };
 
-/// Positions that pass faster than an axis can move. RT: cycle.
+/// Positions that pass faster than a drive can move, or than what drives move together may. RT:
+/// cycle.
 [[nodiscard]] inline Result check_too_fast(const Limits& limits,
                                            const SpeedWindow& window) noexcept {
   if (!window.is_full()) return {};
   for (int i = 0; i < limits.axis_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
+    if (window.is_drive_faster(n, limits.axes[n].drive_speed * kOvershoot)) {
+      return {Finding::kDriveTooFast, i, window.drive_speed(n)};
+    }
+  }
+  for (int i = 0; limits.has_stage && i < limits.axis_count; ++i) {
+    const auto n = static_cast<std::size_t>(i);
     if (window.is_faster(n, limits.axes[n].speed * kOvershoot)) {
-      return {Finding::kTooFast, i, window.axis_speed(n)};
+      return {Finding::kAxisTooFast, i, window.axis_speed(n)};
     }
   }
   return {};

@@ -11,11 +11,11 @@
 
 namespace meridian::monitoring {
 
-/// Mean speeds over kWindow_s or kWindowPeriods periods, whichever is longer, by the times of the
-/// two reports at its ends: steps of an encoder and late reports weigh little, and nothing adds up.
-/// Lost periods make it longer. kSlackPeriods are added to the time, so that a late report is no
-/// speed: what it says is a sixteenth too low at most. RT: cycle. Proof:
-/// tests/unit/monitoring/limited_speed_test.cpp.
+/// Mean speeds of axes, drives and tip over kWindow_s or kWindowPeriods periods, whichever is
+/// longer, by the times of the two reports at its ends: steps of an encoder and late reports weigh
+/// little, and nothing adds up. Lost periods make it longer. kSlackPeriods are added to the time,
+/// so that a late report is no speed: what it says is a sixteenth too low at most. RT: cycle.
+/// Proof: tests/unit/monitoring/limited_speed_test.cpp.
 class SpeedWindow {
  public:
   static constexpr double kWindow_s = 0.064;
@@ -30,7 +30,7 @@ class SpeedWindow {
   void restart() noexcept { count_ = 0, skipped_ = 0; }
   /// Takes one cycle.
   void add(const Inputs& in) noexcept {
-    now_ = {in.measured, in.tip, in.arrival_ns, in.cycle_seen};
+    now_ = {in.measured, in.reported, in.tip, in.arrival_ns, in.cycle_seen};
     if (++skipped_ < stride_ && count_ != 0) return;
     skipped_ = 0;
     before_ = kept_[count_ % kWindowPeriods];
@@ -40,11 +40,16 @@ class SpeedWindow {
   /// Whether there were reports for the whole window: only then do speeds mean something.
   [[nodiscard]] bool is_full() const noexcept { return count_ > kWindowPeriods; }
   [[nodiscard]] bool is_faster(std::size_t i, double speed) const noexcept {
-    const double moved = std::abs(now_.measured[i] - before_.measured[i]);
-    return moved > speed * slack_s_ && moved > speed * time_s(i);  // at rest the first is enough
+    return is_faster(i, now_.measured[i] - before_.measured[i], speed);
+  }
+  [[nodiscard]] bool is_drive_faster(std::size_t i, double speed) const noexcept {
+    return is_faster(i, now_.reported[i] - before_.reported[i], speed);
   }
   [[nodiscard]] double axis_speed(std::size_t i) const noexcept {
     return (now_.measured[i] - before_.measured[i]) / time_s(i);
+  }
+  [[nodiscard]] double drive_speed(std::size_t i) const noexcept {
+    return (now_.reported[i] - before_.reported[i]) / time_s(i);
   }
   /// Of the first `axis_count` axes' tip, by the longest of their times.
   [[nodiscard]] double tip_speed(int axis_count) const noexcept {
@@ -57,7 +62,7 @@ class SpeedWindow {
 
  private:
   struct Kept {
-    Values measured{};
+    Values measured{}, reported{};
     Point tip{};
     std::array<std::int64_t, kAxes> arrival_ns{};
     std::array<std::uint64_t, kAxes> cycle_seen{};
@@ -65,6 +70,10 @@ class SpeedWindow {
   [[nodiscard]] static double distance(const Point& a, const Point& b) noexcept {
     const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
     return std::sqrt(x * x + y * y + z * z);
+  }
+  [[nodiscard]] bool is_faster(std::size_t i, double moved, double speed) const noexcept {
+    const double distance = std::abs(moved);  // at rest the first comparison is enough
+    return distance > speed * slack_s_ && distance > speed * time_s(i);
   }
   [[nodiscard]] double time_s(std::size_t i) const noexcept {
     return slack_s_ + time_between(cycle_s_, now_.arrival_ns[i], before_.arrival_ns[i],

@@ -68,7 +68,8 @@ namespace meridian::interpolator {
       return Alarm::kFeedbackJump;
     case Finding::kFrozen:
       return Alarm::kFeedbackFrozen;
-    case Finding::kTooFast:
+    case Finding::kDriveTooFast:
+    case Finding::kAxisTooFast:
       return Alarm::kFeedbackTooFast;
   }
   return Alarm::kNone;

@@ -124,6 +124,7 @@ void read_model(Section& section, const MachineModel& model, monitoring::Limits&
 monitoring::Limits read_monitoring(Section section, const MachineModel& model) {
   monitoring::Limits limits;
   limits.axis_count = model.joint_count;
+  limits.has_stage = has_stage(model);
   limits.cycle_s = static_cast<double>(model.cycle_ns) * 1e-9;
   limits.set_up_tip_speed =
       units::per_s_from_per_min(section.number_or("set_up_tip_mm_per_min", 2000, {1, 1e5}));

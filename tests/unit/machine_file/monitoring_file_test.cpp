@@ -45,6 +45,15 @@ TEST(MonitoringFile, TakesFromTheJointsWhatItDoesNotSay) {
   EXPECT_FALSE(limits.axes[0].has_model) << "nobody said how the drives lag";
 }
 
+TEST(MonitoringFile, HasTheLimitsOfBothSidesOfAStage) {
+  EXPECT_FALSE(monitoring_of("").has_stage);
+  const std::string file = MERIDIAN_SOURCE_DIR "/deploy/machines/lai-hybrid.toml";
+  const monitoring::Limits limits = load_monitoring(file, load_machine(file));
+  EXPECT_TRUE(limits.has_stage);
+  EXPECT_EQ(limits.axes[1].speed, 300) << "b2";
+  EXPECT_EQ(limits.axes[1].drive_speed, 400) << "u1";
+}
+
 TEST(MonitoringFile, ReadsEveryKeyInItsUnit) {
   const monitoring::Limits limits = monitoring_of(
       "set_up_tip_mm_per_min = 1200\nset_up_linear_mm_per_min = 600\n"

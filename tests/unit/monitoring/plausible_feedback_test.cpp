@@ -108,8 +108,34 @@ TEST(PlausibleFeedback, FindsPositionsThatPassFasterThanTheAxisCan) {
   EXPECT_EQ(axes.run(0.1, 300).finding, Finding::kNone) << "its limit";
   EXPECT_EQ(axes.run(0.1, -300).finding, Finding::kNone);
   const Result result = axes.run(0.15, 420);
-  EXPECT_EQ(result.finding, Finding::kTooFast);
+  EXPECT_EQ(result.finding, Finding::kDriveTooFast);
   EXPECT_GT(result.value, 300 * kOvershoot);
+}
+
+/// Two sliders turn a table and push it: it is slow where one of them is too fast.
+TEST(PlausibleFeedback, FindsADriveThatIsTooFastWhereTheAxisIsNot) {
+  monitoring::Limits limits = test::two_axes();
+  limits.axes[0].speed = 900;
+  MonitoredAxes axes(limits);
+  axes.in.motion = Motion::kProgram;
+  axes.in.commanded[0] = axes.in.measured[0] = -50;
+  EXPECT_EQ(axes.run(0.1, 300).finding, Finding::kNone);
+  const Result result = axes.run(0.15, -420);
+  EXPECT_EQ(result.finding, Finding::kDriveTooFast);
+  EXPECT_LT(result.value, -300 * kOvershoot);
+  EXPECT_TRUE(is_of_drive(result.finding));
+}
+
+TEST(PlausibleFeedback, FindsAnAxisThatIsTooFastWhereItsDriveIsNot) {
+  monitoring::Limits limits = test::two_axes();
+  limits.axes[0].drive_speed = 900;
+  limits.has_stage = true;
+  MonitoredAxes axes(limits);
+  axes.in.motion = Motion::kProgram;
+  axes.in.commanded[0] = axes.in.measured[0] = -50;
+  const Result result = axes.run(0.15, 420);
+  EXPECT_EQ(result.finding, Finding::kAxisTooFast);
+  EXPECT_FALSE(is_of_drive(result.finding));
 }
 
 }  // namespace
