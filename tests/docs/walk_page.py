@@ -1,113 +1,147 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Walks a tutorial as its reader would: every `sh` block in one shell, one behind the other.
+"""Walks a page as its reader would: its commands in one shell, one behind the other.
 
     walk_page.py SOURCE BINARIES PAGE
 
-The shell stands in an empty folder that looks like a clone which was built: `deploy` and `docs` of
-SOURCE, and build/release/bin, which is BINARIES. A `text` block says what the block before it
-printed. Its lines must be printed in this order, one behind the other; a line of `...` stands for
-any lines, and `...` in a line for anything in it. A block `sh tested-by NAME` is not run here: the
-test NAME runs it (CTest is asked whether there is one).
+pages.py says what the blocks of a page are. The shell stands in an empty folder that looks like a
+clone which was built: folders of SOURCE, and build/release/bin, which is BINARIES. Commands that name
+folders of the installed package (INSTALLED) have them there too. A page that is no tutorial begins
+where the first tutorial ends: the programs are found, and DDS stays on this host.
 
-The test fails where a command fails, where an output is another one, and where a page has no block.
+A `text` block says what the block before it printed. Its lines must be printed in this order, one
+behind the other; a line of `...` stands for any lines, and `...` in a line for anything in it.
+
+The test fails where a command fails, where an output is another one, where commands that run beside
+the page have ended before it, and where a page has no block.
 """
-import os
 import pathlib
-import re
-import signal
 import subprocess
 import sys
 import tempfile
 
-FENCE = re.compile(r"^```(?P<info>.+)\n(?P<body>(?:.*\n)*?)```$", re.M)
-LAST_WORD = "walk: the block ended"
+import shell
+from pages import RUN, blocks_of
+
+PARTS = ("bindings", "deploy", "docs", "include", "tests")
+INSTALLED = {"/usr/share/meridian": "deploy", "/etc/meridian": "etc", "/var/lib/meridian": "var"}
+SET_UP = "export PATH=$PWD/build/release/bin:$PATH CYCLONEDDS_URI=file://$PWD/deploy/cyclonedds-loopback.xml\n"
+PATIENCE_S = 30  # until commands beside the page have printed what it shows
 
 
-def matches(wanted, printed):
-    """Whether the lines `printed` begin with the lines `wanted`; `...` as above."""
-    if not wanted:
-        return not printed
-    if wanted[0].strip() == "...":
-        return any(matches(wanted[1:], printed[n:]) for n in range(len(printed) + 1))
-    if not printed:
-        return False
-    pattern = ".*".join(re.escape(part) for part in wanted[0].rstrip().split("..."))
-    return re.fullmatch(pattern, printed[0].rstrip()) is not None and matches(wanted[1:], printed[1:])
-
-
-class Shell:
-    """A reader's shell. What it starts in the background ends with it."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        environment = {**os.environ, "MERIDIAN_DOMAIN": str(20 + os.getpid() % 40), "TERM": "dumb"}
-        self.process = subprocess.Popen(["bash"], cwd=folder, stdin=subprocess.PIPE, text=True,
-                                        stdout=subprocess.PIPE, env=environment,
-                                        start_new_session=True)
-        self.process.stdin.write("set -e -o pipefail\n")
-
-    def run(self, number, block):
-        """What a block printed; None where it failed."""
-        script, output = (self.folder / f".{number}.{kind}" for kind in ("sh", "out"))
-        script.write_text(block)
-        self.process.stdin.write(f"source {script} >{output} 2>&1\necho '{LAST_WORD}'\n")
-        self.process.stdin.flush()
-        said = self.process.stdout.readline().strip()
-        return output.read_text(errors="replace"), said == LAST_WORD
-
-    def end(self):
-        try:
-            os.killpg(self.process.pid, signal.SIGTERM)
-        except ProcessLookupError:
-            pass
-        self.process.wait()
+def prepare(folder, source, binaries):
+    (folder / "build").mkdir()
+    (folder / "build" / "release").symlink_to(binaries.parent)
+    for part in PARTS:
+        if (source / part).exists():
+            (folder / part).symlink_to(source / part)
+    for name in ("etc", "var"):
+        (folder / name).mkdir()
 
 
 def is_test(binaries, name):
-    listed = subprocess.run(["ctest", "--test-dir", binaries.parent, "-N", "-R", f"^{re.escape(name)}$"],
-                            capture_output=True, text=True, check=False).stdout
+    listed = subprocess.run(["ctest", "--test-dir", binaries.parent, "-N"], capture_output=True, text=True,
+                            check=False).stdout
     return f": {name}\n" in listed
 
 
-def walk(binaries, page, folder):
-    shell = Shell(folder)
-    text = page.read_text(encoding="utf-8")
-    printed, count = None, 0
+def is_part_of(body, file):
+    """Whether the lines of `body` stand in `file` one behind the other, however they are indented."""
+    def plain(text):
+        return "\n".join(line.strip() for line in text.splitlines())
+    return file.is_file() and f"\n{plain(body)}\n" in f"\n{plain(file.read_text())}\n"
+
+
+class Walk:
+    """What is done with the blocks of a page, each of which returns what is wrong with it, or None."""
+
+    def __init__(self, source, binaries, folder, is_tutorial):
+        self.source, self.binaries, self.folder = source, binaries, folder
+        self.shell = shell.Shell(folder)
+        self.printed = None  # a function: what the block before printed until now
+        self.patience_s = 0  # until it has printed what the page shows
+        self.uses = {"run": self.run, "fails": self.fails, "beside": self.beside, "output": self.output,
+                     "file": self.file, "part-of": self.part_of, "tested-by": self.tested_by}
+        if not is_tutorial:
+            self.shell.run(SET_UP)
+
+    def here(self, text):
+        for installed, part in INSTALLED.items():
+            text = text.replace(installed, str(self.folder / part))
+        return text
+
+    def installed(self, text):
+        for installed, part in INSTALLED.items():
+            text = text.replace(str(self.folder / part), installed)
+        return text
+
+    def take(self, block):
+        if block.use != "output":
+            self.printed = None
+        return self.uses[block.use](block) if block.use in self.uses else None
+
+    def prints_to(self, output, patience_s=0):
+        self.printed = lambda: self.installed(output.read_text(errors="replace"))
+        self.patience_s = patience_s
+
+    def run(self, block):
+        output, went_well = self.shell.run(self.here(block.body))
+        self.prints_to(output)
+        return None if went_well else f"a command failed:\n{block.body}\nIt said:\n{self.printed()}"
+
+    def fails(self, block):
+        output, code = self.shell.run_apart(self.here(block.body))
+        self.prints_to(output)
+        is_wanted = code == int(block.value)
+        return None if is_wanted else f"the exit code is {code}:\n{block.body}\nIt said:\n{self.printed()}"
+
+    def beside(self, block):
+        self.prints_to(self.shell.start(self.here(block.body)), PATIENCE_S)
+
+    def output(self, block):
+        if self.printed is None:
+            return "the block before it ran nothing"
+        wanted = block.body.splitlines()
+        if shell.eventually(lambda: shell.matches(wanted, self.printed().splitlines()), self.patience_s):
+            return None
+        return f"the page shows\n{block.body}\nbut the commands printed\n{self.printed()}"
+
+    def file(self, block):
+        path = self.folder / block.value
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(block.body)
+
+    def part_of(self, block):
+        return None if is_part_of(block.body, self.source / block.value) else f"these lines are not in {block.value}"
+
+    def tested_by(self, block):
+        return None if is_test(self.binaries, block.value) else f"there is no test {block.value}"
+
+
+def walk(source, binaries, page, folder):
     try:
-        for fence in FENCE.finditer(text):
-            line = text.count("\n", 0, fence.start()) + 1
-            words = fence["info"].split()
-            if words[:2] == ["sh", "tested-by"]:
-                if not is_test(binaries, words[2]):
-                    return f"{page.name}:{line}: there is no test {words[2]}"
-                printed = None
-            elif words == ["sh"]:
-                count += 1
-                printed, went_well = shell.run(count, fence["body"])
-                if not went_well:
-                    return f"{page.name}:{line}: a command failed:\n{fence['body']}\nIt said:\n{printed}"
-            elif words == ["text"] and printed is not None:
-                if not matches(fence["body"].splitlines(), printed.splitlines()):
-                    return (f"{page.name}:{line}: the page shows\n{fence['body']}\nbut the commands "
-                            f"printed\n{printed}")
-                printed = None
+        blocks = blocks_of(page.read_text(encoding="utf-8"))
+    except ValueError as fault:
+        return f"{page.name}:{fault}"
+    prepare(folder, source, binaries)
+    steps = Walk(source, binaries, folder, page.parent.name == "tutorials")
+    try:
+        for block in blocks:
+            if fault := steps.take(block):
+                return f"{page.name}:{block.line}: {fault}"
+        if ended := steps.shell.ended():
+            return f"{page.name}: commands that were to run beside the page ended, and said:\n{ended}"
     finally:
-        shell.end()
+        steps.shell.end()
+    count = sum(block.use in RUN for block in blocks)
     print(f"{page.name}: {count} blocks ran")
-    return None if count else f"{page.name}: no block ran"
+    return None if blocks else f"{page.name}: no block ran"
 
 
 def main():
-    source, binaries, page = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
+    source, binaries, page = (pathlib.Path(word).absolute() for word in sys.argv[1:4])
     with tempfile.TemporaryDirectory(prefix="meridian-page-") as name:
-        folder = pathlib.Path(name)
-        (folder / "build").mkdir()
-        (folder / "build" / "release").symlink_to(binaries.parent)
-        for part in ("deploy", "docs"):
-            (folder / part).symlink_to(source / part)
-        fault = walk(binaries, page, folder)
-    if fault:
-        sys.exit(fault)
+        if fault := walk(source, binaries, page, pathlib.Path(name)):
+            sys.exit(fault)
 
 
 if __name__ == "__main__":
