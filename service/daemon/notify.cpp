@@ -25,7 +25,7 @@ ServiceManager::~ServiceManager() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-void ServiceManager::tell(const std::string& text) const noexcept {
+void ServiceManager::send(const std::string& text) const noexcept {
   if (socket_ < 0) return;
   sockaddr_un to{};
   to.sun_family = AF_UNIX;
@@ -38,17 +38,17 @@ void ServiceManager::tell(const std::string& text) const noexcept {
 }
 
 void ServiceManager::is_ready(const std::string& status) noexcept {
-  tell("READY=1\nSTATUS=" + status);
+  send("READY=1\nSTATUS=" + status);
 }
 
-void ServiceManager::is_stopping() noexcept { tell("STOPPING=1"); }
+void ServiceManager::is_stopping() noexcept { send("STOPPING=1"); }
 
 void ServiceManager::beat(std::uint64_t cycles,
                           std::chrono::steady_clock::time_point now) noexcept {
   if (!watchdog_ || cycles == cycles_ || now - reported_ < *watchdog_ / 2) return;
   cycles_ = cycles;
   reported_ = now;
-  tell("WATCHDOG=1");
+  send("WATCHDOG=1");
 }
 
 }  // namespace meridian::interpolator

@@ -8,8 +8,8 @@
 
 namespace meridian::interpolator {
 
-/// Tells the service manager how the service is, in the protocol of sd_notify(3): a datagram to the
-/// socket that the environment names. Says nothing where nobody asked. One thread.
+/// Reports the state of the service to the service manager, in the protocol of sd_notify(3): a
+/// datagram to the socket that the environment names. Says nothing where nobody asked. One thread.
 /// Proof: tests/unit/daemon/notify_test.cpp.
 class ServiceManager {
  public:
@@ -21,12 +21,12 @@ class ServiceManager {
 
   void is_ready(const std::string& status) noexcept;
   void is_stopping() noexcept;
-  /// Call at least ten times a second with a count that grows while the cycle runs: tells the
+  /// Call at least ten times a second with a count that grows while the cycle runs: feeds the
   /// watchdog, at half its time, as long as it does. A cycle that hangs lets the watchdog bite.
   void beat(std::uint64_t cycles, std::chrono::steady_clock::time_point now) noexcept;
 
  private:
-  void tell(const std::string& text) const noexcept;
+  void send(const std::string& text) const noexcept;
 
   int socket_ = -1;
   std::string address_;

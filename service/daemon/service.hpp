@@ -62,7 +62,7 @@ class Service {
   /// machine was heard of only now and keeps it. A machine that is on goes on; drives obey one
   /// service.
   void keep_lease();
-  /// Tells everybody of a set-up that was changed; to be called several times a second, by the
+  /// Publishes a set-up that was changed; to be called several times a second, by the
   /// thread that made the service.
   void report_set_up();
   /// Logs who reports drives, and whom of two that report the same one the machine goes by; to be
@@ -81,9 +81,9 @@ class Service {
  private:
   [[nodiscard]] std::unique_ptr<trace::Tracer> make_tracer();
   void take_lease();
-  /// What the set-up of this machine says, before it is told to anybody. Throws StartError.
+  /// What the set-up of this machine says, before it is published. Throws StartError.
   void read_set_up();
-  /// The text of the tool table in force; empty where it is longer than can be told.
+  /// The text of the tool table in force; empty where it is too long to be published.
   [[nodiscard]] std::string reported_tools(const telemetry::SetUp& set_up) const;
   void report_security();
   void report_last_program();

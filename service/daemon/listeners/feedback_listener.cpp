@@ -20,7 +20,7 @@ FeedbackListener::FeedbackListener(dds::Participant& participant, const MachineM
       service_id_(service_id),
       ports_(ports),
       merge_(all_joints(model), service_id),
-      teller_(model, service_id),
+      reporter_(model, service_id),
       spans_(ports.spans != nullptr ? &ports.spans->receive : nullptr),
       reader_(
           participant, [this](auto& reader) { on_data(reader); }, kDepth) {}
@@ -66,7 +66,7 @@ void FeedbackListener::report_sources(const SourceReporter::Say& say) {
     static_cast<void>(gone_.try_push(source.writer));
   }
   master_ = master_of(sources, service_id_, now_ns);
-  teller_.look(
+  reporter_.look(
       sources, now_ns,
       [this](std::uint64_t writer) {
         return dds::describe_source(participant_, reader_.handle(), writer);

@@ -45,7 +45,7 @@ class FeedbackListener {
   std::int64_t shown_ns_ = 0;   ///< when `sources_` were stored last
   LatestValue<DriveSources> sources_;
   SpscRing<std::uint64_t, 64> gone_;  ///< writers that DDS does not know any more
-  SourceReporter teller_;
+  SourceReporter reporter_;
   std::uint64_t master_ = 0;
   trace::SpanWriter spans_;
   dds::Reader<dds::DriveFeedback> reader_;

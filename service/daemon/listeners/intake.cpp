@@ -224,7 +224,7 @@ void Intake::take_batches() {
 }
 
 /// There is room: when credit was granted, so many places were free and kReserve more, only this
-/// thread fills places, and size() never tells it too few that are filled. Were it broken, the
+/// thread fills places, and size() never counts too few that are filled. Were it broken, the
 /// session ends, with a message, at the block before the first that was lost.
 bool Intake::push(const stream::Accepted& accepted) {
   if (accepted.count == 0) return true;

@@ -20,7 +20,7 @@
 
 namespace meridian::interpolator {
 
-/// What intake tells the status.
+/// What intake reports in the status.
 struct SessionView {
   std::uint64_t session = 0;
   std::string station, program, options;
@@ -91,7 +91,7 @@ class Intake {
   void show();
   [[nodiscard]] stream::Surroundings around() noexcept;
 
-  /// Free places that the check is not told of, for what is on its way while it computes credits.
+  /// Free places that the check does not know of, for what is on its way while it computes credits.
   static constexpr std::size_t kReserve = 64;
 
   dds::Participant& participant_;
@@ -110,7 +110,7 @@ class Intake {
   std::uint64_t pushed_ = 0;           ///< blocks put into the queue, ever
   QueueMark mark_;                     ///< newest that was shown
   std::uint64_t refused_session_ = 0;  ///< newest session that was refused while it held
-  std::uint64_t cut_off_session_ = 0;  ///< newest one that show_cut_off() told of
+  std::uint64_t cut_off_session_ = 0;  ///< newest one that show_cut_off() reported
   std::int64_t idle_since_ns_ = 0;
   std::uint64_t station_source_ = 0;
   std::string station_identity_;

@@ -13,7 +13,7 @@ namespace meridian::interpolator {
 ///
 /// For how long another one has served is heard late, never early, so the least lead that was heard
 /// is the truest one. The one that has served longer keeps the machine; within kSame_ns, and where
-/// words are too late to tell within kUnsure_ns, the smaller service_id does. Who gives way steps
+/// words are too late to decide within kUnsure_ns, the smaller service_id does. Who gives way steps
 /// back first: it says that it does not serve any more and leaves kStepBack_ns later, where another
 /// one serves then still. Words that take less than that reach the other before it can leave too,
 /// so one keeps the machine always.
@@ -34,7 +34,7 @@ class LeaseCheck {
   static constexpr std::int64_t kPeriod_ns = 500'000'000;  ///< words while another one serves too
   static constexpr std::int64_t kSame_ns = 100'000'000;
   static constexpr std::int64_t kUnsure_ns = 3'000'000'000;
-  static constexpr std::int64_t kPatience_ns = 4'000'000'000;  ///< for words that tell
+  static constexpr std::int64_t kPatience_ns = 4'000'000'000;  ///< for words that decide
   static constexpr std::int64_t kStepBack_ns = 1'500'000'000;
   static constexpr std::int64_t kLongest_ns = 315'360'000'000'000'000;  ///< 10 years
   static constexpr std::size_t kMaxOthers = 16;

@@ -36,7 +36,7 @@ struct DriveSource {
   [[nodiscard]] std::uint32_t joints() const noexcept { return claimed_mask & bound_mask; }
 };
 
-/// Everybody who reports drives, for who tells the operator.
+/// Everybody who reports drives, for the messages to the operator.
 struct DriveSources {
   std::array<DriveSource, 16> places{};
   bool is_full = false;  ///< somebody more found no place

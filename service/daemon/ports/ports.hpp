@@ -31,7 +31,7 @@
 ///
 ///     receive thread ─stops─▶ cycle, ─arrivals─▶ commands ─replies─▶ replies
 ///     intake ─blocks─▶ planner ─motion─▶ cycle ─setpoints─▶ publisher, ─drives_asked─▶ drives
-///       ▲ ▲              │ │              ▲ │ ├─events─▶ commands ─told─▶ telemetry
+///       ▲ ▲              │ │              ▲ │ ├─events─▶ commands ─▶ telemetry
 ///       │ └───rejects────┘ └─actions──▶ commands        ├─records, timings─▶ telemetry ─▶ recorder
 ///       └──────────session_events── commands ──┘        └─views─▶ planner, commands, telemetry
 namespace meridian::interpolator {
@@ -133,8 +133,8 @@ struct PublishTiming {
   std::int32_t write = 0;  ///< time in DDS
 };
 
-/// CiA 402 statuswords as the drives sent them last, by joint, and what operators are told of who
-/// sends them.
+/// CiA 402 statuswords as the drives sent them last, by joint, and what operators hear of who sends
+/// them.
 struct DriveWords {
   std::array<std::uint16_t, kMaxJoints> statusword{};
   std::array<std::uint16_t, kMaxJoints> error{};
@@ -188,8 +188,8 @@ struct Ports {
   SpscRing<CycleRecord, 8192> records;
   SpscRing<CycleTiming, 8192> timings;
   SpscRing<Event, 4096> events;
-  SpscRing<Event, 4096> told;           ///< all events on to telemetry
-  SpscRing<Event, 256> session_events;  ///< kProgramEnd; kEpochAdvanced, b 1: the queue stays
+  SpscRing<Event, 4096> telemetry_events;  ///< all of them, passed on
+  SpscRing<Event, 256> session_events;     ///< kProgramEnd; kEpochAdvanced, b 1: the queue stays
   LatestValue<CycleView> planner_view, commands_view, telemetry_view;
   LatestValue<DriveWords> drive_words, drive_words_for_status, drive_words_for_commands;
 

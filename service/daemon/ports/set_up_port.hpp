@@ -63,9 +63,10 @@ struct LimitsArrival {
   LimitsOrder order{};
 };
 
-/// The paths of the set-up. The commands thread stores it for the cycle, then tells that; when the
-/// cycle has accepted it, for the others, and waits until the status says so. Everybody has a
-/// machine model and tools of its own, and changes them itself, between two programs.
+/// The paths of the set-up. The commands thread stores it for the cycle, then commands it to read
+/// it; when the cycle has accepted it, it stores it for the others and waits until the status
+/// reports it. Everybody has a machine model and tools of its own, and changes them itself, between
+/// two programs.
 struct SetUpPorts {
   SpscRing<FrameArrival, 16> orders;    ///< receive thread to commands
   SpscRing<ToolArrival, 4> tool_files;  ///< receive thread to commands

@@ -128,7 +128,7 @@ void Supervisor::take_events() {
       default:
         break;
     }
-    if (!ports_.told.try_push(event)) {
+    if (!ports_.telemetry_events.try_push(event)) {
       ports_.events_overrun.fetch_add(1, std::memory_order_relaxed);
     }
   }

@@ -71,7 +71,7 @@ class Supervisor {
   /// change of work frames, tools and soft limits is refused.
   void keep_set_up(telemetry::SetUpFile& file, const telemetry::SetUp& set_up,
                    const ToolTable& tools, const SetUpInForce& in_force);
-  /// Main thread: whether the set-up is another one than it was told of; then set_up() and
+  /// Main thread: whether the set-up differs from the one it reported last; then set_up() and
   /// in_force() stay as they are until set_up_reported().
   [[nodiscard]] bool has_set_up_to_report() const noexcept {
     return has_set_up_to_report_.load(std::memory_order_acquire);
@@ -106,7 +106,7 @@ class Supervisor {
   void take_commands();
   void take_jogs();
   void take_command(const Arrival& arrival);
-  /// Of a stop, which the cycle has been told of already, the answer is waited for.
+  /// Waits for the answer to a stop, which the cycle has received already.
   void await_stop(const Pending& command);
   /// Answers a command that came before as it was answered then; stops never come twice.
   [[nodiscard]] bool is_repetition(const Pending& command);
@@ -154,7 +154,7 @@ class Supervisor {
   void take_events();
   void answer(const Event& event);
   void answer(const Event& event, const Pending& pending);
-  /// The cycle's answers to what was told it before `event` are lost.
+  /// The cycle's answers to commands before that of `event` are lost.
   void give_up_older(const Event& event);
   /// What an accepted verb leads to; a program's start to its approach.
   [[nodiscard]] std::string what_happens(const dds::CommandRequest& request);
@@ -252,7 +252,7 @@ class Supervisor {
   std::optional<std::string> tool_file_;     ///< of the newest command of verb `tool`
   Refusal set_up_refusal_ = Refusal::kNone;  ///< what it will be answered
   std::string set_up_text_;
-  std::uint64_t set_up_status_ = 0;  ///< the first status that told of what is in force
+  std::uint64_t set_up_status_ = 0;  ///< the first status that reported what is in force
   std::atomic<bool> has_set_up_to_report_{false};
 };
 

@@ -243,8 +243,8 @@ void Supervisor::answer(const Event& event) {
   }
 }
 
-/// The cycle answers words, as opposed to stops, in the order in which they were told it. What was
-/// lost of its answers may have been obeyed: it is not obeyed again where it is repeated.
+/// The cycle answers commands, as opposed to stops, in the order in which it received them. A
+/// command whose answer was lost may have been carried out: a repetition of it is not.
 void Supervisor::give_up_older(const Event& event) {
   for (Pending& pending : pending_) {
     const bool is_older = pending.key != 0 && pending.key < event.a;

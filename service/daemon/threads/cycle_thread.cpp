@@ -78,7 +78,7 @@ void CycleThread::hand_over() noexcept {
   ports_.publisher_wake.notify();
   times_.handed_ns = monotonic_ns();
 
-  show();  // before the events: who hears of one sees at least the cycle that told it
+  show();  // before the events: who hears of one sees at least the cycle that emitted it
   push_or_count(ports_.records, output_.record, ports_.records_overrun);
   for (std::size_t i = 0; i < output_.event_count; ++i) {
     const Event& event = output_.events[i];

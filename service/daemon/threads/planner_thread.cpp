@@ -54,7 +54,7 @@ bool PlannerThread::work() noexcept {
                    view.epoch, asked.settings);
     writer_.forget_ahead();  // in Ready all that was published has run or is void
     published_before_s_ = writer_.published_s();
-    tell(Approach{});
+    report(Approach{});
     report_plan();  // that it begins, before anything of it can be started
     has_begun_ = true;
     look_ = 0;
@@ -121,7 +121,7 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
 
 void PlannerThread::report_plan() noexcept {
   ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
-  if (Approach approach; planner_.take_approach(approach)) tell(approach);
+  if (Approach approach; planner_.take_approach(approach)) report(approach);
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
   for (Unwinding one; planner_.take_unwinding(one);) (void)ports_.unwindings.try_push(one);
   for (FeedMark mark; planner_.take_feed_mark(mark);) {
@@ -129,7 +129,7 @@ void PlannerThread::report_plan() noexcept {
   }
 }
 
-void PlannerThread::tell(const Approach& approach) noexcept {
+void PlannerThread::report(const Approach& approach) noexcept {
   ports_.approach.store(approach);
   ports_.approach_for_status.store(approach);
 }

@@ -15,7 +15,7 @@ namespace meridian::interpolator {
 /// the epoch of that moment; when the cycle advances the epoch, the plan and all blocks that came
 /// in before intake took note of it are void. What it publishes depends on the blocks and that
 /// beginning alone, never on the clock, unless the stream stalls for a second at the begin of a
-/// program, and on what Ports::feed_marks tells. Preallocated.
+/// program, and on what Ports::feed_marks holds. Preallocated.
 class PlannerThread {
  public:
   PlannerThread(const MachineModel& model, const ToolTable& tools, Ports& ports);
@@ -36,7 +36,7 @@ class PlannerThread {
   /// What others want to know of what was planned.
   void report_plan() noexcept;
   /// How the program is approached; of one that begins nothing is known yet.
-  void tell(const Approach& approach) noexcept;
+  void report(const Approach& approach) noexcept;
   /// Goes on with what is there while no block comes.
   void advance() noexcept;
   /// A program of which no block has come for a while begins with those that are there.

@@ -27,7 +27,7 @@ void TelemetryThread::record_frame(std::uint64_t cycle) noexcept {
       record::RecordedFrame{cycle, in_force_.number, in_force_.origin_mm, in_force_.rotation});
 }
 
-/// A table that is longer comes from the service's own file alone: it was too long to be told.
+/// Only the service's own file can hold a longer table: it was too long to be published.
 void TelemetryThread::record_tools(std::uint64_t cycle) noexcept {
   constexpr std::size_t kMaxRecorded = 256;
   if (tools_.tools().size() > kMaxRecorded) return;

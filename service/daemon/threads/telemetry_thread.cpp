@@ -141,7 +141,7 @@ void TelemetryThread::drain() {
     has_news_ = true;
   }
   Event event;
-  while (ports_.told.try_pop(event)) {
+  while (ports_.telemetry_events.try_pop(event)) {
     recorder_.take(event);
     flight_.take(event);
     const auto verb = static_cast<Verb>(event.b);
@@ -149,7 +149,7 @@ void TelemetryThread::drain() {
       has_news_ = take_set_up() || has_news_;
       record_set_up(verb, event.cycle);
     }
-    tell(event);
+    report(event);
     keeper_.see(event, alarm_message_);
   }
   recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
@@ -209,7 +209,7 @@ bool TelemetryThread::report_program() {
   return true;
 }
 
-void TelemetryThread::tell(const Event& event) {
+void TelemetryThread::report(const Event& event) {
   switch (event.code) {
     case EventCode::kBlockDone:
       ++status_.blocks_done;
@@ -268,7 +268,7 @@ void TelemetryThread::tell(const Event& event) {
       if (event.code == EventCode::kAccepted) ++status_.stops;
       break;
     case EventCode::kPeriodsLost:
-      periods_lost_ += event.a;  // told once a second: a busy host loses many
+      periods_lost_ += event.a;  // logged once a second: a busy host loses many
       return;
     default:
       break;

@@ -27,7 +27,7 @@
 
 namespace meridian::interpolator {
 
-/// Drains what the other threads tell: events into words, records to the recorder, the last
+/// Drains what the other threads report: events into words, records to the recorder, the last
 /// executed block to the journal, timings into histograms; publishes the status at 20 Hz and on
 /// change, latencies at 1 Hz.
 class TelemetryThread {
@@ -75,11 +75,11 @@ class TelemetryThread {
   void record_limits(std::uint64_t cycle) noexcept;
   /// What an accepted `verb` has put in force.
   void record_set_up(Verb verb, std::uint64_t cycle) noexcept;
-  /// Lets the commands thread know that the newest status tells of the newest set-up.
+  /// Lets the commands thread know that the newest status reports the newest set-up.
   void confirm_set_up() noexcept;
-  /// Tells how the program went that is over; false: none is.
+  /// Reports how the program went that is over; false: none is.
   bool report_program();
-  void tell(const Event& event);
+  void report(const Event& event);
   /// Which group is silent, where `event` is the alarm of one that is; else empty.
   [[nodiscard]] std::string silent_group(const Event& event);
   /// Takes how a program will be approached that was planned meanwhile; false: nothing new.
@@ -139,15 +139,15 @@ class TelemetryThread {
   dds::Latency latency_;
   std::int64_t status_ns_ = 0, latency_ns_ = 0;
   State reported_state_ = State::kOff;
-  std::uint64_t periods_lost_ = 0;  ///< since that was told last
+  std::uint64_t periods_lost_ = 0;  ///< since they were logged last
   bool has_news_ = true;
-  std::string session_message_;  ///< newest of intake that was told
+  std::string session_message_;  ///< newest of intake that was published
   std::string alarm_message_;    ///< of the newest alarm
   std::string notice_;           ///< newest that is for the operator, until the machine goes on
   std::string approach_;         ///< how the program that was planned last is approached
   Approach way_;                 ///< the same
   bool is_approach_new_ = false;
-  std::string approach_message_;  ///< the message that told it last
+  std::string approach_message_;  ///< the message that reported it last
 };
 
 }  // namespace meridian::interpolator

@@ -43,12 +43,12 @@ TEST_F(SupervisorTest, ObeysAHoldWithTheNumberOfACommandThatWasAnswered) {
   ask(Verb::kFeedOverride, 0.5);
   const auto before = take(Verb::kFeedOverride);
   ASSERT_TRUE(before);
-  tell(EventCode::kAccepted, before->request, Verb::kFeedOverride);
+  report(EventCode::kAccepted, before->request, Verb::kFeedOverride);
   ASSERT_TRUE(has_reply(Verb::kFeedOverride, Refusal::kNone));
   repeat(Verb::kHold);  // an operator's program that counts anew
   const auto hold = take(Verb::kHold);
   ASSERT_TRUE(hold);
-  tell(EventCode::kAccepted, hold->request, Verb::kHold);
+  report(EventCode::kAccepted, hold->request, Verb::kHold);
   EXPECT_TRUE(has_reply(Verb::kHold, Refusal::kNone)) << "and hears of the hold, of nothing else";
 }
 
@@ -66,14 +66,14 @@ TEST_F(SupervisorTest, DoesNotTakeAnotherParticipantsCommandForARepetition) {
   ASSERT_TRUE(commands.write(request));
   const auto his = take(Verb::kRapidOverride);
   ASSERT_TRUE(his);
-  tell(EventCode::kAccepted, his->request, Verb::kRapidOverride);
+  report(EventCode::kAccepted, his->request, Verb::kRapidOverride);
   dds::Reply reply;
   ASSERT_TRUE(comes([&] { return replies_.take(reply); }));
   EXPECT_EQ(reply.requester, dds::number_of(stranger));
   ask(Verb::kRapidOverride, 0.5);
   const auto own = take(Verb::kRapidOverride);
   ASSERT_TRUE(own) << "the same number, verb and value, of somebody else";
-  tell(EventCode::kAccepted, own->request, Verb::kRapidOverride);
+  report(EventCode::kAccepted, own->request, Verb::kRapidOverride);
   ASSERT_TRUE(comes([&] { return replies_.take(reply); }));
   EXPECT_EQ(reply.requester, dds::number_of(participant_));
 }
@@ -84,7 +84,7 @@ TEST_F(SupervisorTest, AnswersAStopThatTheCycleAnsweredBeforeThisThreadHeardOfIt
     ask(Verb::kHold);
     const auto hold = take(Verb::kHold);
     ASSERT_TRUE(hold);
-    tell(EventCode::kAccepted, hold->request, Verb::kHold);
+    report(EventCode::kAccepted, hold->request, Verb::kHold);
     ASSERT_TRUE(has_reply(Verb::kHold, Refusal::kNone)) << n;
   }
 }

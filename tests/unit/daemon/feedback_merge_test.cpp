@@ -295,7 +295,7 @@ TEST(FeedbackMerge, NamesTheLowestJointOfTheGroupThatIsSilentOrDeaf) {
   EXPECT_EQ(merge.words().oldest_mask, 0b11000U);
 }
 
-TEST(FeedbackMerge, TellsWhenAnOpenStopInputWasReportedLastWhateverOthersReport) {
+TEST(FeedbackMerge, KnowsWhenAnOpenStopInputWasReportedLastWhateverOthersReport) {
   FeedbackMerge merge;
   dds::DriveFeedback open = sample(1, 0b01, 1);
   open.is_emergency_stop = true;

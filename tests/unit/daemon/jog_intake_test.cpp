@@ -74,7 +74,7 @@ TEST(JogIntake, CountsOrdersOfAllOperatorsAsOneRow) {
   EXPECT_GT(second->sample, first->sample);
 }
 
-TEST(JogIntake, TellsForHowLongASampleWasUnderWayAndTakesNoneOfAStatusThatNeverWas) {
+TEST(JogIntake, ReportsForHowLongASampleWasUnderWayAndTakesNoneOfAStatusThatNeverWas) {
   JogIntake intake(kService);
   intake.begin(7, kParticipant, 31);
   const auto late = intake.take(jog_of(7, 1), kParticipant, kEpoch, kJoints, kTool_mm, 70'000'000);

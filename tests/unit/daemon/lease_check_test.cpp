@@ -141,7 +141,7 @@ TEST(LeaseCheck, GivesNoWayToWhoServesNoMore) {
 }
 
 /// An hour of doubt about another one, whose words are late, is none about the next.
-TEST(LeaseCheck, WaitsForWordsThatTellAnewWhereverAnotherOneBeginsToServeBesideIt) {
+TEST(LeaseCheck, WaitsAnewForWordsThatDecideWhereverAnotherOneBeginsToServeBesideIt) {
   LeaseCheck check(2);
   check.hold(0);
   const auto late = [](std::int64_t now) {

@@ -35,7 +35,7 @@ TEST(LeaseCheck, LeavesTheMachineToExactlyOneWhateverTheDelaysAndPauses) {
   }
 }
 
-TEST(LeaseCheck, LeavesTheMachineToOneWhereBothWordsCameTooLateToTellWhoServedLonger) {
+TEST(LeaseCheck, LeavesTheMachineToOneWhereBothWordsCameTooLateToShowWhoServedLonger) {
   Rivals rivals(1);
   rivals.add(2, 0);
   rivals.add(1, 50 * kMs).pauses = {{50 * kMs, 2 * kS}};

@@ -38,7 +38,7 @@ class Manager {
   Manager(const Manager&) = delete;
   Manager& operator=(const Manager&) = delete;
 
-  /// What was told since the last call; empty where nothing was.
+  /// What was sent since the last call; empty where nothing was.
   [[nodiscard]] std::string heard() const {
     std::array<char, 512> text{};
     const auto got = ::recv(socket_, text.data(), text.size(), MSG_DONTWAIT);
@@ -52,32 +52,32 @@ class Manager {
 
 TEST(ServiceManager, HearsThatTheServiceIsReadyAndStops) {
   const Manager manager;
-  ServiceManager told;
-  told.is_ready("answering in Off");
+  ServiceManager service;
+  service.is_ready("answering in Off");
   EXPECT_EQ(manager.heard(), "READY=1\nSTATUS=answering in Off");
-  told.is_stopping();
+  service.is_stopping();
   EXPECT_EQ(manager.heard(), "STOPPING=1");
 }
 
 TEST(ServiceManager, HearsBeatsAtHalfTheWatchdogsTimeWhileTheCycleRuns) {
   const Manager manager;
-  ServiceManager told;
+  ServiceManager service;
   const auto begin = std::chrono::steady_clock::now();
   const auto after = [begin](int ms) { return begin + std::chrono::milliseconds(ms); };
-  told.beat(1, after(0));
+  service.beat(1, after(0));
   EXPECT_EQ(manager.heard(), "WATCHDOG=1");
-  told.beat(400, after(400));
+  service.beat(400, after(400));
   EXPECT_EQ(manager.heard(), "");
-  told.beat(510, after(510));
+  service.beat(510, after(510));
   EXPECT_EQ(manager.heard(), "WATCHDOG=1");
-  told.beat(510, after(5000));  // the cycle hangs
+  service.beat(510, after(5000));  // the cycle hangs
   EXPECT_EQ(manager.heard(), "");
 }
 
 TEST(ServiceManager, SaysNothingWhereNobodyAsked) {
-  ServiceManager told;
-  told.is_ready("");
-  told.beat(1, std::chrono::steady_clock::now());
+  ServiceManager service;
+  service.is_ready("");
+  service.beat(1, std::chrono::steady_clock::now());
 }
 
 }  // namespace

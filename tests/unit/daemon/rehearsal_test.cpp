@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-/// Everything that simulated drives can be told to do wrong, done to the cycle while it cuts:
+/// Every fault that simulated drives can be given, while the cycle cuts:
 /// cycle, drives and what joins them, without a wire and without a clock.
 namespace meridian::test {
 namespace {
@@ -25,7 +25,7 @@ void PrintTo(const Rehearsed& rehearsed, std::ostream* out) { *out << rehearsed.
 
 class RehearsedFault : public testing::TestWithParam<Rehearsed> {};
 
-TEST_P(RehearsedFault, StopsOnThePathIsToldAndIsOverWhenItIsMended) {
+TEST_P(RehearsedFault, StopsOnThePathIsReportedAndIsOverWhenItIsMended) {
   const Rehearsed& expected = GetParam();
   auto plant = std::make_unique<Rehearsal>();
   plant->start();
@@ -99,7 +99,7 @@ TEST(RehearsedTrouble, OfReportsThatComeALittleLateTwiceOrOutOfOrderStopsNothing
   }
 }
 
-TEST(RehearsedTrouble, OfAReferenceLostAtRestIsToldAtTheStart) {
+TEST(RehearsedTrouble, OfAReferenceLostAtRestIsReportedAtTheStart) {
   auto plant = std::make_unique<Rehearsal>();
   ASSERT_TRUE(plant->enable());
   plant->plan.cut({200, 0, 0}, kRehearsalLimits);

@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 1'000'000;
 
-class TellerTest : public testing::Test {
+class SourceReporterTest : public testing::Test {
  protected:
   /// What is said of the sources as they are now.
   std::vector<std::string> look() {
     std::vector<std::string> said;
     now_ns_ += kTick_ns;
-    teller_.look(
+    reporter_.look(
         sources_, now_ns_, [](std::uint64_t writer) { return "process " + std::to_string(writer); },
         [] { return std::string("process 99"); },
         [&said](telemetry::Weight, const std::string& text) { said.push_back(text); });
@@ -39,14 +39,14 @@ class TellerTest : public testing::Test {
   }
 
   const MachineModel model_ = test::lai_machine();
-  SourceReporter teller_{model_, 7};
+  SourceReporter reporter_{model_, 7};
   DriveSources sources_;
   std::int64_t now_ns_ = kTick_ns;
 };
 
 using Said = std::vector<std::string>;
 
-TEST_F(TellerTest, SaysOnceWhoReportsAndWhoIsGone) {
+TEST_F(SourceReporterTest, SaysOnceWhoReportsAndWhoIsGone) {
   source(0, 11, 0b11, 0b11);
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 reports b3, b2"});
   EXPECT_EQ(look(), Said{});
@@ -54,7 +54,7 @@ TEST_F(TellerTest, SaysOnceWhoReportsAndWhoIsGone) {
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 is gone"});
 }
 
-TEST_F(TellerTest, SaysOnceThatAGuardCountsAsOpenBecauseNobodySpeaksOfIt) {
+TEST_F(SourceReporterTest, SaysOnceThatAGuardCountsAsOpenBecauseNobodySpeaksOfIt) {
   source(0, 11, 0b11, 0b11).guard = GuardInput::kShut;
   (void)look();
   now_ns_ += 300 * kTick_ns;
@@ -65,7 +65,7 @@ TEST_F(TellerTest, SaysOnceThatAGuardCountsAsOpenBecauseNobodySpeaksOfIt) {
   EXPECT_EQ(look(), Said{});
 }
 
-TEST_F(TellerTest, NamesBothWhereTwoReportTheSameDrive) {
+TEST_F(SourceReporterTest, NamesBothWhereTwoReportTheSameDrive) {
   source(0, 11, 0b11, 0b11);
   (void)look();
   source(1, 12, 0b10, 0);
@@ -83,7 +83,7 @@ TEST_F(TellerTest, NamesBothWhereTwoReportTheSameDrive) {
   EXPECT_EQ(look(), Said{"drive group 3 of process 12 reports no other one's drives any more"});
 }
 
-TEST_F(TellerTest, SaysWhatIsTakenFromWhoHasNoDriveOfTheMachine) {
+TEST_F(SourceReporterTest, SaysWhatIsTakenFromWhoHasNoDriveOfTheMachine) {
   source(0, 11, 0, 0);
   source(1, 12, 0, 0).has_only_stop = true;
   const Said said = look();
@@ -92,7 +92,7 @@ TEST_F(TellerTest, SaysWhatIsTakenFromWhoHasNoDriveOfTheMachine) {
   EXPECT_EQ(said[1], "drive group 3 of process 12 reports a stop input and no drive");
 }
 
-TEST_F(TellerTest, SaysOnceWhoseDrivesObeyAnotherServiceAndWhoMayBeThat) {
+TEST_F(SourceReporterTest, SaysOnceWhoseDrivesObeyAnotherServiceAndWhoMayBeThat) {
   source(0, 11, 0b11, 0b11).master = 7;
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 reports b3, b2"}) << "they obey this one";
   source(0, 11, 0b11, 0b11).master = 0x1234;

@@ -60,7 +60,7 @@ class SupervisorTest : public testing::Test {
     clock_.published(status, monotonic_ns() + kMinute_ns);
   }
   /// The cycle says what it made of `request`.
-  void tell(EventCode code, std::uint64_t request, Verb verb) {
+  void report(EventCode code, std::uint64_t request, Verb verb) {
     Event event;
     event.code = code;
     event.a = request;
@@ -120,9 +120,9 @@ class SupervisorTest : public testing::Test {
   }
   /// Nobody waits for what the program asked for.
   void abort_program() {
-    tell(EventCode::kEpochAdvanced, 2, Verb::kAbort);
-    Event told;
-    ASSERT_TRUE(comes([&] { return ports_->session_events.try_pop(told); }));
+    report(EventCode::kEpochAdvanced, 2, Verb::kAbort);
+    Event event;
+    ASSERT_TRUE(comes([&] { return ports_->session_events.try_pop(event); }));
   }
   /// A program waits for a change to tool 7 and is aborted: the change goes on without it.
   void abort_in_tool_change() {
@@ -171,7 +171,7 @@ class SupervisorBurst : public SupervisorTest {
  protected:
   void SetUp() override {}
 
-  /// The cycle takes what it is told, and says that it did it; verbs that lead to motion are
+  /// The cycle reads each command and reports that it carried it out; verbs that lead to motion are
   /// overtaken. Returns the verbs in that order, once `replies` of them are answered.
   [[nodiscard]] std::vector<Verb> obey_until(std::size_t replies) {
     std::vector<Verb> taken;

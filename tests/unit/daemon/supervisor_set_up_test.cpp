@@ -45,7 +45,7 @@ class SupervisorSetUp : public SupervisorTest {
     request.frame.frame.origin_mm = {x_mm, 0, 0};
     (void)commands_.write(request);
   }
-  /// The disk does what it is asked for, until the cycle is told.
+  /// The disk does what it is asked for, until the cycle receives a command.
   [[nodiscard]] std::optional<Command> write_and_take(Verb verb = Verb::kFrame) {
     Command command;
     const bool is_there = comes([&] {
@@ -55,7 +55,7 @@ class SupervisorSetUp : public SupervisorTest {
     return is_there && command.verb == verb ? std::optional(command) : std::nullopt;
   }
   void report_accepted(const Command& command) {
-    tell(EventCode::kAccepted, command.request, Verb::kFrame);
+    report(EventCode::kAccepted, command.request, Verb::kFrame);
   }
   void report_refused(const Command& command, Refusal why) {
     Event event;
@@ -65,7 +65,7 @@ class SupervisorSetUp : public SupervisorTest {
     event.x = static_cast<double>(why);
     ASSERT_TRUE(ports_->events.try_push(event));
   }
-  /// Status and machine topic tell of what is in force.
+  /// Status and machine topic report what is in force.
   void publish_in_force() {
     ASSERT_TRUE(comes([this] { return supervisor_.has_set_up_to_report(); }));
     publish_status();
@@ -114,7 +114,7 @@ class SupervisorSetUp : public SupervisorTest {
   void do_it(Verb verb) {
     const auto command = write_and_take(verb);
     ASSERT_TRUE(command);
-    tell(EventCode::kAccepted, command->request, verb);
+    report(EventCode::kAccepted, command->request, verb);
     publish_in_force();
     EXPECT_TRUE(has_reply(verb, Refusal::kNone));
   }
@@ -128,7 +128,7 @@ class SupervisorSetUp : public SupervisorTest {
                              }};
 };
 
-TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndToldBeforeTheyAreAcknowledged) {
+TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndPublishedBeforeTheyAreAcknowledged) {
   say(FrameWord::kSet, 3, 12);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   Command early;
@@ -138,7 +138,7 @@ TEST_F(SupervisorSetUp, AreOnDiskBeforeTheCycleAndToldBeforeTheyAreAcknowledged)
   EXPECT_EQ(on_disk(3), 12);
   EXPECT_FALSE(is_answered());
   report_accepted(*command);
-  EXPECT_FALSE(is_answered()) << "nobody was told";
+  EXPECT_FALSE(is_answered()) << "it is not published";
   publish_in_force();
   EXPECT_TRUE(has_reply(Verb::kFrame, Refusal::kNone));
 
@@ -203,7 +203,7 @@ TEST_F(SupervisorSetUp, AreAskedForOnceMoreWhereTheCyclesAnswerWasLost) {
   ask(Verb::kSingleBlock, 1);
   const auto behind = take(Verb::kSingleBlock);
   ASSERT_TRUE(behind);
-  tell(EventCode::kAccepted, behind->request, Verb::kSingleBlock);
+  report(EventCode::kAccepted, behind->request, Verb::kSingleBlock);
   const auto again = take(Verb::kFrame);
   ASSERT_TRUE(again);
   report_accepted(*again);
@@ -273,7 +273,7 @@ TEST_F(SupervisorSetUp, ShrinksTheTravelOfEverybodyAndGivesItBack) {
   place(cycles, ports_->set_up.for_cycle.latest());
   EXPECT_EQ(cycles.joints[0].limits.travel_max, whole.travel_max / 2);
   EXPECT_EQ(cycles.joints[1].limits.travel_max, model_.joints[1].limits.travel_max);
-  tell(EventCode::kAccepted, command->request, Verb::kLimits);
+  report(EventCode::kAccepted, command->request, Verb::kLimits);
   publish_in_force();
   EXPECT_TRUE(has_reply(Verb::kLimits, Refusal::kNone));
   EXPECT_TRUE(on_disk().limits.rows()[0].is_set);

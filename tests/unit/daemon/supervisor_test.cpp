@@ -94,7 +94,7 @@ TEST_F(SupervisorTest, NamesTheDrivesThatTwoReportWhereItRefusesToEnable) {
   EXPECT_TRUE(reply.text.ends_with(": b2, theta2")) << reply.text;
 }
 
-/// Nobody's requests cannot be told apart: each repetition would be done again.
+/// Requests of nobody cannot be distinguished: each repetition would be done again.
 TEST_F(SupervisorTest, ObeysNobodyButWhereHeStops) {
   show(State::kLoaded, false);
   for (const Verb verb : {Verb::kStart, Verb::kFeedOverride, Verb::kJog, Verb::kReset}) {
@@ -154,7 +154,7 @@ TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe)
   EXPECT_LT(*sizes.begin(), 175U) << "there was room for all of every one";
 }
 
-TEST_F(SupervisorBurst, TellsTheCycleAHoldAheadOfSixtyOverridesAndAnswersThemAll) {
+TEST_F(SupervisorBurst, CommandsAHoldAheadOfSixtyOverridesAndAnswersThemAll) {
   show(State::kRunning, false);
   for (int n = 0; n < 60; ++n) ask(Verb::kFeedOverride, 0.5);
   ask(Verb::kHold);
@@ -164,7 +164,7 @@ TEST_F(SupervisorBurst, TellsTheCycleAHoldAheadOfSixtyOverridesAndAnswersThemAll
   EXPECT_EQ(taken.front(), Verb::kHold);
 }
 
-TEST_F(SupervisorBurst, TellsEveryStopHoweverMuchWaitsAndAnswersWhatItGoesPast) {
+TEST_F(SupervisorBurst, CommandsEveryStopHoweverMuchWaitsAndAnswersWhatItGoesPast) {
   // In all fewer than a participant's lane of replies holds: where the processor is busy, the
   // thread that writes them comes late, and what has no room in the lane is dropped.
   constexpr int kOverrides = 110, kHolds = 110, kAll = 1 + kOverrides + kHolds + 1;

@@ -15,7 +15,7 @@ TEST_F(SupervisorTest, AnswersARepetitionAgainBehindManyOtherAnswersAndDoesNotOb
   ask(Verb::kResume);
   const auto resume = take(Verb::kResume);
   ASSERT_TRUE(resume);
-  tell(EventCode::kAccepted, resume->request, Verb::kResume);
+  report(EventCode::kAccepted, resume->request, Verb::kResume);
   ASSERT_TRUE(has_reply(Verb::kResume, Refusal::kNone));
   const std::uint64_t said = request_;
   for (int n = 0; n < 100; ++n) {
@@ -28,7 +28,7 @@ TEST_F(SupervisorTest, AnswersARepetitionAgainBehindManyOtherAnswersAndDoesNotOb
   ASSERT_TRUE(comes([&] { return replies_.take(reply) && reply.request == said; }));
   EXPECT_TRUE(reply.is_accepted);
   ask(Verb::kFeedOverride, 0.5, 11);
-  EXPECT_TRUE(take(Verb::kFeedOverride)) << "the next that the cycle is told";
+  EXPECT_TRUE(take(Verb::kFeedOverride)) << "the next command of the cycle";
 }
 
 TEST_F(SupervisorTest, TakesWhatWasSaidBeforeAStopAndComesBehindItForOvertaken) {
@@ -36,7 +36,7 @@ TEST_F(SupervisorTest, TakesWhatWasSaidBeforeAStopAndComesBehindItForOvertaken) 
   ask(Verb::kHold, 0, 8);
   const auto hold = take(Verb::kHold);
   ASSERT_TRUE(hold);
-  tell(EventCode::kAccepted, hold->request, Verb::kHold);
+  report(EventCode::kAccepted, hold->request, Verb::kHold);
   ASSERT_TRUE(has_reply(Verb::kHold, Refusal::kNone));
   for (const Verb verb : {Verb::kResume, Verb::kStart, Verb::kEnable, Verb::kJog, Verb::kHome}) {
     ask(verb);
@@ -61,12 +61,12 @@ TEST_F(SupervisorTest, ResetsTheDrivesOnceForAllWhoAskMeanwhileAndAnswersEachOnc
   ask(Verb::kFeedOverride, 0.5, 9);
   const auto between = take(Verb::kFeedOverride);
   ASSERT_TRUE(between) << "both resets wait for the drives";
-  tell(EventCode::kAccepted, between->request, Verb::kFeedOverride);
+  report(EventCode::kAccepted, between->request, Verb::kFeedOverride);
   ASSERT_TRUE(has_reply(Verb::kFeedOverride, Refusal::kNone));
   const auto first = take(Verb::kReset), second = take(Verb::kReset);
   ASSERT_TRUE(first && second);
-  tell(EventCode::kAccepted, first->request, Verb::kReset);
-  tell(EventCode::kAccepted, second->request, Verb::kReset);
+  report(EventCode::kAccepted, first->request, Verb::kReset);
+  report(EventCode::kAccepted, second->request, Verb::kReset);
   EXPECT_TRUE(has_reply(Verb::kReset, Refusal::kNone));
   EXPECT_TRUE(has_reply(Verb::kReset, Refusal::kNone));
   ask(Verb::kOptionalStop, 1);
@@ -81,7 +81,7 @@ TEST_F(SupervisorTest, GivesUpAWordWhoseAnswerIsLostAndDoesNotObeyItAgain) {
   ask(Verb::kFeedOverride, 0.5);
   const auto next = take(Verb::kFeedOverride);
   ASSERT_TRUE(next);
-  tell(EventCode::kAccepted, next->request, Verb::kFeedOverride);
+  report(EventCode::kAccepted, next->request, Verb::kFeedOverride);
   EXPECT_TRUE(has_reply(Verb::kRapidOverride, Refusal::kWrongState));
   EXPECT_TRUE(has_reply(Verb::kFeedOverride, Refusal::kNone));
   request_ = lost;

@@ -26,13 +26,13 @@ class TelemetryThreadTest : public testing::Test {
     std::filesystem::remove(record::operator_events_path(path_.string()));
   }
 
-  void tell(EventCode code, std::uint64_t a, std::uint64_t b = 0) {
+  void emit(EventCode code, std::uint64_t a, std::uint64_t b = 0) {
     Event event;
     event.code = code;
     event.cycle = 7;
     event.a = a;
     event.b = b;
-    EXPECT_TRUE(ports_->told.try_push(event));
+    EXPECT_TRUE(ports_->telemetry_events.try_push(event));
   }
   /// The next cycle's record.
   void record(State state) {
@@ -58,7 +58,7 @@ class TelemetryThreadTest : public testing::Test {
     ports_->is_stopping = true;
     taking.join();
   }
-  /// Lets the thread drain what was told, and end; the status is its last.
+  /// Lets the thread drain what was emitted, and end; the status is its last.
   void run() {
     dds::Reader<dds::Status> statuses(participant_);
     TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
@@ -123,7 +123,7 @@ class TelemetryThreadTest : public testing::Test {
   std::uint64_t cycle_ = 0;
 };
 
-TEST_F(TelemetryThreadTest, TellsThePlanTimeAheadWhereAProgramMovesAndWhereItRests) {
+TEST_F(TelemetryThreadTest, PublishesThePlanTimeAheadWhereAProgramMovesAndWhereItRests) {
   MotionWriter planner(ports_->motion);
   ASSERT_TRUE(planner.stage(TimePiece{}));
   planner.publish();
@@ -138,21 +138,21 @@ TEST_F(TelemetryThreadTest, TellsThePlanTimeAheadWhereAProgramMovesAndWhereItRes
   }
 }
 
-TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasDone) {
-  tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
+TEST_F(TelemetryThreadTest, RecordsWhatWasDone) {
+  emit(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
   run();
   EXPECT_EQ(events(), "cycle,verb,argument,block,span\n7,hold,0\n");
 }
 
-TEST_F(TelemetryThreadTest, TellsTheRecorderThatOptionalStopsStopWhereTheServiceBeginsSo) {
+TEST_F(TelemetryThreadTest, RecordsThatOptionalStopsStopWhereTheServiceBeginsSo) {
   service_.optional_stop = true;
-  tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kStart));
+  emit(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kStart));
   run();
   EXPECT_EQ(events(), "cycle,verb,argument,block,span\n0,optional_stop,1\n7,start,0\n");
 }
 
-TEST_F(TelemetryThreadTest, TellsTheRecorderWhatWasLostOnTheWay) {
-  tell(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
+TEST_F(TelemetryThreadTest, RecordsWhatWasLostOnTheWay) {
+  emit(EventCode::kAccepted, 0, static_cast<std::uint64_t>(Verb::kHold));
   ports_->events_overrun = 2;
   run();
   EXPECT_EQ(events(), "cycle,verb,argument,block,span\n7,hold,0\nincomplete\n");
@@ -163,7 +163,7 @@ TEST_F(TelemetryThreadTest, NamesTheGroupThatIsSilentWithTheDriveThatIsMissed) {
   words.oldest_group = 4;
   words.oldest_mask = 0b11000;
   ports_->drive_words_for_status.store(words);
-  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kFeedbackLost), 3);
+  emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kFeedbackLost), 3);
   run();
   EXPECT_EQ(status_.message.rfind("no feedback from drive theta1; check", 0), 0U);
   EXPECT_NE(status_.message.find("; drive group 4 is silent: theta1, theta2"), std::string::npos)
@@ -174,7 +174,7 @@ TEST_F(TelemetryThreadTest, SaysThatAStopInputIsMissed) {
   DriveWords words;
   words.oldest_group = 9;
   ports_->drive_words_for_status.store(words);
-  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kFeedbackLost), kNoJoint);
+  emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kFeedbackLost), kNoJoint);
   run();
   EXPECT_EQ(status_.message.rfind("no feedback from what has the stop input; check", 0), 0U);
   EXPECT_NE(status_.message.find("; drive group 9 is silent"), std::string::npos)
@@ -183,7 +183,7 @@ TEST_F(TelemetryThreadTest, SaysThatAStopInputIsMissed) {
 
 TEST_F(TelemetryThreadTest, SaysWhatASessionDidBehindTheAlarmThatHoldsTheProgram) {
   open_session();
-  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));
+  emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));
   run();
   EXPECT_EQ(status_.alarm, Alarm::kActionFailed);
   EXPECT_NE(status_.message.find("action"), std::string::npos) << status_.message;
@@ -199,7 +199,7 @@ TEST_F(TelemetryThreadTest, SaysWhatASessionDidAloneWhereThereIsNoAlarm) {
 
 TEST_F(TelemetryThreadTest, SaysHowTheProgramWentBehindTheAlarmThatEndedIt) {
   for (const State state : {State::kApproaching, State::kFaultStop, State::kFault}) record(state);
-  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kEmergencyStop));
+  emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kEmergencyStop));
   run();
   EXPECT_EQ(status_.message,
             "emergency stop input is open; release it, then reset; the program ended by a fault in "
@@ -208,12 +208,12 @@ TEST_F(TelemetryThreadTest, SaysHowTheProgramWentBehindTheAlarmThatEndedIt) {
 
 TEST_F(TelemetryThreadTest, ForgetsTheAlarmWithTheFaultThoughNoStatusSaysOff) {
   const auto change = [this](State from, State to) {
-    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(to),
+    emit(EventCode::kStateChanged, static_cast<std::uint64_t>(to),
          static_cast<std::uint64_t>(from));
     record(to);
   };
   change(State::kReady, State::kFaultStop);
-  tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kEmergencyStop));
+  emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kEmergencyStop));
   change(State::kFaultStop, State::kFault);
   change(State::kFault, State::kOff);
   change(State::kOff, State::kEnabling);
@@ -230,7 +230,7 @@ TEST_F(TelemetryThreadTest, SaysHowTheProgramWentNotThatItsSessionIsThere) {
 
 const std::string kApproachWords = "approach to line 12: none, the tool is there";
 
-TEST_F(TelemetryThreadTest, KeepsTheApproachInTheStatusWhateverTheStationDoesAndTellsItAtOnce) {
+TEST_F(TelemetryThreadTest, KeepsTheApproachInTheStatusWhateverTheStationDoesAndPublishesItAtOnce) {
   service_.status_rate_hz = 0.05;  // by itself not again before this test is over
   dds::Reader<dds::Status> statuses(participant_);
   CycleView view;
@@ -249,7 +249,7 @@ TEST_F(TelemetryThreadTest, KeepsTheApproachInTheStatusWhateverTheStationDoesAnd
 }
 
 /// Words that quote an older status are overtaken.
-TEST_F(TelemetryThreadTest, TellsAtOnceWhatTheMachineMadeOfAStop) {
+TEST_F(TelemetryThreadTest, PublishesAtOnceWhatTheMachineMadeOfAStop) {
   service_.status_rate_hz = 1;
   CycleView view;
   view.cycles_run = 1;
@@ -260,14 +260,14 @@ TEST_F(TelemetryThreadTest, TellsAtOnceWhatTheMachineMadeOfAStop) {
   std::thread running([&] { thread.run(); });
   EXPECT_TRUE(comes(statuses, "")) << "the first";
   const std::int64_t first_ns = status_.time_ns;
-  tell(EventCode::kRefused, 3, static_cast<std::uint64_t>(Verb::kAbort));
+  emit(EventCode::kRefused, 3, static_cast<std::uint64_t>(Verb::kAbort));
   EXPECT_TRUE(comes(statuses, ""));
   EXPECT_LT(status_.time_ns - first_ns, 1'000'000'000) << "a period";
   ports_->is_stopping = true;
   running.join();
 }
 
-TEST_F(TelemetryThreadTest, TellsNoApproachOfAProgramThatIsVoid) {
+TEST_F(TelemetryThreadTest, PublishesNoApproachOfAProgramThatIsVoid) {
   for (const std::uint64_t epoch : {1U, 2U}) {
     plan_approach(1);
     status_.message.clear();
@@ -277,11 +277,11 @@ TEST_F(TelemetryThreadTest, TellsNoApproachOfAProgramThatIsVoid) {
     ports_->is_stopping = false;
     std::thread running([&] { thread.run(); });
     EXPECT_TRUE(comes(statuses, kApproachWords));
-    tell(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));
-    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kReady),
+    emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kActionFailed));
+    emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kReady),
          static_cast<std::uint64_t>(State::kHeld));
-    tell(EventCode::kEpochAdvanced, epoch);
-    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kApproaching),
+    emit(EventCode::kEpochAdvanced, epoch);
+    emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kApproaching),
          static_cast<std::uint64_t>(State::kLoaded));
     ports_->is_stopping = true;
     running.join();
@@ -309,8 +309,8 @@ TEST_F(TelemetryThreadTest, NotesNothingOfADryRunWhoseBeginWasLostAmongTheEvents
     while (!statuses.take(status_) && std::chrono::steady_clock::now() < patience) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    tell(EventCode::kBlockStarted, 3);
-    tell(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kApproaching));
+    emit(EventCode::kBlockStarted, 3);
+    emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kApproaching));
     ports_->is_stopping = true;
     running.join();
     journal.stop();

@@ -190,7 +190,7 @@ TEST_F(TracerTest, ShowsTheWorstCycleThatComesBehindAWindowNotYetWritten) {
             1U);
 }
 
-TEST_F(TracerTest, IsNoneWhereItsFolderCannotBeMadeAndTheReasonIsTold) {
+TEST_F(TracerTest, IsNoneWhereItsFolderCannotBeMadeAndTheReasonIsReported) {
   TraceOptions options = this->options();
   options.folder = "/proc/nowhere";
   const auto tracer = make_tracer(options, TraceOrigin{"lai", "1.0", "host"}, *rings_, {},
