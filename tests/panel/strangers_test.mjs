@@ -8,7 +8,9 @@ import { exchange, frame, upgrade } from "./raw_http.mjs";
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
 const plant = new Plant(bin, source, "lai.toml");
 const kJunk = Number(process.env.MERIDIAN_PANEL_JUNK ?? 2000);
-const kAtOnce = 16, kMaxGrowth_kib = 4096;
+const kAtOnce = 16;
+// Of a panel under a sanitizer, which keeps what was freed, more is said: MERIDIAN_PANEL_GROWTH, KiB.
+const kMaxGrowth_kib = Number(process.env.MERIDIAN_PANEL_GROWTH ?? 4096);
 
 async function strangersReachNothing() {
   const { host } = new URL(plant.url), ask = (bytes) => exchange(plant.url, bytes);
@@ -82,6 +84,14 @@ async function junkLeavesTheMemoryFlat() {
   must((await fetch(plant.url)).ok, "the page is not served any more");
 }
 
+// Whom a sanitizer watches, it reports here: leaks, and what was reported on the way.
+async function thePanelEndsInOrder() {
+  plant.panel.kill("SIGTERM");
+  must((await plant.panel.ended) === 0, `the panel ended with ${plant.panel.exitCode}: ${plant.panel.text.slice(-4000)}`);
+  must(!/Sanitizer|runtime error/.test(plant.panel.text), plant.panel.text.slice(-4000));
+  plant.panel = await plant.startPanel();
+}
+
 // In the middle of a cut. A host that stalls for longer than drives bridge ends a part too: again, with another panel.
 async function theMachineDoesNotNoticeTheEndOfThePanel(attempt = 1) {
   plant.tool("ctl", "enable", "--wait", "Ready", "--domain", plant.domain);
@@ -102,5 +112,6 @@ await runTests(plant, ".", async (session, run) => {
   await plant.start();
   await run("StrangersReachNothing", strangersReachNothing);
   await run("JunkLeavesTheMemoryFlat", junkLeavesTheMemoryFlat);
+  await run("ThePanelEndsInOrder", thePanelEndsInOrder);
   await run("TheMachineDoesNotNoticeTheEndOfThePanel", () => theMachineDoesNotNoticeTheEndOfThePanel());
 });
