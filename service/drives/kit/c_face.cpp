@@ -162,7 +162,8 @@ int64_t meridian_drives_cycle_ns(const meridian_drives* drives) {
 }
 
 meridian_drive_status meridian_drives_status(const meridian_drives* drives, int axis) {
-  const drive::AxisStatus status = drives->drives->status(axis);
+  const bool is_there = axis >= 0 && axis < drives->drives->axis_count();
+  const drive::AxisStatus status = is_there ? drives->drives->status(axis) : drive::AxisStatus{};
   return {status.statusword, status.error,           status.state,
           status.position,   status.following_error, status.is_referenced};
 }

@@ -81,6 +81,9 @@ TEST(CFaceAtTheStart, RunEndsWhereItsFlagIsSet) {
   meridian_drives_run(drives.get(), &motors.is_stopping);
   EXPECT_EQ(motors.periods, 50);
   EXPECT_STREQ(meridian_drives_status(drives.get(), 0).state, "switch on disabled");
+  for (const int axis : {-1, 1}) {
+    EXPECT_STREQ(meridian_drives_status(drives.get(), axis).state, "") << "there is no such axis";
+  }
 }
 
 }  // namespace
