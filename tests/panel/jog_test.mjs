@@ -3,6 +3,7 @@
 // MERIDIAN_PANEL_ENDS: these only, as in `kEnds`, with commas between.
 import { familyOf, openBrowser, sleep, until } from "./plant.mjs";
 import { afterStalls, drawAt, enabled, HostStalled, kOfStalls, must, picture, runTests, stateOf } from "./page_hand.mjs";
+import { Fingers, middleOf } from "./finger.mjs";
 import { pictures, plant, playwright } from "./browser_case.mjs";
 
 const kTimes = Number(process.env.MERIDIAN_PANEL_JOGS ?? 1);
@@ -10,20 +11,26 @@ const kTimes = Number(process.env.MERIDIAN_PANEL_JOGS ?? 1);
 const buttonFrom = (at) => `.jog-row:first-child button:${at > 0 ? "first" : "last"}-of-type`;
 const joint = () => plant.status().b3_mm;
 
-async function press(page) {
+// What presses: a mouse, or a finger.
+async function handOn(page, isFinger) {
+  if (isFinger) return Fingers.of(page);
+  return { down: async ([x, y]) => (await page.mouse.move(x, y), page.mouse.down()), up: () => page.mouse.up() };
+}
+
+async function press(page, isFinger) {
   await enabled(page);
   if (await page.isHidden("#jog")) await page.click("#jog-toggle");
   await page.bringToFront();
   await drawAt(page, 0.2);
-  const box = await page.locator(buttonFrom(joint())).boundingBox();
-  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const hand = await handOn(page, isFinger), at = await middleOf(page, buttonFrom(joint()));
   // A page that lags, as one drawn in software on a busy host does, lets go by itself: pressed again.
   for (let attempt = 1; ; ++attempt) {
-    await page.mouse.down();
+    await hand.down(at);
     const from = joint();
     const isMoving = await until("the joint moves", () => Math.abs(joint() - from) > 0.02, 2000).then(() => true, () => false);
-    if (isMoving && (await stateOf(page)) === "Jogging") return;
-    await page.mouse.up();
+    if (isMoving && (await stateOf(page)) === "Jogging") return { hand, at };
+    await hand.up();
+    if ((await stateOf(page)) === "Fault") throw new HostStalled(await page.textContent("#alarm-text"));
     must(attempt < 8, "jog does not begin");
     await sleep(500);
   }
@@ -73,6 +80,8 @@ async function openAnotherPanel({ page }) {
 // How the hand is lost, and how it comes back.
 const kEnds = {
   "let go": { lose: ({ page }) => page.mouse.up() },
+  "finger lifted": { isFinger: true, lose: (_, finger) => finger.up() },
+  "touch cancelled": { isFinger: true, lose: (_, finger) => finger.cancel() },
   "focus lost": { lose: ({ page }) => page.evaluate(() => window.dispatchEvent(new Event("blur"))) },
   "tab hidden": { lose: ({ page }) => hide(page, true), back: ({ page }) => hide(page, false) },
   "socket cut": { lose: ({ page }) => page.evaluate(() => meridian.link.socket.close()) },
@@ -82,12 +91,12 @@ const kEnds = {
 };
 
 async function jogEndsWhen(session, name) {
-  const { lose, back, isGone } = kEnds[name];
+  const { lose, back, isGone, isFinger } = kEnds[name];
   const times = [];
   for (let i = 0; i < kTimes; ++i) {
     await afterStalls(session.open.page, async () => {
-      await press(session.open.page);
-      const { took, at } = await restAfter(() => lose(session.open), name);
+      const { hand } = await press(session.open.page, isFinger);
+      const { took, at } = await restAfter(() => lose(session.open, hand), name);
       if (back) await back(session.open);
       if (isGone) session.open = await openBrowser(playwright, plant, "light");
       else await session.open.page.mouse.up();
@@ -100,9 +109,35 @@ async function jogEndsWhen(session, name) {
   console.log(`  ${name}, ${times.length} times: at rest within ${times.at(-1).toFixed(0)} ms (median ${times[times.length >> 1].toFixed(0)})`);
 }
 
+// As a hand does that takes a small step more. A host that lags may let go once: not every time.
+async function aFingerPressesAgainAtOnce({ page }) {
+  await afterStalls(page, async () => {
+    const { hand, at } = await press(page, true);
+    for (let attempt = 0, isHeld = false; !isHeld; ++attempt) {
+      must(attempt < 8, "every press behind the first is let go at once");
+      await hand.up();
+      await sleep(50);
+      await hand.down(at);
+      await sleep(100);
+      isHeld = await page.evaluate(() => meridian.jog.held !== null);
+    }
+    must(await page.evaluate(offerMenu), "the menu of a long press comes, or ends the jog");
+    await hand.up();
+    await until("no button is held", () => page.evaluate(() => meridian.jog.held === null));
+  });
+}
+
+// What a browser does with a finger that rests; whether the jog, if any, goes on without a menu.
+function offerMenu() {
+  const { held } = meridian.jog, menu = new MouseEvent("contextmenu", { bubbles: true, cancelable: true });
+  document.querySelector(".jog-row button").dispatchEvent(menu);
+  return menu.defaultPrevented && meridian.jog.held === held;
+}
+
 await runTests(plant, pictures, async (session, run) => {
   await plant.start();
   session.open = await openBrowser(playwright, plant);
+  await run("AFingerPressesAgainAtOnce", aFingerPressesAgainAtOnce, session.open);
   for (const name of process.env.MERIDIAN_PANEL_ENDS?.split(",") ?? Object.keys(kEnds)) {
     await run(`JogEndsWith: ${name}`, jogEndsWhen, session, name);
     if (name === "let go") await picture(session.open.page, pictures, "panel-jog");

@@ -8,6 +8,7 @@ const kFresh_ms = 300;
 const kToolAxes = ["tool x", "tool y", "tool z", "tilt a", "tilt b"];
 const kToolVelocity = [50, 50, 50, 0.3, 0.3]; // mm/s, rad/s at full speed
 const kRadian = Math.PI / 180;
+const kKey = "key"; // presses in place of a pointer, which has a number
 
 export class Jog {
   constructor(link, panel, operate) {
@@ -19,7 +20,7 @@ export class Jog {
     const letGo = () => this.release();
     for (const kind of ["blur", "pagehide", "contextmenu"]) window.addEventListener(kind, letGo);
     document.addEventListener("visibilitychange", () => document.hidden && letGo());
-    for (const kind of ["pointerup", "pointercancel"]) window.addEventListener(kind, letGo);
+    for (const kind of ["pointerup", "pointercancel", "lostpointercapture"]) window.addEventListener(kind, (event) => this.lift(event.pointerId));
     byId("jog-toggle").addEventListener("click", (event) => {
       const isOpen = byId("jog").hidden;
       byId("jog").hidden = !isOpen;
@@ -41,22 +42,26 @@ export class Jog {
       made.addEventListener("pointerdown", (event) => {
         if (event.button !== 0 || !event.isPrimary) return;
         made.setPointerCapture(event.pointerId);
-        this.press(made, what, sign);
+        this.press(made, what, sign, event.pointerId);
       });
-      made.addEventListener("lostpointercapture", () => this.release(made));
+      // A finger that rests is no question for a menu.
+      made.addEventListener("contextmenu", (event) => {
+        event.preventDefault();
+        event.stopPropagation();
+      });
       made.addEventListener("keydown", (event) => {
         if ((event.key !== " " && event.key !== "Enter") || event.repeat) return;
         event.preventDefault();
-        this.press(made, what, sign);
+        this.press(made, what, sign, kKey);
       });
-      made.addEventListener("keyup", () => this.release(made));
-      made.addEventListener("blur", () => this.release(made));
+      // A browser may take the focus from a button that a finger presses again.
+      for (const kind of ["keyup", "blur"]) made.addEventListener(kind, () => this.lift(kKey));
       return made;
     };
     return element("div", { class: "jog-row" }, button(-1, "\u2212"), element("b", {}, name), button(1, "+"));
   }
 
-  press(button, what, sign) {
+  press(button, what, sign, by) {
     this.release();
     const share = Number(byId("jog-speed").value);
     const step = Number(byId("jog-step").value);
@@ -65,7 +70,7 @@ export class Jog {
       distance: what.rotary ? step * kRadian : step,
     };
     // A number that no other press of this page had: what is late of an old press moves nothing.
-    this.held = { button, plan, id: ++this.grips };
+    this.held = { button, plan, by, id: ++this.grips };
     button.classList.add("held");
     this.beat();
     if (this.held) this.timer = setInterval(() => this.beat(), kBeat_ms);
@@ -80,12 +85,17 @@ export class Jog {
     return undefined;
   }
 
-  release(button) {
-    if (!this.held || (button && this.held.button !== button)) return;
+  release() {
+    if (!this.held) return;
     clearInterval(this.timer);
     this.held.button.classList.remove("held");
     this.link.say({ do: "release", id: this.held.id });
     this.held = null;
+  }
+
+  // That pointer or key is up, wherever: what another one presses stays pressed.
+  lift(by) {
+    if (this.held?.by === by) this.release();
   }
 
   setFrame(frame) {
