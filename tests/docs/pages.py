@@ -22,7 +22,7 @@ A block of indented lines is a formula or a drawing.
 import dataclasses
 import re
 
-BLOCK = re.compile(r"(?:^<!-- walk: (?P<use>[^\n]+) -->\n)?^```(?P<language>[^\n]*)\n(?P<body>(?:[^\n]*\n)*?)```$"
+BLOCK = re.compile(r"(?:^<!-- walk: (?P<use>[^\n]+) -->\n(?:^<!-- \w+: begin -->\n)?)?^```(?P<language>[^\n]*)\n(?P<body>(?:[^\n]*\n)*?)```$"
                    r"|^<!-- walk: run\n(?P<hidden>(?:[^\n]*\n)*?)-->$", re.M)
 USES = {"fails", "beside", "file", "part-of", "tested-by", "words", "drawing"}
 WITHOUT_VALUE = {"beside", "drawing"}

@@ -24,6 +24,7 @@ from pages import RUN, blocks_of
 
 PARTS = ("bindings", "deploy", "docs", "include", "tests")
 INSTALLED = {"/usr/share/meridian": "deploy", "/etc/meridian": "etc", "/var/lib/meridian": "var"}
+CONFIGURATION = ("service.toml", "tools.toml", "machines", "cyclonedds-hosts.xml")  # in /etc/meridian
 SET_UP = "export PATH=$PWD/build/release/bin:$PATH CYCLONEDDS_URI=file://$PWD/deploy/cyclonedds-loopback.xml\n"
 PATIENCE_S = 30  # until commands beside the page have printed what it shows
 
@@ -36,6 +37,8 @@ def prepare(folder, source, binaries):
             (folder / part).symlink_to(source / part)
     for name in ("etc", "var"):
         (folder / name).mkdir()
+    for name in CONFIGURATION:
+        (folder / "etc" / name).symlink_to(source / "deploy" / name)
 
 
 def is_test(binaries, name):
