@@ -9,7 +9,7 @@
 namespace meridian::stream {
 
 /// Sees that a program ran and is over: from the status, and from setpoints for one so short that
-/// no status tells of it. What a hand moves, or drives that home, is no program.
+/// no status reports it. What a hand moves, or drives that home, is no program.
 /// Proof: tests/unit/protocol/end_watch_test.cpp.
 class EndWatch {
  public:

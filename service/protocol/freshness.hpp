@@ -57,7 +57,7 @@ class StatusTimes {
   void published(std::uint64_t sequence, std::int64_t now_ns, std::uint64_t rest = 0) noexcept {
     entries_[sequence % kEntries] = {sequence, now_ns, rest};
   }
-  /// What was told of the rest with status `sequence`; 0: none, or forgotten.
+  /// The rest that status `sequence` reported; 0: none, or forgotten.
   [[nodiscard]] std::uint64_t rest_reported(std::uint64_t sequence) const noexcept {
     const Entry& entry = entries_[sequence % kEntries];
     return entry.sequence == sequence ? entry.rest : 0;

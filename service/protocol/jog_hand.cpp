@@ -57,8 +57,8 @@ void JogHand::send(const JogPlan& plan, std::uint16_t epoch, double velocity) {
                      .dead_man_ns = static_cast<std::int64_t>(plan.dead_man_s * 1e9)});
 }
 
-/// However it ends, the machine is told to brake at once, not after the dead man's time: a status
-/// that came late may say that it does not jog while it does.
+/// However it ends, the machine gets the command to brake at once, not after the dead man's time: a
+/// status that came late may say that it does not jog while it does.
 JogHand::Grip JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
                             const std::atomic<bool>& is_let_go) {
   const Grip grip = press(plan, reply, is_let_go);

@@ -10,10 +10,9 @@
 
 namespace meridian::stream {
 
-/// Returns what services in the DDS domain say about the machines they serve, sorted by name;
-/// waits up to `timeout` for the first and a moment longer for others. `machine`, where not empty,
-/// is the only one that is looked for. A service that only claims a machine is not told. Throws
-/// DdsError.
+/// Returns what services in the DDS domain say about the machines they serve, sorted by name; waits
+/// up to `timeout` for the first and a moment longer for others. `machine`, where not empty, is the
+/// only one that is looked for. A service that only claims a machine is left out. Throws DdsError.
 [[nodiscard]] std::vector<dds::MachineInfo> find_machines(std::uint32_t domain,
                                                           const std::string& machine,
                                                           std::chrono::milliseconds timeout);

@@ -15,7 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kRepeat{300};
-/// A dry run that was told on just now is in the status by then.
+/// A dry run that was switched on just now is in the status by then.
 constexpr std::chrono::milliseconds kReported{300};
 /// Whoever publishes a status for this machine is known by then: discovery, and two statuses.
 constexpr std::chrono::milliseconds kEverybodySeen{400};
@@ -134,7 +134,7 @@ dds::Reply OperatorLink::refuse_as_not_dry(const dds::CommandRequest& request) c
           .state = status_->state,
           .epoch = status_->epoch,
           .text = std::string(name_of(request.verb)) +
-                  " refused: it is for a dry run alone, and the machine tells of none; nothing was "
+                  " refused: it is for a dry run alone, and the machine reports none; nothing was "
                   "asked of it"};
 }
 
@@ -179,7 +179,7 @@ std::optional<dds::Reply> OperatorLink::ask(dds::CommandRequest request, Millise
   for (Service& service : services_) service.reply.reset();
   const bool is_for_dry_run = is_said_dry(verb, argument);
   const auto begin = Clock::now(), end = begin + timeout;
-  const auto told = begin + std::min<Clock::duration>(kReported, timeout / 2);
+  const auto reported_by = begin + std::min<Clock::duration>(kReported, timeout / 2);
   auto due = begin;
   bool is_quoted = false;
   for (auto now = due; now < end; now = Clock::now()) {
@@ -193,7 +193,7 @@ std::optional<dds::Reply> OperatorLink::ask(dds::CommandRequest request, Millise
       request.service_id_seen = seen ? seen->service_id : status_->service_id;
     }
     const bool was_sent = due > begin;
-    if (status_ && !may_send && !was_sent && now >= told) return refuse_as_not_dry(request);
+    if (status_ && !may_send && !was_sent && now >= reported_by) return refuse_as_not_dry(request);
     if (now >= due && may_send && commands_.matched_readers() > 0) {
       static_cast<void>(commands_.write(request));
       due = now + kRepeat;

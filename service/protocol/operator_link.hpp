@@ -33,7 +33,7 @@ struct Seen {
 ///
 /// An answer counts where it is the followed service's own, to this participant. Where several
 /// services speak for the machine a stop counts as accepted only when each of them has accepted it:
-/// which of them moves the drives nobody can tell from here. One thread.
+/// which of them moves the drives is not known here. One thread.
 class OperatorLink {
  public:
   using Milliseconds = std::chrono::milliseconds;
@@ -51,7 +51,7 @@ class OperatorLink {
   [[nodiscard]] std::vector<std::string> services() const;
 
   /// Asks for `verb` and returns the answer; nothing where the service stays silent. What is said
-  /// for a dry run alone (may_be_dry(), argument 1) is said to a machine that tells of one: of any
+  /// for a dry run alone (may_be_dry(), argument 1) is said to a machine that reports one: of any
   /// other the answer is our own refusal, for services of before took the word for any other.
   /// `seen`: what the operator saw elsewhere, in the place of the newest status that came in here.
   [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout,

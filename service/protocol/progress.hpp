@@ -21,7 +21,7 @@ struct ProgressView {
   bool is_rapid = false;            ///< no feed is programmed for the motion
   bool is_under_way = false;        ///< from the approach to the last block, stops on the way too
   double fraction = 0;              ///< of the program's ideal time, 0 to 1
-  std::optional<double> to_go_s{};  ///< once enough has run to tell
+  std::optional<double> to_go_s{};  ///< once enough has run for an estimate
 };
 
 /// Makes progress out of statuses: time to go is what is left of the ideal time, stretched as much

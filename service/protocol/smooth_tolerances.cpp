@@ -16,7 +16,7 @@ struct ToleranceBounds {
 constexpr ToleranceBounds kTipBounds{"tip", "mm", kMinTipTolerance_mm, kMaxTipTolerance_mm};
 constexpr ToleranceBounds kAxisBounds{"axis", "rad", kMinAxisTolerance_rad, kMaxAxisTolerance_rad};
 
-/// With as many digits as tell `value` from every other number, six at least.
+/// With as many digits as distinguish `value` from every other number, six at least.
 std::string in_full(double value) {
   char text[32];
   for (int digits = 6; digits <= 17; ++digits) {

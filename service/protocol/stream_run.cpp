@@ -74,9 +74,9 @@ class Newsreader {
  public:
   explicit Newsreader(const StreamListener& listener) : listener_(listener) {}
 
-  void station(const std::string& message) { tell(message, station_); }
+  void station(const std::string& message) { report(message, station_); }
   void status(const dds::Status& status) {
-    tell(status.message, machine_);
+    report(status.message, machine_);
     if (has_state_ && status.state == state_) return;
     has_state_ = true;
     state_ = status.state;
@@ -85,7 +85,7 @@ class Newsreader {
   }
 
  private:
-  void tell(const std::string& message, std::string& last) {
+  void report(const std::string& message, std::string& last) {
     if (message.empty() || message == station_ || message == machine_) return;
     last = message;
     listener_.say(message);
@@ -134,7 +134,7 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
     pump.emplace(STDIN_FILENO, kStandardInput, options.reader, [&link] { link.wake(); });
     source = [&pump] { return pump->take(); };
   }
-  auto say_warnings = [&, told = std::size_t{0}]() mutable {
+  auto say_warnings = [&, reported = std::size_t{0}]() mutable {
     if (options.preflight) return;
     const auto say = [&](const cl::ClWarning& warning) {
       listener.say(request.program + ":" + std::to_string(warning.line) +
@@ -143,7 +143,7 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
     if (pump) {
       for (const cl::ClWarning& warning : pump->take_warnings()) say(warning);
     }
-    for (; told < reader.warnings().size(); ++told) say(reader.warnings()[told]);
+    for (; reported < reader.warnings().size(); ++reported) say(reader.warnings()[reported]);
   };
   ProgressMeter meter(options.preflight ? options.preflight->times : TimeTable{});
   Newsreader news(listener);

@@ -168,7 +168,7 @@ bool Protocol::comes_to_an_end() const {
 std::string Protocol::complaint() const {
   if (!wrong_.empty()) return wrong_;
   if (station_->state() == StationState::kRan && ran_of_[session_] != bounds_.blocks + 1) {
-    return "the station is told that everything ran, which it did not";
+    return "the station is answered that everything ran, which it did not";
   }
   const std::uint64_t known = station_->credit().service_id;
   const bool is_streaming = station_->state() == StationState::kStreaming;

@@ -33,12 +33,13 @@ enum class Variant : std::uint8_t {
 /// How small the machine is, and how often what is rare may happen: so that it is finite.
 struct Bounds {
   std::uint64_t blocks = 2;                    ///< of the program, besides its end
-  std::size_t places = 2;                      ///< of the queue, as the check is told
+  std::size_t places = 2;                      ///< of the queue, as the check knows them
   std::size_t to_service = 2, to_station = 1;  ///< messages under way; one more is lost
   int station_restarts = 0, service_restarts = 0, aborts = 0;
 };
 
-inline constexpr std::size_t kReserve = 2;  ///< places that the check is not told of, as in intake
+inline constexpr std::size_t kReserve =
+    2;  ///< places that the check does not know of, as in intake
 inline constexpr std::int64_t kTick = 1'000'000'000;
 
 struct ToService {

@@ -14,7 +14,7 @@ MachineModel placed(const char* frame) {
   return model;
 }
 
-TEST(FrameSum, TellsFramesApartByEveryOneOfTheirNumbers) {
+TEST(FrameSum, DistinguishesFramesByEveryOneOfTheirNumbers) {
   const std::uint64_t sum = frame_sum(placed("1,2,3,4,5,6"), {});
   EXPECT_NE(sum, 0U);
   EXPECT_EQ(frame_sum(placed("1,2,3,4,5,6"), {}), sum);
@@ -24,7 +24,7 @@ TEST(FrameSum, TellsFramesApartByEveryOneOfTheirNumbers) {
   }
 }
 
-TEST(FrameSum, TellsTablesApartThatProgramsMayCallFor) {
+TEST(FrameSum, DistinguishesTablesThatProgramsMayCallFor) {
   const MachineModel model = placed("1,2,3,4,5,6");
   WorkFrame row{.number = 2, .origin_mm = {7, 8, 9}, .rotation_deg = {1, 2, 3}};
   const auto sum_of = [&model](const WorkFrame& one) { return frame_sum(model, {&one, 1}); };

@@ -126,7 +126,7 @@ TEST_F(Intake, DropsBatchesOfAnOldSession) {
   EXPECT_EQ(check_.counters().batches_stale, 1u);
 }
 
-TEST_F(Intake, TellsAStrangerThatItsSessionIsNotOpen) {
+TEST_F(Intake, AnswersAnUnknownStationThatItsSessionIsNotOpen) {
   const auto answer = send(good_batch(0x123, 0, 10));
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->verdict, Verdict::kClosed);
@@ -134,7 +134,7 @@ TEST_F(Intake, TellsAStrangerThatItsSessionIsNotOpen) {
   EXPECT_EQ(accepted_.count, 0u);
 }
 
-TEST_F(Intake, NeverOpensAnOldSessionAgainButTellsHowItEnded) {
+TEST_F(Intake, NeverOpensAnOldSessionAgainButReportsHowItEnded) {
   static_cast<void>(open());
   static_cast<void>(check_.on_queues_emptied("aborted", around_));
   const auto answer = open();
@@ -199,7 +199,7 @@ TEST_F(Intake, RepeatsTheCreditWhileBatchesKeepComing) {
   }
 }
 
-TEST_F(Intake, TellsAtOnceWhenManyPlacesCameFree) {
+TEST_F(Intake, GrantsCreditAtOnceWhenManyPlacesCameFree) {
   static_cast<void>(open());
   around_.free_places += IntakeCheck::kCreditStep;
   const auto credit = check_.due_credit(around_);

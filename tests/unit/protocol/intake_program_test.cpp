@@ -160,7 +160,7 @@ TEST_F(Intake, AToleranceAboveWhatIsPlannedForIsRefusedWhateverTheTransition) {
   EXPECT_EQ(check_.on_request(request, around_, 100).verdict, Verdict::kGood);
 }
 
-TEST_F(Intake, ARefusalTellsAToleranceThatIsLittleBelowTheLeastFromIt) {
+TEST_F(Intake, ARefusalPrintsAToleranceJustBelowTheMinimumWithEnoughDigits) {
   dds::SessionRequest request = open_request();
   request.policies = dds::kPolicySmooth;
   request.tip_tolerance_mm = 0.00099999999;

@@ -12,7 +12,7 @@ SoftLimits limits_of(std::size_t joint, double min, double max) {
   return limits;
 }
 
-TEST(LimitsSum, TellsLimitsApartByAllThatTheySay) {
+TEST(LimitsSum, DistinguishesLimitsByAllThatTheySay) {
   const std::uint64_t sum = limits_sum(limits_of(1, -5, 5));
   EXPECT_EQ(limits_sum(limits_of(1, -5, 5)), sum);
   EXPECT_NE(limits_sum(SoftLimits()), 0U);

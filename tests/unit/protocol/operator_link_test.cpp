@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 class OperatorWhoMeansADryRun : public testing::Test {
  protected:
-  void tell(bool is_dry_run) {
+  void publish(bool is_dry_run) {
     dds::Status status;
     status.service_id = 1;
     status.status_sequence = ++sequence_;
@@ -65,8 +65,8 @@ class OperatorWhoMeansADryRun : public testing::Test {
   std::uint64_t sequence_ = 0;
 };
 
-TEST_F(OperatorWhoMeansADryRun, AsksNothingOfAMachineThatTellsOfNone) {
-  ASSERT_NO_FATAL_FAILURE(tell(false));
+TEST_F(OperatorWhoMeansADryRun, AsksNothingOfAMachineThatReportsNone) {
+  ASSERT_NO_FATAL_FAILURE(publish(false));
   for (const Verb verb : {Verb::kEnable, Verb::kStart}) {
     const auto reply = link_.ask(verb, 1, milliseconds(200));
     ASSERT_TRUE(reply);
@@ -77,26 +77,26 @@ TEST_F(OperatorWhoMeansADryRun, AsksNothingOfAMachineThatTellsOfNone) {
   EXPECT_FALSE(sent()) << "a service of before would do it";
 }
 
-TEST_F(OperatorWhoMeansADryRun, AsksOnceTheMachineTellsOfIt) {
-  ASSERT_NO_FATAL_FAILURE(tell(false));
+TEST_F(OperatorWhoMeansADryRun, AsksOnceTheMachineReportsIt) {
+  ASSERT_NO_FATAL_FAILURE(publish(false));
   std::thread service([this] {
     std::this_thread::sleep_for(milliseconds(50));
-    tell(true);
+    publish(true);
     const auto request = next_sent();
     ASSERT_TRUE(request);
     EXPECT_EQ(request->argument, 1);
-    EXPECT_EQ(request->status_seen, 2U) << "what it quotes told of the dry run";
+    EXPECT_EQ(request->status_seen, 2U) << "what it quotes reported the dry run";
     answer(*request);
   });
   EXPECT_TRUE(link_.ask(Verb::kStart, 1, kPatience));
   service.join();
 }
 
-TEST_F(OperatorWhoMeansADryRun, AsksNoMoreOnceTheMachineTellsThatItIsOver) {
-  ASSERT_NO_FATAL_FAILURE(tell(true));
+TEST_F(OperatorWhoMeansADryRun, AsksNoMoreOnceTheMachineReportsThatItIsOver) {
+  ASSERT_NO_FATAL_FAILURE(publish(true));
   std::thread service([this] {
     ASSERT_TRUE(next_sent());
-    tell(false);
+    publish(false);
   });
   EXPECT_FALSE(link_.ask(Verb::kEnable, 1, milliseconds(500))) << "the answer is still to come";
   service.join();
@@ -104,16 +104,16 @@ TEST_F(OperatorWhoMeansADryRun, AsksNoMoreOnceTheMachineTellsThatItIsOver) {
 }
 
 TEST_F(OperatorWhoMeansADryRun, IsNobodyWhoSaysItAsEver) {
-  ASSERT_NO_FATAL_FAILURE(tell(false));
+  ASSERT_NO_FATAL_FAILURE(publish(false));
   EXPECT_FALSE(link_.ask(Verb::kStart, 0, milliseconds(100)));
   EXPECT_TRUE(sent());
 }
 
 TEST_F(OperatorWhoMeansADryRun, QuotesInARepetitionWhatHeSawWhenHeSaidIt) {
-  ASSERT_NO_FATAL_FAILURE(tell(false));
+  ASSERT_NO_FATAL_FAILURE(publish(false));
   std::thread service([this] {
     const auto first = next_sent();
-    tell(false);
+    publish(false);
     const auto second = next_sent();
     ASSERT_TRUE(first && second) << "it is repeated after 300 ms";
     EXPECT_EQ(first->status_seen, 1U);
@@ -131,20 +131,20 @@ TEST(OperatorWhoIsCutOff, QuotesWhatHeSawWhenHeSaidItOnceHeIsHeard) {
   dds::Writer<dds::Status> statuses(participant);
   dds::Writer<dds::Reply> replies(participant);
   OperatorLink link(participant, "test");
-  const auto tell = [&statuses](std::uint64_t sequence) {
+  const auto publish = [&statuses](std::uint64_t sequence) {
     dds::Status status;
     status.service_id = 1;
     status.status_sequence = sequence;
     return statuses.write(status);
   };
-  ASSERT_TRUE(tell(1));
+  ASSERT_TRUE(publish(1));
   {
     const dds::Reader<dds::CommandRequest> before(participant);
     EXPECT_FALSE(link.ask(Verb::kHold, 0, milliseconds(50)));
   }
   std::thread service([&] {
     std::this_thread::sleep_for(milliseconds(50));
-    EXPECT_TRUE(tell(2));
+    EXPECT_TRUE(publish(2));
     std::this_thread::sleep_for(milliseconds(50));
     dds::Reader<dds::CommandRequest> commands(participant);
     dds::CommandRequest request;

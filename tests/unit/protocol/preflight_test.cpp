@@ -40,7 +40,7 @@ PreflightReport checked(const std::string& body, bool has_machine = true) {
   return preflight(file.path(), {}, machine);
 }
 
-TEST(Preflight, PassesAGoodFileAndTellsItsTime) {
+TEST(Preflight, PassesAGoodFileAndReportsItsTime) {
   const PreflightReport report =
       checked("GOTO/0,0,0,0,0,1\nGOTO/30,0,0,0,0,1\nGOTO/30,20,0,0,0,1\nFINI\n");
   EXPECT_FALSE(report.is_refused) << text_of(report);

@@ -93,7 +93,7 @@ TEST(StationProtocol, GoesBackToTheGapOnceAndAgainOnlyAfterAWhile) {
   EXPECT_EQ(batch.first_sequence, 32u);
   station.on_credit(credit(32, 900, Verdict::kGap), 2000);
   ASSERT_TRUE(station.next_batch(2000, batch));
-  EXPECT_EQ(batch.first_sequence, 64u) << "the same gap, told twice";
+  EXPECT_EQ(batch.first_sequence, 64u) << "the same gap, reported twice";
   constexpr std::int64_t kLater = kSecond / 10;
   station.on_credit(credit(32, 900, Verdict::kGap), kLater);
   ASSERT_TRUE(station.next_batch(kLater, batch));

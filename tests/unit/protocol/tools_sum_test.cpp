@@ -18,7 +18,7 @@ Tool whole_tool() {
   return tool;
 }
 
-TEST(ToolsSum, TellsTablesApartByAllThatTheySay) {
+TEST(ToolsSum, DistinguishesTablesByAllThatTheySay) {
   const std::uint64_t sum = tools_sum(ToolTable({whole_tool()}));
   EXPECT_NE(sum, 0U);
   EXPECT_EQ(tools_sum(ToolTable({whole_tool()})), sum);
