@@ -10,7 +10,7 @@ namespace {
 
 using Table = std::array<std::uint32_t, 256>;
 
-/// Table n tells what a byte does to the sum when n bytes follow it, so that eight go at once.
+/// Table n holds what a byte does to the sum when n bytes follow it, so that eight go at once.
 [[nodiscard]] constexpr std::array<Table, 8> make_tables() {
   std::array<Table, 8> tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

@@ -20,7 +20,7 @@ namespace meridian::record {
 
 /// none, not_finite, travel, step, unreachable, drive_fault, feedback_lost, ...
 [[nodiscard]] std::string_view word(Alarm alarm) noexcept;
-/// Whether the alarm tells a joint.
+/// Whether the alarm names a joint.
 [[nodiscard]] bool is_of_joint(Alarm alarm) noexcept;
 /// What a drive's statusword says: "operation enabled", "fault", ...; "silent" for 0.
 [[nodiscard]] std::string_view drive_state_word(std::uint16_t statusword) noexcept;

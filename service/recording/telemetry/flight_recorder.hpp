@@ -22,7 +22,7 @@ namespace meridian::telemetry {
 /// Keeps the last seconds of what was sent and what drives reported, and writes them to files of
 /// their own for every fault: `fault-TIME-ALARM.csv`, a recording (docs/recordings.md), and beside
 /// it, in words, what happened, `.txt`. Files are written by a thread of its own: a slow or full
-/// disk costs them, which is told in the log, and nothing else.
+/// disk costs them, which the log reports, and nothing else.
 /// Proof: tests/unit/telemetry/flight_recorder_test.cpp.
 class FlightRecorder {
  public:

@@ -50,7 +50,7 @@ class FlightStore {
   [[nodiscard]] const record::FlightRow& fault() const noexcept {
     return rows_[fault_ % rows_.size()];
   }
-  /// In the order in which they were told; the first one is why.
+  /// In the order in which they were reported; the first one is the cause.
   [[nodiscard]] std::size_t alarm_count() const noexcept { return alarm_count_; }
   [[nodiscard]] const record::ReportedAlarm& alarm(std::size_t i) const noexcept {
     return alarms_[i];

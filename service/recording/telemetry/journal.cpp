@@ -120,16 +120,16 @@ void Journal::put_aside(const std::string& why) {
 void Journal::run(const std::function<void(const std::string&)>& complain,
                   const std::function<void()>& beside) noexcept {
   if (path_.empty()) return;
-  int told = 0;
+  int error_reported = 0;
   for (bool is_last = false; !is_last;) {
     is_last = is_stopping_.load();
     if (newest_.refresh()) {
       const int error = write_(path_, to_text(newest_.latest(), machine_));
-      if (error != 0 && error != told) {
+      if (error != 0 && error != error_reported) {
         complain(fmt::format("the journal {} cannot be written: {}", path_.string(),
                              std::strerror(error)));
       }
-      told = error;
+      error_reported = error;
     }
     if (position_.refresh()) write_position();
     if (beside) beside();

@@ -13,7 +13,7 @@
 #include "meridian/expected.hpp"
 #include "service/text/number.hpp"
 
-/// Small files of `key = value` lines that tell whether they are whole: the first line says what
+/// Small files of `key = value` lines that show whether they are whole: the first line says what
 /// they are, the last has a CRC-32C of all before it.
 /// Proof: tests/unit/telemetry/journal_test.cpp, tests/unit/telemetry/set_up_text_test.cpp.
 namespace meridian::telemetry {

@@ -39,7 +39,7 @@ class SetUpFile {
 
   /// Asking thread, not while the one before is kAsked.
   void ask(const SetUp& set_up);
-  /// Asking thread: how far it is; an end of it is told once.
+  /// Asking thread: how far it is; an end of it is reported once.
   [[nodiscard]] Progress look() noexcept;
   /// Asking thread, behind kFailed: errno.
   [[nodiscard]] int error() const noexcept { return error_; }

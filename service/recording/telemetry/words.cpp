@@ -204,7 +204,7 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
     case Alarm::kSetpointsUnheard:
       text = fmt::format(
           "drive {} reports but has taken no setpoint for {:.3g} s; check its gateway, the network "
-          "and that it tells the cycle of what it takes, then reset",
+          "and that it reports the cycle of the setpoint it took, then reset",
           name, value);
       break;
     case Alarm::kDrivesAstray:

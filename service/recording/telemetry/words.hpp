@@ -10,7 +10,7 @@
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/unwinding.hpp"
 
-/// What the cycle tells in numbers, in words for operators and the log.
+/// What the cycle reports in numbers, in words for operators and the log.
 namespace meridian::telemetry {
 
 /// How much an event matters to who reads the log.

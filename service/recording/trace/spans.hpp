@@ -25,7 +25,7 @@ enum class Doing : std::uint8_t {
                  ///< number
   kAdvance,      ///< planner: looks at what it has while no block is there
   kTakeBlocks,   ///< intake: checks batches and queues them; arg: blocks queued, ever
-  kFeedback      ///< receive thread: what the drives told; arg: newest cycle that they saw
+  kFeedback      ///< receive thread: what the drives reported; arg: newest cycle that they saw
 };
 inline constexpr std::size_t kDoings = 11;
 

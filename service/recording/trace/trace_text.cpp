@@ -52,9 +52,9 @@ void append_span(std::string& out, std::int64_t zero_ns, std::size_t track, cons
          words.arg, Count{span.arg});
 }
 
-/// A thread does one thing at a time, and viewers draw slices that overlap wrongly. A wake-up is
-/// told from when its cycle was due, which may be while the one before it still ran: it begins
-/// where that ended.
+/// A thread does one thing at a time, and viewers draw slices that overlap wrongly. A wake-up
+/// begins when its cycle was due; if the cycle before it still ran then, it begins where that
+/// ended.
 void append_track(std::string& out, const Window& window, std::int64_t zero_ns, std::size_t track) {
   std::int64_t free_ns = std::numeric_limits<std::int64_t>::min();
   for (const Span& span : window.spans[track]) {

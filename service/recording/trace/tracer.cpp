@@ -11,7 +11,7 @@ namespace meridian::trace {
 namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
-/// Threads tell a span when it is over: what began inside the window may still be going on.
+/// Threads report a span when it is over: what began inside the window may still be going on.
 constexpr std::int64_t kSettle_ns = 20'000'000;
 
 [[nodiscard]] std::int64_t steady_ns() {
@@ -84,7 +84,7 @@ bool Tracer::is_wanted(const SlowCycle& slow) const {
 }
 
 void Tracer::forget(std::int64_t now_ns) {
-  // A cycle that is held up is told when it is over: what was before it is wanted then.
+  // A cycle that is held up is reported when it is over: what was before it is wanted then.
   const auto& cycles = lately_[static_cast<std::size_t>(Track::kCycle)];
   const std::int64_t seen_ns = cycles.empty() ? now_ns : std::min(now_ns, end_of(cycles.back()));
   const std::int64_t begin_ns = pending_ ? pending_->begin_ns : seen_ns - options_.before_ns;

@@ -114,7 +114,7 @@ TEST_F(Flight, FileKeepsWhatDrivesSaidEvenIfItIsNoNumber) {
   EXPECT_EQ(read.statusword[4], kEnabled);
 }
 
-TEST_F(Flight, ReportTellsAlarmStopFollowingErrorsAndDrives) {
+TEST_F(Flight, ReportHoldsAlarmStopFollowingErrorsAndDrives) {
   RecordingReader reader = open();
   const auto report = read_flight(reader, model_);
   ASSERT_TRUE(report.has_value()) << report.error().text();
@@ -162,7 +162,7 @@ TEST_F(Flight, ReportCallsADryRunWhatTheAlarmIsOfWhateverWasBefore) {
   }
 }
 
-TEST_F(Flight, ReportTellsTheLargestErrorAlthoughADriveReportedNoNumberBehindIt) {
+TEST_F(Flight, ReportHoldsTheLargestErrorAlthoughADriveReportedNoNumberAfterIt) {
   write([](std::uint64_t cycle, const MachineModel& model) {
     FlightRow row = row_at(cycle, model);
     if (cycle == kAlarmed - 1) row.drives.position[1] = std::nan("");

@@ -55,7 +55,7 @@ TEST(RecordedLimits, AreThoseInForceAtTheFirstStart) {
             tipped);
 }
 
-TEST(RecordedLimits, AreToldWithTheCyclesFromWhichTheyHold) {
+TEST(RecordedLimits, AreFoundWithTheCyclesFromWhichTheyHold) {
   const auto all = find_all_limits("0,limits,1,-10,10\n0,limits,2,-5,5\n9,limits,0,0,0\n");
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].limits.rows()[1], (SoftLimits::Row{true, -5, 5}));

@@ -40,7 +40,7 @@ TEST(RecordedTools, AreNoneWhereARowHoldsAnythingElse) {
   EXPECT_FALSE(is_tool_row("0,start,0"));
 }
 
-TEST(RecordedTools, TellHowLongTheToolWasThatTheFirstProgramBeganWith) {
+TEST(RecordedTools, HoldHowLongTheToolWasThatTheFirstProgramBeganWith) {
   EXPECT_EQ(find_recorded_tool_length("10,plan_begun,1,110.5\n30,plan_begun,1,95\n40,start,0\n"
                                       "60,plan_begun,1,100\n"),
             95);

@@ -105,7 +105,7 @@ TEST_F(StageRecording, NeedsTheJointsOrTheDrives) {
   EXPECT_NE(reader.error().text().find("b2_mm"), std::string::npos) << reader.error().text();
 }
 
-TEST_F(StageRecording, ATrueOnePassesAndTellsTheDistanceFromADeadPoint) {
+TEST_F(StageRecording, ATrueOnePassesAndReportsTheDistanceFromADeadPoint) {
   const CheckReport report = run();
   EXPECT_TRUE(report.passed()) << to_text(report);
   ASSERT_EQ(report.joint_count, 7);

@@ -86,7 +86,7 @@ TEST(WireBook, CountsDueTimesOffTheGrid) {
   EXPECT_NE(book.to_text().find("1 due times off the grid"), std::string::npos) << book.to_text();
 }
 
-TEST(WireBook, TellsAgesAndFollowingError) {
+TEST(WireBook, ReportsAgesAndFollowingError) {
   const MachineModel model = test::lai_machine();
   WireBook book(model);
   for (std::uint64_t cycle = 1; cycle <= 100; ++cycle) {

@@ -157,7 +157,7 @@ TEST_F(FlightFiles, OfMoreSecondsThanFitAreCutToThoseAndTheLogSaysHowMany) {
   EXPECT_EQ(said_.str(), "");
 }
 
-TEST_F(FlightFiles, ThatAreMissingForWantOfTimeAreToldOnce) {
+TEST_F(FlightFiles, ThatAreMissingForWantOfTimeAreReportedOnce) {
   FlightRecorder recorder(config_, model_, log_);
   Flown run;
   run.cycles(recorder, 2000, State::kRunning);
@@ -186,12 +186,12 @@ TEST_F(FlightFiles, OfEveryFaultHaveTheirOwnNames) {
   EXPECT_EQ(files(".csv").size(), 2U) << said_.str();
 }
 
-TEST_F(FlightFiles, ThatCannotBeWrittenAreToldInTheLog) {
+TEST_F(FlightFiles, ThatCannotBeWrittenAreReportedInTheLog) {
   live(1, true);
   EXPECT_NE(said_.str().find("cannot be created"), std::string::npos) << said_.str();
 }
 
-TEST_F(FlightFiles, AreNoneWhereTheirFolderCannotBeMadeWhichIsToldAtTheStart) {
+TEST_F(FlightFiles, AreNoneWhereTheirFolderCannotBeMadeWhichIsReportedAtTheStart) {
   config_.folder = "/proc/nowhere";
   live(1);
   EXPECT_NE(said_.str().find("cannot write to /proc/nowhere"), std::string::npos) << said_.str();

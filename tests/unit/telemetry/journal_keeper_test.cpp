@@ -8,18 +8,18 @@
 namespace meridian::telemetry {
 namespace {
 
-/// The events of a program, told to a keeper that is asked every 10 ms.
+/// The events of a program, passed to a keeper that is polled every 10 ms.
 class Kept {
  public:
-  void tell(EventCode code, std::uint64_t a = 0, std::uint64_t b = 0) {
+  void emit(EventCode code, std::uint64_t a = 0, std::uint64_t b = 0) {
     keeper_.see({.code = code, .cycle = cycle_, .a = a, .b = b},
                 code == EventCode::kAlarm ? "a fault" : "");
   }
   void set_dry_run(bool is_dry_run) { keeper_.set_dry_run(is_dry_run); }
   void set_move(bool is_move) { keeper_.set_move(is_move); }
-  void enter(State state) { tell(EventCode::kStateChanged, static_cast<std::uint64_t>(state)); }
-  void begin(std::uint64_t block) { tell(EventCode::kBlockStarted, block, block + 10); }
-  void end(std::uint64_t block) { tell(EventCode::kBlockDone, block, block + 10); }
+  void enter(State state) { emit(EventCode::kStateChanged, static_cast<std::uint64_t>(state)); }
+  void begin(std::uint64_t block) { emit(EventCode::kBlockStarted, block, block + 10); }
+  void end(std::uint64_t block) { emit(EventCode::kBlockDone, block, block + 10); }
   void run_for(int milliseconds) {
     for (int t = 0; t < milliseconds; t += 10) {
       now_ns_ += 10'000'000;
@@ -28,7 +28,7 @@ class Kept {
       if (const auto entry = keeper_.due_position(owner, now_ns_)) position = *entry;
     }
   }
-  /// The drives have come so far; what is told from now on is of the cycle behind that.
+  /// The drives have come so far; events from now on are of the cycle after that.
   void take(std::uint64_t cycle) { keeper_.see_taken(cycle); }
   void set_cycle(std::uint64_t cycle) { cycle_ = cycle; }
   JournalKeeper::Owner owner{7, "cam", "part.apt", ""};
@@ -102,7 +102,7 @@ TEST(JournalKeeper, NotesNothingOfAMoveBetweenPrograms) {
   kept.enter(State::kRunning);
   kept.run_for(1500);
   kept.end(1);
-  kept.tell(EventCode::kProgramEnd, 2);
+  kept.emit(EventCode::kProgramEnd, 2);
   kept.owner.session = 0;
   kept.enter(State::kReady);
   kept.run_for(1500);
@@ -137,7 +137,7 @@ TEST(JournalKeeper, NotesRestsAtOnceAndWhoseProgramItWas) {
   EXPECT_EQ(kept.entries.back().state, State::kStepping);
   EXPECT_EQ(kept.entries.back().reached, Reached::kDone);
   kept.enter(State::kRunning);
-  kept.tell(EventCode::kAlarm);
+  kept.emit(EventCode::kAlarm);
   kept.enter(State::kFaultStop);
   kept.enter(State::kFault);
   kept.owner = {8, "other", "next.apt", ""};  // who comes next is not whose program failed
@@ -161,13 +161,13 @@ TEST(JournalKeeper, NamesTheBlockOfTheAlarmAndNotWhereTheCommandedPathRanOutTo) 
     EXPECT_EQ(kept.entries.back().line, 10U) << "the next program begins with its own";
     kept.enter(State::kRunning);
     kept.begin(3);
-    kept.tell(EventCode::kAlarm);
+    kept.emit(EventCode::kAlarm);
     kept.enter(State::kFaultStop);
     kept.end(3);
     kept.begin(4);
     kept.run_for(2000);
     kept.end(4);
-    kept.tell(EventCode::kProgramEnd, 1);
+    kept.emit(EventCode::kProgramEnd, 1);
     kept.enter(State::kFault);
     kept.run_for(20);
     EXPECT_EQ(kept.entries.back().block, 3U);
@@ -185,7 +185,7 @@ TEST(JournalKeeper, NotesTheEndOfAProgram) {
   kept.run_for(20);
   kept.enter(State::kRunning);
   kept.end(0);
-  kept.tell(EventCode::kProgramEnd, 1);
+  kept.emit(EventCode::kProgramEnd, 1);
   kept.enter(State::kReady);
   kept.run_for(20);
   EXPECT_EQ(kept.entries.back().reached, Reached::kEnd);
@@ -207,27 +207,27 @@ TEST(JournalKeeper, KeepsWhatIsCutWhileItsRecoveryIsInterruptedAgainAndAgain) {
   for (std::uint64_t session = 8; session < 13; ++session) {
     kept.owner.session = session;
     kept.owner.from_line = 201;
-    kept.tell(EventCode::kBlockStarted, 0, 2);  // the tool, of line 2
+    kept.emit(EventCode::kBlockStarted, 0, 2);  // the tool, of line 2
     kept.enter(State::kApproaching);
     kept.run_for(20);
     EXPECT_EQ(kept.entries.back().next_line, 201U);
     EXPECT_TRUE(is_recovering(kept.entries.back()));
     if (session % 2 == 0) {
-      kept.tell(EventCode::kBlockDone, 0, 2);
-      kept.tell(EventCode::kBlockStarted, 1, 199);  // the approach
+      kept.emit(EventCode::kBlockDone, 0, 2);
+      kept.emit(EventCode::kBlockStarted, 1, 199);  // the approach
     }
-    kept.tell(EventCode::kAlarm);
+    kept.emit(EventCode::kAlarm);
     kept.enter(State::kFaultStop);
     kept.enter(State::kFault);
     kept.run_for(20);
     EXPECT_EQ(kept.entries.back().next_line, 201U);
   }
   kept.owner.session = 20;
-  kept.tell(EventCode::kBlockStarted, 0, 199);
+  kept.emit(EventCode::kBlockStarted, 0, 199);
   kept.enter(State::kApproaching);
   kept.enter(State::kRunning);
-  kept.tell(EventCode::kBlockStarted, 1, 201);
-  kept.tell(EventCode::kBlockDone, 1, 201);
+  kept.emit(EventCode::kBlockStarted, 1, 201);
+  kept.emit(EventCode::kBlockDone, 1, 201);
   kept.owner.is_line_end = true;
   kept.run_for(20);
   EXPECT_EQ(kept.position.next_line, 202U);
@@ -266,7 +266,7 @@ TEST(JournalKeeper, GoesOnWithTheSameFileUnderAnotherNameAndNotWithAnotherOfTheS
     kept.owner = {8, "cam", checksum == 11 ? "copy.apt" : "part.apt", ""};
     kept.owner.file_checksum = checksum;
     kept.owner.from_line = 20;
-    kept.tell(EventCode::kBlockStarted, 0, 2);
+    kept.emit(EventCode::kBlockStarted, 0, 2);
     kept.enter(State::kApproaching);
     kept.run_for(20);
     EXPECT_EQ(kept.entries.back().next_line, checksum == 11 ? 50U : 0U);
@@ -294,7 +294,7 @@ TEST(JournalKeeper, CountsWhatTheDrivesHaveTakenAndNothingElse) {
   kept.set_cycle(160);
   kept.end(1);
   kept.begin(2);
-  kept.tell(EventCode::kAlarm);
+  kept.emit(EventCode::kAlarm);
   kept.enter(State::kFaultStop);
   kept.enter(State::kFault);
   kept.run_for(20);

@@ -162,7 +162,7 @@ TEST(JournalEntry, NamesTheFirstLineThatIsNotFinished) {
   }
 }
 
-TEST(Journal, TellsTheNextServiceTheLastEntry) {
+TEST(Journal, GivesTheNextServiceTheLastEntry) {
   const Folder folder;
   {
     Journal journal(folder.path() / "made", "lai");

@@ -81,7 +81,7 @@ TEST(ProgramSummary, GivesEachPartItsTimeAndTheyAddUpToTheWhole) {
   EXPECT_EQ(summary->whole, 2306U);
   EXPECT_EQ(std::accumulate(summary->cycles.begin(), summary->cycles.end(), std::uint64_t{0}),
             summary->whole);
-  EXPECT_FALSE(w.watch.take()) << "told once";
+  EXPECT_FALSE(w.watch.take()) << "reported once";
   EXPECT_EQ(describe(*summary, "part.apt", kPeriod_s, 1000),
             "program part.apt ran to its end: 7 blocks in 2.3 s (approach 0.1, cut 0.3, rapid 0.4, "
             "turns of the redundant joint 0.1, held 0.3, starved 0.5, single block 0.6)");
@@ -140,7 +140,7 @@ TEST(ProgramSummary, SaysOfADryRunThatItWasOneHoweverLittleRoomThereIs) {
   }
 }
 
-TEST(ProgramSummary, TellsOfAFaultAtRestThatNoRecordShowsTheStopOf) {
+TEST(ProgramSummary, ReportsAFaultAtRestThatNoRecordShowsTheStopOf) {
   Watched w;
   w.move(State::kApproaching, MotionKind::kApproach, 100);
   w.run(State::kHeld, 1);
@@ -151,7 +151,7 @@ TEST(ProgramSummary, TellsOfAFaultAtRestThatNoRecordShowsTheStopOf) {
   EXPECT_EQ(summary->end, ProgramEnd::kFault);
 }
 
-TEST(ProgramSummary, TellsNothingOfAMachineThatIsJoggedHomedOrFaultsWithoutAProgram) {
+TEST(ProgramSummary, ReportsNothingOfAMachineThatIsJoggedHomedOrFaultsWithoutAProgram) {
   Watched w;
   for (const State state : {State::kEnabling, State::kReady, State::kJogging, State::kHoming,
                             State::kAborting, State::kReady, State::kLoaded, State::kDisabling,

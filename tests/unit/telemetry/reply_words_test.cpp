@@ -9,12 +9,12 @@
 namespace meridian::telemetry {
 namespace {
 
-/// A refusal of the machine of the tests, with an argument of 0 unless told.
+/// A refusal of the machine of the tests.
 std::string refused(Verb verb, Refusal refusal, State state, double argument = 0) {
   return describe(verb, refusal, state, argument, test::lai_machine());
 }
 
-TEST(ReplyWords, TellTheRemedyWithEveryRefusal) {
+TEST(ReplyWords, NameTheRemedyWithEveryRefusal) {
   constexpr int kLast = static_cast<int>(Refusal::kGuardOpen);
   for (int refusal = 1; refusal <= kLast; ++refusal) {
     EXPECT_STRNE(name_of(static_cast<Refusal>(refusal)), "unknown") << refusal;
@@ -29,7 +29,7 @@ TEST(ReplyWords, TellTheRemedyWithEveryRefusal) {
       << "there are more";
 }
 
-TEST(ReplyWords, TellTheValueThatIsSet) {
+TEST(ReplyWords, NameTheValueThatIsSet) {
   EXPECT_EQ(describe(Verb::kFeedOverride, State::kRunning, 0.8), "feed_override set to 80 %");
   EXPECT_EQ(describe(Verb::kRapidOverride, State::kOff, 0.125), "rapid_override set to 12.5 %");
   EXPECT_EQ(describe(Verb::kSingleBlock, State::kReady, 1),
@@ -40,7 +40,7 @@ TEST(ReplyWords, TellTheValueThatIsSet) {
             "enable accepted; the machine is Enabling");
 }
 
-TEST(ReplyWords, TellTheValueThatIsOutOfItsRangeAndTheRange) {
+TEST(ReplyWords, NameTheValueThatIsOutOfItsRangeAndTheRange) {
   MachineModel model = test::lai_machine();
   model.max_feed_override = 1.5;
   EXPECT_EQ(describe(Verb::kFeedOverride, Refusal::kOutOfRange, State::kRunning, 2, model),
@@ -56,7 +56,7 @@ TEST(ReplyWords, TellTheValueThatIsOutOfItsRangeAndTheRange) {
             "jog refused: the machine has no such joint");
 }
 
-TEST(ReplyWords, TellWhereTheDryRunMayBeSwitchedAndWhatIsSaidForNone) {
+TEST(ReplyWords, NameWhereTheDryRunMayBeSwitchedAndWhatIsSaidForNone) {
   EXPECT_EQ(
       refused(Verb::kDryRun, Refusal::kWrongState, State::kRunning),
       "dry_run refused: not in state Running; it begins and ends in Off alone; disable first");

@@ -55,7 +55,7 @@ TEST_F(SetUpFileOfAFolder, IsNotKeptWithoutAFolder) {
   EXPECT_TRUE(SetUpFile("", "lai").read());
 }
 
-TEST_F(SetUpFileOfAFolder, IsWrittenBeforeItIsToldAsWritten) {
+TEST_F(SetUpFileOfAFolder, IsWrittenBeforeItIsReportedAsWritten) {
   SetUpFile file(folder_, "lai");
   EXPECT_EQ(file.look(), Progress::kNone);
   file.ask(frames_with(3, 1.5));
@@ -64,7 +64,7 @@ TEST_F(SetUpFileOfAFolder, IsWrittenBeforeItIsToldAsWritten) {
   file.work();
   EXPECT_EQ(*read_again(), frames_with(3, 1.5));
   EXPECT_EQ(file.look(), Progress::kWritten);
-  EXPECT_EQ(file.look(), Progress::kNone);  // told once
+  EXPECT_EQ(file.look(), Progress::kNone);  // reported once
 }
 
 TEST_F(SetUpFileOfAFolder, StaysTheOldOneWhereTheNewOneCannotBeWritten) {
@@ -89,8 +89,8 @@ TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
   std::mt19937 engine(20261125);
   double least = 0;
   for (int n = 0; n < kKills; ++n) {
-    std::array<int, 2> told{};
-    ASSERT_EQ(::pipe(told.data()), 0);
+    std::array<int, 2> written{};
+    ASSERT_EQ(::pipe(written.data()), 0);
     const pid_t writer = ::fork();
     if (writer == 0) {
       SetUpFile file(folder_, "lai");
@@ -98,16 +98,17 @@ TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
         file.ask(frames_with(1 + static_cast<int>(x_mm) % 9, x_mm));
         file.work();
         if (file.look() != Progress::kWritten) ::_exit(1);
-        if (::write(told[1], &x_mm, sizeof x_mm) != sizeof x_mm) ::_exit(1);
+        if (::write(written[1], &x_mm, sizeof x_mm) != sizeof x_mm) ::_exit(1);
       }
     }
     (void)::usleep(std::uniform_int_distribution<unsigned>(0, 20'000)(engine));
     ASSERT_EQ(::kill(writer, SIGKILL), 0);
     ASSERT_EQ(::waitpid(writer, nullptr, 0), writer);
-    (void)::close(told[1]);
+    (void)::close(written[1]);
     double acknowledged = least;
-    for (double x_mm = 0; ::read(told[0], &x_mm, sizeof x_mm) == sizeof x_mm;) acknowledged = x_mm;
-    (void)::close(told[0]);
+    for (double x_mm = 0; ::read(written[0], &x_mm, sizeof x_mm) == sizeof x_mm;)
+      acknowledged = x_mm;
+    (void)::close(written[0]);
     const auto frames = read_again();
     ASSERT_TRUE(frames) << frames.error();
     const double left =

@@ -28,7 +28,7 @@ TEST(Words, NameJointLineValueAndRemedyOfAnAlarm) {
   EXPECT_EQ(weight_of(event), Weight::kError);
 }
 
-TEST(Words, TellWhereTheAxisIsEasedByHowMuchAndWhy) {
+TEST(Words, SayWhereTheAxisIsEasedByHowMuchAndWhy) {
   const PoleEase ease{7, 9, 41, 43, units::rad_from_deg(0.05), EaseReason::kThrough};
   EXPECT_EQ(describe(ease), "lines 41 to 43: tool axis eased by 0.0500 deg, through the pole");
 }
@@ -105,7 +105,7 @@ TEST(Words, SayEveryAlarmDifferently) {
   EXPECT_EQ(describe(static_cast<Alarm>(kLast + 1), 1, 2.5, 0, model), "") << "there are more";
 }
 
-TEST(Words, TellWhetherTheDryRunIsOn) {
+TEST(Words, SayWhetherTheDryRunIsOn) {
   const MachineModel model = test::lai_machine();
   Event event{.code = EventCode::kAccepted, .b = static_cast<std::uint64_t>(Verb::kDryRun), .x = 1};
   EXPECT_EQ(describe(event, model).rfind("dry run on: ", 0), 0U);

@@ -27,12 +27,12 @@ inline constexpr std::string_view kActionAnsweredWord = "action_answered";
 /// A probing move found its contact, so many periods behind the report before: it aborted itself.
 inline constexpr std::string_view kContactFoundWord = "contact_found";
 /// Of the planner: it begins a program (at a factor of 1, with a tool so long in the spindle as the
-/// next column says); it plans for a feed override above 100 %, the argument,
-/// from the block and span of it on that two more columns tell (FeedMark).
+/// next column says); it plans for a feed override above 100 %, the argument, from the block and
+/// span of it on that two more columns hold (FeedMark).
 inline constexpr std::string_view kPlanBegunWord = "plan_begun";
 inline constexpr std::string_view kFeedPlannedWord = "feed_planned";
 /// And over how many blocks it chose branch and winding, the argument: the first, or those from a
-/// block on that one more column tells.
+/// block on that one more column holds.
 inline constexpr std::string_view kPlanLookedWord = "plan_looked";
 
 /// Whether the motion follows from it, beside the program: an accepted verb, lost periods, an

@@ -30,7 +30,7 @@ struct RecordedFrame {
 [[nodiscard]] bool is_frame_row(std::string_view row);
 
 /// The frame that was in force when the first program of these events was started, or at their end
-/// where none was; nothing where no row tells of one.
+/// where none was; nothing where no row holds one.
 /// Proof: tests/unit/record/recorded_frame_test.cpp.
 [[nodiscard]] std::optional<RecordedFrame> find_recorded_frame(std::string_view events);
 

@@ -28,12 +28,12 @@ struct RecordedTool {
 [[nodiscard]] bool is_tool_row(std::string_view row);
 
 /// The tool table that was in force when the first program of these events was started, or at
-/// their end where none was; nothing where no row tells of one.
+/// their end where none was; nothing where no row holds one.
 /// Proof: tests/unit/record/recorded_tools_test.cpp.
 [[nodiscard]] std::optional<ToolTable> find_recorded_tools(std::string_view events);
 
 /// How long the tool was that was in the spindle when the first program of these events was
-/// planned; nothing where that is not told.
+/// planned; nothing where that is not recorded.
 [[nodiscard]] std::optional<double> find_recorded_tool_length(std::string_view events);
 
 }  // namespace meridian::record

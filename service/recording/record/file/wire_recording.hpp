@@ -32,7 +32,7 @@ struct WireRow {
 
 /// Writes what was seen: a recording that `meridian check` reads. Columns: cycle, due_ns, line, the
 /// joints, their velocities, epoch, flags, is_intact, arrival_minus_due_ns, feedback_cycle,
-/// and `<joint>_feedback_mm` or `_rad`. The wire does not tell kind, state and plan time.
+/// and `<joint>_feedback_mm` or `_rad`. The wire does not carry kind, state and plan time.
 /// Proof: tests/unit/record/wire_recording_test.cpp.
 class WireWriter {
  public:
@@ -64,7 +64,7 @@ class WireBook {
 
  private:
   static constexpr std::size_t kRemembered = 1024;  ///< setpoints that feedback may refer to
-  static constexpr std::size_t kMaxGaps = 20;       ///< that are told one by one
+  static constexpr std::size_t kMaxGaps = 20;       ///< that are reported one by one
   struct Gap {
     std::uint64_t after = 0, count = 0;
   };

@@ -26,7 +26,7 @@ struct FlightRow {
   DriveReport drives;
 };
 
-/// An alarm as EventCode::kAlarm tells it.
+/// An alarm as EventCode::kAlarm reports it.
 struct ReportedAlarm {
   Alarm alarm = Alarm::kNone;
   int joint = 0;  ///< place in limited.hpp; 0 where the alarm is of no joint
