@@ -20,7 +20,8 @@ namespace meridian::config {
 /// Proof: tests/unit/machine_file/machine_file_test.cpp.
 [[nodiscard]] MachineModel load_machine(const std::filesystem::path& path);
 
-/// The same for the text of a machine file, as a service tells it; `name` is what messages call it.
+/// The same for the text of a machine file, as a service publishes it; `name` is what messages call
+/// it.
 [[nodiscard]] MachineModel parse_machine(std::string_view text, const std::string& name);
 
 /// Reads a tool table: [[tool]] with number, length_mm, radius_mm, and where it has them

@@ -14,7 +14,7 @@ namespace meridian::config {
 /// How much of the kernel's real time is asked for.
 enum class RealtimeMode : std::uint8_t {
   kEnforce,    ///< without FIFO priority and locked memory start-up fails
-  kBestEffort  ///< what is missing is done without, and told
+  kBestEffort  ///< what is missing is done without, and reported
 };
 
 /// What happens to auxiliary and tool blocks. Program stops hold until resume with both.

@@ -20,7 +20,7 @@ struct JointTrial {
   Vector3 axis_towards;  ///< unit, where the axis leans; zero where it does not turn
 };
 
-/// Everything that `meridian machine` tells about a machine. Units: mm, rad. Frame: W.
+/// Everything that `meridian machine` reports about a machine. Units: mm, rad. Frame: W.
 struct Inspection {
   Skeleton skeleton;
   JointVector home{};

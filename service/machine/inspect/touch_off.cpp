@@ -53,7 +53,7 @@ struct Search {
   return true;
 }
 
-void tell(Search& search, const Touch& touch, const Vector3& contact, int axis) {
+void report_contact(Search& search, const Touch& touch, const Vector3& contact, int axis) {
   const Vector3 tip = pose_of(touch, search.machine).tip;
   search.arithmetic +=
       printed("tip %.4f %.4f %.4f mm, radius %.4f mm%s: face %s at %.4f %.4f %.4f mm\n", tip.x(),
@@ -66,7 +66,7 @@ void take_face(Search& search, const Touch& touch, int axis) {
   const Vector3 a = search.rotation.col(axis);
   const Vector3 normal = touch.toward.dot(a) > 0 ? Vector3(-a) : a;
   const Vector3 contact = contact_of(touch, normal, search.machine);
-  tell(search, touch, contact, axis);
+  report_contact(search, touch, contact, axis);
   search.origin += (contact - search.origin).dot(a) * a;
 }
 

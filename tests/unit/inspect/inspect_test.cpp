@@ -150,7 +150,7 @@ TEST(Inspection, NamesTheTipBox) {
       << to_text(inspect(model), model);
 }
 
-TEST(Inspection, TellsWhatAJointDoesAsTheWorkpieceSeesIt) {
+TEST(Inspection, ReportsWhatAJointDoesAsTheWorkpieceSeesIt) {
   const MachineModel model = config::load_machine(test::shipped_file("head-table-bc"));
   const std::string text = to_text(inspect(model), model);
   EXPECT_NE(text.find("workpiece - C - X - Y - Z - B - tool"), std::string::npos) << text;

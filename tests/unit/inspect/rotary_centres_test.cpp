@@ -145,7 +145,7 @@ TEST(RotaryCentres, AreFoundWithinTheStatedDeviationWhereTouchesAreNoisy) {
   EXPECT_GT(within, 0.9 * all) << "of two directions, 2.5 deviations hold 96 %";
 }
 
-TEST(RotaryCentres, ThatTheTouchesLeaveOpenStayAndAreToldOf) {
+TEST(RotaryCentres, ThatTheTouchesLeaveOpenStayAndAreReported) {
   std::mt19937_64 engine(9);
   const MachineModel file = config::load_machine(file_of("trunnion-ac"));
   const MachineModel real = moved(file, engine);
