@@ -7,7 +7,7 @@
 namespace meridian::text {
 
 /// FNV-1a, 64 bit, of bytes that may come in pieces; never 0, which says that none is known. It
-/// tells files apart, not forgeries. Proof: tests/unit/text/checksum_test.cpp.
+/// distinguishes files, not forgeries. Proof: tests/unit/text/checksum_test.cpp.
 class Checksum {
  public:
   void add(std::string_view bytes) noexcept {

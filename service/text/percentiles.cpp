@@ -23,7 +23,7 @@ constexpr int kStepsPerHalving = 5;
   return histogram.count() == 0 ? 0 : std::sqrt(sum / static_cast<double>(histogram.count()));
 }
 
-/// The next level to tell: a fifth of the half of what is left above `percent`. In per cent, as
+/// The next level to report: a fifth of the half of what is left above `percent`. In per cent, as
 /// HdrHistogram reckons: steps of a tenth would not meet its levels bit for bit.
 [[nodiscard]] double next_percent(double percent) {
   const double halvings = std::floor(std::log2(100 / (100 - percent))) + 1;
@@ -47,7 +47,7 @@ std::string percentile_table(const Histogram& histogram) {
     seen += histogram.bucket(i);
     const std::int64_t value_ns = std::min(Histogram::bucket_end_ns(i), histogram.max_ns());
     const double percent = 100 * static_cast<double>(seen) / total;
-    const bool is_last = seen == histogram.count();  // one level is told of it, then 100 %
+    const bool is_last = seen == histogram.count();  // one level is reported of it, then 100 %
     for (bool is_reported = false; wanted_percent <= percent && !(is_last && is_reported);
          is_reported = true) {
       line(static_cast<double>(value_ns), wanted_percent / 100, seen);

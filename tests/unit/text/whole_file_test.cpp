@@ -60,7 +60,7 @@ TEST_F(WrittenFile, IsANewOneWhateverLiesThere) {
   }
 }
 
-TEST_F(WrittenFile, IsNotThereWhereItCouldNotBeWrittenAndTheReasonIsTold) {
+TEST_F(WrittenFile, IsNotThereWhereItCouldNotBeWrittenAndTheReasonIsReported) {
   EXPECT_EQ(write_anew(nowhere_, "x"), ENOENT);
   fs::create_directory(file_);
   EXPECT_EQ(write_anew(file_, "x"), EEXIST);
