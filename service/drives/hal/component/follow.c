@@ -34,14 +34,18 @@ static int is_led(const struct meridian_hal_follow* me) {
   return 0;
 }
 
-int64_t meridian_hal_time(struct meridian_hal_follow* me, int64_t now_ns, int64_t thread_ns) {
+int64_t meridian_hal_step_ns(const struct meridian_hal_follow* me, int64_t now_ns,
+                             int64_t thread_ns) {
   const int64_t measured = now_ns - me->called_ns, longest = 2 * thread_ns;
-  const int64_t step = measured < longest ? measured : longest;
+  return measured < longest ? measured : longest;
+}
+
+void meridian_hal_time(struct meridian_hal_follow* me, int64_t now_ns, int64_t thread_ns) {
+  const int64_t step = meridian_hal_step_ns(me, now_ns, thread_ns);
   const int64_t late = is_led(me) ? now_ns - me->time_ns - step : 0;
   const int64_t slowly = late * step / (64 * thread_ns), fastest = step / 8;
   me->called_ns = now_ns;
   me->time_ns = now_ns - late + (slowly < fastest ? slowly : fastest);
-  return step;
 }
 
 /// The cubic through positions and velocities of both ends. Where it is farther from the straight
@@ -114,7 +118,8 @@ void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal
                        const struct meridian_hal_setup* setup, int64_t now_ns, int64_t thread_ns,
                        const double* feedback) {
   read_setpoints(me, shared);
-  const double dt_s = 1e-9 * (double)meridian_hal_time(me, now_ns, thread_ns);
+  const double dt_s = 1e-9 * (double)meridian_hal_step_ns(me, now_ns, thread_ns);
+  meridian_hal_time(me, now_ns, thread_ns);
   const struct meridian_hal_setpoint* const newest = kept(me, me->newest);
   const int64_t at_ns = me->time_ns - setup->period_ns;
   const int is_lost = newest == 0 || is_overtaken(me, at_ns) ||

@@ -29,11 +29,14 @@ struct meridian_hal_follow {
   int is_silent;      // no setpoint for longer than the bridge, whether joints are on or off
 };
 
-/// Leads `time_ns` on at a call at `now_ns`, and returns by how much that is without catching up.
-/// It is measured: HAL makes up for lost periods by calls at once. After a stall the time goes on
-/// from where it was, by two periods of the thread at the most, and catches up at nine eighths of
-/// its pace at the most: no position jumps, and the path is kept.
-int64_t meridian_hal_time(struct meridian_hal_follow* me, int64_t now_ns, int64_t thread_ns);
+/// How far a call at `now_ns` leads on: the time since the call before, as measured, for HAL makes
+/// up for lost periods by calls at once; after a stall two periods of the thread.
+int64_t meridian_hal_step_ns(const struct meridian_hal_follow* me, int64_t now_ns,
+                             int64_t thread_ns);
+
+/// Leads `time_ns` on by that step. What a stall has left behind it catches up at nine eighths of
+/// the pace at most: no position jumps, and the path is kept.
+void meridian_hal_time(struct meridian_hal_follow* me, int64_t now_ns, int64_t thread_ns);
 
 /// One period of the servo thread, which is `thread_ns` long, at `now_ns`. Positions are those of
 /// one setpoint period ago: so each lies between two setpoints that are there, whatever the two

@@ -145,7 +145,7 @@ static void update(void* unused, long thread_ns) {
     return;
   }
   const int64_t now_ns = rtapi_get_time();
-  const double dt_s = 1e-9 * (double)(now_ns - report.time_ns);
+  const double dt_s = 1e-9 * (double)meridian_hal_step_ns(&follow, now_ns, thread_ns);
   double feedback[MERIDIAN_HAL_JOINTS] = {0};
   report.fault_mask = report.homed_mask = 0;
   for (int i = 0; i < joints; ++i) {
