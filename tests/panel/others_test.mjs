@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page where something is missing or somebody else is in charge: it says so, and the rest works on.
 import { join } from "node:path";
-import { kSmall, openBrowser, until } from "./plant.mjs";
-import { afterStalls, enabled, go, must, runTests } from "./page_hand.mjs";
+import { kSmall, openBrowser, sleep, until } from "./plant.mjs";
+import { afterStalls, drawAt, enabled, go, must, runTests, setFeedOverride } from "./page_hand.mjs";
+import { Fingers, middleOf } from "./finger.mjs";
 import { pictures, plant, playwright } from "./browser_case.mjs";
 
 async function pageAt(browser, url, prepare = () => {}) {
@@ -44,10 +45,12 @@ async function withoutWebGlAllElseWorks({ browser }) {
   const page = await pageAt(browser, plant.url, withoutWebGl);
   await theReasonIsThere(page);
   must((await page.textContent("#tip-x")) !== "\u2013", "no numbers");
-  await afterStalls(page, () => enabled(page));
+  await afterStalls(page, async () => {
+    await enabled(page);
+    await go(page, "disable", "Off");
+  });
   await page.setInputFiles("#program-file", plant.part());
   await until("the path's colours", async () => (await page.locator("#program-limits li").count()) > 0, 60000);
-  await go(page, "disable", "Off");
   await page.context().close();
   const file = join(plant.folder, "run.html");
   plant.tool("simulate", plant.part(), "--machine", plant.machine, "--tools", plant.tools, "--html", file);
@@ -64,10 +67,67 @@ async function theReasonIsThere(page) {
   must((await visible(page, "#no-picture")) === 1 && (await visible(page, ".tools button")) === 0, "buttons of a picture that is not there");
 }
 
+const opacityOf = (page, selector) => page.evaluate((what) => Number(getComputedStyle(document.querySelector(what)).opacity), selector);
+
+async function aSilentServiceDimsThePage({ page }) {
+  must((await opacityOf(page, "aside")) === 1, "dimmed while the service speaks");
+  plant.service.kill("SIGSTOP");
+  await until("Silent", async () => (await page.textContent("#state")) === "Silent");
+  must((await opacityOf(page, "aside")) < 0.6 && (await opacityOf(page, ".picture")) < 0.6, "what was looks like what is");
+  must((await page.locator(".console [data-verb]:enabled, .console input:enabled").count()) === 0, "somebody seems to listen");
+  plant.service.kill("SIGCONT");
+  await until("a frame", () => page.evaluate(() => meridian.frame !== null));
+  must((await opacityOf(page, "aside")) === 1, "it stays dimmed");
+}
+
+// The slider under a finger stays where the finger has it, whatever frames say meanwhile.
+async function aSliderFollowsTheFingerAlone({ page }) {
+  const box = await page.locator("#feed-slider").boundingBox(), y = box.y + box.height / 2;
+  const value = () => page.evaluate(() => Number(document.getElementById("feed-slider").value));
+  const fingers = await Fingers.of(page);
+  await fingers.down([box.x + 0.6 * box.width, y]);
+  await fingers.move([box.x + 0.3 * box.width, y]);
+  const chosen = await value();
+  must(chosen < 60, `the slider is at ${chosen} %`);
+  await sleep(1200);
+  must((await value()) === chosen, "a frame moved the slider under the finger");
+  await fingers.up();
+  for (let i = 0; i < 10; ++i) {
+    must((await value()) === chosen, "the slider jumps back before the answer comes");
+    await sleep(30);
+  }
+  await until("the override", () => page.evaluate((percent) => Math.round(100 * meridian.frame.feed_override) === percent, chosen));
+  await setFeedOverride(page, 100);
+}
+
+// One finger turns the picture, two pinch it.
+async function fingersTurnAndPinchThePicture({ page }) {
+  await drawAt(page, 0.2);
+  const [x, y] = await middleOf(page, "#picture"), fingers = await Fingers.of(page);
+  const distance = () => page.evaluate(() => meridian.view.camera.position.distanceTo(meridian.view.controls.target));
+  const pixel = () => page.evaluate(() => meridian.view.tipPixel());
+  const first = await distance(), before = await pixel();
+  await fingers.down([x - 40, y]);
+  await fingers.move([x + 60, y]);
+  await fingers.up();
+  const turned = await pixel();
+  must(Math.hypot(turned[0] - before[0], turned[1] - before[1]) > 1, "a finger does not turn it");
+  await fingers.down([x - 40, y], [x + 40, y]);
+  for (let i = 1; i <= 5; ++i) await fingers.move([x - 40 - 20 * i, y], [x + 40 + 20 * i, y]);
+  await fingers.up();
+  const pinched = await distance();
+  must(pinched < 0.8 * first, `a pinch leaves the camera at ${pinched} of ${first} mm`);
+  await page.evaluate(() => meridian.view.look("iso"));
+  await drawAt(page, 1);
+}
+
 await runTests(plant, pictures, async (session, run) => {
   await plant.start();
   session.open = await openBrowser(playwright, plant);
   const { open } = session;
   await run("APanelThatWatchesOffersNothing", aPanelThatWatchesOffersNothing, open);
   await run("WithoutWebGlAllElseWorks", withoutWebGlAllElseWorks, open);
+  await run("ASilentServiceDimsThePage", aSilentServiceDimsThePage, open);
+  await run("ASliderFollowsTheFingerAlone", aSliderFollowsTheFingerAlone, open);
+  await run("FingersTurnAndPinchThePicture", fingersTurnAndPinchThePicture, open);
 });

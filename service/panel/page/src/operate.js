@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an operator asks for. Every word quotes the frame that he saw; the machine answers in words.
 import { byId, setText } from "./dom.js";
-import { fixed } from "./units.js";
+import { Overrides } from "./overrides.js";
 
 // Asked once more before they go out: they may move the machine.
 const goesOn = ["Go on?", "The machine goes on along the path.", ""];
@@ -28,11 +28,7 @@ export class Operate {
     for (const button of document.querySelectorAll("[data-switch]")) {
       button.addEventListener("click", () => this.ask(button.dataset.switch, button.getAttribute("aria-pressed") === "true" ? 0 : 1));
     }
-    for (const [verb, id] of [["feed_override", "feed-slider"], ["rapid_override", "rapid-slider"]]) {
-      const slider = byId(id);
-      slider.addEventListener("input", () => setText(byId(`${id}-text`), `${slider.value} %`));
-      slider.addEventListener("change", () => this.press(verb, Number(slider.value) / 100));
-    }
+    this.overrides = new Overrides((verb, share) => this.press(verb, share));
     byId("take-over").addEventListener("click", () => link.say({ do: "take_over", id: 0 }));
     byId("confirm-yes").addEventListener("click", () => this.dialog.close("yes"));
     byId("confirm-no").addEventListener("click", () => this.dialog.close("no"));
@@ -108,17 +104,18 @@ export class Operate {
       button.disabled = !this.isOperator || !frame.can.includes(button.dataset.switch);
       button.setAttribute("aria-pressed", String(frame[button.dataset.switch]));
     }
-    for (const [id, value] of [["feed-slider", frame.feed_override], ["rapid-slider", frame.rapid_override]]) {
-      const slider = byId(id);
-      slider.disabled = !this.isOperator;
-      if (document.activeElement === slider && slider.matches(":active")) continue;
-      slider.value = String(Math.round(100 * value));
-      setText(byId(`${id}-text`), `${fixed(100 * value, 0)} %`);
-    }
+    this.overrides.enable(this.isOperator);
+    this.overrides.setFrame(frame);
+  }
+
+  // Nobody would hear what was asked.
+  setSilent() {
+    for (const button of document.querySelectorAll("[data-verb], [data-switch]")) button.disabled = true;
+    this.overrides.enable(false);
   }
 
   setMachine(scene) {
-    byId("feed-slider").max = String(Math.round(100 * (scene?.max_override ?? 1)));
+    this.overrides.setMax(scene?.max_override ?? 1);
   }
 
   setOperator(who) {

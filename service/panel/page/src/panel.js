@@ -17,13 +17,7 @@ import { View } from "./view.js";
 const embedded = document.getElementById("report");
 
 // First of all: the answer comes while the rest is made.
-const link = embedded ? null : new Link((message) => receive[message.t]?.(message), (isOpen) => {
-  document.body.classList.toggle("is-cut", !isOpen);
-  if (isOpen) return;
-  panel.frame = null;
-  panel.jog?.release();
-  display.setSilent("No link");
-});
+const link = embedded ? null : new Link((message) => receive[message.t]?.(message), (isOpen) => isOpen || setSilent("No link"));
 const display = new Display();
 const view = makeView();
 const panel = { link, display, view, frame: null, sequence: 0 };
@@ -120,11 +114,17 @@ const receive = {
     display.setLatency(message.stages);
     panel.timing.setLatency(message);
   },
-  silent() {
-    panel.frame = null;
-    display.setSilent("Silent");
-  },
+  silent: () => setSilent("Silent"),
 };
+
+// What is shown is what was: nothing can be asked.
+function setSilent(state) {
+  panel.frame = null;
+  panel.jog.release();
+  panel.operate.setSilent();
+  panel.program.setButtons();
+  display.setSilent(state);
+}
 
 // What takes kinematics: a machine whose file is too long for its topic has none here.
 function setMotion(frame) {
