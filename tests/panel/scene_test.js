@@ -5,6 +5,7 @@ import { execFileSync } from "node:child_process";
 import { BoxGeometry, PerspectiveCamera, Vector3 } from "three";
 import { pixelOf } from "../../service/panel/page/src/pixel.js";
 import { Frames } from "../../service/panel/page/src/screws.js";
+import { coneOf } from "../../service/panel/page/src/cone.js";
 import { Machine } from "../../service/panel/page/src/machine.js";
 import { pinholePixel } from "./pinhole.mjs";
 
@@ -12,6 +13,7 @@ const kTip_mm = 1e-6; // reach 5e3 mm * eps = 1e-12, a million times
 const kAxis = 1e-9;
 const kPixels = 2;
 const kMinMachines = 10;
+const kRoll = 3; // of a robot: the fourth joint
 const [cases, machines] = process.argv.slice(4);
 const text = execFileSync(cases, [machines], { encoding: "utf8", maxBuffer: 1 << 28 });
 const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
@@ -51,6 +53,42 @@ function pixelsOff(frames, pose, number) {
   return distance(drawn, pinholePixel(view, tip.toArray()));
 }
 
+const kParallel = 1e-6; // rad; the scan ends in steps of 1e-9
+
+// Where the tool axis lies in the cone's axis, turning the joint that has no direction there leaves it where it is.
+function coneIsWhereAJointHasNoDirection(scene, { joints, tool }) {
+  const machine = new Machine(scene, "dark"), { frames } = machine, cone = coneOf(machine);
+  if (!cone) return false;
+  frames.setTool(tool);
+  const free = scene.redundant_joint >= 0 ? scene.redundant_joint : kRoll;
+  const tilts = [...scene.head, ...scene.table].filter(({ joint, rotary }) => rotary && joint !== free);
+  const tilt = tilts.map(({ joint }) => joint).find((joint) => scene.family !== "robot" || joint > free);
+  const q = [...joints];
+  const offAt = (value) => {
+    q[tilt] = value;
+    machine.setJoints(q);
+    cone.follow();
+    return new Vector3(...scene.axis).transformDirection(frames.tip.matrixWorld).angleTo(coneAxis(cone));
+  };
+  const off = offAt(lowestOf(offAt, -Math.PI, Math.PI)), before = frames.pose();
+  const apart = cone.body.getWorldPosition(new Vector3()).distanceTo(frames.tipInScene());
+  if (off > kParallel || apart > kTip_mm) return false;
+  q[free] += 0.7;
+  machine.setJoints(q);
+  return distance(frames.pose().axis, before.axis) < kParallel;
+}
+
+// From its tip into the cone, in the scene.
+const coneAxis = (cone) => new Vector3(0, -1, 0).transformDirection(cone.body.matrixWorld);
+
+// Where `f` is least, by ever finer scans.
+function lowestOf(f, low, high) {
+  const kSteps = 400, step = (high - low) / kSteps;
+  let best = low;
+  for (let i = 1; i <= kSteps; ++i) if (f(low + i * step) < f(best)) best = low + i * step;
+  return step < 1e-9 ? best : lowestOf(f, best - 2 * step, best + 2 * step);
+}
+
 let worstTip = 0, worstAxis = 0, worstPixels = 0, count = 0, failures = 0;
 for (const line of text.trim().split("\n")) {
   const { scene, poses } = JSON.parse(line);
@@ -82,6 +120,10 @@ for (const line of text.trim().split("\n")) {
   if (!meshesHangWhereTheySay(scene, poses)) {
     failures += 1;
     console.log(`${scene.name}: a mesh hangs elsewhere`);
+  }
+  if (!coneIsWhereAJointHasNoDirection(scene, poses[0])) {
+    failures += 1;
+    console.log(`${scene.name}: the singular cone is elsewhere`);
   }
   count += 1;
 }

@@ -77,12 +77,9 @@ export class Solids {
     return body;
   }
 
-  cone(tip, axis, halfAngle, length, material) {
+  // Its tip at the origin, open towards -y.
+  cone(halfAngle, length, material) {
     const geometry = new ConeGeometry(Math.tan(halfAngle) * length, length, 48, 1, true);
-    const body = new Mesh(geometry, material);
-    body.position.copy(tip).addScaledVector(axis, length / 2);
-    body.quaternion.setFromUnitVectors(new Vector3(0, -1, 0), axis);
-    return body;
+    return new Mesh(geometry.translate(0, -length / 2, 0), material);
   }
 }
-

@@ -5,6 +5,7 @@ import {
   SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { coneOf } from "./cone.js";
 import { Machine } from "./machine.js";
 import { lineMaterial, plainMaterial } from "./materials.js";
 import { loadMesh } from "./mesh.js";
@@ -113,16 +114,12 @@ export class View {
     this.scene.add(this.floor);
   }
 
-  // The tip, and the cone about the pole in which the redundant joint has no direction of its own.
+  // The tip, and the cone about the singular direction of the tool axis.
   drawMarks() {
-    const { machine, description } = this;
+    const { machine } = this;
     const dot = new Mesh(new SphereGeometry(0.022 * machine.size, 20, 14), plainMaterial(0xff5a36));
     machine.frames.tip.add(dot);
-    if (description.redundant_joint < 0) return;
-    this.coneMaterial = plainMaterial(0xf5a524, 0.16);
-    const kHalf = 0.05;
-    this.cone = machine.solids.cone(new Vector3(), new Vector3(...description.pole), kHalf, 1.3 * machine.size, this.coneMaterial);
-    machine.frames.workpiece.add(this.cone);
+    this.cone = coneOf(machine);
   }
 
   setJoints(joints, toolLength) {
@@ -133,17 +130,13 @@ export class View {
     this.joints = joints;
     if (toolLength !== undefined) this.machine.setTool(toolLength);
     this.machine.setJoints(joints);
-    if (this.cone) {
-      const { tip } = this.machine.frames.pose();
-      const pole = new Vector3(...this.description.pole);
-      this.cone.position.set(...tip).addScaledVector(pole, 0.65 * this.machine.size);
-    }
+    this.cone?.follow();
     if (this.follows) this.followTip();
     this.ask();
   }
 
   setAtPole(isAtPole) {
-    if (this.coneMaterial) this.coneMaterial.uniforms.opacity.value = isAtPole ? 0.5 : 0.12;
+    this.cone?.setAtPole(isAtPole);
   }
 
   show(what, isShown) {
