@@ -67,6 +67,24 @@ async function theReasonIsThere(page) {
   must((await visible(page, "#no-picture")) === 1 && (await visible(page, ".tools button")) === 0, "buttons of a picture that is not there");
 }
 
+// A trail from here to there: as frames bring it.
+const drawTrail = (page) => page.evaluate(() => (meridian.view.trail.add([[0, 0, 0, 0, 0, 1, 1], [50, 0, 0, 0, 0, 1, 2]], 1), meridian.view.trail.count));
+
+// No line goes across what nobody saw, or lies on a workpiece that was moved.
+async function theTrailBeginsAnewAfterAGap({ page }) {
+  const isGone = () => page.evaluate(() => meridian.view.trail.count < 2);
+  must((await drawTrail(page)) >= 2, "no trail");
+  await page.evaluate(() => meridian.link.socket.close());
+  await until("the trail goes with the link", isGone, 5000);
+  await until("a frame", () => page.evaluate(() => meridian.frame !== null));
+  must((await drawTrail(page)) >= 2, "no trail");
+  await page.evaluate(() => {
+    const { description } = meridian.view, frame = { ...description.frame, origin: [10, 20, 30] };
+    meridian.link.onText({ t: "machine", scene: { ...description, frame }, name: description.name, host: "", version: "" });
+  });
+  must(await isGone(), "the trail lies on a workpiece that was moved");
+}
+
 const opacityOf = (page, selector) => page.evaluate((what) => Number(getComputedStyle(document.querySelector(what)).opacity), selector);
 
 async function aSilentServiceDimsThePage({ page }) {
@@ -127,6 +145,7 @@ await runTests(plant, pictures, async (session, run) => {
   const { open } = session;
   await run("APanelThatWatchesOffersNothing", aPanelThatWatchesOffersNothing, open);
   await run("WithoutWebGlAllElseWorks", withoutWebGlAllElseWorks, open);
+  await run("TheTrailBeginsAnewAfterAGap", theTrailBeginsAnewAfterAGap, open);
   await run("ASilentServiceDimsThePage", aSilentServiceDimsThePage, open);
   await run("ASliderFollowsTheFingerAlone", aSliderFollowsTheFingerAlone, open);
   await run("FingersTurnAndPinchThePicture", fingersTurnAndPinchThePicture, open);

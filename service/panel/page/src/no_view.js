@@ -2,7 +2,7 @@
 // Stands for the picture (view.js) in a browser that cannot draw one: everything else on the page works on.
 export class NoView {
   constructor() {
-    this.trail = { lines: [], add() {} };
+    this.trail = { lines: [], add() {}, clear() {} };
   }
 
   setMachine(description) {

@@ -87,6 +87,8 @@ const receive = {
     if (view instanceof View) explainNoPicture(message.scene ? "" : "The machine's file is longer than its topic carries: no picture.");
     byId("jog-toggle").disabled = message.scene === null;
     panel.operate.setMachine(message.scene);
+    // The workpiece may lie elsewhere now, and with it what was drawn on it.
+    view.trail.clear();
     if (!message.scene) return;
     view.setMachine(message.scene);
     panel.jog.setMachine(message.scene);
@@ -120,6 +122,7 @@ const receive = {
 // What is shown is what was: nothing can be asked.
 function setSilent(state) {
   panel.frame = null;
+  view.trail.clear(); // where the tip goes meanwhile is no straight line
   panel.jog.release();
   panel.operate.setSilent();
   panel.program.setButtons();
