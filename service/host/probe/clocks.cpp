@@ -24,7 +24,7 @@ namespace {
 /// What fires the timer of a processor: its own, or one that all share.
 [[nodiscard]] Finding timer_source(const HostFiles& host) {
   const std::string folder = "sys/devices/system/clockevents/";
-  Finding out{"timer source", Health::kFine, "not told by this kernel", ""};
+  Finding out{"timer source", Health::kFine, "not reported by this kernel", ""};
   for (const std::string& event : host.names(folder, "clockevent")) {
     const auto device = host.text(folder + event + "/current_device");
     if (!device || device->empty()) continue;
@@ -45,7 +45,7 @@ namespace {
   const auto migrates = host.number("proc/sys/kernel/timer_migration");
   if (migrates.value_or(0) == 0) {
     return {"timer migration", Health::kFine,
-            migrates ? "off: timers fire where they were set" : "not told by this kernel", ""};
+            migrates ? "off: timers fire where they were set" : "not reported by this kernel", ""};
   }
   return {"timer migration", Health::kNote,
           "on: timers of idle processors are taken to others, the cycle's among them",

@@ -8,7 +8,7 @@
 
 namespace meridian::probe {
 
-/// What the kernel tells of a host in /proc and /sys; tests put another folder in the place of /.
+/// What the kernel reports of a host in /proc and /sys; tests put another folder in the place of /.
 class HostFiles {
  public:
   explicit HostFiles(std::filesystem::path root = "/") : root_(std::move(root)) {}
@@ -19,7 +19,7 @@ class HostFiles {
   /// Names in `folder` that begin with `prefix`, sorted.
   [[nodiscard]] std::vector<std::string> names(const std::string& folder,
                                                const std::string& prefix) const;
-  /// What the kernel was told last behind KEY= when it was started; nothing where it was not.
+  /// The last value of KEY= on the kernel's command line; nothing where there is none.
   [[nodiscard]] std::optional<std::string> boot_option(const std::string& key) const;
 
  private:

@@ -22,7 +22,7 @@ const std::string kCpu = "sys/devices/system/cpu/";
   return false;
 }
 
-/// What the kernel still does on an isolated processor, of what it can be told to leave; empty:
+/// What the kernel still does on an isolated processor, of what options can switch off; empty:
 /// nothing. Where it ticks no more (nohz_full) it runs no callbacks either, by itself.
 [[nodiscard]] std::string not_kept_off(const HostFiles& host, int cpu) {
   if (has(host.text(kCpu + "nohz_full").value_or(""), cpu)) return {};

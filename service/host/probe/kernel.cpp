@@ -26,7 +26,7 @@ namespace {
       source == "hyperv_clocksource_tsc_page") {
     return {"clock source", Health::kFine, source, ""};
   }
-  return {"clock source", Health::kBad, source.empty() ? "not told" : source,
+  return {"clock source", Health::kBad, source.empty() ? "not reported" : source,
           "reading it costs a microsecond or more and may be a system call; see why tsc was given "
           "up: dmesg | grep -i clocksource"};
 }
@@ -34,7 +34,7 @@ namespace {
 /// Timers that fire at the tick alone wake the cycle up to 4 ms late.
 [[nodiscard]] Finding timers(const HostFiles& host) {
   const auto list = host.text("proc/timer_list");
-  if (!list) return {"high-resolution timers", Health::kFine, "told to root alone", ""};
+  if (!list) return {"high-resolution timers", Health::kFine, "shown to root alone", ""};
   if (list->find(".hres_active    : 1") != std::string::npos) {
     return {"high-resolution timers", Health::kFine, "on", ""};
   }

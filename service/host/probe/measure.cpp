@@ -95,7 +95,7 @@ void cut(const ServiceSetup& setup, int seconds, const std::atomic<bool>& is_sto
     m.is_interrupted = true;
   } catch (const std::exception& error) {
     if (m.periods == 0) throw;
-    m.broken_off = error.what();  // what the turns came to is told
+    m.broken_off = error.what();  // what the turns came to is reported
   }
   m.stolen_ms = stolen_ms() - stolen_before_ms;
   return m;

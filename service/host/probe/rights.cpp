@@ -57,7 +57,7 @@ constexpr int kCyclePriority = 80;
   const auto runtime = host.number("proc/sys/kernel/sched_rt_runtime_us");
   const auto period = host.number("proc/sys/kernel/sched_rt_period_us");
   if (!runtime || !period) {
-    out.found = "not told by this kernel";
+    out.found = "not reported by this kernel";
   } else if (*runtime >= 0 && *runtime < *period) {
     out.health = Health::kNote;
     out.found = "real-time threads together get " + std::to_string(*runtime) + " of every " +
@@ -78,10 +78,11 @@ constexpr int kCyclePriority = 80;
   return {};
 }
 
-/// Whether a kernel with CONFIG_RT_GROUP_SCHED was built or told (from Linux 6.16 on) to leave it.
+/// Whether a kernel with CONFIG_RT_GROUP_SCHED was built or started (from Linux 6.16 on) to leave
+/// it off.
 [[nodiscard]] bool is_left_off(const HostFiles& host, const std::string& options) {
-  const auto told = host.boot_option("rt_group_sched");
-  if (told) return *told == "0" || *told == "n" || *told == "off";
+  const auto option = host.boot_option("rt_group_sched");
+  if (option) return *option == "0" || *option == "n" || *option == "off";
   return options.find("\nCONFIG_RT_GROUP_SCHED_DEFAULT_DISABLED=y") != std::string::npos;
 }
 

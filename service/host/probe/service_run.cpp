@@ -59,12 +59,12 @@ void ServiceRun::pause() {
 
 ServiceRun::Result ServiceRun::end() {
   process_.send_signal(SIGCONT);
-  // Latencies are told once a second: the next ones hold all turns.
+  // Latencies are published once a second: the next ones hold all turns.
   dds::Latency latency;
   std::optional<Histogram> round_trip;
-  for (int i = 0, told = 0; i < 400 && told < 2; ++i) {
+  for (int i = 0, published = 0; i < 400 && published < 2; ++i) {
     while (latencies_.take(latency)) {
-      ++told;
+      ++published;
       for (const dds::NamedHistogram& one : latency.histograms) {
         if (one.name == "setpoint to feedback") round_trip = one.histogram;
       }

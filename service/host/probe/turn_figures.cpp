@@ -48,7 +48,7 @@ std::vector<CycleTimes> read_times(const std::filesystem::path& recording, std::
     const std::string& state = cells[column.at("state")];
     time.is_moving = state == "running" || state == "approaching";
     if (!times.empty()) {
-      // A computation longer than its period is told like any other, behind the periods it cost.
+      // A computation longer than its period is reported like any other, after the periods it cost.
       times.back().computation_ns = std::stoll(cells[column.at("computation_ns")]);
       time.lost = time.cycle - times.back().cycle - 1;
       time.lateness_ns += static_cast<std::int64_t>(time.lost) * period_ns;

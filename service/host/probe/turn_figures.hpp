@@ -15,7 +15,7 @@ struct CycleTimes {
   std::int64_t due_ns = 0, woke_ns = 0;
   std::uint64_t lost = 0;            ///< periods before it that nobody executed
   std::int64_t lateness_ns = 0;      ///< actual wake-up minus when the first of these was due
-  std::int64_t computation_ns = -1;  ///< told by the next row, however late; -1: there is none
+  std::int64_t computation_ns = -1;  ///< reported by the next row, however late; -1: there is none
   bool is_moving = false;            ///< a program, or the approach to it, was on its way
 };
 
@@ -50,7 +50,7 @@ struct TurnFigures {
   std::uint64_t moving = 0;                  ///< so many there were
   Missing periods;                           ///< nobody executed
   Missing setpoints;                         ///< never came to the drives
-  std::uint64_t untimed = 0;  ///< cycles without a row behind them: when they computed is not told
+  std::uint64_t untimed = 0;  ///< cycles without a row after them: when they computed is unknown
 };
 
 /// Adds one turn: the rows of `times` and the setpoints of `arrivals`, both in order of their

@@ -133,7 +133,7 @@ WorkResult run_work(const ServiceSetup& setup, double seconds,
   std::unique_ptr<ChildProcess> station;
   result.broken_off = cut(setup, part, seconds, tool, station, is_stopping);
   if (const std::string why = last_error(log); !why.empty()) result.broken_off = why;
-  std::this_thread::sleep_for(milliseconds(1100));  // latencies are told once a second
+  std::this_thread::sleep_for(milliseconds(1100));  // latencies are published once a second
   result.wake = wake_of(latencies);
   service.send_signal(SIGTERM);
   if (service.wait_for_exit(milliseconds(12'000)) != 0) {

@@ -13,7 +13,7 @@ namespace {
 
 /// What is seen here of the time that drives were enabled comes by way of the status.
 constexpr double kSeenLate_s = 0.5;
-/// The state may be told before the alarm that led there.
+/// The state may be reported before the alarm that led there.
 constexpr double kAlarmLate_s = 1;
 /// A processor that was away for so long a moment ago makes peers fall silent and drives lag: half
 /// of what a service waits for feedback by default.
@@ -102,7 +102,7 @@ std::optional<FaultCheck::Cause> FaultCheck::see(const dds::Status& status, doub
   return away_s_ >= *min_s ? Cause::kHost : Cause::kUnprovoked;
 }
 
-/// A stall is told when it is over, which may be behind the alarm that it made.
+/// A stall is reported when it is over, which may be after the alarm that it caused.
 void FaultCheck::listen(const Witness& witness) noexcept {
   const std::int64_t away_ns = longest_away_ns(witness.stalls, *stop_ns_ - kStallsOf_ns, *stop_ns_);
   away_s_ = std::max(away_s_, static_cast<double>(away_ns) * 1e-9);

@@ -25,7 +25,7 @@ struct Witness {
   bool misses_setpoints = false;  ///< a drive says that they stayed away
 };
 
-/// Says of every Fault of the machine who caused it: the drives, because they were told to; the
+/// Says of every Fault of the machine who caused it: the drives, given a fault; the
 /// soak, which changed drives or lost them; the host, where it was seen to take a processor away
 /// before the stop for longer than drives bridge or the service waits for them, or where nobody
 /// watched it; or nobody.
@@ -42,11 +42,11 @@ class FaultCheck {
   void begin_drives(const std::optional<Planned>& injected) noexcept;
   /// The drives are gone. Where the machine was on, its next Fault follows from that.
   void lose_drives() noexcept;
-  /// The service is gone, and with it what it was about to tell.
+  /// The service is gone, and with it what it was about to report.
   void lose_service() noexcept;
-  /// Every status in its order, at `now_s`; the cause once for each Fault, as soon as it is told.
-  /// A witness may tell at any time of the stop, of stalls from kStallsOf_ns before it on; those
-  /// behind the first status of the stop explain nothing.
+  /// Every status in its order, at `now_s`; the cause once for each Fault, as soon as it is known.
+  /// A witness may report stalls at any time of the stop, from kStallsOf_ns before it on; those
+  /// after the first status of the stop explain nothing.
   [[nodiscard]] std::optional<Cause> see(const dds::Status& status, double now_s,
                                          const Witness& witness) noexcept;
   /// What a report says of the Fault that was checked last: its alarm, and what was planned when.
@@ -56,7 +56,7 @@ class FaultCheck {
 
   /// What the host does acts on the machine within this time.
   static constexpr std::int64_t kStallsOf_ns = 1'000'000'000;
-  /// A Fault is told this long behind the begin of its stop at most.
+  /// A Fault is reported this long after the begin of its stop at most.
   static constexpr std::int64_t kLongestStop_ns = 10'000'000'000;
 
  private:
@@ -68,7 +68,7 @@ class FaultCheck {
   bool is_on_ = false, is_faulty_ = false, is_checked_ = false, is_own_doing_ = false;
   Alarm alarm_ = Alarm::kNone;  ///< first of the stop that is going on
   int joint_ = 0;
-  std::optional<std::int64_t> stop_ns_;  ///< when that stop was first told, machine's clock
+  std::optional<std::int64_t> stop_ns_;  ///< when that stop was first reported, machine's clock
   double away_s_ = 0;                    ///< longest that a processor was away before it
   bool is_watched_ = true, misses_setpoints_ = false;
 };

@@ -9,7 +9,7 @@ namespace meridian::soak {
 namespace {
 
 constexpr double kWarmUp_s = 10;    ///< of a life
-constexpr double kInterval_s = 10;  ///< what first and last are told of
+constexpr double kInterval_s = 10;  ///< what first and last are reported of
 
 }  // namespace
 

@@ -64,7 +64,7 @@ class HostWatch {
   void watch(int cpu, const std::stop_token& stop);
   void note(const Stall& late);
 
-  std::int64_t nap_ns_, min_ns_;  ///< stalls of less are not told one by one
+  std::int64_t nap_ns_, min_ns_;  ///< stalls of less are not reported one by one
   mutable std::mutex mutex_;
   std::map<int, Histogram> lateness_;  ///< by processor
   std::vector<Stall> stalls_;          ///< the newest kMaxStalls

@@ -106,7 +106,7 @@ std::string Plant::keep_logs() {
 }
 
 void Plant::keep_flight() {
-  // The record of a stop may be on disk before the Fault that it ends in is told.
+  // The record of a stop may be on disk before the Fault that it ends in is reported.
   constexpr auto kStop = std::chrono::seconds(2);
   std::error_code error;
   std::filesystem::path newest;  // names begin with the time of the fault

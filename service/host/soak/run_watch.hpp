@@ -32,12 +32,12 @@ class RunWatch {
 
   /// A service was started.
   void begin_life(double now_s);
-  /// Of what drives are told to suffer, and when they come and go.
+  /// Knows which faults drives are given, and when they come and go.
   [[nodiscard]] FaultCheck& faults() { return faults_; }
   /// New drives have said nothing yet.
   void forget_feedback() { feedback_ = {}; }
 
-  /// Every status in its order; the cause of a Fault once, as soon as it is told.
+  /// Every status in its order; the cause of a Fault once, as soon as it is known.
   [[nodiscard]] std::optional<FaultCheck::Cause> see(const dds::Status& status, double now_s);
   /// Once a second while process `service` runs.
   void look(pid_t service, double now_s);

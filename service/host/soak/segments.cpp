@@ -32,8 +32,8 @@ constexpr int kRestRows = 50;
 
 }  // namespace
 
-Segments::Segments(std::filesystem::path folder, Tell tell)
-    : folder_(std::move(folder)), tell_(std::move(tell)) {}
+Segments::Segments(std::filesystem::path folder, Report report)
+    : folder_(std::move(folder)), report_(std::move(report)) {}
 
 void Segments::add(std::string_view text) {
   rest_ += text;
@@ -80,7 +80,7 @@ void Segments::end_segment(bool is_cut_off) {
   if (!file_.is_open()) return;
   file_.close();
   segment_.is_aborted = segment_.is_aborted || is_cut_off;
-  tell_(std::exchange(segment_, {}));
+  report_(std::exchange(segment_, {}));
   rest_rows_ = 0;
 }
 

@@ -12,7 +12,7 @@ namespace meridian::soak {
 
 /// A piece of a recording: from where the machine came to rest to where it rests again.
 struct Segment {
-  std::filesystem::path file;  ///< a new one each time; whoever is told removes it
+  std::filesystem::path file;  ///< a new one each time; who gets the report removes it
   std::int64_t begin_ns = 0;   ///< when the program was under way first, machine's clock
   bool has_run = false;        ///< a program was on its way
   bool is_aborted = false;     ///< it was not brought to its end: abort, fault, death. An abort at
@@ -25,8 +25,8 @@ struct Segment {
 /// Proof: tests/unit/soak/soak_test.cpp.
 class Segments {
  public:
-  using Tell = std::function<void(const Segment&)>;
-  Segments(std::filesystem::path folder, Tell tell);
+  using Report = std::function<void(const Segment&)>;
+  Segments(std::filesystem::path folder, Report report);
 
   void add(std::string_view text);
   /// The service is gone: what there is, is the last of it.
@@ -37,7 +37,7 @@ class Segments {
   void end_segment(bool is_cut_off);
 
   std::filesystem::path folder_;
-  Tell tell_;
+  Report report_;
   std::string header_, rest_;
   std::size_t state_column_ = 0, due_column_ = 0, epoch_column_ = 0;
   std::string epoch_;  ///< of the program that is under way

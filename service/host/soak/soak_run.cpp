@@ -48,7 +48,7 @@ SoakReport SoakRun::run(const std::atomic<bool>& is_stopping) {
   start_service();
   start_drives();
   if (options_.chaos_every_s > 0) next_ = chaos_.next();
-  tell();
+  report();
   while (now_s() < options_.for_s && !is_stopping.load()) {
     const bool is_news = operator_.wait_for_status(kTick);
     keep_alive();
@@ -57,7 +57,7 @@ SoakReport SoakRun::run(const std::atomic<bool>& is_stopping) {
       operate(*operator_.status());
     }
     mishaps();
-    look_and_tell();
+    look_and_report();
   }
   end();
   return report_;
@@ -171,7 +171,7 @@ void SoakRun::lose_station() {
   continue_s_ = 0;
 }
 
-void SoakRun::look_and_tell() {
+void SoakRun::look_and_report() {
   const double now = now_s();
   if (now - healthy_s_ >= kHealthEvery_s) {
     healthy_s_ = now;
@@ -179,14 +179,14 @@ void SoakRun::look_and_tell() {
   }
   if (now - reported_s_ < kReportEvery_s) return;
   reported_s_ = now;
-  tell();
+  report();
 }
 
 void SoakRun::look() {
   if (plant_.service() != nullptr) watch_.look(plant_.service()->id(), now_s());
 }
 
-void SoakRun::tell() {
+void SoakRun::report() {
   if (!report_.is_over) report_.elapsed_s = now_s();
   if (!options_.trace.empty()) {
     report_.traces = probe::examine_traces(options_.trace).front().found;
@@ -204,13 +204,13 @@ void SoakRun::end() {
   report_.is_interrupted = now_s() < options_.for_s;
   plant_.kill_station();
   look();
-  tell();  // what follows may take as long as a stop, and somebody may lose patience
+  report();  // what follows may take as long as a stop, and somebody may lose patience
   if (!plant_.end_service()) report_.violate("the service did not end well", "soak");
   if (plant_.awaits_flight()) plant_.keep_flight();
   plant_.stop_drives();
   check_.finish();
   report_.is_over = true;
-  tell();
+  report();
 }
 
 }  // namespace meridian::soak

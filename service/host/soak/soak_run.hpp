@@ -49,9 +49,9 @@ class SoakRun {
   /// What the drives suffer of is over with their process.
   void check_fault(FaultCheck::Cause cause, const dds::Status& status);
   [[nodiscard]] std::string keep_evidence();
-  void look_and_tell();
+  void look_and_report();
   void look();
-  void tell();
+  void report();
   void end();
 
   void operate(const dds::Status& status);

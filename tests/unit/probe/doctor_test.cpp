@@ -153,7 +153,7 @@ TEST_F(Doctor, ExplainsTheTrapOfTheSecondVersionOfControlGroups) {
   expect("real time in a unit", Health::kBad, "outside of the root control group");
   EXPECT_NE(finding("real time in a unit").remedy.find("from Linux 6.16 on"), std::string::npos);
   write("proc/cmdline", "quiet rt_group_sched=0\n");
-  EXPECT_EQ(finding("real time in a unit").health, Health::kFine) << "told to leave it off";
+  EXPECT_EQ(finding("real time in a unit").health, Health::kFine) << "started without it";
   write("proc/cmdline", "quiet\n");
   write("boot/config-6.1.0-rt",
         "A=y\nCONFIG_RT_GROUP_SCHED=y\nCONFIG_RT_GROUP_SCHED_DEFAULT_DISABLED=y\n");
@@ -259,7 +259,7 @@ TEST(DoctorOfPeers, FindsTwoServicesOfOneMachineAndOtherVersions) {
   EXPECT_EQ(two.back().what, "machine mill");
 }
 
-TEST(DoctorOfPeers, TellsItInJsonThatSaysWhetherTheHostIsFit) {
+TEST(DoctorOfPeers, ReportsItInJsonThatSaysWhetherTheHostIsFit) {
   const Findings findings{{"a \"b\"", Health::kBad, "c", "d"}};
   EXPECT_EQ(to_json(findings),
             "{\"fit\": false, \"findings\": [\n  {\"what\": \"a \\\"b\\\"\", \"health\": \"BAD\", "

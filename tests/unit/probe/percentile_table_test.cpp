@@ -70,7 +70,7 @@ std::vector<Line> lines_of(const std::string& table) {
   return lines;
 }
 
-TEST(PercentileTable, TellsTheOrderStatisticsOfAnyLatencies) {
+TEST(PercentileTable, HoldsTheOrderStatisticsOfAnyLatencies) {
   constexpr double kPrinted_us = 0.0005, kPrinted_share = 1e-12;
   for (const unsigned seed : {1U, 2U, 3U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

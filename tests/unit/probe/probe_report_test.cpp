@@ -184,7 +184,7 @@ TEST(Probe, ATargetHostIsCheckedOverEnoughTurns) {
   EXPECT_EQ(verdict_of(m).budget.allowed(), 10);
 }
 
-TEST(Probe, ThatWasInterruptedTellsWhatThereIsAndIsNotFit) {
+TEST(Probe, ThatWasInterruptedReportsWhatThereIsAndIsNotFit) {
   RateMeasurement m = measured(25);
   m.is_interrupted = true;
   ProbeReport report = report_of(m, false);

@@ -35,7 +35,7 @@ std::vector<CycleTimes> times_of(const std::vector<Row>& rows) {
   return read_times(file, kPeriod_ns);
 }
 
-/// A computation of 2.5 ms in cycle 2 costs the periods 3 and 4; the row of cycle 5 tells of it.
+/// A computation of 2.5 ms in cycle 2 costs the periods 3 and 4; the row of cycle 5 reports it.
 const std::vector<Row> kLongComputation{{0, 10'000, 0},
                                         {1, 10'000, 2000},
                                         {2, 10'000, 2000},
@@ -48,7 +48,7 @@ TEST(TurnFigures, AComputationThatCostsPeriodsIsTimed) {
   EXPECT_EQ(times[2].computation_ns, 2'500'000);
   EXPECT_EQ(times[3].lost, 2U);
   EXPECT_EQ(times[3].lateness_ns, 2'020'000);
-  EXPECT_EQ(times[4].computation_ns, -1) << "nobody has told yet";
+  EXPECT_EQ(times[4].computation_ns, -1) << "it is not reported yet";
 }
 
 TEST(TurnFigures, TheTransportOfItsSetpointIsMeasuredToo) {

@@ -22,7 +22,7 @@ namespace {
   return at == all.end() ? ThreadAccount{} : *at;
 }
 
-TEST(Account, TellsAThreadsNameProcessorsClassSwitchesAndFaults) {
+TEST(Account, HoldsAThreadsNameProcessorsClassSwitchesAndFaults) {
   std::latch is_named(1), is_over(1);
   std::thread worker([&] {
     pthread_setname_np(pthread_self(), "a (worker) 7");
@@ -63,7 +63,7 @@ TEST(Account, TellsAThreadsNameProcessorsClassSwitchesAndFaults) {
   EXPECT_GE(last.voluntary_switches, first.voluntary_switches + 5);
 }
 
-TEST(Account, TellsWhatIsLocked) {
+TEST(Account, HoldsWhatIsLocked) {
   const auto before = account_of(getpid());
   ASSERT_TRUE(before);
   constexpr std::size_t kPage = 4096;

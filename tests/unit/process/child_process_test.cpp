@@ -23,7 +23,7 @@ TEST(ChildProcess, TalksInLines) {
   EXPECT_EQ(cat.wait_for_exit(kWithin), 0);
 }
 
-TEST(ChildProcess, TellsExitCodeSignalAndThatItStillRuns) {
+TEST(ChildProcess, ReportsExitCodeSignalAndThatItStillRuns) {
   ChildProcess three({"/bin/sh", "-c", "exit 3"});
   EXPECT_EQ(three.wait_for_exit(kWithin), 3);
   ChildProcess sleeper({"/bin/sleep", "60"});

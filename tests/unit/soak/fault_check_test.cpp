@@ -150,7 +150,7 @@ TEST_F(FaultCheckTest, NamesTheJointOfWhatIsPlannedForOneDriveAlone) {
             std::string::npos);
 }
 
-TEST_F(FaultCheckTest, WaitsForTheAlarmThatIsToldBehindTheState) {
+TEST_F(FaultCheckTest, WaitsForTheAlarmThatIsReportedAfterTheState) {
   check_.begin_drives(Planned{Mishap::kEmergencyStop, 1, 0, 0});
   EXPECT_FALSE(see(0, State::kRunning));
   EXPECT_FALSE(see(2, State::kFault));
@@ -159,7 +159,7 @@ TEST_F(FaultCheckTest, WaitsForTheAlarmThatIsToldBehindTheState) {
   EXPECT_TRUE(check_.is_checked());
   EXPECT_FALSE(see(3, State::kRunning));
   EXPECT_FALSE(see(4, State::kFault));
-  EXPECT_EQ(see(5.1, State::kFault), Cause::kUnprovoked) << "one that is never told";
+  EXPECT_EQ(see(5.1, State::kFault), Cause::kUnprovoked) << "one that is never reported";
 }
 
 TEST_F(FaultCheckTest, NamesEveryAlarmAndTheJointOfThoseThatHaveOne) {

@@ -71,7 +71,7 @@ void stop_for(std::chrono::milliseconds time) {
   waitpid(child, nullptr, 0);
 }
 
-TEST(HostWatch, SeesThatProcessorsWereAwayAndTellsWhen) {
+TEST(HostWatch, SeesThatProcessorsWereAwayAndReportsWhen) {
   const sched_param top{.sched_priority = 1};
   if (sched_setscheduler(0, SCHED_FIFO, &top) != 0) GTEST_SKIP() << "no right to real time";
   const sched_param none{};
