@@ -107,13 +107,13 @@ class PostedProgram : public testing::TestWithParam<std::string> {
     return ToolTable({{1, model.tool_length_mm, 5}, {2, model.tool_length_mm + 20, 5}});
   }
 
-  /// Every motion of `told` ends where the last block does that was made from its line; where
+  /// Every motion of `programmed` ends where the last block does that was made from its line; where
   /// there is none it moved nothing.
-  void compare_motions(const std::vector<ClBlock>& told, const std::vector<ClBlock>& read,
+  void compare_motions(const std::vector<ClBlock>& programmed, const std::vector<ClBlock>& read,
                        const std::vector<std::uint32_t>& sources) {
     std::size_t at = 0;
     const ClBlock* last = nullptr;
-    for (const ClBlock& block : told) {
+    for (const ClBlock& block : programmed) {
       if (!is_motion(block.kind)) continue;
       bool has_any = false;
       for (; at < read.size() && sources[read[at].line] <= block.line; ++at) {
@@ -123,15 +123,16 @@ class PostedProgram : public testing::TestWithParam<std::string> {
       }
       ASSERT_NE(last, nullptr);
       ASSERT_TRUE(is_at(block, *last)) << "CL line " << block.line << ", NC line " << last->line;
-      const bool is_first = &block == &told.front();  // which is approached
+      const bool is_first = &block == &programmed.front();  // which is approached
       if (has_any && !is_first) check_motion(block, *last);
     }
   }
 
   /// The actions are the same; the end switches off what may be on.
-  static void compare_actions(const std::vector<ClBlock>& told, const std::vector<ClBlock>& read) {
+  static void compare_actions(const std::vector<ClBlock>& programmed,
+                              const std::vector<ClBlock>& read) {
     std::size_t at = 0;
-    for (const ClBlock& block : told) {
+    for (const ClBlock& block : programmed) {
       if (is_motion(block.kind)) continue;
       while (at < read.size() && (is_motion(read[at].kind) ||
                                   (block.kind == BlockKind::kEnd && read[at].kind != block.kind))) {
@@ -143,13 +144,14 @@ class PostedProgram : public testing::TestWithParam<std::string> {
     }
   }
 
-  void check_motion(const ClBlock& told, const ClBlock& read) {
+  void check_motion(const ClBlock& programmed, const ClBlock& read) {
     ++counts.motions;
-    EXPECT_EQ(told.kind == BlockKind::kRapid, read.kind == BlockKind::kRapid);
-    if (told.feed_meaning != FeedMeaning::kTip || read.kind != BlockKind::kCut) return;
-    const double feed =
-        model.max_feed_mm_per_s > 0 ? std::min(told.feed, model.max_feed_mm_per_s) : told.feed;
-    EXPECT_LE(read.feed, feed + 1e-4) << "line " << told.line;
+    EXPECT_EQ(programmed.kind == BlockKind::kRapid, read.kind == BlockKind::kRapid);
+    if (programmed.feed_meaning != FeedMeaning::kTip || read.kind != BlockKind::kCut) return;
+    const double feed = model.max_feed_mm_per_s > 0
+                            ? std::min(programmed.feed, model.max_feed_mm_per_s)
+                            : programmed.feed;
+    EXPECT_LE(read.feed, feed + 1e-4) << "line " << programmed.line;
   }
 
   /// Actions between the motions, and a tool before them all.
@@ -189,11 +191,11 @@ class PostedProgram : public testing::TestWithParam<std::string> {
     cl::ClReaderOptions options;
     options.nc = nc::reader_of_programs(model, tools());
     std::string error;
-    const auto told = blocks_of(text, {}, error);
+    const auto programmed = blocks_of(text, {}, error);
     const auto read = blocks_of(*nc, options, error);
     ASSERT_EQ(error, "") << *nc;
-    compare_motions(told, read, sources_of(*nc));
-    compare_actions(told, read);
+    compare_motions(programmed, read, sources_of(*nc));
+    compare_actions(programmed, read);
     if (HasFatalFailure()) std::printf("%s\n%s\n", text.c_str(), nc->c_str());
     ++counts.programs;
     counts.read += static_cast<int>(read.size());

@@ -106,7 +106,7 @@ TEST(MissingAxis, IsWhatTheCallerSays) {
   EXPECT_EQ(second_axis("TOOL PATH/A,TOOL,B\n", written_by(Dialect::kCreo)), (Array3{0, 0, 1}));
 }
 
-TEST(MissingAxis, IsNoQuestionWhereTheAxisIsPlusZOrAWordTellsIt) {
+TEST(MissingAxis, IsNoQuestionWhereTheAxisIsPlusZOrAWordNamesIt) {
   EXPECT_EQ(read_body("GOTO/1,2,3,0,0,1\nGOTO/4,5,6\n").error, "");
   const auto named = read_body("TLAXIS/0,.6,.8\nGOTO/1,2,3\nGOTO/4,5,6\n");
   ASSERT_EQ(named.error, "");

@@ -64,7 +64,7 @@ TEST(Feed, InverseTimeIsOneOverTheDuration) {
   }
 }
 
-TEST(Feed, OfNoneIsRefusedUnlessTold) {
+TEST(Feed, OfNoneIsRefusedUnlessTheCallerGivesADefault) {
   const auto read = read_text("UNITS/MM\nGOTO/0,0,0\nFINI\n");
   EXPECT_NE(read.error.find("no FEDRAT"), std::string::npos);
   EXPECT_NE(read.error.find("--feed"), std::string::npos);
@@ -148,7 +148,7 @@ TEST(Units, OfNoneBesideAFeedInInchAreFlagged) {
   EXPECT_TRUE(read.warned_of("points in millimetre, but feed in inch"));
 }
 
-TEST(Units, DefaultOfTheMachineHelpsAndIsTold) {
+TEST(Units, DefaultOfTheMachineHelpsAndIsReported) {
   ClReaderOptions options;
   options.default_unit = LengthUnit::kInch;
   const auto read = read_text("FEDRAT/1,IPM\nGOTO/1,0,0\nFINI\n", options);
@@ -196,7 +196,7 @@ TEST(Units, ThatDifferAreFlaggedAndTheLastOneHolds) {
   EXPECT_TRUE(read_text("UNITS/MM\nUNITS/MM\nFEDRAT/10\nGOTO/1,0,0\nFINI\n").warnings.empty());
 }
 
-TEST(Units, ToldByTheCallerWinAndAreFlagged) {
+TEST(Units, OfTheCallerWinAndAreFlagged) {
   const auto read = read_text("UNITS/INCHES\nFEDRAT/60,PERMIN\nGOTO/100,0,0\nFINI\n", metric());
   EXPECT_EQ(read.motion().at(0).tip_mm[0], 100);
   EXPECT_EQ(read.motion().at(0).feed, 1);

@@ -258,7 +258,7 @@ TEST(Reader, RefusesMalformedGotos) {
   }
 }
 
-TEST(Summary, TellsBoxTiltFeedAndLengths) {
+TEST(Summary, ReportsBoxTiltFeedAndLengths) {
   const auto read = read_body("RAPID\nGOTO/0,0,10\nGOTO/0,0,0\nGOTO/30,40,0,0,.6,.8\nDELAY/2\n");
   const ClSummary& s = read.summary;
   EXPECT_EQ(s.box_min_mm, (Array3{0, 0, 0}));

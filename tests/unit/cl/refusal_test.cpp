@@ -162,7 +162,7 @@ TEST(Truncation, DoesNotHitFilesThatEndTheirOwnWay) {
   }
 }
 
-TEST(Truncation, OfABareListOfPointsCannotBeToldAndIsSaid) {
+TEST(Truncation, OfABareListOfPointsIsUnknowableAndTheReaderSaysSo) {
   ClReaderOptions options = metric();
   options.default_feed_mm_per_s = 10;
   const auto read = read_text("GOTO/1 2 3 0 0 1\nGOTO/1 2 4 0 .6 .8", options);
@@ -171,7 +171,7 @@ TEST(Truncation, OfABareListOfPointsCannotBeToldAndIsSaid) {
   EXPECT_TRUE(read.warned_of("no FINI"));
 }
 
-TEST(Refusal, OfAFileThatOnlyTellsWhereTheToolIs) {
+TEST(Refusal, OfAFileThatOnlySaysWhereTheToolIs) {
   EXPECT_NE(read_text("UNITS/MM\nFROM/1,2,3\nFINI\n").error.find("no motion"), std::string::npos);
   EXPECT_NE(read_text("UNITS/MM\nFROM/1,2,3\n").error.find("no motion"), std::string::npos);
 }

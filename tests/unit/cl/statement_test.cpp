@@ -163,14 +163,14 @@ TEST(Statement, LeavesOrphanNumbersWithoutAMajorWord) {
   EXPECT_EQ(s[0].major, "");
 }
 
-TEST(Statement, TellsAStatementThatTheFileCutsOff) {
+TEST(Statement, ReportsAStatementThatTheFileCutsOff) {
   StatementReader::Outcome last{};
   const auto s = statements("GOTO/1,2,3\nGOTO/1,2,$\n", &last);
   EXPECT_EQ(s.size(), 1U);
   EXPECT_EQ(last, StatementReader::Outcome::kCutOff);
 }
 
-TEST(Statement, TellsBinaryDataAndEndlessLines) {
+TEST(Statement, ReportsBinaryDataAndEndlessLines) {
   StatementReader::Outcome last{};
   (void)statements(std::string_view("GOTO/1,2,3\nGO\0TO/1\n", 20), &last);
   EXPECT_EQ(last, StatementReader::Outcome::kBinary);

@@ -228,7 +228,7 @@ TEST(Words, OfTheMachineBecomeVendorWords) {
   EXPECT_STREQ(read.blocks[2].text, "CLAMP/ON");
 }
 
-TEST(Words, TellTheDialect) {
+TEST(Words, IdentifyTheDialect) {
   const auto dialect = [](const char* head) {
     return read_text(std::string(head) + "FEDRAT/9\nGOTO/0,0,0\nEND-OF-PATH\nFINI\n", metric())
         .summary.dialect;

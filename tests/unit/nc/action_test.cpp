@@ -28,7 +28,7 @@ TEST(NcActions, StartTheSpindleBeforeTheMotionAndStopItBehind) {
   EXPECT_EQ(blocks[5].kind, BlockKind::kCut);
 }
 
-TEST(NcActions, ChangeTheToolThatTTold) {
+TEST(NcActions, ChangeToTheToolThatTNamed) {
   const auto blocks = actions("T12 M6\nT3\nM6\n");
   ASSERT_EQ(blocks.size(), 2U);
   EXPECT_EQ(blocks[0].kind, BlockKind::kTool);
@@ -81,7 +81,7 @@ TEST(NcActions, EndTheProgramAtM30OrTheClosingMark) {
   EXPECT_EQ(cl::read_text("G21 G0 X0. Y0. Z0.\n", options).error, "");
 }
 
-TEST(NcActions, TellTheProgramsName) {
+TEST(NcActions, HoldTheProgramsName) {
   const ReadText read =
       cl::read_text("%\nO0012 (IMPELLER)\nG21 G0 X0. Y0. Z0.\nM30\n%\n", without_machine());
   EXPECT_EQ(read.summary.program, "O0012 IMPELLER");

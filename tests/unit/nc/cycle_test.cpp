@@ -39,7 +39,9 @@ TEST(NcCycles, DwellFeedOutAndStopTheSpindle) {
   EXPECT_EQ(stop.summary.blocks_by_kind[static_cast<std::size_t>(BlockKind::kAuxiliary)], 3U);
 }
 
-TEST(NcCycles, AreOnlyToldByK0) { EXPECT_EQ(holes("G81 Z-10. R2. K0\nX5.\n"), "20r 2r -10f 20r"); }
+TEST(NcCycles, AreOnlyStoredByK0) {
+  EXPECT_EQ(holes("G81 Z-10. R2. K0\nX5.\n"), "20r 2r -10f 20r");
+}
 
 TEST(NcCycles, LieAlongTheMachinesZWhereThePartIsTurned) {
   MachineModel model = shipped("bench");
@@ -70,7 +72,7 @@ TEST(NcCycles, AreRefusedByName) {
   }
 }
 
-TEST(NcCycle, ToldWithoutAHoleNamesNoPlaceBeside) {
+TEST(NcCycle, StoredWithoutAHoleNamesNoPositionBeside) {
   const std::string head = "G43 H1\nG0 X0. Y0. Z20.\nG99 ";
   const ReadText read = read_nc(head + "G81 Z-5. R2. F100. K0\nX1. Y2.\nG80\n");
   ASSERT_EQ(read.error, "");

@@ -181,7 +181,7 @@ TEST(NcMotion, RunsFullCirclesAndHelices) {
   EXPECT_EQ(tip(motion[2]), Vector3(-10, 0, 4));
 }
 
-TEST(NcMotion, WaitsUntilAllCoordinatesAreTold) {
+TEST(NcMotion, WaitsUntilAllCoordinatesAreKnown) {
   const ReadText read = read_nc("G0 X1. Y2.\nG43 H1 Z50.\nG1 Z0.\n");
   ASSERT_EQ(read.error, "");
   const auto motion = read.motion();

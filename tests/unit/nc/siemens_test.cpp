@@ -45,7 +45,7 @@ TEST(SiemensProgram, TurnsArcsByRadiusCentreAndTurns) {
   EXPECT_EQ(tip(motion[5]), Vector3(0, -10, -3));
 }
 
-TEST(SiemensProgram, TurnsTheAxisByRotaryWordsOnTheGreatCircleUnlessTold) {
+TEST(SiemensProgram, TurnsTheAxisByRotaryWordsOnTheGreatCircleUnlessOriaxesIsOn) {
   const std::string head = "G0 A30 C0\nTRAORI\nG0 X0 Y0 Z50\n";
   const auto options = siemens(on(shipped("trunnion-ac")));
   const ReadText circle = read_siemens(head + "ORIVECT\nG1 X90 C90\n", options);

@@ -126,7 +126,7 @@ TEST(TiltedPlane, KnowsByTheMachineThatRotaryWordsStandAcrossIt) {
             std::string::npos);
 }
 
-TEST(TiltedPlane, LeavesTheRotaryAxesWhereNoWordTells) {
+TEST(TiltedPlane, LeavesTheRotaryAxesWhereNoWordSaysOtherwise) {
   const std::string head = "G43 H1\nG68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nG0 X0. Y0. Z5.\nG69\n";
   EXPECT_NE(read_nc(head + "G0 X1. Y1. Z9.\nG1 Z0.\n").error.find("is not known here"),
             std::string::npos);

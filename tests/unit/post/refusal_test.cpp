@@ -35,7 +35,7 @@ TEST(PostRefusal, NamesLineAndReason) {
   }
 }
 
-TEST(PostRefusal, AToleranceFinerThanTheWordsIsToldSo) {
+TEST(PostRefusal, AToleranceFinerThanTheWordsIsRefusedWithTheReason) {
   post::PostOptions options;
   options.chord_mm = 1e-5;
   const auto program = test::written(test::program_with("GOTO/100,7,0,0.36,0.48,0.8\n"),

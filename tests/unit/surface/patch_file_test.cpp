@@ -186,7 +186,7 @@ TEST(PatchProgram, ReadsBackWithAllContactsBetweenItsWaysInAndOut) {
   }
 }
 
-TEST(PatchProgram, OneWayLiftsBetweenLinesAndTellsToolAndSpindle) {
+TEST(PatchProgram, OneWayLiftsBetweenLinesAndWritesToolAndSpindle) {
   std::string text = with("\"zigzag\"", "\"one-way\"");
   text.replace(text.find("kind = \"ball\""), 13, "kind = \"ball\"\nnumber = 2\nspindle_rpm = 9000");
   const PatchJob job = parse_patch(text, "patch.toml");

@@ -185,7 +185,7 @@ TEST(SurfacePath, RefusesBoundsThatCannotBeKept) {
   EXPECT_NE(many.error().what.find("contacts"), std::string::npos) << many.error().what;
 }
 
-TEST(SurfaceReport, CountsContactsThatGougeAndTellsTheSmallestRadii) {
+TEST(SurfaceReport, CountsContactsThatGougeAndReportsTheSmallestRadii) {
   PatchJob job;
   job.surface = std::make_shared<const NurbsSurface>(surface_of(test::cylinder(25, 30)));
   job.cover = whole(*job.surface);

@@ -192,11 +192,11 @@ cl::Outcome run_words(State& s, const Line& line) {
 void act_on_speed(State& s, const Line& line) {
   if (!s.modes.has_new_speed) return;
   s.modes.has_new_speed = false;
-  const bool tells_sense = std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
+  const bool names_sense = std::any_of(line.words.begin(), line.words.end(), [](const Word& word) {
     constexpr std::array kSense = {3.0, 4.0, 5.0, 13.0, 14.0};
     return word.is('M') && std::find(kSense.begin(), kSense.end(), word.number) != kSense.end();
   });
-  if (tells_sense) return;
+  if (names_sense) return;
   s.cl.path.act(BlockKind::kAuxiliary, s.cl.spindle.state, s.cl.spindle.speed_rpm, line.number);
 }
 
