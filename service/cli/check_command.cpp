@@ -37,7 +37,7 @@ struct Options {
   bool is_json = false, is_feed_factor_given = false;
   record::CheckOptions check;
   MachineOptions machine;
-  std::optional<ToolTable> tools;  ///< that the recording tells of
+  std::optional<ToolTable> tools;  ///< that the recording holds
   ClFileOptions cl;
 };
 

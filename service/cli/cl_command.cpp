@@ -12,7 +12,7 @@
 namespace meridian::cli::cl_command {
 namespace {
 
-/// What the reader is told; poses come out in the frame around the workpiece.
+/// The options of the reader; poses come out in the frame around the workpiece.
 cl::ClReaderOptions reading(const std::string& program, const ClFileOptions& file,
                             MachineOptions machine) {
   if (machine.machine.empty()) return reader_options(file);
@@ -50,7 +50,7 @@ void add(CLI::App& app, int& exit_code) {
       "that ends there, 0 for rapid; arcs as chords), or a summary of what was read");
   add_cl_file(*command, options->run.file);
   command->add_option("-o,--output", options->run.output, "Write to this file");
-  command->add_flag("-s,--summary", options->is_summary, "Tell what was read, no points");
+  command->add_flag("-s,--summary", options->is_summary, "Report what was read, no points");
   command->add_flag("--json", options->is_json,
                     "Summary and everything that was found in the file, as JSON");
   command

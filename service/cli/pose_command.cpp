@@ -120,7 +120,8 @@ std::optional<MachineModel> find_model(Options& options, int& exit_code) {
   if (!info) return std::nullopt;
   auto model = reported_machine(*info);
   if (!model) {
-    exit_code = refuse("machine " + info->name + " does not tell its file; name it by --machine");
+    exit_code =
+        refuse("machine " + info->name + " does not publish its file; name it by --machine");
   } else if (!options.machine.frame.empty()) {
     config::place_workpiece(*model, config::parse_frame(options.machine.frame));
   }

@@ -51,8 +51,8 @@ void take_service(Options& options) {
   }
 }
 
-/// Prints and draws. A picture that cannot be drawn is told; the exit code is the verdict's.
-int tell(const Options& options, const probe::ProbeReport& report) {
+/// Prints and draws. A picture that cannot be drawn is reported; the exit code is the verdict's.
+int print_report(const Options& options, const probe::ProbeReport& report) {
   std::cout << (options.is_json ? to_json(report) : to_text(report)) << std::flush;
   if (!options.picture.empty()) {
     if (const auto error = draw(report, options.picture)) std::cerr << error->text() << "\n";
@@ -88,7 +88,7 @@ int run(Options& options) {
     if (report.measurements.empty()) throw;
     report.broken_off = error.what();
   }
-  return tell(options, report);
+  return print_report(options, report);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ void add(CLI::App& app, int& exit_code) {
       "probe",
       "What this host can do: lateness, computation and transport of the service, in turns with a "
       "bare thread and a bare DDS ping, against the budgets. Exit code 1 where one is missed or "
-      "unknown. Interrupted it tells what there is");
+      "unknown. Interrupted it reports what there is");
   command->add_option("--machine", options->measure.machine,
                       "Machine file (TOML); default: that of --service, else the Lai machine that "
                       "is shipped");
@@ -125,7 +125,7 @@ void add(CLI::App& app, int& exit_code) {
   command->add_flag("--load", options->measure.has_load,
                     "Once more while every processor copies memory and writes files");
   command->add_flag("--target", options->is_target,
-                    "Budgets and rights of a target host decide too; without, they are only told");
+                    "Budgets and rights of a target host decide too; without, they are only shown");
   command
       ->add_option("--domain", options->domain,
                    "DDS domain, which must be free; default: one from 221 to 230 that no other "

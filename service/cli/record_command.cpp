@@ -71,7 +71,7 @@ void add(CLI::App& app, int& exit_code) {
   command->add_option("output", live.output, "Recording to write (CSV)");
   CLI::Option* const read_option =
       command->add_option("--read", options->flight,
-                          "Instead: tell alarm, stop, following errors and what drives reported, "
+                          "Instead: report alarm, stop, following errors and what drives reported, "
                           "out of this file of the flight recorder or of this command");
   CLI::Option* const convert_option =
       command

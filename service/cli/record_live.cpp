@@ -132,7 +132,7 @@ class Files {
     if (csv_) (void)csv_->write(row);
     if (mcap_) mcap_->add(row);
   }
-  void tell(const dds::Status& status) {
+  void report(const dds::Status& status) {
     if (mcap_) mcap_->tell(status.state, status.alarm, status.alarm_joint);
   }
   /// What was lost.
@@ -152,14 +152,15 @@ class Files {
 };
 
 /// The machine with its kinematics, for an MCAP file: of the file behind --machine, else of the one
-/// that the service tells. Throws config::ConfigError.
+/// that the service publishes. Throws config::ConfigError.
 [[nodiscard]] MachineModel whole_model(const LiveOptions& options, const dds::MachineInfo& info) {
   if (options.mcap.empty()) return {};
   if (!options.machine.machine.empty()) return load_machine(options.machine);
   if (!info.machine_file.empty()) return stream::served_model(info);
-  throw config::ConfigError({.file = info.name,
-                             .value = "its service does not tell the machine file, which is long",
-                             .remedy = "name the file behind --machine"});
+  throw config::ConfigError(
+      {.file = info.name,
+       .value = "its service does not publish the machine file, which is long",
+       .remedy = "name the file behind --machine"});
 }
 
 int refuse(const record::RecordError& error) {
@@ -199,7 +200,7 @@ int record_live(LiveOptions& options) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
     if (followed.take(statuses, status)) {
       end.see(status);
-      files.tell(status);
+      files.report(status);
       service_id = status.service_id;
     }
     is_last = stop_flag().load() ||

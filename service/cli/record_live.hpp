@@ -9,10 +9,10 @@
 
 namespace meridian::cli {
 
-/// What `meridian record` is told where it listens to a service.
+/// The options of `meridian record` where it listens to a service.
 struct LiveOptions {
   std::string output, mcap;  ///< CSV and MCAP file; "": not that one
-  MachineOptions machine;    ///< of the MCAP file; none: what the service tells
+  MachineOptions machine;    ///< of the MCAP file; none: what the service publishes
   double duration_s = 0;     ///< 0: until it is stopped
   bool until_end = false;
   std::int64_t max_missing = -1;  ///< -1: any

@@ -59,7 +59,7 @@ int refuse(const std::string& message) {
   }
 }
 
-/// Where the time went, as the options ask for it: told, as a table, as a picture, as a page.
+/// Where the time went, as the options ask for it: as text, as a table, as a picture, as a page.
 class Explaining {
  public:
   Explaining(const Options& options, const MachineModel& model)
@@ -248,7 +248,7 @@ void add(CLI::App& app, int& exit_code) {
   add_machine_options(*command, options->machine, true);
   command->add_option("-r,--record", options->record, "Write every cycle to this recording (CSV)");
   command->add_flag("--explain", options->is_explained,
-                    "Tell where the time went: by limit and cause, and the blocks that cost most");
+                    "Show where the time went: by limit and cause, and the blocks that cost most");
   command->add_option("--explain-table", options->explain_table,
                       "Write the same of every block to this table (CSV)");
   command->add_option("--picture", options->picture,

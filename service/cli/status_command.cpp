@@ -100,7 +100,7 @@ int write_histograms(const Histograms& histograms, const std::string& folder) {
 int print_latency(dds::Participant& participant, const StatusOptions& options) {
   const auto histograms = measure_latency(participant, options);
   if (!histograms) {
-    std::fprintf(stderr, "meridian: machine %s does not tell its latencies\n",
+    std::fprintf(stderr, "meridian: machine %s does not publish its latencies\n",
                  options.peer.machine.c_str());
     return kNoPeer;
   }
@@ -114,7 +114,7 @@ int print_latency(dds::Participant& participant, const StatusOptions& options) {
   return options.histograms.empty() ? kFine : write_histograms(*histograms, options.histograms);
 }
 
-/// Where the tool is; nothing where the service tells no machine file that this version reads.
+/// Where the tool is; nothing where the service publishes no machine file that this version reads.
 [[nodiscard]] std::optional<Pose<double>> tool_of(const dds::Status& status,
                                                   const std::optional<MachineModel>& model) {
   if (!model) return std::nullopt;
@@ -147,7 +147,7 @@ int run_status(StatusOptions& options) {
   do {
     const auto status = link.next(options.peer.timeout());
     if (!status) {
-      std::fprintf(stderr, "meridian: machine %s does not tell its status\n",
+      std::fprintf(stderr, "meridian: machine %s does not publish its status\n",
                    options.peer.machine.c_str());
       return kNoPeer;
     }

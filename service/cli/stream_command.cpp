@@ -75,8 +75,8 @@ config::PositionsByName positions_of(const StreamCommandOptions& options,
              : config::load_positions(options.machine_file);
 }
 
-/// Returns the machine that the file is checked for: the one that the service tells, unless files
-/// were given. Nothing where the service does not tell its file.
+/// Returns the machine that the file is checked for: the one that the service publishes, unless
+/// files were given. Nothing where the service does not publish its file.
 std::optional<stream::PreflightMachine> preflight_machine(const StreamCommandOptions& options,
                                                           const dds::MachineInfo& info) {
   std::optional<stream::PreflightMachine> machine;
@@ -179,7 +179,7 @@ void add(CLI::App& app, int& exit_code) {
   CLI::Option* const machine =
       command->add_option("--machine", options->machine_file,
                           "Check reach and travel in the preflight by this machine file; default: "
-                          "the one that the service tells");
+                          "the one that the service publishes");
   command->add_option("--tools", options->tool_file, "... and this tool table; only with --machine")
       ->needs(machine);
   command->add_flag("--wait-end", options->stream.is_waiting_for_end,

@@ -60,7 +60,7 @@ void add_join_options(CLI::App& command, JoinOptions& options);
 /// Adds --frame, for commands that put out points in the frame of the kinematics.
 void add_frame_option(CLI::App& command, ClFileOptions& options);
 
-/// What the reader is told. A wrong --frame throws config::ConfigError.
+/// The options of the reader. A wrong --frame throws config::ConfigError.
 [[nodiscard]] cl::ClReaderOptions reader_options(const ClFileOptions& options);
 
 }  // namespace meridian::cli

@@ -10,7 +10,7 @@
 
 namespace meridian::cli {
 
-/// What `meridian ctl frame set` is told beside its number.
+/// What `meridian ctl frame set` takes beside its number.
 struct FrameOptions {
   std::string at;    ///< x,y,z[,a,b,c] in mm and deg
   std::string name;  ///< at most kFrameNameChars bytes
@@ -20,7 +20,7 @@ struct FrameOptions {
 [[nodiscard]] std::optional<FrameOrder> frame_order(const std::vector<std::string>& words,
                                                     const FrameOptions& options);
 
-/// The set-up that the machine tells, a line for each frame, * before the one in force.
+/// The set-up that the machine publishes, a line for each frame, * before the one in force.
 /// Proof: tests/unit/cli/frame_options_test.cpp.
 [[nodiscard]] std::string frames_text(const dds::MachineInfo& machine);
 

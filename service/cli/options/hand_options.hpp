@@ -10,7 +10,7 @@
 
 namespace meridian::cli {
 
-/// What `meridian ctl jog` is told beside its joint and velocity.
+/// What `meridian ctl jog` takes beside its joint and velocity.
 struct JogOptions {
   double for_s = 0, distance = 0, dead_man_ms = 150;
 };

@@ -72,8 +72,8 @@ std::nullopt_t refuse_tool(const std::string& what) {
 [[nodiscard]] std::optional<ToolOrder> edited(const std::string& word, int number,
                                               const ToolOptions& options,
                                               const dds::MachineInfo& machine) {
-  const ToolTable told = reported_tools(machine);
-  std::vector<Tool> tools = told.tools();
+  const ToolTable reported = reported_tools(machine);
+  std::vector<Tool> tools = reported.tools();
   const auto row = std::find_if(tools.begin(), tools.end(),
                                 [number](const Tool& tool) { return tool.number == number; });
   const bool is_new = row == tools.end();
@@ -99,7 +99,7 @@ std::nullopt_t refuse_tool(const std::string& what) {
       "# Tool table of the set-up.\n" +
       config::to_text(ToolTable(tools), config::parse_tool_names(machine.tool_file, "tools"));
   (void)config::parse_tools(text, "tool table with that");
-  return ToolOrder{text, stream::tools_sum(told)};
+  return ToolOrder{text, stream::tools_sum(reported)};
 }
 
 [[nodiscard]] std::optional<ToolOrder> loaded(const std::string& name) {
@@ -168,7 +168,7 @@ int answer_tool_question(const std::vector<std::string>& words, const dds::Machi
     return kFine;
   }
   if (machine.tool_file.empty()) {
-    (void)refuse_tool("the machine tells no tool table: it has none, or one that is too long");
+    (void)refuse_tool("the machine publishes no tool table: it has none, or one that is too long");
     return kVerdictNo;
   }
   if (text::write_whole(words[1], machine.tool_file)) return kFine;
@@ -178,8 +178,8 @@ int answer_tool_question(const std::vector<std::string>& words, const dds::Machi
 
 std::string tools_text(const dds::MachineInfo& machine, std::uint32_t in_spindle) {
   std::string text;
-  const ToolTable told = reported_tools(machine);
-  for (const Tool& tool : told.tools()) {
+  const ToolTable reported = reported_tools(machine);
+  for (const Tool& tool : reported.tools()) {
     const bool is_in = static_cast<std::uint32_t>(tool.number) == in_spindle;
     text::append(text, "%c %3d  --length %.10g --radius %.10g", is_in ? '*' : ' ', tool.number,
                  tool.length_mm, tool.radius_mm);

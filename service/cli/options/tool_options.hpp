@@ -11,7 +11,7 @@
 
 namespace meridian::cli {
 
-/// What `meridian ctl tool set` is told beside its number; what is not said stays as it is. mm.
+/// What `meridian ctl tool set` takes beside its number; what is not said stays as it is. mm.
 struct ToolOptions {
   std::optional<double> length, radius, corner_radius, length_wear, radius_wear;
   std::string holder;  ///< how far below the gauge line and the radius there, in turns, with commas
@@ -28,19 +28,19 @@ struct ToolOrder {
 };
 
 /// The order of `words`: set or clear and a number, which make a table of the one that `machine`
-/// tells; load and a file, or none for the service's own. Prints what is wrong.
+/// publishes; load and a file, or none for the service's own. Prints what is wrong.
 [[nodiscard]] std::optional<ToolOrder> tool_order(const std::vector<std::string>& words,
                                                   const ToolOptions& options,
                                                   const dds::MachineInfo& machine);
 
 /// Whether `words` only ask what there is: list, or save and a file.
 [[nodiscard]] bool is_tool_question(const std::vector<std::string>& words);
-/// Answers such: prints the table that `machine` tells, a line for each tool as `set` takes it, *
-/// before the one numbered `in_spindle`; or writes its text to a file. The exit code.
+/// Answers such: prints the table that `machine` publishes, a line for each tool as `set` takes it,
+/// * before the one numbered `in_spindle`; or writes its text to a file. The exit code.
 [[nodiscard]] int answer_tool_question(const std::vector<std::string>& words,
                                        const dds::MachineInfo& machine, std::uint32_t in_spindle);
 
-/// A line for each tool of the table that `machine` tells.
+/// A line for each tool of the table that `machine` publishes.
 /// Proof: tests/unit/cli/tool_options_test.cpp.
 [[nodiscard]] std::string tools_text(const dds::MachineInfo& machine, std::uint32_t in_spindle);
 

@@ -107,8 +107,8 @@ int fail_touch_off(const std::string& what, int exit_code = kUsage) {
   }
   const auto length = inspect::find_tool_length(status.joints, *options.height, model);
   if (!length) return fail_touch_off(length.error(), kVerdictNo);
-  const ToolTable told = config::parse_tools(machine.tool_file, "tool table of the machine");
-  const auto& rows = told.tools();
+  const ToolTable reported = config::parse_tools(machine.tool_file, "tool table of the machine");
+  const auto& rows = reported.tools();
   const auto row = std::find_if(rows.begin(), rows.end(), [&number](const Tool& known) {
     return std::to_string(known.number) == number;
   });
@@ -154,8 +154,8 @@ std::optional<Vector3> direction_of(const std::string& word, const MachineModel&
 Expected<inspect::Touch, std::string> touch_of(const dds::Status& status,
                                                const dds::MachineInfo& machine,
                                                const ToolOptions& tool, const Vector3& toward) {
-  const ToolTable told = config::parse_tools(machine.tool_file, "tool table of the machine");
-  const Tool* const row = status.tool != 0 ? told.find(static_cast<int>(status.tool)) : nullptr;
+  const ToolTable reported = config::parse_tools(machine.tool_file, "tool table of the machine");
+  const Tool* const row = status.tool != 0 ? reported.find(static_cast<int>(status.tool)) : nullptr;
   if (row == nullptr && !tool.radius) {
     return tl::make_unexpected(
         std::string("the radius of the tool in the spindle is not known: say its --radius"));
@@ -185,7 +185,7 @@ int run_touch_off(const std::vector<std::string>& words, const TouchOffOptions& 
                   stream::OperatorLink& link, std::chrono::milliseconds timeout) {
   if (!link.wait_for_status(timeout)) return fail_touch_off("the machine does not answer", kNoPeer);
   const auto model = reported_machine(machine);
-  if (!model) return fail_touch_off("the machine does not tell its file", kVerdictNo);
+  if (!model) return fail_touch_off("the machine does not publish its file", kVerdictNo);
   if (!is_at_rest(link.status()->state)) {
     return fail_touch_off("touches are noted and set in Off and Ready alone", kVerdictNo);
   }

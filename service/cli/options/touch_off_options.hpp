@@ -14,7 +14,7 @@
 
 namespace meridian::cli {
 
-/// What `meridian ctl touch-off` is told beside its words.
+/// What `meridian ctl touch-off` takes beside its words.
 struct TouchOffOptions {
   std::string touches;           ///< file of the touches
   std::string toward;            ///< -x, +x, -y, ... of the work frame in force
@@ -31,7 +31,7 @@ std::vector<const CLI::Option*> add_touch_off_options(CLI::App& command, TouchOf
 [[nodiscard]] std::optional<Vector3> direction_of(const std::string& word,
                                                   const MachineModel& machine);
 
-/// Where the machine stands now as a touch: with the tool in the spindle as the machine tells it,
+/// Where the machine stands now as a touch: with the tool in the spindle as the machine reports it,
 /// or as `tool` says. The error says what is missing.
 [[nodiscard]] Expected<inspect::Touch, std::string> touch_of(const dds::Status& status,
                                                              const dds::MachineInfo& machine,

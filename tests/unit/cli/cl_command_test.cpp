@@ -38,7 +38,7 @@ TEST(ClCommand, PutsPointsOutInTheFrameAroundTheWorkpiece) {
   EXPECT_NE(outcome.output.find("98 1 3 0 0 1 60"), std::string::npos) << outcome.output;
 }
 
-TEST(ClCommand, TellsASummary) {
+TEST(ClCommand, PrintsASummary) {
   const CommandOutput outcome = run_tool("cl --summary " + kPart);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.output.find("MERIDIAN BLOSSOM"), std::string::npos);
@@ -219,7 +219,7 @@ TEST(SurfaceCommand, SaysNoToACutterThatGougesAndToWhatItCannotTake) {
 
 const std::string kMachine = MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml";
 
-TEST(MachineCommand, TellsDrawsAndWritesAPattern) {
+TEST(MachineCommand, ReportsDrawsAndWritesAPattern) {
   const std::string picture = testing::TempDir() + "machine.svg";
   const std::string pattern = testing::TempDir() + "pattern.apt";
   const CommandOutput outcome =

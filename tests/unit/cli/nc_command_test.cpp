@@ -92,16 +92,16 @@ TEST_F(NcCommands, PutPointsOutInTheFrameAroundThePart) {
   EXPECT_NE(out.output.find("101 2 3 "), std::string::npos) << out.output;
 }
 
-TEST_F(NcCommands, GoFromOneWorkOffsetToTheOtherWhereTheirZerosAreTold) {
+TEST_F(NcCommands, GoFromOneWorkOffsetToTheOtherWhereTheirZerosAreGiven) {
   const TextFile nc{"%\nO1\nG21 G90\nG54\nG43 H1\nG0 X1. Y2. Z3.\nG55\nG0 X1. Y2. Z3.\nM30\n%\n",
                     ".nc"};
   const std::string line = "cl " + nc.path().string() + kMachine;
-  const CommandOutput untold = run_tool(line);
-  EXPECT_EQ(untold.exit_code, 3);
-  EXPECT_NE(untold.output.find("--work-zero 2=X,Y,Z"), std::string::npos) << untold.output;
-  const CommandOutput told = run_tool(line + "--work-zero 1=0,0,0 --work-zero 2=100,0,0");
-  EXPECT_EQ(told.exit_code, 0) << told.output;
-  EXPECT_NE(told.output.find("101 2 3 "), std::string::npos) << told.output;
+  const CommandOutput without = run_tool(line);
+  EXPECT_EQ(without.exit_code, 3);
+  EXPECT_NE(without.output.find("--work-zero 2=X,Y,Z"), std::string::npos) << without.output;
+  const CommandOutput given = run_tool(line + "--work-zero 1=0,0,0 --work-zero 2=100,0,0");
+  EXPECT_EQ(given.exit_code, 0) << given.output;
+  EXPECT_NE(given.output.find("101 2 3 "), std::string::npos) << given.output;
   for (const char* wrong : {"2", "2=", "2=1,2", "2=1,2,3,4", "2=1,2,nan", "0=1,2,3", "2=1,2,1e6"}) {
     const CommandOutput out = run_tool(line + "--work-zero " + wrong);
     EXPECT_NE(out.exit_code, 0) << wrong;

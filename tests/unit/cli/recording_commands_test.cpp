@@ -118,7 +118,7 @@ TEST_F(RecordingCommands, TakeALengthForToolsThatNoTableKnows) {
   EXPECT_EQ(run_tool(check + "--unknown-tool-length 100").exit_code, 0);
 }
 
-TEST_F(RecordingCommands, BeginInTheMiddleWhereTheyAreToldTo) {
+TEST_F(RecordingCommands, BeginInTheMiddleAtTheLineThatIsNamed) {
   const std::string from = "--from-line 5 ";
   const CommandOutput simulated =
       run_tool("simulate " + part() + kMachine + from + "--record " + recording());

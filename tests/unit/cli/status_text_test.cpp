@@ -19,7 +19,7 @@ namespace {
   return machine;
 }
 
-/// Behind a fault: the session is over, where the machine came to rest is told still.
+/// After a fault: the session is over; the status still holds where the machine came to rest.
 [[nodiscard]] dds::Status faulty_status() {
   dds::Status status;
   status.state = State::kFault;
@@ -31,7 +31,7 @@ namespace {
   return status;
 }
 
-TEST(StatusText, TellsAlarmJointLineAndTheBlockInWhichTheMachineRests) {
+TEST(StatusText, ShowsAlarmJointLineAndTheBlockInWhichTheMachineRests) {
   const dds::MachineInfo machine = machine_of_a_stage();
   dds::Status status = faulty_status();
   std::string text = describe(status, machine);
@@ -46,7 +46,7 @@ TEST(StatusText, TellsAlarmJointLineAndTheBlockInWhichTheMachineRests) {
   EXPECT_NE(text.find("\nalarm     following_error\n"), std::string::npos) << text;
 }
 
-TEST(StatusText, TellsOfAGuardAsLongAsItIsOpen) {
+TEST(StatusText, ShowsAGuardAsLongAsItIsOpen) {
   dds::Status status;
   EXPECT_EQ(describe(status, machine_of_a_stage()).find("guard"), std::string::npos);
   EXPECT_NE(to_json(status, machine_of_a_stage()).find("\"guard_open\":false"), std::string::npos);
@@ -55,7 +55,7 @@ TEST(StatusText, TellsOfAGuardAsLongAsItIsOpen) {
   EXPECT_NE(to_json(status, machine_of_a_stage()).find("\"guard_open\":true"), std::string::npos);
 }
 
-TEST(StatusText, TellsNoAlarmWhereThereIsNone) {
+TEST(StatusText, ShowsNoAlarmWhereThereIsNone) {
   dds::Status status = faulty_status();
   status.alarm = Alarm::kNone;
   const std::string text = describe(status, machine_of_a_stage());
@@ -63,7 +63,7 @@ TEST(StatusText, TellsNoAlarmWhereThereIsNone) {
   EXPECT_EQ(text.find("block     "), std::string::npos) << text;
 }
 
-TEST(StatusText, TellsWhatHoldsTheFeedAndWhereTheToolIs) {
+TEST(StatusText, ShowsWhatHoldsTheFeedAndWhereTheToolIs) {
   const dds::MachineInfo machine = machine_of_a_stage();
   dds::Status status;
   status.limiting_joint = -1;
@@ -94,7 +94,7 @@ TEST(StatusText, ReportsTheSoftLimits) {
       << to_json({}, machine);
 }
 
-TEST(StatusText, TellsTheTimeToGo) {
+TEST(StatusText, ShowsTheTimeToGo) {
   const dds::MachineInfo machine = machine_of_a_stage();
   dds::Status status;
   status.state = State::kRunning;
@@ -107,13 +107,13 @@ TEST(StatusText, TellsTheTimeToGo) {
   status.plan_time_s = 20;
   EXPECT_NE(describe(status, machine).find("\nto go     about 1:00 at 100 %\n"), std::string::npos);
   status.block = 0;
-  EXPECT_FALSE(time_to_go(status)) << "nothing has run to tell by";
+  EXPECT_FALSE(time_to_go(status)) << "nothing has run to estimate from";
   status.block = 50;
   status.state = State::kLoaded;
   EXPECT_FALSE(time_to_go(status)) << "nothing runs";
 }
 
-TEST(StatusText, TellsProgramsTheSame) {
+TEST(StatusText, SaysTheSameToPrograms) {
   dds::Status status = faulty_status();
   std::string text = to_json(status, machine_of_a_stage());
   EXPECT_NE(

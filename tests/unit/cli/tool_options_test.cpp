@@ -23,7 +23,7 @@ dds::MachineInfo machine_with(const std::string& tools) {
 
 ToolTable table_of(const ToolOrder& order) { return config::parse_tools(order.file, "test"); }
 
-TEST(ToolOptions, ChangeWhatTheySayOfTheTableThatIsTold) {
+TEST(ToolOptions, ChangeWhatTheySayOfThePublishedTable) {
   ToolOptions options;
   options.length_wear = -0.05;
   options.holder = "0,31.5,60,20";
