@@ -32,7 +32,7 @@ class Senders {
   std::size_t at_ = 0;
 };
 
-/// In words, where it runs: "process 4711 on host mill3"; its GUID where its vendor does not tell.
+/// In words, where it runs: "process 4711 on host mill3"; its GUID where its vendor does not say.
 [[nodiscard]] std::string describe_source(const Participant& participant, std::int32_t reader,
                                           std::uint64_t source);
 

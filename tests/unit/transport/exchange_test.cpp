@@ -242,7 +242,7 @@ TEST(Exchange, LetsGoOfAServiceThatSaysNothingWhileAnotherSpeaksTenTimes) {
   EXPECT_EQ(status.service_id, 2U);
 }
 
-TEST(Exchange, TellsThatAWriterHasGone) {
+TEST(Exchange, ReportsThatAWriterHasGone) {
   const support::PrivateDomain domain;
   Participant here({.domain = domain.id(), .machine = "m"});
   Reader<MachineInfo> reader(here);

@@ -116,7 +116,7 @@ TEST(SetpointWriter, MakesNoHeapCallWhateverOtherThreadsDoWithDds) {
     }
   }
   const watch::HeapCalls calls = heap.calls();
-  // A host that stalls this thread for longer than the lease is told, not forgiven: see below.
+  // A host that stalls this thread for longer than the lease is reported, not forgiven: see below.
   EXPECT_LE(calls.allocations, writer.lease_losses()) << "no lease was lost, so none may be made\n"
                                                       << watch::HeapWatch::callers(calls);
   EXPECT_EQ(calls.frees, 0U) << watch::HeapWatch::callers(calls);
