@@ -29,8 +29,8 @@ inline constexpr double kRaised = 1 + 0x1p-48;
 /// Above what is lost where numbers underflow.
 inline constexpr double kUnderflow = 1e-300;
 
-/// Square roots and angles of points whose square is below this are not told: the kinematics hold a
-/// joint nearer than 1e-9 (rad, or mm) to where it has no direction of its own, which is a branch
+/// Square roots and angles of points whose square is below this are unbounded: the kinematics hold
+/// a joint nearer than 1e-9 (rad, or mm) to where it has no direction of its own, which is a branch
 /// that a set must not reach over.
 inline constexpr double kMinSquare = 1e-17;
 

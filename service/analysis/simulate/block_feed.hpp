@@ -19,7 +19,7 @@ namespace meridian::simulate {
 /// block in the same order, so that the plan is the same.
 class BlockFeed {
  public:
-  /// `explainer`: is told every block; may be nullptr.
+  /// `explainer`: gets every block; may be nullptr.
   BlockFeed(cl::ClReader& reader, const MachineModel& model, const ToolTable& tools,
             MotionPort& port, bool has_action_peer, Explainer* explainer);
 

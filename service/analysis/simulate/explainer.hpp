@@ -53,7 +53,7 @@ class Explainer {
   /// for none; `piece_time` as in the cycle's state.
   void add_cycle(const CycleRecord& record, const TimePiece* piece, const PathPiece* path,
                  double piece_time, double tool_length_mm);
-  /// The program is over: all that is left is decided and told.
+  /// The program is over: all that is left is decided and reported.
   void finish();
 
   [[nodiscard]] const Explanation& explanation() const noexcept { return explanation_; }
@@ -92,7 +92,7 @@ class Explainer {
                double feed_share);
   void decide(Cause cause);
   void book(Open& open, LimitId limit, Cause cause, double time_s, double lost_s);
-  /// Tells the blocks that are over.
+  /// Reports the blocks that are over.
   void close_blocks(std::uint64_t running);
   void close_front();
   void add_to_stretch(const ExplainedBlock& block);

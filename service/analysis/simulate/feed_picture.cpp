@@ -11,7 +11,7 @@ namespace {
 
 using plot::quoted;
 
-/// Limits that are told apart by colour; what is rarer is grey.
+/// Limits that are distinguished by colour; what is rarer is grey.
 constexpr std::size_t kColours = 9;
 constexpr const char* kColour[kColours] = {"#1f5fa8", "#e08214", "#c22f4f", "#7b4fa3", "#17a2a2",
                                            "#d4b106", "#e377c2", "#8c564b", "#444444"};

@@ -36,8 +36,8 @@ class LimitMap {
 
   explicit LimitMap(const MachineModel& model);
 
-  /// The place `piece_time` s into `piece` on `path`. `joints` tell the windings. `feed_share`: ṡ
-  /// over the one that is programmed, for feeds in inverse time; 0 where the tip's counts.
+  /// The position `piece_time` s into `piece` on `path`. `joints` give the windings. `feed_share`:
+  /// ṡ over the one that is programmed, for feeds in inverse time; 0 where the tip's counts.
   [[nodiscard]] LimitView look(const PathPiece& path, const TimePiece& piece, double piece_time,
                                const JointVector& joints, double feed_share) const;
 

@@ -119,7 +119,7 @@ void keep(const EventRow& row, std::int64_t zero, OperatorEvents& events) {
   (void)cut(row, ',');
   const std::string_view word = cut(row, ','), factor = cut(row, ',');
   mark.is_begin = word == record::kPlanBegunWord;
-  if (mark.is_begin && row.empty()) return true;  // of before, which did not tell the tool
+  if (mark.is_begin && row.empty()) return true;  // of before, which did not record the tool
   if (mark.is_begin) {
     const std::string_view length = cut(row, ',');
     return row.empty() && text::read_number(length, mark.tool_length_mm) &&

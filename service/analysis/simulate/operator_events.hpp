@@ -41,14 +41,14 @@ struct OperatorEvents {
   std::vector<OperatorEvent> verbs;
   std::vector<LostPeriods> losses;
   std::vector<ActionAnswer> answers;
-  /// What the live planner told of feed overrides above 100 % and of its look at the begin; empty:
-  /// it is planned as a service would that waits for no block.
+  /// What the live planner reported of feed overrides above 100 % and of its look-ahead at the
+  /// begin; empty: it is planned as a service would that waits for no block.
   std::vector<FeedMark> feed_marks;
   /// Where the workpiece lay; nothing: that is not known.
   std::optional<record::RecordedFrame> frame;
-  /// With which tools; nothing: that is not told.
+  /// With which tools; nothing: that is not recorded.
   std::optional<ToolTable> tools;
-  /// Under which soft limits; nothing: that is not told.
+  /// Under which soft limits; nothing: that is not recorded.
   std::optional<SoftLimits> limits;
 };
 

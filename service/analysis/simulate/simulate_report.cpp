@@ -43,15 +43,15 @@ void append_shares(std::string& text, const LimitShares& shares, const MachineMo
 void append_unwindings(std::string& text, const SimulateReport& report, const MachineModel& model) {
   constexpr std::size_t kMaxReported = 12;
   append(text, "unwinding  %llu times\n", static_cast<Count>(report.unwinding_count));
-  const std::size_t told = std::min(kMaxReported, report.unwindings.size());
-  for (std::size_t n = 0; n < told; ++n) {
+  const std::size_t shown = std::min(kMaxReported, report.unwindings.size());
+  for (std::size_t n = 0; n < shown; ++n) {
     const Unwinding& one = report.unwindings[n];
     append(text, "  line %u: %s would leave its travel; from %.3f deg by %+d turns, %.6g mm off\n",
            one.line, model.joints[redundant_joint(model)].name.c_str(),
            units::deg_from_rad(one.from_rad), one.turns, one.retract_mm);
   }
-  if (report.unwinding_count > told) {
-    append(text, "  and %llu more\n", static_cast<Count>(report.unwinding_count - told));
+  if (report.unwinding_count > shown) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.unwinding_count - shown));
   }
 }
 
@@ -60,19 +60,19 @@ void append_eases(std::string& text, const SimulateReport& report) {
   constexpr std::size_t kMaxReported = 12;
   append(text, "pole       axis eased in %llu stretches, at most %.4f deg\n",
          static_cast<Count>(report.ease_count), units::deg_from_rad(report.largest_ease_rad));
-  std::vector<PoleEase> told = report.eases;
-  if (told.size() > kMaxReported) {
-    std::stable_sort(told.begin(), told.end(), [](const PoleEase& a, const PoleEase& b) {
+  std::vector<PoleEase> shown = report.eases;
+  if (shown.size() > kMaxReported) {
+    std::stable_sort(shown.begin(), shown.end(), [](const PoleEase& a, const PoleEase& b) {
       return a.deviation_rad > b.deviation_rad;
     });
-    told.resize(kMaxReported);
+    shown.resize(kMaxReported);
   }
-  for (const PoleEase& ease : told) {
+  for (const PoleEase& ease : shown) {
     append(text, "  lines %u to %u: %.4f deg, %s\n", ease.first_line, ease.last_line,
            units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
   }
-  if (report.ease_count > told.size()) {
-    append(text, "  and %llu more\n", static_cast<Count>(report.ease_count - told.size()));
+  if (report.ease_count > shown.size()) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.ease_count - shown.size()));
   }
 }
 

@@ -70,7 +70,7 @@ constexpr const char* kHead = "UNITS/MM\nMULTAX/ON\nFEDRAT/3000,MMPM\n";
 
 class Explain : public testing::TestWithParam<Transition> {};
 
-TEST_P(Explain, ChargesEveryCycleToABlockOnceAndTellsEveryBlockInOrder) {
+TEST_P(Explain, ChargesEveryCycleToABlockOnceAndReportsEveryBlockInOrder) {
   const Explained out = explain(corner_and_dense(), machine(GetParam()));
   ASSERT_EQ(out.run.report.outcome, Outcome::kDone);
   ASSERT_EQ(out.blocks.size(), out.run.report.blocks);
@@ -152,7 +152,7 @@ constexpr const char* kPastThePole =
     "GOTO/-5,0,0,-0.03,0.000872665,0.999549519\nGOTO/5,0,0,0.03,0.000872665,0.999549519\n"
     "GOTO/15,0,0,0.1,0.000872665,0.994987055\nGOTO/30,0,0,0.2,0.000872665,0.979795508\nFINI\n";
 
-TEST(ExplainSmooth, TellsTheBlocksWhoseAxisWasEasedBesideThePoleAndWhy) {
+TEST(ExplainSmooth, ReportsTheBlocksWhoseAxisWasEasedBesideThePoleAndWhy) {
   MachineModel model = machine(Transition::kSmooth);
   const Explained out = explain(kPastThePole, model);
   const SimulateReport& report = out.run.report;
@@ -189,7 +189,7 @@ TEST(ExplainExactStop, NamesRests) {
   }
 }
 
-TEST(ExplainSmooth, TellsTheMachinesFeedFromTheProgramsAndFromJoints) {
+TEST(ExplainSmooth, DistinguishesTheMachinesFeedFromTheProgramsAndFromJoints) {
   MachineModel model = machine(Transition::kSmooth);
   model.max_feed_mm_per_s = 20;
   const Explained out = explain(corner_and_dense(), model);
@@ -199,7 +199,7 @@ TEST(ExplainSmooth, TellsTheMachinesFeedFromTheProgramsAndFromJoints) {
   EXPECT_NEAR(block.lost_s, 60.0 / 20 - 60.0 / 50, 0.1);
 }
 
-TEST(ExplainSmooth, TellsTheOperatorsOverrideAndHold) {
+TEST(ExplainSmooth, ReportsTheOperatorsOverrideAndHold) {
   SimulateOptions options;
   const std::string text = corner_and_dense();
   const Explained free = explain(text, machine(Transition::kSmooth));

@@ -20,7 +20,7 @@ TEST(OperatorEvents, CountFromTheStartOfALiveRun) {
   EXPECT_EQ(events->verbs[2].argument, 0.5);
 }
 
-TEST(OperatorEvents, TellWhereTheWorkpieceLayAtTheStart) {
+TEST(OperatorEvents, HoldWhereTheWorkpieceLayAtTheStart) {
   const auto events = read_operator_events(
       "0,frame,0,0,0,0,1,0,0,0,1,0,0,0,1\n1000,start,0\n500,frame,3,1,2,3,0,-1,0,1,0,0,0,0,1\n"
       "2000,frame,4,9,9,9,1,0,0,0,1,0,0,0,1\n",
@@ -112,7 +112,7 @@ TEST(OperatorEvents, HoldHowManyBlocksTheFirstStartedProgramBeganWith) {
   EXPECT_FALSE(read_operator_events("11,plan_looked,3,4,5\n", "e.csv").has_value());
 }
 
-TEST(OperatorEvents, HoldWhatThePlannerOfTheFirstStartedProgramTold) {
+TEST(OperatorEvents, HoldWhatThePlannerOfTheFirstStartedProgramReported) {
   const auto events = read_operator_events(
       "cycle,verb,argument,block,span\n10,plan_begun,1\n20,feed_planned,1.1,4,0\n"
       "30,plan_begun,1\n30,feed_override,0.9\n31,feed_override,1.25\n32,feed_planned,1.25,1,0\n"

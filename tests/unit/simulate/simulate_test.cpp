@@ -186,7 +186,7 @@ TEST_F(Simulate, GivesTheSameBitsEveryTime) {
   }
 }
 
-TEST_F(Simulate, StartsWhereItIsToldTo) {
+TEST_F(Simulate, StartsWhereItsOptionsSay) {
   SimulateOptions simulation;
   simulation.start = JointVector{50, 60, 70, 0.5, 0.1, 0};
   const SimulatedRun run = run_simulation(kPart, model, simulation);

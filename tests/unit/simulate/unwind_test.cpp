@@ -78,7 +78,7 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
   std::string file = ::testing::TempDir() + "unwind_" + std::to_string(::getpid()) + ".csv";
 };
 
-TEST_P(SimulatedUnwinding, PassesTheCheckAndIsTold) {
+TEST_P(SimulatedUnwinding, PassesTheCheckAndIsReported) {
   double unwinding_s = 0;
   Explainer explainer(model,
                       [&unwinding_s](const ExplainedBlock& block) {
