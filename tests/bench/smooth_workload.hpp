@@ -51,7 +51,7 @@ struct SmoothTotal {
   }
 };
 
-/// Joints of a block on the first branch that reaches it; the branch is told.
+/// Joints of a block on the first branch that reaches it, and that branch.
 [[nodiscard]] inline RunStart start_at(const MachineModel& model, const ClBlock& block) {
   RunStart start;
   start.pose = {to_vector(block.tip_mm), to_vector(block.axis).normalized()};
@@ -118,7 +118,7 @@ class SmoothWindows {
     }
   }
 
-  /// Takes what was published off the port and tells the planner that its window was begun.
+  /// Takes what was published off the port and informs the planner that its window was begun.
   void read(SmoothTotal& total) {
     cost_.cpu_s += cpu_s() - begin_s_;
     bool has_piece = false;

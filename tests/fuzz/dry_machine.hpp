@@ -60,7 +60,7 @@ class DryMachine {
     step(model_, state_, reader_, in_, out_);
     const std::uint16_t flags = out_.record.setpoint.flags;
     require((flags & kSetpointEnabled) == 0, "drives are led that nobody has heard of");
-    require(((flags & kSetpointDry) != 0) == state_.is_dry_run, "a dry run that is not told");
+    require(((flags & kSetpointDry) != 0) == state_.is_dry_run, "a dry run that is not reported");
     for (const double x : out_.record.joints) require(std::isfinite(x), "no place for a joint");
   }
 

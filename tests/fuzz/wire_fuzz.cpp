@@ -199,16 +199,17 @@ class Listeners {
   void take_command(Supplies& in) {
     dds::CommandRequest request;
     const unsigned how = in.next<std::uint8_t>();
-    const std::uint64_t rest = (how & 0x7FU) % 3, told = in.next<std::uint8_t>() % 3;
+    const std::uint64_t rest = (how & 0x7FU) % 3, reported = in.next<std::uint8_t>() % 3;
     in.read<meridian_wire_Command>(request);
-    times_.published(5, now_ns_, told);
+    times_.published(5, now_ns_, reported);
     const Refusal refusal = stream::check_freshness(request, kServiceId, 1, times_, now_ns_, rest);
     if (static_cast<int>(request.verb) >= kVerbCount) return;  // as the supervisor does
     require(refusal == Refusal::kNone || stream::needs_freshness(request.verb, request.argument),
             "a stop is stale");
     const bool sends_on = request.verb == Verb::kStart || request.verb == Verb::kResume;
     if (refusal == Refusal::kNone && sends_on) {
-      require(rest == 0 || (request.status_seen == 5 && told == rest), "sent on from another rest");
+      require(rest == 0 || (request.status_seen == 5 && reported == rest),
+              "sent on from another rest");
       choose(kRest, rest != 0);
     }
     if (refusal != Refusal::kNone) return;

@@ -14,7 +14,7 @@ enum SampleType : std::uint8_t {
   kSession,
   kCredit,
   kCommand,  ///< in front of it the rest that the machine is at (from 128 on: and it waits for the
-             ///< next one), and the one that was told
+             ///< next one), and the one that was reported
   kReply,
   kJog,
   kSetpoint,

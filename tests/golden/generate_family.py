@@ -3,7 +3,7 @@
 """Golden data of chains, robots and actuator stages, without a closed form of any.
 
   generate_family.py            writes chain_pose.csv, robot_pose.csv and stage_pose.csv beside this file
-  generate_family.py --check    tells whether the files are what it would write (exit 1 if not, 77 without mpmath)
+  generate_family.py --check    says whether the files are what it would write (exit 1 if not, 77 without mpmath)
 
 Chains: what each joint does to workpiece or tool is a 4x4 matrix about its axis as drawn; the workpiece's product is
 inverted as a matrix. Robots: products of the elementary matrices of docs/kinematics.md, chapter 5. Stages: a slider stands

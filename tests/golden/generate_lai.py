@@ -3,7 +3,7 @@
 """Golden data of the Lai machine, from its corrected Denavit-Hartenberg table.
 
   generate_lai.py            writes lai_pose.csv, lai_jacobian.csv and lai_path.csv beside this file
-  generate_lai.py --check    tells whether the files are what it would write (exit 1 if not, 77 without mpmath)
+  generate_lai.py --check    says whether the files are what it would write (exit 1 if not, 77 without mpmath)
 
 Nothing here is a closed form of the machine: poses are products of the link matrices of the table
 (docs/kinematics.md, table 2.1), the Jacobian and the derivatives along a path are differentiated

@@ -3,7 +3,7 @@
 """Golden data of NURBS surfaces and of cutters that touch them.
 
   generate_surface.py            writes surface_patch.csv beside this file
-  generate_surface.py --check    tells whether the file is what it would write (exit 1 if not, 77 without mpmath)
+  generate_surface.py --check    says whether the file is what it would write (exit 1 if not, 77 without mpmath)
 
 Independent of the code under test: points come from de Boor's corner cutting of the control net in
 homogeneous coordinates, derivatives are differentiated numerically, principal curvatures are the

@@ -20,7 +20,7 @@ def table(name, comments, columns, rows, text_of):
 
 
 def write_or_check(files):
-    """Writes `files`, pairs of name and text, beside the generator. With --check tells whether they are what it would
+    """Writes `files`, pairs of name and text, beside the generator. With --check says whether they are what it would
     write, and exits with 1 if not."""
     check = sys.argv[1:] == ["--check"]
     bad = 0

@@ -246,7 +246,7 @@ TEST_F(BadInput, ABatchOfAnOldSessionMovesNothing) {
   ASSERT_TRUE(plant.wait_for(State::kReady));
   station.send(3, {blocks.begin() + 3, blocks.end()}, true);
   const auto answer = station.wait_for(Verdict::kAborted);
-  ASSERT_TRUE(answer) << "an old session is told what became of it";
+  ASSERT_TRUE(answer) << "an old session is answered how it ended";
   EXPECT_TRUE(eventually([&] { return plant.status().batches_dropped == 1; }));
   const auto start = plant.say(Verb::kStart);
   ASSERT_TRUE(start);
@@ -265,7 +265,7 @@ TEST_F(BadInput, ASecondStationIsRefusedByName) {
   EXPECT_EQ(answer->credits, 0u);
   std::vector<ClBlock> blocks = small_program(6, kFeed_mm_per_min);
   second.send(3, {blocks.begin() + 3, blocks.end()}, true);  // it sends all the same
-  ASSERT_TRUE(second.wait_for(Verdict::kClosed)) << "dropped, and told so";
+  ASSERT_TRUE(second.wait_for(Verdict::kClosed)) << "dropped, and answered so";
   ASSERT_NO_FATAL_FAILURE(run_out());
   EXPECT_EQ(motion_of_run().last_sequence_moving, 2u);
 }

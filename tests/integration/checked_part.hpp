@@ -61,7 +61,7 @@ struct LinesCut {
 };
 
 /// Checks a stretch as `meridian check` does, and that it never goes back. Failures are those of
-/// GoogleTest; they tell what the recording holds.
+/// GoogleTest; they say what the recording holds.
 [[nodiscard]] LinesCut check(const PartAsked& part, const PartCut& cut);
 
 /// Two stretches, of which the second began at `from_line`, together cut every line: none is lost

@@ -34,7 +34,7 @@ struct LiveFault {
   const char* resting;  ///< while it waits for somebody
   int milliseconds = 0;
   Hosts::Spoilt wire{};
-  int times = 1;  ///< that the console is told the line
+  int times = 1;  ///< that the line is typed into the console
 
   [[nodiscard]] bool is_of_station() const noexcept {
     return how == How::kStationDies || how == How::kStationStops;

@@ -100,7 +100,7 @@ void FaultCase::expect_provoked() {
   EXPECT_EQ(late > 0, asked.delay_ms > 0) << said;
 }
 
-/// Where one drive was told to fail, the alarm names its joint.
+/// Where one drive was made to fail, the alarm names its joint.
 void FaultCase::expect_joint() {
   const std::string line = fault_.line;
   const auto colon = line.find(':');
@@ -227,19 +227,19 @@ void FaultCase::start_attacker() {
   attacker_->send_signal(SIGSTOP);
 }
 
-/// The line to go on with, as the new service told it when it began.
+/// The line to go on with, as the new service reported it when it began.
 std::uint32_t FaultCase::reported_by_journal() {
-  std::string told;
-  // It is told ahead of the first status, which has come.
+  std::string report;
+  // It is reported before the first status, which has come.
   const std::string said = plant_->service().said();
   const auto at = said.rfind("last program: ");
-  if (at != std::string::npos) told = said.substr(at, said.find('\n', at) - at);
+  if (at != std::string::npos) report = said.substr(at, said.find('\n', at) - at);
   // A program that began just now may not have got to the disk: none of it is cut.
-  if (told.empty() && (!has_program_ || phase_.where == Where::kBegin)) return 0;
-  const std::uint32_t line = line_behind(told, "; go on with --from-line ");
-  EXPECT_GT(line, 0U) << told;
-  EXPECT_GE(line, line_long_ago_) << "older than a second: " << told;
-  const bool is_done = told.find(" done up to block ") != std::string::npos;
+  if (report.empty() && (!has_program_ || phase_.where == Where::kBegin)) return 0;
+  const std::uint32_t line = line_behind(report, "; go on with --from-line ");
+  EXPECT_GT(line, 0U) << report;
+  EXPECT_GE(line, line_long_ago_) << "older than a second: " << report;
+  const bool is_done = report.find(" done up to block ") != std::string::npos;
   return is_done ? line + 1 : line;  // one block a line
 }
 

@@ -144,9 +144,9 @@ TEST_F(Fault, OfTheServiceItselfLeavesAMachineThatWaitsForEnableAndStart) {
   const std::string go_on = " begun at least; go on with --from-line ";
   EXPECT_EQ(message.rfind("last program: small program, line ", 0), 0U) << message;
   ASSERT_NE(message.find(go_on), std::string::npos) << message;
-  const auto told = std::stoul(message.substr(message.find(go_on) + go_on.size()));
-  EXPECT_LE(told, last_line);
-  EXPECT_GE(told + 5, last_line) << "a block of 2 mm at 500 mm/min takes 0.24 s";
+  const auto next_line = std::stoul(message.substr(message.find(go_on) + go_on.size()));
+  EXPECT_LE(next_line, last_line);
+  EXPECT_GE(next_line + 5, last_line) << "a block of 2 mm at 500 mm/min takes 0.24 s";
   EXPECT_NE(plant.service().said().find(message + "; noted 2"), std::string::npos);
   const auto start = plant.say(Verb::kStart);
   ASSERT_TRUE(start);

@@ -12,9 +12,9 @@
 namespace meridian::test {
 
 /// Four hosts on the network of deploy/cyclonedds-hosts.xml, as network namespaces: the service's,
-/// the drives', the station's and a fourth that nobody was told of. While it lives, programs run on
-/// the host of their name (Process), each with a monotonic clock of its own where the kernel gives
-/// programs such (it says where not), and the calling thread is on the fourth.
+/// the drives', the station's and a fourth that no configuration names. While it lives, programs
+/// run on the host of their name (Process), each with a monotonic clock of its own where the kernel
+/// gives programs such (it says where not), and the calling thread is on the fourth.
 class Hosts {
  public:
   enum Name { kService, kDrives, kStation, kViewer };
@@ -31,7 +31,7 @@ class Hosts {
   Hosts(const Hosts&) = delete;
   Hosts& operator=(const Hosts&) = delete;
 
-  /// Programs of that name, "meridiand" or what `meridian` is told to do, run on `host` from now
+  /// Programs of that name, "meridiand" or a command of `meridian`, run on `host` from now
   /// on.
   void move(const std::string& program, Name host) { names_[program] = host; }
 

@@ -37,7 +37,7 @@ class SeveralHosts : public testing::Test {
   std::unique_ptr<Plant> plant;
 };
 
-TEST_F(SeveralHosts, CutAProgramAsSimulatedAndAViewerNobodyWasToldOfSeesIt) {
+TEST_F(SeveralHosts, CutAProgramAsSimulatedAndAViewerThatNoConfigurationNamesSeesIt) {
   use(Hosts::Wire::kBridge);
   LiveRun live;
   live.wire = (plant->folder() / "wire.csv").string();

@@ -118,9 +118,9 @@ TEST_F(JournalKill, LeavesAWholeJournalThatIsASecondOldAtMostAndNotAheadOfTheCut
     start_service();
     ASSERT_TRUE(eventually([&] { return plant.status().service_id != id; }, milliseconds(8000)));
     EXPECT_EQ(plant.status().state, State::kOff);
-    const std::string told = plant.status().message;
-    EXPECT_NE(told.find("line " + std::to_string(entry.line)), std::string::npos) << told;
-    EXPECT_EQ(told.rfind("last program: small program", 0), 0U) << told;
+    const std::string message = plant.status().message;
+    EXPECT_NE(message.find("line " + std::to_string(entry.line)), std::string::npos) << message;
+    EXPECT_EQ(message.rfind("last program: small program", 0), 0U) << message;
     EXPECT_EQ(plant.service().said().find("put aside"), std::string::npos);
 
     EXPECT_LE(entry.line, sent.back().line) << "ahead of what was cut: blocks would be lost";
@@ -130,9 +130,9 @@ TEST_F(JournalKill, LeavesAWholeJournalThatIsASecondOldAtMostAndNotAheadOfTheCut
     if (next == sent.end()) continue;
     const double age_s = 1e-9 * static_cast<double>(killed_ns - next->due_ns);
     oldest_s = std::max(oldest_s, age_s);
-    EXPECT_LE(age_s, kOldest_s) << told << "; sent were lines up to " << sent.back().line;
+    EXPECT_LE(age_s, kOldest_s) << message << "; sent were lines up to " << sent.back().line;
   }
-  std::printf("%d kills: what the journal did not tell was begun %.3f s before at most\n", kills,
+  std::printf("%d kills: what the journal did not hold was begun %.3f s before at most\n", kills,
               oldest_s);
 }
 

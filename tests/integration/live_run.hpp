@@ -11,7 +11,7 @@
 /// Failures are those of GoogleTest.
 namespace meridian::test {
 
-/// What the programs of a live run are told beside the part.
+/// Options of the programs of a live run, beside the part.
 struct LiveRun {
   std::string machine = "lai";          ///< one of deploy/machines, that of the plant
   std::vector<std::string> service;     ///< meridiand

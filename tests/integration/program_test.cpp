@@ -43,7 +43,7 @@ TEST_F(Program, RunsFromEnableToEndAndRecordsEveryCycleThatWasSent) {
   ASSERT_TRUE(plant.stream_on(has_ran, milliseconds(20000)))
       << plant.station().message() << plant.service().said();
   EXPECT_TRUE(plant.wait_for(State::kReady));
-  // Events and state come to the status by two ways: the last block may be told a status later.
+  // Events and state come to the status by two ways: the last block may be reported a status later.
   EXPECT_TRUE(eventually([&] { return plant.status().blocks_done == blocks.size(); }))
       << plant.status().blocks_done;
   const dds::Status after = plant.status();

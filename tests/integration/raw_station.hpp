@@ -16,7 +16,8 @@
 
 namespace meridian::test {
 
-/// A station without manners: sends whatever it is told, credits or not, and hears every answer.
+/// A station without manners: sends whatever the test asks for, credits or not, and hears every
+/// answer.
 class RawStation {
  public:
   explicit RawStation(dds::Participant& participant, std::string name = "raw");

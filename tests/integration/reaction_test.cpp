@@ -106,7 +106,7 @@ class LiveReaction : public testing::Test {
   struct Spread {
     double least = 0, middle = 0;  ///< of two in the middle the larger
   };
-  static Spread tell(const char* what, const char* unit, std::vector<double> values) {
+  static Spread report(const char* what, const char* unit, std::vector<double> values) {
     EXPECT_FALSE(values.empty());
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
@@ -147,8 +147,8 @@ TEST_F(LiveReaction, OfAHoldIsADeceleratingSetpointWithinTwoCycles) {
     since_seen = -1;
   });
   ASSERT_EQ(cycles.size(), asked_ns.size());
-  (void)tell("hold seen to first decelerating setpoint", "cycles", cycles);
-  (void)tell("operator's hold to first decelerating setpoint", "ms", times_ms);
+  (void)report("hold seen to first decelerating setpoint", "cycles", cycles);
+  (void)report("operator's hold to first decelerating setpoint", "ms", times_ms);
   const probe::Budget budget = probe::load_budget("hold_reaction");
   EXPECT_TRUE(budget.is_kept(*std::max_element(cycles.begin(), cycles.end()))) << to_text(budget);
 }
@@ -166,7 +166,7 @@ TEST_F(LiveReaction, OfDrivesThatAreKilledIsAFaultStopWhenTheirLastReportIsTooOl
     plant.start_drives();
     ASSERT_NO_FATAL_FAILURE(recover());
   }
-  const Spread times = tell("drives killed to FaultStop", "ms", times_until(State::kFaultStop));
+  const Spread times = report("drives killed to FaultStop", "ms", times_until(State::kFaultStop));
   EXPECT_GT(times.middle, kFeedbackTimeout_ms - 10);
   EXPECT_LT(times.least, kFeedbackTimeout_ms + 50);
 }
@@ -196,7 +196,7 @@ TEST_F(LiveReaction, OfAServiceThatIsStoppedIsTheDrivesRampBehindTheBridge) {
     ASSERT_NO_FATAL_FAILURE(recover());
     while (feedback.take(sample)) continue;
   }
-  const Spread times = tell("service stopped to the drives' ramp", "ms", times_ms);
+  const Spread times = report("service stopped to the drives' ramp", "ms", times_ms);
   EXPECT_GT(times.middle, kBridge_ms - 5);
   EXPECT_LT(times.least, kBridge_ms + 50);
 }
@@ -266,10 +266,10 @@ TEST_F(LiveReaction, OfAStationThatIsKilledIsStarvingNoLaterThanTheFirstSlowerSe
     EXPECT_NEAR(1e-3 * one.time_ms * one.cruise, one.ahead_mm - one.left_mm, 1)
         << "what was received is cut first, at its feed";
   }
-  (void)tell("station killed to Starving", "ms", times_ms);
-  (void)tell("received path ahead of the tool when it was killed", "mm", ahead_mm);
-  (void)tell("received path left at Starving", "mm", left_mm);
-  (void)tell("Starving to first slower setpoint", "cycles", cycles);
+  (void)report("station killed to Starving", "ms", times_ms);
+  (void)report("received path ahead of the tool when it was killed", "mm", ahead_mm);
+  (void)report("received path left at Starving", "mm", left_mm);
+  (void)report("Starving to first slower setpoint", "cycles", cycles);
 }
 
 }  // namespace

@@ -24,14 +24,14 @@ namespace {
   return set_up ? *set_up : telemetry::SetUp();
 }
 
-/// What the machine tells is `acknowledged`.
-void expect_reported(const dds::MachineInfo& told, const telemetry::SetUp& acknowledged) {
+/// What the machine publishes is `acknowledged`.
+void expect_reported(const dds::MachineInfo& published, const telemetry::SetUp& acknowledged) {
   const WorkFrames& frames = acknowledged.frames;
-  EXPECT_TRUE(std::equal(told.work_frames.begin(), told.work_frames.end(), frames.rows().begin(),
-                         frames.rows().end()));
-  EXPECT_EQ(told.work_frame, frames.active());
-  EXPECT_EQ(told.tool_file, acknowledged.tools.value_or(""));
-  EXPECT_EQ(told.soft_limits, acknowledged.limits);
+  EXPECT_TRUE(std::equal(published.work_frames.begin(), published.work_frames.end(),
+                         frames.rows().begin(), frames.rows().end()));
+  EXPECT_EQ(published.work_frame, frames.active());
+  EXPECT_EQ(published.tool_file, acknowledged.tools.value_or(""));
+  EXPECT_EQ(published.soft_limits, acknowledged.limits);
 }
 
 TEST(SetUpKill, LeavesTheOldSetUpOrTheNewOneAtAnyInstant) {

@@ -29,7 +29,7 @@ inline constexpr milliseconds kToolPatience{8000};
   return order;
 }
 
-/// Somebody who changes the set-up, quoting what he is told to have seen.
+/// Somebody who changes the set-up, quoting the status that the test names.
 class SetUpOperator {
  public:
   SetUpOperator(Plant& plant, std::uint64_t id)
@@ -42,7 +42,7 @@ class SetUpOperator {
     request_.frame = order;
     send(seen);
   }
-  /// The same of a tool table, made from the one that `seen` tells of.
+  /// The same of a tool table, made from the one that `seen` reports.
   void say(const std::string& tools, const dds::Status& seen) {
     request_ = {};
     request_.verb = Verb::kTool;
@@ -110,7 +110,7 @@ class SetUpOperator {
   return "[[tool]]\nnumber = 2\nlength_mm = " + std::to_string(length_mm) + "\nradius_mm = 3\n";
 }
 
-/// What the machine topic tells now.
+/// What the machine topic holds now.
 [[nodiscard]] inline dds::MachineInfo reported_by(const Plant& plant) {
   const auto found = stream::find_machines(static_cast<std::uint32_t>(std::stoul(plant.domain())),
                                            "lai", milliseconds(15'000));

@@ -10,7 +10,8 @@
 #include "integration/set_up_plant.hpp"
 #include "service/machine/file/machine_file.hpp"
 
-/// Work frames of a machine that runs: set, kept, told, and refused where they must not change.
+/// Work frames of a machine that runs: set, kept, published, and refused where they must not
+/// change.
 namespace meridian::test {
 namespace {
 
@@ -47,7 +48,7 @@ class SetUp : public testing::Test {
   SetUpOperator anna{plant, 100};
 };
 
-TEST_F(SetUp, IsToldByTheMachineTopicAndTheStatusAsSoonAsItIsAcknowledged) {
+TEST_F(SetUp, IsPublishedByTheMachineTopicAndTheStatusAsSoonAsItIsAcknowledged) {
   start();
   const dds::MachineInfo bare = reported_by(plant);
   EXPECT_TRUE(bare.work_frames.empty());
@@ -55,19 +56,20 @@ TEST_F(SetUp, IsToldByTheMachineTopicAndTheStatusAsSoonAsItIsAcknowledged) {
   dds::Reply reply = anna.ask(set);
   ASSERT_TRUE(reply.is_accepted) << reply.text;
   EXPECT_EQ(reply.text, "frame 3 set; work frame 0 (machine file) in force");
-  dds::MachineInfo told = reported_by(plant);
-  ASSERT_EQ(told.work_frames, std::vector{set.frame});
-  EXPECT_EQ(told.work_frame, 0);
-  EXPECT_EQ(told.frame_origin_mm, bare.frame_origin_mm);
+  dds::MachineInfo published = reported_by(plant);
+  ASSERT_EQ(published.work_frames, std::vector{set.frame});
+  EXPECT_EQ(published.work_frame, 0);
+  EXPECT_EQ(published.frame_origin_mm, bare.frame_origin_mm);
   reply = anna.ask(order_of(FrameWord::kSelect, 3));
   ASSERT_TRUE(reply.is_accepted) << reply.text;
   EXPECT_EQ(reply.text, "work frame 3 (vice) in force");
-  told = reported_by(plant);
-  EXPECT_EQ(told.work_frame, 3);
-  EXPECT_EQ(told.frame_origin_mm, (Array3{12.5, 0, 0}));
+  published = reported_by(plant);
+  EXPECT_EQ(published.work_frame, 3);
+  EXPECT_EQ(published.frame_origin_mm, (Array3{12.5, 0, 0}));
   ASSERT_TRUE(plant.runs_until([](const dds::Status& status) { return status.work_frame == 3; }));
   EXPECT_EQ(plant.status().frame,
-            stream::frame_sum(told.frame_rotation, told.frame_origin_mm, told.work_frames));
+            stream::frame_sum(published.frame_rotation, published.frame_origin_mm,
+                              published.work_frames));
   reply = anna.ask(order_of(FrameWord::kSet, 3, 7));  // the one in force
   ASSERT_TRUE(reply.is_accepted) << reply.text;
   EXPECT_EQ(reported_by(plant).frame_origin_mm, (Array3{7, 0, 0}));
@@ -98,7 +100,7 @@ TEST_F(SetUp, IsRefusedWithTheReasonWhereItIsNone) {
 }
 
 TEST_F(SetUp, IsRefusedWhereItWouldBeKeptNowhere) {
-  const auto service = plant.another_service();  // that is told of no folder
+  const auto service = plant.another_service();  // without a folder for it
   (void)plant.status();
   expect_refused(order_of(FrameWord::kSet, 1), Refusal::kNotJournalled);
 }

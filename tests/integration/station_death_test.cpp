@@ -139,11 +139,11 @@ TEST_P(StationDeathInAnArc, AndAnAbortAreMadeUpForFromTheBeginOfTheArc) {
   ASSERT_TRUE(eventually([&] {
     return plant.status().message.find(" was aborted in block ") != std::string::npos;
   })) << plant.standing();
-  const std::string told = plant.status().message;
-  const auto at = told.find(", line ");
-  ASSERT_NE(at, std::string::npos) << told;
-  const auto line = static_cast<std::uint32_t>(std::stoul(told.substr(at + 7)));
-  EXPECT_GE(line, kUpToArc) << told;
+  const std::string said = plant.status().message;
+  const auto at = said.find(", line ");
+  ASSERT_NE(at, std::string::npos) << said;
+  const auto line = static_cast<std::uint32_t>(std::stoul(said.substr(at + 7)));
+  EXPECT_GE(line, kUpToArc) << said;
   go_on(line);
 }
 

@@ -296,7 +296,7 @@ TEST_F(Tool, RefusesFilesThatAreNoCLFilesInWordsAndWithoutMotion) {
   EXPECT_EQ(plant.status().joints, before);
 }
 
-TEST_F(Tool, TellsWhatTheMachineRefusesWithoutPreflight) {
+TEST_F(Tool, ReportsWhatTheMachineRefusesWithoutPreflight) {
   plant.start_service();
   Process stream = run({"stream", part("far.apt", kPartOutOfTravel), "--no-preflight"});
   EXPECT_EQ(stream.wait(kShort), 4) << stream.said();

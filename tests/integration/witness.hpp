@@ -15,7 +15,7 @@
 
 namespace meridian::test {
 
-/// Sees every setpoint that comes over the wire: what was told to the drives, whoever dies. Of
+/// Sees every setpoint that comes over the wire: what the drives were commanded, whoever dies. Of
 /// machines without an actuator stage.
 class Witness {
  public:

@@ -77,7 +77,7 @@ MAX_LIMIT = 36000
 
 
 class Machine:
-    """What both controls are told of the machine. Only tables with C on B about y, tool along z."""
+    """What both controls know of the machine. Only tables with C on B about y, tool along z."""
 
     def __init__(self, file):
         with open(file, "rb") as text:

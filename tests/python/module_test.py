@@ -39,10 +39,10 @@ class Kinematics(unittest.TestCase):
     def test_solutions_are_those_of_the_pose_command(self):
         machine = meridian.Machine(machine_file("lai"))
         pose = machine.forward([10, 20, 30, 0.4, 0.5])
-        told = run("pose", *(repr(float(x)) for x in pose), "--machine", machine_file("lai"),
+        ran = run("pose", *(repr(float(x)) for x in pose), "--machine", machine_file("lai"),
                    "--json")
-        self.assertEqual(told.returncode, 0, told.stderr)
-        solutions = json.loads(told.stdout)["solutions"]
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        solutions = json.loads(ran.stdout)["solutions"]
         mine = machine.solutions(pose)
         self.assertEqual(len(solutions), len(mine))
         for theirs, solution in zip(solutions, mine):
@@ -92,9 +92,9 @@ class Simulated(unittest.TestCase):
         for transition in ("smooth", "exact_stop"):
             with self.subTest(transition):
                 csv_file = os.path.join(self.folder.name, "run.csv")
-                told = run("simulate", self.cl, "--machine", machine_file("lai"), "--transition",
+                ran = run("simulate", self.cl, "--machine", machine_file("lai"), "--transition",
                            transition, "--record", csv_file)
-                self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+                self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
                 mine = meridian.simulate(self.cl, machine, transition=transition)
                 self.assertEqual(mine.outcome, "done", mine.reason)
                 with open(csv_file, encoding="ascii") as file:
@@ -115,11 +115,11 @@ class Simulated(unittest.TestCase):
         with open(bad, "w", encoding="ascii") as file:
             file.write("UNITS/MM\nMULTAX/ON\nFEDRAT/600,MMPM\nGOTO/0,0,0,0,0,1\n"
                        "GOTO/99999,0,0,0,0,1\nLOADTL/77\nGOTO/1,0,0,0,0,1\nFINI\n")
-        with self.assertRaises(ValueError) as told:
+        with self.assertRaises(ValueError) as raised:
             meridian.simulate(bad, meridian.Machine(machine_file("lai")))
-        self.assertRegex(str(told.exception), "bad.apt")
-        self.assertRegex(str(told.exception), "5")
-        self.assertRegex(str(told.exception), "77")
+        self.assertRegex(str(raised.exception), "bad.apt")
+        self.assertRegex(str(raised.exception), "5")
+        self.assertRegex(str(raised.exception), "77")
 
     def test_arrays_outlive_the_run_and_cannot_be_written_to(self):
         joints = meridian.simulate(self.cl, meridian.Machine(machine_file("lai"))).joints

@@ -15,7 +15,7 @@ namespace meridian::test {
 #endif
 }
 
-/// What a longer run is told by the environment, which anyone may start: a seed, a count.
+/// What the environment sets for a longer run, which anyone may start: a seed, a count.
 template <class Number>
 [[nodiscard]] Number number_of(const char* name, Number otherwise) {
   const char* const text = std::getenv(name);

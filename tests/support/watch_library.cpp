@@ -89,7 +89,7 @@ void write_row(std::FILE* out, pid_t thread) {
                booked.voluntary, booked.involuntary);
 }
 
-/// Tells the heap calls that were kept for a thread and makes room for the next.
+/// Prints the heap calls that were kept for a thread and makes room for the next.
 void write_calls(std::FILE* out, pid_t thread) {
   meridian::watch::Slot* const slot = meridian::watch::find_slot(thread);
   if (slot == nullptr) {

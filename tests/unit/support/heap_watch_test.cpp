@@ -81,9 +81,10 @@ TEST_F(HeapWatchTest, NamesWhoMadeTheFirstCalls) {
   int* const number = new int(1);
   keep(number);
   EXPECT_EQ(HeapWatch::callers({0, 0}), "");
-  const std::string told = HeapWatch::callers(watch.calls());
-  EXPECT_EQ(told.rfind("malloc < operator new(", 0), 0U) << told;
-  EXPECT_NE(told.find("support_watch_test+0x"), std::string::npos) << "this very test: " << told;
+  const std::string callers = HeapWatch::callers(watch.calls());
+  EXPECT_EQ(callers.rfind("malloc < operator new(", 0), 0U) << callers;
+  EXPECT_NE(callers.find("support_watch_test+0x"), std::string::npos)
+      << "this very test: " << callers;
   delete number;
 }
 

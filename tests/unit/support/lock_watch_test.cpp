@@ -43,7 +43,7 @@ TEST_F(LockWatchTest, CatchesReadWriteLocksAndConditionWaits) {
   EXPECT_EQ(watch.calls().contended_locks, 1U);  // a wait always waits
 }
 
-TEST_F(LockWatchTest, TellsAContendedLock) {
+TEST_F(LockWatchTest, ReportsAContendedLock) {
   std::mutex mutex;
   std::atomic<bool> is_held{false};
   std::thread holder([&] {

@@ -15,7 +15,7 @@
 int main() {
   std::counting_semaphore<8> go(0);
   std::counting_semaphore<8> done(0);
-  std::latch named(2);  // a report tells threads by their names
+  std::latch named(2);  // a report names its threads
   std::mutex mutex;
   std::thread busy([&] {
     pthread_setname_np(pthread_self(), "busy");
