@@ -78,6 +78,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{"include/meridian/cycle/a.hpp", "std::vector<double> v;"},
                     BadLine{"service/programs/cl/a.cpp", "return parsed.value();"},
                     BadLine{"service/programs/cl/a.cpp", "double r = d * std::numbers::pi / 180;"},
+                    BadLine{"service/daemon/a.hpp", "/// Tells the operator."},
+                    BadLine{"service/daemon/a.cpp", "void tell(const Event& event);"},
+                    BadLine{"tests/unit/daemon/a_test.cpp", "TEST(Daemon, IsToldOnce) {"},
                     BadLine{"service/core/CMakeLists.txt", "add_compile_options(-march=native)"},
                     BadLine{"CMakeLists.txt", "include(FetchContent)"}));
 
