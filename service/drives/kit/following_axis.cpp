@@ -79,10 +79,10 @@ Output FollowingAxis::lead(const AxisInput& input, double dt_s, int axis,
       break;
     case DriveState::kQuickStop:
       is_on_ = true;
-      ramp_down(dt_s);
+      ramp_down(input.slept_s, dt_s);
       break;
     case DriveState::kFaultReaction:  // on where it was on
-      ramp_down(dt_s);
+      ramp_down(input.slept_s, dt_s);
       if (target_velocity_ == 0) state_ = DriveState::kFault;
       break;
     default:  // the brake holds
@@ -144,28 +144,21 @@ void FollowingAxis::take_target(const AxisInput& input, double dt_s) noexcept {
                                  .from = is_following_ ? accepted_ : position_,
                                  .elapsed_s = input.elapsed_s,
                                  .is_referenced = is_referenced()});
-      if (error != kErrorNone) return refuse(error, dt_s);
+      if (error != kErrorNone) return refuse(error, input, dt_s);
       target_ = accepted_ = input.position;
     }
     is_following_ = input.is_enabled;
     target_velocity_ = is_following_ ? input.velocity : 0;
     return;
   }
-  if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
-  if (is_following_) bridge(std::min(input.bridged_s, dt_s), dt_s);
-}
-
-/// Goes on with the sent velocity, and slows down in lost periods for which the bridge is too
-/// short: a ramp that follows goes on from there.
-void FollowingAxis::bridge(double bridged_s, double dt_s) noexcept {
-  target_ += target_velocity_ * bridged_s;
-  if (bridged_s < dt_s) ramp_down(dt_s - bridged_s);
+  if (input.periods_without > input.bridge_cycles) return miss_setpoints(input, dt_s);
+  if (is_following_) ramp_down(input.bridged_s, dt_s);
 }
 
 /// In homing mode setpoints lead nowhere, but a service that sends none any more is gone.
 void FollowingAxis::search(const AxisInput& input, double dt_s, int axis,
                            Hardware& hardware) noexcept {
-  if (input.periods_without > input.bridge_cycles) return miss_setpoints(dt_s);
+  if (input.periods_without > input.bridge_cycles) return miss_setpoints(input, dt_s);
   Reading reading = reading_;
   reading.index_position = named(reading_.index_position);
   const HomingView view{false, target_, position_, dt_s};
@@ -174,7 +167,7 @@ void FollowingAxis::search(const AxisInput& input, double dt_s, int axis,
       limits_.velocity > 0 ? limits_.velocity * (1 + kVelocityMargin) * dt_s : INFINITY;
   const bool is_led = !homing_.is_by_drive();
   if (is_led && !(std::abs(step.target - target_) <= farthest + kStepMargin)) {
-    return refuse(kErrorSetpointStep, dt_s);
+    return refuse(kErrorSetpointStep, input, dt_s);
   }
   target_ = step.target + step.shift;
   target_velocity_ = step.velocity;
@@ -182,25 +175,30 @@ void FollowingAxis::search(const AxisInput& input, double dt_s, int axis,
   if (homing_.owns_names()) offset_ += step.shift;
 }
 
-void FollowingAxis::miss_setpoints(double dt_s) noexcept { refuse(kErrorSetpointsStopped, dt_s); }
+void FollowingAxis::miss_setpoints(const AxisInput& input, double dt_s) noexcept {
+  refuse(kErrorSetpointsStopped, input, dt_s);
+}
 
 /// Goes on with the last velocity that it accepted, and ramps that down.
-void FollowingAxis::refuse(std::uint16_t error, double dt_s) noexcept {
+void FollowingAxis::refuse(std::uint16_t error, const AxisInput& input, double dt_s) noexcept {
   error_ = error;
   state_ = DriveState::kFaultReaction;
   homing_.ask(false);
-  ramp_down(dt_s);
+  ramp_down(input.slept_s, dt_s);
 }
 
-/// Slows the target down with the joint's FaultStop acceleration; without one it stands at once.
-void FollowingAxis::ramp_down(double dt_s) noexcept {
+/// Goes on at the velocity for `level_s`, and slows down for the rest of the period with the
+/// joint's FaultStop acceleration; without one it stands at once.
+void FollowingAxis::ramp_down(double level_s, double dt_s) noexcept {
   const double acceleration =
       limits_.fault_acceleration > 0 ? limits_.fault_acceleration : INFINITY;
   const double before = target_velocity_, speed = std::abs(before);
-  const double moving_s = std::min(dt_s, speed / acceleration);
-  const double after = moving_s < dt_s ? 0 : std::max(0.0, speed - acceleration * dt_s);
-  target_velocity_ = after > 0 ? std::copysign(after, before) : 0;
-  target_ += 0.5 * (before + target_velocity_) * moving_s;
+  const double level = std::min(level_s, dt_s), rest_s = speed / acceleration;
+  const bool stops = dt_s - level >= rest_s && dt_s > level;
+  const double ramp = stops ? rest_s : dt_s - level;
+  target_velocity_ =
+      stops ? 0 : std::copysign(speed - (ramp > 0 ? acceleration * ramp : 0), before);
+  target_ += before * level + 0.5 * (before + target_velocity_) * ramp;
 }
 
 std::uint16_t FollowingAxis::statusword() const noexcept {

@@ -20,7 +20,8 @@ struct AxisInput {
   double elapsed_s = 0;     ///< since the setpoint before it
   int periods_without = 0;  ///< periods since the newest setpoint, lost ones too
   int bridge_cycles = 3;    ///< so many are bridged by the velocity
-  double bridged_s = 0;     ///< what of this step the bridge still covers; 0 with a new setpoint
+  double bridged_s = 0;     ///< what of this step the bridge covers; 0 with a new setpoint
+  double slept_s = 0;       ///< of it, lost periods: the motor went on at the velocity of before
 };
 
 /// One axis in cyclic synchronous position mode or homing mode: CiA 402 states, following error,
@@ -58,11 +59,10 @@ class FollowingAxis {
  private:
   void take_mode(std::uint8_t mode) noexcept;
   void take_target(const AxisInput& input, double dt_s) noexcept;
-  void bridge(double bridged_s, double dt_s) noexcept;
-  void refuse(std::uint16_t error, double dt_s) noexcept;
+  void refuse(std::uint16_t error, const AxisInput& input, double dt_s) noexcept;
   void search(const AxisInput& input, double dt_s, int axis, Hardware& hardware) noexcept;
-  void miss_setpoints(double dt_s) noexcept;
-  void ramp_down(double dt_s) noexcept;
+  void miss_setpoints(const AxisInput& input, double dt_s) noexcept;
+  void ramp_down(double level_s, double dt_s) noexcept;
   void hold() noexcept;
   void end_reset() noexcept;
   [[nodiscard]] double named(double position) const noexcept;

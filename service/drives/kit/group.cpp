@@ -143,16 +143,17 @@ double Group::elapsed_s() const noexcept {
 
 /// How far this period leads on by the sender's cycles: not at all where the bridge has led there
 /// already. Own periods count where no setpoint leads.
-double Group::advance_s(int periods, int bridged) noexcept {
+double Group::advance_s(int periods) noexcept {
   const std::uint64_t before = reached_cycle_;
-  reached_cycle_ = is_new_ ? std::max(before, newest_.setpoint.cycle)
-                           : before + static_cast<std::uint64_t>(bridged);
-  const bool is_led = before != 0 && (is_new_ || bridged == periods);
+  const bool is_bridged = !is_new_ && periods_without_ <= bridge_cycles_;
+  const auto led_on = static_cast<std::uint64_t>(is_bridged ? bridged(periods) : 0);
+  reached_cycle_ = is_new_ ? std::max(before, newest_.setpoint.cycle) : before + led_on;
+  const bool is_led = before != 0 && (is_new_ || (is_bridged && periods <= bridge_cycles_));
   if (!is_led || is_off()) return cycle_s_ * periods;
   return capped_s(reached_cycle_ - before);
 }
 
-AxisInput Group::input_of(std::size_t joint, int bridged) const noexcept {
+AxisInput Group::input_of(std::size_t joint, int periods) const noexcept {
   return {.is_new = is_new_,
           .is_enabled = (newest_.setpoint.flags & kSetpointEnabled) != 0,
           .is_fault_stop = (newest_.setpoint.flags & kSetpointFaultStop) != 0,
@@ -161,7 +162,8 @@ AxisInput Group::input_of(std::size_t joint, int bridged) const noexcept {
           .elapsed_s = elapsed_s(),
           .periods_without = periods_without_,
           .bridge_cycles = bridge_cycles_,
-          .bridged_s = cycle_s_ * bridged};
+          .bridged_s = is_new_ ? 0 : cycle_s_ * bridged(periods),
+          .slept_s = cycle_s_ * bridged(periods - 1)};
 }
 
 void Group::work(int periods, Hardware& hardware) noexcept {
@@ -170,17 +172,12 @@ void Group::work(int periods, Hardware& hardware) noexcept {
   // one on, when a service that the same host held up has sent again.
   periods_without_ = is_new_ ? 0 : periods_without_ + periods_slept_ + 1;
   periods_slept_ = is_new_ ? 0 : periods - 1;
-  // However long this side slept, the sent velocity leads on no farther than the bridge: behind it
-  // comes the ramp.
-  if (is_new_) bridge_left_ = bridge_cycles_;
-  const int bridged = is_new_ ? 0 : std::min(periods, bridge_left_);
-  bridge_left_ -= bridged;
   if (!is_new_ && !is_off()) periods_bridged_ += static_cast<std::uint64_t>(periods);
   periods_since_ += periods;
-  const double advance = advance_s(periods, bridged);
+  const double advance = advance_s(periods);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const int axis = static_cast<int>(i);
-    Output output = axes_[i].lead(input_of(joints_[i], bridged), dt_s, axis, hardware);
+    Output output = axes_[i].lead(input_of(joints_[i], periods), dt_s, axis, hardware);
     output.elapsed_s = advance;
     hardware.write(axis, output);
   }

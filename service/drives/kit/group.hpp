@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -80,10 +81,14 @@ class Group : public Receiver {
                            std::int64_t arrival_ns) noexcept;
   void obey_new_master() noexcept;
   void see_inputs(Hardware& hardware) noexcept;
-  [[nodiscard]] AxisInput input_of(std::size_t joint, int bridged) const noexcept;
+  [[nodiscard]] AxisInput input_of(std::size_t joint, int periods) const noexcept;
   [[nodiscard]] double capped_s(std::uint64_t cycles) const noexcept;
   [[nodiscard]] double elapsed_s() const noexcept;
-  [[nodiscard]] double advance_s(int periods, int bridged) noexcept;
+  [[nodiscard]] double advance_s(int periods) noexcept;
+  /// So many periods are led on by the velocity of before, and no longer than the bridge.
+  [[nodiscard]] int bridged(int periods) const noexcept {
+    return std::min(periods, bridge_cycles_);
+  }
 
   std::vector<FollowingAxis> axes_;
   std::vector<std::size_t> joints_;        ///< of the axes
@@ -100,9 +105,8 @@ class Group : public Receiver {
   SetpointAge age_;
   dds::SetpointSample newest_;
   bool has_setpoint_ = false, is_new_ = false;
-  int periods_without_ = 0;  ///< since the newest setpoint
-  int bridge_left_ = 0;      ///< periods for which the newest setpoint's velocity still leads on
-  int periods_slept_ = 0;    ///< of this side's last stall, not in periods_without_ yet
+  int periods_without_ = 0;           ///< since the newest setpoint
+  int periods_slept_ = 0;             ///< of this side's last stall, not in periods_without_ yet
   std::uint64_t followed_cycle_ = 0;  ///< of the setpoint that the drives worked with last
   std::uint64_t reached_cycle_ = 0;   ///< to which setpoint or bridge has led the axes
   std::int64_t periods_since_ = 0;    ///< own periods since then

@@ -210,9 +210,11 @@ TEST_F(PartOfAMachine, TheRampBehindTheBridgeBeginsAtTheSentVelocityHoweverManyP
         EXPECT_LE(std::abs(off), kAcceleration * dt_s * dt_s / 8 + 1e-9) << bridged << " " << lost;
       }
       EXPECT_EQ(group_.axis(0).error(), kErrorSetpointsStopped);
-      EXPECT_NEAR(motors_.outputs[0].position - begin,
-                  0.3 + kVelocity * kVelocity / (2 * kAcceleration), 1e-9)
-          << "the bridge and the ramp, " << bridged << " " << lost;
+      // The bridge and the ramp; who loses periods goes on meanwhile, by one more bridge at most.
+      const double stop = 0.3 + kVelocity * kVelocity / (2 * kAcceleration);
+      const double distance = motors_.outputs[0].position - begin;
+      EXPECT_GE(distance, stop - 1e-9) << bridged << " " << lost;
+      EXPECT_LE(distance, stop + 0.3 + 1e-9) << bridged << " " << lost;
     }
   }
 }
