@@ -64,8 +64,8 @@ int serve(Options& options) {
     return to_json(examine_host(process::last_cpu(), cyclone_uri(), nullptr));
   };
   panel::run_panel(participant, options.panel, stop_flag(), [&](const panel::PanelOpened& opened) {
-    std::printf("the panel of %s is at http://127.0.0.1:%u/\n", options.peer.machine.c_str(),
-                static_cast<unsigned>(opened.port));
+    std::printf("the panel of %s is at http://127.0.0.1%s/\n", options.peer.machine.c_str(),
+                panel::port_in_host(opened.port).c_str());
     if (!opened.refusal.empty()) std::printf("it only watches: %s\n", opened.refusal.c_str());
     if (!options.panel.public_host.empty()) {
       std::printf("and behind its TLS proxy at https://%s/\n", options.panel.public_host.c_str());

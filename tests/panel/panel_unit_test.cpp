@@ -40,6 +40,19 @@ TEST(RequestGuard, KnowsItsOwnNames) {
   }
 }
 
+TEST(RequestGuard, BrowsersLeaveOutThePortOfHttp) {
+  const Site plain{80, ""};
+  EXPECT_EQ(port_in_host(80), "");
+  EXPECT_EQ(port_in_host(8090), ":8090");
+  for (const char* const own : {"127.0.0.1", "localhost", "[::1]", "127.0.0.1:80"}) {
+    EXPECT_TRUE(is_own_host(own, plain)) << own;
+  }
+  EXPECT_TRUE(is_own_origin("http://127.0.0.1", "127.0.0.1", plain));
+  for (const char* const foreign : {"127.0.0.1:8090", "127.0.0.1.evil.example", ""}) {
+    EXPECT_FALSE(is_own_host(foreign, plain)) << foreign;
+  }
+}
+
 TEST(RequestGuard, AnotherSiteIsNoOrigin) {
   EXPECT_TRUE(is_own_origin("http://localhost:8090", "localhost:8090", kLoopback));
   for (const char* const foreign : {"", "null", "http://evil.example", "http://localhost:8091",

@@ -10,16 +10,22 @@ namespace {
 
 constexpr std::string_view kPlain = "http://", kSecured = "https://";
 
-[[nodiscard]] bool is_loopback_host(std::string_view host, std::uint16_t port) noexcept {
+[[nodiscard]] bool is_loopback_host(std::string_view host, std::uint16_t port) {
   constexpr std::array<std::string_view, 3> kNames{"127.0.0.1", "localhost", "[::1]"};
-  std::string ending(1, ':');
-  ending += std::to_string(port);
+  const std::string ending = port_in_host(port), whole = ":" + std::to_string(port);
   return std::any_of(kNames.begin(), kNames.end(), [&](std::string_view name) {
-    return host.starts_with(name) && host.substr(name.size()) == ending;
+    if (!host.starts_with(name)) return false;
+    host.remove_prefix(name.size());
+    return host == ending || host == whole;
   });
 }
 
 }  // namespace
+
+std::string port_in_host(std::uint16_t port) {
+  constexpr std::uint16_t kOfHttp = 80;
+  return port == kOfHttp ? "" : ":" + std::to_string(port);
+}
 
 std::optional<std::string> public_host_of(std::string_view url) {
   constexpr std::string_view kOwnPort = ":443";  // browsers leave it out
@@ -41,7 +47,7 @@ bool is_public_host(std::string_view host, const Site& site) noexcept {
   return !site.public_host.empty() && host == site.public_host;
 }
 
-bool is_own_host(std::string_view host, const Site& site) noexcept {
+bool is_own_host(std::string_view host, const Site& site) {
   return is_loopback_host(host, site.port) || is_public_host(host, site);
 }
 

@@ -19,9 +19,12 @@ struct Site {
 /// The public host of "https://cell-4.shop:8443"; nothing where `url` is no address of that form.
 [[nodiscard]] std::optional<std::string> public_host_of(std::string_view url);
 
+/// ":8090", as browsers write a port behind a host; empty for the one of http, which they leave out.
+[[nodiscard]] std::string port_in_host(std::uint16_t port);
+
 /// Whether `host`, the header of a request, names `site`: 127.0.0.1, [::1] or localhost with its
 /// port, or its public host. A foreign name that leads to loopback (DNS rebinding) does not.
-[[nodiscard]] bool is_own_host(std::string_view host, const Site& site) noexcept;
+[[nodiscard]] bool is_own_host(std::string_view host, const Site& site);
 
 /// Whether `host` is the name of the TLS proxy.
 [[nodiscard]] bool is_public_host(std::string_view host, const Site& site) noexcept;
