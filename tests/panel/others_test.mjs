@@ -67,6 +67,26 @@ async function theReasonIsThere(page) {
   must((await visible(page, "#no-picture")) === 1 && (await visible(page, ".tools button")) === 0, "buttons of a picture that is not there");
 }
 
+async function onlyOneProgramIsDropped({ page }) {
+  await page.evaluate(() => {
+    const data = new DataTransfer();
+    for (const name of ["a.apt", "b.apt"]) data.items.add(new File(["FINI\n"], name));
+    window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+  });
+  must((await page.textContent("#reply")).startsWith("2 files at once"), "one of two is taken");
+}
+
+// The first answers are lost on the way.
+async function aPathThatDoesNotComeIsAskedForAgain({ page }) {
+  let lost = 0;
+  await page.route("**/program/path*", (route) => (lost++ < 2 ? (lost === 1 ? route.abort() : route.fulfill({ status: 503 })) : route.continue()));
+  const before = await page.evaluate(() => meridian.program.shownPath ?? 0);
+  await page.setInputFiles("#program-file", plant.part());
+  await until("the path", () => page.evaluate((old) => meridian.program.shownPath > old && meridian.program.path !== null, before), 60000);
+  must(lost >= 3, "nothing was lost");
+  await page.unroute("**/program/path*");
+}
+
 // A trail from here to there: as frames bring it.
 const drawTrail = (page) => page.evaluate(() => (meridian.view.trail.add([[0, 0, 0, 0, 0, 1, 1], [50, 0, 0, 0, 0, 1, 2]], 1), meridian.view.trail.count));
 
@@ -145,6 +165,8 @@ await runTests(plant, pictures, async (session, run) => {
   const { open } = session;
   await run("APanelThatWatchesOffersNothing", aPanelThatWatchesOffersNothing, open);
   await run("WithoutWebGlAllElseWorks", withoutWebGlAllElseWorks, open);
+  await run("OnlyOneProgramIsDropped", onlyOneProgramIsDropped, open);
+  await run("APathThatDoesNotComeIsAskedForAgain", aPathThatDoesNotComeIsAskedForAgain, open);
   await run("TheTrailBeginsAnewAfterAGap", theTrailBeginsAnewAfterAGap, open);
   await run("ASilentServiceDimsThePage", aSilentServiceDimsThePage, open);
   await run("ASliderFollowsTheFingerAlone", aSliderFollowsTheFingerAlone, open);

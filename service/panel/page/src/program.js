@@ -14,6 +14,8 @@ const kPhases = {
   none: ["", ""], checking: ["checking", "busy"], refused: ["does not fit", "bad"], ready: ["checked", "good"], streaming: ["loaded", "good"],
 };
 
+const kTries = 30, kAgain_ms = 500;
+
 export class Program {
   constructor(panel) {
     this.panel = panel;
@@ -50,8 +52,14 @@ export class Program {
       if (!hasFile(event)) return;
       event.preventDefault();
       show(false);
-      if (event.dataTransfer.files[0]) this.send(event.dataTransfer.files[0]);
+      this.take([...event.dataTransfer.files]);
     });
+  }
+
+  // Which of several is meant, nobody can know.
+  take(files) {
+    if (files.length === 1) return this.send(files[0]);
+    return this.panel.operate.report(false, files.length === 0 ? "that is no file" : `${files.length} files at once: drop the one program that is meant`);
   }
 
   setOperator({ who, key }) {
@@ -139,12 +147,25 @@ export class Program {
     this.path = null;
     this.panel.view.setPath(null);
     byId("program-limits").replaceChildren();
-    if (number === 0) return;
-    const answer = await fetch(`/program/path?number=${number}`);
-    if (!answer.ok || number !== this.shownPath) return;
-    this.path = new ProgramPath(await answer.arrayBuffer());
+    const bytes = number === 0 ? null : await this.bytesOfPath(number);
+    if (!bytes || number !== this.shownPath) return;
+    this.path = new ProgramPath(bytes);
     this.panel.view.setPath(new Path(this.path));
     this.drawLimits();
+  }
+
+  // Asked for again where they do not come; nothing where another path is shown meanwhile.
+  async bytesOfPath(number) {
+    for (let i = 0; i < kTries && number === this.shownPath; ++i) {
+      try {
+        const answer = await fetch(`/program/path?number=${number}`);
+        if (answer.ok) return await answer.arrayBuffer();
+      } catch {
+        // The link says that the panel is gone.
+      }
+      await new Promise((done) => setTimeout(done, kAgain_ms));
+    }
+    return null;
   }
 
   drawLimits() {
