@@ -67,12 +67,19 @@ class Checker:
         return next((f"{words[0]} has no {word}" for word in words[1:]
                      if (found := OPTION.match(word)) and found.group() not in OPTION.findall(text)), None)
 
+    @functools.cached_property
+    def tests(self):
+        return subprocess.run(["ctest", "--test-dir", self.binaries.parent, "-N"], capture_output=True, text=True,
+                              check=False).stdout
+
     def faults_of_page(self, text):
         """What is wrong with the commands of a page, each by its line."""
         scripts = [(block.line, block.body) for block in blocks_of(text) if block.use in RUN | {"words", "tested-by"}]
         blank = re.sub(r"^```.*?^```$|<!--.*?-->", lambda one: "\n" * one.group().count("\n"), text, flags=re.M | re.S)
         scripts += [(blank.count("\n", 0, found.start()) + 1, re.sub(r"\s+", " ", found[1]))
                     for found in INLINE.finditer(blank)]
+        yield from ((block.line, f"there is no test {block.value}") for block in blocks_of(text)
+                    if block.use == "tested-by" and f": {block.value}\n" not in self.tests)
         for line, script in scripts:
             for words in commands_of(script):
                 if fault := self.fault_of_program(words) or self.fault_of_script(words):

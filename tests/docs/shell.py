@@ -2,11 +2,13 @@
 """A reader's shell, and whether what it printed is what a page shows."""
 import os
 import re
+import select
 import signal
 import subprocess
 import time
 
 LAST_WORD = "walk: the block ended"
+LONGEST_S = 60  # of a script
 
 
 def matches(wanted, printed):
@@ -42,6 +44,11 @@ class Shell:
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
 
+    def answer(self):
+        """A line of the shell; "" where it ended or takes too long."""
+        ready, _, _ = select.select([self.process.stdout], [], [], LONGEST_S)
+        return self.process.stdout.readline().strip() if ready else ""
+
     def files(self, script):
         self.count += 1
         file, output = (self.folder / f".{self.count}.{kind}" for kind in ("sh", "out"))
@@ -50,22 +57,22 @@ class Shell:
         return file, output
 
     def run(self, script):
-        """The file of what `script` printed, and whether it went to its end. One that fails ends the shell."""
+        """The file of what `script` printed, and whether it went to its end, in time. One that fails ends the shell."""
         file, output = self.files(script)
         self.send(f"source {file} >{output} 2>&1\necho '{LAST_WORD}'")
-        return output, self.process.stdout.readline().strip() == LAST_WORD
+        return output, self.answer() == LAST_WORD
 
     def run_apart(self, script):
         """The file of what `script` printed, and its exit code. The shell goes on, with nothing that it set."""
         file, output = self.files(script)
         self.send(f"set +e\n(set -e; source {file}) >{output} 2>&1\necho $?\nset -e")
-        return output, int(self.process.stdout.readline())
+        return output, int(self.answer() or -1)
 
     def start(self, script):
         """The file of what `script` prints while it runs beside what follows."""
         file, output = self.files(script)
         self.send(f"source {file} >{output} 2>&1 &\necho $!")
-        self.beside.append((self.process.stdout.readline().strip(), output))
+        self.beside.append((self.answer(), output))
         return output
 
     def ended(self):

@@ -15,7 +15,6 @@ The test fails where a command fails, where an output is another one, where comm
 the page have ended before it, and where a page has no block.
 """
 import pathlib
-import subprocess
 import sys
 import tempfile
 
@@ -41,12 +40,6 @@ def prepare(folder, source, binaries):
         (folder / "etc" / name).symlink_to(source / "deploy" / name)
 
 
-def is_test(binaries, name):
-    listed = subprocess.run(["ctest", "--test-dir", binaries.parent, "-N"], capture_output=True, text=True,
-                            check=False).stdout
-    return f": {name}\n" in listed
-
-
 def is_part_of(body, file):
     """Whether the lines of `body` stand in `file` one behind the other, however they are indented."""
     def plain(text):
@@ -57,13 +50,13 @@ def is_part_of(body, file):
 class Walk:
     """What is done with the blocks of a page, each of which returns what is wrong with it, or None."""
 
-    def __init__(self, source, binaries, folder, is_tutorial):
-        self.source, self.binaries, self.folder = source, binaries, folder
+    def __init__(self, source, folder, is_tutorial):
+        self.source, self.folder = source, folder
         self.shell = shell.Shell(folder)
         self.printed = None  # a function: what the block before printed until now
         self.patience_s = 0  # until it has printed what the page shows
         self.uses = {"run": self.run, "fails": self.fails, "beside": self.beside, "output": self.output,
-                     "file": self.file, "part-of": self.part_of, "tested-by": self.tested_by}
+                     "file": self.file, "part-of": self.part_of}
         if not is_tutorial:
             self.shell.run(SET_UP)
 
@@ -89,7 +82,7 @@ class Walk:
     def run(self, block):
         output, went_well = self.shell.run(self.here(block.body))
         self.prints_to(output)
-        return None if went_well else f"a command failed:\n{block.body}\nIt said:\n{self.printed()}"
+        return None if went_well else f"a command failed, or took too long:\n{block.body}\nIt said:\n{self.printed()}"
 
     def fails(self, block):
         output, code = self.shell.run_apart(self.here(block.body))
@@ -116,9 +109,6 @@ class Walk:
     def part_of(self, block):
         return None if is_part_of(block.body, self.source / block.value) else f"these lines are not in {block.value}"
 
-    def tested_by(self, block):
-        return None if is_test(self.binaries, block.value) else f"there is no test {block.value}"
-
 
 def walk(source, binaries, page, folder):
     try:
@@ -126,7 +116,7 @@ def walk(source, binaries, page, folder):
     except ValueError as fault:
         return f"{page.name}:{fault}"
     prepare(folder, source, binaries)
-    steps = Walk(source, binaries, folder, page.parent.name == "tutorials")
+    steps = Walk(source, folder, page.parent.name == "tutorials")
     try:
         for block in blocks:
             if fault := steps.take(block):

@@ -44,7 +44,6 @@ def main():
         (FAILS.replace("exit 3", "exit 2"), "page.md:1: the exit code is 2"),
         (PART.replace("int c", "int d"), "page.md:1: these lines are not in docs/a.cpp"),
         (PART.replace("a.cpp", "b.cpp"), "page.md:1: these lines are not in docs/b.cpp"),
-        ("<!-- walk: tested-by Nothing.Of.This.Name -->\n```sh\n```\n", "page.md:1: there is no test"),
         ("\n```text\nprinted\n```\n", "page.md:2: the block before it ran nothing"),
         ("\n```\nmeridian --help\n```\n", "page.md:2: a block that is neither run nor says why not"),
         ("\n```toml\nx = 1\n```\n", "page.md:2: a block that is neither run nor says why not"),
