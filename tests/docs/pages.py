@@ -16,6 +16,7 @@ does not see:
     <!-- walk: run                   commands that the page does not show
     COMMANDS
     -->
+    <!-- walk: end -->               the last of the commands that run beside is ended, once it has printed something
 
 A block of indented lines is a formula or a drawing.
 """
@@ -23,7 +24,7 @@ import dataclasses
 import re
 
 BLOCK = re.compile(r"(?:^<!-- walk: (?P<use>[^\n]+) -->\n(?:^<!-- \w+: begin -->\n)?)?^```(?P<language>[^\n]*)\n(?P<body>(?:[^\n]*\n)*?)```$"
-                   r"|^<!-- walk: run\n(?P<hidden>(?:[^\n]*\n)*?)-->$", re.M)
+                   r"|^<!-- walk: run\n(?P<hidden>(?:[^\n]*\n)*?)-->$|^<!-- walk: (?P<end>end) -->$", re.M)
 USES = {"fails", "beside", "file", "part-of", "tested-by", "words", "drawing"}
 WITHOUT_VALUE = {"beside", "drawing"}
 RUN = {"run", "fails", "beside"}
@@ -46,6 +47,9 @@ def blocks_of(text):
         line = text.count("\n", 0, found.start()) + 1
         if found["hidden"] is not None:
             blocks.append(Block(line, "run", "", found["hidden"]))
+            continue
+        if found["end"]:
+            blocks.append(Block(line, "end", "", ""))
             continue
         use, _, value = (found["use"] or USE_OF_LANGUAGE.get(found["language"], "")).partition(" ")
         if not use:

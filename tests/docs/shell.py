@@ -69,11 +69,20 @@ class Shell:
         return output, int(self.answer() or -1)
 
     def start(self, script):
-        """The file of what `script` prints while it runs beside what follows."""
+        """The file of what `script` prints while it runs beside what follows. Its standard input stays open."""
         file, output = self.files(script)
-        self.send(f"source {file} >{output} 2>&1 &\necho $!")
+        self.send(f"source {file} >{output} 2>&1 < <(sleep infinity) &\necho $!")
         self.beside.append((self.answer(), output))
         return output
+
+    def end_last(self, patience_s):
+        """Ends what was started last, once it has printed something."""
+        if not self.beside or not eventually(self.beside[-1][1].read_text, patience_s):
+            return False
+        process, _ = self.beside.pop()
+        self.send(f"pkill -P {process}; wait {process} || true; echo")
+        self.answer()
+        return True
 
     def ended(self):
         """What those printed that were started and do not run any more."""

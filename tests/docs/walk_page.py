@@ -56,7 +56,7 @@ class Walk:
         self.printed = None  # a function: what the block before printed until now
         self.patience_s = 0  # until it has printed what the page shows
         self.uses = {"run": self.run, "fails": self.fails, "beside": self.beside, "output": self.output,
-                     "file": self.file, "part-of": self.part_of}
+                     "end": self.end, "file": self.file, "part-of": self.part_of}
         if not is_tutorial:
             self.shell.run(SET_UP)
 
@@ -92,6 +92,9 @@ class Walk:
 
     def beside(self, block):
         self.prints_to(self.shell.start(self.here(block.body)), PATIENCE_S)
+
+    def end(self, _):
+        return None if self.shell.end_last(PATIENCE_S) else "nothing runs beside the page, or it printed nothing"
 
     def output(self, block):
         if self.printed is None:

@@ -10,6 +10,7 @@ RIGHT = "# A page\n\n```sh\nname=world\necho hello $name; echo bye\n```\n\n```te
 FILE = "# A page\n\n<!-- walk: file a/b.toml -->\n```toml\nx = 1\n```\n\n```sh\ncat a/b.toml\n```\n\n```text\nx = 1\n```\n"
 BESIDE = ("<!-- walk: beside -->\n```sh\nsleep 0.2; echo ready; sleep 60\n```\n\n```text\nready\n```\n"
           "<!-- walk: run\necho hidden\n-->\n```text\nhidden\n```\n")
+ENDED = "<!-- walk: beside -->\n```sh\necho ready; sleep 60\n```\n\n<!-- walk: end -->\n"
 FAILS = "<!-- walk: fails 3 -->\n```sh\necho no; exit 3; echo on\n```\n```text\nno\n```\n"
 PART = "<!-- walk: part-of docs/a.cpp -->\n```cpp\nint b;\n  int c;\n```\n"
 INSTALLED = "```sh\necho x >/etc/meridian/y; ls /etc/meridian/y\n```\n```text\n/etc/meridian/y\n```\n"
@@ -30,7 +31,7 @@ def walk(text):
 
 
 def main():
-    for text in (RIGHT, FILE, BESIDE, FAILS, PART, INSTALLED, FORMULA):
+    for text in (RIGHT, FILE, BESIDE, ENDED, FAILS, PART, INSTALLED, FORMULA):
         assert walk(text) == "", f"{text}\nwas to be right, said: {walk(text)}"
     wrong = [
         (RIGHT.replace("hello ...", "hallo ..."), "page.md:8: the page shows"),
@@ -41,6 +42,8 @@ def main():
         (FILE.replace("x = 1", "x = 2", 1), "page.md:12: the page shows"),
         (BESIDE.replace("sleep 60", "true"), "page.md: commands that were to run beside the page ended"),
         (BESIDE.replace("echo hidden", "echo shown"), "page.md:12: the page shows"),
+        (ENDED.replace("beside", "run"), "page.md:1: no use of a block"),
+        (ENDED + "<!-- walk: end -->\n", "page.md:7: nothing runs beside the page"),
         (FAILS.replace("exit 3", "exit 2"), "page.md:1: the exit code is 2"),
         (PART.replace("int c", "int d"), "page.md:1: these lines are not in docs/a.cpp"),
         (PART.replace("a.cpp", "b.cpp"), "page.md:1: these lines are not in docs/b.cpp"),
