@@ -15,6 +15,7 @@ import sys
 
 from pages import RUN, blocks_of
 
+WALKED = RUN | {"output", "file", "part-of"}
 PROGRAMS = {"meridian", "meridiand", "meridian-hal"}
 SCRIPT = re.compile(r"(deploy|tests)/[\w./-]+$")
 OPTION = re.compile(r"--[a-z][a-z0-9-]*")
@@ -22,10 +23,10 @@ INLINE = re.compile(r"`([^`]+)`")
 
 
 def commands_of(text):
-    """The commands of a script, each as its words; without comments, assignments and redirections."""
+    """The commands of a script, each as its words; without comments and assignments."""
     text = re.sub(r"\\\n", " ", text)
     text = re.sub(r"(^|\s)#.*", "", text)
-    for command in re.split(r"\n|&&|\|\||[;|&({})]", text):
+    for command in re.split(r"\n|&&|\|\||[;|&{})]|(?:^|(?<=\s))\(", text):
         words = command.split()
         while words and (re.match(r"[A-Z_]+=", words[0]) or words[0] in ("$", "sudo")):
             words.pop(0)
@@ -39,20 +40,35 @@ class Checker:
 
     @functools.cache
     def help_of(self, *command):
-        run = subprocess.run([self.binaries / command[0], *command[1:], "--help"], capture_output=True, text=True,
-                             check=False)
-        return run.stdout + run.stderr if run.returncode == 0 else None
+        return subprocess.run([self.binaries / command[0], *command[1:], "--help"], capture_output=True, text=True,
+                              check=True).stdout
+
+    def fault_of_build(self, words):
+        """Of programs of the build that are no commands, and of choices of tests."""
+        if found := re.match(r"build/release/bin/(\w+)$", words[0]):
+            is_named = found[1] in PROGRAMS or re.search(rf"[( ]{found[1]}\b", self.recipes)
+            return None if is_named else f"nothing builds {words[0]}"
+        if words[:2] == ["ctest", "--test-dir"]:
+            chosen = [word.strip("'") for word in words[3:] if not word.startswith(("-j", "--verbose"))]
+            listed = self.list_tests(*chosen)
+            return None if "Total Tests: 0" not in listed else f"there is no test {' '.join(chosen)}"
+        return None
 
     def fault_of_program(self, words):
         name = pathlib.Path(words[0]).name
         if name not in PROGRAMS or not (self.binaries / name).exists():
             return None
-        has_subcommand = name == "meridian" and len(words) > 1 and re.fullmatch(r"[a-z]+", words[1])
-        text = self.help_of(name, *words[1:1 + bool(has_subcommand)])
-        if text is None:
-            return f"there is no {name} {words[1]}"
+        text, command = self.help_of(name), [name]
+        for word in words[1:]:
+            if "\nSubcommands:" not in text or word.startswith("-"):
+                break
+            is_listed = re.search(rf"\nSubcommands:(.*\n)+  {re.escape(word)} ", text)
+            command.append(word)
+            if not is_listed:
+                return f"there is no {' '.join(command)}"
+            text = self.help_of(*command)
         known = set(OPTION.findall(text)) | set(re.findall(r"(?<![\w-])-[a-z]\b", text)) | {"--help"}
-        return next((f"{' '.join(words[:2])} has no {word}" for word in words
+        return next((f"{' '.join(command)} has no {word}" for word in words
                      if (found := re.match(r"--?[a-z][a-z0-9-]*", word)) and found.group() not in known), None)
 
     def fault_of_script(self, words):
@@ -67,10 +83,14 @@ class Checker:
         return next((f"{words[0]} has no {word}" for word in words[1:]
                      if (found := OPTION.match(word)) and found.group() not in OPTION.findall(text)), None)
 
+    @functools.cache
+    def list_tests(self, *chosen):
+        return subprocess.run(["ctest", "--test-dir", self.binaries.parent, "-N", *chosen], capture_output=True,
+                              text=True, check=False).stdout
+
     @functools.cached_property
-    def tests(self):
-        return subprocess.run(["ctest", "--test-dir", self.binaries.parent, "-N"], capture_output=True, text=True,
-                              check=False).stdout
+    def recipes(self):
+        return "".join(file.read_text() for file in self.source.rglob("CMakeLists.txt"))
 
     def faults_of_page(self, text):
         """What is wrong with the commands of a page, each by its line."""
@@ -79,10 +99,11 @@ class Checker:
         scripts += [(blank.count("\n", 0, found.start()) + 1, re.sub(r"\s+", " ", found[1]))
                     for found in INLINE.finditer(blank)]
         yield from ((block.line, f"there is no test {block.value}") for block in blocks_of(text)
-                    if block.use == "tested-by" and f": {block.value}\n" not in self.tests)
+                    if block.use == "tested-by" and f": {block.value}\n" not in self.list_tests())
         for line, script in scripts:
             for words in commands_of(script):
-                if fault := self.fault_of_program(words) or self.fault_of_script(words):
+                if fault := (self.fault_of_program(words) or self.fault_of_script(words)
+                                or self.fault_of_build(words)):
                     yield line, fault
 
 
@@ -93,7 +114,7 @@ def main(source, binaries, walked):
         name, text = str(page.relative_to(source)), page.read_text()
         try:
             findings += [f"{name}:{line}: {fault}" for line, fault in checker.faults_of_page(text)]
-            if name not in walked and any(block.use not in ("words", "drawing") for block in blocks_of(text)):
+            if name not in walked and any(block.use in WALKED for block in blocks_of(text)):
                 findings.append(f"{name}:1: has blocks to run, and tests/docs/CMakeLists.txt does not list it")
         except ValueError as fault:
             findings.append(f"{name}:{fault}")

@@ -7,13 +7,14 @@ import tempfile
 
 page = os.path.join(os.environ["MERIDIAN_SOURCE_DIR"], "docs", "python.md")
 with open(page, encoding="utf-8") as file:
-    blocks = re.findall(r"^```python( plot)?\n(.*?)^```$", file.read(), re.S | re.M)
+    blocks = re.findall(r"^```python\n(.*?)^```$", file.read(), re.S | re.M)
 assert len(blocks) >= 4, "the page has lost its blocks"
 
 os.chdir(os.environ["MERIDIAN_SOURCE_DIR"])
 names = {}
 with tempfile.TemporaryDirectory() as folder:
-    for plot, block in blocks:
+    for block in blocks:
+        plot = "matplotlib" in block
         if plot and importlib.util.find_spec("matplotlib") is None:
             print("no matplotlib: the plot is not drawn")
             continue
