@@ -2,7 +2,7 @@
 // The page where something is missing or somebody else is in charge: it says so, and the rest works on.
 import { join } from "node:path";
 import { kSmall, openBrowser, sleep, until } from "./plant.mjs";
-import { afterStalls, drawAt, enabled, go, must, runTests, setFeedOverride } from "./page_hand.mjs";
+import { drawAt, must, runTests, setFeedOverride } from "./page_hand.mjs";
 import { Fingers, middleOf } from "./finger.mjs";
 import { pictures, plant, playwright } from "./browser_case.mjs";
 
@@ -45,10 +45,8 @@ async function withoutWebGlAllElseWorks({ browser }) {
   const page = await pageAt(browser, plant.url, withoutWebGl);
   await theReasonIsThere(page);
   must((await page.textContent("#tip-x")) !== "\u2013", "no numbers");
-  await afterStalls(page, async () => {
-    await enabled(page);
-    await go(page, "disable", "Off");
-  });
+  await page.click('[data-switch="optional_stop"]:enabled');
+  await until("a verb is obeyed", () => page.evaluate(() => meridian.frame.optional_stop));
   await page.setInputFiles("#program-file", plant.part());
   await until("the path's colours", async () => (await page.locator("#program-limits li").count()) > 0, 60000);
   await page.context().close();
@@ -85,6 +83,51 @@ async function aPathThatDoesNotComeIsAskedForAgain({ page }) {
   await until("the path", () => page.evaluate((old) => meridian.program.shownPath > old && meridian.program.path !== null, before), 60000);
   must(lost >= 3, "nothing was lost");
   await page.unroute("**/program/path*");
+}
+
+const kSmallPart = "PARTNO/SMALL\nUNITS/MM\nMULTAX/ON\nFEDRAT/300,MMPM\nGOTO/0,0,20,0,0,1\nGOTO/4,0,20,0,0,1\nGOTO/4,3,20,0,0,1\nFINI\n";
+
+// Of a part of some millimetres, as of any other.
+async function aSmallPartFillsItsView({ page }) {
+  await page.setInputFiles("#program-file", { name: "small.apt", mimeType: "text/plain", buffer: Buffer.from(kSmallPart) });
+  await until("its path", () => page.evaluate(() => meridian.program.program.name === "small.apt" && meridian.program.path !== null), 30000);
+  await page.click("#tab-machine");
+  await page.click('[data-view="part"]');
+  const share = await page.evaluate(() => {
+    const { view } = meridian, { min, max } = view.path.bounds, { matrixWorld } = view.machine.frames.workpiece;
+    const seen = [min, max].map((corner) => corner.clone().applyMatrix4(matrixWorld).project(view.camera));
+    return Math.hypot((seen[0].x - seen[1].x) / 2, (seen[0].y - seen[1].y) / 2);
+  });
+  must(share > 0.15, `a part of 5 mm has ${(100 * share).toFixed(1)} % of the picture`);
+  await page.click('[data-view="iso"]');
+}
+
+async function theThemeIsTheSystemsUntilSomebodyChooses({ browser }) {
+  const page = await pageAt(browser, plant.url);
+  const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+  for (const wanted of ["light", "dark", "light"]) {
+    await page.emulateMedia({ colorScheme: wanted });
+    await until(`the theme is ${wanted}`, async () => (await theme()) === wanted, 3000);
+  }
+  await page.click("#theme");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await page.emulateMedia({ colorScheme: "light" });
+  await page.reload();
+  must((await theme()) === "dark", "what was chosen is not kept");
+  await page.context().close();
+}
+
+// Midnight is no 24 o'clock, and no 12.
+async function timesHave24Hours({ browser }) {
+  const page = await (await browser.newContext({ viewport: kSmall, locale: "en-US" })).newPage();
+  await page.goto(plant.url);
+  await until("the page", () => page.evaluate(() => globalThis.meridian?.display !== undefined));
+  const [time] = await page.evaluate(() => {
+    meridian.display.setNews([{ time_ms: new Date().setHours(0, 5, 7, 0), severity: 0, source: "machine", text: "" }]);
+    return [document.querySelector("#news time").textContent];
+  });
+  must(time === "00:05:07", `five past midnight is shown as ${time}`);
+  await page.context().close();
 }
 
 // A trail from here to there: as frames bring it.
@@ -167,6 +210,9 @@ await runTests(plant, pictures, async (session, run) => {
   await run("WithoutWebGlAllElseWorks", withoutWebGlAllElseWorks, open);
   await run("OnlyOneProgramIsDropped", onlyOneProgramIsDropped, open);
   await run("APathThatDoesNotComeIsAskedForAgain", aPathThatDoesNotComeIsAskedForAgain, open);
+  await run("ASmallPartFillsItsView", aSmallPartFillsItsView, open);
+  await run("TheThemeIsTheSystemsUntilSomebodyChooses", theThemeIsTheSystemsUntilSomebodyChooses, open);
+  await run("TimesHave24Hours", timesHave24Hours, open);
   await run("TheTrailBeginsAnewAfterAGap", theTrailBeginsAnewAfterAGap, open);
   await run("ASilentServiceDimsThePage", aSilentServiceDimsThePage, open);
   await run("ASliderFollowsTheFingerAlone", aSliderFollowsTheFingerAlone, open);

@@ -16,7 +16,7 @@ const shortSpindle = (words) =>
 // The day stands in front where it is not today.
 function shownTime(time_ms) {
   const time = new Date(time_ms);
-  const clockTime = time.toLocaleTimeString([], { hour12: false });
+  const clockTime = time.toLocaleTimeString([], { hourCycle: "h23" });
   return time.toDateString() === new Date().toDateString() ? clockTime : `${time.toLocaleDateString()} ${clockTime}`;
 }
 

@@ -10,6 +10,7 @@ import { Program } from "./program.js";
 import { Report } from "./report.js";
 import { Scope } from "./scope.js";
 import { Tabs } from "./tabs.js";
+import { Theme } from "./theme.js";
 import { Timing } from "./timing.js";
 import { View } from "./view.js";
 
@@ -46,26 +47,7 @@ function explainNoPicture(text) {
   byId("no-picture").textContent = text;
 }
 
-// ---- dark and light
-function setTheme(theme) {
-  document.documentElement.dataset.theme = theme;
-  view.setTheme(theme);
-  try {
-    localStorage.setItem("theme", theme);
-  } catch {
-    // Private windows keep nothing.
-  }
-}
-const prefersLight = matchMedia("(prefers-color-scheme: light)").matches;
-let theme = prefersLight ? "light" : "dark";
-try {
-  theme = localStorage.getItem("theme") ?? theme;
-} catch {
-  // Private windows keep nothing.
-}
-setTheme(theme);
-byId("theme").addEventListener("click", () =>
-  setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+panel.theme = new Theme((theme) => view.setTheme(theme));
 
 // ---- the picture's own buttons
 for (const button of document.querySelectorAll("[data-view]")) {

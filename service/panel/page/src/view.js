@@ -162,7 +162,8 @@ export class View {
     const box = new Box3();
     if (name === "part" && this.path) {
       box.copy(this.path.bounds).applyMatrix4(this.machine.frames.workpiece.matrixWorld);
-      return box.expandByScalar(0.3 * this.machine.size);
+      const kAround = 0.06, kMin_mm = 1;
+      return box.expandByScalar(Math.max(kAround * box.getSize(new Vector3()).length(), kMin_mm));
     }
     const { machine } = this;
     const centre = new Vector3().setFromMatrixPosition(machine.frames.workpiece.matrixWorld);
