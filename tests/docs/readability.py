@@ -10,8 +10,8 @@ import pathlib
 import re
 import sys
 
-MAX_MEAN = 19  # words a sentence, over a page
-MAX_WORDS = 47  # in a sentence
+MAX_MEAN = 18  # words a sentence, over a page
+MAX_WORDS = 40  # in a sentence
 BLOCK = re.compile(r"\A---\n.*?^---$|^ *```.*?^ *```$|<!--.*?-->", re.M | re.S)
 IMAGE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
