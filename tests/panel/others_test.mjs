@@ -130,6 +130,30 @@ async function timesHave24Hours({ browser }) {
   await page.context().close();
 }
 
+// A stretch is shown alone until the scope goes on; what stands still stays when the service begins anew.
+async function theScopeZoomsAndBeginsAnew({ page }) {
+  await page.click("#tab-scope");
+  await until("samples", () => page.evaluate(() => meridian.scope.live.count > 200), 20000);
+  const box = await page.locator("#scope-plot-1 .u-over").boundingBox(), y = box.y + box.height / 2;
+  await page.mouse.move(box.x + 0.5 * box.width, y);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.75 * box.width, y, { steps: 4 });
+  await page.mouse.up();
+  const seen = () => page.evaluate(() => ({ state: meridian.scope.state.now, width: meridian.scope.range()[1] - meridian.scope.range()[0], window: meridian.scope.window }));
+  const zoomed = await seen();
+  must(zoomed.state === "paused" && zoomed.width < 0.3 * zoomed.window, `${zoomed.state}, ${zoomed.width} s are shown`);
+  const { isNew, isKept } = await page.evaluate(() => {
+    const { scope, frame } = meridian, { live } = scope;
+    scope.setFrame({ ...frame, service: "another" });
+    return { isNew: scope.live !== live && scope.live.count <= frame.samples.length, isKept: scope.buffer === live };
+  });
+  must(isNew && isKept, `anew: ${isNew}, what stands still is kept: ${isKept}`);
+  await page.click("#scope-pause");
+  const after = await seen();
+  must(after.state === "running" && Math.abs(after.width - after.window) < 1e-6, `${after.state}, ${after.width} s are shown`);
+  await page.click("#tab-machine");
+}
+
 // A trail from here to there: as frames bring it.
 const drawTrail = (page) => page.evaluate(() => (meridian.view.trail.add([[0, 0, 0, 0, 0, 1, 1], [50, 0, 0, 0, 0, 1, 2]], 1), meridian.view.trail.count));
 
@@ -213,6 +237,7 @@ await runTests(plant, pictures, async (session, run) => {
   await run("ASmallPartFillsItsView", aSmallPartFillsItsView, open);
   await run("TheThemeIsTheSystemsUntilSomebodyChooses", theThemeIsTheSystemsUntilSomebodyChooses, open);
   await run("TimesHave24Hours", timesHave24Hours, open);
+  await run("TheScopeZoomsAndBeginsAnew", theScopeZoomsAndBeginsAnew, open);
   await run("TheTrailBeginsAnewAfterAGap", theTrailBeginsAnewAfterAGap, open);
   await run("ASilentServiceDimsThePage", aSilentServiceDimsThePage, open);
   await run("ASliderFollowsTheFingerAlone", aSliderFollowsTheFingerAlone, open);

@@ -253,6 +253,7 @@ async function saved(page, button, name) {
 }
 
 async function aTriggerStopsTheScope({ page }) {
+  await afterStalls(page, () => enabled(page));
   await page.click("#tab-scope");
   await page.selectOption("#scope-window", "1");
   await page.selectOption("#scope-trigger", "state");
@@ -260,7 +261,7 @@ async function aTriggerStopsTheScope({ page }) {
   await page.click("#scope-arm");
   await go(page, "disable", "Off");
   await go(page, "enable", "Ready");
-  await until("the trigger", () => page.evaluate(() => meridian.scope.trigger.at !== null && meridian.scope.isPaused), 10000);
+  await until("the trigger", () => page.evaluate(() => meridian.scope.state.now === "triggered"), 10000);
   const box = await page.locator("#scope-plot-1 .u-over").boundingBox();
   for (const share of [0.3, 0.6]) await page.mouse.click(box.x + share * box.width, box.y + box.height / 2);
   must((await page.textContent("#scope-readout")).includes("B \u2212 A"), "no cursors");

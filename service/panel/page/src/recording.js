@@ -4,7 +4,7 @@ import { ScopeBuffer } from "./scope_buffer.js";
 
 export const kMaxBytes = 96 << 20;
 
-// Throws Error with a sentence.
+// The samples, and how many rows were cut off: the last of a service that ended in the middle of one. Throws Error with a sentence.
 export function readRecording(text, joints, cycle_s) {
   const lines = text.split("\n");
   const names = lines[0].trim().split(",");
@@ -19,13 +19,18 @@ export function readRecording(text, joints, cycle_s) {
   }
   const buffer = new ScopeBuffer(joints, cycle_s, Math.max(lines.length, 2));
   const number = (fields, at) => (at < 0 || fields[at] === undefined || fields[at] === "" ? NaN : Number(fields[at]));
+  let cut = 0;
   for (const line of lines.slice(1)) {
+    if (line === "") continue;
     const fields = line.split(",");
-    if (fields.length < names.length || !Number.isFinite(number(fields, cycle))) continue; // torn at the end
+    if (fields.length < names.length || !Number.isFinite(number(fields, cycle))) {
+      cut += 1;
+      continue;
+    }
     const q = position.map((at) => number(fields, at));
     const errors = joints.map((_, k) => (following[k] >= 0 ? number(fields, following[k]) : q[k] - number(fields, feedback[k])));
     buffer.add(number(fields, cycle), q, errors, number(fields, feed), number(fields, lateness_ns) / 1000);
   }
   if (buffer.count === 0) throw new Error("the recording has no rows");
-  return buffer;
+  return { buffer, cut };
 }

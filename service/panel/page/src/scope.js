@@ -6,6 +6,8 @@ import { jointColour } from "./held.js";
 import { kMaxBytes, readRecording } from "./recording.js";
 import { kQuantities, ScopeBuffer } from "./scope_buffer.js";
 import { mcapOf } from "./scope_mcap.js";
+import { readoutOf } from "./scope_readout.js";
+import { ScopeState } from "./scope_state.js";
 import { Trigger } from "./trigger.js";
 import { fixed, unit } from "./units.js";
 
@@ -16,9 +18,10 @@ const style = (name) => getComputedStyle(document.documentElement).getPropertyVa
 export class Scope {
   constructor(panel) {
     this.panel = panel;
+    this.state = new ScopeState();
     this.trigger = new Trigger();
     this.cursors = [null, null];
-    this.isPaused = false;
+    this.zoom = null;
     this.drawn = 0;
     for (const id of ["scope-quantity-1", "scope-quantity-2"]) {
       byId(id).append(...Object.entries(kQuantities).map(([value, { label }]) => element("option", { value }, label)));
@@ -27,11 +30,11 @@ export class Scope {
     byId("scope-quantity-1").value = "velocity";
     byId("scope-quantity-2").value = "following";
     byId("scope-window").addEventListener("change", () => this.draw());
-    byId("scope-pause").addEventListener("click", () => this.pause(!this.isPaused));
+    byId("scope-pause").addEventListener("click", () => this.change(this.state.isFollowing ? "pause" : "go"));
     byId("scope-arm").addEventListener("click", () => this.arm());
     byId("scope-csv").addEventListener("click", () => this.save("csv", new Blob([this.buffer.csv(...this.range())], { type: "text/csv" })));
     byId("scope-mcap").addEventListener("click", async () => this.save("mcap", await mcapOf(this.buffer, ...this.range())));
-    byId("scope-live").addEventListener("click", () => this.goLive());
+    byId("scope-live").addEventListener("click", () => this.change("go"));
     const file = byId("scope-file");
     byId("scope-open").addEventListener("click", () => file.click());
     file.addEventListener("change", () => {
@@ -42,9 +45,13 @@ export class Scope {
     new ResizeObserver(() => this.resize()).observe(byId("sheet-scope"));
   }
 
+  // A machine with the same joints stands elsewhere, or has other limits: what is shown stays.
   setMachine(scene) {
+    const shapeOf = (one) => JSON.stringify([one?.joints.map(({ name, rotary }) => [name, rotary]), one?.cycle_s]);
+    const isSame = shapeOf(scene) === shapeOf(this.scene);
     this.scene = scene;
-    this.live = this.buffer = new ScopeBuffer(scene.joints, scene.cycle_s);
+    if (isSame) return;
+    this.live = new ScopeBuffer(scene.joints, scene.cycle_s);
     this.chosen = scene.joints.map((_, i) => i);
     const toggles = scene.joints.map((joint, i) => {
       const button = element("button", { type: "button", "aria-pressed": "true" }, joint.name);
@@ -59,13 +66,15 @@ export class Scope {
     });
     byId("scope-joints").replaceChildren(...toggles);
     byId("scope-state").replaceChildren(...["Running", "Holding", "Held", "Starving", "FaultStop", "Fault", "Ready"].map((value) => element("option", { value }, value)));
-    this.offerQuantities();
+    this.change("go");
+    this.showLive();
   }
 
   // ---- what comes in
 
   setFrame(frame) {
     if (!this.live) return;
+    if (frame.service !== this.service) this.beginAnew(frame.service);
     const count = this.scene.joints.length;
     const before = this.live.added;
     for (const row of frame.samples) {
@@ -75,15 +84,22 @@ export class Scope {
     this.trigger.look(frame, this.live, first);
     this.stopWhereTriggered();
     const now = performance.now();
-    if (this.isPaused || this.buffer !== this.live || now - this.drawn < kBetweenDrawings_ms) return;
+    if (!this.state.isFollowing || now - this.drawn < kBetweenDrawings_ms) return;
     this.drawn = now;
     this.draw();
   }
 
+  // Another service counts its own cycles. What stands still is still that of the one before.
+  beginAnew(service) {
+    this.service = service;
+    this.live = new ScopeBuffer(this.scene.joints, this.scene.cycle_s);
+    if (this.state.isFollowing) this.showLive();
+  }
+
   stopWhereTriggered() {
     const { at } = this.trigger;
-    if (at === null || this.isPaused || this.live.end < at + this.window / 2) return;
-    this.pause(true);
+    if (at === null || this.state.now !== "armed" || this.live.end < at + this.window / 2) return;
+    this.change("fire");
     this.report(`triggered at ${fixed(at, 3)} s`);
   }
 
@@ -93,32 +109,40 @@ export class Scope {
 
   // ---- what the operator asks for
 
-  pause(isPaused) {
-    this.isPaused = isPaused;
+  // All that goes with a change of the state.
+  change(event) {
+    if (!this.state.take(event)) return;
+    const { now, isFollowing } = this.state;
+    this.zoom = null;
+    if (isFollowing) this.cursors = [null, null];
+    if (now !== "armed" && now !== "triggered") this.trigger.disarm();
+    byId("scope-pause").setAttribute("aria-pressed", String(!isFollowing));
+    setText(byId("scope-pause"), isFollowing ? "Pause" : "Go on");
+    byId("scope-live").hidden = now !== "file";
+    this.report(now === "armed" ? "armed" : "");
+    if (isFollowing && this.buffer !== this.live) this.showLive();
     this.frozenEnd = this.buffer?.end ?? 0;
-    byId("scope-pause").setAttribute("aria-pressed", String(isPaused));
-    setText(byId("scope-pause"), isPaused ? "Go on" : "Pause");
-    if (!isPaused) {
-      this.trigger.disarm();
-      this.cursors = [null, null];
-      this.report("");
-    }
     this.draw();
+  }
+
+  showLive() {
+    this.buffer = this.live;
+    this.offerQuantities();
   }
 
   arm() {
     const kind = byId("scope-trigger").value;
-    if (kind === "none") return this.pause(false);
-    this.pause(false);
+    if (kind === "none") return this.change("go");
+    this.change("arm");
     const quantity = byId("scope-quantity-1").value;
     this.trigger.arm(kind, kind === "state" ? byId("scope-state").value
       : { quantity, joint: this.chosen[0] ?? 0, level: Number(byId("scope-level").value) || 0 });
-    return this.report("armed");
+    return undefined;
   }
 
   // What the wire does not carry is offered of recordings alone.
   offerQuantities() {
-    const isLive = this.buffer === this.live;
+    const isLive = this.state.now !== "file";
     for (const id of ["scope-quantity-1", "scope-quantity-2"]) {
       for (const option of byId(id).options) option.hidden = option.disabled = isLive && kQuantities[option.value].isRecorded === true;
       if (byId(id).selectedOptions[0].disabled) byId(id).value = "feed";
@@ -126,24 +150,22 @@ export class Scope {
     this.rebuild();
   }
 
-  goLive() {
-    this.buffer = this.live;
-    this.offerQuantities();
-    byId("scope-live").hidden = true;
-    this.pause(false);
-  }
-
   async open(file) {
     if (file.size > kMaxBytes) return this.report("the recording has more than 96 MiB: cut it, or use meridian check --html");
     try {
-      this.buffer = readRecording(await file.text(), this.scene.joints, this.scene.cycle_s);
+      this.show(readRecording(await file.text(), this.scene.joints, this.scene.cycle_s), file.name);
     } catch (error) {
-      return this.report(error.message);
+      this.report(error.message);
     }
-    byId("scope-live").hidden = false;
+    return undefined;
+  }
+
+  show({ buffer, cut }, name) {
+    this.buffer = buffer;
+    this.change("open");
     this.offerQuantities();
-    this.pause(true);
-    return this.report(`${file.name}: ${this.buffer.count} cycles`);
+    const words = cut > 0 ? `, ${cut} ${cut === 1 ? "row is" : "rows are"} cut off and left out` : "";
+    this.report(`${name}: ${buffer.count} cycles${words}`);
   }
 
   save(kind, blob) {
@@ -161,11 +183,11 @@ export class Scope {
   // What is shown, s: the newest window; of a recording, or behind a zoom, what the plots show.
   range() {
     const { buffer } = this;
-    if (this.zoom && this.isPaused) return this.zoom;
-    if (buffer !== this.live) return [buffer.time(0), buffer.end];
-    const end = this.isPaused ? this.frozenEnd : buffer.end;
+    if (this.zoom) return this.zoom;
+    if (this.state.now === "file") return [buffer.time(0), buffer.end];
+    const end = this.state.isFollowing ? buffer.end : this.frozenEnd;
     const centre = this.trigger.at;
-    if (this.isPaused && centre !== null) return [centre - this.window / 2, centre + this.window / 2];
+    if (this.state.now === "triggered") return [centre - this.window / 2, centre + this.window / 2];
     return [end - this.window, end];
   }
 
@@ -217,9 +239,12 @@ export class Scope {
   // A stretch that was dragged over is shown alone; a double click shows all again.
   select(plot) {
     if (plot && plot.select.width < 4) return;
-    this.zoom = plot ? [plot.posToVal(plot.select.left, "x"), plot.posToVal(plot.select.left + plot.select.width, "x")] : null;
-    if (plot) plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
-    if (!this.isPaused) this.pause(true);
+    const zoom = plot ? [plot.posToVal(plot.select.left, "x"), plot.posToVal(plot.select.left + plot.select.width, "x")] : null;
+    if (plot) {
+      plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+      this.change("pause");
+    }
+    this.zoom = zoom;
     this.draw();
   }
 
@@ -227,7 +252,7 @@ export class Scope {
   setCursor(plot) {
     if (plot.cursor.left < 0) return;
     const at = plot.posToVal(plot.cursor.left, "x");
-    if (!this.isPaused) this.pause(true);
+    this.change("pause");
     this.cursors = this.cursors[0] === null || this.cursors[1] !== null ? [at, null] : [this.cursors[0], at];
     this.draw();
   }
@@ -254,25 +279,11 @@ export class Scope {
     line(this.cursors[1], style("--warn"), "B");
   }
 
-  // Values at the cursors, and what lies between them.
   drawReadout() {
-    const [a, b] = this.cursors;
     const box = byId("scope-readout");
-    box.hidden = a === null;
-    if (a === null) return;
-    const cells = (...texts) => texts.map((text) => element("span", {}, text));
-    const rows = cells("", "A", "B", "B \u2212 A");
-    rows.push(...cells("time, s", fixed(a, 4), b === null ? "" : fixed(b, 4), b === null ? "" : fixed(b - a, 4)));
-    for (const i of [1, 2]) {
-      const quantity = byId(`scope-quantity-${i}`).value;
-      const { perJoint, label } = kQuantities[quantity];
-      for (const k of perJoint ? this.chosen : [0]) {
-        const value = (at) => (at === null ? null : this.buffer.value(quantity, k, Math.min(this.buffer.find(at), this.buffer.count - 1)));
-        const [from, to] = [value(a), value(b)];
-        const text = (number) => (number === null ? "" : number.toPrecision(6));
-        rows.push(...cells(perJoint ? `${this.scene.joints[k].name} ${label}` : label, text(from), text(to), from === null || to === null ? "" : text(to - from)));
-      }
-    }
-    box.replaceChildren(...rows);
+    box.hidden = this.cursors[0] === null;
+    if (box.hidden) return;
+    const quantities = [1, 2].map((i) => byId(`scope-quantity-${i}`).value);
+    box.replaceChildren(...readoutOf(this.buffer, quantities, this.chosen, this.cursors));
   }
 }

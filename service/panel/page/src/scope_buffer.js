@@ -13,9 +13,12 @@ export const kQuantities = {
   lateness: { label: "lateness, \u00b5s", perJoint: false, isRecorded: true },
 };
 
+// What is kept at least, s: the longest window, and half of it behind a trigger.
+const kKept_s = 30;
+
 export class ScopeBuffer {
   // `joints` of the scene; `cycle_s` is the period.
-  constructor(joints, cycle_s, capacity = 1 << 16) {
+  constructor(joints, cycle_s, capacity = 2 * Math.ceil(kKept_s / cycle_s)) {
     Object.assign(this, { joints, cycle_s, capacity, count: 0, added: 0 });
     const column = () => new Float64Array(capacity);
     this.cycle = column();
