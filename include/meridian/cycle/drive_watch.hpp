@@ -30,8 +30,8 @@ inline constexpr double kWatchMoved_mm = 0.01, kWatchMoved_rad = 1e-4;
                                             const JointVector& before) noexcept {
   for (int i = 0; i < c.machine.joint_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    const double least = drive_spec(c.machine, i).is_rotary ? kWatchMoved_rad : kWatchMoved_mm;
-    const bool is_far = std::abs(moved[n]) > least && std::abs(before[n]) > least;
+    const double min = drive_spec(c.machine, i).is_rotary ? kWatchMoved_rad : kWatchMoved_mm;
+    const bool is_far = std::abs(moved[n]) > min && std::abs(before[n]) > min;
     if (is_far && (moved[n] > 0) == (before[n] > 0)) return i;
   }
   return -1;

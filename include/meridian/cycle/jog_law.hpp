@@ -146,8 +146,8 @@ inline void turn_to_end(JogAxis& axis, double dt) noexcept {
 /// always a way on. The last cycle before braking is cut where braking ends exactly at the end of
 /// the room; the joint then rests there until something else is asked for.
 inline void follow(JogAxis& axis, double velocity, double dt) noexcept {
-  const double most = axis.rates.velocity;
-  const double asked = std::isnan(velocity) ? 0 : std::clamp(velocity, -most, most);
+  const double max = axis.rates.velocity;
+  const double asked = std::isnan(velocity) ? 0 : std::clamp(velocity, -max, max);
   JogRamp ramp = axis.ramp;
   if (asked != axis.asked) {
     ramp = JogRamp(axis.at, asked, axis.rates);

@@ -44,10 +44,10 @@ struct Slopes {
 /// u' a + u'' v², its jerk u' j + 3 u'' v a + u''' v³: halves and quarters of them are given out.
 inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, double acceleration,
                        double jerk) noexcept {
-  const auto least = [](double& value, double limit, double slope) {
+  const auto cap = [](double& value, double limit, double slope) {
     if (slope > 0) value = std::min(value, limit / slope);
   };
-  least(rates.velocity, velocity, slopes.first);
+  cap(rates.velocity, velocity, slopes.first);
   if (slopes.second > 0) {
     rates.velocity = std::min(rates.velocity, std::sqrt(0.5 * acceleration / slopes.second));
   }
@@ -55,9 +55,9 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
     rates.velocity = std::min(rates.velocity, std::cbrt(0.25 * jerk / slopes.third));
   }
   const bool is_bent = slopes.second > 0 || slopes.third > 0;
-  least(rates.acceleration, is_bent ? 0.5 * acceleration : acceleration, slopes.first);
-  least(rates.acceleration, 0.25 * jerk, 3 * slopes.second * rates.velocity);
-  least(rates.jerk, is_bent ? 0.5 * jerk : jerk, slopes.first);
+  cap(rates.acceleration, is_bent ? 0.5 * acceleration : acceleration, slopes.first);
+  cap(rates.acceleration, 0.25 * jerk, 3 * slopes.second * rates.velocity);
+  cap(rates.jerk, is_bent ? 0.5 * jerk : jerk, slopes.first);
 }
 
 /// Whether the stage's drives are in their travel where `joint` is at `q`, or no farther out of it
@@ -111,8 +111,8 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
     const Limited<Jet<3>> all = limited_of(machine, moving);
     for (std::size_t k = 0; k < slopes.size(); ++k) {
       const Jet<3>& u = all[static_cast<std::size_t>(machine.joint_count) + k];
-      const auto raise = [](double& most, double value) {
-        most = std::max(most, kBetweenSamples * std::abs(value));
+      const auto raise = [](double& max, double value) {
+        max = std::max(max, kBetweenSamples * std::abs(value));
       };
       raise(slopes[k].first, u.derivative(1));
       raise(slopes[k].second, u.derivative(2));

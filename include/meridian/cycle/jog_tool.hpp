@@ -74,9 +74,9 @@ class ToolSurvey {
     JogRoom room;
     room.axis.low = first_in_ > 0 ? first_in_ : low_;
     room.axis.high = last_out_ < 0 && !(first_in_ > 0) ? last_out_ : high_;
-    const JogRates most =
+    const JogRates max =
         way.is_tilt ? JogRates{10, 1e3, 1e5} : JogRates{machine.max_feed_mm_per_s, 1e5, 1e7};
-    room.axis.rates = room.fault = most;
+    room.axis.rates = room.fault = max;
     for (int i = 0; i < limited_count(machine); ++i) {
       const JointLimits& limits = limited_spec(machine, i).limits;
       const jog::Slopes& slopes = slopes_[static_cast<std::size_t>(i)];
@@ -165,8 +165,8 @@ class ToolSurvey {
                    end = h * b[n].derivative(1);
       const bool turns = begin * end < 0;
       const double peak = turns ? at + kPeak * begin * begin / (begin - end) : at;
-      const double most = std::max(out_of(spec, value_of(b[n])), out_of(spec, peak));
-      if (most - out_of(spec, at) > kRounding) return false;
+      const double max = std::max(out_of(spec, value_of(b[n])), out_of(spec, peak));
+      if (max - out_of(spec, at) > kRounding) return false;
     }
     if (!machine.keep_out.empty() && !keeps_out(machine, a, b)) return false;
     return !has_stage(machine) || phi_out_of(machine, b) - phi_out_of(machine, a) <= kRounding;
@@ -264,8 +264,8 @@ class ToolSurvey {
     constexpr double kBetween = 1.15, kStraight = 1e-11;
     for (int i = 0; i < limited_count(machine); ++i) {
       const auto n = static_cast<std::size_t>(i);
-      const auto raise = [](double& most, double value) {
-        if (std::abs(value) > kStraight) most = std::max(most, kBetween * std::abs(value));
+      const auto raise = [](double& max, double value) {
+        if (std::abs(value) > kStraight) max = std::max(max, kBetween * std::abs(value));
       };
       raise(slopes_[n].first, place[n].derivative(1));
       raise(slopes_[n].second, place[n].derivative(2));

@@ -143,9 +143,9 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
       return is_emergency_heard(c.machine, c.in) ? Refusal::kFaultPresent : Refusal::kNone;
     case Verb::kFeedOverride:
     case Verb::kRapidOverride: {
-      const double most = command.verb == Verb::kFeedOverride ? c.machine.max_feed_override : 1.0;
-      return command.argument >= 0 && command.argument <= most ? Refusal::kNone
-                                                               : Refusal::kOutOfRange;
+      const double max = command.verb == Verb::kFeedOverride ? c.machine.max_feed_override : 1.0;
+      return command.argument >= 0 && command.argument <= max ? Refusal::kNone
+                                                              : Refusal::kOutOfRange;
     }
     case Verb::kSingleBlock:
       if (command.argument == 1 && c.machine.override_ramp_s > kMaxStepRamp_s) {

@@ -49,9 +49,9 @@ struct BlockEndAhead {
 };
 
 /// Looks for the end of a block on the motion `piece`, which begins in `begin` s of plan time and
-/// is followed by `next`, no nearer than `least`.
+/// is followed by `next`, no nearer than `min`.
 [[nodiscard]] inline bool find_end_on(Cycle& c, const TimePiece& piece, const TimePiece* next,
-                                      double begin, double least, BlockEndAhead& out) noexcept {
+                                      double begin, double min, BlockEndAhead& out) noexcept {
   const PathPiece* path = c.reader.path_of(piece);
   if (path == nullptr) return false;
   const bool ends_path = next == nullptr || next->path_index != piece.path_index;
@@ -63,7 +63,7 @@ struct BlockEndAhead {
     const std::uint64_t sequence = path->sequence + mark.ahead;
     if (mark.s < piece.s0 || sequence < c.state.single_block.next_block) continue;
     const double time = time_at(piece, mark.s, 0.5 * piece.duration);
-    if (begin + time < least) continue;
+    if (begin + time < min) continue;
     out.is_found = true;
     out.plan_time = begin + time;
     out.time = time;
@@ -74,15 +74,15 @@ struct BlockEndAhead {
   return false;
 }
 
-/// The nearest end of a block that is at least `least` of plan time away and that the plan runs on
-/// through; what is farther than `most` does not matter. Only while a motion is in force.
-[[nodiscard, gnu::noinline]] inline BlockEndAhead find_block_end(Cycle& c, double least,
-                                                                 double most) noexcept {
+/// The nearest end of a block that is at least `min` of plan time away and that the plan runs on
+/// through; what is farther than `max` does not matter. Only while a motion is in force.
+[[nodiscard, gnu::noinline]] inline BlockEndAhead find_block_end(Cycle& c, double min,
+                                                                 double max) noexcept {
   BlockEndAhead out;
   MotionAhead ahead(c.reader);
   const TimePiece* piece = c.reader.piece();
   double begin = -c.state.piece_time;
-  while (piece != nullptr && begin <= most) {
+  while (piece != nullptr && begin <= max) {
     if (ahead.places() >= kMaxPlacesAhead) {
       out.is_limited = true;
       break;
@@ -93,7 +93,7 @@ struct BlockEndAhead {
     }
     const TimePiece* next = ahead.next();
     const double end = begin + piece->duration;
-    if (end >= least && find_end_on(c, *piece, next, begin, least, out)) return out;
+    if (end >= min && find_end_on(c, *piece, next, begin, min, out)) return out;
     begin = end;
     piece = next;
     ++out.pieces;
@@ -134,11 +134,11 @@ inline void begin_braking(Cycle& c, const BlockEndAhead& end) noexcept {
 /// any more, the tail is run, whatever comes.
 [[nodiscard, gnu::noinline]] inline double advance_to_block_end(Cycle& c) noexcept {
   RateFilter& rate = c.state.rate;
-  const double least = rate.plan_time_to_rest();
+  const double min = rate.plan_time_to_rest();
   RateFilter next = rate;
   const double passed = next.advance(c.dt);
   const double needed = passed + next.plan_time_to_rest() + kMin_s;
-  const BlockEndAhead end = find_block_end(c, least, needed + c.dt);
+  const BlockEndAhead end = find_block_end(c, min, needed + c.dt);
   if (end.tail != nullptr && end.tail_time < needed) c.reader.keep_tail(*end.tail);
   if (!end.is_found && end.is_limited && end.plan_time < needed) {
     rate.aim(0);

@@ -187,10 +187,10 @@ template <class S>
                 sine2,
                 S(0.0),
                 true};
-  const double least =
+  const double min =
       std::min(std::min(value_of(t.n1), value_of(t.n2)), std::min(value_of(t.n3), value_of(t.n4)));
-  if (!(least >= 0)) {
-    t.is_reachable = least >= -kReachMargin_rad;
+  if (!(min >= 0)) {
+    t.is_reachable = min >= -kReachMargin_rad;
     for (S* n : {&t.n1, &t.n2, &t.n3, &t.n4}) {
       if (!(value_of(*n) >= 0)) *n = S(0.0);
     }

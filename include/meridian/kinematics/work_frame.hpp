@@ -98,9 +98,9 @@ class WorkFrames {
   [[nodiscard]] WorkFrame* begin() noexcept { return rows_.data(); }
   [[nodiscard]] WorkFrame* end() noexcept { return rows_.data() + count_; }
 
-  [[nodiscard]] static bool is_within(const Array3& values, double most) noexcept {
+  [[nodiscard]] static bool is_within(const Array3& values, double max) noexcept {
     return std::all_of(values.begin(), values.end(),
-                       [most](double value) { return std::abs(value) <= most; });
+                       [max](double value) { return std::abs(value) <= max; });
   }
 
   [[nodiscard]] FrameFault put(const WorkFrame& frame) noexcept {

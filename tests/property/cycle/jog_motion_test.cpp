@@ -60,10 +60,9 @@ class RestlessHand {
   }
   /// Any velocity up to one and a half times the limit, often the whole of it, sometimes none.
   double velocity() {
-    const double most =
-        hand_.world.machine.joints[static_cast<std::size_t>(joint_)].limits.velocity;
+    const double max = hand_.world.machine.joints[static_cast<std::size_t>(joint_)].limits.velocity;
     const double what = uniform(0, 1);
-    return what < 0.1 ? 0 : what < 0.3 ? most * (what < 0.2 ? -1.5 : 1.5) : uniform(-most, most);
+    return what < 0.1 ? 0 : what < 0.3 ? max * (what < 0.2 ? -1.5 : 1.5) : uniform(-max, max);
   }
 
   std::mt19937_64 random_;

@@ -70,8 +70,8 @@ class PassedVertices {
     double off = 0;  ///< least distance so far, in tolerances
   };
 
-  /// Distance of the vertex from the way between the last two poses, if it is below `least`.
-  [[nodiscard]] double off(const ToolPose& vertex, double least) const {
+  /// Distance of the vertex from the way between the last two poses, if it is below `min`.
+  [[nodiscard]] double off(const ToolPose& vertex, double min) const {
     const ToolPose& from = poses_[known_ > 1 ? 1 : 2];
     const Vector3 tip = poses_[2].tip - from.tip, axis = poses_[2].axis - from.axis;
     const double sag =
@@ -81,7 +81,7 @@ class PassedVertices {
       return std::max(to_tip / tip_mm_, (from.axis + t * axis - vertex.axis).norm() / axis_rad_);
     };
     const double at_end = off_at(1);
-    if (at_end - std::max(tip.norm() / tip_mm_, axis.norm() / axis_rad_) > least) return least;
+    if (at_end - std::max(tip.norm() / tip_mm_, axis.norm() / axis_rad_) > min) return min;
     double low = 0, high = 1;
     for (int n = 0; n < 30; ++n) {
       const double left = low + (high - low) / 3, right = high - (high - low) / 3;

@@ -156,8 +156,8 @@ inline LimitShares shares_of_limits(const CycleWorld& world, std::size_t first, 
       const double accel = is_fault ? limits.fault_acceleration : limits.acceleration;
       const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
       const double q0 = at[0][i], q1 = at[1][i], q2 = at[2][i], q3 = at[3][i];
-      const double most = std::max(std::abs(q0), std::abs(q3));
-      const double ulp = 8 * (std::nextafter(most, 1e300) - most);
+      const double max = std::max(std::abs(q0), std::abs(q3));
+      const double ulp = 8 * (std::nextafter(max, 1e300) - max);
       out.take({(std::abs(q3 - q2) - ulp) / dt / limits.velocity,
                 (std::abs((q3 - q2) - (q2 - q1)) - ulp) / (dt * dt) / accel,
                 (std::abs((q3 - q2) - 2 * (q2 - q1) + (q1 - q0)) - ulp) / (dt * dt * dt) / jerk});

@@ -59,8 +59,8 @@ Complaints try_filter(const Make& make, unsigned seed) {
     for (int k = 0; k < 6; ++k) {
       const double target = unit(draw) < 0.3 ? std::round(unit(draw)) : unit(draw);
       const bool is_left_alone = k == 5 || unit(draw) < 0.5;
-      const double most = 1 / bounds.slope + 4 * bounds.slope / bounds.curvature + 10 * dt;
-      const double time = is_left_alone ? most : most * unit(draw);
+      const double max = 1 / bounds.slope + 4 * bounds.slope / bounds.curvature + 10 * dt;
+      const double time = is_left_alone ? max : max * unit(draw);
       filter.aim(target);
       const Tick before{filter.rate(), filter.slope(), 0};
       std::vector<Tick> ticks;

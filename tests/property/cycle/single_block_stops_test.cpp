@@ -32,9 +32,9 @@ TEST(SingleBlock, RestsAtTheSamePlacesWhereTheFeedIsPlannedForMoreThan100Percent
     for (const auto& [block, joints] : rests) expect_same_place(joints, raised[block], block);
     LimitShares worst;
     test::expect_within_limits(run.world, 0, false, worst);
-    double most = 0;
-    for (FeedMark mark; run.planner().take_feed_mark(mark);) most = std::max(most, mark.factor);
-    EXPECT_EQ(most, 1.5);
+    double max = 0;
+    for (FeedMark mark; run.planner().take_feed_mark(mark);) max = std::max(max, mark.factor);
+    EXPECT_EQ(max, 1.5);
   }
 }
 

@@ -86,11 +86,11 @@ struct Holds {
   std::vector<double> time, distance;                          ///< over the least
   std::vector<double> late_s, far_mm;                          ///< beyond its factor of the least
 
-  void take(double time_s, double distance_mm, const LeastStop& least) {
-    time.push_back(time_s / least.time_s);
-    distance.push_back(distance_mm / least.distance_mm);
-    late_s.push_back(time_s - stop.factor * least.time_s);
-    far_mm.push_back(distance_mm - stop.factor * least.distance_mm);
+  void take(double time_s, double distance_mm, const MinStop& min) {
+    time.push_back(time_s / min.time_s);
+    distance.push_back(distance_mm / min.distance_mm);
+    late_s.push_back(time_s - stop.factor * min.time_s);
+    far_mm.push_back(distance_mm - stop.factor * min.distance_mm);
   }
   void sort() {
     for (auto* all : {&time, &distance, &late_s, &far_mm}) std::sort(all->begin(), all->end());
@@ -141,10 +141,10 @@ void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
     if (!is_smooth || begin.ds <= 1e-3) continue;
     ASSERT_LT(piece, trace.times.size());
     PathAhead ahead(machine, trace, piece, joints);
-    const LeastStop least = min_stop(machine, begin, [&](double s) { return ahead(s); });
+    const MinStop min = min_stop(machine, begin, [&](double s) { return ahead(s); });
     const double granted_s = holds.stop.plus * dt;
     const double taken_s = static_cast<double>(stopped.a) * 1e-9 - granted_s;
-    holds.take(taken_s, stopped.x - granted_s * begin.ds, least);
+    holds.take(taken_s, stopped.x - granted_s * begin.ds, min);
   }
 }
 

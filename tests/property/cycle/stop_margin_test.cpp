@@ -25,16 +25,16 @@ struct Row {
 };
 
 double accel_at(const std::array<Row, 5>& rows, double v) {
-  double most = 1e12;
-  for (const Row& r : rows) most = std::min(most, (r.accel - r.d2 * v * v) / r.d1);
-  return most;
+  double max = 1e12;
+  for (const Row& r : rows) max = std::min(max, (r.accel - r.d2 * v * v) / r.d1);
+  return max;
 }
 double jerk_at(const std::array<Row, 5>& rows, double v, double product) {
-  double most = 1e12;
+  double max = 1e12;
   for (const Row& r : rows) {
-    most = std::min(most, (r.jerk - 3 * r.d2 * product - r.d3 * v * v * v) / r.d1);
+    max = std::min(max, (r.jerk - 3 * r.d2 * product - r.d3 * v * v * v) / r.d1);
   }
-  return most;
+  return max;
 }
 
 TEST(StopMargin, KeepsEveryJointBetweenRestAndThePlannedSpeed) {

@@ -25,7 +25,7 @@ struct Interval {
 };
 
 /// A stop from its begin to rest.
-struct LeastStop {
+struct MinStop {
   double time_s = 0;
   double distance_mm = 0;  ///< of path length
 };
@@ -35,8 +35,8 @@ struct LeastStop {
 /// is faster than any stop that keeps them: never too slow an oracle. On a straight cruise it is
 /// the exact optimum but for its step. `joints_at(s)` are the joints along the path, in jets.
 template <class JointsAt>
-[[nodiscard]] LeastStop min_stop(const MachineModel& machine, PathState state,
-                                 const JointsAt& joints_at) {
+[[nodiscard]] MinStop min_stop(const MachineModel& machine, PathState state,
+                               const JointsAt& joints_at) {
   constexpr double kStep_s = 1e-4;
   const double begin = state.s;
   double time = 0;

@@ -53,15 +53,15 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
       const double taken = static_cast<double>(run.world.last(EventCode::kStopped).a) * 1e-9;
       run.command(Verb::kResume);
       if (begin.ds <= 1e-3 || path.kind == PathKind::kJoint) continue;
-      const double least = test::min_stopping_time(draw.machine, path, begin, joints);
+      const double min = test::min_stopping_time(draw.machine, path, begin, joints);
       if (is_by_feed) {
-        shaped.push_back(taken - budget.plus * dt - budget.factor * least);
+        shaped.push_back(taken - budget.plus * dt - budget.factor * min);
         continue;
       }
-      ratios.push_back((taken - budget.plus * dt) / least);
+      ratios.push_back((taken - budget.plus * dt) / min);
       if (ratios.back() > budget.factor) {
         std::printf("program %d: %.4f s, least %.4f s, v %.3f a %.1f s %.3f of %.3f kind %d\n", n,
-                    taken, least, begin.ds, begin.dds, begin.s, path.length,
+                    taken, min, begin.ds, begin.dds, begin.s, path.length,
                     static_cast<int>(path.kind));
       }
     }

@@ -107,9 +107,9 @@ struct Worst {
   int held = 0, flat = 0;
 
   static double longest(const JointVector& q) {
-    double most = 0;
-    for (const double joint : q) most = std::max(most, std::abs(joint));
-    return most;
+    double max = 0;
+    for (const double joint : q) max = std::max(max, std::abs(joint));
+    return max;
   }
 
   /// Of the directions of the linear joints.

@@ -23,13 +23,13 @@ constexpr double kOnLine = 1e-8, kOnAxis = 1e-10, kGuarded = 1e-9;
 
 /// How far outside of travel `joints` are, at most.
 [[nodiscard]] double outside(const MachineModel& machine, const JointVector& joints) {
-  double most = 0;
+  double max = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
     if (machine.joints[i].is_endless) continue;
     const JointLimits& limits = machine.joints[i].limits;
-    most = std::max({most, limits.travel_min - joints[i], joints[i] - limits.travel_max});
+    max = std::max({max, limits.travel_min - joints[i], joints[i] - limits.travel_max});
   }
-  return most;
+  return max;
 }
 
 /// A hand on the tool, and how it did.

@@ -103,8 +103,8 @@ TEST(KeepOut, MissesNothingThatACurveEntersBetweenTwoSamples) {
       enters = keep_out_at(keep_out, place(n / 1000.0)) >= 0;
     JointVector off{};
     for (const int i : {0, 1}) {
-      const double most = std::max(std::abs(2 * c[i][2]), std::abs(2 * c[i][2] + 6 * c[i][3]));
-      off[static_cast<std::size_t>(2 * i)] = most / 8;
+      const double max = std::max(std::abs(2 * c[i][2]), std::abs(2 * c[i][2] + 6 * c[i][3]));
+      off[static_cast<std::size_t>(2 * i)] = max / 8;
     }
     const bool is_found = keep_out_between(keep_out, place(0), place(1), off).box >= 0;
     ASSERT_TRUE(is_found || !enters) << "seed " << kSeed << ", draw " << draw;

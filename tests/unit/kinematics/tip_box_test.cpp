@@ -79,8 +79,8 @@ TEST(TipBox, MissesNothingThatACurveLeavesBetweenTwoSamples) {
     for (int n = 0; n <= 1000 && !leaves; ++n) {
       leaves = beyond_face(box, 0, value(n / 1000.0)) > kTipBoxRounding;
     }
-    const double most = std::max(std::abs(2 * c[2]), std::abs(2 * c[2] + 6 * c[3]));
-    const TipStep step{value(0), value(1), c[1], c[1] + 2 * c[2] + 3 * c[3], most};
+    const double max = std::max(std::abs(2 * c[2]), std::abs(2 * c[2] + 6 * c[3]));
+    const TipStep step{value(0), value(1), c[1], c[1] + 2 * c[2] + 3 * c[3], max};
     const bool is_found = beyond_over_step(box, 0, step, 1) > kTipBoxRounding;
     ASSERT_TRUE(is_found || !leaves) << "seed " << kSeed << ", draw " << draw;
     outside += leaves ? 1 : 0;
