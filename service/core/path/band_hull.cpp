@@ -130,7 +130,7 @@ double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, dou
   const Powers powers = powers_of(quartic);
   const Squares bend = largest_bend(quartic, end - begin);
   double worst = 0, width = 0;
-  Scale scale{}, most{};
+  Scale scale{}, max{};
   const BandVertex* known = nullptr;  // the vertex whose segment `scale` is of
   Squares before = difference_at(powers, 0, line.at(begin, i));
   for (double u = begin; u < end; ++i) {
@@ -141,7 +141,7 @@ double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, dou
     if (known == nullptr || b.is_of_arc != known->is_of_arc ||
         b.is_near_pole != known->is_near_pole) {
       scale = scale_of(line, b);
-      most = {std::max(most.tip, scale.tip), std::max(most.axis, scale.axis)};
+      max = {std::max(max.tip, scale.tip), std::max(max.axis, scale.axis)};
       known = &b;
     }
     worst = std::max({worst, std::max(before.tip, after.tip) * scale.tip,
@@ -150,7 +150,7 @@ double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, dou
     before = after;
     u = to;
   }
-  const double between = std::max(bend.tip * most.tip, bend.axis * most.axis);
+  const double between = std::max(bend.tip * max.tip, bend.axis * max.axis);
   return std::sqrt(worst) + 0.125 * width * width * std::sqrt(between);
 }
 

@@ -65,14 +65,14 @@ double min_gap(const BandTolerance& tolerance) noexcept {
 }
 
 double find_gap(const BandPolyline& line, std::int64_t i) noexcept {
-  const double least = min_gap(line.tolerance());
+  const double min = min_gap(line.tolerance());
   const double dense = gap_by_density(line, i);
-  if (i == 0 || i == line.last()) return std::max(dense, least);
-  if (dense > least && is_straight(line, i, dense)) return dense;
-  for (double gap = dense; gap > least; gap *= kShrink) {
+  if (i == 0 || i == line.last()) return std::max(dense, min);
+  if (dense > min && is_straight(line, i, dense)) return dense;
+  for (double gap = dense; gap > min; gap *= kShrink) {
     if (mean_deviation(line, i, gap) <= kMeanShare) return gap;
   }
-  return least;
+  return min;
 }
 
 }  // namespace
@@ -88,9 +88,9 @@ void BandGaps::advance(BandPolyline& line) noexcept {
     if (i == 0) continue;
     line[i].gap = std::min(line[i].gap, line[i - 1].gap + kGrowth * (line[i].u - line[i - 1].u));
     for (std::int64_t k = i; k > line.first(); --k) {
-      const double most = line[k].gap + kGrowth * (line[k].u - line[k - 1].u);
-      if (!(line[k - 1].gap > most)) break;
-      line[k - 1].gap = most;
+      const double max = line[k].gap + kGrowth * (line[k].u - line[k - 1].u);
+      if (!(line[k - 1].gap > max)) break;
+      line[k - 1].gap = max;
     }
   }
 }

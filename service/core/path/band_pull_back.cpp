@@ -18,14 +18,14 @@ constexpr int kGentleRounds = 5;  // that put points back by steps of a fifth
 /// Raises the weight of the safe points about `span`, more and over a wider part every round.
 void BandSmoother::pull(int round, std::int64_t span) noexcept {
   const std::int64_t width = 2 + 2 * round;
-  const double most = round >= kGentleRounds ? 1.0 : 0.2 * (round + 1);
+  const double max = round >= kGentleRounds ? 1.0 : 0.2 * (round + 1);
   const std::int64_t low = std::max<std::int64_t>(span - 4 - width, first_);
   const std::int64_t high = std::min(span + width, end_ - 1);
   for (std::int64_t i = low; i <= high; ++i) {
     const std::int64_t off = std::max<std::int64_t>({0, span - 4 - i, i - span});
     const double share = 1 - static_cast<double>(off) / static_cast<double>(width + 1);
     double& weight = weight_[static_cast<std::size_t>(i - first_)];
-    weight = std::min(1.0, std::max(weight, most * share));
+    weight = std::min(1.0, std::max(weight, max * share));
   }
 }
 

@@ -89,12 +89,12 @@ class ProgrammedPath {
     const std::size_t low =
         from == u_.begin() ? 0 : static_cast<std::size_t>(from - u_.begin()) - 1;
     const std::size_t high = std::min(last, static_cast<std::size_t>(to - u_.begin()) + 1);
-    double least = 1e9;
+    double min = 1e9;
     for (std::size_t i = std::min(low, last - 1); i < high; ++i) {
       const auto at = [&](double x) { return distance(pose, point(i, x), tolerance); };
-      least = std::min(least, min_of(at));
+      min = std::min(min, min_of(at));
     }
-    return least;
+    return min;
   }
 
   [[nodiscard]] double length() const { return u_.back(); }

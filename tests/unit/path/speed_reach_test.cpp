@@ -128,12 +128,12 @@ TEST(SpeedReach, IsTheLargestOfAllBlocksWithinReachHoweverLongTheyAre) {
       const double u1 = std::min(u0 + 3 * uniform(engine), line.u(line.cuts()));
       while (line.u(end) < u1) ++end;
       speeds.go_to(*line, u0, u1, static_cast<std::int64_t>(end));
-      double most = 0;
+      double max = 0;
       for (std::size_t n = 1; n <= line.cuts(); ++n) {
         const bool counts = line.u(n - 1) < u0 + kSpeedReach_mm && line.u(n) > u1 - kSpeedReach_mm;
-        if (counts) most = std::max(most, asked[n]);
+        if (counts) max = std::max(max, asked[n]);
       }
-      ASSERT_EQ(speeds.tip_mm_per_s(), most) << "from " << u0 << " to " << u1;
+      ASSERT_EQ(speeds.tip_mm_per_s(), max) << "from " << u0 << " to " << u1;
       u0 = u1;
     }
   }
