@@ -11,7 +11,7 @@ namespace {
 
 struct ToleranceBounds {
   const char *name, *unit;
-  double least, most;
+  double min, max;
 };
 constexpr ToleranceBounds kTipBounds{"tip", "mm", kMinTipTolerance_mm, kMaxTipTolerance_mm};
 constexpr ToleranceBounds kAxisBounds{"axis", "rad", kMinAxisTolerance_rad, kMaxAxisTolerance_rad};
@@ -31,11 +31,11 @@ std::string refusal_of(const ToleranceBounds& bounds, double asked, double of_ma
   const bool is_asked = asked != 0;
   if (!is_asked && !is_smooth) return {};
   const double value = is_asked ? asked : of_machine;
-  if (value > 0 && value <= bounds.most && (!is_smooth || value >= bounds.least)) return {};
+  if (value > 0 && value <= bounds.max && (!is_smooth || value >= bounds.min)) return {};
   return std::string(bounds.name) + " tolerance of the " + (is_asked ? "program" : "machine") +
          " is " + in_full(value) + " " + bounds.unit + "; allowed is " +
-         (is_smooth ? in_full(bounds.least) + " to " : "more than 0, up to ") +
-         in_full(bounds.most) + " " + bounds.unit + (is_smooth ? " where a run is smooth" : "") +
+         (is_smooth ? in_full(bounds.min) + " to " : "more than 0, up to ") + in_full(bounds.max) +
+         " " + bounds.unit + (is_smooth ? " where a run is smooth" : "") +
          (is_asked ? ", or 0 for the machine's" : "");
 }
 

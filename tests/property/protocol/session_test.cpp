@@ -140,9 +140,7 @@ TEST(Session, NothingIsLostAndNothingComesTwiceInAnyWeather) {
   std::mt19937_64 engine(kSeed);
   std::uint64_t resends = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const auto up_to = [&](double most) {
-      return std::uniform_real_distribution(0.0, most)(engine);
-    };
+    const auto up_to = [&](double max) { return std::uniform_real_distribution(0.0, max)(engine); };
     const Weather weather{up_to(0.3), up_to(0.3), up_to(0.2),
                           std::uniform_int_distribution(0, 40)(engine)};
     const std::uint64_t count = std::uniform_int_distribution<std::uint64_t>(1, 1500)(engine);

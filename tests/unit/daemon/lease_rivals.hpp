@@ -22,7 +22,7 @@ struct Pause {
 
 /// How long words to another one take: one by one in order, only the newest is kept.
 struct Wire {
-  std::int64_t least = 0, most = 0;
+  std::int64_t min = 0, max = 0;
   struct Late {
     std::int64_t due = 0;
     LeaseCheck::Word word;
@@ -30,7 +30,7 @@ struct Wire {
   std::deque<Late> under_way;
 
   void send(const LeaseCheck::Word& word, std::int64_t now, std::mt19937& engine) {
-    std::int64_t due = now + std::uniform_int_distribution(least, most)(engine);
+    std::int64_t due = now + std::uniform_int_distribution(min, max)(engine);
     if (!under_way.empty()) due = std::max(due, under_way.back().due);
     under_way.push_back({due, word});
   }
@@ -70,12 +70,12 @@ class Rivals {
     rival.next_look = held + draw(0, 100) * kMs;
     return rival;
   }
-  void connect(std::int64_t least, std::int64_t most) {
-    wires.assign(rivals.size(), std::vector<Wire>(rivals.size(), Wire{least, most, {}}));
+  void connect(std::int64_t min, std::int64_t max) {
+    wires.assign(rivals.size(), std::vector<Wire>(rivals.size(), Wire{min, max, {}}));
     for (Rival& rival : rivals) rival.knows.assign(rivals.size(), false);
   }
-  std::int64_t draw(std::int64_t least, std::int64_t most) {
-    return std::uniform_int_distribution(least, most)(engine);
+  std::int64_t draw(std::int64_t min, std::int64_t max) {
+    return std::uniform_int_distribution(min, max)(engine);
   }
 
   /// From where all serve. Returns who is left at the end.

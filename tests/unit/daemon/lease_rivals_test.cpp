@@ -16,11 +16,11 @@ TEST(LeaseCheck, LeavesTheMachineToExactlyOneWhateverTheDelaysAndPauses) {
     for (int n = 1; n <= count; ++n) {
       rivals.add(static_cast<std::uint64_t>(n), 10 * kS + rivals.draw(0, apart / kMs) * kMs);
     }
-    const std::int64_t most = rivals.draw(0, 100) * 10 * kMs;
-    rivals.connect(0, most);
+    const std::int64_t max = rivals.draw(0, 100) * 10 * kMs;
+    rivals.connect(0, max);
     for (auto& wires : rivals.wires) {
       for (Wire& wire : wires) {
-        wire.least = seed % 5 == 0 ? most : rivals.draw(0, most / kMs) * kMs;
+        wire.min = seed % 5 == 0 ? max : rivals.draw(0, max / kMs) * kMs;
       }
     }
     rivals.forgets_the_paused = seed % 2 == 0;
@@ -48,10 +48,10 @@ TEST(LeaseCheck, LetsTheOneThatServedLongerKeepTheMachineWhateverItsNumberAndThe
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     Rivals rivals(seed);
     const std::uint64_t older = 1 + seed % 2;
-    const std::int64_t most = rivals.draw(0, 1000) * kMs;
+    const std::int64_t max = rivals.draw(0, 1000) * kMs;
     rivals.add(older, 0);
-    rivals.add(3 - older, LeaseCheck::kSame_ns + most + rivals.draw(150, 20'000) * kMs);
-    rivals.connect(0, most);
+    rivals.add(3 - older, LeaseCheck::kSame_ns + max + rivals.draw(150, 20'000) * kMs);
+    rivals.connect(0, max);
     EXPECT_EQ(rivals.run(15 * kS), std::vector{older}) << "seed " << seed;
   }
 }

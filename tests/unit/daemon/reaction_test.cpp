@@ -26,14 +26,14 @@ struct Reaction {
   Reaction(const char* what, std::vector<int> counted) : cycles(std::move(counted)) {
     std::sort(cycles.begin(), cycles.end());
     std::printf("%s: %zu times, cycles p50 %d, p99 %d, most %d\n", what, cycles.size(), at(50),
-                at(99), most());
+                at(99), max());
   }
   [[nodiscard]] int at(int percent) const {
     return cycles[std::min(cycles.size() - 1,
                            cycles.size() * static_cast<std::size_t>(percent) / 100)];
   }
-  [[nodiscard]] int least() const { return cycles.front(); }
-  [[nodiscard]] int most() const { return cycles.back(); }
+  [[nodiscard]] int min() const { return cycles.front(); }
+  [[nodiscard]] int max() const { return cycles.back(); }
 
   std::vector<int> cycles;
 };
@@ -86,7 +86,7 @@ TEST(Reaction, OfAHoldIsADeceleratingSetpointInTheCycleThatSeesIt) {
         plant.say(Verb::kHold);
         return lags() ? 0 : cycles_until(plant, lags);
       });
-  EXPECT_EQ(reaction.most(), 0);
+  EXPECT_EQ(reaction.max(), 0);
 }
 
 TEST(Reaction, OfDrivesThatDieIsAFaultStopWhenTheirLastReportIsTooOld) {
@@ -95,8 +95,8 @@ TEST(Reaction, OfDrivesThatDieIsAFaultStopWhenTheirLastReportIsTooOld) {
     return cycles_until(plant, [&] { return plant.world.now() == State::kFaultStop; });
   });
   const auto timeout = static_cast<int>(std::lround(CycleOptions{}.feedback_timeout_s * 1e3));
-  EXPECT_GE(reaction.least(), timeout);
-  EXPECT_LE(reaction.most(), timeout + 1);
+  EXPECT_GE(reaction.min(), timeout);
+  EXPECT_LE(reaction.max(), timeout + 1);
 }
 
 TEST(Reaction, OfADriveThatFaultsOrOfTheStopInputIsAFaultStopInTheCycleThatSeesTheReport) {
@@ -105,7 +105,7 @@ TEST(Reaction, OfADriveThatFaultsOrOfTheStopInputIsAFaultStopInTheCycleThatSeesT
       plant.inject(what);
       return cycles_until(plant, [&] { return plant.world.now() == State::kFaultStop; });
     });
-    EXPECT_LE(reaction.most(), 2) << what;
+    EXPECT_LE(reaction.max(), 2) << what;
   }
 }
 
@@ -115,8 +115,8 @@ TEST(Reaction, OfDrivesThatGetNoSetpointsIsTheirRampBehindTheBridge) {
     return cycles_until(plant,
                         [&] { return plant.group.drive(0).state() == DriveState::kFaultReaction; });
   });
-  EXPECT_EQ(reaction.least(), machine_at_begin().bridge_cycles + 1);
-  EXPECT_EQ(reaction.most(), machine_at_begin().bridge_cycles + 1);
+  EXPECT_EQ(reaction.min(), machine_at_begin().bridge_cycles + 1);
+  EXPECT_EQ(reaction.max(), machine_at_begin().bridge_cycles + 1);
 }
 
 TEST(Reaction, OfAStationThatSendsNothingMoreIsStarvingWithTheFirstDeceleratingSetpoint) {
@@ -144,7 +144,7 @@ TEST(Reaction, OfAStationThatSendsNothingMoreIsStarvingWithTheFirstDeceleratingS
     EXPECT_LE(plant->deviation(0), 1e-9);
   }
   const Reaction reaction("plan at its end to Starving", cycles);
-  EXPECT_EQ(reaction.most(), 0);
+  EXPECT_EQ(reaction.max(), 0);
 }
 
 }  // namespace
