@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::string_view kCrcKey = "crc32c = ";
 
-/// All that is in `file`, as open() returned it, at most `most` bytes.
-[[nodiscard]] Expected<std::string, std::string> read_open_file(int file, std::size_t most) {
+/// All that is in `file`, as open() returned it, at most `max` bytes.
+[[nodiscard]] Expected<std::string, std::string> read_open_file(int file, std::size_t max) {
   const auto why = [](int error) {
     return tl::make_unexpected(error == ELOOP
                                    ? std::string("is a symbolic link")
@@ -29,7 +29,7 @@ constexpr std::string_view kCrcKey = "crc32c = ";
   struct stat facts {};
   if (::fstat(file, &facts) != 0) return why(errno);
   if (!S_ISREG(facts.st_mode)) return tl::make_unexpected(std::string("is no regular file"));
-  std::string text(most, '\0');
+  std::string text(max, '\0');
   std::size_t size = 0;
   while (size < text.size()) {
     const ssize_t count = ::read(file, text.data() + size, text.size() - size);
@@ -45,10 +45,10 @@ constexpr std::string_view kCrcKey = "crc32c = ";
 }  // namespace
 
 Expected<std::optional<std::string>, std::string> read_small_file(const std::filesystem::path& path,
-                                                                  std::size_t most) {
+                                                                  std::size_t max) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
   if (file < 0 && errno == ENOENT) return std::nullopt;
-  auto text = read_open_file(file, most);
+  auto text = read_open_file(file, max);
   if (file >= 0) (void)::close(file);
   if (!text) return tl::make_unexpected(text.error());
   return std::move(*text);

@@ -18,10 +18,10 @@
 /// Proof: tests/unit/telemetry/journal_test.cpp, tests/unit/telemetry/set_up_text_test.cpp.
 namespace meridian::telemetry {
 
-/// The first `most` bytes of a file that is there and regular; nothing where none is there. No link
+/// The first `max` bytes of a file that is there and regular; nothing where none is there. No link
 /// is followed, no pipe waited for. The error says what is wrong with it.
 [[nodiscard]] Expected<std::optional<std::string>, std::string> read_small_file(
-    const std::filesystem::path& path, std::size_t most);
+    const std::filesystem::path& path, std::size_t max);
 
 [[nodiscard]] std::uint32_t crc_of(std::string_view text) noexcept;
 

@@ -37,14 +37,14 @@ std::vector<KeptFile> find_kept(const std::filesystem::path& folder) {
   return kept;
 }
 
-KeptFiles::KeptFiles(std::filesystem::path folder, int most)
-    : folder_(std::move(folder)), most_(static_cast<std::size_t>(std::max(most, 1))) {
+KeptFiles::KeptFiles(std::filesystem::path folder, int max)
+    : folder_(std::move(folder)), max_(static_cast<std::size_t>(std::max(max, 1))) {
   std::filesystem::create_directories(folder_);
   kept_ = find_kept(folder_);
 }
 
 bool KeptFiles::would_keep(std::int64_t severity_ns) const {
-  return kept_.size() < most_ || severity_ns / 1000 > kept_[most_ - 1].severity_us;
+  return kept_.size() < max_ || severity_ns / 1000 > kept_[max_ - 1].severity_us;
 }
 
 std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string& content) {
@@ -59,7 +59,7 @@ std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string
     return kept.severity_us < severity_us;
   });
   kept_.insert(place, {severity_us, file});
-  for (; kept_.size() > most_; kept_.pop_back()) {
+  for (; kept_.size() > max_; kept_.pop_back()) {
     std::filesystem::remove(kept_.back().file, failed);
   }
   return file;

@@ -24,7 +24,7 @@ struct KeptFile {
 class KeptFiles {
  public:
   /// Makes the folder where it is missing; throws std::filesystem::filesystem_error.
-  KeptFiles(std::filesystem::path folder, int most);
+  KeptFiles(std::filesystem::path folder, int max);
 
   /// Whether a trace so bad would be kept.
   [[nodiscard]] bool would_keep(std::int64_t severity_ns) const;
@@ -34,7 +34,7 @@ class KeptFiles {
 
  private:
   std::filesystem::path folder_;
-  std::size_t most_;
+  std::size_t max_;
   std::vector<KeptFile> kept_;  ///< the worst first
 };
 

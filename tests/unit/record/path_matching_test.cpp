@@ -101,14 +101,14 @@ TEST(PathMatching, IsFoundWhereADynamicProgramFindsOne) {
       pose.tip += noise * any();
       pose.axis = (pose.axis + 0.3 * noise * any()).normalized();
     }
-    const double least = min_factor(along(vertices, 60), along(recording, 8));
-    SCOPED_TRACE(least);
+    const double min = min_factor(along(vertices, 60), along(recording, 8));
+    SCOPED_TRACE(min);
     const CheckedPath path = path_through(vertices);
     const auto scaled = [](double by) {
       return Tolerance{by * kTolerance.tip_mm, by * kTolerance.axis_rad};
     };
-    EXPECT_TRUE(is_followed(path, recording, scaled(1.02 * least + 2e-3)));
-    EXPECT_FALSE(is_followed(path, recording, scaled(0.96 * least - 2e-3)));
+    EXPECT_TRUE(is_followed(path, recording, scaled(1.02 * min + 2e-3)));
+    EXPECT_FALSE(is_followed(path, recording, scaled(0.96 * min - 2e-3)));
     followed += is_followed(path, recording) ? 1 : 0;
   }
   EXPECT_GT(followed, 5);

@@ -43,8 +43,8 @@ struct Motion {
   for (std::size_t i = 1; i < blocks.size(); ++i) {
     const ToolPose a = pose_of(blocks[i - 1]), b = pose_of(blocks[i]);
     const double length = (b.tip - a.tip).norm(), turn = angle_between(a.axis, b.axis);
-    const double least = std::max({1.9 * length / kFeed_mm_per_s, 1.9 * turn / 0.5, 0.012});
-    const int cycles = static_cast<int>(std::ceil(least / 1e-3));
+    const double min = std::max({1.9 * length / kFeed_mm_per_s, 1.9 * turn / 0.5, 0.012});
+    const int cycles = static_cast<int>(std::ceil(min / 1e-3));
     for (int n = 1; n <= cycles; ++n) {
       const double u = static_cast<double>(n) / cycles;
       out.poses.push_back(between(a, b, u * u * u * (10 - 15 * u + 6 * u * u)));

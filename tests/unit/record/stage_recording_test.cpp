@@ -112,11 +112,11 @@ TEST_F(StageRecording, ATrueOnePassesAndReportsTheDistanceFromADeadPoint) {
   EXPECT_EQ(report.joint_names[5], "u1");
   EXPECT_GT(report.joints[6].velocity.value, 0.001);
   EXPECT_LT(report.stage.apart_mm.value, 1e-12);
-  double least = 1e9;
+  double min = 1e9;
   for (const CycleRecord& record : records) {
-    least = std::min(least, 2 * model.stage.radius_mm * std::cos(record.joints[3]));
+    min = std::min(min, 2 * model.stage.radius_mm * std::cos(record.joints[3]));
   }
-  EXPECT_NEAR(report.stage.determinant_mm, least, 1e-9);
+  EXPECT_NEAR(report.stage.determinant_mm, min, 1e-9);
   EXPECT_NE(to_text(report).find("least determinant"), std::string::npos);
   EXPECT_NE(to_json(report).find("\"stage_determinant_mm_per_rad\""), std::string::npos);
 }

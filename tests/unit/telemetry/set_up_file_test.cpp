@@ -87,14 +87,14 @@ TEST_F(SetUpFileOfAFolder, StaysTheOldOneWhereTheNewOneCannotBeWritten) {
 TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
   constexpr int kKills = 60;
   std::mt19937 engine(20261125);
-  double least = 0;
+  double min = 0;
   for (int n = 0; n < kKills; ++n) {
     std::array<int, 2> written{};
     ASSERT_EQ(::pipe(written.data()), 0);
     const pid_t writer = ::fork();
     if (writer == 0) {
       SetUpFile file(folder_, "lai");
-      for (double x_mm = least + 1;; ++x_mm) {
+      for (double x_mm = min + 1;; ++x_mm) {
         file.ask(frames_with(1 + static_cast<int>(x_mm) % 9, x_mm));
         file.work();
         if (file.look() != Progress::kWritten) ::_exit(1);
@@ -105,7 +105,7 @@ TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
     ASSERT_EQ(::kill(writer, SIGKILL), 0);
     ASSERT_EQ(::waitpid(writer, nullptr, 0), writer);
     (void)::close(written[1]);
-    double acknowledged = least;
+    double acknowledged = min;
     for (double x_mm = 0; ::read(written[0], &x_mm, sizeof x_mm) == sizeof x_mm;)
       acknowledged = x_mm;
     (void)::close(written[0]);
@@ -118,9 +118,9 @@ TEST_F(SetUpFileOfAFolder, IsTheOldOneOrTheNewOneWheneverItsWriterIsKilled) {
     }
     EXPECT_GE(left, acknowledged);
     EXPECT_LE(left, acknowledged + 1);
-    least = left;
+    min = left;
   }
-  EXPECT_GT(least, 0);
+  EXPECT_GT(min, 0);
 }
 
 TEST_F(SetUpFileOfAFolder, RefusesWhatIsNoSetUp) {

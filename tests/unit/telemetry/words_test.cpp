@@ -83,14 +83,14 @@ TEST(Words, LeaveWholePartsOfAnApproachOutWhereThereIsNoRoomForThem) {
   way.retract = way.descent = 123.4;
   way.length = 1234;
   way.time = 123.4;
-  const std::string least = "approach to line 1234567: 1234 mm in 123.4 s, branch 0";
+  const std::string shortest = "approach to line 1234567: 1234 mm in 123.4 s, branch 0";
   const std::string all = describe(way, model, 1000);
   EXPECT_EQ(describe(way, model, all.size()), all);
   const std::string without_winding = describe(way, model, all.size() - 1);
   EXPECT_EQ(without_winding + ", theta1 at -123.4 deg", all);
   EXPECT_EQ(describe(way, model, without_winding.size()), without_winding);
-  EXPECT_EQ(describe(way, model, without_winding.size() - 1), least);
-  EXPECT_EQ(describe(way, model, 0), least);
+  EXPECT_EQ(describe(way, model, without_winding.size() - 1), shortest);
+  EXPECT_EQ(describe(way, model, 0), shortest);
 }
 
 TEST(Words, SayEveryAlarmDifferently) {

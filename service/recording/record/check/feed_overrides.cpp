@@ -39,12 +39,12 @@ std::optional<std::vector<FeedOverride>> read_feed_overrides(std::string_view te
 
 double FeedInForce::at(std::uint64_t cycle) noexcept {
   while (next_ < set_.size() && set_[next_].cycle <= cycle) ++next_;
-  double most = 0;
+  double max = 0;
   for (std::size_t n = next_; n > 0; --n) {
-    most = std::max(most, set_[n - 1].factor);
-    if (set_[n - 1].cycle + ramp_ <= cycle) return most;
+    max = std::max(max, set_[n - 1].factor);
+    if (set_[n - 1].cycle + ramp_ <= cycle) return max;
   }
-  return std::max(most, 1.0);
+  return std::max(max, 1.0);
 }
 
 }  // namespace meridian::record

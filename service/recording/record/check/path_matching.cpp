@@ -108,9 +108,9 @@ void PathMatching::extend(const Gap& gap, Position from) {
     reached = free_on(element, next_.with_tool(element.tool_length_mm), tolerance_);
     if (i == low.element) reached.cut(low.t, 1);
     if (i >= from.element) {
-      const double least = min_time(element, gap);
-      if (least > left) reached.cut(0, left / least);
-      left -= least;
+      const double min = min_time(element, gap);
+      if (min > left) reached.cut(0, left / min);
+      left -= min;
     }
     if (left >= 0) vertex(i + 1).is_in_gap = true;
   }

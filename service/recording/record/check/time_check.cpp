@@ -39,8 +39,8 @@ void TimeCheck::add(double matched, double passed, std::uint64_t cycle) {
 void TimeCheck::check(const PathElement& last, std::uint64_t begin, std::uint64_t end) {
   const double way = way_ - kLag * tolerance_;
   if (!last.is_timed || !(way > 0)) return;
-  const double least = way / (last.way_mm_per_s * factor_);
-  const double share = static_cast<double>(end - begin + 1) * period_ / least;
+  const double min = way / (last.way_mm_per_s * factor_);
+  const double share = static_cast<double>(end - begin + 1) * period_ / min;
   if (share >= 1 - kRoundingShare) return;
   ++worst_.count;
   if (share >= worst_share_) return;

@@ -67,13 +67,13 @@ class Strip {
   }
   if (report.joint >= 0) return report.joint;
   int worst = 0;
-  double most = -1;
+  double max = -1;
   for (int i = 0; i < model.joint_count; ++i) {
     const Following& following = report.following[static_cast<std::size_t>(i)];
     const double is = share(std::max(std::abs(following.before), std::abs(following.after)),
                             drive_spec(model, i).limits.following_error);
-    if (is > most) worst = i;
-    most = std::max(most, is);
+    if (is > max) worst = i;
+    max = std::max(max, is);
   }
   return worst;
 }

@@ -108,9 +108,9 @@ void print_data(std::FILE* out, const PictureData& data, const MachineModel& mod
       }
     }
     for (int order = 0; order < 3; ++order) {
-      double most = 0;
-      for (const Extremes& rate : column.rate[order]) most = std::max(most, largest(rate));
-      std::fprintf(out, " %.5g", most);
+      double max = 0;
+      for (const Extremes& rate : column.rate[order]) max = std::max(max, largest(rate));
+      std::fprintf(out, " %.5g", max);
     }
     std::fputs("\n", out);
   }
