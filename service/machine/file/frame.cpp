@@ -56,8 +56,8 @@ std::array<double, 6> parse_frame_values(std::string_view text) {
   while (true) {
     if (count == values.size()) refuse(text);
     const auto [next, code] = std::from_chars(at, end, values[count]);
-    const double most = count < 3 ? 1e5 : 360;
-    if (code != std::errc{} || !(std::abs(values[count]) <= most)) refuse(text);
+    const double max = count < 3 ? 1e5 : 360;
+    if (code != std::errc{} || !(std::abs(values[count]) <= max)) refuse(text);
     ++count;
     if (next == end) break;
     if (*next != ',') refuse(text);

@@ -215,14 +215,14 @@ std::array<double, 3> Section::triple_or(std::string_view key, std::array<double
   return find(key) == nullptr ? otherwise : triple(key, range);
 }
 
-std::vector<double> Section::numbers(std::string_view key, std::size_t least, std::size_t most,
+std::vector<double> Section::numbers(std::string_view key, std::size_t min, std::size_t max,
                                      Range range, std::string_view remedy) {
   const std::string count =
-      least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most);
+      min == max ? std::to_string(min) : std::to_string(min) + " to " + std::to_string(max);
   const std::string allowed = count + " numbers in brackets, each " + words(range);
   const toml::array* array = need(key, allowed, remedy).as_array();
   if (array == nullptr) refuse(key, allowed, "write numbers in brackets, with commas between");
-  if (array->size() < least || array->size() > most) {
+  if (array->size() < min || array->size() > max) {
     throw ConfigError({.file = file_,
                        .line = static_cast<int>(array->source().begin.line),
                        .key = full_name(key),

@@ -40,10 +40,9 @@ class Section {
   [[nodiscard]] std::array<double, 3> triple_or(std::string_view key,
                                                 std::array<double, 3> otherwise, Range range);
 
-  /// `least` to `most` numbers in brackets; a refusal names the number that is wrong.
-  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t least,
-                                            std::size_t most, Range range,
-                                            std::string_view remedy = "");
+  /// `min` to `max` numbers in brackets; a refusal names the number that is wrong.
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t min, std::size_t max,
+                                            Range range, std::string_view remedy = "");
 
   [[nodiscard]] bool truth_or(std::string_view key, bool otherwise);
 

@@ -107,11 +107,11 @@ void check_travel(Section& table, const MachineModel& model) {
         "rotary", "a joint with travel",
         "no stage turns without end: give " + joint.name + " travel_deg inside turn_max_deg");
   }
-  const double most = std::max(phi(joint.limits.travel_min), phi(joint.limits.travel_max));
-  if (most > stage.phi_max_rad * (1 + 1e-12)) {
+  const double max = std::max(phi(joint.limits.travel_min), phi(joint.limits.travel_max));
+  if (max > stage.phi_max_rad * (1 + 1e-12)) {
     table.refuse(
         "turn_max_deg",
-        "at least " + number(units::deg_from_rad(most)) + " deg, the travel of " + joint.name,
+        "at least " + number(units::deg_from_rad(max)) + " deg, the travel of " + joint.name,
         "shorten joints." + joint.name + ".travel_deg, or let the stage turn farther");
   }
 }

@@ -71,7 +71,7 @@ struct Axis {
                                                           const ToolPose& pose,
                                                           const JointVector& from) {
   std::optional<JointVector> nearest;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (const PoseSolution& solution : solve_all(model, pose)) {
     if (!solution.is_possible()) continue;
     double farthest = 0;
@@ -79,8 +79,8 @@ struct Axis {
       const double by = std::abs(solution.q[i] - from[i]) / model.joints[i].limits.velocity;
       farthest = std::max(farthest, by);
     }
-    if (farthest < least) {
-      least = farthest;
+    if (farthest < min) {
+      min = farthest;
       nearest = solution.q;
     }
   }

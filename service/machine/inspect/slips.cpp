@@ -22,14 +22,14 @@ constexpr double kMinVolume = 0.5;  // of three unit vectors
 /// Angle to the nearest direction whose coordinates are all 0 or of one size: axes, 45 degrees
 /// between two, the diagonal of a cube.
 double off_usual(const Vector3& direction) {
-  double least = std::numbers::pi;
+  double min = std::numbers::pi;
   for (int code = 1; code < 27; ++code) {
     const Vector3 usual{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
     if (usual.squaredNorm() == 0) continue;
     const Vector3 unit = usual.normalized();
-    least = std::min(least, std::atan2(unit.cross(direction).norm(), unit.dot(direction)));
+    min = std::min(min, std::atan2(unit.cross(direction).norm(), unit.dot(direction)));
   }
-  return least;
+  return min;
 }
 
 const char* name_of(const MachineModel& model, const SkeletonJoint& joint) {

@@ -88,8 +88,8 @@ template <class Across>
   return normal;
 }
 
-[[nodiscard]] Vector3 unit_or_zero(const Vector3& v, double least) {
-  return v.norm() > least ? Vector3(v.normalized()) : Vector3(Vector3::Zero());
+[[nodiscard]] Vector3 unit_or_zero(const Vector3& v, double min) {
+  return v.norm() > min ? Vector3(v.normalized()) : Vector3(Vector3::Zero());
 }
 
 [[nodiscard]] Vector3 plane_normal(const Search& search, const Group& touches) {

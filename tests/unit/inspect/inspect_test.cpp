@@ -56,8 +56,8 @@ TEST_P(EveryShipped, HasASkeletonWhoseAxesGiveItsForwardKinematics) {
   for (int n = 0; n < 50; ++n) {
     JointVector q{};
     for (std::size_t i = 0; i < s.joints.size(); ++i) {
-      const double most = model_.joints[i].is_rotary ? 3 : 500;
-      q[i] = std::uniform_real_distribution<double>(-most, most)(draw);
+      const double max = model_.joints[i].is_rotary ? 3 : 500;
+      q[i] = std::uniform_real_distribution<double>(-max, max)(draw);
     }
     const ToolPose want = pose_in_machine(model_, forward(model_, model_.tool_length_mm, q));
     const ToolPose is = moved_by_screws(s, q);

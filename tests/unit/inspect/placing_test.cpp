@@ -119,9 +119,9 @@ TEST(ProgramPoses, SeeWhereAnArcBulges) {
       "UNITS/MM\nMULTAX/ON\nFEDRAT/600,MMPM\nGOTO/50,0,0,0,0,1\n"
       "CIRCLE/0,0,0,0,0,1,50\nGOTO/-50,0,0,0,0,1\nFINI\n",
       model);
-  double most = 0;
-  for (const ProgramPose& at : poses) most = std::max(most, std::abs(at.pose.tip.y()));
-  EXPECT_NEAR(most, 50, 0.2);
+  double max = 0;
+  for (const ProgramPose& at : poses) max = std::max(max, std::abs(at.pose.tip.y()));
+  EXPECT_NEAR(max, 50, 0.2);
 }
 
 }  // namespace
