@@ -25,9 +25,8 @@ std::int64_t monotonic_ns() {
   return now.tv_sec * 1'000'000'000 + now.tv_nsec;
 }
 
-DriveSide::DriveSide(std::uint32_t domain, const std::string& partition, std::size_t most,
-                     Role role)
-    : arrivals_(most),
+DriveSide::DriveSide(std::uint32_t domain, const std::string& partition, std::size_t max, Role role)
+    : arrivals_(max),
       participant_({.domain = domain,
                     .machine = partition,
                     .transport = has_realtime_rights() ? dds::Transport::kLoopbackRealtime

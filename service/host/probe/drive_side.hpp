@@ -22,8 +22,8 @@ class DriveSide {
     kDrives,   ///< there are no others
     kListener  ///< others are the drives: it never answers
   };
-  /// Joins the partition of a machine with room for `most` arrivals; throws dds::DdsError.
-  DriveSide(std::uint32_t domain, const std::string& partition, std::size_t most = 200'000,
+  /// Joins the partition of a machine with room for `max` arrivals; throws dds::DdsError.
+  DriveSide(std::uint32_t domain, const std::string& partition, std::size_t max = 200'000,
             Role role = Role::kDrives);
 
   [[nodiscard]] bool is_connected() const { return reader_.matched_writers() > 0; }

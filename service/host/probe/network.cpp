@@ -10,10 +10,10 @@ namespace {
 constexpr long long kWanted_bytes = 4'000'000;
 
 [[nodiscard]] Finding socket_buffers(const HostFiles& host) {
-  const auto most = host.number("proc/sys/net/core/rmem_max");
-  if (!most) return {"socket buffers", Health::kNote, "not reported by this kernel", ""};
-  const std::string found = "up to " + std::to_string(*most / 1024) + " kB for received data";
-  if (*most >= kWanted_bytes) return {"socket buffers", Health::kFine, found, ""};
+  const auto max = host.number("proc/sys/net/core/rmem_max");
+  if (!max) return {"socket buffers", Health::kNote, "not reported by this kernel", ""};
+  const std::string found = "up to " + std::to_string(*max / 1024) + " kB for received data";
+  if (*max >= kWanted_bytes) return {"socket buffers", Health::kFine, found, ""};
   return {"socket buffers", Health::kNote, found + "; a burst beyond that is sent again",
           "sysctl net.core.rmem_max=4194304"};
 }

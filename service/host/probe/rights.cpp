@@ -104,13 +104,13 @@ constexpr int kCyclePriority = 80;
 [[nodiscard]] Finding quota(const HostFiles& host) {
   Finding out{"processor quota", Health::kFine, "none", ""};
   const std::string two = group_of(host, "");
-  const auto most = host.text("sys/fs/cgroup" + (two.empty() ? "/" : two) + "/cpu.max");
+  const auto max = host.text("sys/fs/cgroup" + (two.empty() ? "/" : two) + "/cpu.max");
   const std::string one = group_of(host, "cpu");
   const auto share = host.number("sys/fs/cgroup/cpu" + one + "/cpu.cfs_quota_us");
-  const bool has_two = most && !most->starts_with("max");
+  const bool has_two = max && !max->starts_with("max");
   if (!has_two && share.value_or(-1) <= 0) return out;
   out.health = Health::kBad;
-  out.found = "the control group may use " + (has_two ? *most : std::to_string(*share)) +
+  out.found = "the control group may use " + (has_two ? *max : std::to_string(*share)) +
               " us, then its threads are stopped";
   out.remedy = has_two ? "write max to its cpu.max, or CPUQuota= without a value in the unit"
                        : "write -1 to its cpu.cfs_quota_us";

@@ -94,8 +94,8 @@ class Tool {
                                                    "stream", part, "--domain", in, "--wait-end"},
                                              quiet(log));
     tool.run({"ctl", "start", "--domain", in}, 50);  // refused until the program is loaded
-    const milliseconds most(std::llround(seconds * 1000));
-    if (wait_for_exit(*station, most, is_stopping).value_or(0) != 0)
+    const milliseconds timeout(std::llround(seconds * 1000));
+    if (wait_for_exit(*station, timeout, is_stopping).value_or(0) != 0)
       return text::read_whole(log).value_or("");
   } catch (const Interrupted&) {
     throw;

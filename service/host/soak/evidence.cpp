@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-Evidence::Evidence(fs::path folder, std::string name, int most)
-    : folder_(std::move(folder)), name_(std::move(name)), most_(most) {
+Evidence::Evidence(fs::path folder, std::string name, int max)
+    : folder_(std::move(folder)), name_(std::move(name)), max_(max) {
   std::vector<fs::path> old;
   std::error_code error;
   for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
@@ -31,7 +31,7 @@ Evidence::Evidence(fs::path folder, std::string name, int most)
 }
 
 std::string Evidence::keep(std::initializer_list<Piece> pieces) {
-  if (folder_.empty() || count_ >= most_) return "";
+  if (folder_.empty() || count_ >= max_) return "";
   const fs::path stem = folder_ / (name_ + std::to_string(++count_));
   std::error_code failed;
   fs::create_directories(folder_, failed);

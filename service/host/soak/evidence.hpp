@@ -11,9 +11,9 @@ namespace meridian::soak {
 /// NAME2.ENDING and so on. Proof: tests/unit/soak/evidence_test.cpp.
 class Evidence {
  public:
-  /// Removes what a soak before left of that name in `folder`. Of the first `most` finds something
+  /// Removes what a soak before left of that name in `folder`. Of the first `max` finds something
   /// is kept; an empty folder: of none.
-  Evidence(std::filesystem::path folder, std::string name, int most);
+  Evidence(std::filesystem::path folder, std::string name, int max);
 
   struct Piece {
     std::filesystem::path file;
@@ -25,7 +25,7 @@ class Evidence {
  private:
   std::filesystem::path folder_;
   std::string name_;
-  int most_, count_ = 0;
+  int max_, count_ = 0;
 };
 
 }  // namespace meridian::soak

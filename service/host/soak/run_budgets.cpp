@@ -74,7 +74,7 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
 
 /// Of the life that switched most.
 [[nodiscard]] CheckResult check_switches(const SoakReport& report) {
-  std::optional<double> most;
+  std::optional<double> max;
   bool is_real_time = false;
   for (const Life& life : report.lives) {
     const auto* const first = thread_of(life.first.threads, "cycle");
@@ -84,10 +84,10 @@ constexpr const char* kNotWatched = "the host was not watched: no right to real 
     const std::uint64_t cycles = life.last.cycles_run - life.first.cycles_run;
     if (cycles < kMinSamples) continue;
     const auto switches = static_cast<double>(last->voluntary_switches - first->voluntary_switches);
-    most = std::max(most.value_or(0), switches / static_cast<double>(cycles));
+    max = std::max(max.value_or(0), switches / static_cast<double>(cycles));
   }
-  const CheckResult result = checked(report.budgets.switches, most.value_or(0));
-  if (!most) return left_open(result, too_short("no life of so many cycles:"));
+  const CheckResult result = checked(report.budgets.switches, max.value_or(0));
+  if (!max) return left_open(result, too_short("no life of so many cycles:"));
   return is_real_time ? result : left_open(result, "the cycle had no real-time priority");
 }
 

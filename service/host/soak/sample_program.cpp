@@ -38,8 +38,8 @@ void write_sample_program(const MachineModel& model, std::uint64_t seed,
   std::array<Swing, kMaxJoints> swings{};
   for (int joint = 0; joint < model.joint_count; ++joint) {
     const JointSpec& spec = model.joints[joint];
-    const double most = spec.is_rotary ? units::rad_from_deg(kLargestTurn_deg) : kLargestWay_mm;
-    double amplitude = pick(random, 0.2, 1) * most;
+    const double max = spec.is_rotary ? units::rad_from_deg(kLargestTurn_deg) : kLargestWay_mm;
+    double amplitude = pick(random, 0.2, 1) * max;
     if (!is_inside_travel(spec, place[joint] + amplitude, 0)) amplitude = -amplitude;
     swings[joint] = {amplitude, pick(random, 0.01, 0.06)};
   }

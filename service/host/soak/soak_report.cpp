@@ -166,10 +166,10 @@ std::vector<std::string> growth(const SoakReport& report) {
   std::vector<std::string> found;
   for (const Life& life : report.lives) {
     std::string text;
-    const auto grew_by = [&life](auto figure, double most) {
+    const auto grew_by = [&life](auto figure, double max) {
       return life.has_first && static_cast<double>(life.last.process.*figure) -
                                        static_cast<double>(life.first.process.*figure) >
-                                   most;
+                                   max;
     };
     if (life.max_resident_mib > report.allowed.resident_mib) {
       append(text, "%.1f MiB resident, budget %.0f", life.max_resident_mib,

@@ -21,15 +21,15 @@ class AskedOverrides {
 
   /// Highest override in force at `time_ns` or later, at least 1.
   [[nodiscard]] double max_since(std::int64_t time_ns) const {
-    double before = 1, most = 1;
+    double before = 1, max = 1;
     for (const Asked& asked : asked_) {
       if (asked.since_ns <= time_ns) {
         before = asked.factor;
       } else {
-        most = std::max(most, asked.factor);
+        max = std::max(max, asked.factor);
       }
     }
-    return std::max(before, most);
+    return std::max(before, max);
   }
 
   /// Nobody asks for what was before `time_ns` any more.
