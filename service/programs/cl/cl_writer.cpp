@@ -18,10 +18,10 @@ constexpr std::size_t kLineLength = 72;  // what card images held, and every rea
 void add(std::string& text, double value, int decimals) {
   if (!text.empty()) text += ",";
   std::array<char, 64> digits{};
-  const double least = 0.5 * std::pow(10.0, -decimals);
+  const double min = 0.5 * std::pow(10.0, -decimals);
   const auto end =
       std::to_chars(digits.data(), digits.data() + digits.size(),
-                    std::abs(value) < least ? 0.0 : value, std::chars_format::fixed, decimals)
+                    std::abs(value) < min ? 0.0 : value, std::chars_format::fixed, decimals)
           .ptr;
   text.append(digits.data(), end);
 }

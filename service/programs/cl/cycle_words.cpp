@@ -126,10 +126,10 @@ class CycleArguments {
       words.modifiers.push_back(word);
       return {};
     }
-    const std::size_t most = key == Key::kStep ? kMaxPecks : (key == Key::kSink ? 3 : 2);
+    const std::size_t max = key == Key::kStep ? kMaxPecks : (key == Key::kSink ? 3 : 2);
     const bool one_alone =
         key != Key::kStep && key != Key::kSink && key != Key::kFeedTo && key != Key::kRetractTo;
-    if (n.empty() || n.size() > (one_alone ? 1 : most)) {
+    if (n.empty() || n.size() > (one_alone ? 1 : max)) {
       return refuse("CYCLE/...," + std::string(word) + " has " + std::to_string(n.size()) +
                     " numbers");
     }

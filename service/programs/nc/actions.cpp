@@ -17,8 +17,8 @@ constexpr double kMaxTool = 1e9;
 constexpr double kMaxSpeed = 1e6;
 constexpr double kLongestDwell_s = 86400;
 
-bool is_whole(double number, double most) {
-  return number >= 0 && number <= most && number == std::floor(number);
+bool is_whole(double number, double max) {
+  return number >= 0 && number <= max && number == std::floor(number);
 }
 
 cl::Outcome take_feed(State& s, const Line& line) {

@@ -78,7 +78,7 @@ std::optional<Eigen::Matrix3d> MachineAxes::linear_axes(const std::vector<Rotary
 std::optional<JointVector> MachineAxes::solve_near(const ToolPose& pose, double tool_length_mm,
                                                    const JointVector& near) const {
   std::optional<JointVector> best;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (int branch = 0; branch < branch_count(model_); ++branch) {
     const auto solution = meridian::solve(model_, tool_length_mm,
                                           Pose<double>{{pose.tip[0], pose.tip[1], pose.tip[2]},
@@ -89,8 +89,8 @@ std::optional<JointVector> MachineAxes::solve_near(const ToolPose& pose, double 
     for (int i = 0; i < model_.joint_count; ++i) {
       if (words_->is_rotary(i)) turn += std::abs(solution.q[i] - near[i]);
     }
-    if (turn < least) best = solution.q;
-    least = std::min(least, turn);
+    if (turn < min) best = solution.q;
+    min = std::min(min, turn);
   }
   return best;
 }

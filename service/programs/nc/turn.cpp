@@ -36,11 +36,11 @@ std::vector<RotaryAt> between(const std::vector<RotaryAt>& from, const std::vect
 }
 
 double largest_turn_deg(const std::vector<RotaryAt>& from, const std::vector<RotaryAt>& to) {
-  double most = 0;
+  double max = 0;
   for (const RotaryAt& at : to) {
-    if (at.deg) most = std::max(most, std::abs(*at.deg - before(from, at.address)));
+    if (at.deg) max = std::max(max, std::abs(*at.deg - before(from, at.address)));
   }
-  return most;
+  return max;
 }
 
 int pieces_of_turn(const MachineAxes& axes, const std::vector<RotaryAt>& from,

@@ -30,12 +30,12 @@ void bound_stage(const ActuatorStage& g, const JointVector& from, const JointVec
   const double slide = std::abs(end[g.linear_joint] - begin[g.linear_joint]);
   const double apart =
       (to[g.rotary_joint] - to[g.linear_joint]) - (from[g.rotary_joint] - from[g.linear_joint]);
-  const double least =
+  const double min =
       std::min(stage::determinant(g, begin), stage::determinant(g, end)) - bend * turn;
-  out.is_known = least > 0;
+  out.is_known = min > 0;
   if (!out.is_known) return;
-  const double turn_rate = std::abs(apart) / least;
-  const double turn_bend = 2 * bend * turn_rate * turn_rate / least;
+  const double turn_rate = std::abs(apart) / min;
+  const double turn_bend = 2 * bend * turn_rate * turn_rate / min;
   const double slide_bend = bend * turn_rate * turn_rate + lever * turn_bend;
   out.rate[g.rotary_joint] = turn_rate;
   out.bend[g.rotary_joint] = turn_bend;

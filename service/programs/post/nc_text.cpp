@@ -13,11 +13,11 @@ constexpr std::size_t kLongestComment = 64;
 }  // namespace
 
 std::string fixed(double value, int decimals) {
-  const double least = 0.5 * std::pow(10.0, -decimals);
+  const double min = 0.5 * std::pow(10.0, -decimals);
   std::array<char, 64> digits{};
   const auto end =
       std::to_chars(digits.data(), digits.data() + digits.size(),
-                    std::abs(value) <= least ? 0.0 : value, std::chars_format::fixed, decimals)
+                    std::abs(value) <= min ? 0.0 : value, std::chars_format::fixed, decimals)
           .ptr;
   return {digits.data(), end};
 }

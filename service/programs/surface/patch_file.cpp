@@ -23,10 +23,10 @@ constexpr Range kLean_deg{-80, 80};
 
 void read_row(Section& row, NurbsNet& net) {
   const bool is_first = net.rows == 0;
-  const std::size_t least = is_first ? 2 : net.columns;
-  const std::size_t most = is_first ? kMaxPoints : net.columns;
+  const std::size_t min = is_first ? 2 : net.columns;
+  const std::size_t max = is_first ? kMaxPoints : net.columns;
   const std::string all = "all rows have as many points as the first";
-  const std::vector<double> x = row.numbers("x_mm", least, most, kPlace_mm, all);
+  const std::vector<double> x = row.numbers("x_mm", min, max, kPlace_mm, all);
   net.columns = x.size();
   const std::vector<double> y = row.numbers("y_mm", x.size(), x.size(), kPlace_mm, all);
   const std::vector<double> z = row.numbers("z_mm", x.size(), x.size(), kPlace_mm, all);
@@ -66,9 +66,9 @@ void read_surface(Section section, PatchJob& job) {
   if (net.degree_u != degrees[0] || net.degree_v != degrees[1]) {
     section.refuse("degree", "two whole numbers, 1 to 9", "write [3, 3] for a bicubic patch");
   }
-  const std::size_t most = kMaxPoints + kMaxDegree + 1;
-  net.knots_u = section.numbers("knots_u", 4, most, kKnot);
-  net.knots_v = section.numbers("knots_v", 4, most, kKnot);
+  const std::size_t max = kMaxPoints + kMaxDegree + 1;
+  net.knots_u = section.numbers("knots_u", 4, max, kKnot);
+  net.knots_v = section.numbers("knots_v", 4, max, kKnot);
   job.rule.is_flipped = section.truth_or("flip_normal", false);
   std::vector<Section> rows = section.sections_or("row");
   if (rows.size() < 2 || rows.size() > kMaxPoints) {

@@ -71,12 +71,12 @@ FlankFit measure_flank(const RuledWall& wall, const std::vector<ToolPose>& poses
     fit.twist_rad = std::max(fit.twist_rad, std::atan2(low.cross(high).norm(), low.dot(high)));
     for (int j = 0; j <= kUp; ++j) {
       const Vector3 point = r.bottom + static_cast<double>(j) / kUp * (r.top - r.bottom);
-      double least = std::numeric_limits<double>::infinity();
+      double min = std::numeric_limits<double>::infinity();
       for (const ToolPose& pose : poses) {
-        least = std::min(least, (point - pose.tip).cross(pose.axis).norm());
+        min = std::min(min, (point - pose.tip).cross(pose.axis).norm());
       }
-      fit.undercut_mm = std::max(fit.undercut_mm, least - radius_mm);
-      fit.overcut_mm = std::max(fit.overcut_mm, radius_mm - least);
+      fit.undercut_mm = std::max(fit.undercut_mm, min - radius_mm);
+      fit.overcut_mm = std::max(fit.overcut_mm, radius_mm - min);
     }
   }
   return fit;

@@ -29,7 +29,7 @@ class Measure {
 
   void add(const Contact& c, double& chord_error_mm, bool is_joined) {
     ++report_.contacts;
-    least_ = std::min(least_, c.shape.min_curvature);
+    min_ = std::min(min_, c.shape.min_curvature);
     largest_ = std::max(largest_, c.shape.largest_curvature);
     const double tilt = angle_between(c.pose.axis, Vector3::UnitZ());
     report_.min_tilt_rad = std::min(report_.min_tilt_rad, tilt);
@@ -55,7 +55,7 @@ class Measure {
 
   void finish() {
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    report_.convex_radius_mm = least_ < -kGougeCurvature ? -1 / least_ : kNone;
+    report_.convex_radius_mm = min_ < -kGougeCurvature ? -1 / min_ : kNone;
     report_.concave_radius_mm = largest_ > kGougeCurvature ? 1 / largest_ : kNone;
     report_.seconds_at_feed = report_.length_mm / job_.program.feed_mm_per_s;
   }
@@ -64,7 +64,7 @@ class Measure {
   const PatchJob& job_;
   SurfaceReport& report_;
   const Contact* last_ = nullptr;
-  double least_ = 0, largest_ = 0, worst_ = 0;
+  double min_ = 0, largest_ = 0, worst_ = 0;
 };
 
 std::string asked(const char* what, double bound_mm) {

@@ -20,8 +20,8 @@ std::optional<SurfaceShape> shape_at(const NurbsSurface& surface, double u, doub
   const auto [u0, u1] = surface.domain_u();
   const auto [v0, v1] = surface.domain_v();
   const double length_u = s.du.norm(), length_v = s.dv.norm();
-  const double least = kSingular * surface.size_mm();
-  if (!(length_u * (u1 - u0) > least && length_v * (v1 - v0) > least)) return std::nullopt;
+  const double min = kSingular * surface.size_mm();
+  if (!(length_u * (u1 - u0) > min && length_v * (v1 - v0) > min)) return std::nullopt;
   SurfaceShape out;
   out.at = s.at;
   out.tangent_u = s.du / length_u;

@@ -145,10 +145,10 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
   void check_feed(const ReadBack& read, const test::NcMove& move, const test::NcMove& before,
                   const test::ClPath& way) {
     if (move.is_rapid) return;
-    const double most = model.max_feed_mm_per_s;
+    const double max = model.max_feed_mm_per_s;
     const double feed = way.block.feed_meaning == FeedMeaning::kTip
-                            ? std::min(way.block.feed, most)
-                            : std::min(way.length() * way.block.feed, most);
+                            ? std::min(way.block.feed, max)
+                            : std::min(way.length() * way.block.feed, max);
     const double length = (read.end_of(move).tip - read.end_of(before).tip).norm();
     constexpr double kDigits_mm = 5e-3;  // rounded words at both ends
     if (read.options.dialect != post::Dialect::kJoints) {

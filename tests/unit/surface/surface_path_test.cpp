@@ -104,10 +104,10 @@ TEST(SurfacePath, StepsOnACircleAsItsSagittaAllows) {
   options.chord_error_mm = 0.01;
   const auto path = cover(ball_on(cylinder, 3), options);
   ASSERT_TRUE(path);
-  const double least = 0.5 * std::numbers::pi / (2 * std::acos(1 - 0.01 / 25));
+  const double min = 0.5 * std::numbers::pi / (2 * std::acos(1 - 0.01 / 25));
   const auto blocks = static_cast<double>(path->lines[0].contacts.size() - 1);
-  EXPECT_GE(blocks, std::ceil(least));
-  EXPECT_LE(blocks, 1.1 * least + 1);
+  EXPECT_GE(blocks, std::ceil(min));
+  EXPECT_LE(blocks, 1.1 * min + 1);
 }
 
 TEST(SurfacePath, OnAPlaneNeedsNoMoreThanItsEnds) {

@@ -18,7 +18,7 @@ using cl::refuse;
 
 /// Q parameters that the cycles share.
 constexpr int kQClearance = 200, kQDepth = 201, kQPeck = 202, kQSurface = 203,
-              kQSecondClearance = 204, kQLeastPeck = 205, kQFeed = 206, kQFeedOut = 208,
+              kQSecondClearance = 204, kQMinPeck = 205, kQFeed = 206, kQFeedOut = 208,
               kQDwell = 211, kQDecrement = 212, kQBreaks = 213, kQBack = 256, kQBreakDepth = 257,
               kQByDiameter = 343, kQStartDepth = 379, kQDepthOfShank = 395;
 constexpr int kPreset247 = 247, kQPreset = 339;
@@ -77,11 +77,11 @@ std::vector<double> klartext_pecks(const CycleDefinition& cycle, double depth) {
   const double decrement = std::max(value_of(cycle, kQDecrement), 0.0);
   std::vector<double> pecks;
   double peck = value_of(cycle, kQPeck);
-  const double least = std::max({value_of(cycle, kQLeastPeck), depth / kMaxPecks});
+  const double min = std::max({value_of(cycle, kQMinPeck), depth / kMaxPecks});
   for (double left = depth; peck > 0 && left > 0 && pecks.size() < kMaxPecks;) {
     pecks.push_back(peck);
     left -= peck;
-    if (decrement > 0) peck = std::max(peck - decrement, std::min(least, peck));
+    if (decrement > 0) peck = std::max(peck - decrement, std::min(min, peck));
   }
   return pecks;
 }

@@ -105,7 +105,7 @@ Expected<std::vector<double>, cl::Refusal> pecks_of(const Arguments& v, double d
   if (!first) return tl::make_unexpected(first.error());
   if (v[kFirstDepth] == 0 && v[kFirstRelative] == 0) *first = depth;
   const double decrement = v[kDecrement];
-  const double least = decrement < 0 ? std::max(v[kMinPeck], depth * 1e-3) : decrement;
+  const double min = decrement < 0 ? std::max(v[kMinPeck], depth * 1e-3) : decrement;
   std::vector<double> pecks;
   double peck = std::min(*first, depth), left = depth;
   if (!(peck > 0)) return refuse("CYCLE83: its first depth is not below the reference plane");
@@ -115,8 +115,8 @@ Expected<std::vector<double>, cl::Refusal> pecks_of(const Arguments& v, double d
     pecks.push_back(std::min(peck, left));
     left -= pecks.back();
     if (is_shared) continue;
-    if (decrement > 0 && peck - decrement > 0) peck = std::max(peck - decrement, least);
-    if (decrement < 0) peck = std::max(-decrement * peck, least);
+    if (decrement > 0 && peck - decrement > 0) peck = std::max(peck - decrement, min);
+    if (decrement < 0) peck = std::max(-decrement * peck, min);
   }
   return pecks;
 }
