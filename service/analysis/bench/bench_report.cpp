@@ -11,11 +11,11 @@ namespace {
 
 /// The largest share of any joint's limit.
 double largest(const record::CheckReport& verdict, record::Peak record::JointUse::*of) {
-  double most = 0;
+  double max = 0;
   for (int i = 0; i < verdict.joint_count; ++i) {
-    most = std::max(most, (verdict.joints[static_cast<std::size_t>(i)].*of).value);
+    max = std::max(max, (verdict.joints[static_cast<std::size_t>(i)].*of).value);
   }
-  return most;
+  return max;
 }
 
 }  // namespace

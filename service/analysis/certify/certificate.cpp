@@ -40,10 +40,10 @@ std::string to_text(const Certificate& c, const MachineModel& model) {
   append(out, "  of %.3f s of motion and %.3f s of tails, %llu stretches, in %.2f s\n", c.plan_s,
          c.tails_s, static_cast<Count>(c.stretches), c.computing_s);
   for (std::size_t n = 0; n < kQuantities; ++n) {
-    const PlacedShare& most = c.bound[n];
+    const PlacedShare& bound = c.bound[n];
     append(out, "  %-12s at most %.6f of the limit, %.6f used: %s, line %u\n", kNames[n],
-           most.share.share, c.attained[n].share.share, name_of(most.share, model).c_str(),
-           most.line);
+           bound.share.share, c.attained[n].share.share, name_of(bound.share, model).c_str(),
+           bound.line);
   }
   append(out, "  jumps at joins add at most %.1e, %.1e, %.1e of velocity, acceleration, jerk\n",
          c.jump[0].share.share, c.jump[1].share.share, c.jump[2].share.share);

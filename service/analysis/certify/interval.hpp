@@ -53,7 +53,7 @@ inline constexpr Interval kEverything{0, std::numeric_limits<double>::infinity()
 [[nodiscard]] inline double largest(const Interval& x) noexcept {
   return (std::abs(x.mid) + x.rad) * kRaised;
 }
-[[nodiscard]] inline double least(const Interval& x) noexcept {
+[[nodiscard]] inline double smallest(const Interval& x) noexcept {
   const double bound = std::abs(x.mid) - x.rad;
   return bound > 0 ? bound * (2 - kRaised) : 0;
 }
@@ -87,10 +87,10 @@ inline constexpr Interval kEverything{0, std::numeric_limits<double>::infinity()
 
 /// Everything where `a` reaches below kMinSquare.
 [[nodiscard]] inline Interval sqrt(const Interval& a) noexcept {
-  const double least = (a.mid - a.rad) * (2 - kRaised);
-  if (!(least > kMinSquare)) return kEverything;
+  const double min = (a.mid - a.rad) * (2 - kRaised);
+  if (!(min > kMinSquare)) return kEverything;
   const double root = std::sqrt(a.mid);
-  return rounded(root, a.rad / (root + std::sqrt(least)));
+  return rounded(root, a.rad / (root + std::sqrt(min)));
 }
 
 /// Sine and cosine; |sin(m + d) - sin m| <= |cos m| |d| + d²/2, and so the cosine. The library's
@@ -107,7 +107,7 @@ struct IntervalSinCos {
 /// The angle of the points (x, y), in one winding over all of them; everything where one is nearer
 /// to the origin than the root of kMinSquare. Its gradient is no larger than 1/r.
 [[nodiscard]] inline Interval atan2(const Interval& y, const Interval& x) noexcept {
-  const double near_x = least(x), near_y = least(y);
+  const double near_x = smallest(x), near_y = smallest(y);
   const double square = (near_x * near_x + near_y * near_y) * (2 - kRaised);
   if (!(square > kMinSquare)) return kEverything;
   const double angle = std::atan2(y.mid, x.mid);

@@ -82,11 +82,11 @@ void PieceCheck::attain(const EnclosedMotion& at, double time_s, Trial& trial) c
     const JointLimits& limits = limited_spec(model_, i).limits;
     for (std::size_t order = 0; order < 3; ++order) {
       const double size =
-          least(at.q[static_cast<std::size_t>(i)].derivative(static_cast<int>(order) + 1));
+          smallest(at.q[static_cast<std::size_t>(i)].derivative(static_cast<int>(order) + 1));
       take(size / limit_of(limits, order), order, i);
     }
   }
-  if (trial.feed > 0) take(std::sqrt(least(at.tip_square[0])) / trial.feed, 3, -1);
+  if (trial.feed > 0) take(std::sqrt(smallest(at.tip_square[0])) / trial.feed, 3, -1);
 }
 
 void PieceCheck::weigh(const EnclosedMotion& centre, const EnclosedMotion& all, double reach,
@@ -111,16 +111,16 @@ void PieceCheck::weigh(const EnclosedMotion& centre, const EnclosedMotion& all, 
   for (std::size_t i = 0; i < static_cast<std::size_t>(limited_count(model_)); ++i) {
     const JointLimits& limits = limited_spec(model_, static_cast<int>(i)).limits;
     for (std::size_t order = 0; order < 3; ++order) {
-      const double most =
+      const double max =
           bound_of(centre.q[i], all.q[i], static_cast<int>(order) + 1, kOrder, reach);
-      const double share = most / limit_of(limits, order) * kRaised;
+      const double share = max / limit_of(limits, order) * kRaised;
       trial.joint_bound[i][order] = share;
       take(share, order, static_cast<int>(i));
     }
   }
   if (!(trial.feed > 0)) return;
-  const double most = bound_of(centre.tip_square, all.tip_square, 0, kOrder - 1, reach);
-  take(std::sqrt(most) / trial.feed * kRaised, 3, -1);
+  const double max = bound_of(centre.tip_square, all.tip_square, 0, kOrder - 1, reach);
+  take(std::sqrt(max) / trial.feed * kRaised, 3, -1);
 }
 
 void PieceCheck::look_at(const Stretch& stretch, Trial& trial) {
@@ -176,8 +176,8 @@ PieceVerdict PieceCheck::check(const TimePiece& piece, const PathPiece& path) {
     }
     for (std::size_t i = 0; i < kMaxLimited; ++i) {
       for (std::size_t order = 0; order < 3; ++order) {
-        double& most = verdict.joint_bound[i][order];
-        if (!(trial.joint_bound[i][order] <= most)) most = trial.joint_bound[i][order];
+        double& max = verdict.joint_bound[i][order];
+        if (!(trial.joint_bound[i][order] <= max)) max = trial.joint_bound[i][order];
       }
     }
   }

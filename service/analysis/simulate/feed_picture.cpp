@@ -82,10 +82,10 @@ void FeedPicture::print_columns(std::FILE* out, const std::vector<LimitId>& show
 
 void FeedPicture::print(std::FILE* out, const std::string& title) const {
   std::array<double, kLimitIds> time{};
-  double whole = 0, most = 0;
+  double whole = 0, max = 0;
   for (const Column& column : columns_) {
     whole += column.time_s;
-    most = std::max({most, column.way_mm / column.time_s, column.programmed_mm_per_s});
+    max = std::max({max, column.way_mm / column.time_s, column.programmed_mm_per_s});
     for (std::size_t n = 0; n < kLimitIds; ++n) time[n] += static_cast<double>(column.by_limit[n]);
   }
   std::vector<LimitId> shown;
@@ -104,7 +104,7 @@ void FeedPicture::print(std::FILE* out, const std::string& title) const {
       "set key outside right top noreverse Left samplen 1.2\nset rmargin 34\nset xtics out "
       "nomirror\nset autoscale xfix\n"
       "set lmargin 12\nset yrange [0:%.6g]\nset ylabel 'tip, mm/min'\n",
-      units::per_min_from_per_s(1.15 * most));
+      units::per_min_from_per_s(1.15 * max));
   double others = whole;
   for (const LimitId id : shown) others -= time[id];
   const auto panel = [&](int from, const char* label, double place) {

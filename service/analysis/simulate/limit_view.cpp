@@ -51,8 +51,8 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
   const double share = feed_share > 0 || piece.feed_mm_per_s == 0
                            ? feed_share / piece.feed_factor
                            : view.tip_speed / (piece.feed_factor * piece.feed_mm_per_s);
-  const auto weigh = [&](double use, double least, LimitId id) {
-    if (!(use > least) || !(use > largest)) return false;
+  const auto weigh = [&](double use, double min, LimitId id) {
+    if (!(use > min) || !(use > largest)) return false;
     largest = use;
     view.limit = id;
     return true;

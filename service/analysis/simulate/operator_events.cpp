@@ -77,8 +77,8 @@ struct EventRow {
   }
   if (!text.empty()) return "there is more than cycle, verb and argument";
   if (is_of_host) {
-    const double most = counts ? kMaxPeriods : 1;
-    const bool is_whole = !argument.empty() && value >= (counts ? 1 : 0) && value <= most &&
+    const double max = counts ? kMaxPeriods : 1;
+    const bool is_whole = !argument.empty() && value >= (counts ? 1 : 0) && value <= max &&
                           value == std::floor(value);
     return is_whole ? "" : about(row.word, "needs a whole number");
   }
@@ -87,10 +87,10 @@ struct EventRow {
     return about(row.word, "needs 1 (on) or 0 (off)");
   }
   if (is_override(*verb) && argument.empty()) return about(row.word, "needs its factor");
-  const double most = *verb == Verb::kFeedOverride ? max_feed : 1;
-  if (is_override(*verb) && !(value >= 0 && value <= most)) {
+  const double max = *verb == Verb::kFeedOverride ? max_feed : 1;
+  if (is_override(*verb) && !(value >= 0 && value <= max)) {
     std::string fault = about(argument, "is no factor from 0 to ");
-    text::append(fault, "%.4g", most);
+    text::append(fault, "%.4g", max);
     return fault;
   }
   return "";

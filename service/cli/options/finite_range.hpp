@@ -19,10 +19,10 @@ template <class IsGood>
           description};
 }
 
-/// A number from `least` to `most`. CLI::Range passes NaN, which is neither below nor above.
-[[nodiscard]] inline CLI::Validator finite_range(double least, double most) {
-  return finite_number([least, most](double value) { return value >= least && value <= most; },
-                       CLI::Range(least, most).get_description());
+/// A number from `min` to `max`. CLI::Range passes NaN, which is neither below nor above.
+[[nodiscard]] inline CLI::Validator finite_range(double min, double max) {
+  return finite_number([min, max](double value) { return value >= min && value <= max; },
+                       CLI::Range(min, max).get_description());
 }
 
 /// A number above zero. CLI::PositiveNumber passes NaN.

@@ -50,7 +50,7 @@ TEST(Interval, HoldsTheResultForEveryMemberOfItsOperands) {
     ASSERT_LE(x, static_cast<Real>(upper(a)));
     ASSERT_GE(x, static_cast<Real>(lower(a)));
     ASSERT_LE(std::abs(x), static_cast<Real>(largest(a)));
-    ASSERT_GE(std::abs(x), static_cast<Real>(least(a)));
+    ASSERT_GE(std::abs(x), static_cast<Real>(smallest(a)));
     const Interval square = a * a + Interval(1e-12);
     if (std::isfinite(sqrt(square).rad)) {
       ASSERT_TRUE(holds(sqrt(square), std::sqrt(x * x + Real{1e-12}))) << n;
@@ -90,7 +90,7 @@ TEST(Interval, ThatIsNoNumberIsNeverBelowABound) {
   EXPECT_FALSE(upper(lost) <= 1e300);
   EXPECT_FALSE(largest(lost) <= 1e300);
   EXPECT_FALSE(lower(lost) > -1e300);
-  EXPECT_FALSE(least(lost) > 0);
+  EXPECT_FALSE(smallest(lost) > 0);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(JoinCheck, AddsUpTheJumpsThatOneDifferenceSees) {
 
 /// The weights in join_check.hpp: differences of a jump of each order, sampled at any phase.
 TEST(JoinCheck, BoundsTheDifferencesOfAJump) {
-  const double most[3][3] = {{1, 0, 0}, {1, 1, 0}, {2, 1, 0.75}};  // [difference - 1][jump]
+  const double max[3][3] = {{1, 0, 0}, {1, 1, 0}, {2, 1, 0.75}};  // [difference - 1][jump]
   for (int jump = 0; jump < 3; ++jump) {
     double largest[3] = {0, 0, 0};
     for (int phase = 0; phase <= 1000; ++phase) {
@@ -89,8 +89,8 @@ TEST(JoinCheck, BoundsTheDifferencesOfAJump) {
       }
     }
     for (int order = 0; order < 3; ++order) {
-      EXPECT_LE(largest[order], most[order][jump] + 1e-9) << "jump " << jump << ", " << order + 1;
-      EXPECT_GE(largest[order], most[order][jump] - 1e-5) << "jump " << jump << ", " << order + 1;
+      EXPECT_LE(largest[order], max[order][jump] + 1e-9) << "jump " << jump << ", " << order + 1;
+      EXPECT_GE(largest[order], max[order][jump] - 1e-5) << "jump " << jump << ", " << order + 1;
     }
   }
 }

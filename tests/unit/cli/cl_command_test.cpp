@@ -145,7 +145,7 @@ TEST(ClCommand, TakesNoNumberThatIsNone) {
 TEST(ClCommand, TakesNoToleranceBelowWhatIsPlannedFor) {
   const std::string machine = " --machine " MERIDIAN_SOURCE_DIR "/deploy/machines/lai.toml ";
   struct Line {
-    const char *option, *least, *below;
+    const char *option, *min, *below;
   };
   constexpr Line kLines[] = {{"--tip-tolerance-mm", "0.001", "0.00099"},
                              {"--axis-tolerance-deg", "0.00573", "0.0057"}};
@@ -154,7 +154,7 @@ TEST(ClCommand, TakesNoToleranceBelowWhatIsPlannedFor) {
       const std::string begin = command + " /no/such" + machine + line.option + " ";
       const CommandOutput refused = run_tool(begin + line.below);
       EXPECT_EQ(refused.exit_code, 2) << refused.output;
-      for (const char* part : {line.option, line.below, line.least}) {
+      for (const char* part : {line.option, line.below, line.min}) {
         EXPECT_NE(refused.output.find(part), std::string::npos) << part << ": " << refused.output;
       }
     }
