@@ -161,10 +161,10 @@ class WindowedCycle : public DrivenCycle<SmoothPlanner> {
     for (int i = 0; i < 20'000 && state_.state != State::kRunning; ++i) run();
   }
 
-  /// Whether it is still cutting, has skipped at least `least` tails and run none.
-  [[nodiscard]] bool has_skipped(std::uint32_t least) const noexcept {
+  /// Whether it is still cutting, has skipped at least `min` tails and run none.
+  [[nodiscard]] bool has_skipped(std::uint32_t min) const noexcept {
     const auto begun = writer_.window_begun();
-    return state_.state == State::kRunning && begun && begun->window > least &&
+    return state_.state == State::kRunning && begun && begun->window > min &&
            !writer_.tail_entered();
   }
 

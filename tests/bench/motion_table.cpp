@@ -56,18 +56,18 @@ void print_cost(const bench::SmoothTotal& total) {
 /// Runs all of `programs`, three times.
 bench::SmoothTotal run(const MachineModel& model,
                        const std::vector<std::vector<ClBlock>>& programs) {
-  bench::SmoothTotal least;
+  bench::SmoothTotal min;
   for (int n = 0; n < 3; ++n) {
     const auto windows = std::make_unique<bench::SmoothWindows>(model);
     bench::SmoothTotal total;
     for (const auto& blocks : programs) windows->run(blocks, total);
     if (n == 0) {
-      least = total;
+      min = total;
     } else {
-      least.keep_least(total);
+      min.keep_min(total);
     }
   }
-  return least;
+  return min;
 }
 
 /// Onto the pole with the axis turning, then 2 m on it: it is not known for long where that ends.

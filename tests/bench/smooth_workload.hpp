@@ -43,7 +43,7 @@ struct SmoothTotal {
 
   /// The same run again: of every window the lesser cost stays, which other work on the host spoils
   /// less.
-  void keep_least(const SmoothTotal& again) {
+  void keep_min(const SmoothTotal& again) {
     has_failed |= again.has_failed || again.checksum != checksum;
     for (std::size_t n = 0; n < std::min(windows.size(), again.windows.size()); ++n) {
       windows[n].cpu_s = std::min(windows[n].cpu_s, again.windows[n].cpu_s);

@@ -21,17 +21,17 @@ constexpr double kMmPerRad = 50;  ///< what a turn of the axis counts for
 /// How far `row` is from the end of line `line`, mm.
 [[nodiscard]] double distance_to_end(const record::CheckedPath& path, std::uint32_t line,
                                      const MachineModel& model, const JointVector& joints) {
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   const auto look = [&](const ToolPose& end, double tool_length) {
     const ToolPose pose = forward(model, tool_length, joints);
-    least = std::min(least,
-                     (pose.tip - end.tip).norm() + kMmPerRad * angle_between(pose.axis, end.axis));
+    min =
+        std::min(min, (pose.tip - end.tip).norm() + kMmPerRad * angle_between(pose.axis, end.axis));
   };
   if (line == path.begin_line()) look(path.begin(), path.begin_tool_length_mm());
   for (const record::PathElement& element : path.elements()) {
     if (element.line == line && element.is_block_end) look(element.pose(1), element.tool_length_mm);
   }
-  return least;
+  return min;
 }
 
 /// The part's way, what was recorded of a stretch of it, and how the two are compared.

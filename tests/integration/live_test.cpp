@@ -92,13 +92,13 @@ TEST(Live, TurnsCBackOffThePartAndEqualsTheSimulation) {
   const MachineModel model = config::load_machine(plant.machine());
   auto recording = record::RecordingReader::open(plant.recording(), model);
   ASSERT_TRUE(recording);
-  double least = 0, most = 0;
+  double min = 0, max = 0;
   for (record::RecordingRow row; recording->next(row).value_or(false);) {
     if (row.kind != MotionKind::kUnwind) continue;
-    least = std::min(least, row.joints[3]);
-    most = std::max(most, row.joints[3]);
+    min = std::min(min, row.joints[3]);
+    max = std::max(max, row.joints[3]);
   }
-  EXPECT_GT(most - least, 6.2) << "C was not turned back";
+  EXPECT_GT(max - min, 6.2) << "C was not turned back";
 }
 
 /// Median and p99 of the computation times in the recording of `plant`, ns, and how many of the

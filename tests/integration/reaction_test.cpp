@@ -104,7 +104,7 @@ class LiveReaction : public testing::Test {
     return times_ms;
   }
   struct Spread {
-    double least = 0, middle = 0;  ///< of two in the middle the larger
+    double min = 0, middle = 0;  ///< of two in the middle the larger
   };
   static Spread report(const char* what, const char* unit, std::vector<double> values) {
     EXPECT_FALSE(values.empty());
@@ -116,7 +116,7 @@ class LiveReaction : public testing::Test {
     if (std::getenv("MERIDIAN_REACTIONS") != nullptr) {
       std::printf("  p50 %.2f, p90 %.2f, p99 %.2f\n", at(50), at(90), at(99));
     }
-    return {.least = values.front(), .middle = at(50)};
+    return {.min = values.front(), .middle = at(50)};
   }
 
   const int repetitions = number_of("MERIDIAN_REACTIONS", 2);
@@ -168,7 +168,7 @@ TEST_F(LiveReaction, OfDrivesThatAreKilledIsAFaultStopWhenTheirLastReportIsTooOl
   }
   const Spread times = report("drives killed to FaultStop", "ms", times_until(State::kFaultStop));
   EXPECT_GT(times.middle, kFeedbackTimeout_ms - 10);
-  EXPECT_LT(times.least, kFeedbackTimeout_ms + 50);
+  EXPECT_LT(times.min, kFeedbackTimeout_ms + 50);
 }
 
 TEST_F(LiveReaction, OfAServiceThatIsStoppedIsTheDrivesRampBehindTheBridge) {
@@ -198,7 +198,7 @@ TEST_F(LiveReaction, OfAServiceThatIsStoppedIsTheDrivesRampBehindTheBridge) {
   }
   const Spread times = report("service stopped to the drives' ramp", "ms", times_ms);
   EXPECT_GT(times.middle, kBridge_ms - 5);
-  EXPECT_LT(times.least, kBridge_ms + 50);
+  EXPECT_LT(times.min, kBridge_ms + 50);
 }
 
 TEST_F(LiveReaction, OfAStationThatIsKilledIsStarvingNoLaterThanTheFirstSlowerSetpoint) {

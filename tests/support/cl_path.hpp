@@ -48,11 +48,11 @@ struct ClPath {
     return std::max((pose.tip - at.tip).norm() / tip_mm, angle_of(pose.axis, at.axis) / axis_rad);
   };
   constexpr int kPlaces = 16;
-  double best = 0, least = off(0);
+  double best = 0, min = off(0);
   for (int n = 1; n <= kPlaces; ++n) {
     const double share = static_cast<double>(n) / kPlaces;
-    if (const double here = off(share); here < least) {
-      least = here;
+    if (const double here = off(share); here < min) {
+      min = here;
       best = share;
     }
   }
@@ -61,7 +61,7 @@ struct ClPath {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
     (off(a) < off(b) ? high : low) = off(a) < off(b) ? b : a;
   }
-  return std::min(least, off((low + high) / 2));
+  return std::min(min, off((low + high) / 2));
 }
 
 /// The ways of the motion blocks behind the first, which only says where the path begins.

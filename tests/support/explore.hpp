@@ -35,12 +35,12 @@ struct Step {
 
 /// Goes breadth first through every state that `steps_of` leads to from `first`, states of the same
 /// `key_of` being one, until `complaint_of` finds one wrong (a text that is not empty), all were
-/// seen, or there are more than `most`.
+/// seen, or there are more than `max`.
 template <class State>
 [[nodiscard]] Exploration explore(
     const State& first, const std::function<std::vector<Step<State>>(const State&)>& steps_of,
     const std::function<std::string(const State&)>& key_of,
-    const std::function<std::string(const State&)>& complaint_of, std::size_t most) {
+    const std::function<std::string(const State&)>& complaint_of, std::size_t max) {
   struct Place {
     std::size_t parent;
     std::string step;
@@ -71,7 +71,7 @@ template <class State>
       found.states = places.size();
       if (is_wrong(places.size() - 1, step.state)) return found;
       waiting.emplace_back(places.size() - 1, std::move(step.state));
-      if (places.size() > most) return found;
+      if (places.size() > max) return found;
     }
   }
   found.is_complete = true;

@@ -56,9 +56,9 @@ class SampleRun {
   void move(const ToolPose& from, const ToolPose& to, const ClBlock& block) {
     const GreatCircle circle = find_great_circle(from.axis, to.axis);
     const double way = (to.tip - from.tip).norm();
-    const double least = std::max({2.1875 * way / (0.9 * block.feed), 6.0 * circle.turn, 0.05});
+    const double min = std::max({2.1875 * way / (0.9 * block.feed), 6.0 * circle.turn, 0.05});
     const double period = static_cast<double>(model_.cycle_ns) * 1e-9;
-    const double duration = period * std::ceil(least / period);
+    const double duration = period * std::ceil(min / period);
     for (double t = period; t < duration + 0.5 * period; t += period) {
       const Jet<1> u = Jet<1>::variable(std::min(1.0, t / duration));
       const Jet<1> s = u * u * u * u * (35.0 + u * (-84.0 + u * (70.0 - 20.0 * u)));

@@ -59,14 +59,14 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
   /// First record of an unwinding in which C turns well, or the tool is on its way.
   [[nodiscard]] std::size_t find_in(const std::vector<CycleRecord>& records, bool turns) const {
     std::size_t best = 0;
-    double most = 0;
+    double max = 0;
     for (std::size_t n = 1; n < records.size(); ++n) {
       if (records[n].motion != MotionKind::kUnwind) continue;
       const double turned = std::abs(records[n].joints[3] - records[n - 1].joints[3]);
       const double moved = std::abs(records[n].joints[2] - records[n - 1].joints[2]);
       const double is = turns ? turned : moved;
-      if (is > most) {
-        most = is;
+      if (is > max) {
+        max = is;
         best = n;
       }
     }
