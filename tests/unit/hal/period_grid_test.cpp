@@ -42,6 +42,13 @@ TEST(PeriodGrid, SetpointsThatWereHeldUpLeaveNoLagBehind) {
   EXPECT_NEAR(static_cast<double>(end), 18e6, 0.05e6);
 }
 
+TEST(PeriodGrid, DoesNotRunAheadWithASenderWhoseCyclesAreShorterThanItSays) {
+  PeriodGrid grid(kPeriod_ns);
+  for (int n = 10; n < 200; ++n) {
+    EXPECT_LE(grid.end_of(n * kPeriod_ns, 2e-3), (n + 9) * kPeriod_ns) << n;
+  }
+}
+
 TEST(PeriodGrid, BeginsAnewBehindAStall) {
   PeriodGrid grid(kPeriod_ns);
   (void)grid.end_of(10 * kPeriod_ns, 1e-3);
