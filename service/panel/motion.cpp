@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/panel/motion.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace meridian::panel {
 namespace {
 
@@ -21,7 +18,10 @@ constexpr std::size_t kMaxTrail = 512, kMaxSamples = 1024;
 }  // namespace
 
 Motion::Motion(const MachineModel& model, int trail_every)
-    : model_(model), trail_every_(trail_every), tool_length_mm_(model.tool_length_mm) {
+    : model_(model),
+      trail_every_(trail_every),
+      tool_length_mm_(model.tool_length_mm),
+      shares_(model) {
   trail_.reserve(kMaxTrail);
   samples_.reserve(kMaxSamples);
 }
@@ -46,7 +46,9 @@ void Motion::add(const Setpoint& setpoint) {
   cycle_ = setpoint.cycle;
   sent_[cycle_ % kKept] = {cycle_, setpoint.position};
   joints_ = stage::joints_of(model_.stage, setpoint.position);
-  differentiate(*joints_, is_next);
+  const bool is_fault = (setpoint.flags & kSetpointFaultStop) != 0;
+  shares_.add(limited_of(model_, *joints_, setpoint.position), is_next,
+              is_fault ? scene::Bounds::kOfFaultStop : scene::Bounds::kOfMotion);
   const Pose<double> pose = forward(model_, tool_length_mm_, *joints_);
   const double rate = 1e9 / static_cast<double>(model_.cycle_ns);
   const double feed = is_next ? rate * (pose.tip - tip_).norm() : 0;
@@ -55,27 +57,6 @@ void Motion::add(const Setpoint& setpoint) {
   if (cycle_ % static_cast<std::uint64_t>(trail_every_) == 0 && trail_.size() < kMaxTrail) {
     trail_.push_back({pose, setpoint.line});
   }
-}
-
-/// Finite differences of one cycle after the other; a lost cycle breaks the row.
-void Motion::differentiate(const JointVector& joints, bool is_next) {
-  const double rate = 1e9 / static_cast<double>(model_.cycle_ns);
-  derivatives_ = is_next ? std::min(derivatives_ + 1, 3) : 0;
-  std::array<JointVector, 3> now{joints, {}, {}};
-  for (int i = 0; i < model_.joint_count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const JointLimits& limits = model_.joints[at].limits;
-    const std::array<double, 3> limit{limits.velocity, limits.acceleration, limits.jerk};
-    double value = joints[at];
-    for (int order = 0; order < derivatives_; ++order) {
-      const auto of = static_cast<std::size_t>(order);
-      value = (value - before_[of][at]) * rate;
-      if (of + 1 < now.size()) now[of + 1][at] = value;
-      const double share = limit[of] > 0 ? std::abs(value) / limit[of] : 0;
-      shares_[at][of] = std::max(shares_[at][of], share);
-    }
-  }
-  before_ = now;
 }
 
 void Motion::add_feedback(std::uint64_t cycle_seen, std::uint32_t joint_mask,
@@ -90,7 +71,7 @@ void Motion::add_feedback(std::uint64_t cycle_seen, std::uint32_t joint_mask,
 void Motion::clear() {
   trail_.clear();
   samples_.clear();
-  shares_ = {};
+  shares_.clear();
 }
 
 }  // namespace meridian::panel

@@ -9,6 +9,7 @@
 
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "service/machine/scene/limit_shares.hpp"
 
 namespace meridian::panel {
 
@@ -29,9 +30,6 @@ class Motion {
     JointVector following{};   ///< setpoint less feedback, drive coordinates; 0 where not known
     double feed_mm_per_s = 0;  ///< of the tip; 0 behind a lost cycle
   };
-  /// Largest share of the limit of velocity, acceleration and jerk; 1 is the limit.
-  using Shares = std::array<std::array<double, 3>, kMaxJoints>;
-
   /// `model` must live on. Every `trail_every` cycles a point of the trail.
   explicit Motion(const MachineModel& model, int trail_every = 8);
 
@@ -46,7 +44,7 @@ class Motion {
 
   [[nodiscard]] const std::vector<TrailPoint>& trail() const noexcept { return trail_; }
   [[nodiscard]] const std::vector<Sample>& samples() const noexcept { return samples_; }
-  [[nodiscard]] const Shares& shares() const noexcept { return shares_; }
+  [[nodiscard]] const scene::Shares& shares() const noexcept { return shares_.largest(); }
   [[nodiscard]] const JointVector& following() const noexcept { return following_; }
   /// Joints of the newest setpoint; nothing before the first.
   [[nodiscard]] const std::optional<JointVector>& joints() const noexcept { return joints_; }
@@ -59,7 +57,6 @@ class Motion {
     std::uint64_t cycle = 0;
     JointVector position{};
   };
-  void differentiate(const JointVector& joints, bool is_next);
   /// The tip is now at the end of another tool: that is no path.
   void set_tool_length(double tool_length_mm) noexcept;
 
@@ -67,13 +64,11 @@ class Motion {
   int trail_every_;
   double tool_length_mm_;
   std::uint64_t cycle_ = 0;
-  int derivatives_ = 0;                  ///< how many differences are known of the cycle before
-  std::array<JointVector, 3> before_{};  ///< position, velocity, acceleration
   std::array<Sent, kKept> sent_{};
   std::optional<JointVector> joints_;
   Vector3 tip_ = Vector3::Zero();
   JointVector following_{};
-  Shares shares_{};
+  scene::LimitShares shares_;
   std::vector<TrailPoint> trail_;
   std::vector<Sample> samples_;
 };

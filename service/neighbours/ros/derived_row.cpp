@@ -25,32 +25,11 @@ void DerivedRow::add(const record::RecordingRow& row) {
   feed_mm_per_s_ = is_next ? distance(pose.tip, pose_.tip) * rate : 0;
   turn_rad_per_s_ = is_next ? angle(pose.axis, pose_.axis) * rate : 0;
   pose_ = pose;
-  known_ = is_next && is_leading(row.flags) ? std::min(known_ + 1, 3) : 0;
-  differentiate(row);
+  const bool is_fault = (row.flags & kSetpointFaultStop) != 0;
+  shares_.add(row.places, is_next && is_leading(row.flags),
+              is_fault ? scene::Bounds::kOfFaultStop : scene::Bounds::kOfMotion);
   has_row_ = true;
   cycle_ = row.cycle;
-}
-
-void DerivedRow::differentiate(const record::RecordingRow& row) {
-  const double rate = 1e9 / static_cast<double>(model_.cycle_ns);
-  const bool is_fault = (row.flags & kSetpointFaultStop) != 0;
-  std::array<LimitedVector, 3> now{row.places, {}, {}};
-  for (int i = 0; i < limited_count(model_); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const JointLimits& limits = limited_spec(model_, i).limits;
-    const std::array<double, 3> limit{limits.velocity,
-                                      is_fault ? limits.fault_acceleration : limits.acceleration,
-                                      is_fault ? limits.fault_jerk : limits.jerk};
-    double value = row.places[at];
-    for (int order = 0; order < known_; ++order) {
-      const auto of = static_cast<std::size_t>(order);
-      value = (value - before_[of][at]) * rate;
-      if (of + 1 < now.size()) now[of + 1][at] = value;
-      const double share = limit[of] > 0 ? std::abs(value) / limit[of] : 0;
-      shares_[at][of] = std::max(shares_[at][of], share);
-    }
-  }
-  before_ = now;
 }
 
 }  // namespace meridian::ros
