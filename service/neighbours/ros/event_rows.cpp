@@ -8,13 +8,6 @@
 #include "service/text/printed.hpp"
 
 namespace meridian::ros {
-namespace {
-
-[[nodiscard]] bool is_bad(State state) noexcept {
-  return state == State::kFault || state == State::kFaultStop;
-}
-
-}  // namespace
 
 void EventRows::write(const record::RecordingRow& row) {
   write_cycle(row);
@@ -39,7 +32,7 @@ void EventRows::write_cycle(const record::RecordingRow& row) {
 
 void EventRows::write_machine(const record::RecordingRow& row) {
   if (contents_.has_state && (!has_row_ || row.state != last_.state)) {
-    const Level level = is_bad(row.state) ? Level::kError : Level::kInfo;
+    const Level level = level_of(row.state);
     topic_.write(row.due_ns, level, "state", record::word(row.state), row.line);
   }
   const bool had_stop = has_row_ && last_.is_emergency_stop;

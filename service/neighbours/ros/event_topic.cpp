@@ -5,6 +5,11 @@
 
 namespace meridian::ros {
 
+Level level_of(State state) noexcept {
+  const bool is_fault = state == State::kFault || state == State::kFaultStop;
+  return is_fault ? Level::kError : Level::kInfo;
+}
+
 EventTopic::EventTopic(mcap::Writer& writer)
     : writer_(writer), channel_(add_topic(writer, "/events", log_type())) {}
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "meridian/cycle/state.hpp"
 #include "service/neighbours/ros/cdr.hpp"
 #include "service/recording/mcap/writer.hpp"
 
@@ -11,6 +12,9 @@ namespace meridian::ros {
 
 /// As rcl_interfaces/Log counts them.
 enum class Level : std::uint8_t { kInfo = 20, kWarning = 30, kError = 40 };
+
+/// Of the event that the machine comes to `state`.
+[[nodiscard]] Level level_of(State state) noexcept;
 
 /// `/events`: what happened, in words; rcl_interfaces/Log.
 /// Proof: tests/unit/ros/event_test.cpp.

@@ -32,10 +32,6 @@ constexpr std::int64_t kLongestWait_ns = 1'000'000'000;
   return row;
 }
 
-[[nodiscard]] bool is_bad(State state) noexcept {
-  return state == State::kFault || state == State::kFaultStop;
-}
-
 }  // namespace
 
 Expected<std::unique_ptr<WireFile>, record::RecordError> WireFile::create(
@@ -62,8 +58,7 @@ void WireFile::add(const record::WireRow& seen) {
 
 void WireFile::tell(State state, Alarm alarm, int joint) {
   if (state_ != state) {
-    file_->write_event(now_ns_, is_bad(state) ? Level::kError : Level::kInfo, "state",
-                       std::string(record::word(state)));
+    file_->write_event(now_ns_, level_of(state), "state", std::string(record::word(state)));
   }
   if (alarm_ != alarm) {
     std::string text(record::word(alarm));
