@@ -55,7 +55,7 @@ struct Desks {
                                  const HttpUpload& upload) {
   constexpr int kForbidden = 403, kConflict = 409;
   if (!pages.may_operate(upload.key)) {
-    return {.status = kForbidden, .text = "another page operates this machine: take over first"};
+    return {.status = kForbidden, .text = OperatorPages::kOtherOperates};
   }
   const Outcome outcome = programs.receive(upload.name, upload.bytes, upload.read);
   return {.status = outcome.is_accepted ? 200 : kConflict, .text = outcome.text};

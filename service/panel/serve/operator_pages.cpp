@@ -15,9 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kOtherOperates =
-    "another page operates this machine: take over first, if that is meant";
-
 /// 128 bits that nobody guesses.
 [[nodiscard]] std::string new_key() {
   std::string key;

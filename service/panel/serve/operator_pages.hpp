@@ -23,6 +23,10 @@ namespace meridian::panel {
 /// Proof: tests/panel/operating_test.cpp.
 class OperatorPages {
  public:
+  /// Why a page is refused that is not the operator's.
+  static constexpr const char* kOtherOperates =
+      "another page operates this machine: take over first, if that is meant";
+
   /// Where commands and jogs go; of OperatorDesk, or of a test.
   struct Desk {
     std::function<void(Verb, double, const stream::Seen&, OnOutcome)> ask;
