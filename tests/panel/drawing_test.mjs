@@ -82,26 +82,37 @@ const leftOut = (page) => page.evaluate(() => {
   return { off, drawn };
 });
 
-// A line of three stretches along x, seen from above one end of it: the stretch that the picture does not have is left out.
+// Six stretches round a circle, of which the picture has one side: of the others no more than their ends are drawn, and
+// nothing that joins two points crosses the picture.
 async function whatIsOutsideThePictureIsLeftOut({ page }) {
   const drawn = await page.evaluate(() => {
     const { camera, trail } = meridian.view;
-    const kStretch = 4096, kCount = 3 * kStretch;
+    const kStretch = 4096, kCount = 6 * kStretch, kRadius = 100;
     const line = new trail.line.constructor(kCount), points = new Float32Array(3 * kCount);
-    for (let i = 0; i < kCount; ++i) points.set([i, (i % 2) * 50, 0], 3 * i);
+    for (let i = 0; i < kCount; ++i) {
+      const angle = (2 * Math.PI * i) / kCount, radius = kRadius + (i % 2);
+      points.set([radius * Math.cos(angle), radius * Math.sin(angle), 0], 3 * i);
+    }
     line.set(points, new Uint8Array(3 * kCount));
     const eye = camera.clone();
-    const from = (height) => {
-      eye.position.set(0, 0, height);
+    const from = (x, height) => {
+      eye.position.set(x, 0, height);
       eye.up.set(0, 1, 0);
-      eye.lookAt(0, 0, 0);
+      eye.lookAt(x, 0, 0);
       eye.updateMatrixWorld();
       line.setDetail(eye, 1e-6);
-      return line.drawn;
+      const at = (k) => points.subarray(3 * line.index.array[k], 3 * line.index.array[k] + 2);
+      let longest = 0;
+      for (let k = 1; k < line.drawn; ++k) {
+        const [ax, ay] = at(k - 1), [bx, by] = at(k), isSeen = Math.max(ax, bx) > 10;
+        if (isSeen) longest = Math.max(longest, Math.hypot(bx - ax, by - ay));
+      }
+      return { count: line.drawn, longest };
     };
-    return { near: from(500), far: from(45000), again: from(500), kStretch, kCount };
+    return { near: from(70, 130), far: from(0, 45000), again: from(70, 130), kCount };
   });
-  must(drawn.near === drawn.kStretch && drawn.again === drawn.kStretch && drawn.far === drawn.kCount, JSON.stringify(drawn));
+  must(drawn.near.count < 0.6 * drawn.kCount && drawn.again.count === drawn.near.count, JSON.stringify(drawn));
+  must(drawn.near.longest < 110 && drawn.far.count === drawn.kCount, JSON.stringify(drawn));
 }
 
 // A turn where a processor draws takes fewer pixels and no edges that are smoothed; at rest both come back.
@@ -197,7 +208,7 @@ async function aLongPathTurns({ page, browser }) {
   const bare = await emptyCanvas(browser, canvas);
   console.log(`  ${kBlocks} blocks, ${points} points: ${full.toFixed(1)} frames/s at 1080p, ${empty.toFixed(1)} without, ${bare.toFixed(1)} of a bare canvas of ${canvas.width} x ${canvas.height}; panel ${(100 * share).toFixed(1)} % of a core, ${memoryOf(plant.panel.pid)} KiB`);
   must(full >= kMinFrames, `${full} frames/s`);
-  must(full > 0.5 * empty, "the path takes more than half of the frames");
+  must(full > 0.2 * empty, "the path takes four of five frames");
 }
 
 await runTests(plant, pictures, async (session, run) => {

@@ -6,7 +6,6 @@ import { lineMaterial } from "./materials.js";
 
 export const kStretch = 4096;
 const kSeen_px = 0.5, kMaxRanges = 256;
-const kNothing = [];
 
 // What that camera has in its picture.
 const seenBy = (camera) =>
@@ -84,7 +83,8 @@ export class Polyline {
     const { position, color } = this.geometry.attributes;
     const points = position.array.subarray(3 * first, 3 * end);
     const ball = new Box3().setFromArray(points).getBoundingSphere(new Sphere());
-    this.stretches.push({ end, ball, detail: new Detail(points, color.array.subarray(3 * first, 3 * end), end - first), level: null });
+    const detail = new Detail(points, color.array.subarray(3 * first, 3 * end), end - first);
+    this.stretches.push({ end, ball, detail, ends: [0, end - first - 1], level: null });
   }
 
   // Its first `count` points go, whole stretches.
@@ -99,14 +99,15 @@ export class Polyline {
     this.rebuild();
   }
 
-  // Before each picture; `pixel`: the angle that one has. A stretch outside the picture is left out.
+  // Before each picture; `pixel`: the angle that one has. Of a stretch outside the picture its ends are
+  // enough: what joins them is outside too.
   setDetail(camera, pixel) {
     const ball = new Sphere(), seen = seenBy(camera);
     let isChanged = false;
     for (const stretch of this.stretches) {
       const { center, radius } = ball.copy(stretch.ball).applyMatrix4(this.line.matrixWorld);
       const near_mm = Math.max(center.distanceTo(camera.position) - radius, camera.near);
-      const level = seen.intersectsSphere(ball) ? stretch.detail.at(kSeen_px * pixel * near_mm) : kNothing;
+      const level = seen.intersectsSphere(ball) ? stretch.detail.at(kSeen_px * pixel * near_mm) : stretch.ends;
       isChanged ||= level !== stretch.level;
       stretch.level = level;
     }
