@@ -19,7 +19,8 @@ struct Site {
 /// The public host of "https://cell-4.shop:8443"; nothing where `url` is no address of that form.
 [[nodiscard]] std::optional<std::string> public_host_of(std::string_view url);
 
-/// ":8090", as browsers write a port behind a host; empty for the one of http, which they leave out.
+/// ":8090", as browsers write a port behind a host; empty for the one of http, which they leave
+/// out.
 [[nodiscard]] std::string port_in_host(std::uint16_t port);
 
 /// Whether `host`, the header of a request, names `site`: 127.0.0.1, [::1] or localhost with its
