@@ -80,6 +80,7 @@ async function openAnotherPanel({ page }) {
 // How the hand is lost, and how it comes back.
 const kEnds = {
   "let go": { lose: ({ page }) => page.mouse.up() },
+  "let go beside another button": { lose: async ({ page }) => (await page.mouse.down({ button: "right" }), page.mouse.up()), back: ({ page }) => page.mouse.up({ button: "right" }) },
   "finger lifted": { isFinger: true, lose: (_, finger) => finger.up() },
   "touch cancelled": { isFinger: true, lose: (_, finger) => finger.cancel() },
   "focus lost": { lose: ({ page }) => page.evaluate(() => window.dispatchEvent(new Event("blur"))) },

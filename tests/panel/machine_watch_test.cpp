@@ -115,12 +115,13 @@ TEST_F(MachineWatchTest, DrawsEverySetpointWithTheToolOfItsOwnTime) {
   const auto longer = heights(next_frame());
   for (int i = 0; i < 8; ++i) send_setpoint(0);
   status_.tool_length_mm = model_.tool_length_mm;
-  const auto before = heights(next_frame());
+  const auto changed = heights(next_frame());
   for (int i = 0; i < 8; ++i) send_setpoint(0);
   const auto shorter = heights(next_frame());
   ASSERT_EQ(longer.size(), 1U);
-  ASSERT_EQ(before.size(), 1U);
+  ASSERT_EQ(changed.size(), 1U);
   ASSERT_EQ(shorter.size(), 1U);
+  EXPECT_NEAR(changed[0] - longer[0], 40, 1e-6) << "its last point, in the rest of the change";
   EXPECT_NEAR(shorter[0] - longer[0], 40, 1e-6);
   EXPECT_NEAR(shorter[0], forward(model_, model_.tool_length_mm, JointVector{}).tip[2], 1e-6);
 }

@@ -14,6 +14,15 @@ async function pageAt(browser, url, prepare = () => {}) {
   return page;
 }
 
+// Whether the page says nothing to its panel when that key is pressed.
+function asksForNothingAt(key) {
+  const { link } = meridian, said = [];
+  link.say = (message) => said.push(message);
+  document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  delete link.say;
+  return said.length === 0;
+}
+
 const visible = (page, selector) => page.locator(selector).filter({ visible: true }).count();
 
 async function aPanelThatWatchesOffersNothing({ browser }) {
@@ -26,7 +35,7 @@ async function aPanelThatWatchesOffersNothing({ browser }) {
   await page.click("#tab-program");
   must((await visible(page, ".program-buttons button")) === 0, "a program seems to be loadable");
   must((await page.textContent("#program-hint")).includes("only watches"), "nothing says why");
-  await page.keyboard.press("Escape");
+  must(await page.evaluate(asksForNothingAt, "Escape"), "Escape asks for a hold, in vain");
   await page.setInputFiles("#program-file", plant.part());
   await until("a refusal", async () => (await page.textContent("#reply")).includes("only watches"));
   await page.context().close();
@@ -154,6 +163,62 @@ async function theScopeZoomsAndBeginsAnew({ page }) {
   await page.click("#tab-machine");
 }
 
+// A double click shows all again; of its first click no cursor stays, and a scope that ran runs on.
+async function aDoubleClickLeavesNoCursor({ page }) {
+  await page.click("#tab-scope");
+  const seen = () => page.evaluate(() => ({ state: meridian.scope.state.now, cursors: meridian.scope.cursors.filter((one) => one !== null).length }));
+  await page.locator("#scope-plot-1 .u-over").dblclick();
+  const after = await seen();
+  must(after.state === "running" && after.cursors === 0, JSON.stringify(after));
+  await page.locator("#scope-plot-1 .u-over").click();
+  const one = await seen();
+  must(one.state === "paused" && one.cursors === 1, JSON.stringify(one));
+  await page.locator("#scope-plot-1 .u-over").dblclick();
+  must((await seen()).cursors === 1, "a double click takes a cursor that was there");
+  await page.click("#scope-pause");
+  await page.click("#tab-machine");
+}
+
+// What an armed scope waits for counts from the new service on; what had fired is shown.
+async function anArmedScopeOutlivesItsService({ page }) {
+  await page.selectOption("#scope-trigger", "alarm", { force: true });
+  const seen = await page.evaluate(() => {
+    const { scope, frame } = meridian, states = [];
+    const restart = (service) => (scope.setFrame({ ...frame, service, samples: [] }), states.push(`${scope.state.now} ${scope.trigger.isArmed}`));
+    scope.arm();
+    scope.trigger.before = { state: "Ready", alarm: null, lost: 0 };
+    restart("second");
+    states.push(String(scope.trigger.before?.alarm ?? null));
+    scope.trigger.at = scope.live.end;
+    const { live } = scope;
+    restart("third");
+    states.push(String(scope.buffer === live));
+    scope.change("go");
+    return states;
+  });
+  must(seen.join(", ") === "armed true, null, triggered false, true", seen.join(", "));
+  await page.selectOption("#scope-trigger", "none", { force: true });
+}
+
+// A machine whose file its topic does not carry any more: no number, picture or button of before is left.
+async function whatIsNotKnownAnyMoreGoes({ page }) {
+  const machine = (scene) => page.evaluate((one) => {
+    const { description } = meridian.view, kept = description ?? meridian.keptDescription;
+    meridian.keptDescription = kept;
+    meridian.link.onText({ t: "machine", scene: one ? kept : null, name: kept.name, host: "", version: "" });
+  }, scene);
+  await page.click("#jog-toggle");
+  await until("buttons", () => visible(page, ".jog-row button"));
+  await machine(false);
+  must((await page.locator(".jog-row, .joint").count()) === 0 && (await visible(page, "#jog")) === 0, "joints of before are there");
+  must((await page.locator("#jog-toggle:enabled").count()) === 0, "jogging is offered");
+  must(await page.evaluate(() => meridian.view.machine === null), "the picture of before is there");
+  must((await visible(page, "#no-picture")) === 1, "nothing says why");
+  await page.evaluate(() => (["iso", "part"].forEach((one) => meridian.view.look(one)), meridian.view.follow(true), meridian.view.follow(false)));
+  await machine(true);
+  must((await page.locator(".joint").count()) > 0 && (await visible(page, "#no-picture")) === 0, "it does not come back");
+}
+
 // A trail from here to there: as frames bring it.
 const drawTrail = (page) => page.evaluate(() => (meridian.view.trail.add([[0, 0, 0, 0, 0, 1, 1], [50, 0, 0, 0, 0, 1, 2]], 1), meridian.view.trail.count));
 
@@ -179,7 +244,8 @@ async function aSilentServiceDimsThePage({ page }) {
   plant.service.kill("SIGSTOP");
   await until("Silent", async () => (await page.textContent("#state")) === "Silent");
   must((await opacityOf(page, "aside")) < 0.6 && (await opacityOf(page, ".picture")) < 0.6, "what was looks like what is");
-  must((await page.locator(".console [data-verb]:enabled, .console input:enabled").count()) === 0, "somebody seems to listen");
+  const enabled = ".console [data-verb]:enabled, .console input:enabled, .jog-row button:enabled";
+  must((await page.locator(enabled).count()) === 0, "somebody seems to listen");
   plant.service.kill("SIGCONT");
   await until("a frame", () => page.evaluate(() => meridian.frame !== null));
   must((await opacityOf(page, "aside")) === 1, "it stays dimmed");
@@ -238,6 +304,9 @@ await runTests(plant, pictures, async (session, run) => {
   await run("TheThemeIsTheSystemsUntilSomebodyChooses", theThemeIsTheSystemsUntilSomebodyChooses, open);
   await run("TimesHave24Hours", timesHave24Hours, open);
   await run("TheScopeZoomsAndBeginsAnew", theScopeZoomsAndBeginsAnew, open);
+  await run("ADoubleClickLeavesNoCursor", aDoubleClickLeavesNoCursor, open);
+  await run("AnArmedScopeOutlivesItsService", anArmedScopeOutlivesItsService, open);
+  await run("WhatIsNotKnownAnyMoreGoes", whatIsNotKnownAnyMoreGoes, open);
   await run("TheTrailBeginsAnewAfterAGap", theTrailBeginsAnewAfterAGap, open);
   await run("ASilentServiceDimsThePage", aSilentServiceDimsThePage, open);
   await run("ASliderFollowsTheFingerAlone", aSliderFollowsTheFingerAlone, open);

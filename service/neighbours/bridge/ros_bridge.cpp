@@ -76,10 +76,10 @@ void RosBridge::describe(std::int64_t system_ns) {
   const MachineModel& described = publisher_.model();
   std::optional<MachineModel> model = newly_served();
   // The machine topic has the tool of the machine file, the status the one in the spindle.
-  const double tool_length_mm = status_ ? status_->tool_length_mm : described.tool_length_mm;
-  if (!model && tool_length_mm == described.tool_length_mm) return;
+  const bool is_other_tool = status_ && status_->tool_length_mm != described.tool_length_mm;
+  if (!model && !is_other_tool) return;
   if (!model) model = described;
-  model->tool_length_mm = tool_length_mm;
+  if (status_) model->tool_length_mm = status_->tool_length_mm;
   if (is_outdated(described, *model)) publisher_.describe(*model, system_ns);
 }
 

@@ -33,6 +33,14 @@ export class Display {
     setText(byId("host"), `${message.host} \u00b7 Meridian ${message.version}`);
     document.title = `${message.name} \u2013 Meridian`;
     if (this.scene) this.buildJoints();
+    else this.clearPosition();
+  }
+
+  // Where tip and joints are is not known any more.
+  clearPosition() {
+    this.rows = null;
+    byId("joints").replaceChildren();
+    for (const id of ["tip-x", "tip-y", "tip-z", "axis-i", "axis-j", "axis-k"]) setText(byId(id), "\u2013");
   }
 
   buildJoints() {

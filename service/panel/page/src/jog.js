@@ -21,19 +21,29 @@ export class Jog {
     for (const kind of ["blur", "pagehide", "contextmenu"]) window.addEventListener(kind, letGo);
     document.addEventListener("visibilitychange", () => document.hidden && letGo());
     for (const kind of ["pointerup", "pointercancel", "lostpointercapture"]) window.addEventListener(kind, (event) => this.lift(event.pointerId));
-    byId("jog-toggle").addEventListener("click", (event) => {
-      const isOpen = byId("jog").hidden;
-      byId("jog").hidden = !isOpen;
-      event.currentTarget.setAttribute("aria-expanded", String(isOpen));
-    });
+    // While another button of the mouse is down, the release of the left one comes as a move.
+    window.addEventListener("pointermove", (event) => (event.buttons & 1) === 0 && this.lift(event.pointerId));
+    byId("jog-toggle").addEventListener("click", () => this.open(byId("jog").hidden));
   }
 
+  open(isOpen) {
+    byId("jog").hidden = !isOpen;
+    byId("jog-toggle").setAttribute("aria-expanded", String(isOpen));
+  }
+
+  // `scene`: null where the joints are not known; then nothing can be jogged from here.
   setMachine(scene) {
+    byId("jog-toggle").disabled = scene === null;
+    if (!scene) {
+      this.release();
+      this.open(false);
+      return byId("jog-rows").replaceChildren();
+    }
     const rows = scene.joints.map((joint, i) =>
       this.row(joint.name, { tool: false, joint: i, full: joint.velocity, rotary: joint.rotary }));
     rows.push(element("hr"));
     kToolAxes.forEach((name, i) => rows.push(this.row(name, { tool: true, joint: i, full: kToolVelocity[i], rotary: i > 2 })));
-    byId("jog-rows").replaceChildren(...rows);
+    return byId("jog-rows").replaceChildren(...rows);
   }
 
   row(name, what) {
@@ -99,7 +109,14 @@ export class Jog {
   }
 
   setFrame(frame) {
-    const may = this.operate.isOperator && (frame.can.includes("jog") || frame.state === "Jogging");
+    this.enable(this.operate.isOperator && (frame.can.includes("jog") || frame.state === "Jogging"));
+  }
+
+  setSilent() {
+    this.enable(false);
+  }
+
+  enable(may) {
     for (const button of byId("jog-rows").querySelectorAll("button")) button.disabled = !may;
     if (!may) this.release();
   }

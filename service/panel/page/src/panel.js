@@ -12,7 +12,7 @@ import { Scope } from "./scope.js";
 import { Tabs } from "./tabs.js";
 import { Theme } from "./theme.js";
 import { Timing } from "./timing.js";
-import { View } from "./view.js";
+import { canDraw, View } from "./view.js";
 
 // A file that was opened from a disk has its run in itself, and no machine.
 const embedded = document.getElementById("report");
@@ -26,13 +26,9 @@ window.meridian = panel;
 
 // ---- the picture
 function makeView() {
-  try {
-    return new View(byId("picture"), pick);
-  } catch (error) {
-    console.warn(error);
-    explainNoPicture("This browser has no WebGL, which the picture takes. All else on this page works.");
-    return new NoView();
-  }
+  if (canDraw(byId("picture"))) return new View(byId("picture"), pick);
+  explainNoPicture("This browser has no WebGL, which the picture takes. All else on this page works.");
+  return new NoView();
 }
 
 function pick(hit) {
@@ -67,14 +63,12 @@ const receive = {
   machine(message) {
     display.setMachine(message);
     if (view instanceof View) explainNoPicture(message.scene ? "" : "The machine's file is longer than its topic carries: no picture.");
-    byId("jog-toggle").disabled = message.scene === null;
     panel.operate.setMachine(message.scene);
     // The workpiece may lie elsewhere now, and with it what was drawn on it.
     view.trail.clear();
-    if (!message.scene) return;
     view.setMachine(message.scene);
     panel.jog.setMachine(message.scene);
-    panel.scope.setMachine(message.scene);
+    if (message.scene) panel.scope.setMachine(message.scene);
   },
   frame(frame) {
     panel.frame = frame;
@@ -105,7 +99,7 @@ const receive = {
 function setSilent(state) {
   panel.frame = null;
   view.trail.clear(); // where the tip goes meanwhile is no straight line
-  panel.jog.release();
+  panel.jog.setSilent();
   panel.operate.setSilent();
   panel.program.setButtons();
   display.setSilent(state);

@@ -92,15 +92,22 @@ export class Scope {
   // Another service counts its own cycles. What stands still is still that of the one before.
   beginAnew(service) {
     this.service = service;
+    if (this.state.now === "armed" && !this.fireWhereTriggered()) this.trigger.armAgain();
     this.live = new ScopeBuffer(this.scene.joints, this.scene.cycle_s);
     if (this.state.isFollowing) this.showLive();
   }
 
   stopWhereTriggered() {
+    if (this.state.now === "armed" && this.live.end >= this.trigger.at + this.window / 2) this.fireWhereTriggered();
+  }
+
+  // Whether the trigger had fired.
+  fireWhereTriggered() {
     const { at } = this.trigger;
-    if (at === null || this.state.now !== "armed" || this.live.end < at + this.window / 2) return;
+    if (at === null) return false;
     this.change("fire");
     this.report(`triggered at ${fixed(at, 3)} s`);
+    return true;
   }
 
   get window() {
@@ -151,6 +158,7 @@ export class Scope {
   }
 
   async open(file) {
+    if (!this.scene) return this.report("no machine is known whose joints a recording could name");
     if (file.size > kMaxBytes) return this.report("the recording has more than 96 MiB: cut it, or use meridian check --html");
     try {
       this.show(readRecording(await file.text(), this.scene.joints, this.scene.cycle_s), file.name);
@@ -214,8 +222,8 @@ export class Scope {
         draw: [(plot) => this.drawMarks(plot)],
         setSelect: [(plot) => this.select(plot)],
         ready: [(plot) => {
-          plot.over.addEventListener("click", () => plot.select.width < 4 && this.setCursor(plot));
-          plot.over.addEventListener("dblclick", () => this.select(null));
+          plot.over.addEventListener("click", (event) => event.detail < 2 && plot.select.width < 4 && this.setCursor(plot));
+          plot.over.addEventListener("dblclick", () => this.showAll());
         }],
       },
     }, [[], ...series.map(() => [])], box);
@@ -248,10 +256,21 @@ export class Scope {
     this.draw();
   }
 
+  // The first click of a double one set a cursor: that is taken back.
+  showAll() {
+    const { state, cursors } = this.beforeClick ?? {};
+    this.beforeClick = null;
+    if (state === "running") this.change("go");
+    else if (state === "armed") this.arm();
+    else if (cursors) this.cursors = cursors;
+    this.select(null);
+  }
+
   // Cursor A, then B, then A again.
   setCursor(plot) {
     if (plot.cursor.left < 0) return;
     const at = plot.posToVal(plot.cursor.left, "x");
+    this.beforeClick = { state: this.state.now, cursors: this.cursors };
     this.change("pause");
     this.cursors = this.cursors[0] === null || this.cursors[1] !== null ? [at, null] : [this.cursors[0], at];
     this.draw();

@@ -2,11 +2,12 @@
 // Dark and light: as the system has it, until somebody chooses; what was chosen is kept.
 import { byId } from "./dom.js";
 
-const kKept = "theme";
+const kKept = "chosen-theme";
 
 function kept() {
   try {
-    return localStorage.getItem(kKept);
+    const theme = localStorage.getItem(kKept);
+    return theme === "dark" || theme === "light" ? theme : null;
   } catch {
     return null; // private windows keep nothing
   }

@@ -15,6 +15,11 @@ export class Trigger {
     Object.assign(this, { kind, wanted, at: null, before: null });
   }
 
+  // What came from another service does not count.
+  armAgain() {
+    this.arm(this.kind, this.wanted);
+  }
+
   get isArmed() {
     return this.kind !== "none" && this.at === null;
   }

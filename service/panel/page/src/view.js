@@ -24,6 +24,9 @@ const kViews = {
 // While the camera turns, two pixels are seen as one.
 const kSeenTurning = 2;
 
+// Whether there is WebGL for that canvas.
+export const canDraw = (canvas) => canvas.getContext("webgl2", { alpha: true, antialias: false }) !== null;
+
 export class View {
   constructor(canvas, onPick) {
     this.canvas = canvas;
@@ -54,9 +57,14 @@ export class View {
 
   // ---- what is shown
 
+  // `description`: null where it is not known; then nothing is shown.
   setMachine(description) {
     this.description = description;
     this.machine?.root.removeFromParent();
+    this.floor?.removeFromParent();
+    this.machine = this.floor = null;
+    this.ask();
+    if (!description) return;
     this.machine = new Machine(description, this.theme);
     this.scene.add(this.machine.root);
     this.machine.frames.workpiece.add(this.trail.root);
@@ -67,7 +75,6 @@ export class View {
     this.loadMeshes();
     if (!this.isPlaced) this.look("iso");
     this.isPlaced = true;
-    this.ask();
   }
 
   // Bodies come after the machine, from files that the panel has; one that does not come leaves what is drawn.
@@ -103,7 +110,6 @@ export class View {
   }
 
   drawFloor() {
-    this.floor?.removeFromParent();
     const size = this.machine.size;
     const colours = palette[this.theme];
     this.floor = new GridHelper(12 * size, 24, colours.floorMajor, colours.floor);
@@ -197,6 +203,7 @@ export class View {
   }
 
   followTip() {
+    if (!this.machine) return;
     const tip = this.machine.frames.tipInScene();
     this.camera.position.add(tip.clone().sub(this.controls.target));
     this.controls.target.copy(tip);
