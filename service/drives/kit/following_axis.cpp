@@ -71,6 +71,7 @@ Output FollowingAxis::lead(const AxisInput& input, double dt_s, int axis,
   switch (state_) {
     case DriveState::kOperationEnabled:
       is_on_ = true;
+      if (input.is_new) slept_left_s_ = input.bridge_s;
       if (mode_ == dds::kHomingMode) {
         search(input, dt_s, axis, hardware);
       } else {
@@ -79,10 +80,10 @@ Output FollowingAxis::lead(const AxisInput& input, double dt_s, int axis,
       break;
     case DriveState::kQuickStop:
       is_on_ = true;
-      ramp_down(input.slept_s, dt_s);
+      ramp_down(spend_lost(input.slept_s), dt_s);
       break;
     case DriveState::kFaultReaction:  // on where it was on
-      ramp_down(input.slept_s, dt_s);
+      ramp_down(spend_lost(input.slept_s), dt_s);
       if (target_velocity_ == 0) state_ = DriveState::kFault;
       break;
     default:  // the brake holds
@@ -152,7 +153,10 @@ void FollowingAxis::take_target(const AxisInput& input, double dt_s) noexcept {
     return;
   }
   if (input.periods_without > input.bridge_cycles) return miss_setpoints(input, dt_s);
-  if (is_following_) ramp_down(input.bridged_s, dt_s);
+  if (is_following_) {
+    const double beyond_s = input.slept_s - spend_lost(input.slept_s);
+    ramp_down(input.bridged_s - beyond_s, dt_s);
+  }
 }
 
 /// In homing mode setpoints lead nowhere, but a service that sends none any more is gone.
@@ -184,7 +188,15 @@ void FollowingAxis::refuse(std::uint16_t error, const AxisInput& input, double d
   error_ = error;
   state_ = DriveState::kFaultReaction;
   homing_.ask(false);
-  ramp_down(input.slept_s, dt_s);
+  ramp_down(spend_lost(input.slept_s), dt_s);
+}
+
+/// How much of the lost time it goes on at its velocity: one bridge in a whole stop, so that a host
+/// that loses periods again and again does not lengthen the stop each time.
+double FollowingAxis::spend_lost(double slept_s) noexcept {
+  const double level_s = std::min(slept_s, slept_left_s_);
+  slept_left_s_ -= level_s;
+  return level_s;
 }
 
 /// Goes on at the velocity for `level_s`, and slows down for the rest of the period with the

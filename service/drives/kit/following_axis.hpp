@@ -22,6 +22,7 @@ struct AxisInput {
   int bridge_cycles = 3;    ///< so many are bridged by the velocity
   double bridged_s = 0;     ///< what of this step the bridge covers; 0 with a new setpoint
   double slept_s = 0;       ///< of it, lost periods: the motor went on at the velocity of before
+  double bridge_s = 0;      ///< one bridge: so much of a stop may be lost periods
 };
 
 /// One axis in cyclic synchronous position mode or homing mode: CiA 402 states, following error,
@@ -62,6 +63,7 @@ class FollowingAxis {
   void refuse(std::uint16_t error, const AxisInput& input, double dt_s) noexcept;
   void search(const AxisInput& input, double dt_s, int axis, Hardware& hardware) noexcept;
   void miss_setpoints(const AxisInput& input, double dt_s) noexcept;
+  [[nodiscard]] double spend_lost(double slept_s) noexcept;
   void ramp_down(double level_s, double dt_s) noexcept;
   void hold() noexcept;
   void end_reset() noexcept;
@@ -79,6 +81,7 @@ class FollowingAxis {
   double position_, velocity_ = 0;
   double offset_ = 0;  ///< of HomingMethod::kByIndex: what positions are called more
   double target_, target_velocity_ = 0;
+  double slept_left_s_ = 0;    ///< of the bridge that a stop may lose
   double accepted_ = 0;        ///< position of the last setpoint that it follows
   bool is_following_ = false;  ///< took an enabled setpoint since operation was enabled
   bool has_power_ = true;

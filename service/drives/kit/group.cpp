@@ -163,7 +163,8 @@ AxisInput Group::input_of(std::size_t joint, int periods) const noexcept {
           .periods_without = periods_without_,
           .bridge_cycles = bridge_cycles_,
           .bridged_s = is_new_ ? 0 : cycle_s_ * bridged(periods),
-          .slept_s = cycle_s_ * bridged(periods - 1)};
+          .slept_s = cycle_s_ * bridged(periods - 1),
+          .bridge_s = cycle_s_ * bridge_cycles_};
 }
 
 void Group::work(int periods, Hardware& hardware) noexcept {

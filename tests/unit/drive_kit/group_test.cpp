@@ -219,6 +219,45 @@ TEST_F(PartOfAMachine, TheRampBehindTheBridgeBeginsAtTheSentVelocityHoweverManyP
   }
 }
 
+enum class Stop { kQuick, kFault, kSilence };
+
+TEST_F(PartOfAMachine, AStopGoesOnForOneMoreBridgeAtMostWhereEveryPeriodIsLost) {
+  constexpr double kStep = 0.05, kVelocity = 100, kAcceleration = 5000;  // mm, of joint 2
+  constexpr double kRamp_s = kVelocity / kAcceleration;
+  for (const int bridge : {3, 50}) {
+    for (const int periods : {1, 2, 4, bridge + 1}) {
+      for (const Stop stop : {Stop::kQuick, Stop::kFault, Stop::kSilence}) {
+        Group group{joints_2_and_4()};
+        std::swap(group, group_);
+        motors_ = {};
+        position_ = {};
+        enable();
+        group_.take(Bridge{{kMaster, kService}, bridge});
+        for (int n = 0; n < 5; ++n) {
+          (void)send(kStep, kSetpointEnabled, kMaster, kVelocity);
+          group_.work(1, motors_);
+        }
+        motors_.readings[0].velocity = kVelocity;
+        if (stop == Stop::kQuick) (void)command(2, 0x02);
+        if (stop == Stop::kFault) group_.axis(0).fail(0x2310);
+        const double begin = motors_.outputs[0].position;
+        double moved_s = 0;
+        for (int n = 0; motors_.outputs[0].velocity != 0 && n < 200; ++n) {
+          group_.work(periods, motors_);
+          moved_s += 1e-3 * periods;
+        }
+        const double bridge_s = 1e-3 * bridge, bridged_s = stop == Stop::kSilence ? bridge_s : 0;
+        const double lost_s = periods > 1 ? bridge_s : 0;
+        EXPECT_LE(moved_s, bridged_s + lost_s + kRamp_s + 2e-3 * periods)
+            << bridge << " " << periods << " " << static_cast<int>(stop);
+        EXPECT_LE(motors_.outputs[0].position - begin,
+                  kVelocity * (bridged_s + lost_s + 0.5 * kRamp_s) + 1e-9)
+            << bridge << " " << periods << " " << static_cast<int>(stop);
+      }
+    }
+  }
+}
+
 TEST_F(PartOfAMachine, NoPeriodMakesAHeapCallWhateverComes) {
   if (!watch::is_heap_watched()) GTEST_SKIP() << "heap calls are not counted under sanitizers";
   enable();
