@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "meridian/cycle/state_table.hpp"
 #include "service/drives/kit/action_words.hpp"
 
 namespace meridian::panel {
@@ -29,8 +30,7 @@ void Auxiliaries::answer(const dds::ActionDone& done) {
 
 void Auxiliaries::follow(const dds::Status& status) {
   awaited_.follow(status);
-  if (status.state == State::kOff || status.state == State::kFaultStop ||
-      status.state == State::kFault) {
+  if (status.state == State::kOff || is_fault(status.state)) {
     spindle_.clear();
     coolant_.clear();
   }

@@ -28,12 +28,12 @@ for (const [wanted, ...events] of [
 // At any cycle time the longest window is there, a moment after the older half went too.
 for (const cycle_s of [0.004, 0.001, 0.00025]) {
   const buffer = new ScopeBuffer(kJoints, cycle_s);
-  let least_s = Infinity;
+  let min_s = Infinity;
   for (let cycle = 0; cycle < 3 * buffer.capacity; ++cycle) {
     buffer.add(cycle, [0], [0], 0);
-    if (cycle > buffer.capacity) least_s = Math.min(least_s, buffer.end - buffer.time(0));
+    if (cycle > buffer.capacity) min_s = Math.min(min_s, buffer.end - buffer.time(0));
   }
-  check(`${least_s} s are kept at ${cycle_s} s`, least_s >= kLongestWindow_s && least_s < 3 * kLongestWindow_s);
+  check(`${min_s} s are kept at ${cycle_s} s`, min_s >= kLongestWindow_s && min_s < 3 * kLongestWindow_s);
 }
 
 const kHead = "cycle,x_mm,x_following_mm\n", kRows = "1,0.5,0\n2,0.6,0\n";

@@ -150,6 +150,11 @@ inline constexpr std::array<Row, kStateCount> kTable{{
   return state != State::kOff && state != State::kDisabling && state != State::kFault;
 }
 
+/// True where a fault stops the machine or has stopped it.
+[[nodiscard]] constexpr bool is_fault(State state) noexcept {
+  return state == State::kFaultStop || state == State::kFault;
+}
+
 /// True where motion is executed or brought to rest: that of the program, or of a hand that jogs.
 [[nodiscard]] constexpr bool is_on_path(State state) noexcept {
   switch (state) {

@@ -25,8 +25,8 @@ template <std::size_t N>
 template <std::size_t N>
 [[nodiscard]] std::size_t find_main(const std::array<float, N>& lost,
                                     const std::array<float, N>& time, double whole_s) {
-  const std::size_t max = find_largest(lost);
-  return lost[max] > 0.01 * whole_s ? max : find_largest(time);
+  const std::size_t largest = find_largest(lost);
+  return lost[largest] > 0.01 * whole_s ? largest : find_largest(time);
 }
 
 }  // namespace

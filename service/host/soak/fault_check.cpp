@@ -74,8 +74,7 @@ std::optional<FaultCheck::Cause> FaultCheck::see(const dds::Status& status, doub
   if (is_on_) enabled_s_ += now_s - seen_s_;
   is_on_ = is_enabled(status.state);
   seen_s_ = now_s;
-  const bool is_stopping = status.state == State::kFaultStop || status.state == State::kFault;
-  if (!is_stopping) {
+  if (!is_fault(status.state)) {
     is_faulty_ = is_checked_ = false;
     alarm_ = Alarm::kNone;
     stop_ns_.reset();

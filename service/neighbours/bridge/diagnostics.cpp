@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/neighbours/bridge/diagnostics.hpp"
 
-#include "meridian/cycle/state.hpp"
+#include "meridian/cycle/state_table.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "service/recording/record/words.hpp"
 #include "service/text/printed.hpp"
@@ -17,9 +17,8 @@ namespace {
 
 [[nodiscard]] Diagnosis program_of(const dds::Status& status) {
   Diagnosis out{.name = "program"};
-  const bool is_fault = status.state == State::kFault || status.state == State::kFaultStop;
   const bool has_alarm = status.alarm != Alarm::kNone;
-  out.level = is_fault ? Level::kError : has_alarm ? Level::kWarning : Level::kOk;
+  out.level = is_fault(status.state) ? Level::kError : has_alarm ? Level::kWarning : Level::kOk;
   out.message = record::word(status.state);
   if (has_alarm) out.message.append(": ").append(record::word(status.alarm));
   out.values = {{"state", std::string(record::word(status.state))},

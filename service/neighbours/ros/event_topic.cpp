@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/neighbours/ros/event_topic.hpp"
 
+#include "meridian/cycle/state_table.hpp"
 #include "service/neighbours/ros/message_types.hpp"
 
 namespace meridian::ros {
 
 Level level_of(State state) noexcept {
-  const bool is_fault = state == State::kFault || state == State::kFaultStop;
-  return is_fault ? Level::kError : Level::kInfo;
+  return is_fault(state) ? Level::kError : Level::kInfo;
 }
 
 EventTopic::EventTopic(mcap::Writer& writer)

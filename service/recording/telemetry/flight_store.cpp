@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/recording/telemetry/flight_store.hpp"
 
+#include "meridian/cycle/state_table.hpp"
+
 namespace meridian::telemetry {
 
 void FlightStore::take(const CycleRecord& record) noexcept {
   if (rows_.empty()) return;
-  const bool is_faulty = record.state == State::kFaultStop || record.state == State::kFault;
+  const bool is_faulty = is_fault(record.state);
   const bool begins = is_faulty && !was_faulty_;
   was_faulty_ = is_faulty;
   if (is_frozen()) {

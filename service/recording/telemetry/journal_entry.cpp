@@ -121,12 +121,12 @@ std::string describe(const JournalEntry& entry) {
   const std::string program = fmt::format("last program: {:.80}", entry.program.data());
   if (entry.reached == Reached::kEnd) return program + ", ran to its end";
   const std::string go_on = fmt::format("; go on with --from-line {}", entry.next_line);
-  const bool is_fault = entry.state == State::kFaultStop || entry.state == State::kFault;
+  const bool ended_by_fault = is_fault(entry.state);
   if (entry.next_line == 0) return program + ", not begun; stream it from its begin";
   if (is_recovering(entry)) {
     return fmt::format(
         "{}, cut up to line {}; begun again from line {}, it had not come to the cut{}{}", program,
-        entry.next_line, entry.from_line, go_on, is_fault ? " at the latest" : "");
+        entry.next_line, entry.from_line, go_on, ended_by_fault ? " at the latest" : "");
   }
   if (entry.line < entry.next_line && entry.reached != Reached::kLineDone) {
     return fmt::format(
@@ -134,7 +134,7 @@ std::string describe(const JournalEntry& entry) {
         "for what was begun again",
         program, entry.next_line, entry.from_line, entry.line, go_on, entry.line);
   }
-  if (is_fault) {
+  if (ended_by_fault) {
     return fmt::format(
         "{}, line {} at the alarm, what was cut may end earlier (flight record){} at "
         "the latest",
