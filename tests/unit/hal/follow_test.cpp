@@ -58,12 +58,13 @@ class Follow : public testing::Test {
     }
     return farthest;
   }
-  /// Off, then on from period `first` on; the servo thread at its begin.
+  /// Off, then on from period `first` on; the servo thread where it is on.
   void begin(int first) {
     send(first - 1, false);
     step((first - 1) * kPeriod_ns);
     send(first);
     step(first * kPeriod_ns);
+    step(first * kPeriod_ns + 1);
   }
 
   meridian_hal_shared shared_{};
@@ -153,6 +154,7 @@ TEST_F(Follow, SetpointsThatStayAwayRampDownAndStayOffUntilTheProcessSaysOff) {
   step(91 * kPeriod_ns);
   send(92);
   step(92 * kPeriod_ns);
+  step(93 * kPeriod_ns);
   EXPECT_EQ(follow_.phase[0], MERIDIAN_HAL_FOLLOWS);
 }
 

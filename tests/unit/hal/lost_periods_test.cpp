@@ -42,22 +42,28 @@ class Chain {
     process_period(1);
     hal_period();
     for (const std::uint16_t word : std::initializer_list<std::uint16_t>{0x06, 0x07, 0x0F}) {
-      dds::DriveCommand command;
-      command.controlword = word;
-      command.service_id = kService;
-      (void)group_.take(command, kMaster);
+      command(word);
     }
   }
   /// One period of everything; the service speaks where it is alive, the process works where it is
-  /// not held up, and makes up for what it has lost.
-  void period(bool is_service_alive, bool is_process_held) {
+  /// not held up, and makes up for what it has lost; HAL's thread too.
+  void period(bool is_service_alive, bool is_process_held, bool is_hal_held = false) {
     now_ns_ += kPeriod_ns;
     if (is_service_alive) send();
     ++waiting_;
     if (!is_process_held) process_period(std::exchange(waiting_, 0));
     now_ns_ += kPeriod_ns / 2;
-    hal_period();
+    if (!is_hal_held) hal_period();
     now_ns_ -= kPeriod_ns / 2;
+  }
+  void command(std::uint16_t word) {
+    dds::DriveCommand command;
+    command.controlword = word;
+    command.service_id = kService;
+    (void)group_.take(command, kMaster);
+  }
+  [[nodiscard]] bool has_power_stage_on() const {
+    return follow_.phase[0] == MERIDIAN_HAL_FOLLOWS || follow_.phase[0] == MERIDIAN_HAL_RAMPS;
   }
   [[nodiscard]] double velocity() const { return follow_.velocity[0]; }
   [[nodiscard]] double position() const { return follow_.position[0]; }
@@ -128,6 +134,27 @@ TEST(LostPeriods, AStopIsNoHarderWhereTheProcessLosesSomeInTheBridgeOrInTheRamp)
     for (int lost = 0; lost <= 20; ++lost) hardest = std::max(hardest, hardest_stop(from, lost));
   }
   EXPECT_LE(hardest, 1.25 * kAcceleration);
+}
+
+/// The service stops the machine while HAL still catches up: quick stop, then off.
+TEST(LostPeriods, AJointThatHalLeadsLateIsOffWhereItStandsHoweverLongHalHadStalled) {
+  constexpr int kStopsAfter = 40, kRampsFor = 30;  // periods
+  for (const int stalled : {0, 5, 30, 55, 90, 200}) {
+    Chain chain;
+    for (int n = 0; n < 100; ++n) chain.period(true, false);
+    for (int n = 0; n < stalled; ++n) chain.period(true, false, true);
+    for (int n = 0; n < kStopsAfter; ++n) chain.period(true, false);
+    chain.command(0x02);
+    for (int n = 0; n < kRampsFor; ++n) chain.period(true, false);
+    chain.command(0x00);
+    double velocity = chain.velocity();
+    for (int n = 0; n < 300 && chain.has_power_stage_on(); ++n) {
+      velocity = chain.velocity();
+      chain.period(false, false);
+    }
+    EXPECT_FALSE(chain.has_power_stage_on()) << stalled;
+    EXPECT_LE(velocity, 1.5 * kAcceleration * 1e-3) << "one step of its ramp; stalled " << stalled;
+  }
 }
 
 }  // namespace

@@ -20,6 +20,12 @@ static const struct meridian_hal_setpoint* ends_after(const struct meridian_hal_
   return out;
 }
 
+/// Its on_mask holds at `at_ns`: a joint that is led late goes off where its path ends, not when
+/// the process says so, which is ahead of it then.
+static int is_wanted(const struct meridian_hal_setpoint* in_force, int joint) {
+  return in_force != 0 && (in_force->on_mask >> joint & 1u) != 0;
+}
+
 /// The setpoints that come next at `at_ns` were overwritten by newer ones.
 static int is_overtaken(const struct meridian_hal_follow* me, int64_t at_ns) {
   const struct meridian_hal_setpoint* const oldest =
@@ -79,13 +85,11 @@ static void ramp_down(struct meridian_hal_follow* me, const struct meridian_hal_
   if (after == 0) me->phase[joint] = MERIDIAN_HAL_LOST;
 }
 
-/// `at_ns` is not behind the newest setpoint.
+/// `to` is the first setpoint that ends at `at_ns` or later.
 static void follow(struct meridian_hal_follow* me, const struct meridian_hal_setup* setup,
-                   int64_t at_ns, int joint) {
-  const struct meridian_hal_setpoint* const to = ends_after(me, at_ns);
+                   const struct meridian_hal_setpoint* to, int64_t at_ns, int joint) {
   const struct meridian_hal_setpoint* const from = kept(me, to->number - 1);
-  const uint32_t bit = 1u << joint;
-  if (from == 0 || (from->on_mask & bit) == 0) {  // it begins
+  if (!is_wanted(from, joint)) {  // it begins
     me->position[joint] = to->position[joint];
     me->velocity[joint] = to->velocity[joint];
     return;
@@ -122,31 +126,33 @@ void meridian_hal_step(struct meridian_hal_follow* me, const struct meridian_hal
   meridian_hal_time(me, now_ns, thread_ns);
   const struct meridian_hal_setpoint* const newest = kept(me, me->newest);
   const int64_t at_ns = me->time_ns - setup->period_ns;
+  const struct meridian_hal_setpoint* const next = ends_after(me, at_ns);
+  const struct meridian_hal_setpoint* const in_force = next != 0 ? next : newest;
   const int is_lost = newest == 0 || is_overtaken(me, at_ns) ||
                       now_ns - newest->end_ns > setup->bridge_ns + setup->period_ns;
   me->is_silent = is_lost;
   for (int i = 0; i < MERIDIAN_HAL_JOINTS; ++i) {
-    const int is_wanted = newest != 0 && (newest->on_mask >> i & 1u) != 0;
+    const int is_on = is_wanted(in_force, i);
     switch (me->phase[i]) {
       case MERIDIAN_HAL_OFF:
-        if (is_wanted && !is_lost) me->phase[i] = MERIDIAN_HAL_FOLLOWS;
+        if (is_on && !is_lost) me->phase[i] = MERIDIAN_HAL_FOLLOWS;
         break;
       case MERIDIAN_HAL_FOLLOWS:
+        if (!is_on) me->phase[i] = MERIDIAN_HAL_OFF;
         if (is_lost) me->phase[i] = MERIDIAN_HAL_RAMPS;
-        if (!is_wanted) me->phase[i] = MERIDIAN_HAL_OFF;
         break;
       case MERIDIAN_HAL_RAMPS:
         break;
       case MERIDIAN_HAL_LOST:
-        if (!is_wanted && !is_lost) me->phase[i] = MERIDIAN_HAL_OFF;
+        if (!is_on && !is_lost) me->phase[i] = MERIDIAN_HAL_OFF;
         break;
     }
     switch (me->phase[i]) {
       case MERIDIAN_HAL_FOLLOWS:
-        if (newest->end_ns < at_ns) {
+        if (next == 0) {
           bridge(me, newest, at_ns, i);
         } else {
-          follow(me, setup, at_ns, i);
+          follow(me, setup, next, at_ns, i);
         }
         break;
       case MERIDIAN_HAL_RAMPS:
