@@ -28,6 +28,7 @@ drive::GroupSpec one_axis() {
   drive::GroupAxis axis;
   axis.spec.limits.velocity = 300;
   axis.spec.limits.fault_acceleration = kAcceleration;
+  axis.spec.limits.following_error = 5;
   spec.axes.push_back(axis);
   return spec;
 }
@@ -54,6 +55,7 @@ class Chain {
     if (!is_process_held) process_period(std::exchange(waiting_, 0));
     now_ns_ += kPeriod_ns / 2;
     if (!is_hal_held) hal_period();
+    if (motors_.is_stuck) motors_.readings[0].position = position();
     now_ns_ -= kPeriod_ns / 2;
   }
   void command(std::uint16_t word) {
@@ -62,6 +64,10 @@ class Chain {
     command.service_id = kService;
     (void)group_.take(command, kMaster);
   }
+  /// Joints without lag, which are reported as HAL's thread saw them last.
+  void report_by_hal() { motors_.is_stuck = true; }
+  [[nodiscard]] std::uint16_t error() const { return group_.axis(0).error(); }
+  [[nodiscard]] bool is_on() const { return motors_.outputs[0].is_on; }
   [[nodiscard]] bool has_power_stage_on() const {
     return follow_.phase[0] == MERIDIAN_HAL_FOLLOWS || follow_.phase[0] == MERIDIAN_HAL_RAMPS;
   }
@@ -154,6 +160,20 @@ TEST(LostPeriods, AJointThatHalLeadsLateIsOffWhereItStandsHoweverLongHalHadStall
     }
     EXPECT_FALSE(chain.has_power_stage_on()) << stalled;
     EXPECT_LE(velocity, 1.5 * kAcceleration * 1e-3) << "one step of its ramp; stalled " << stalled;
+  }
+}
+
+/// 5 mm at 150 mm/s are 33 periods.
+TEST(LostPeriods, AStallOfHalIsAFollowingErrorWhereTheJointIsFastForIt) {
+  for (const int stalled : {28, 36}) {
+    Chain chain;
+    chain.report_by_hal();
+    for (int n = 0; n < 100; ++n) chain.period(true, false);
+    for (int n = 0; n < stalled; ++n) chain.period(true, false, true);
+    EXPECT_EQ(chain.error(), stalled < 30 ? drive::kErrorNone : drive::kErrorFollowing) << stalled;
+    EXPECT_EQ(chain.is_on(), stalled < 30) << "off without a ramp";
+    for (int n = 0; n < 80; ++n) chain.period(true, false);
+    EXPECT_EQ(chain.has_power_stage_on(), stalled < 30);
   }
 }
 
