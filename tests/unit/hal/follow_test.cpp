@@ -188,6 +188,16 @@ TEST_F(Follow, AStallOfTheServoThreadIsNoJumpAndIsCaughtUpOnThePath) {
   }
 }
 
+TEST_F(Follow, BehindAStallOfManyHoursTimeGoesOnAtNineEighthsOfThePaceToo) {
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  for (const std::int64_t stalled_ns : {kHour_ns, 2 * kHour_ns, 1000 * kHour_ns}) {
+    follow_.phase[0] = MERIDIAN_HAL_FOLLOWS;
+    follow_.called_ns = follow_.time_ns = kPeriod_ns;
+    meridian_hal_time(&follow_, kPeriod_ns + stalled_ns, kPeriod_ns);
+    EXPECT_EQ(follow_.time_ns, kPeriod_ns + 2 * kPeriod_ns * 9 / 8) << stalled_ns;
+  }
+}
+
 TEST_F(Follow, ARampBehindAStallBeginsWhereAndAsFastAsTheJointWasLed) {
   run_to(10);
   const double from = position();

@@ -49,9 +49,10 @@ int64_t meridian_hal_step_ns(const struct meridian_hal_follow* me, int64_t now_n
 void meridian_hal_time(struct meridian_hal_follow* me, int64_t now_ns, int64_t thread_ns) {
   const int64_t step = meridian_hal_step_ns(me, now_ns, thread_ns);
   const int64_t late = is_led(me) ? now_ns - me->time_ns - step : 0;
-  const int64_t slowly = late * step / (64 * thread_ns), fastest = step / 8;
+  // Whatever has stalled for hours must not overflow the product.
+  const int64_t catches_up = late < 8 * thread_ns ? late * step / (64 * thread_ns) : step / 8;
   me->called_ns = now_ns;
-  me->time_ns = now_ns - late + (slowly < fastest ? slowly : fastest);
+  me->time_ns = now_ns - late + catches_up;
 }
 
 /// The cubic through positions and velocities of both ends. Where it is farther from the straight
