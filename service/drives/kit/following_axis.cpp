@@ -62,8 +62,8 @@ void FollowingAxis::fail(std::uint16_t error) noexcept {
   if (state_ == DriveState::kFault || state_ == DriveState::kFaultReaction) return;
   error_ = error;
   state_ = DriveState::kFaultReaction;
-  const double most = limits_.velocity > 0 ? limits_.velocity : INFINITY;
-  target_velocity_ = std::clamp(velocity_, -most, most);  // whatever jump it was to follow
+  const double max = limits_.velocity > 0 ? limits_.velocity : INFINITY;
+  target_velocity_ = std::clamp(velocity_, -max, max);  // whatever jump it was to follow
 }
 
 Output FollowingAxis::lead(const AxisInput& input, double dt_s, int axis,
