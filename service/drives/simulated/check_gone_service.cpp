@@ -10,13 +10,19 @@
 /// The part of DriveCheck in which the service is gone while something moves.
 namespace meridian::drives {
 
+namespace {
+
+constexpr int kMotorLag = 8;  // periods by which motors may be behind
+
+}  // namespace
+
 /// From the last setpoint to rest: the bridge, then the ramp.
 void DriveCheck::check_stopping_distance(Rule rule, double last, double velocity) {
   const JointLimits& limits = drive_spec(player_.model(), static_cast<int>(mover_)).limits;
   const double distance = direction_ * (player_.newest.position[mover_] - last);
   const double bridge = velocity * CheckPlayer::kBridge * player_.dt_s();
   const double ramp = velocity * velocity / (2 * limits.fault_acceleration);
-  const double slack = 8 * velocity * player_.dt_s();
+  const double slack = kMotorLag * velocity * player_.dt_s();
   if (distance < bridge + 0.4 * ramp || distance > bridge + 2 * ramp + slack) {
     player_.find(rule, "it stopped " + std::to_string(distance) +
                            " mm after the last setpoint; bridge " + std::to_string(bridge) +
@@ -25,7 +31,7 @@ void DriveCheck::check_stopping_distance(Rule rule, double last, double velocity
 }
 
 /// SIGKILL as drives see it: no word any more, and no goodbye until the lease runs out. Each period
-/// is looked at from there to rest; who lost some leads on by no more than the bridge at once.
+/// is looked at from there to rest. Who lost some may report bridge and ramp at once, and no more.
 void DriveCheck::check_killed() {
   if (!walk_up()) return;
   const double velocity = 0.5 * limit_, period = velocity * player_.dt_s();
@@ -34,6 +40,7 @@ void DriveCheck::check_killed() {
   const double last = player_.target[mover_];
   const double ramp_s =
       velocity / drive_spec(player_.model(), static_cast<int>(mover_)).limits.fault_acceleration;
+  const double whole_stop = (CheckPlayer::kBridge + kMotorLag) * period + 0.5 * velocity * ramp_s;
   const int promised = CheckPlayer::kBridge + static_cast<int>(2 * ramp_s / player_.dt_s());
   constexpr int kSlack = 60, kWatched = 300;  // periods
   player_.saying = Saying::kNothing;
@@ -50,7 +57,7 @@ void DriveCheck::check_killed() {
   player_.saying = Saying::kAll;
   if (!player_.are_all(DriveState::kFault)) {
     player_.find(Rule::kKilled, std::string("it ends in ") + name_of(player_.state(0)));
-  } else if (farthest > CheckPlayer::kBridge * period || back > period) {
+  } else if (farthest > whole_stop || back > period) {
     player_.find(Rule::kKilled, "it jumped by " + std::to_string(std::max(farthest, back)) + " mm");
   } else if (moved_for > promised + kSlack) {
     player_.find(Rule::kKilled, "it moved for " + std::to_string(moved_for) + " periods");

@@ -15,9 +15,9 @@
 namespace meridian::drives {
 namespace {
 
-CheckReport check(const std::string& fault) {
+CheckReport check(const std::string& fault, int lost = 0) {
   const MachineModel model = test::lai_machine();
-  test::FaultyDrives drives(model, fault);
+  test::FaultyDrives drives(model, fault, lost);
   return DriveCheck(model, drives).run(Operator::kThere);
 }
 
@@ -34,6 +34,11 @@ TEST(DriveCheck, DrivesOfTheLibraryBreakNoRule) {
   EXPECT_TRUE(report.has_drives);
   EXPECT_EQ(names(report), "");
   EXPECT_TRUE(report.unproven.empty());
+}
+
+/// Bridge and ramp may be in one report then.
+TEST(DriveCheck, DrivesOfTheLibraryBreakNoRuleWhereTheirProcessLosesPeriodsInAStop) {
+  for (const int lost : {5, 15, 21, 25, 31, 50}) EXPECT_EQ(names(check("", lost)), "") << lost;
 }
 
 /// Positions that are copied are no drive: everything that keeps a machine safe is missing.

@@ -19,8 +19,12 @@ namespace meridian::test {
 /// Drives of somebody who has made a mistake, or none, in a wire without delay and without a clock.
 class FaultyDrives : public drives::CheckedDrives {
  public:
-  FaultyDrives(const MachineModel& model, std::string fault)
-      : fault_(std::move(fault)), servos_({drives::LagKind::kFirstOrder, 0.002}), model_(model) {
+  /// `lost`: the drives' process loses so many periods once nobody has spoken for a while.
+  FaultyDrives(const MachineModel& model, std::string fault, int lost = 0)
+      : fault_(std::move(fault)),
+        lost_(lost),
+        servos_({drives::LagKind::kFirstOrder, 0.002}),
+        model_(model) {
     for (int i = 0; i < model.joint_count; ++i) servos_.add(drive_spec(model, i), {});
     group_.emplace(spec());
   }
@@ -66,6 +70,7 @@ class FaultyDrives : public drives::CheckedDrives {
   void follow_at_once(dds::DriveCommand command, std::uint64_t sender);
 
   std::string fault_;
+  int lost_;
   drives::SimulatedServos servos_;
   const MachineModel& model_;
   std::optional<drive::Group> group_;
@@ -75,7 +80,7 @@ class FaultyDrives : public drives::CheckedDrives {
   std::uint64_t newest_ = 0, heard_ = 0, stuck_cycle_ = 0;
   std::optional<dds::SetpointSample> last_;
   std::uint16_t word_ = 0;
-  int periods_ = 0, mutes_ = 0, in_ramp_ = 0, in_fault_ = 0;
+  int periods_ = 0, mutes_ = 0, silent_ = 0, in_ramp_ = 0, in_fault_ = 0;
 };
 
 inline drive::GroupSpec FaultyDrives::spec() {
@@ -179,7 +184,7 @@ inline void FaultyDrives::say(drives::Speaker who, const dds::SetpointSample& se
   }
   newest_ = std::max(newest_, s.cycle);
   last_ = sample;
-  mutes_ = 0;
+  mutes_ = silent_ = 0;
   (void)group_->take(sample, sender, arrival_ns);
 }
 
@@ -196,8 +201,11 @@ inline bool FaultyDrives::period(std::vector<dds::DriveFeedback>& reports) {
     last_->crc = dds::setpoint_crc(again, group_->pin().master().service_id);
     (void)group_->take(*last_, service_, 0);
   }
+  constexpr int kAlone = 10;
+  const bool is_held = ++silent_ > kAlone && silent_ <= kAlone + lost_;
+  if (is_held) return true;
   group_->see_master(is_master_there());
-  group_->work(1, servos_);
+  group_->work(silent_ == kAlone + lost_ + 1 ? 1 + lost_ : 1, servos_);
   if (is("rare") && periods_ % 100 != 0) return true;
   reports.push_back(report());
   return true;
@@ -219,7 +227,8 @@ inline dds::DriveFeedback FaultyDrives::report() {
   in_fault_ = state == DriveState::kFault ? in_fault_ + 1 : 0;
   in_ramp_ = state == DriveState::kFaultReaction || in_fault_ > 0 ? in_ramp_ + 1 : 0;
   if (is("jumps-into-its-ramp") && in_ramp_ > 0) {  // and comes back slowly
-    report.position[0] += std::max(0.0, 4 - 0.1 * in_ramp_);
+    // By more than bridge and ramp, which are in one report where periods are lost.
+    report.position[0] += std::max(0.0, 7 - 0.1 * in_ramp_);
   }
   if (is("jumps-back-after-its-ramp") && is_silent && in_fault_ > 0) report.position[0] -= 0.5;
   if (is("creeps-after-its-ramp")) report.position[0] += 0.004 * in_fault_;
