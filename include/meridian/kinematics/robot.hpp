@@ -34,8 +34,8 @@ enum Joint6 { kRoll = 3, kBend, kSpin };
 inline constexpr int kBranchCount = 8;
 inline constexpr int kBack = 1, kFlip = 4;  ///< bits of a branch
 
-/// Bit of a branch with a driven joint: it is the yaw, and not the roll.
-inline constexpr int kYawDriven = 8;
+/// Bits of a branch with driven joints: the yaw, or yaw and roll; without them it is the roll.
+inline constexpr int kYawDriven = 8, kYawAndRollDriven = 16;
 
 /// Nearer to a wrist singularity than this the joint without a direction of its own is held. The
 /// wrist point follows the axis asked for, so the tip is off by up to this angle times the tool.
@@ -207,65 +207,11 @@ template <class S>
   return true;
 }
 
-/// The joints with the yaw at `yaw`, the elbow and the wrist of `branch`: the axis is that of
-/// `pose`, the tip the nearest in the arm plane. The shoulder leads to the front or to the back,
-/// whichever the wrist point asks for. Returns whether the pose is in reach. Windings are the
-/// caller's. RT: cycle. Proof: tests/property/kinematics.
-template <class S>
-[[nodiscard]] inline bool solve_with_yaw(const RobotKinematics& k, double tool_length_mm,
-                                         const Pose<S>& pose, int branch, const S& yaw,
-                                         const JointVector& reference, Joints<S>& q) noexcept {
-  q = {};
-  const BranchSigns sign = signs_of(branch);
-  ArmSolution<S> out;
-  q[kYaw] = yaw;
-  out.frame.yaw = sin_cos(yaw);
-  const Vec3<S> w = out.frame.to_arm(wrist_point(k, tool_length_mm, pose));
-  solve_in_plane(k, w[0], w[2], sign.elbow, out, q);
-  if (!out.is_reachable) return false;
-  const Vec3<S> axis = out.frame.to_arm(pose.axis);
-  (void)solve_wrist(k, Vec3<S>{-axis[0], -axis[1], -axis[2]}, sign.flip, reference, q);
-  return true;
-}
-
 /// How far the wrist point of `pose` is from the base axis, mm. The axis must be unit.
 [[nodiscard]] inline double shoulder_distance(const RobotKinematics& k, double tool_length_mm,
                                               const Pose<double>& pose) noexcept {
   const Vec3<double> w = wrist_point(k, tool_length_mm, pose);
   return hypot(w[0], w[1]);
-}
-
-/// Rounds of solve_with_roll(). Each leaves d times what the arm turns per mm of the one before, a
-/// tenth in the middle of the reach.
-inline constexpr int kRollRounds = 12;
-
-/// The joints of a 6R robot with its roll at `roll`, the front and the elbow of `branch`: the tip
-/// is that of `pose` as far as the rounds settle, the axis the nearest that the wrist has with that
-/// roll; the bend takes the sign that fits. Returns whether the pose is in reach; so near to the
-/// base axis that the yaw is free it is not. Windings are the caller's. RT: cycle. Proof:
-/// tests/property/kinematics.
-template <class S>
-[[nodiscard]] inline bool solve_with_roll(const RobotKinematics& k, double tool_length_mm,
-                                          const Pose<S>& pose, int branch, const S& roll,
-                                          const JointVector& reference, Joints<S>& q) noexcept {
-  const SinCos<S> r = sin_cos(roll);
-  Pose<S> wanted = pose;  // its axis: the one that the wrist gives
-  for (int round = 0; round < kRollRounds; ++round) {
-    q = {};
-    const ArmSolution<S> arm = solve_arm(k, tool_length_mm, wanted, signs_of(branch), reference, q);
-    if (!arm.is_reachable) return false;
-    const Vec3<S> a = arm.frame.to_arm(pose.axis);
-    const SinCos<S> e = sin_cos(S(q[kShoulder] + q[kElbow]));
-    const S x = -(e.cos * a[0] + e.sin * a[2]), z = e.sin * a[0] - e.cos * a[2];
-    q[kBend] = atan2(S(z * r.cos + a[1] * r.sin), x);
-    const SinCos<S> bend = sin_cos(q[kBend]);
-    const S along = bend.cos, across = -(bend.sin * r.sin), up = bend.sin * r.cos;
-    wanted.axis = arm.frame.from_arm(S(e.sin * up - e.cos * along), S(0.0) - across,
-                                     S(0.0) - (e.sin * along + e.cos * up));
-  }
-  q[kRoll] = roll;
-  q[kSpin] = S(reference[kSpin]);
-  return true;
 }
 
 /// The angle from the tool to the forearm's line, where the wrist of a 6R robot is singular, with

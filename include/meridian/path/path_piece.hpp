@@ -25,7 +25,7 @@ enum class PathKind : std::uint8_t {
 /// (mm), d = 3..5 O (the tool axis is O/|O|).
 using PoseQuartic = std::array<std::array<double, 5>, 6>;
 
-/// Values of a quintic in Bernstein form: of the redundant joint over a kSpline piece, rad.
+/// Values of a quintic in Bernstein form: of a redundant joint over a kSpline piece, rad.
 using FreeQuintic = std::array<double, 6>;
 
 /// What the operator sees the machine do on a piece; the `kind` column of a recording.
@@ -77,6 +77,7 @@ struct PathPiece {
                          ///< nearly, not exactly, the length named above
   /// kSpline where `is_free_driven`: the redundant joint over [0, length].
   FreeQuintic free_quintic{};
+  FreeQuintic roll_quintic{};  ///< the roll, where that is driven besides the yaw
   JointVector
       joints_begin{};  ///< joints at s = 0, windings included: the reference of the first solve
   JointVector joints_end{};  ///< joints at s = length, windings included

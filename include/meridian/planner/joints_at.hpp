@@ -7,6 +7,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/path_piece.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "meridian/planner/driven_spline.hpp"
 
 namespace meridian {
 
@@ -30,9 +31,7 @@ template <class S>
   }
   const Pose<S> pose = pose_at(piece, s);
   if (piece.kind == PathKind::kSpline && piece.is_free_driven) {
-    return solve_driven(model, piece.tool_length_mm, pose,
-                        quintic_at(piece.free_quintic, S(s / piece.length)), piece.branch,
-                        reference);
+    return joints_on_driven_spline(model, piece, pose, s, reference);
   }
   if (piece.is_free_driven || piece.kind == PathKind::kTurn) {
     const double by = piece.free_end - piece.free_begin;

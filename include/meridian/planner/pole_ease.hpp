@@ -6,15 +6,20 @@
 
 namespace meridian {
 
-/// Why the tool axis was moved off the programmed one beside the pole.
+/// Why the tool axis was moved off the programmed one beside the pole, or beside the wrist
+/// singularity of a robot. Over its base axis alone the axis stays.
 enum class EaseReason : std::uint8_t {
   kThrough,  ///< straight through the pole, out on the other branch: the redundant joint hardly
              ///< turns
   kBeside,   ///< past it on the same branch, the redundant joint on a shorter way
-  kOnPole    ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
+  kOnPole,   ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
+  kThroughWrist,  ///< of a 6R robot: out with the bend turned over, the roll hardly turns
+  kPastWrist,     ///< with the bend as it was
+  kThroughBoth,   ///< the same where the wrist point is over the base axis as well
+  kPastBoth
 };
 
-/// A stretch of path on which the axis was moved beside the pole, by blocks.
+/// A stretch of path on which the axis was moved beside a singularity, by blocks.
 struct PoleEase {
   std::uint64_t first_sequence = 0, last_sequence = 0;
   std::uint32_t first_line = 0, last_line = 0;
@@ -32,6 +37,14 @@ static_assert(std::is_trivially_copyable_v<PoleEase>);
       return "past the pole";
     case EaseReason::kOnPole:
       return "on the pole";
+    case EaseReason::kThroughWrist:
+      return "through the wrist singularity";
+    case EaseReason::kPastWrist:
+      return "past the wrist singularity";
+    case EaseReason::kThroughBoth:
+      return "through the wrist and shoulder singularities";
+    case EaseReason::kPastBoth:
+      return "past the wrist and shoulder singularities";
   }
   return "";
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/analysis/certify/enclosed_motion.hpp"
 
+#include <optional>
+
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
@@ -33,24 +35,33 @@ namespace {
   return upper(square) < kHold * kHold;
 }
 
-/// As joints_at(). A driven redundant joint is taken from its value at the begin of the piece on: a
-/// quintic of a few micrometres would lose the digits of its derivatives beside that value.
+/// From its value at the begin of the piece on: a quintic of a few micrometres would lose the
+/// digits of its derivatives beside that value. Nothing where the differences are not exact.
+[[nodiscard]] std::optional<Enclosure> driven_from_begin(const FreeQuintic& values,
+                                                         const Enclosure& share) {
+  const double begin = values[0];
+  FreeQuintic from_begin{};
+  for (std::size_t n = 0; n < from_begin.size(); ++n) {
+    const double value = values[n];
+    from_begin[n] = value - begin;
+    const bool is_exact =
+        value == 0 || begin == 0 || (value / begin > 0.51 && value / begin < 1.99);
+    if (!is_exact) return std::nullopt;
+  }
+  return begin + quintic_at(from_begin, share);
+}
+
+/// As joints_at(), with driven joints by driven_from_begin().
 [[nodiscard]] Solution<Enclosure> solve_on(const MachineModel& model, const PathPiece& path,
                                            const Enclosure& s, const JointVector& reference) {
   if (path.kind != PathKind::kSpline || !path.is_free_driven) {
     return joints_at(model, path, s, reference);
   }
-  const double begin = path.free_quintic[0];
-  FreeQuintic from_begin{};
-  for (std::size_t n = 0; n < from_begin.size(); ++n) {
-    const double value = path.free_quintic[n];
-    from_begin[n] = value - begin;
-    const bool is_exact =
-        value == 0 || begin == 0 || (value / begin > 0.51 && value / begin < 1.99);
-    if (!is_exact) return joints_at(model, path, s, reference);
-  }
-  const Enclosure free = begin + quintic_at(from_begin, Enclosure(s / path.length));
-  return solve_driven(model, path.tool_length_mm, pose_at(path, s), free, path.branch, reference);
+  const auto free = driven_from_begin(path.free_quintic, s / path.length);
+  const auto roll = driven_from_begin(path.roll_quintic, s / path.length);
+  if (!free || !roll) return joints_at(model, path, s, reference);
+  return solve_driven(model, path.tool_length_mm, pose_at(path, s), *free, *roll, path.branch,
+                      reference);
 }
 
 }  // namespace

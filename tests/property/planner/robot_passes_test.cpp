@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <set>
 
 #include "property/planner/random_programs.hpp"
 #include "property/planner/singular_passes.hpp"
@@ -55,6 +56,26 @@ TEST_P(RobotPasses, OverTheBaseAxisKeepTheLimitsOfEveryJoint) {
     EXPECT_EQ(trace.last.status, PlanStatus::kOk);
     EXPECT_LT(trace.duration_s(), 60) << "it creeps";
   }
+}
+
+TEST_P(RobotPasses, AreReportedByTheNameOfTheSingularity) {
+  MachineModel robot = config::load_machine(shipped_file("robot-6r"));
+  config::place_workpiece(robot, config::parse_frame("0,0,0"));
+  const auto reasons_of = [&](const SingularPass& singular, double beside) {
+    const auto blocks = singular.program(Pass::kThrough, beside);
+    const auto trace =
+        plan_smooth(robot, blocks, joints_of(robot, blocks[0]), {GetParam(), 0, 0}, true);
+    std::set<EaseReason> reasons;
+    for (const PoleEase& ease : trace.eases) reasons.insert(ease.reason);
+    return reasons;
+  };
+  for (const EaseReason reason : reasons_of(WristPass(robot, 1), units::rad_from_deg(0.05))) {
+    EXPECT_TRUE(reason == EaseReason::kThroughWrist || reason == EaseReason::kPastWrist)
+        << name_of(reason);
+  }
+  const auto at_both = reasons_of(BothPass(robot, 1), 0.01);
+  EXPECT_TRUE(at_both.contains(EaseReason::kThroughBoth) ||
+              at_both.contains(EaseReason::kPastBoth));
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RobotPasses,

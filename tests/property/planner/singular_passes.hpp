@@ -141,4 +141,59 @@ class ShoulderPass : public SingularPass {
   double rise_mm_ = 0;
 };
 
+/// Both at once: the wrist point comes over the base axis and the tool into line with the forearm,
+/// there or within 12 mm. `beside` counts in tolerances of the tip and of the axis.
+class BothPass : public SingularPass {
+ public:
+  BothPass(const MachineModel& robot, std::uint32_t seed) : SingularPass(robot, seed) {
+    half_elbow_ = between(0.5, 0.9);
+    at_[robot::kYaw] = between(-1.2, 1.2);
+    at_[robot::kRoll] = between(-1.0, 1.0);
+    pose_ = forward(robot, robot.tool_length_mm, arm(half_elbow_, 0, 0, 0));
+    wrist_ = pose_.tip + pivot_mm() * pose_.axis;
+    // From the front: from behind the arm would stand turned by 180°, its wrist far from singular.
+    way_ = {-std::cos(at_[robot::kYaw]), -std::sin(at_[robot::kYaw]), 0};
+    const Vector3 any{between(-1, 1), between(-1, 1), between(-1, 1)};
+    spin_ = any.cross(pose_.axis).normalized();
+    rise_mm_ = between(-20, 20);
+    apart_ = seed % 2 == 0 ? between(-0.2, 0.2) : 0;
+    for (const int joint : {int{robot::kYaw}, int{robot::kRoll}})
+      along_[joint] = between(-0.1, 0.1);
+  }
+
+ private:
+  static constexpr double kSweep_mm = 60, kSweep_rad = 0.17, kSweepElbow_rad = 0.05;
+  [[nodiscard]] double pivot_mm() const { return robot_.robot.wrist_mm + robot_.tool_length_mm; }
+  /// With the wrist point `reach_mm` before the base axis: upper arm and forearm are equally long.
+  [[nodiscard]] JointVector arm(double half_elbow, double reach_mm, double bend,
+                                double share) const {
+    JointVector q = at_;
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] += share * along_[i];
+    const double height_mm = 2 * robot_.robot.forearm_mm * std::cos(half_elbow);
+    q[robot::kElbow] = -2 * half_elbow;
+    q[robot::kShoulder] = std::acos(reach_mm / height_mm) + half_elbow;
+    q[robot::kBend] = bend;
+    return q;
+  }
+  [[nodiscard]] ToolPose across(double share, double beside) const override {
+    const double turn = (share - apart_) * kSweep_rad;
+    const Vector3 on = std::cos(turn) * pose_.axis + std::sin(turn) * spin_.cross(pose_.axis);
+    const double beside_rad = beside * robot_.tolerances.axis_rad;
+    const Vector3 axis = (on + std::tan(beside_rad) * spin_).normalized();
+    const Vector3 wrist = wrist_ + share * (kSweep_mm * way_ + rise_mm_ * Vector3::UnitZ()) +
+                          beside * robot_.tolerances.tip_mm * Vector3(-way_.y(), way_.x(), 0);
+    return {wrist - pivot_mm() * axis, axis};
+  }
+  [[nodiscard]] ToolPose along(double share, double beside) const override {
+    return forward(robot_, robot_.tool_length_mm,
+                   arm(half_elbow_ + share * kSweepElbow_rad, beside * robot_.tolerances.tip_mm,
+                       beside * robot_.tolerances.axis_rad, share));
+  }
+
+  JointVector at_{}, along_{};
+  ToolPose pose_{Vector3::Zero(), Vector3::UnitZ()};
+  Vector3 wrist_, way_, spin_;
+  double half_elbow_ = 0, rise_mm_ = 0, apart_ = 0;
+};
+
 }  // namespace meridian::test

@@ -21,20 +21,24 @@ namespace {
 constexpr double kShare = 1 + 1e-6;  // of a limit or a tolerance, with what rounding adds
 constexpr double kLongest_s = 60;    // the longest program takes 3 s at its feed, and 61 rests
 
+enum class At { kWrist, kShoulder, kBoth };
+
 struct Sweep {
   const char* name;
   const char* machine;
-  bool is_wrist;
+  At at;
   Transition transition;
 
   [[nodiscard]] std::unique_ptr<SingularPass> draw(const MachineModel& robot,
                                                    std::uint32_t seed) const {
-    if (is_wrist) return std::make_unique<WristPass>(robot, seed);
-    return std::make_unique<ShoulderPass>(robot, seed);
+    if (at == At::kWrist) return std::make_unique<WristPass>(robot, seed);
+    if (at == At::kShoulder) return std::make_unique<ShoulderPass>(robot, seed);
+    return std::make_unique<BothPass>(robot, seed);
   }
-  /// Distances to pass at: degrees or mm; the last is what times are compared with.
+  /// Distances to pass at: degrees, mm or tolerances; the last is what times are compared with.
   [[nodiscard]] std::vector<double> beside() const {
-    if (is_wrist) return {0, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 5};
+    if (at == At::kBoth) return {0, 1e-8, 1e-6, 1e-4, 0.01, 0.1, 0.5, 0.9, 1.2, 3, 10, 50};
+    if (at == At::kWrist) return {0, 1e-9, 1e-7, 1e-5, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 5};
     return {0, 1e-9, 1e-6, 1e-4, 1e-3, 5e-3, 9e-3, 0.012, 0.03, 0.1, 1, 5};
   }
 };
@@ -87,7 +91,7 @@ TEST_P(SingularSweep, KeepsLimitsAndToleranceAndNeverCreeps) {
         SCOPED_TRACE(testing::Message()
                      << "seed " << seed << " " << kPassNames[static_cast<int>(pass)] << " beside "
                      << beside[k]);
-        const double by = sweep.is_wrist ? units::rad_from_deg(beside[k]) : beside[k];
+        const double by = sweep.at == At::kWrist ? units::rad_from_deg(beside[k]) : beside[k];
         const auto blocks = singular->program(pass, by);
         const JointVector start = joints_of(robot, blocks[0]);
         SmoothTrace trace = plan_smooth(robot, blocks, start, {sweep.transition, 0, 0}, true);
@@ -165,12 +169,15 @@ TEST(SingularSeed, AlongTheBaseAxisTheYawTurnsWhereTheRollRunsOutOfTravel) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, SingularSweep,
-    testing::Values(Sweep{"WristSmooth", "robot-6r", true, Transition::kSmooth},
-                    Sweep{"WristExactStop", "robot-6r", true, Transition::kExactStop},
-                    Sweep{"ShoulderSmooth", "robot-6r", false, Transition::kSmooth},
-                    Sweep{"ShoulderExactStop", "robot-6r", false, Transition::kExactStop},
-                    Sweep{"ShoulderOf5RSmooth", "robot-5r", false, Transition::kSmooth},
-                    Sweep{"ShoulderOf5RExactStop", "robot-5r", false, Transition::kExactStop}),
+    testing::Values(Sweep{"WristSmooth", "robot-6r", At::kWrist, Transition::kSmooth},
+                    Sweep{"WristExactStop", "robot-6r", At::kWrist, Transition::kExactStop},
+                    Sweep{"ShoulderSmooth", "robot-6r", At::kShoulder, Transition::kSmooth},
+                    Sweep{"ShoulderExactStop", "robot-6r", At::kShoulder, Transition::kExactStop},
+                    Sweep{"ShoulderOf5RSmooth", "robot-5r", At::kShoulder, Transition::kSmooth},
+                    Sweep{"ShoulderOf5RExactStop", "robot-5r", At::kShoulder,
+                          Transition::kExactStop},
+                    Sweep{"BothSmooth", "robot-6r", At::kBoth, Transition::kSmooth},
+                    Sweep{"BothExactStop", "robot-6r", At::kBoth, Transition::kExactStop}),
     [](const testing::TestParamInfo<Sweep>& sweep) { return sweep.param.name; });
 
 }  // namespace

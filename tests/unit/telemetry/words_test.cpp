@@ -33,6 +33,16 @@ TEST(Words, SayWhereTheAxisIsEasedByHowMuchAndWhy) {
   EXPECT_EQ(describe(ease), "lines 41 to 43: tool axis eased by 0.0500 deg, through the pole");
 }
 
+TEST(Words, NameTheSingularityThatARobotPasses) {
+  PoleEase ease{7, 9, 41, 43, units::rad_from_deg(0.05), EaseReason::kThroughWrist};
+  EXPECT_EQ(describe(ease),
+            "lines 41 to 43: tool axis eased by 0.0500 deg, through the wrist singularity");
+  ease.reason = EaseReason::kPastBoth;
+  EXPECT_EQ(describe(ease),
+            "lines 41 to 43: tool axis eased by 0.0500 deg, past the wrist and shoulder "
+            "singularities");
+}
+
 TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
   const MachineModel model = test::lai_machine();
   Approach way;

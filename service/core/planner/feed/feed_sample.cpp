@@ -31,9 +31,7 @@ Place place_on_spline(const MachineModel& model, const FeedSpan& span, double x,
   const auto pose = pose_on(path.spline, Jet<3>::variable(x));
   Place out;
   out.joints = path.is_free_driven
-                   ? solve_driven(model, path.tool_length_mm, pose,
-                                  quintic_at(path.free_quintic, Jet<3>::variable(x) / path.length),
-                                  path.branch, reference)
+                   ? joints_on_driven_spline(model, path, pose, Jet<3>::variable(x), reference)
                    : solve(model, path.tool_length_mm, pose, path.branch, reference);
   out.tip_square = speed_square(pose.tip);
   if (std::isfinite(span.turn_rad_per_s) && out.joints.status != SolveStatus::kUnreachable) {

@@ -16,6 +16,7 @@ struct JointSpan {
   int branch = 0;               ///< of the inverse kinematics, where not driven
   bool is_free_driven = false;  ///< the redundant joint is a quintic of x, the tilt follows
   FreeQuintic free{};           ///< Bernstein values over [0, length], rad
+  FreeQuintic roll{};           ///< the roll, where that is driven besides the yaw
   double axis_deviation_rad =
       0;  ///< largest angle by which driving the redundant joint moves the axis
   EaseReason reason = EaseReason::kBeside;  ///< why, where driven
@@ -43,6 +44,7 @@ struct JointSpan {
   piece.branch = static_cast<std::uint8_t>(span.branch);
   piece.is_free_driven = span.is_free_driven;
   piece.free_quintic = span.free;
+  piece.roll_quintic = span.roll;
   piece.marks = span.marks;
   return piece;
 }

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/look_ahead/fault_code.hpp"
+#include "service/core/planner/singular/robot_pass.hpp"
 
 namespace meridian {
 namespace {
@@ -73,17 +75,30 @@ bool SmoothPlanner::Workspace::is_on_pole(const Vector3& axis) const noexcept {
 }
 
 int SmoothPlanner::Workspace::find_branch(const RestToRestPlanner::Junction& at) const noexcept {
-  double nearest = std::numeric_limits<double>::infinity();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const auto off = [&](const Solution<double>& found) {
+    if (found.status == SolveStatus::kUnreachable) return kInfinite;
+    double most = 0;
+    for (int i = 0; i < model.joint_count; ++i) {
+      most = std::max(most, std::abs(found.q[i] - at.joints[i]));
+    }
+    return most;
+  };
+  // Over the base axis the yaw may stand anywhere: of the others first.
+  const double from_axis_mm =
+      singular_distance(model, at.tool_length_mm, Singularity::kShoulder, at.pose, 0, at.joints);
+  const bool is_over_base = from_axis_mm < tolerance().tip_mm;
+  std::pair nearest{kInfinite, kInfinite};
   int best = 0;
   for (int branch = 0; branch < branch_count(model); ++branch) {
-    const auto found = solve(model, at.tool_length_mm, at.pose, branch, at.joints);
-    if (found.status == SolveStatus::kUnreachable) continue;
-    double off = 0;
-    for (int i = 0; i < model.joint_count; ++i) {
-      off = std::max(off, std::abs(found.q[i] - at.joints[i]));
-    }
-    if (off < nearest) {
-      nearest = off;
+    const double with_yaw =
+        is_over_base ? off(solve_driven(model, at.tool_length_mm, at.pose, at.joints[robot::kYaw],
+                                        branch | robot::kYawDriven, at.joints))
+                     : 0;
+    const std::pair here{with_yaw,
+                         off(solve(model, at.tool_length_mm, at.pose, branch, at.joints))};
+    if (here < nearest) {
+      nearest = here;
       best = branch;
     }
   }

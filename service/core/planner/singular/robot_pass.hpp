@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "meridian/planner/pole_ease.hpp"
 #include "service/core/planner/singular/pole_zone.hpp"
 #include "service/core/planner/singular/programmed_tip.hpp"
 
@@ -15,31 +16,53 @@ enum class Singularity : std::uint8_t {
 };
 inline constexpr int kSingularities = 2;
 
-/// A stretch of path beside a singular place of a robot on which its redundant joint is driven and
+/// At which of them.
+enum class SingularSet : std::uint8_t { kNone, kWrist, kShoulder, kWristAndShoulder };
+
+[[nodiscard]] constexpr SingularSet only(Singularity at) noexcept {
+  return at == Singularity::kWrist ? SingularSet::kWrist : SingularSet::kShoulder;
+}
+[[nodiscard]] constexpr SingularSet operator|(SingularSet a, SingularSet b) noexcept {
+  return static_cast<SingularSet>(static_cast<int>(a) | static_cast<int>(b));
+}
+[[nodiscard]] constexpr SingularSet operator&(SingularSet a, SingularSet b) noexcept {
+  return static_cast<SingularSet>(static_cast<int>(a) & static_cast<int>(b));
+}
+[[nodiscard]] constexpr bool contains(SingularSet set, Singularity at) noexcept {
+  return (set | only(at)) == set;
+}
+
+/// A stretch of path beside singular places of a robot on which its redundant joints are driven and
 /// the others follow. At the wrist the tip is exact and the axis inside its tolerance, at the
-/// shoulder the axis is exact and the tip inside its tolerance. Outside it the joints follow the
-/// path.
+/// shoulder the axis is exact and the tip inside its tolerance, at both each is inside its own.
+/// Outside it the joints follow the path.
 struct RobotPass {
+  SingularSet at = SingularSet::kNone;
   double begin = 0, end = 0;  ///< u; equal: none
   FreeQuintic joint{};        ///< the redundant one: Bernstein values over [begin, end]
+  FreeQuintic roll{};         ///< the same, at wrist and shoulder, where `joint` is the yaw
   int branch_before = 0, branch_after = 0;
-  double deviation = 0;  ///< largest from the programmed path: of the axis, rad, or the tip, mm
+  SingularSet rests_at_end = SingularSet::kNone;  ///< whose joints rest there, by any value
+  double axis_deviation_rad = 0;                  ///< largest from the programmed axis
 };
 
-/// How a pass meets an end of its range.
-enum class PassEnd : std::uint8_t {
-  kOnPath,  ///< anywhere inside it, on the exact way
-  kAtRest   ///< at that end, which is singular and where the machine rests: any joint value
-};
+/// Why a pass moves the axis.
+[[nodiscard]] constexpr EaseReason reason_of(const RobotPass& pass) noexcept {
+  const bool is_turned = pass.branch_after != pass.branch_before;
+  if (pass.at == SingularSet::kWristAndShoulder) {
+    return is_turned ? EaseReason::kThroughBoth : EaseReason::kPastBoth;
+  }
+  return is_turned ? EaseReason::kThroughWrist : EaseReason::kPastWrist;
+}
 
 /// Where a pass may lie: about `nearest`, between `from` and `to`.
 struct PassRange {
   Singularity at = Singularity::kWrist;
   double nearest = 0, from = 0, to = 0;
-  PassEnd at_from = PassEnd::kOnPath;  ///< kAtRest: the redundant joint begins as it stands
-  PassEnd at_to = PassEnd::kOnPath;
-  int branch = 0;        ///< on the way in
-  JointVector joints{};  ///< at `from`
+  SingularSet rests_at_from = SingularSet::kNone;  ///< whose joints begin there as they stand
+  SingularSet rests_at_to = SingularSet::kNone;    ///< whose joints may rest there by any value
+  int branch = 0;                                  ///< on the way in
+  JointVector joints{};                            ///< at `from`
 };
 
 /// What stays the same along a path.
@@ -56,9 +79,11 @@ struct PassTask {
 /// Farthest that a pass begins ahead of the nearest point, and ends behind it.
 inline constexpr double kPassReach_mm = 20;
 
-/// The branch that solve_driven() asks for where the redundant joint of `at` is driven.
-[[nodiscard]] constexpr int driven_branch(Singularity at, int branch) noexcept {
-  return at == Singularity::kShoulder ? branch | robot::kYawDriven : branch;
+/// The branch that solve_driven() asks for where the redundant joints of `at` are driven.
+[[nodiscard]] constexpr int driven_branch(SingularSet at, int branch) noexcept {
+  if (at == SingularSet::kShoulder) return branch | robot::kYawDriven;
+  if (at == SingularSet::kWristAndShoulder) return branch | robot::kYawAndRollDriven;
+  return branch;
 }
 
 /// How far `pose` in W is from the singular place with the front and the elbow of `branch`: the
@@ -86,7 +111,8 @@ struct PassCourse {
 /// Picks the pass with the least time between `from` and `to`. Candidates are quintics of the
 /// redundant joint that meet the exact way with two derivatives at both ends, out on the same
 /// branch or on the one with the bend, or the arm, turned over: straight through, the joint hardly
-/// turns. Where the nearest winding is outside travel, the joint turns the other way round; where a
+/// turns. A pass that meets the other singularity drives the redundant joints of both. Where the
+/// nearest winding is outside travel, the joint turns the other way round; where a
 /// joint at rest leads another one out of travel, it turns to where it may rest. One that leaves
 /// the tolerance about the programmed path, or whose joints leave travel, is none. Bounded work, no
 /// memory. Source: docs/motion.md, section 2. Proof:

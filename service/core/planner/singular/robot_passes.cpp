@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/singular/pass_joints.hpp"
 #include "service/core/planner/singular/pole_bounds.hpp"
 #include "service/core/planner/singular/pole_time.hpp"
 
@@ -48,7 +49,9 @@ void RobotPasses::begin(const Start& start) noexcept {
   emitted_x_ = 0;
   known_ = start.joints;
   branch_ = start.branch;
-  is_finished_ = has_pass_ = is_held_ = is_waiting_ = false;
+  is_finished_ = has_pass_ = is_waiting_ = false;
+  held_ = SingularSet::kNone;
+  pass_ = {};
 }
 
 void RobotPasses::push(const JointSpan& span) noexcept {
@@ -138,8 +141,9 @@ double RobotPasses::refine_minimum(Singularity at, std::int64_t probe) const noe
 
 void RobotPasses::scan() noexcept {
   while (!has_pass_) {
-    if (is_held_) {
-      if (!settle(at_, emitted_u())) return;
+    if (goes_on()) {
+      const bool is_wrist = held_ == SingularSet::kWrist;
+      if (!settle(is_wrist ? Singularity::kWrist : Singularity::kShoulder, emitted_u())) return;
       continue;
     }
     const std::int64_t known = is_finished_ ? end_probe() : end_probe() - 1;
@@ -155,31 +159,45 @@ void RobotPasses::scan() noexcept {
   }
 }
 
+PassTask RobotPasses::task() const noexcept {
+  return {model_,   *this, axes_, tips_, tool_length_mm_, axis_tolerance_rad_, tip_tolerance_mm_,
+          is_exact_};
+}
+
 bool RobotPasses::settle(Singularity at, double nearest) noexcept {
   const double wanted = nearest + kPassReach_mm, end = end_u();
   if (end < wanted && !is_finished_ && !spans_.is_full()) return false;
   PassRange range;
   range.at = at;
   range.nearest = nearest;
-  range.from = is_held_ ? nearest : std::max(emitted_u(), nearest - kPassReach_mm);
+  const bool is_held = goes_on();
+  range.from = is_held ? nearest : std::max(emitted_u(), nearest - kPassReach_mm);
   range.to = std::min(wanted, end);
-  const double singular = kOnPoleTolerances * tolerance(at);
-  const bool is_path_begin = range.from <= 0;
-  const auto is_singular = [&](double u) { return distance_at(at, u) < singular; };
-  const bool begins_at_rest = is_held_ || (is_path_begin && is_singular(range.from));
-  range.at_from = begins_at_rest ? PassEnd::kAtRest : PassEnd::kOnPath;
-  range.at_to = is_singular(range.to) ? PassEnd::kAtRest : PassEnd::kOnPath;
+  range.rests_at_from = is_held || range.from > 0 ? held_ : singular_at(range.from);
+  range.rests_at_to = singular_at(range.to);
   range.branch = branch_;
   range.joints = follow_to(range.from);
-  const PassTask task{
-      model_,   *this, axes_, tips_, tool_length_mm_, axis_tolerance_rad_, tip_tolerance_mm_,
-      is_exact_};
-  pass_ = find_robot_pass(task, range);
-  at_ = at;
+  pass_ = find_robot_pass(task(), range);
   has_pass_ = pass_.end > pass_.begin;
-  is_held_ = has_pass_ && range.at_to == PassEnd::kAtRest;
+  held_ = pass_.rests_at_end;
   while (has_pass_ && probe_ < end_probe() && u_of(probe_) <= pass_.end) ++probe_;
   return true;
+}
+
+bool RobotPasses::goes_on() const noexcept {
+  if (held_ != SingularSet::kNone) return true;
+  const double u = emitted_u();
+  return pass_.at == SingularSet::kWristAndShoulder && std::abs(u - pass_.end) < kMinPassPart_mm &&
+         distance_at(Singularity::kWrist, u) < axis_tolerance_rad_ &&
+         distance_at(Singularity::kShoulder, u) < tip_tolerance_mm_;
+}
+
+SingularSet RobotPasses::singular_at(double u) const noexcept {
+  SingularSet set = SingularSet::kNone;
+  for (const Singularity at : kPlaces) {
+    if (distance_at(at, u) < kOnPoleTolerances * tolerance(at)) set = set | only(at);
+  }
+  return set;
 }
 
 JointVector RobotPasses::follow_to(double u) const noexcept {
@@ -197,7 +215,7 @@ JointVector RobotPasses::follow_to(double u) const noexcept {
 
 bool RobotPasses::may_emit() const noexcept {
   if (has_pass_ || spans_.is_full()) return true;
-  if (is_held_) return false;
+  if (goes_on()) return false;
   if (is_finished_ && probe_ >= end_probe()) return true;
   const Held& front = spans_[spans_.begin_index()];
   const double end = front.span.band.u0 + front.span.band.length;
@@ -235,14 +253,15 @@ void RobotPasses::emit() noexcept {
   if (has_pass_ && middle > pass_.begin && middle < pass_.end) {
     const double h = pass_.end - pass_.begin;
     out_.is_free_driven = true;
-    out_.branch = driven_branch(at_, branch_);
-    out_.free = part_of(pass_.joint, begin <= pass_.begin ? 0 : (begin - pass_.begin) / h,
-                        end >= pass_.end ? 1 : (end - pass_.begin) / h);
-    out_.axis_deviation_rad = at_ == Singularity::kWrist ? pass_.deviation : 0;
-    out_.reason =
-        pass_.branch_after != pass_.branch_before ? EaseReason::kThrough : EaseReason::kBeside;
-    joints = solve_driven(model_, tool_length_mm_, pose_of<double>(span, end), out_.free.back(),
-                          out_.branch, known_)
+    const double from = begin <= pass_.begin ? 0 : (begin - pass_.begin) / h;
+    const double to = end >= pass_.end ? 1 : (end - pass_.begin) / h;
+    out_.branch = driven_branch(pass_.at, branch_);
+    out_.free = part_of(pass_.joint, from, to);
+    out_.roll = part_of(pass_.roll, from, to);
+    out_.axis_deviation_rad = pass_.axis_deviation_rad;
+    out_.reason = reason_of(pass_);
+    joints = solve_on_pass<double>(task(), pass_, pose_of<double>(span, end), out_.free.back(),
+                                   out_.roll.back(), known_)
                  .q;
   } else {
     joints = follow_to(end);

@@ -74,6 +74,12 @@ class RobotPasses : private SpanLookup {
   void scan() noexcept;
   /// Takes a pass about `nearest`, if there is one; false: not enough of what follows is there.
   [[nodiscard]] bool settle(Singularity at, double nearest) noexcept;
+  [[nodiscard]] PassTask task() const noexcept;
+  /// Whether a pass is to begin where the last one ends: joints rest there, or both singularities
+  /// are so near that rounding would turn the roll of the exact way.
+  [[nodiscard]] bool goes_on() const noexcept;
+  /// So near the path is to them at `u` that their joints may rest.
+  [[nodiscard]] SingularSet singular_at(double u) const noexcept;
   [[nodiscard]] bool is_minimum(Singularity at, std::int64_t probe) const noexcept;
   [[nodiscard]] double refine_minimum(Singularity at, std::int64_t probe) const noexcept;
   [[nodiscard]] bool is_out_of_reach(const Held& held) const noexcept;
@@ -92,8 +98,7 @@ class RobotPasses : private SpanLookup {
   JointVector known_{};     ///< joints at emitted_u()
   int branch_ = 0;          ///< where spans are handed out
   bool has_pass_ = false;
-  bool is_held_ = false;  ///< behind the pass the joint rests, the path still singular
-  Singularity at_ = Singularity::kWrist;  ///< the place of pass_
+  SingularSet held_ = SingularSet::kNone;  ///< whose joints rest behind the pass, still singular
   RobotPass pass_;
   bool is_waiting_ = false;  ///< not used: the span to hand on is in out_
   JointSpan out_;
