@@ -72,6 +72,21 @@ void TelemetryThread::say_what_is_new(const SessionView& session, bool has_repor
   if (!is_declared) status_.message = approach_message_ = approach_;
 }
 
+/// The cycle shows its state at once, while its events come through the commands thread: the view
+/// waits for them, so that no status has a state ahead of the alarm that led to it. Not for long,
+/// for an event may be lost.
+void TelemetryThread::take_view() {
+  constexpr int kMaxLooks = 25;
+  (void)ports_.telemetry_view.refresh();
+  const CycleView& newest = ports_.telemetry_view.latest();
+  const bool is_ahead = newest.record.state != state_of_events_;
+  const bool is_last = ports_.is_stopping.load(std::memory_order_relaxed);
+  if (is_ahead && !is_last && ++looks_ahead_ <= kMaxLooks) return;
+  looks_ahead_ = 0;
+  view_ = newest;
+  state_of_events_ = newest.record.state;
+}
+
 void TelemetryThread::publish_status(std::int64_t now_ns) {
   const CycleRecord& record = view_.record;
   const SessionView session = intake_.view();

@@ -173,7 +173,7 @@ void TelemetryThread::drain() {
   std::int32_t took_ns = 0;
   while (ports_.plan_times.try_pop(took_ns)) book(kPlanning).record(took_ns);
   while (ports_.round_trips.try_pop(took_ns)) book(kRoundTrip).record(took_ns);
-  if (ports_.telemetry_view.refresh()) view_ = ports_.telemetry_view.latest();
+  take_view();
   keeper_.set_dry_run(view_.is_dry_run);
   if (std::exchange(reported_state_, view_.record.state) != view_.record.state) has_news_ = true;
 }
@@ -222,6 +222,7 @@ void TelemetryThread::report(const Event& event) {
       has_news_ = true;
       break;
     case EventCode::kStateChanged:
+      state_of_events_ = static_cast<State>(event.a);
       if (static_cast<State>(event.a) == State::kFault) {
         note(telemetry::AuditKind::kFault, alarm_message_, intake_.view());
       }

@@ -66,6 +66,7 @@ class TelemetryThread {
 
  private:
   void drain();
+  void take_view();
   void drain_records();
   /// A set-up that was put in force meanwhile; false: none was.
   bool take_set_up() noexcept;
@@ -139,7 +140,9 @@ class TelemetryThread {
   dds::Latency latency_;
   std::int64_t status_ns_ = 0, latency_ns_ = 0;
   State reported_state_ = State::kOff;
-  std::uint64_t periods_lost_ = 0;  ///< since they were logged last
+  State state_of_events_ = State::kOff;  ///< after the newest kStateChanged
+  int looks_ahead_ = 0;                  ///< at a view that is ahead of it
+  std::uint64_t periods_lost_ = 0;       ///< since they were logged last
   bool has_news_ = true;
   std::string session_message_;  ///< newest of intake that was published
   std::string alarm_message_;    ///< of the newest alarm

@@ -76,6 +76,7 @@ class TelemetryThreadTest : public testing::Test {
     view.is_dry_run = true;
     view.record.state = State::kLoaded;
     ports_->telemetry_view.store(view);
+    emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kLoaded));
     Approach way;
     way.is_planned = true;
     way.epoch = epoch;
@@ -136,6 +137,35 @@ TEST_F(TelemetryThreadTest, PublishesThePlanTimeAheadWhereAProgramMovesAndWhereI
     run();
     EXPECT_EQ(status_.planned_s, 2) << name_of(state);
   }
+}
+
+/// Events come through the commands thread, up to 2 ms after the state.
+TEST_F(TelemetryThreadTest, NoStatusHasAStateAheadOfTheAlarmThatLedToIt) {
+  dds::Reader<dds::Status> statuses(participant_);
+  TelemetryThread thread(participant_, model_, service_, 1, dds::RealtimeMode::kBestEffort,
+                         *intake_, clock_, recorder_, journal_, flight_, log_, *ports_);
+  std::thread running([&thread] { thread.run(); });
+  const auto show = [this](State state) {
+    CycleView view;
+    view.cycles_run = 1;
+    view.record.state = state;
+    ports_->telemetry_view.store(view);
+    std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  };
+  show(State::kHoming);
+  emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kHoming));
+  show(State::kReady);
+  emit(EventCode::kAlarm, static_cast<std::uint64_t>(Alarm::kHomingFailed));
+  emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kReady),
+       static_cast<std::uint64_t>(State::kHoming));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (status_.state != State::kReady && std::chrono::steady_clock::now() < end) {
+    if (!statuses.take(status_)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(status_.state, State::kReady);
+  EXPECT_EQ(status_.alarm, Alarm::kHomingFailed);
+  ports_->is_stopping = true;
+  running.join();
 }
 
 TEST_F(TelemetryThreadTest, RecordsWhatWasDone) {
