@@ -210,15 +210,21 @@ std::optional<State> OperatorLink::wait_for_state(
     const dds::Reply& reply, const std::function<bool(State)>& is_there,
     const std::function<void(const dds::Status&)>& look, Milliseconds timeout) {
   if (is_there(reply.state)) return reply.state;
+  static_cast<void>(take_statuses());
+  const std::uint64_t seen = status_ ? status_->status_sequence : 0;
   const auto begin = Clock::now(), end = begin + timeout;
-  // A status that left before the verb took effect may still come in: the first one that counts
-  // shows the state of the reply, or comes so late that it must be younger.
+  // A status that was made before the verb took effect may still come in, however late where the
+  // service is held up: the first one that counts shows the state of the reply, or comes late and
+  // behind another one.
   bool counts = false;
   for (auto now = begin; now < end; now = Clock::now()) {
     const auto left = std::chrono::duration_cast<Milliseconds>(end - now);
     if (!wait_for_status(std::max(left, Milliseconds{1}))) continue;
     look(*status_);
-    counts = counts || status_->state == reply.state || Clock::now() - begin > kRepeat;
+    const bool is_of_another = status_->service_id != reply.service_id;
+    const bool is_second = is_of_another || status_->status_sequence > seen + 1;
+    const bool is_younger = is_second && Clock::now() - begin > kRepeat;
+    counts = counts || status_->state == reply.state || is_younger;
     if (counts && is_there(status_->state)) return status_->state;
   }
   return std::nullopt;
