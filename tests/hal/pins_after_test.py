@@ -49,6 +49,10 @@ class PinsAfter(unittest.TestCase):
         self.assertEqual(self.code(samples(), crowd=5), pins_after.FINE)
         self.assertEqual(self.code(samples(jump=60), crowd=5), pins_after.VOID)
 
+    def test_what_is_caught_up_behind_a_stall_breaks_no_promise(self):
+        self.assertEqual(self.code(samples(jump=60), stalled_ms=5), pins_after.VOID)
+        self.assertEqual(self.code(samples(jump=60), stalled_ms=2), pins_after.BROKEN)
+
     def test_a_move_that_ended_makes_a_run_void(self):
         self.assertEqual(self.code(samples(speed=100)), pins_after.VOID)
 
