@@ -94,13 +94,10 @@ std::vector<Finding> find_missing_heads(const std::vector<SourceFile>& files) {
 std::vector<Finding> find_wide_prose(const std::vector<SourceFile>& pages) {
   std::vector<Finding> findings;
   for (const SourceFile& page : pages) {
-    bool code = false, comment = false;
+    bool code = false;
     for (std::size_t i = 0; i < page.lines.size(); ++i) {
       const std::string& line = page.lines[i];
-      if (!code && line.starts_with("<!--")) comment = true;
-      if (comment) {
-        comment = line.find("-->") == std::string::npos;
-      } else if (starts_a_fence(line)) {
+      if (starts_a_fence(line)) {
         code = !code;
       } else if (!code && is_prose(line) && width(line) > kWidestProse) {
         findings.push_back({page.path, i + 1, "prose wider than 100 characters"});
