@@ -21,8 +21,8 @@ const kViews = {
   part: [0.85, -1.25, 0.75],
 };
 
-// While the camera turns, two pixels are seen as one.
-const kSeenTurning = 2;
+// While the camera turns, so many pixels are seen as one, where a graphics card draws and where a processor does.
+const kSeenTurning = 2, kSeenTurningSlowly = 4;
 
 // Whether there is WebGL for that canvas.
 export const canDraw = (canvas) => canvas.getContext("webgl2", { alpha: true, antialias: false }) !== null;
@@ -240,7 +240,8 @@ export class View {
   }
 
   draw() {
-    const seen = this.resolution.isTurning ? kSeenTurning : 1;
+    const { isTurning } = this.resolution, turning = this.isSlow ? kSeenTurningSlowly : kSeenTurning;
+    const seen = isTurning ? turning : 1;
     const pixel = (seen * this.camera.fov * Math.PI) / 180 / this.canvas.height;
     this.camera.updateMatrixWorld();
     for (const line of this.lines()) line.setDetail(this.camera, pixel);
