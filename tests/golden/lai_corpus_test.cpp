@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 
 #include "golden/lai_machine.hpp"
+#include "meridian/kinematics/jacobian.hpp"
 #include "support/shared_folder.hpp"
 
 namespace meridian {

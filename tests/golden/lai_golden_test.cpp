@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "golden/lai_machine.hpp"
+#include "meridian/kinematics/jacobian.hpp"
 
 namespace meridian {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/path/path_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 
@@ -9,7 +10,7 @@ namespace meridian {
 
 /// Returns the joints at `pose`, that of the kSpline `piece` at path length `s`, with its redundant
 /// joints at the values of its quintics. Out of line: no other path has its code. Units: mm, rad.
-/// RT: cycle. Proof: tests/unit/planner/joints_at_test.cpp.
+/// RT: cycle. Proof: tests/property/planner/singular_sweep_test.cpp.
 template <class S>
 [[nodiscard, gnu::noinline]] Solution<S> joints_on_driven_spline(
     const MachineModel& model, const PathPiece& piece, const Pose<S>& pose, const S& s,

@@ -4,6 +4,7 @@
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/path_piece.hpp"
 #include "meridian/path/pose_at.hpp"

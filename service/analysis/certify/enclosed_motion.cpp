@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
 

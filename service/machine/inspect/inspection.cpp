@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "meridian/kinematics/jacobian.hpp"
 #include "service/machine/inspect/inspection.hpp"
 
 #include <Eigen/Geometry>

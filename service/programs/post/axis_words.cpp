@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
 #include "service/programs/post/nc_text.hpp"

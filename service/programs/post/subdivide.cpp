@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "meridian/geometry/great_circle.hpp"
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"

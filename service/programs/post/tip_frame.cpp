@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 
 namespace meridian::post {

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "support/machines.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/SVD>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "support/machines.hpp"
 #include "support/random_poses.hpp"

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/machine/file/machine_file.hpp"
 
 namespace meridian {

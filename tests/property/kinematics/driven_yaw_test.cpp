@@ -9,6 +9,7 @@
 #include <string>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/machine/file/machine_file.hpp"
 
 namespace meridian {

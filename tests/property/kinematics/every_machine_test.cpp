@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <random>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "support/shipped_machines.hpp"

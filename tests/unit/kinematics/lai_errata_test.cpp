@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "support/machines.hpp"
 #include "support/random_poses.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/look_ahead/smooth_workspace.hpp"
 
 #include <algorithm>
@@ -78,11 +79,11 @@ int SmoothPlanner::Workspace::find_branch(const RestToRestPlanner::Junction& at)
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const auto off = [&](const Solution<double>& found) {
     if (found.status == SolveStatus::kUnreachable) return kInfinite;
-    double most = 0;
+    double farthest = 0;
     for (int i = 0; i < model.joint_count; ++i) {
-      most = std::max(most, std::abs(found.q[i] - at.joints[i]));
+      farthest = std::max(farthest, std::abs(found.q[i] - at.joints[i]));
     }
-    return most;
+    return farthest;
   };
   // Over the base axis the yaw may stand anywhere: of the others first.
   const double from_axis_mm =

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "service/core/planner/singular/robot_pass.hpp"

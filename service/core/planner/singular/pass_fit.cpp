@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
 #include "service/core/planner/singular/pass_joints.hpp"
 #include "service/core/planner/singular/pole_bounds.hpp"
@@ -113,12 +114,15 @@ bool PassFit::fit_roll(RobotPass& pass, const JointVector& reference) const noex
   const double h = pass.end - pass.begin;
   JointEnd a{};
   if (!contains(range_.rests_at_from, Singularity::kWrist)) {
-    a = end_of(beside_yaw(pass, 0, pass.branch_before, reference).q[robot::kRoll], h);
+    const auto in = beside_yaw(pass, 0, pass.branch_before, reference);
+    if (in.status != SolveStatus::kOk) return false;
+    a = end_of(in.q[robot::kRoll], h);
   }
   // Where the path begins the roll stands. Beside both singularities it is rounded by 1e-8 rad.
   if (pass.begin <= range_.from) a.value = range_.joints[robot::kRoll];
   JointEnd b{a.value + 0.5 * a.rate, 0, 0};
   const auto out = beside_yaw(pass, 1, pass.branch_after, reference);
+  if (out.status != SolveStatus::kOk) return false;
   const double angle = std::abs(std::sin(value_of(out.q[robot::kBend])));
   if ((pass.end >= range_.to || pass.rests_at_end != SingularSet::kNone) &&
       angle < kOnPoleTolerances * task_.axis_tolerance_rad) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/singular/pass_joints.hpp"
 
 #include <cmath>

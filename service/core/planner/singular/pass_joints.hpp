@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/singular/robot_pass.hpp"
 
 /// The joints of a robot on a pass, and what they leave of the path. Units: mm, rad, s. No memory.

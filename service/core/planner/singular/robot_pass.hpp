@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "service/core/planner/singular/pole_zone.hpp"
 #include "service/core/planner/singular/programmed_tip.hpp"
