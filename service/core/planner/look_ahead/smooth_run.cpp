@@ -229,17 +229,18 @@ void SmoothRun::note_ease(const JointSpan* span) noexcept {
     ease_.last_sequence = span->band.sequence;
     ease_.last_line = span->band.line;
   }
-  if (span != nullptr && span->axis_deviation_rad > 0) {
-    if (!is_easing_) {
-      ease_ = {span->band.sequence, span->band.sequence, span->band.line, span->band.line, 0,
-               span->reason};
-    }
-    ease_.deviation_rad = std::max(ease_.deviation_rad, span->axis_deviation_rad);
-    is_easing_ = true;
-  } else if (is_easing_) {
+  const bool deviates = span != nullptr && span->axis_deviation_rad > 0;
+  if (is_easing_ && (!deviates || span->reason != ease_.reason)) {
     is_easing_ = false;
     eases_.push_over_oldest(ease_);
   }
+  if (!deviates) return;
+  if (!is_easing_) {
+    ease_ = {span->band.sequence, span->band.sequence, span->band.line, span->band.line, 0,
+             span->reason};
+  }
+  ease_.deviation_rad = std::max(ease_.deviation_rad, span->axis_deviation_rad);
+  is_easing_ = true;
 }
 
 const JointSpan* SmoothRun::next_span() noexcept {

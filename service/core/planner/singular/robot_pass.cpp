@@ -132,7 +132,7 @@ class Search {
     pass.at = at;
     pass.begin = begin_at(at, width);
     pass.end = end_at(at, width);
-    pass.branch_before = range_.branch;
+    pass.branch_before = pass.branch_after = range_.branch;
     return pass;
   }
   /// `u`, or the end of a span that is so close that the part between would be none.
