@@ -79,11 +79,11 @@ int wait_for(stream::OperatorLink& link, const dds::Reply& reply, const CtlOptio
   // In a fault the machine stays until it is reset: no use waiting on.
   const auto is_over = [wanted](State state) { return state == wanted || state == State::kFault; };
   State last = reply.state;
-  static_cast<void>(link.wait_for_state(
+  const auto reached = link.wait_for_state(
       reply, is_over, [&last](const dds::Status& status) { last = status.state; },
-      std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3))));
-  if (last == wanted) {
-    std::printf("%s\n", text_of(last));
+      std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)));
+  if (reached == wanted) {
+    std::printf("%s\n", text_of(wanted));
     return kFine;
   }
   const std::string message = link.status() ? link.status()->message : "";

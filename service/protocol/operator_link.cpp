@@ -210,13 +210,13 @@ std::optional<State> OperatorLink::wait_for_state(
     const dds::Reply& reply, const std::function<bool(State)>& is_there,
     const std::function<void(const dds::Status&)>& look, Milliseconds timeout) {
   if (is_there(reply.state)) return reply.state;
-  static_cast<void>(take_statuses());
+  // What came with the reply is no younger than that, and may be of its state already.
+  bool counts = take_statuses() && status_->state == reply.state;
   const std::uint64_t seen = status_ ? status_->status_sequence : 0;
   const auto begin = Clock::now(), end = begin + timeout;
   // A status that was made before the verb took effect may still come in, however late where the
   // service is held up: the first one that counts shows the state of the reply, or comes late and
   // behind another one.
-  bool counts = false;
   for (auto now = begin; now < end; now = Clock::now()) {
     const auto left = std::chrono::duration_cast<Milliseconds>(end - now);
     if (!wait_for_status(std::max(left, Milliseconds{1}))) continue;
