@@ -49,6 +49,21 @@ const withoutWebGl = () => {
   };
 };
 
+const withBrokenWebGl = () => {
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...words) {
+    if (kind.startsWith("webgl")) throw new Error("the driver is gone");
+    return getContext.call(this, kind, ...words);
+  };
+};
+
+async function aPictureThatFailsLeavesTheButtons({ browser }) {
+  const page = await pageAt(browser, plant.url, withBrokenWebGl);
+  must((await page.textContent("#no-picture")).includes("the driver is gone"), "nothing says why");
+  must((await page.textContent("#tip-x")) !== "\u2013" && (await visible(page, ".console button")) > 0, "the page went with its picture");
+  await page.context().close();
+}
+
 // The page, and a run as one file.
 async function withoutWebGlAllElseWorks({ browser }) {
   const page = await pageAt(browser, plant.url, withoutWebGl);
@@ -298,6 +313,7 @@ await runTests(plant, pictures, async (session, run) => {
   const { open } = session;
   await run("APanelThatWatchesOffersNothing", aPanelThatWatchesOffersNothing, open);
   await run("WithoutWebGlAllElseWorks", withoutWebGlAllElseWorks, open);
+  await run("APictureThatFailsLeavesTheButtons", aPictureThatFailsLeavesTheButtons, open);
   await run("OnlyOneProgramIsDropped", onlyOneProgramIsDropped, open);
   await run("APathThatDoesNotComeIsAskedForAgain", aPathThatDoesNotComeIsAskedForAgain, open);
   await run("ASmallPartFillsItsView", aSmallPartFillsItsView, open);

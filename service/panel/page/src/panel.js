@@ -26,8 +26,14 @@ window.meridian = panel;
 
 // ---- the picture
 function makeView() {
-  if (canDraw(byId("picture"))) return new View(byId("picture"), pick);
-  explainNoPicture("This browser has no WebGL, which the picture takes. All else on this page works.");
+  let reason = "This browser has no WebGL, which the picture takes.";
+  try {
+    if (canDraw(byId("picture"))) return new View(byId("picture"), pick);
+  } catch (error) {
+    console.error(error);
+    reason = `The picture failed: ${error.message}.`;
+  }
+  explainNoPicture(`${reason} All else on this page works.`);
   return new NoView();
 }
 
@@ -68,7 +74,7 @@ const receive = {
     view.trail.clear();
     view.setMachine(message.scene);
     panel.jog.setMachine(message.scene);
-    if (message.scene) panel.scope.setMachine(message.scene);
+    panel.scope.setMachine(message.scene);
   },
   frame(frame) {
     panel.frame = frame;

@@ -45,12 +45,14 @@ export class Scope {
     new ResizeObserver(() => this.resize()).observe(byId("sheet-scope"));
   }
 
-  // A machine with the same joints stands elsewhere, or has other limits: what is shown stays.
+  // A machine with the same joints stands elsewhere, or has other limits: what is shown stays. `scene`: null where the
+  // joints are not known any more; then nothing is shown.
   setMachine(scene) {
+    if (!scene) return this.clear();
     const shapeOf = (one) => JSON.stringify([one?.joints.map(({ name, rotary }) => [name, rotary]), one?.cycle_s]);
     const isSame = shapeOf(scene) === shapeOf(this.scene);
     this.scene = scene;
-    if (isSame) return;
+    if (isSame) return undefined;
     this.live = new ScopeBuffer(scene.joints, scene.cycle_s);
     this.chosen = scene.joints.map((_, i) => i);
     const toggles = scene.joints.map((joint, i) => {
@@ -67,7 +69,13 @@ export class Scope {
     byId("scope-joints").replaceChildren(...toggles);
     byId("scope-state").replaceChildren(...["Running", "Holding", "Held", "Starving", "FaultStop", "Fault", "Ready"].map((value) => element("option", { value }, value)));
     this.change("go");
-    this.showLive();
+    return this.showLive();
+  }
+
+  clear() {
+    for (const plot of this.plots ?? []) plot.destroy();
+    this.scene = this.live = this.buffer = this.plots = null;
+    byId("scope-joints").replaceChildren();
   }
 
   // ---- what comes in
@@ -222,7 +230,7 @@ export class Scope {
         draw: [(plot) => this.drawMarks(plot)],
         setSelect: [(plot) => this.select(plot)],
         ready: [(plot) => {
-          plot.over.addEventListener("click", (event) => event.detail < 2 && plot.select.width < 4 && this.setCursor(plot));
+          plot.over.addEventListener("click", (event) => event.detail < 2 && this.click(plot));
           plot.over.addEventListener("dblclick", () => this.showAll());
         }],
       },
@@ -264,6 +272,11 @@ export class Scope {
     else if (state === "armed") this.arm();
     else if (cursors) this.cursors = cursors;
     this.select(null);
+  }
+
+  click(plot) {
+    this.beforeClick = null;
+    if (plot.select.width < 4) this.setCursor(plot);
   }
 
   // Cursor A, then B, then A again.

@@ -62,7 +62,7 @@ export class View {
     this.description = description;
     this.machine?.root.removeFromParent();
     this.floor?.removeFromParent();
-    this.machine = this.floor = null;
+    this.machine = this.floor = this.joints = this.seen = null;
     this.ask();
     if (!description) return;
     this.machine = new Machine(description, this.theme);
@@ -246,7 +246,7 @@ export class View {
     this.camera.updateMatrixWorld();
     for (const line of this.lines()) line.setDetail(this.camera, pixel);
     this.frames += 1;
-    if (this.isSlow && this.resolution.isTurning) this.renderer.render(this.scene, this.camera);
+    if (this.isSlow && isTurning) this.renderer.render(this.scene, this.camera);
     else this.smoothEdges.draw(this.scene, this.camera);
   }
 
