@@ -30,7 +30,7 @@ struct SimulatedDrivesOptions {
 /// Real drives have processors of their own; these share them with everybody. Pins the calling
 /// thread off the last CPU, which a service on this host uses for its cycle, so that DDS threads
 /// inherit that. Returns whether there is a right to real-time threads.
-[[nodiscard]] bool prepare_drive_priority() noexcept;
+[[nodiscard]] bool prepare_drive_priority();
 
 /// For the word at the end.
 struct SimulatedDrivesReport {

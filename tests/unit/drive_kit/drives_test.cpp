@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include <atomic>
 #include <chrono>
@@ -187,6 +189,26 @@ TEST_F(Library, RunKeepsTheCycleTimeUntilItIsStopped) {
   drives_->run([&] { return ++asked > 50; });
   EXPECT_EQ(drives_->counts().periods, 50U);
   EXPECT_GE(motors_.exchanged_s, 50e-9 * static_cast<double>(drives_->cycle_ns()) * (1 - 1e-9));
+}
+
+TEST_F(Library, AThreadHasTheClassBehindARunThatItHadBefore) {
+  options_.priority = 2;
+  drives_.emplace(options_, motors_);
+  sched_param before{.sched_priority = 1};
+  if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &before) != 0)
+    GTEST_SKIP() << "no right to the real-time class here";
+  sched_param within{}, behind{};
+  int policy = SCHED_OTHER;
+  drives_->run([&] {
+    ::pthread_getschedparam(::pthread_self(), &policy, &within);
+    return true;
+  });
+  ::pthread_getschedparam(::pthread_self(), &policy, &behind);
+  const sched_param normal{};
+  ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &normal);
+  EXPECT_EQ(within.sched_priority, 2);
+  EXPECT_EQ(policy, SCHED_FIFO);
+  EXPECT_EQ(behind.sched_priority, 1);
 }
 
 }  // namespace
