@@ -15,7 +15,7 @@ const libraries = load(fetched);
 const joints = { b3: "b3_mm", b2: "b2_mm", b4: "b4_mm", theta1: "theta1_rad", theta2: "theta2_rad" };
 const machine = join(source, "deploy/machines/lai.toml"), faults = join(folder, "faults");
 const csv = join(folder, "wire.csv"), mcap = join(folder, "wire.mcap");
-const domain = ["--domain", String(160 + (process.pid % 60))];
+const domain = ["--domain", String(200 + (process.pid % 20))];
 process.env.CYCLONEDDS_URI = `file://${join(source, "deploy/cyclonedds-loopback.xml")}`;
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(faults, { recursive: true });

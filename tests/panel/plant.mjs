@@ -23,10 +23,11 @@ export async function until(what, isTrue, ms = 20000) {
 export class Plant {
   constructor(bin, source, machine) {
     Object.assign(this, { bin, source, machine: join(source, "deploy/machines", machine) });
-    this.domain = String(100 + (process.pid % 120));
+    this.domain = String(170 + (process.pid % 30));
     this.folder = mkdtempSync(join(tmpdir(), "meridian-panel-"));
     this.children = [];
-    this.env = { ...process.env, CYCLONEDDS_URI: `file://${source}/deploy/cyclonedds-loopback.xml` };
+    this.env = { ...process.env };
+    delete this.env.CYCLONEDDS_URI;  // the programs' own way on one host: their threads keep their class
   }
 
   spawn(program, ...words) {

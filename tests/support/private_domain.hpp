@@ -5,11 +5,11 @@
 
 namespace meridian::support {
 
-/// A DDS domain that no other test of this host uses while it lives, from 100 to 220 (deploy/demo
-/// has 60 to 99, probe and soak 221 to 230).
+/// A DDS domain that no other test of this host uses while it lives, from 100 to 169 (deploy/demo
+/// has 60 to 99, tests of the panel 170 to 199, those in HAL 200 to 219, probe and soak 221 to 230).
 class PrivateDomain : public process::ClaimedDomain {
  public:
-  PrivateDomain() : ClaimedDomain(100, 220) {}
+  PrivateDomain() : ClaimedDomain(100, 169) {}
 };
 
 }  // namespace meridian::support
