@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that the pages are easy to read: no sentence is too long, and a page's sentences are short on average.
 
-    readability.py SOURCE
+    readability.py SOURCE [--table]
 
-Reads README.md and every page below docs, and prints a table of them. Code in a sentence counts as one
-word. Code blocks, formulas, tables and headings are not read. An item of a list is a sentence of its own.
+Reads README.md and every page below docs. With --table it prints a row for each: its sentences, their mean and
+longest length in words, how many percent of them are in the passive voice, and how many percent of the words are
+terms of docs/glossary.md. Code in a sentence counts as one word. Code blocks, formulas, tables and headings are
+not read. An item of a list is a sentence of its own.
 """
 import pathlib
 import re
 import sys
+
+from wording import count_of_terms, is_passive, terms_of
 
 MAX_MEAN = 18  # words a sentence, over a page
 MAX_WORDS = 40  # in a sentence
@@ -58,20 +62,34 @@ def sentences(text):
                 begin = i
 
 
-def main(root):
-    findings = []
-    print(f"{'page':46} sentences  mean words  longest")
-    for page in [root / "README.md", *sorted((root / "docs").rglob("*.md"))]:
-        name, found = str(page.relative_to(root)), list(sentences(page.read_text()))
-        counts = [len(words) for _, words in found] or [0]
-        print(f"{name:46} {len(found):9}  {(mean := sum(counts) / len(counts)):10.1f}  {max(counts):7}")
-        if mean > MAX_MEAN:
-            findings.append(f"{name}:1: {mean:.1f} words in a sentence on average, {MAX_MEAN} at most")
-        findings += [f"{name}:{line}: {len(words)} words in a sentence, {MAX_WORDS} at most: {' '.join(words[:8])} ..."
-                     for line, words in found if len(words) > MAX_WORDS]
+def row_of(name, found, terms):
+    counts = [len(words) for _, words in found] or [0]
+    passive = 100 * sum(is_passive(words) for _, words in found) / len(counts)
+    looked_up = 100 * sum(count_of_terms(words, terms) for _, words in found) / max(1, sum(counts))
+    return f"{name:46} {len(found):9}  {sum(counts) / len(counts):10.1f}  {max(counts):7}  {passive:9.0f}  {looked_up:10.0f}"
+
+
+def findings_of(name, found):
+    counts = [len(words) for _, words in found] or [0]
+    if (mean := sum(counts) / len(counts)) > MAX_MEAN:
+        yield f"{name}:1: {mean:.1f} words in a sentence on average, {MAX_MEAN} at most"
+    yield from (f"{name}:{line}: {len(words)} words in a sentence, {MAX_WORDS} at most: {' '.join(words[:8])} ..."
+                for line, words in found if len(words) > MAX_WORDS)
+
+
+def main(root, has_table=False):
+    glossary = root / "docs" / "glossary.md"
+    terms = terms_of(glossary.read_text()) if glossary.exists() else []
+    pages = {str(page.relative_to(root)): list(sentences(page.read_text()))
+             for page in [root / "README.md", *sorted((root / "docs").rglob("*.md"))]}
+    if has_table:
+        print(f"{'page':46} sentences  mean words  longest  passive %  glossary %")
+        print("\n".join(row_of(name, found, terms) for name, found in pages.items()))
+        print(row_of("all", [one for found in pages.values() for one in found], terms))
+    findings = [finding for name, found in pages.items() for finding in findings_of(name, found)]
     print("\n".join(findings or ["every page is short enough"]))
     return 1 if findings else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(pathlib.Path(sys.argv[1])))
+    sys.exit(main(pathlib.Path(sys.argv[1]), sys.argv[2:] == ["--table"]))

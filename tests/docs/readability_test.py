@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The check of sentences finds those that are too long, by page and line, and nothing else."""
+"""The check of sentences finds those that are too long, by page and line, and nothing else. The table has what it says."""
 import contextlib
 import io
 import pathlib
@@ -9,6 +9,9 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import readability  # noqa: E402
 from readability import MAX_MEAN, MAX_WORDS, sentences  # noqa: E402
+from wording import count_of_terms, is_passive, terms_of  # noqa: E402
+
+GLOSSARY = "| word | meaning |\n|---|---|\n| CL block | a record |\n| pole | a place |\n| feed, feed override | a speed |\n"
 
 
 def findings(text):
@@ -22,6 +25,19 @@ def findings(text):
         with contextlib.redirect_stdout(out):
             code = readability.main(root)
         return code, [line for line in out.getvalue().splitlines() if "page.md:" in line]
+
+
+def row_of_page(text):
+    """The row of a page in the table, without its name."""
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name)
+        (root / "docs").mkdir()
+        (root / "docs" / "glossary.md").write_text(GLOSSARY)
+        (root / "README.md").write_text(text)
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            readability.main(root, has_table=True)
+        return next(line.split()[1:] for line in out.getvalue().splitlines() if line.startswith("README.md "))
 
 
 def counted(text):
@@ -44,6 +60,18 @@ def main():
     assert code == 1 and len(found) == 1 and found[0].startswith(f"docs/below/page.md:4: {MAX_WORDS + 2} words"), found
     code, found = findings("# Page\n\n" + ("Word" + " word" * MAX_MEAN + ".\n") * 3)
     assert code == 1 and len(found) == 1 and found[0].startswith("docs/below/page.md:1: "), found
+
+    for sentence in ("The queue is emptied.", "It was not yet read by a drive.", "Blocks have been cut.",
+                     "It is then slowly driven."):
+        assert is_passive(sentence.split()), sentence
+    for sentence in ("The cycle empties it.", "It is the feed.", "It has moved.", "The tool is there and moved.", "It is red."):
+        assert not is_passive(sentence.split()), sentence
+    terms = terms_of(GLOSSARY)
+    assert sorted(terms) == [("cl", "block"), ("feed",), ("feed", "override"), ("pole",)], terms
+    for sentence, count in (("At the pole.", 1), ("CL blocks, and the feed override!", 4), ("Feeds feed poles.", 3),
+                            ("A block.", 0)):
+        assert count_of_terms(sentence.split(), terms) == count, sentence
+    assert row_of_page("# Page\n\nThe pole is passed. It goes on there.\n") == ["2", "4.0", "4", "50", "12"]
 
 
 if __name__ == "__main__":
