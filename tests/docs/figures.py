@@ -33,7 +33,8 @@ BLOCK = re.compile(r"^ *```.*?^ *```$", re.M | re.S)
 CODE = re.compile(r"`([^`]+)`")
 ITEM = re.compile(r" *(?:[*+-]|\d+\.) +")
 TEST = re.compile(r"[A-Z]\w*(?:[/.][\w-]+)?\.(?:\*|[A-Z]\w*)[\w*/]*(?:\.\.\.|…)?")
-COMMAND = re.compile(r"(?:[A-Z_]+=\S+ )*(?:(?:build/release/bin/)?(?:meridiand?|ctest) \S|(?:python3 )?((?:deploy|tests)/\S+))")
+COMMAND = re.compile(r"(?:time )?(?:[A-Z_]+=\S+ )*"
+                     r"(?:(?:build/release/bin/)?(?:meridiand?|ctest) \S|(?:python3 )?((?:deploy|tests)/\S+))")
 NAMES = re.compile(r"\| *(?:test|how to repeat|by|where) *\|$")
 
 

@@ -14,7 +14,7 @@ RECIPE += "add_test(NAME Machine.${name}.RunsItsPattern COMMAND x)\nadd_test(NAM
 TESTS = "TEST(Time, IsShort) {}\nTEST_F(Time, IsTheSame) {}\nTEST_P(Drawn, KeepsLimits) {}\n"
 PRINT = ("Time.IsShort", "Time.*", "Time.IsTh...", "Time.IsSh…", "Every/Drawn.KeepsLimits/3", "Machine.lai.RunsItsPattern",
          "time_test", "time_test.cpp", "build/release/bin/time_test --gtest_filter='*'", "tests/time_test.cpp", "deploy/demo",
-         "meridian simulate PART", "MERIDIAN_N=5 meridian bench --write OUT", "ctest -L bench")
+         "time deploy/demo", "meridian simulate PART", "MERIDIAN_N=5 meridian bench --write OUT", "ctest -L bench")
 TABLE = "| what | {} |\n|---|---|\n| a cycle | 3.5 |\n"
 
 
