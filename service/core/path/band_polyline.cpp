@@ -109,6 +109,9 @@ void BandPolyline::take_feed(const ClBlock& block) noexcept {
   const double per_s = is_inverse ? block.feed : block.feed / tip;
   pattern_.feed_mm_per_s = is_inverse ? kInfinite : block.feed;
   pattern_.u_speed_mm_per_s = is_inverse ? block.feed * piece_->length : kInfinite;
+  pattern_.is_short_in_time =
+      is_inverse &&
+      piece_->length < tolerance_.tip_mm + kAxisLength_mm_per_rad * tolerance_.axis_rad;
   pattern_.block_feed_mm_per_s = is_inverse ? block.feed * tip : block.feed;
   pattern_.asked_mm_per_s =
       is_inverse ? block.feed * std::max(tip, tolerance_.tip_mm * reaches) : block.feed;

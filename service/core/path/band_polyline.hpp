@@ -48,9 +48,10 @@ struct BandVertex {
   double asked_rad_per_s = 0;  ///< the same of the axis
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
-  std::uint32_t near_pole : 29 = 0;  ///< segments near the pole up to the one that ends here
-  bool is_near_pole : 1 = false;     ///< the segment is
-  bool is_of_arc : 1 = false;        ///< the segment is a chord
+  std::uint32_t near_pole : 28 = 0;   ///< segments near the pole up to the one that ends here
+  bool is_near_pole : 1 = false;      ///< the segment is
+  bool is_short_in_time : 1 = false;  ///< of a block in inverse time, no longer than tolerances are
+  bool is_of_arc : 1 = false;         ///< the segment is a chord
   bool ends_block : 1 = false;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "service/core/path/band_hull.hpp"
 #include "service/core/path/band_knots.hpp"
@@ -160,7 +161,26 @@ struct BandSpline::Workspace {
     if (std::isfinite(span.u_speed_mm_per_s)) {
       span.feed_mm_per_s = std::min(span.feed_mm_per_s, speeds.tip_mm_per_s());
       span.turn_rad_per_s = speeds.turn_rad_per_s();
+      share_short_times(i);
     }
+  }
+
+  /// Of blocks in inverse time that are shorter than the tolerances, up to the segment that ends in
+  /// `end`, the span takes the times together. At the speed of the slowest all of the span would
+  /// take many times that of a block that is a small part of it.
+  void share_short_times(std::int64_t end) noexcept {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    const double u1 = span.u0 + span.length;
+    double slowest = kInfinite, time_s = 0;
+    bool has_short = false;
+    for (std::int64_t i = end; i > line.first() && line[i].u > span.u0; --i) {
+      const BandVertex& vertex = line[i];
+      const double way = std::min(vertex.u, u1) - std::max(line[i - 1].u, span.u0);
+      time_s += std::max(way, 0.0) / vertex.u_speed_mm_per_s;
+      has_short = has_short || vertex.is_short_in_time;
+      if (!vertex.is_short_in_time) slowest = std::min(slowest, vertex.u_speed_mm_per_s);
+    }
+    if (has_short) span.u_speed_mm_per_s = std::min(slowest, span.length / time_s);
   }
 
   BandTuning tuning;

@@ -164,6 +164,27 @@ TEST(BandStream, NamesBlocksAndBoundsFeedsOfAllThatASpanTouches) {
   }
 }
 
+/// A block of 0.1 um in a second on a span of 12 um took two minutes.
+TEST(BandStream, TakesTheTimesOfTheShortestBlocksInInverseTimeAndNoMore) {
+  std::vector<ClBlock> blocks = {line_to(0, {0, 0, 0}), line_to(1, {20, 0, 0})};
+  double x = 20, time_s = 0;
+  for (const double way : {1e-4, 0.003, 2e-5, 0.09}) {
+    x += way;
+    ClBlock block = line_to(blocks.size(), {x, 0, 0});
+    block.feed_meaning = FeedMeaning::kInverseTime;
+    block.feed = 2;  // half a second each
+    time_s += 1 / block.feed;
+    blocks.push_back(block);
+  }
+  blocks.push_back(line_to(blocks.size(), {x + 20, 0, 0}));
+  double least_s = 0;
+  for (const BandSpan& span : run_band(blocks).spans) {
+    least_s += span.length / span.u_speed_mm_per_s;
+  }
+  EXPECT_GE(least_s, time_s * (1 - 1e-9));
+  EXPECT_LE(least_s, 1.2 * time_s);
+}
+
 TEST(BandStream, TakesPathsShorterThanAnyStep) {
   for (const double length : {1e-5, 1e-3, 0.1, 2.0, 3.0}) {
     const std::vector<ClBlock> blocks = {line_to(0, {7, 0, 0}), line_to(1, {7, length, 0})};

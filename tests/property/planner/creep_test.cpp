@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "property/path/hostile_path.hpp"
+#include "property/planner/creeping.hpp"
 #include "property/planner/random_programs.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "service/machine/file/machine_file.hpp"
@@ -16,33 +17,6 @@
 /// No plan creeps: one that does keeps a machine Running for hours without a word.
 namespace meridian::test {
 namespace {
-
-constexpr double kSlow = 1e-3;  // of the programmed feed, and of every joint's velocity
-constexpr double kLongest_s = 10;
-
-/// Whether neither the tool nor any joint gets anywhere in a piece of a cut.
-bool is_creeping(const MachineModel& model, const TimePiece& time, const PathPiece& path) {
-  if (time.kind != TimeKind::kMove || !(time.feed_mm_per_s > 0)) return false;
-  const double from = time.s0, to = state_at(time, time.duration).s;
-  if (to - from > kSlow * time.feed_mm_per_s * time.duration) return false;
-  const JointVector begin = joints_at(model, path, from, path.joints_begin).q;
-  const JointVector end = joints_at(model, path, to, begin).q;
-  for (int i = 0; i < model.joint_count; ++i) {
-    const double way = kSlow * model.joints[i].limits.velocity * time.duration;
-    if (std::abs(end[i] - begin[i]) > way) return false;
-  }
-  return true;
-}
-
-double longest_creep_s(const MachineModel& model, const Trace& trace) {
-  double longest = 0, creeps = 0;
-  for (std::size_t n = 0; n < trace.times.size(); ++n) {
-    const bool is_slow = is_creeping(model, trace.times[n], trace.paths[n]);
-    creeps = is_slow ? creeps + trace.times[n].duration : 0;
-    longest = std::max(longest, creeps);
-  }
-  return longest;
-}
 
 class Creep : public testing::TestWithParam<Transition> {
  protected:
@@ -83,7 +57,7 @@ TEST_P(Creep, IsNowhereOnTheWayPastASingularityOfTheWrist) {
   for (const double beside_deg : {0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1, 1.0, 5.0}) {
     SCOPED_TRACE(beside_deg);
     const SmoothTrace trace = plan(robot, past_the_wrist(robot, units::rad_from_deg(beside_deg)));
-    EXPECT_LT(longest_creep_s(robot, trace), kLongest_s);
+    EXPECT_LT(longest_creep_s(robot, trace), kLongestCreep_s);
     EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
   }
 }
@@ -100,7 +74,7 @@ TEST_P(Creep, IsNowhereInDrawnPrograms) {
       longest = std::max(longest, longest_creep_s(model, plan(model, drawn)));
       const auto hostile = HostilePath(seed, 0, 0.4).make_program(1);
       longest = std::max(longest, longest_creep_s(model, plan(model, hostile)));
-      ASSERT_LT(longest, kLongest_s);
+      ASSERT_LT(longest, kLongestCreep_s);
     }
   }
   std::printf("slower than a thousandth of the feed for %.3f s at most\n", longest);
