@@ -21,6 +21,7 @@ import tempfile
 import shell
 from pages import RUN, blocks_of
 
+BEFORE_PLANNERS = pathlib.Path(__file__).parents[1] / "support" / "before_planners"
 PARTS = ("bindings", "deploy", "docs", "include", "tests")
 INSTALLED = {"/usr/share/meridian": "deploy", "/etc/meridian": "etc", "/var/lib/meridian": "var"}
 CONFIGURATION = ("service.toml", "tools.toml", "machines", "cyclonedds-hosts.xml")  # in /etc/meridian
@@ -28,9 +29,23 @@ SET_UP = "export PATH=$PWD/build/release/bin:$PATH CYCLONEDDS_URI=file://$PWD/de
 PATIENCE_S = 30  # until commands beside the page have printed what it shows
 
 
+def programs(release, binaries):
+    """A build folder whose service and drives go before the planners of other tests beside the page."""
+    (release / "bin").mkdir(parents=True)
+    for file in binaries.parent.iterdir():
+        if file != binaries:
+            (release / file.name).symlink_to(file)
+    for file in binaries.iterdir():
+        if file.name not in ("meridian", "meridiand"):
+            (release / "bin" / file.name).symlink_to(file)
+    for name, others in (("meridiand", ""), ("meridian", '[ "$1" = drives ] || exec {} "$@"\n')):
+        program = release / "bin" / name
+        program.write_text(f'#!/bin/sh\n{others.format(binaries / name)}exec {BEFORE_PLANNERS} {binaries / name} "$@"\n')
+        program.chmod(0o755)
+
+
 def prepare(folder, source, binaries):
-    (folder / "build").mkdir()
-    (folder / "build" / "release").symlink_to(binaries.parent)
+    programs(folder / "build" / "release", binaries)
     for part in PARTS:
         if (source / part).exists():
             (folder / part).symlink_to(source / part)

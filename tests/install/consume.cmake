@@ -1,5 +1,4 @@
-# cmake -D BUILD= -D CONSUMER= -D EXAMPLES= -D WORK= -D VERSION= -D COMPILER= -D IDLE= -P consume.cmake. IDLE: the command, with
-# its options, that compiles beside what meets the clock.
+# cmake -D BUILD= -D CONSUMER= -D EXAMPLES= -D WORK= -D VERSION= -D COMPILER= -P consume.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -23,14 +22,14 @@ endforeach()
 
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
   -D CMAKE_CXX_COMPILER=${COMPILER} -D WANTED_VERSION=${VERSION})
-run(${IDLE} ${CMAKE_COMMAND} --build ${WORK}/build)
+run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 message(STATUS "${output}")
 
 # The examples of the docs, against the installed library and its machine files.
 run(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${WORK}/examples -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
   -D CMAKE_CXX_COMPILER=${COMPILER})
-run(${IDLE} ${CMAKE_COMMAND} --build ${WORK}/examples)
+run(${CMAKE_COMMAND} --build ${WORK}/examples)
 foreach(example embed kinematics)
   run(${WORK}/examples/${example} ${WORK}/prefix/share/meridian/machines/lai.toml)
   message(STATUS "${example}: ${output}")
@@ -48,7 +47,7 @@ if(drive_library)
   endforeach()
   run(${CMAKE_COMMAND} -S ${EXAMPLES}/drives -B ${WORK}/drives -G Ninja -D CMAKE_PREFIX_PATH=${WORK}/prefix
     -D CMAKE_CXX_COMPILER=${COMPILER})
-  run(${IDLE} ${CMAKE_COMMAND} --build ${WORK}/drives)
+  run(${CMAKE_COMMAND} --build ${WORK}/drives)
   file(READ ${EXAMPLES}/drives/my_drives.cpp text)
   string(REGEX REPLACE "[^\n]" "" line_ends "${text}")
   string(LENGTH "${line_ends}" count)
