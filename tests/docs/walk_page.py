@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Walks a page as its reader would: its commands in one shell, one behind the other.
 
-    walk_page.py SOURCE BINARIES PAGE
+    walk_page.py SOURCE BINARIES PAGE [--beside-others]
 
 pages.py says what the blocks of a page are. The shell stands in an empty folder that looks like a
 clone which was built: folders of SOURCE, and build/release/bin, which is BINARIES. Commands that name
 folders of the installed package (INSTALLED) have them there too. A page that is no tutorial begins
-where the first tutorial ends: the programs are found, and DDS stays on this host.
+where the first tutorial ends: the programs are found, and DDS stays on this host. With --beside-others service and
+drives go before the planners of other tests' services.
 
 A `text` block says what the block before it printed. Its lines must be printed in this order, one
 behind the other; a line of `...` stands for any lines, and `...` in a line for anything in it.
@@ -29,8 +30,8 @@ SET_UP = "export PATH=$PWD/build/release/bin:$PATH CYCLONEDDS_URI=file://$PWD/de
 PATIENCE_S = 30  # until commands beside the page have printed what it shows
 
 
-def programs(release, binaries):
-    """A build folder whose service and drives go before the planners of other tests beside the page."""
+def programs_before_planners(release, binaries):
+    """A build folder as that of `binaries`, whose service and drives go before the planners of other services."""
     (release / "bin").mkdir(parents=True)
     for file in binaries.parent.iterdir():
         if file != binaries:
@@ -44,8 +45,12 @@ def programs(release, binaries):
         program.chmod(0o755)
 
 
-def prepare(folder, source, binaries):
-    programs(folder / "build" / "release", binaries)
+def prepare(folder, source, binaries, is_beside_others):
+    if is_beside_others:
+        programs_before_planners(folder / "build" / "release", binaries)
+    else:
+        (folder / "build").mkdir()
+        (folder / "build" / "release").symlink_to(binaries.parent)
     for part in PARTS:
         if (source / part).exists():
             (folder / part).symlink_to(source / part)
@@ -128,12 +133,12 @@ class Walk:
         return None if is_part_of(block.body, self.source / block.value) else f"these lines are not in {block.value}"
 
 
-def walk(source, binaries, page, folder):
+def walk(source, binaries, page, folder, is_beside_others):
     try:
         blocks = blocks_of(page.read_text(encoding="utf-8"))
     except ValueError as fault:
         return f"{page.name}:{fault}"
-    prepare(folder, source, binaries)
+    prepare(folder, source, binaries, is_beside_others)
     steps = Walk(source, folder, page.parent.name == "tutorials")
     try:
         for block in blocks:
@@ -151,7 +156,7 @@ def walk(source, binaries, page, folder):
 def main():
     source, binaries, page = (pathlib.Path(word).absolute() for word in sys.argv[1:4])
     with tempfile.TemporaryDirectory(prefix="meridian-page-") as name:
-        if fault := walk(source, binaries, page, pathlib.Path(name)):
+        if fault := walk(source, binaries, page, pathlib.Path(name), "--beside-others" in sys.argv):
             sys.exit(fault)
 
 

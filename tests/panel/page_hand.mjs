@@ -38,27 +38,28 @@ export async function confirmed(page, verb) {
   await click(page, verb);
   await page.click("#confirm-yes");
 }
-// Asks until the machine is in that state. A page that lags, drawn in software on a busy host, is refused as stale: looked again.
-export async function goBy(page, ask, state) {
+// Asks until it is so. A page that lags, drawn in software on a busy host, is refused as stale: looked again.
+async function asked(page, ask, isSo) {
   for (let attempt = 1; ; ++attempt) {
     await ask();
     try {
-      return await inState(page, state, 10000);
+      return await isSo();
     } catch (error) {
       const answer = await page.textContent("#reply");
       if (error instanceof HostStalled || !answer.includes("look again") || attempt === kAttempts) throw error;
     }
   }
 }
+export const goBy = (page, ask, state) => asked(page, ask, () => inState(page, state, 10000));
 export const go = (page, verb, state) => goBy(page, () => click(page, verb), state);
 export const goConfirmed = (page, verb, state) => goBy(page, () => confirmed(page, verb), state);
 export async function enabled(page) {
   const isOff = await until("Off or Ready", async () => ({ Off: "off", Ready: "ready" })[await stateOf(page)]) === "off";
   if (isOff) await go(page, "enable", "Ready");
 }
-export async function setFeedOverride(page, percent) {
-  await page.fill("#feed-slider", String(percent));
-  await until("the override", async () => Math.abs((await page.evaluate(() => meridian.frame.feed_override)) - percent / 100) < 1e-9);
+export function setFeedOverride(page, percent) {
+  const isSet = async () => Math.abs((await page.evaluate(() => meridian.frame.feed_override)) - percent / 100) < 1e-9;
+  return asked(page, () => page.fill("#feed-slider", String(percent)), () => until("the override", isSet, 10000));
 }
 
 // Drawn in software, the picture would take the time of what is tested where nobody looks at it.
