@@ -94,7 +94,7 @@ bool is_along_program(const PathPiece& path) {
 void check_path(const MachineModel& model, const std::vector<ClBlock>& blocks,
                 const SmoothTrace& trace, const std::vector<PlanSample>& setpoints, Sweep& sweep) {
   const auto ways = programmed_paths(blocks);
-  const double tip_mm = model.tolerances.tip_mm, axis_rad = model.tolerances.axis_rad;
+  const double tip_mm = model.tolerances.tip_mm, axis_rad = model.tolerances.axis_beside_pole_rad();
   PassedVertices vertices(blocks, tip_mm, axis_rad);
   double off = 0;
   std::size_t before = 0;

@@ -118,7 +118,9 @@ bool FreeSpline::narrow(std::span<const Node> nodes, std::span<const StringWindo
       if (last + 1 == nodes.size() || nodes[last].u >= end) break;
     }
     const bool is_fixed = i < fixed_at_begin_ || i + fixed_at_end_ >= pieces_ + kDegree;
-    if (is_fixed || window.high - window.low >= shape.width_share * least) continue;
+    // Where the joint may be anywhere there is no width to keep: no share of it is a number.
+    const bool is_anywhere = std::isinf(window.high - window.low);
+    if (is_fixed || is_anywhere || window.high - window.low >= shape.width_share * least) continue;
     for (std::size_t n = first; n <= last; ++n) {
       if (gaps_[n] <= kMinGap_mm) continue;
       gaps_[n] = std::max(0.5 * gaps_[n], kMinGap_mm);

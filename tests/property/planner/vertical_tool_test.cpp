@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "property/planner/smooth_trace.hpp"
+#include "service/machine/file/machine_file.hpp"
+#include "support/program_end.hpp"
+#include "support/shipped_machines.hpp"
+
+/// A stretch with a vertical tool between tilted ones: the commonest way onto the pole and off it.
+namespace meridian::test {
+namespace {
+
+constexpr double kFeed_mm_per_s = 20;
+constexpr double kTurns_s = 3;  // for the tilts, and half a turn of C
+
+ClBlock block_to(int n, double x_mm, const Vector3& axis) {
+  ClBlock block = cut_block(n, {Vector3(x_mm, 20, 10), axis.normalized()});
+  block.feed = kFeed_mm_per_s;
+  return block;
+}
+
+/// The tool is vertical along `length_mm`, but for `off` of its axis.
+std::vector<ClBlock> along_the_pole(double length_mm, double off) {
+  const Vector3 vertical(-off, -1.26 * off, 1);
+  std::vector<ClBlock> blocks = {block_to(0, 20, {0.35, 0.44, 0.82}), block_to(1, 20, vertical),
+                                 block_to(2, 20 + length_mm, vertical),
+                                 block_to(3, 21 + length_mm, {-0.35, -0.49, 0.79})};
+  end_program(blocks);
+  return blocks;
+}
+
+TEST(VerticalTool, IsLedOntoThePoleAndOffItOnEveryMachine) {
+  for (const std::string& name : shipped_machines()) {
+    const MachineModel model = config::load_machine(shipped_file(name));
+    if (redundant_joint(model) < 0) continue;  // a robot's singularities lie elsewhere
+    for (const double length_mm : {2.0, 25.0, 100.0}) {
+      for (const double off : {0.0, 1e-8, 1e-4}) {
+        SCOPED_TRACE(name + ", " + std::to_string(length_mm) + " mm, " + std::to_string(off));
+        const auto blocks = along_the_pole(length_mm, off);
+        const SmoothTrace trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+        EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
+        EXPECT_LT(trace.duration_s(), length_mm / kFeed_mm_per_s + kTurns_s);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meridian::test
