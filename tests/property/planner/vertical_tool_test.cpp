@@ -48,5 +48,23 @@ TEST(VerticalTool, IsLedOntoThePoleAndOffItOnEveryMachine) {
   }
 }
 
+/// A run from rest to rest that is shorter than the gaps between the knots of C's way.
+TEST(VerticalTool, MayBeTiltedByLittleOnARunOfMicrometres) {
+  for (const std::string& name : shipped_machines()) {
+    const MachineModel model = config::load_machine(shipped_file(name));
+    if (redundant_joint(model) < 0) continue;
+    for (const double length_mm : {0.002, 0.02, 0.2, 2.0}) {
+      SCOPED_TRACE(name + ", " + std::to_string(length_mm) + " mm");
+      std::vector<ClBlock> blocks = {block_to(0, 20, {0, 0, 1}),
+                                     block_to(1, 20 + 0.5 * length_mm, {2e-4, 1e-4, 1}),
+                                     block_to(2, 20 + length_mm, {6e-4, 2e-4, 1})};
+      end_program(blocks);
+      const SmoothTrace trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+      EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
+      EXPECT_LT(trace.duration_s(), 1 + length_mm / kFeed_mm_per_s);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test

@@ -84,6 +84,8 @@ bool FreeSpline::place_knots(const SpanLookup& spans, std::span<const Node> node
   const double sum = sums_[nodes.size() - 1];
   if (!(sum < static_cast<double>(kPieces))) return false;
   pieces_ = std::max(kMinPieces, static_cast<std::size_t>(std::ceil(sum)));
+  // On a short stretch knots lie closer than their gaps: what is snapped must not meet another.
+  const double closer = std::min(1.0, sum / static_cast<double>(kMinPieces));
   const double begin = nodes.front().u, end = nodes.back().u;
   std::fill_n(knots_.begin(), kDegree + 1, begin);
   std::size_t at = 0;
@@ -92,7 +94,7 @@ bool FreeSpline::place_knots(const SpanLookup& spans, std::span<const Node> node
     while (at + 2 < nodes.size() && sums_[at + 1] < wanted) ++at;
     const double share = (wanted - sums_[at]) / (sums_[at + 1] - sums_[at]);
     const double u = nodes[at].u + share * (nodes[at + 1].u - nodes[at].u);
-    knots_[k + kDegree] = snapped(spans, u, gaps_[at]);
+    knots_[k + kDegree] = snapped(spans, u, closer * gaps_[at]);
   }
   std::fill_n(knots_.begin() + static_cast<std::ptrdiff_t>(pieces_ + kDegree), kDegree + 1, end);
   return true;
