@@ -28,7 +28,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 class Search {
  public:
   Search(const PassTask& task, const PassRange& range) noexcept
-      : task_(task), range_(range), fit_(task, range) {
+      : task_(task), range_(range), fit_(task, range_) {
     kink_count_ = task.axes.find_kinks(range.from, range.to, kinks_);
   }
 
@@ -37,6 +37,8 @@ class Search {
     if (found.end > found.begin) return found;
     const RobotPass turned = search_turned();
     if (turned.end > turned.begin) return turned;
+    const RobotPass stopped = search_stopped();
+    if (stopped.end > stopped.begin) return stopped;
     looks_behind_ = false;  // joints leave travel there whatever is chosen
     return search();
   }
@@ -47,6 +49,24 @@ class Search {
     double time = kNever;
     RobotPass pass;
   };
+  /// Where the machine stops inside the tolerance: passes that begin there with the joints as they
+  /// stand, and such that also end there with any.
+  [[nodiscard]] RobotPass search_stopped() noexcept {
+    const PassRange given = range_;
+    RobotPass found;
+    if (range_.stops_at_from != given.rests_at_from) {
+      range_.rests_at_from = range_.rests_at_from | range_.stops_at_from;
+      found = search();
+    }
+    if (!(found.end > found.begin) && range_.stops_at_to != given.rests_at_to) {
+      range_.rests_at_to = range_.rests_at_to | range_.stops_at_to;
+      range_.rest_share = kSampledShare;
+      found = search();
+      if (!(found.end > found.begin)) found = search_turned();
+    }
+    if (!(found.end > found.begin)) range_ = given;
+    return found;
+  }
   [[nodiscard]] RobotPass search() noexcept {
     const double widest = std::max(range_.nearest - range_.from, range_.to - range_.nearest);
     double outside = 0, width = widest;
@@ -179,7 +199,8 @@ class Search {
     }
     return true;
   }
-  /// Whether a pass at one singularity meets the other one, inside its tolerance or not.
+  /// Whether a pass at one singularity meets the other one, inside its tolerance or not, or is at
+  /// the wrist and so near the base axis that the tip does not come out exact.
   bool meets_other(const RobotPass& pass, int samples) noexcept {
     const double met = other_tolerance(task_, pass);
     if (!(met > 0)) return false;
@@ -188,7 +209,8 @@ class Search {
       const double u = pass.begin + (pass.end - pass.begin) * k / samples;
       const JointVector q = joints_on_pass(task_, pass, u, fit_.reference()).q;
       const Vector3 off = off_other_singularity(task_, pass, u, q);
-      if (distance_to_segment(Vector3::Zero(), k > 0 ? before : off, off) < met) {
+      const bool is_met = distance_to_segment(Vector3::Zero(), k > 0 ? before : off, off) < met;
+      if (is_met || !settles(task_, pass, q)) {
         meets_other_ = true;
         return true;
       }
@@ -208,7 +230,7 @@ class Search {
   }
 
   const PassTask& task_;
-  const PassRange& range_;
+  PassRange range_;
   PassFit fit_;
   std::array<double, kKinks> kinks_{};  // u
   std::size_t kink_count_ = 0;
