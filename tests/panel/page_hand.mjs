@@ -46,7 +46,8 @@ async function asked(page, ask, isSo) {
       return await isSo();
     } catch (error) {
       const answer = await page.textContent("#reply");
-      if (error instanceof HostStalled || !answer.includes("look again") || attempt === kAttempts) throw error;
+      if (error instanceof HostStalled) throw error;
+      if (!answer.includes("look again") || attempt === kAttempts) throw new Error(`${error.message}; the page says: ${answer}`);
     }
   }
 }
