@@ -73,19 +73,6 @@ double other_tolerance(const PassTask& task, const RobotPass& pass) noexcept {
   return 0;
 }
 
-bool settles(const PassTask& task, const RobotPass& pass, const JointVector& q) noexcept {
-  constexpr double kLargestLeft = 0.5;  // of a turn of the yaw, after a round
-  if (pass.at != SingularSet::kWrist) return true;
-  const RobotKinematics& robot = task.model.robot;
-  const double forearm = q[robot::kShoulder] + q[robot::kElbow], bend = q[robot::kBend];
-  const double from_axis =
-      robot.upper_arm_mm * std::cos(q[robot::kShoulder]) + robot.forearm_mm * std::cos(forearm);
-  const double pivot = robot.wrist_mm + task.tool_length_mm, roll = std::cos(q[robot::kRoll]);
-  const double tool =
-      std::cos(forearm) * std::cos(bend) - std::sin(forearm) * std::sin(bend) * roll;
-  return std::abs(pivot * tool) * roll * roll < kLargestLeft * std::abs(from_axis);
-}
-
 double time_on_pass(const PassTask& task, const RobotPass& pass, const JointVector& reference,
                     int steps) noexcept {
   const double h = pass.end - pass.begin;

@@ -28,7 +28,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 class Search {
  public:
   Search(const PassTask& task, const PassRange& range) noexcept
-      : task_(task), range_(range), fit_(task, range_) {
+      : task_(task), range_(range), fit_(task, range) {
     kink_count_ = task.axes.find_kinks(range.from, range.to, kinks_);
   }
 
@@ -37,8 +37,6 @@ class Search {
     if (found.end > found.begin) return found;
     const RobotPass turned = search_turned();
     if (turned.end > turned.begin) return turned;
-    const RobotPass stopped = search_stopped();
-    if (stopped.end > stopped.begin) return stopped;
     looks_behind_ = false;  // joints leave travel there whatever is chosen
     return search();
   }
@@ -49,24 +47,6 @@ class Search {
     double time = kNever;
     RobotPass pass;
   };
-  /// Where the machine stops inside the tolerance: passes that begin there with the joints as they
-  /// stand, and such that also end there with any.
-  [[nodiscard]] RobotPass search_stopped() noexcept {
-    const PassRange given = range_;
-    RobotPass found;
-    if (range_.stops_at_from != given.rests_at_from) {
-      range_.rests_at_from = range_.rests_at_from | range_.stops_at_from;
-      found = search();
-    }
-    if (!(found.end > found.begin) && range_.stops_at_to != given.rests_at_to) {
-      range_.rests_at_to = range_.rests_at_to | range_.stops_at_to;
-      range_.rest_share = kSampledShare;
-      found = search();
-      if (!(found.end > found.begin)) found = search_turned();
-    }
-    if (!(found.end > found.begin)) range_ = given;
-    return found;
-  }
   [[nodiscard]] RobotPass search() noexcept {
     const double widest = std::max(range_.nearest - range_.from, range_.to - range_.nearest);
     double outside = 0, width = widest;
@@ -199,8 +179,7 @@ class Search {
     }
     return true;
   }
-  /// Whether a pass at one singularity meets the other one, inside its tolerance or not, or is at
-  /// the wrist and so near the base axis that the tip does not come out exact.
+  /// Whether a pass at one singularity meets the other one, inside its tolerance or not.
   bool meets_other(const RobotPass& pass, int samples) noexcept {
     const double met = other_tolerance(task_, pass);
     if (!(met > 0)) return false;
@@ -209,8 +188,7 @@ class Search {
       const double u = pass.begin + (pass.end - pass.begin) * k / samples;
       const JointVector q = joints_on_pass(task_, pass, u, fit_.reference()).q;
       const Vector3 off = off_other_singularity(task_, pass, u, q);
-      const bool is_met = distance_to_segment(Vector3::Zero(), k > 0 ? before : off, off) < met;
-      if (is_met || !settles(task_, pass, q)) {
+      if (distance_to_segment(Vector3::Zero(), k > 0 ? before : off, off) < met) {
         meets_other_ = true;
         return true;
       }
@@ -230,7 +208,7 @@ class Search {
   }
 
   const PassTask& task_;
-  PassRange range_;
+  const PassRange& range_;
   PassFit fit_;
   std::array<double, kKinks> kinks_{};  // u
   std::size_t kink_count_ = 0;
