@@ -22,7 +22,7 @@ import tempfile
 import shell
 from pages import RUN, blocks_of
 
-BEFORE_PLANNERS = pathlib.Path(__file__).parents[1] / "support" / "before_planners"
+BEFORE_PLANNERS = pathlib.Path(__file__).absolute().parent / "before_planners"
 PARTS = ("bindings", "deploy", "docs", "include", "tests")
 INSTALLED = {"/usr/share/meridian": "deploy", "/etc/meridian": "etc", "/var/lib/meridian": "var"}
 CONFIGURATION = ("service.toml", "tools.toml", "machines", "cyclonedds-hosts.xml")  # in /etc/meridian

@@ -11,7 +11,7 @@ import { frame, upgrade } from "./raw_http.mjs";
 
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
 const plant = new Plant(bin, source, "lai.toml");
-const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.3);
+const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.5);
 const kClients = 10, kMaxMemory_kib = 64 * 1024, kMaxShare = 0.25, kPong = 10;
 
 // A page that reads all it gets; a frozen one reads nothing behind the handshake.

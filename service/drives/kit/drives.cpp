@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pthread.h>
-#include <sched.h>
-
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -115,7 +112,7 @@ void Drives::Impl::work(int periods) noexcept {
 
 void Drives::Impl::send_all(const std::stop_token& stop) {
   constexpr auto kLonger = std::chrono::milliseconds(10);
-  if (options.priority > 0) set_priority(options.priority);
+  const RaisedPriority raised(options.priority);
   dds::DriveFeedback feedback;
   while (!stop.stop_requested()) {
     (void)sent.try_acquire_for(kLonger);
@@ -149,13 +146,9 @@ void Drives::run(const std::atomic<bool>& is_stopping) noexcept {
 }
 
 void Drives::run(const std::function<bool()>& is_stopping) noexcept {
-  sched_param before{};
-  int policy = SCHED_OTHER;
-  ::pthread_getschedparam(::pthread_self(), &policy, &before);
-  const bool has_priority = impl_->options.priority > 0 && set_priority(impl_->options.priority);
+  const RaisedPriority raised(impl_->options.priority);
   Pace pace(impl_->options.cycle_ns);
   while (!is_stopping()) work(pace.sleep() + 1);
-  if (has_priority) ::pthread_setschedparam(::pthread_self(), policy, &before);
 }
 
 int Drives::axis_count() const noexcept { return impl_->group.size(); }

@@ -26,16 +26,23 @@ std::int64_t monotonic_ns() noexcept {
   return now.tv_sec * kSecond_ns + now.tv_nsec;
 }
 
-bool set_priority(int priority) noexcept {
-  const sched_param param{.sched_priority = priority};
-  const int policy = priority > 0 ? SCHED_FIFO : SCHED_OTHER;
-  return ::pthread_setschedparam(::pthread_self(), policy, &param) == 0;
+RaisedPriority::RaisedPriority(int priority) noexcept {
+  if (priority <= 0) return;
+  sched_param before{};
+  ::pthread_getschedparam(::pthread_self(), &policy_before_, &before);
+  priority_before_ = before.sched_priority;
+  const sched_param raised{.sched_priority = priority};
+  is_raised_ = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &raised) == 0;
+}
+
+RaisedPriority::~RaisedPriority() {
+  const sched_param before{.sched_priority = priority_before_};
+  if (is_raised_) ::pthread_setschedparam(::pthread_self(), policy_before_, &before);
 }
 
 bool may_have_priority(int priority) {
-  if (priority <= 0) return false;
   bool may = false;
-  std::thread([&] { may = set_priority(priority); }).join();
+  std::thread([&] { may = RaisedPriority(priority).is_raised(); }).join();
   return may;
 }
 

@@ -23,9 +23,21 @@ class Pace {
 /// Of the monotonic clock.
 [[nodiscard]] std::int64_t monotonic_ns() noexcept;
 
-/// The calling thread at that SCHED_FIFO priority, or with SCHED_OTHER for 0. False: no right to
-/// it.
-bool set_priority(int priority) noexcept;
+/// The calling thread at that SCHED_FIFO priority while this lives, then in the class it had before.
+/// 0, or no right to it: it stays in its class.
+class RaisedPriority {
+ public:
+  explicit RaisedPriority(int priority) noexcept;
+  ~RaisedPriority();
+  RaisedPriority(const RaisedPriority&) = delete;
+  RaisedPriority& operator=(const RaisedPriority&) = delete;
+
+  [[nodiscard]] bool is_raised() const noexcept { return is_raised_; }
+
+ private:
+  int policy_before_ = 0, priority_before_ = 0;
+  bool is_raised_ = false;
+};
 
 /// Whether threads of this process may have that priority; false for 0. Context: start-up.
 [[nodiscard]] bool may_have_priority(int priority);

@@ -74,7 +74,7 @@ SimulatedDrivesReport run_simulated_drives(dds::Participant& participant, const 
 
   SimulatedDrivesReport report;
   dds::DriveFeedback feedback;
-  if (options.has_priority) static_cast<void>(drive::set_priority(kDrivePriority));
+  const drive::RaisedPriority raised(options.has_priority ? kDrivePriority : 0);
   drive::Pace pace(model.cycle_ns);
   while (!is_stopping.load(std::memory_order_relaxed)) {
     const int lost = pace.sleep();

@@ -172,8 +172,8 @@ void check_programs(int programs, std::uint64_t first_seed, DrawMachine draw_any
   EXPECT_LT(refusals, programs / 4) << "hardly anything was checked";
 }
 
-TEST(RestToRest, KeepsEveryLimitInRandomPrograms) {
-  check_programs(number_of("MERIDIAN_REST_PROGRAMS", draws(2500)), 7000000, draw_machine);
+TEST(RestToRest, KeepsEveryLimitInTenThousandRandomPrograms) {
+  check_programs(draws(10'000), 7000000, draw_machine);
 }
 
 TEST(RestToRest, KeepsEveryLimitOfJointsAndDrivesBehindAnyStage) {

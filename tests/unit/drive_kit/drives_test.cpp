@@ -191,7 +191,7 @@ TEST_F(Library, RunKeepsTheCycleTimeUntilItIsStopped) {
   EXPECT_GE(motors_.exchanged_s, 50e-9 * static_cast<double>(drives_->cycle_ns()) * (1 - 1e-9));
 }
 
-TEST_F(Library, AThreadHasTheClassBehindARunThatItHadBefore) {
+TEST_F(Library, RunLeavesTheThreadInTheClassThatItHad) {
   options_.priority = 2;
   drives_.emplace(options_, motors_);
   sched_param before{.sched_priority = 1};
