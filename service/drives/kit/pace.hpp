@@ -23,8 +23,8 @@ class Pace {
 /// Of the monotonic clock.
 [[nodiscard]] std::int64_t monotonic_ns() noexcept;
 
-/// The calling thread at that SCHED_FIFO priority while this lives, then in the class it had before.
-/// 0, or no right to it: it stays in its class.
+/// The calling thread at that SCHED_FIFO priority while this lives, then in the class it had
+/// before. 0, or no right to it: it stays in its class.
 class RaisedPriority {
  public:
   explicit RaisedPriority(int priority) noexcept;

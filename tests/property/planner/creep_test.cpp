@@ -80,6 +80,41 @@ TEST_P(Creep, IsNowhereInDrawnPrograms) {
   std::printf("slower than a thousandth of the feed for %.3f s at most\n", longest);
 }
 
+/// Three blocks from rest to rest: one takes its two micrometres in ten seconds, the others are
+/// `length_mm` long.
+std::vector<ClBlock> with_a_slow_block(const MachineModel& model, int slow, double length_mm) {
+  const ClBlock begin = RandomPrograms(1).program(model, 1).front();
+  const ToolPose at{to_vector(begin.tip_mm), to_vector(begin.axis)};
+  std::vector<ClBlock> blocks = {cut_block(0, at)};
+  double way_mm = 0;
+  for (int n = 1; n <= 3; ++n) {
+    way_mm += n == slow ? 0.002 : length_mm;
+    blocks.push_back(cut_block(n, {at.tip + way_mm * Vector3::UnitX(), at.axis}));
+    if (n != slow) continue;
+    blocks.back().feed_meaning = FeedMeaning::kInverseTime;
+    blocks.back().feed = 0.1;
+  }
+  end_program(blocks);
+  return blocks;
+}
+
+TEST_P(Creep, IsNowhereBetweenARestAndABlockThatIsSlowByItsOwnWord) {
+  double longest = 0;
+  for (const std::string& name : shipped_machines()) {
+    const MachineModel model = config::load_machine(shipped_file(name));
+    for (const double length_mm : {0.007, 0.03, 1.0}) {
+      for (int slow = 1; slow <= 3; ++slow) {
+        SCOPED_TRACE(name + ", block " + std::to_string(slow) + ", " + std::to_string(length_mm));
+        const SmoothTrace trace = plan(model, with_a_slow_block(model, slow, length_mm));
+        EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
+        EXPECT_LT(trace.duration_s(), 10 + 3);
+        longest = std::max(longest, trace.duration_s());
+      }
+    }
+  }
+  std::printf("ten seconds are asked for, %.3f s taken at most\n", longest);
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Creep, testing::Values(Transition::kSmooth, Transition::kExactStop),
                          [](const testing::TestParamInfo<Transition>& transition) {
                            return transition.param == Transition::kSmooth ? "Smooth" : "ExactStop";

@@ -168,7 +168,7 @@ void run_program(const MachineModel& model, std::uint32_t seed, std::uint32_t ki
 class MachineSweep : public testing::TestWithParam<Transition> {};
 
 TEST_P(MachineSweep, KeepsEveryPromiseOnEveryShippedMachine) {
-  const auto first = number_of<std::uint32_t>("MERIDIAN_MACHINE_SEED", 910001);
+  const auto first = number_of<std::uint32_t>("MERIDIAN_MACHINE_SEED", 1);
   const auto programs = number_of<std::uint32_t>("MERIDIAN_MACHINE_PROGRAMS", kPrograms);
   std::vector<MachineModel> models;
   std::vector<Sweep> sweeps;

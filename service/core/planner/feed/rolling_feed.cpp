@@ -18,8 +18,10 @@ constexpr double kJerkShare = 0.998;
 /// plan is strictly inside the limits of the next one, which therefore has an interior.
 constexpr double kFunnel = 0.02;
 constexpr int kTightenings = 4;
-constexpr int kMinCells = 4;          // of a window
-constexpr int kRestReach = 11;        // cells beside a rest whose limits its speed keeps
+constexpr int kMinCells = 4;         // of a window
+constexpr int kRestReach = 11;       // cells beside a rest whose limits its speed keeps
+constexpr double kSlowShare = 1e-3;  // of u̇² at the rest's own bound: a cell within reach is slow
+constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow cell
 constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
 constexpr int kSpare = 8;             // cells of the store
 constexpr double kOldShare = 0.6;     // of the bound: an old plan above it is worth linearising at
@@ -35,6 +37,13 @@ struct RollingFeed::Attempt {
 };
 
 namespace {
+
+/// u̇² beside a rest, of what the cells within reach keep up and what the cell at the rest does, as
+/// far as others let it. A slow span among them bounds nothing but itself: at its speed the cell at
+/// the rest would be crept along.
+double beside_slow(double steady, double own) noexcept {
+  return steady < kSlowShare * own ? kBesideSlow * own : steady;
+}
 
 int window_of(const FeedSettings& settings) noexcept {
   return std::clamp(settings.window_cells, 20, JerkStep::kCells);
@@ -133,23 +142,38 @@ bool RollingFeed::attempt(const Attempt& how) noexcept {
   }
   if (end - first < kMinCells) return false;
   if (is_at_rest_) {
-    const auto reach = std::min(next_ + kRestReach + 1, end);
-    start_ = find_rest_cell(planned_, grid_[next_], true,
-                            how.softness * steady_b(grid_, planned_, next_, reach));
+    start_ = find_rest_cell(planned_, grid_[next_], true, how.softness * start_b(first, end));
     state_ = start_.state;
   }
-  const auto boundaries = static_cast<std::size_t>(end - first) + 1;
-  two_pass(grid_, planned_, first, state_.b, {backward_.data(), boundaries},
-           {bound_.data(), boundaries});
+  pass_twice(first, end, state_.b);
   new_.first = first;
   new_.end = end;
-  const double reachable = 4 * backward_[boundaries - 2];
-  const auto reach = std::max(first, end - kRestReach - 1);
-  new_.stop =
-      find_rest_cell(planned_, grid_[end - 1], false,
-                     how.softness * std::min(reachable, steady_b(grid_, planned_, reach, end)));
+  new_.stop = find_rest_cell(planned_, grid_[end - 1], false, how.softness * stop_b(first, end));
   choose_bar(how);
   return refine();
+}
+
+void RollingFeed::pass_twice(std::int64_t first, std::int64_t end, double b_begin) noexcept {
+  const auto boundaries = static_cast<std::size_t>(end - first) + 1;
+  two_pass(grid_, planned_, first, b_begin, {backward_.data(), boundaries},
+           {bound_.data(), boundaries});
+}
+
+double RollingFeed::start_b(std::int64_t first, std::int64_t end) noexcept {
+  const auto reach = std::min(next_ + kRestReach + 1, end);
+  const double steady = steady_b(grid_, planned_, next_, reach);
+  const double own = steady_b(grid_, planned_, next_, first);
+  if (steady >= kSlowShare * own) return steady;
+  pass_twice(first, end, 0);
+  return beside_slow(steady, std::min(own, backward_[0]));
+}
+
+double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept {
+  const auto last = static_cast<std::size_t>(end - 1 - first);
+  const double reachable = 4 * backward_[last];
+  const auto reach = std::max(first, end - kRestReach - 1);
+  const double steady = std::min(reachable, steady_b(grid_, planned_, reach, end));
+  return beside_slow(steady, std::min(bound_[last], steady_b(grid_, planned_, end - 1, end)));
 }
 
 void RollingFeed::choose_bar(const Attempt& how) noexcept {

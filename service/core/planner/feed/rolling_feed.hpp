@@ -119,6 +119,12 @@ class RollingFeed {
 
   [[nodiscard]] bool plan_window() noexcept;
   [[nodiscard]] bool attempt(const Attempt& how) noexcept;
+  /// Into `backward_` and `bound_`, of the cells first .. end - 1.
+  void pass_twice(std::int64_t first, std::int64_t end, double b_begin) noexcept;
+  /// Largest u̇² at which the cell before `first`, where the machine rests, may end, and that before
+  /// `end`, where the window rests, may begin.
+  [[nodiscard]] double start_b(std::int64_t first, std::int64_t end) noexcept;
+  [[nodiscard]] double stop_b(std::int64_t first, std::int64_t end) const noexcept;
   void choose_bar(const Attempt& how) noexcept;
   [[nodiscard]] bool refine() noexcept;
   [[nodiscard]] bool check_and_tighten(bool may_tighten) noexcept;
