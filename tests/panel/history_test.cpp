@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "service/recording/telemetry/audit_log.hpp"
+#include "support/scratch.hpp"
 
 namespace meridian::panel {
 namespace {
@@ -56,26 +57,25 @@ TEST(History, KnowsStationsAndFaults) {
 }
 
 TEST(History, PassesOverWhatIsNoLineOfTheLog) {
-  for (const char* text : {"", "{", "[]", "{\"event\":\"command\"}", "3",
-                           R"({"time":"yesterday","event":"start"})",
-                           R"({"time":7,"event":"start"})"}) {
+  for (const char* text :
+       {"", "{", "[]", "{\"event\":\"command\"}", "3", R"({"time":"yesterday","event":"start"})",
+        R"({"time":7,"event":"start"})"}) {
     EXPECT_FALSE(parse_history_line(text)) << text;
   }
   EXPECT_TRUE(parse_history_line(R"({"time":"2026-09-21T14:13:20.123Z","event":"command"})"));
-  const auto late = parse_history_line(
-      R"({"time":"2026-09-21T14:13:20.99999999999999999999Z","event":"start"})");
+  const auto late =
+      parse_history_line(R"({"time":"2026-09-21T14:13:20.99999999999999999999Z","event":"start"})");
   const auto next = parse_history_line(R"({"time":"2026-09-21T14:13:21.000Z","event":"start"})");
   EXPECT_LT(late->time, next->time);
 }
 
 class HistoryFile : public ::testing::Test {
  protected:
-  HistoryFile() { std::filesystem::remove(file_); }
-  ~HistoryFile() override { std::filesystem::remove(file_); }
   void write(const std::string& text) const {
     std::ofstream(file_, std::ios::app | std::ios::binary) << text;
   }
-  std::filesystem::path file_ = std::filesystem::path(::testing::TempDir()) / "history.audit.log";
+  test::Scratch scratch_{".audit.log"};
+  std::filesystem::path file_ = scratch_.path();
 };
 
 TEST_F(HistoryFile, IsReadAsItGrowsAndALineIsReadWhenItIsWhole) {

@@ -12,6 +12,8 @@
 #include <sstream>
 #include <string>
 
+#include "support/scratch.hpp"
+
 namespace meridian::panel {
 namespace {
 
@@ -107,9 +109,9 @@ TEST(Metrics, PassPromtool) {
   if (std::system("command -v promtool >/dev/null 2>&1") != 0) {
     GTEST_SKIP() << "promtool is not here (Debian's prometheus)";
   }
-  const std::string file = testing::TempDir() + "meridian-metrics.txt";
-  std::ofstream(file) << metrics_text(machine_info(), dds::Status{}, latency());
-  EXPECT_EQ(std::system(("promtool check metrics < " + file).c_str()), 0);
+  const test::Scratch file(".txt");
+  std::ofstream(file.path()) << metrics_text(machine_info(), dds::Status{}, latency());
+  EXPECT_EQ(std::system(("promtool check metrics < " + file.path()).c_str()), 0);
 }
 
 }  // namespace

@@ -103,6 +103,7 @@ std::vector<ThreadAccount> threads_of(pid_t process) {
 std::string scheduling_text(const ThreadAccount& thread) {
   if (thread.policy == SCHED_FIFO) return "FIFO " + std::to_string(thread.priority);
   if (thread.policy == SCHED_RR) return "RR " + std::to_string(thread.priority);
+  if (thread.policy == SCHED_IDLE) return "idle";
   return thread.policy == SCHED_OTHER ? "normal" : "class " + std::to_string(thread.policy);
 }
 

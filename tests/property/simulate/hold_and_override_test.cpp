@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <random>
@@ -10,6 +9,7 @@
 #include "meridian/units.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
+#include "support/scratch.hpp"
 #include "support/simulated_run.hpp"
 
 namespace meridian::simulate {
@@ -59,8 +59,7 @@ TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
   const auto draw = [&random](int low, int high) {
     return std::uniform_int_distribution<int>(low, high)(random);
   };
-  const std::string recording =
-      ::testing::TempDir() + "hold_" + std::to_string(::getpid()) + ".csv";
+  const test::Scratch recording(".csv");
   int held = 0;
   std::size_t slowed = 0;
   for (int n = 0; n < kRuns; ++n) {
@@ -99,11 +98,10 @@ TEST(HoldAndOverride, AtAnyCycleKeepPathAndLimits) {
     options.tip_tolerance_mm = 1e-3;
     options.axis_tolerance_rad = units::rad_from_deg(1e-3);
     const record::CheckReport report =
-        test::check_records(run.records, path, model, options, recording);
+        test::check_records(run.records, path, model, options, recording.path());
     ASSERT_TRUE(report.passed()) << "run " << n << "\n"
                                  << to_text(run.report, model) << to_text(report);
   }
-  std::remove(recording.c_str());
   std::printf("%d holds came to rest, %zu cycles ran at an override\n", held, slowed);
   EXPECT_GT(held, kRuns / 2) << "most runs were held while they ran";
   EXPECT_GT(slowed, 33U * kRuns);

@@ -5,7 +5,6 @@
 /// MERIDIAN_POLE_RESTS: so many programs.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "meridian/units.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
+#include "support/scratch.hpp"
 #include "support/simulated_run.hpp"
 
 namespace meridian::simulate {
@@ -59,8 +59,7 @@ TEST(PoleRestCheck, PassesWhatTheToleranceAboutThePoleIsUsedFor) {
   model.transition = Transition::kExactStop;
   MachineModel exact = model;
   exact.pole_policy = PolePolicy::kExact;
-  const std::string recording =
-      ::testing::TempDir() + "pole_rest_" + std::to_string(::getpid()) + ".csv";
+  const test::Scratch recording(".csv");
   const auto programs = test::number_of<std::uint32_t>("MERIDIAN_POLE_RESTS", test::draws(12));
   double eased_s = 0, exact_s = 0, worst = 0;
   for (std::uint32_t seed = 1; seed <= programs; ++seed) {
@@ -68,7 +67,7 @@ TEST(PoleRestCheck, PassesWhatTheToleranceAboutThePoleIsUsedFor) {
     const SimulatedRun run = run_simulation(text, model);
     ASSERT_EQ(run.report.outcome, Outcome::kDone) << seed << ": " << run.report.reason;
     const record::CheckReport report = test::check_records(
-        run.records, test::path_of(text.c_str(), model, {}), model, {}, recording);
+        run.records, test::path_of(text.c_str(), model, {}), model, {}, recording.path());
     EXPECT_TRUE(report.passed()) << "seed " << seed << '\n' << to_text(report);
     const SimulatedRun whole = run_simulation(text, exact);
     if (whole.report.outcome != Outcome::kDone) continue;  // out of C's travel
@@ -76,7 +75,6 @@ TEST(PoleRestCheck, PassesWhatTheToleranceAboutThePoleIsUsedFor) {
     exact_s += whole.report.program_s;
     worst = std::max(worst, run.report.program_s / whole.report.program_s);
   }
-  std::remove(recording.c_str());
   std::printf("%u programs: %.2f s, without the tolerance %.2f s; worst share %.4f\n", programs,
               eased_s, exact_s, worst);
   EXPECT_LT(eased_s, 0.95 * exact_s);

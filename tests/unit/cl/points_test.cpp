@@ -8,6 +8,7 @@
 #include "read_text.hpp"
 #include "service/programs/cl/cl_points.hpp"
 #include "service/programs/cl/run_cl.hpp"
+#include "support/scratch.hpp"
 
 namespace meridian::cl {
 namespace {
@@ -64,11 +65,11 @@ TEST(Points, OfOneBlockComeFromItsBegin) {
 }
 
 TEST(RunCl, WritesSevenColumnsThatReadBackBitForBit) {
-  const std::string path = testing::TempDir() + "run_cl_test.apt";
-  std::ofstream(path)
+  const test::Scratch part(".apt");
+  std::ofstream(part.path())
       << "UNITS/INCHES\nFEDRAT/10\nRAPID\nGOTO/.1,.2,.3\nGOTO/1,2,-0.0,0,.6,.8\nFINI\n";
   RunOptions options;
-  options.file = path;
+  options.file = part.path();
   std::ostringstream out;
   std::ostringstream err;
   ASSERT_EQ(run_cl(options, out, err), 0) << err.str();
@@ -82,18 +83,19 @@ TEST(RunCl, WritesSevenColumnsThatReadBackBitForBit) {
 }
 
 TEST(RunCl, RefusesWithTheMessageAndLeavesNoFile) {
-  const std::string path = testing::TempDir() + "run_cl_refused.apt";
-  std::ofstream(path) << "UNITS/MM\nFEDRAT/10\nGOTO/0,0,0\nWOBBLE/1\nFINI\n";
+  const test::Scratch part(".apt");
+  const test::Scratch written(".cl");
+  std::ofstream(part.path()) << "UNITS/MM\nFEDRAT/10\nGOTO/0,0,0\nWOBBLE/1\nFINI\n";
   RunOptions options;
-  options.file = path;
-  options.output = testing::TempDir() + "run_cl_refused.cl";
+  options.file = part.path();
+  options.output = written.path();
   std::ostringstream out;
   std::ostringstream err;
   EXPECT_EQ(run_cl(options, out, err), 3);
   EXPECT_NE(err.str().find(":4: unknown word 'WOBBLE'; --allow-unknown WOBBLE"), std::string::npos)
       << err.str();
   EXPECT_FALSE(std::ifstream(options.output).good());
-  options.file = path + ".not";
+  options.file = part.path() + ".not";
   EXPECT_EQ(run_cl(options, out, err), 3);
 }
 

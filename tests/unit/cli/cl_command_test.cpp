@@ -9,6 +9,7 @@
 #include <string>
 
 #include "support/command_output.hpp"
+#include "support/scratch.hpp"
 #include "support/text_file.hpp"
 
 namespace {
@@ -169,9 +170,9 @@ TEST(ClCommand, KnowsUsage) {
 }
 
 TEST(SurfaceCommand, WritesASampleByItsName) {
-  const std::string file = testing::TempDir() + "surface_command.apt";
-  EXPECT_EQ(run_tool("surface --sample blossom -o " + file).exit_code, 0);
-  EXPECT_TRUE(std::ifstream(file).good());
+  const meridian::test::Scratch file(".apt");
+  EXPECT_EQ(run_tool("surface --sample blossom -o " + file.path()).exit_code, 0);
+  EXPECT_TRUE(std::ifstream(file.path()).good());
   EXPECT_EQ(run_tool("surface --sample nothing").exit_code, 2);
   EXPECT_EQ(run_tool("surface --sample blossom -o /no/such/place/x").exit_code, 3);
   EXPECT_EQ(run_tool("surface --help").exit_code, 0);
@@ -180,23 +181,26 @@ TEST(SurfaceCommand, WritesASampleByItsName) {
 const std::string kPatch = MERIDIAN_SOURCE_DIR "/deploy/parts/reference-patch.toml";
 
 TEST(SurfaceCommand, CoversAPatchAndReportsBesideIt) {
-  const std::string file = testing::TempDir() + "surface_patch.apt";
-  const CommandOutput to_file = run_tool("surface " + kPatch + " -o " + file);
+  const meridian::test::Scratch file(".apt");
+  const CommandOutput to_file = run_tool("surface " + kPatch + " -o " + file.path());
   EXPECT_EQ(to_file.exit_code, 0);
   EXPECT_NE(to_file.output.find("21 lines, 441 contacts"), std::string::npos) << to_file.output;
-  EXPECT_EQ(run_tool("cl " + file).exit_code, 0);
-  const std::string picture = testing::TempDir() + "surface.svg";
-  EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --picture " + picture).exit_code, 0);
-  EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
-  const std::string wrists = testing::TempDir() + "wrists.csv";
+  EXPECT_EQ(run_tool("cl " + file.path()).exit_code, 0);
+  const meridian::test::Scratch picture(".svg");
+  EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --picture " + picture.path()).exit_code,
+            0);
+  EXPECT_NE(meridian::test::read_text(picture.path()).find("</svg>"), std::string::npos);
+  const meridian::test::Scratch wrists(".csv");
   EXPECT_EQ(run_tool("surface " + kPatch + " -o /dev/null --wrist-distance 80 --wrist-points " +
-                     wrists + " --picture " + picture)
+                     wrists.path() + " --picture " + picture.path())
                 .exit_code,
             0);
-  EXPECT_NE(meridian::test::read_text(picture).find("wrist, S + dN"), std::string::npos);
-  EXPECT_NE(meridian::test::read_text(wrists).find("x_mm,y_mm,z_mm,i,j,k\n"), std::string::npos);
-  EXPECT_EQ(run_tool("surface " + kPatch + " --wrist-points " + wrists).exit_code, 2);
-  const CommandOutput finer = run_tool("surface " + kPatch + " --points 5 --lines 3 -o " + file);
+  EXPECT_NE(meridian::test::read_text(picture.path()).find("wrist, S + dN"), std::string::npos);
+  EXPECT_NE(meridian::test::read_text(wrists.path()).find("x_mm,y_mm,z_mm,i,j,k\n"),
+            std::string::npos);
+  EXPECT_EQ(run_tool("surface " + kPatch + " --wrist-points " + wrists.path()).exit_code, 2);
+  const CommandOutput finer =
+      run_tool("surface " + kPatch + " --points 5 --lines 3 -o " + file.path());
   EXPECT_NE(finer.output.find("3 lines, 15 contacts"), std::string::npos) << finer.output;
   EXPECT_EQ(run_tool("surface " + kPatch + " 2>/dev/null | head -1").output,
             "PARTNO REFERENCE PATCH\n");
@@ -220,14 +224,14 @@ TEST(SurfaceCommand, SaysNoToACutterThatGougesAndToWhatItCannotTake) {
 const std::string kMachine = MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml";
 
 TEST(MachineCommand, ReportsDrawsAndWritesAPattern) {
-  const std::string picture = testing::TempDir() + "machine.svg";
-  const std::string pattern = testing::TempDir() + "pattern.apt";
-  const CommandOutput outcome =
-      run_tool("machine " + kMachine + " --picture " + picture + " --pattern " + pattern);
+  const meridian::test::Scratch picture(".svg");
+  const meridian::test::Scratch pattern(".apt");
+  const CommandOutput outcome = run_tool("machine " + kMachine + " --picture " + picture.path() +
+                                         " --pattern " + pattern.path());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("workpiece - C - A - X - Y - Z - tool"), std::string::npos);
-  EXPECT_NE(meridian::test::read_text(picture).find("</svg>"), std::string::npos);
-  EXPECT_EQ(run_tool("cl " + pattern).exit_code, 0);
+  EXPECT_NE(meridian::test::read_text(picture.path()).find("</svg>"), std::string::npos);
+  EXPECT_EQ(run_tool("cl " + pattern.path()).exit_code, 0);
 }
 
 TEST(MachineCommand, SaysNoToASlipAndToWhatItCannotTake) {

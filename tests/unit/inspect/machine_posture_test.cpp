@@ -12,6 +12,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/path_picture.hpp"
+#include "support/scratch.hpp"
 #include "support/shipped_machines.hpp"
 
 namespace meridian::inspect {
@@ -94,10 +95,10 @@ TEST_P(PostureOfEveryShipped, PlacesOfAProgramHaveItsBeginAndItsEnd) {
 TEST_P(PostureOfEveryShipped, IsDrawn) {
   const auto postures = postures_along(model_, program(40), 9);
   ASSERT_TRUE(postures);
-  const std::string file = testing::TempDir() + "/along-" + GetParam() + ".svg";
-  const auto error = draw_along(model_, *postures, file);
+  const test::Scratch file(".svg");
+  const auto error = draw_along(model_, *postures, file.path());
   EXPECT_FALSE(error) << *error;
-  EXPECT_GT(std::filesystem::file_size(file), 20'000U);
+  EXPECT_GT(std::filesystem::file_size(file.path()), 20'000U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, PostureOfEveryShipped,

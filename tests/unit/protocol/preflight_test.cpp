@@ -2,39 +2,21 @@
 #include "service/protocol/preflight.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <fstream>
 #include <string>
 
 #include "support/machines.hpp"
+#include "support/text_file.hpp"
 
 namespace meridian::stream {
 namespace {
-
-/// A CL file that goes with the test.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& text)
-      : path_(testing::TempDir() + "meridian-preflight-" + std::to_string(::getpid()) + ".apt") {
-    std::ofstream(path_) << text;
-  }
-  ~TemporaryFile() { std::remove(path_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 const char* const kHead = "PARTNO/TEST\nUNITS/MM\nFEDRAT/600,MMPM\n";
 
 std::string text_of(const PreflightReport& report) { return to_text(report.findings, "part.apt"); }
 
 PreflightReport checked(const std::string& body, bool has_machine = true) {
-  const TemporaryFile file(kHead + body);
+  const test::TextFile file(kHead + body, ".apt");
   std::optional<PreflightMachine> machine;
   if (has_machine) machine = PreflightMachine{test::lai_machine(), ToolTable({{3, 100, 5}})};
   return preflight(file.path(), {}, machine);
@@ -85,7 +67,8 @@ TEST(Preflight, DoesNotCheckAnArcWhoseBeginWasRefused) {
 }
 
 TEST(Preflight, NamesTheToolsThatTheTableHasNot) {
-  const TemporaryFile file("UNITS/MM\nLOADTL/9\nLOADTL/3\nFOO/1\nLOADTL/4\nLOADTL/9\nFINI\n");
+  const test::TextFile file("UNITS/MM\nLOADTL/9\nLOADTL/3\nFOO/1\nLOADTL/4\nLOADTL/9\nFINI\n",
+                            ".apt");
   EXPECT_EQ(unknown_tools(file.path(), {}, ToolTable({{3, 100, 5}})), (std::vector<int>{9, 4}));
 }
 

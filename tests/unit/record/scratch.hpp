@@ -2,41 +2,20 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "service/recording/record/file/recording_reader.hpp"
 #include "service/recording/record/file/recording_writer.hpp"
+#include "support/scratch.hpp"
+#include "support/text_file.hpp"
 
 namespace meridian::test {
 
-/// A file name of this process that is removed at the end.
-class Scratch {
- public:
-  explicit Scratch(const std::string& ending)
-      : path_(::testing::TempDir() + "meridian_" + std::to_string(::getpid()) + "_" +
-              std::to_string(count_++) + ending) {}
-  ~Scratch() { std::remove(path_.c_str()); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
-
- private:
-  static inline int count_ = 0;
-  std::string path_;
-};
-
 inline void write_text(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
-}
-
-[[nodiscard]] inline std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 /// Writes the records as a recording and opens it.

@@ -11,6 +11,7 @@
 
 #include "service/analysis/simulate/feed_picture.hpp"
 #include "support/machines.hpp"
+#include "support/scratch.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"
 
@@ -248,15 +249,14 @@ TEST(ExplainPicture, IsDrawnAndNamesWhatHeldTheFeed) {
   for (int n = 0; n < 3; ++n) {  // more cycles than columns
     for (const ExplainedCycle& cycle : out.cycles) picture.add(cycle);
   }
-  const std::string file = testing::TempDir() + "explained.svg";
-  const auto error = picture.draw(file, "a corner");
+  const test::Scratch file(".svg");
+  const auto error = picture.draw(file.path(), "a corner");
   ASSERT_FALSE(error) << error->text();
-  const std::string drawn = test::read_text(file);
+  const std::string drawn = test::read_text(file.path());
   EXPECT_NE(drawn.find("feed "), std::string::npos);
   EXPECT_NE(drawn.find("jerk"), std::string::npos);
   EXPECT_NE(drawn.find("programmed"), std::string::npos);
-  std::remove(file.c_str());
-  EXPECT_TRUE(FeedPicture(model).draw(file, "nothing"));
+  EXPECT_TRUE(FeedPicture(model).draw(file.path(), "nothing"));
 }
 
 }  // namespace

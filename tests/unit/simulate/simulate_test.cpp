@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "meridian/units.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
+#include "support/scratch.hpp"
 #include "support/simulated_run.hpp"
 
 namespace meridian::simulate {
@@ -43,16 +43,16 @@ class Simulate : public ::testing::Test {
     options.tip_tolerance_mm = 1e-3;
     options.axis_tolerance_rad = units::rad_from_deg(1e-3);
   }
-  ~Simulate() override { std::remove(recording.c_str()); }
 
   [[nodiscard]] CheckReport check(const SimulatedRun& run, const char* text,
                                   const ToolTable& tools = {}) const {
-    return check_records(run.records, path_of(text, model, tools), model, options, recording);
+    return check_records(run.records, path_of(text, model, tools), model, options,
+                         recording.path());
   }
 
   MachineModel model = test::lai_machine();
   record::CheckOptions options;
-  std::string recording = ::testing::TempDir() + "simulate_" + std::to_string(::getpid()) + ".csv";
+  test::Scratch recording{".csv"};
 };
 
 TEST_F(Simulate, CutsTheWholePathInsideEveryLimit) {
@@ -91,12 +91,14 @@ TEST_F(Simulate, IsCheckedByThePolesToleranceWhichTheVerdictNames) {
   MachineModel bench = test::bench_machine();
   bench.tolerances.pole_axis_rad = units::rad_from_deg(1.5);
   const SimulatedRun run = run_simulation(kPart, bench);
-  const CheckReport wide = check_records(run.records, path_of(kPart, bench), bench, {}, recording);
+  const CheckReport wide =
+      check_records(run.records, path_of(kPart, bench), bench, {}, recording.path());
   EXPECT_NE(to_text(wide).find("tolerance 0.1 deg, 1.5 deg within 22.9 deg of the pole"),
             std::string::npos)
       << to_text(wide);
   bench.pole_policy = PolePolicy::kExact;
-  const CheckReport exact = check_records(run.records, path_of(kPart, bench), bench, {}, recording);
+  const CheckReport exact =
+      check_records(run.records, path_of(kPart, bench), bench, {}, recording.path());
   EXPECT_EQ(to_text(exact).find("of the pole"), std::string::npos) << to_text(exact);
 }
 

@@ -4,16 +4,15 @@
 /// not; the report and the explanation say what was done.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include "service/analysis/simulate/explainer.hpp"
 #include "support/machines.hpp"
+#include "support/scratch.hpp"
 #include "support/simulated_run.hpp"
 
 namespace meridian::simulate {
@@ -47,10 +46,9 @@ std::string spiral() {
 class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
  protected:
   SimulatedUnwinding() { model.transition = GetParam(); }
-  ~SimulatedUnwinding() override { std::filesystem::remove(file); }
 
   [[nodiscard]] record::CheckReport check(const std::vector<CycleRecord>& records) {
-    return test::check_records(records, test::path_of(text, model), model, {}, file);
+    return test::check_records(records, test::path_of(text, model), model, {}, file.path());
   }
   [[nodiscard]] static bool has(const record::CheckReport& report, Finding::Kind kind) {
     return std::any_of(report.findings.begin(), report.findings.end(),
@@ -75,7 +73,7 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
 
   MachineModel model = short_travel();
   std::string text = spiral();
-  std::string file = ::testing::TempDir() + "unwind_" + std::to_string(::getpid()) + ".csv";
+  test::Scratch file{".csv"};
 };
 
 TEST_P(SimulatedUnwinding, PassesTheCheckAndIsReported) {
@@ -130,7 +128,7 @@ TEST_P(SimulatedUnwinding, IsCheckedWhereRowsAreMissingAtItsEnds) {
   record::CheckOptions options;
   options.max_missing = 4;
   const auto check = [&] {
-    return test::check_records(records, test::path_of(text, model), model, options, file);
+    return test::check_records(records, test::path_of(text, model), model, options, file.path());
   };
   EXPECT_TRUE(check().passed()) << to_text(check());
   model.unwind_retract_mm = 20.1;

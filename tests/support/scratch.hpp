@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <string>
+
+namespace meridian::test {
+
+/// The name of a file that no other test has, in this process or beside it. The file is removed at
+/// the end.
+class Scratch {
+ public:
+  explicit Scratch(const std::string& ending) {
+    static std::atomic<int> count{0};
+    path_ = ::testing::TempDir() + "meridian_" + std::to_string(::getpid()) + "_" +
+            std::to_string(count++) + ending;
+  }
+  ~Scratch() { std::remove(path_.c_str()); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace meridian::test
