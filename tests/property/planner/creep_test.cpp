@@ -54,7 +54,8 @@ std::vector<ClBlock> past_the_wrist(const MachineModel& robot, double beside_rad
 TEST_P(Creep, IsNowhereOnTheWayPastASingularityOfTheWrist) {
   MachineModel robot = config::load_machine(shipped_file("robot-6r"));
   config::place_workpiece(robot, config::parse_frame("0,0,0"));
-  for (const double beside_deg : {0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1, 1.0, 5.0}) {
+  for (const double beside_deg :
+       cases({0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1, 1.0, 5.0})) {
     SCOPED_TRACE(beside_deg);
     const SmoothTrace trace = plan(robot, past_the_wrist(robot, units::rad_from_deg(beside_deg)));
     EXPECT_LT(longest_creep_s(robot, trace), kLongestCreep_s);
@@ -63,7 +64,7 @@ TEST_P(Creep, IsNowhereOnTheWayPastASingularityOfTheWrist) {
 }
 
 TEST_P(Creep, IsNowhereInDrawnPrograms) {
-  const auto programs = number_of<std::uint32_t>("MERIDIAN_CREEP_PROGRAMS", 6);
+  const auto programs = number_of<std::uint32_t>("MERIDIAN_CREEP_PROGRAMS", kIsTimed ? 6 : 2);
   double longest = 0;
   for (const std::string& name : shipped_machines()) {
     const MachineModel model = config::load_machine(shipped_file(name));
@@ -102,7 +103,7 @@ TEST_P(Creep, IsNowhereBetweenARestAndABlockThatIsSlowByItsOwnWord) {
   double longest = 0;
   for (const std::string& name : shipped_machines()) {
     const MachineModel model = config::load_machine(shipped_file(name));
-    for (const double length_mm : {0.007, 0.03, 1.0}) {
+    for (const double length_mm : cases({0.007, 0.03, 1.0})) {
       for (int slow = 1; slow <= 3; ++slow) {
         SCOPED_TRACE(name + ", block " + std::to_string(slow) + ", " + std::to_string(length_mm));
         const SmoothTrace trace = plan(model, with_a_slow_block(model, slow, length_mm));

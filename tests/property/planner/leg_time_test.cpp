@@ -67,7 +67,7 @@ double time_of_cut(const Trace& trace) {
 class LegTime : public testing::TestWithParam<std::string> {};
 
 TEST_P(LegTime, OfOneBlockIsThatOfASmoothRun) {
-  const auto blocks = number_of<std::uint32_t>("MERIDIAN_LEGS", 12);
+  const auto blocks = number_of<std::uint32_t>("MERIDIAN_LEGS", kIsTimed ? 12 : 3);
   MachineModel model = config::load_machine(shipped_file(GetParam()));
   model.pole_policy = PolePolicy::kExact;
   std::vector<double> ratios;

@@ -6,6 +6,7 @@
 
 #include "property/planner/smooth_trace.hpp"
 #include "service/machine/file/machine_file.hpp"
+#include "support/draws.hpp"
 #include "support/program_end.hpp"
 #include "support/shipped_machines.hpp"
 
@@ -36,8 +37,8 @@ TEST(VerticalTool, IsLedOntoThePoleAndOffItOnEveryMachine) {
   for (const std::string& name : shipped_machines()) {
     const MachineModel model = config::load_machine(shipped_file(name));
     if (redundant_joint(model) < 0) continue;  // a robot's singularities lie elsewhere
-    for (const double length_mm : {2.0, 25.0, 100.0}) {
-      for (const double off : {0.0, 1e-8, 1e-4}) {
+    for (const double length_mm : cases({2.0, 25.0, 100.0})) {
+      for (const double off : cases({0.0, 1e-8, 1e-4})) {
         SCOPED_TRACE(name + ", " + std::to_string(length_mm) + " mm, " + std::to_string(off));
         const auto blocks = along_the_pole(length_mm, off);
         const SmoothTrace trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
