@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/programs/cl/cl_reader.hpp"
 
+#include <utility>
+
 #include "service/programs/cl/cl_program.hpp"
 #include "service/programs/cl/foreign.hpp"
 #include "service/programs/cl/restart.hpp"
@@ -19,8 +21,8 @@ class ClReader::Impl {
         program_(std::make_unique<ClProgram>(lines_, name_, options_)) {}
 
   Expected<std::optional<ClBlock>, ClError> next() {
-    if (first_line_ > 0 && !has_restarted_) {
-      if (auto begun = restart(); !begun) return tl::make_unexpected(begun.error());
+    if (const auto line = std::exchange(first_line_, 0); line > 0) {
+      if (auto begun = restart(line); !begun) return tl::make_unexpected(begun.error());
     }
     if (restored_given_ < restored_.size()) return numbered(restored_[restored_given_++]);
     auto block = read_block();
@@ -29,20 +31,22 @@ class ClReader::Impl {
   }
 
  private:
-  /// Reads up to the first line that is wanted; what leads there is in restored_ then.
-  ProgramSource::Result restart() {
+  /// Which part of the text is read next.
+  enum class Stage : std::uint8_t { kHead, kStatements, kEnd };
+
+  /// Reads up to `first_line`, which is wanted; what leads there is in restored_ then.
+  ProgramSource::Result restart(std::uint32_t first_line) {
     Restart before;
-    has_restarted_ = true;
     for (;;) {
       auto block = read_block();
       if (!block) return tl::make_unexpected(block.error());
       if (!*block || (*block)->kind == BlockKind::kEnd) {
         ProgramSource::Result refusal =
-            final_error(first_line_, "the program has no block from this line on to begin with");
+            final_error(first_line, "the program has no block from this line on to begin with");
         error_ = refusal.error();
         return refusal;
       }
-      if ((*block)->line >= first_line_) {
+      if ((*block)->line >= first_line) {
         restored_ = before.state();
         restored_.push_back(**block);
         break;
@@ -65,7 +69,7 @@ class ClReader::Impl {
   Expected<std::optional<ClBlock>, ClError> read_block() {
     if (error_) return tl::make_unexpected(*error_);
     while (given_ == blocks_.size()) {
-      if (done_) return std::optional<ClBlock>{};
+      if (stage_ == Stage::kEnd) return std::optional<ClBlock>{};
       blocks_.clear();
       given_ = 0;
       if (auto read = read_statement(); !read) {
@@ -130,28 +134,26 @@ class ClReader::Impl {
   }
 
   ProgramSource::Result read_statement() {
-    if (!started_) {
-      started_ = true;
+    if (stage_ == Stage::kHead) {
+      stage_ = Stage::kStatements;
       if (auto begun = begin(); !begun) return begun;
     }
     auto done = program_->read(blocks_);
-    if (program_->is_done()) done_ = true;
+    if (program_->is_done()) stage_ = Stage::kEnd;
     return done;
   }
 
   LineSource lines_;
   std::string name_;
   ClReaderOptions options_;
-  std::uint32_t first_line_ = 0;
+  std::uint32_t first_line_ = 0;  ///< to restart at; 0: none, or done
   std::unique_ptr<ProgramSource> program_;
   std::vector<ClBlock> blocks_;  ///< of the last statement
   std::size_t given_ = 0;
   std::vector<ClBlock> restored_;  ///< what a restart begins with
   std::size_t restored_given_ = 0;
   std::uint64_t sequence_ = 0;
-  bool has_restarted_ = false;
-  bool started_ = false;
-  bool done_ = false;
+  Stage stage_ = Stage::kHead;
   std::optional<ClError> error_;
 };
 

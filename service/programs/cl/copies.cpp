@@ -12,11 +12,12 @@ std::string name_of(std::uint32_t number) { return "INDEX/" + std::to_string(num
 
 void Copies::record(const Statement& s) {
   if (patterns_.empty() || is_repeating()) return;
-  if (s.is_catia_matrix || text_.size() + s.major.size() + s.rest.size() > kMaxText) {
+  if (s.source == Statement::Source::kCatiaMatrix ||
+      text_.size() + s.major.size() + s.rest.size() > kMaxText) {
     lose_all();
     return;
   }
-  Record record{text_.size(), 0, s.is_comment_data};
+  Record record{text_.size(), 0, s.source};
   text_.append(s.major);
   if (!s.major.empty()) text_.push_back('/');
   text_.append(s.rest);
@@ -87,8 +88,7 @@ Outcome Copies::repeat(std::uint32_t number, const Frame& step, std::uint32_t ti
 RecordedStatement Copies::next() {
   Pass& pass = passes_.back();
   const Record& record = records_[pass.at++];
-  return {std::string_view(text_).substr(record.begin, record.size), pass.line,
-          record.is_comment_data};
+  return {std::string_view(text_).substr(record.begin, record.size), pass.line, record.source};
 }
 
 bool Copies::go_on() {

@@ -73,7 +73,7 @@ class Copies {
   };
   struct Record {
     std::size_t begin = 0, size = 0;
-    bool is_comment_data = false;
+    Statement::Source source = Statement::Source::kText;
   };
 
   [[nodiscard]] Pattern* find(std::uint32_t number);

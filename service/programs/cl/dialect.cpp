@@ -80,15 +80,16 @@ Dialect shown_by_text(std::string_view text) {
 DialectFinder::DialectFinder(std::optional<Dialect> given)
     : dialect_(given.value_or(Dialect::kUnknown)),
       traits_(&traits_of(dialect_)),
-      is_reported_(given.has_value()),
+      source_(given ? Source::kCaller : Source::kNobody),
       reason_(given ? "--dialect" : "") {}
 
 bool DialectFinder::see(Dialect dialect, std::uint32_t line, std::string_view what) {
-  if (dialect == Dialect::kUnknown || dialect == dialect_ || is_reported_) return true;
-  if (is_known()) {
-    is_doubtful_ = true;
+  if (dialect == Dialect::kUnknown || dialect == dialect_ || is_reported()) return true;
+  if (source_ != Source::kNobody) {
+    source_ = Source::kContradicted;
     return false;
   }
+  source_ = Source::kFile;
   dialect_ = dialect;
   traits_ = &traits_of(dialect);
   reason_ = std::string(what) + " in line " + std::to_string(line);

@@ -75,22 +75,29 @@ class DialectFinder {
 
   [[nodiscard]] Dialect dialect() const noexcept { return dialect_; }
   [[nodiscard]] const DialectTraits& traits() const noexcept { return *traits_; }
-  [[nodiscard]] bool is_reported() const noexcept { return is_reported_; }
+  [[nodiscard]] bool is_reported() const noexcept { return source_ == Source::kCaller; }
   [[nodiscard]] bool is_known() const noexcept { return dialect_ != Dialect::kUnknown; }
   /// What a missing axis means. What the caller said is certain; what two systems claim is not.
   [[nodiscard]] MissingAxis missing_axis() const noexcept {
-    if (is_doubtful_) return MissingAxis::kAsk;
+    if (source_ == Source::kContradicted) return MissingAxis::kAsk;
     const MissingAxis row = traits_->missing_axis;
-    return is_reported_ && row == MissingAxis::kAsk ? MissingAxis::kStays : row;
+    return is_reported() && row == MissingAxis::kAsk ? MissingAxis::kStays : row;
   }
   /// "TOOL PATH in line 1", "--dialect"; empty where nothing shows it.
   [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
 
  private:
+  /// Who says what the dialect is.
+  enum class Source : std::uint8_t {
+    kNobody,
+    kFile,          ///< its first word that shows one
+    kContradicted,  ///< the same, and a later word shows another one
+    kCaller         ///< whatever the file shows
+  };
+
   Dialect dialect_ = Dialect::kUnknown;
   const DialectTraits* traits_;
-  bool is_reported_ = false;
-  bool is_doubtful_ = false;  ///< words of two systems were met
+  Source source_ = Source::kNobody;
   std::string reason_;
 };
 

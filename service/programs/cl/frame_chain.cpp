@@ -19,6 +19,10 @@ FrameChain::FrameChain(const std::optional<Frame>& caller) : caller_(caller) {
   is_plain_ = is_identity(now_);
 }
 
+void FrameChain::note(Change change) noexcept {
+  if (change_ != Change::kByCopy) change_ = change;
+}
+
 void FrameChain::follow_csys_axis() {
   if (!written_ || kind_ != Kind::kCsys) return;
   csys_axis_ = is_world_ ? Vector3(written_->rotation.col(2)) : Vector3(Vector3::UnitZ());
@@ -28,34 +32,33 @@ void FrameChain::set_frame(const Frame& frame, Kind kind) {
   written_ = frame;
   kind_ = kind;
   follow_csys_axis();
-  is_resolved_ = false;
+  note(Change::kByWord);
 }
 
 void FrameChain::set_world(bool is_world) {
   is_world_ = is_world;
   follow_csys_axis();
-  is_resolved_ = false;
+  note(Change::kByWord);
 }
 
 void FrameChain::set_shift(const std::optional<Frame>& shift) {
   shift_ = shift;
-  is_resolved_ = false;
+  note(Change::kByWord);
 }
 
 void FrameChain::set_transformation(const std::optional<Frame>& cut) {
   cut_ = cut;
-  is_resolved_ = false;
+  note(Change::kByWord);
 }
 
 void FrameChain::set_copy(const std::optional<Frame>& copy) {
   copy_ = copy;
-  is_copy_new_ = true;
-  is_resolved_ = false;
+  note(Change::kByCopy);
 }
 
 void FrameChain::set_origin(const Vector3& origin) {
   origin_ = origin;
-  is_resolved_ = false;
+  note(Change::kByWord);
 }
 
 Frame FrameChain::in_force(double to_mm) const {
@@ -64,8 +67,7 @@ Frame FrameChain::in_force(double to_mm) const {
 }
 
 bool FrameChain::resolve(double to_mm) {
-  is_resolved_ = true;
-  const bool is_of_copy = std::exchange(is_copy_new_, false);
+  const bool is_of_copy = std::exchange(change_, Change::kNone) == Change::kByCopy;
   const Frame frame = in_force(to_mm);
   const bool is_first = !reference_;
   if (is_first) reference_ = frame;

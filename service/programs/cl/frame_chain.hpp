@@ -27,7 +27,7 @@ class FrameChain {
   void set_origin(const Vector3& origin);           ///< ORIGIN
 
   /// Whether nothing came since the last resolve().
-  [[nodiscard]] bool is_resolved() const noexcept { return is_resolved_; }
+  [[nodiscard]] bool is_resolved() const noexcept { return change_ == Change::kNone; }
   /// Puts what was set in force for the motion that comes. True where points go elsewhere from
   /// here than they did before.
   bool resolve(double to_mm);
@@ -41,6 +41,13 @@ class FrameChain {
   [[nodiscard]] const std::optional<Vector3>& csys_axis() const noexcept { return csys_axis_; }
 
  private:
+  /// What came since the last resolve().
+  enum class Change : std::uint8_t {
+    kNone,
+    kByWord,  ///< a word of the file alone
+    kByCopy   ///< COPY, with words beside it or without: the change is no news
+  };
+  void note(Change change) noexcept;
   void follow_csys_axis();
   [[nodiscard]] Frame in_force(double to_mm) const;
 
@@ -50,8 +57,7 @@ class FrameChain {
   bool is_world_ = false;
   Vector3 origin_ = Vector3::Zero();
   std::optional<Vector3> csys_axis_;
-  bool is_resolved_ = false;
-  bool is_copy_new_ = false;
+  Change change_ = Change::kByWord;
   Frame now_;
   bool is_plain_ = true;
 };

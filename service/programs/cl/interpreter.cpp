@@ -84,9 +84,9 @@ Outcome Interpreter::read_unknown(const Statement& s) {
 
 /// Only some of these carry what the path needs.
 Outcome Interpreter::read_comment_data(const Statement& s) {
-  see(s.is_catia_matrix ? Dialect::kCatia : Dialect::kCreo, s.line,
-      s.is_catia_matrix ? "$$*CATIA0" : "$$->");
-  if (s.is_catia_matrix || s.major == "CSYS") return read_csys(modal_, s);
+  const bool is_matrix = s.source == Statement::Source::kCatiaMatrix;
+  see(is_matrix ? Dialect::kCatia : Dialect::kCreo, s.line, is_matrix ? "$$*CATIA0" : "$$->");
+  if (is_matrix || s.major == "CSYS") return read_csys(modal_, s);
   if (s.major == "CUTTER") return read_tool_data(modal_, s);
   if (s.major == "CUTCOM_GEOMETRY_TYPE") {
     modal_.cutcom_path =
@@ -97,7 +97,7 @@ Outcome Interpreter::read_comment_data(const Statement& s) {
 
 Outcome Interpreter::read(const Statement& s) {
   ++modal_.summary.statements;
-  if (s.is_catia_matrix || s.is_comment_data) return read_comment_data(s);
+  if (s.source != Statement::Source::kText) return read_comment_data(s);
   if (s.major.empty()) return read_listed_point(modal_, s);
   if (modal_.curve.index() == 1) {
     if (auto done = end_listed_arc(modal_); !done) return done;

@@ -162,7 +162,7 @@ cl::Outcome act(State& s, const Line& line, const Word& word, const MRow* row) {
 /// D0 takes the length of the tool out of force, D1 and its kin put it in; a tool change too.
 void note_tool_offset(State& s, const Line& line) {
   const Word* const d = line.find("D");
-  if (d == nullptr || s.modes.is_oriented) return;
+  if (d == nullptr || s.modes.is_oriented()) return;
   s.modes.control = d->number == 0 ? Control::kNone : Control::kLength;
 }
 

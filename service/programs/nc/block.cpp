@@ -57,7 +57,35 @@ cl::Outcome take_unknown(State& s, const Line& line, const Word& word) {
                 "unknown " + code);
 }
 
+/// What a code of the kind says for its block alone; nothing: it is modal, or says nothing.
+std::optional<OneShot::Kind> one_shot_of(GKind kind) {
+  switch (kind) {
+    case GKind::kDwell:
+      return OneShot::Kind::kDwell;
+    case GKind::kHome:
+      return OneShot::Kind::kHome;
+    case GKind::kReference:
+      return OneShot::Kind::kReference;
+    case GKind::kMachinePlace:
+      return OneShot::Kind::kMachinePlace;
+    case GKind::kPlaneTilt:
+      return OneShot::Kind::kPlaneTilt;
+    case GKind::kPlaneFollow:
+      return OneShot::Kind::kPlaneFollow;
+    case GKind::kLocalZero:
+      return OneShot::Kind::kLocalZero;
+    case GKind::kSetting:
+      return OneShot::Kind::kSetting;
+    default:
+      return std::nullopt;
+  }
+}
+
 cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot) {
+  if (const auto kind = one_shot_of(row.kind)) {
+    shot.kind = *kind;
+    return {};
+  }
   switch (row.kind) {
     case GKind::kMotion:
       s.modes.motion = static_cast<Motion>(row.value);
@@ -75,10 +103,10 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
     case GKind::kUnit:
       return set_unit(s, row.value != 0 ? cl::LengthUnit::kInch : cl::LengthUnit::kMillimetre);
     case GKind::kDistance:
-      s.modes.is_incremental = row.value != 0;
+      s.modes.distance = row.value != 0 ? Distance::kIncremental : Distance::kAbsolute;
       break;
     case GKind::kCentre:
-      s.modes.is_centre_absolute = row.value != 0;
+      s.modes.centre = row.value != 0 ? Distance::kAbsolute : Distance::kIncremental;
       break;
     case GKind::kFeed:
       if (s.modes.feed_unit != static_cast<cl::FeedUnit>(row.value)) s.cl.written_feed = {};
@@ -89,24 +117,6 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
       return set_control(s, line, static_cast<Control>(row.value));
     case GKind::kWorkOffset:
       return set_work_offset(s, line, row.tenths);
-    case GKind::kDwell:
-      shot.kind = OneShot::Kind::kDwell;
-      break;
-    case GKind::kHome:
-      shot.kind = OneShot::Kind::kHome;
-      break;
-    case GKind::kReference:
-      shot.kind = OneShot::Kind::kReference;
-      break;
-    case GKind::kMachinePlace:
-      shot.kind = OneShot::Kind::kMachinePlace;
-      break;
-    case GKind::kPlaneTilt:
-      shot.kind = OneShot::Kind::kPlaneTilt;
-      break;
-    case GKind::kPlaneFollow:
-      shot.kind = OneShot::Kind::kPlaneFollow;
-      break;
     case GKind::kPlaneOff:
       s.frames.parts = {};
       if (s.frames.tilt == Tilt::kNone || s.modes.has_dynamic_offset) {
@@ -119,14 +129,7 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
       if (row.value != 0) return begin_dynamic_offset(s, line);
       end_dynamic_offset(s, line);
       break;
-    case GKind::kLocalZero:
-      shot.kind = OneShot::Kind::kLocalZero;
-      break;
-    case GKind::kSetting:
-      shot.kind = OneShot::Kind::kSetting;
-      break;
-    case GKind::kNothing:
-    case GKind::kRefused:
+    default:
       break;
   }
   return {};

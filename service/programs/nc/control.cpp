@@ -95,7 +95,7 @@ cl::Outcome set_control(State& s, const Line& line, Control control) {
   // The length of the tool counts from here, or ends.
   const bool has_bare = before == Control::kNone || control == Control::kNone;
   if (was_on != is_on && has_bare) s.place.tip[2].reset();
-  if (control == Control::kVector) s.place.has_vector = false;
+  if (control == Control::kVector) s.place.vector.reset();
   if (control == Control::kRotary && s.place.rotary.empty()) {
     s.cl.remarks.warn("rotary zero", line.number, [] {
       return "tool-centre control before any rotary word: the rotary axes are taken to stand at "

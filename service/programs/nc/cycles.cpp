@@ -68,7 +68,7 @@ cl::Outcome take_place(State& s, const Line& line) {
   for (std::size_t k = 0; k < 2; ++k) {
     const Word* const word = line.find(k == 0 ? "X" : "Y");
     std::optional<double>& at = s.place.tip[k];
-    if (word != nullptr) at = s.modes.is_incremental && at ? *at + word->number : word->number;
+    if (word != nullptr) at = s.modes.is_incremental() && at ? *at + word->number : word->number;
     s.cl.summary.decimals =
         std::max(s.cl.summary.decimals, word != nullptr ? word->decimals : std::uint8_t{0});
   }
@@ -96,7 +96,7 @@ cl::Outcome run_cycle(State& s, const Line& line) {
     }
   }
   Cycle& cycle = s.modes.cycle;
-  if (auto done = take_words(cycle, line, s.modes.is_incremental); !done) return done;
+  if (auto done = take_words(cycle, line, s.modes.is_incremental()); !done) return done;
   for (const char* const address : {"K", "L"}) {
     const Word* const repeats = line.find(address);
     if (repeats == nullptr || repeats->number == 1) continue;

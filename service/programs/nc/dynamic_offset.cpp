@@ -68,7 +68,8 @@ cl::Outcome turn_with_table(State& s, const Line& line, Target& to) {
     return refuse("a cut in which rotary axes turn under G254",
                   "output G234, under which X Y Z are those of the tip", "G254");
   }
-  if (s.modes.is_incremental) return refuse("rotary words under G254 and G91", "write G90 before");
+  if (s.modes.is_incremental())
+    return refuse("rotary words under G254 and G91", "write G90 before");
   const auto plane = plane_of_table(s, to.place);
   if (!plane) return tl::make_unexpected(plane.error());
   set_plane(s, line, *plane, Tilt::kDefined);

@@ -28,7 +28,7 @@ void restate_place(State& s, const cl::Frame& from_before) {
   } else {
     place.forget();
   }
-  place.vector = to_array(from_before.direction(to_vector(place.vector)));
+  if (place.vector) place.vector = to_array(from_before.direction(to_vector(*place.vector)));
 }
 
 void set_frames(State& s, const Line& line, const cl::Frame& shift, const cl::Frame& plane) {

@@ -31,7 +31,7 @@ void move_unseen(State& s, const Line& line) {
 
 cl::Outcome check_intermediate(const State& s, const Line& line, const char* code) {
   for (const Word& word : line.words) {
-    if (!is_axis_word(word) || (s.modes.is_incremental && word.number == 0)) continue;
+    if (!is_axis_word(word) || (s.modes.is_incremental() && word.number == 0)) continue;
     return refuse(std::string(code) + " by way of a point between",
                   std::string("write G91 ") + code + " with zeros, such as G91 " + code + " Z0.");
   }
@@ -95,7 +95,7 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place
   }
   if (!is_as_written) {
     if (auto done = check_intermediate(s, line, code); !done) return done;
-  } else if (s.modes.is_incremental || s.modes.motion > Motion::kLine) {
+  } else if (s.modes.is_incremental() || s.modes.motion > Motion::kLine) {
     return refuse(std::string(code) + " needs G90, and G0 or G1", "write both before it");
   }
   if (!s.cl.path.has_moved()) {

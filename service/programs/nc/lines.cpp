@@ -16,7 +16,7 @@ Vector3 tip_of(const Place& place) { return {*place.tip[0], *place.tip[1], *plac
 Expected<int, cl::Refusal> pieces_of(State& s, const Target& to) {
   const bool is_known =
       s.place.is_known() && s.cl.path.position() == cl::BlockPath::Position::kReached;
-  const bool is_swept = s.modes.control == Control::kRotary && s.modes.turns_evenly;
+  const bool is_swept = s.modes.control == Control::kRotary && s.modes.turns_evenly();
   if (!is_swept || !to.turns || !is_known) return 1;
   if (largest_turn_deg(s.place.rotary, to.place.rotary) > kMaxTurn_deg) {
     return refuse("more than a hundred turns of a rotary axis in one block", kMovesByCam);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "meridian/geometry/vector3.hpp"
@@ -43,6 +44,32 @@ struct Drilling {
   double top = 0;  ///< Z of what the levels of `hole` count from
 };
 
+/// What a coordinate counts from.
+enum class Distance : std::uint8_t {
+  kAbsolute,    ///< G90, G90.1: the zero
+  kIncremental  ///< G91: where the tool stands; G91.1: the begin of the arc
+};
+
+/// How the blocks say the tool axis: TRAORI of Siemens, TCPM of Klartext, and the words beside
+/// them. Each word changes one of the three and leaves the others.
+struct Orientation {
+  enum class Transformation : std::uint8_t {
+    kOff,
+    kOn  ///< vectors or rotary words, as each block has them
+  };
+  enum class Between : std::uint8_t {
+    kEvenJoints,  ///< ORIAXES: between two blocks the rotary joints turn evenly
+    kGreatCircle  ///< ORIVECT, PATHCTRL VECTOR: the axis goes on a great circle
+  };
+  enum class Axes : std::uint8_t {
+    kOfPart,    ///< ORIWKS
+    kOfMachine  ///< ORIMKS
+  };
+  Transformation transformation = Transformation::kOff;
+  Between between = Between::kEvenJoints;
+  Axes axes = Axes::kOfPart;
+};
+
 /// CYCL DEF of Klartext: a cycle with the Q parameters that the lines behind it give.
 struct CycleDefinition {
   int number = 0;
@@ -50,12 +77,17 @@ struct CycleDefinition {
   bool runs_at_every_point = false;  ///< M89
 };
 
+/// CYCL DEF of Klartext: a cycle of the control, which is refused where it is defined.
+struct RefusedCycle {};
+
+/// The last CYCL DEF of Klartext that is called; nothing: none.
+using CalledCycle = std::variant<std::monostate, CycleDefinition, RefusedCycle>;
+
 /// What lines of Q parameters alone belong to, in Klartext.
 enum class OpenDefinition : std::uint8_t {
   kNone,
-  kCycle,   ///< the cycle in force
-  kPreset,  ///< CYCL DEF 247
-  kRefused  ///< a cycle of the control
+  kCycle,  ///< the cycle in force, which may be a refused one
+  kPreset  ///< CYCL DEF 247
 };
 
 /// Everything modal but feed, spindle, unit and tool, which cl::Modal has.
@@ -63,25 +95,30 @@ struct Modes {
   Motion motion = Motion::kNone;
   Control control = Control::kNone;
   std::uint8_t plane = 2;  ///< the axis across it
-  bool is_incremental = false;
-  bool is_centre_absolute = false;
+  Distance distance = Distance::kAbsolute;
+  Distance centre = Distance::kIncremental;  ///< of an arc
   cl::FeedUnit feed_unit = cl::FeedUnit::kPerMinute;
   Cycle cycle;
-  std::optional<Drilling> at_every_point;     ///< MCALL of Siemens
-  std::optional<CycleDefinition> definition;  ///< CYCL DEF of Klartext
-  bool is_cycle_refused = false;              ///< the last CYCL DEF was a cycle of the control
+  std::optional<Drilling> at_every_point;  ///< MCALL of Siemens
+  CalledCycle definition;
   OpenDefinition open = OpenDefinition::kNone;
   int work_offset = 0;   ///< code in tenths, with P of G54.1 in thousands; 0: none given
   int moved_offset = 0;  ///< the one under which the tool has moved last
   std::optional<std::uint32_t> next_tool;
   Language language = Language::kFanuc;
   std::array<std::optional<double>, 2> pole;  ///< CC of Klartext
-  double auto_feed = 0;           ///< F of TOOL CALL in Klartext, which FAUTO means; 0: none
-  bool has_new_speed = false;     ///< TOOL CALL S of Klartext, for a spindle that turns
-  bool is_oriented = false;       ///< TRAORI: vectors or rotary words, as each block has them
-  bool turns_evenly = true;       ///< rotary joints between two blocks; else the axis: great circle
-  bool has_machine_axes = false;  ///< ORIMKS: directions are the machine's
+  double auto_feed = 0;        ///< F of TOOL CALL in Klartext, which FAUTO means; 0: none
+  bool has_new_speed = false;  ///< TOOL CALL S of Klartext, for a spindle that turns
+  Orientation orientation;
   bool has_dynamic_offset = false;  ///< G254: the plane is that of the rotary words
+
+  [[nodiscard]] bool is_incremental() const noexcept { return distance == Distance::kIncremental; }
+  [[nodiscard]] bool is_oriented() const noexcept {
+    return orientation.transformation == Orientation::Transformation::kOn;
+  }
+  [[nodiscard]] bool turns_evenly() const noexcept {
+    return orientation.between == Orientation::Between::kEvenJoints;
+  }
 };
 
 /// A rotary axis as the program has turned it, deg as written; nothing: by the control, unknown.
@@ -92,10 +129,9 @@ struct RotaryAt {
 
 /// Where the program has put the tool. Lengths in the unit of the program, from its zero.
 struct Place {
-  std::array<std::optional<double>, 3> tip;  ///< nothing: not known here
-  std::vector<RotaryAt> rotary;              ///< of every axis that was programmed
-  std::array<double, 3> vector{0, 0, 1};     ///< of G43.5, unit
-  bool has_vector = false;
+  std::array<std::optional<double>, 3> tip;     ///< nothing: not known here
+  std::vector<RotaryAt> rotary;                 ///< of every axis that was programmed
+  std::optional<std::array<double, 3>> vector;  ///< of G43.5, unit; nothing: none was given
   bool is_by_control = false;  ///< the control has turned rotary axes, to where is not known
 
   [[nodiscard]] bool is_known() const noexcept { return tip[0] && tip[1] && tip[2]; }

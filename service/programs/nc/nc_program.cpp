@@ -47,7 +47,7 @@ NcProgram::NcProgram(cl::LineSource& lines, std::string name, const cl::ClReader
   if (options.dialect == cl::Dialect::kSiemens) {
     state_.modes.language = Language::kSiemens;
     state_.modes.control = Control::kLength;  // D1 is in force with every tool
-    state_.modes.turns_evenly = false;
+    state_.modes.orientation.between = Orientation::Between::kGreatCircle;
   }
   if (options.dialect == cl::Dialect::kHeidenhain) {
     state_.modes.language = Language::kHeidenhain;

@@ -40,7 +40,6 @@ cl::Outcome take_vector(const State& s, const Line& line, Target& to) {
   if (!(norm > 1e-6 && norm < 1e9))
     return refuse("the tool axis has no direction: it is zero", kNumbersByCam);
   to.place.vector = to_array(Vector3(v / norm));
-  to.place.has_vector = true;
   return {};
 }
 
@@ -55,7 +54,7 @@ cl::Outcome choose_orientation(State& s, const Line& line) {
   }
   const std::string names = std::string(addresses[0]) + ", " + std::string(addresses[1]) + ", " +
                             std::string(addresses[2]);
-  if (!s.modes.is_oriented) {
+  if (!s.modes.is_oriented()) {
     if (has_vector)
       return refuse(names + " without tool-centre control",
                     "write TRAORI or FUNCTION TCPM before it");
@@ -63,10 +62,10 @@ cl::Outcome choose_orientation(State& s, const Line& line) {
   }
   if (has_vector && has_rotary)
     return refuse("rotary words beside " + names + " in one block", "output one of them");
-  if (has_vector && s.modes.has_machine_axes) {
+  if (has_vector && s.modes.orientation.axes == Orientation::Axes::kOfMachine) {
     return refuse("A3, B3, C3 in the axes of the machine (ORIMKS)", "output ORIWKS");
   }
-  if (has_vector && s.modes.turns_evenly) {
+  if (has_vector && s.modes.turns_evenly()) {
     const bool is_klartext = s.modes.language == Language::kHeidenhain;
     s.cl.remarks.warn("vectors", line.number, [&names, is_klartext] {
       return names + (is_klartext ? " without PATHCTRL VECTOR" : " under ORIAXES") +

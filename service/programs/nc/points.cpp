@@ -45,7 +45,7 @@ std::optional<double> rotary_of(const Place& place, std::string_view address) {
 }
 
 bool is_relative(const State& s, const Word& word) {
-  return word.way == Word::Way::kModal ? s.modes.is_incremental
+  return word.way == Word::Way::kModal ? s.modes.is_incremental()
                                        : word.way == Word::Way::kIncremental;
 }
 
@@ -118,7 +118,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
   const bool is_bare = !holds_tip(s.modes.control);
   if (is_bare && is_across_plane(s, to.place)) axis = tool_of_plane(s);
   if (s.modes.control == Control::kVector) {
-    if (!to.place.has_vector && to.place.is_turned()) {
+    if (!to.place.vector && to.place.is_turned()) {
       return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not known",
                     "write the tool axis into the first block with tool-centre control");
     }
@@ -126,7 +126,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
     if (is_tilted && s.modes.language == Language::kFanuc) {
       return refuse("G43.5 in a tilted plane", "output G43.5 without G68.2, in one frame", "G43.5");
     }
-    if (to.place.has_vector) axis = s.frames.now.direction(to_vector(to.place.vector));
+    if (to.place.vector) axis = s.frames.now.direction(to_vector(*to.place.vector));
   }
   to.axis = direction_in_w(s, axis);
   return {};

@@ -170,7 +170,7 @@ cl::Outcome check_plane_is_whole(const State& s) {
 }
 
 cl::Outcome define_plane(State& s, const Line& line) {
-  if (s.modes.is_incremental) return refuse("G68.2 under G91", "write G90 before it");
+  if (s.modes.is_incremental()) return refuse("G68.2 under G91", "write G90 before it");
   if (s.modes.has_dynamic_offset) return refuse("G68.2 under G254", "write G255 before it");
   if (holds_tip(s.modes.control)) {
     return refuse("G68.2 while tool-centre control is on", "write G49 before it");

@@ -15,8 +15,7 @@ struct Taken {
   std::string major;
   std::string rest;
   std::vector<std::string> arguments;
-  bool is_comment_data = false;
-  bool is_catia_matrix = false;
+  Statement::Source source = Statement::Source::kText;
   std::vector<double> numbers;
 };
 
@@ -27,9 +26,7 @@ std::vector<Taken> statements(std::string_view text, StatementReader::Outcome* l
   std::vector<Taken> out;
   StatementReader::Outcome outcome{};
   while ((outcome = reader.next(s)) == StatementReader::Outcome::kStatement) {
-    Taken taken{s.line, std::string(s.major), std::string(s.rest),
-                {},     s.is_comment_data,    s.is_catia_matrix,
-                {}};
+    Taken taken{s.line, std::string(s.major), std::string(s.rest), {}, s.source, {}};
     for (std::size_t i = 0; i < s.argument_count; ++i) {
       taken.arguments.emplace_back(s.arguments[i].text);
       if (s.arguments[i].is_number) taken.numbers.push_back(s.arguments[i].number);
@@ -85,12 +82,30 @@ TEST(Statement, GivesCommentsThatCarryDataWithTheirOwnContinuation) {
       "$$-> CUTTER / 6.000000\n"
       "GOTO / 1, 2, 3\n");
   ASSERT_EQ(s.size(), 3U);
-  EXPECT_TRUE(s[0].is_comment_data);
+  EXPECT_EQ(s[0].source, Statement::Source::kCommentData);
   EXPECT_EQ(s[0].major, "CSYS");
   EXPECT_EQ(s[0].numbers, (Numbers{1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7}));
   EXPECT_EQ(s[1].major, "CUTTER");
-  EXPECT_FALSE(s[2].is_comment_data);
+  EXPECT_EQ(s[2].source, Statement::Source::kText);
   EXPECT_EQ(s[2].line, 5U);
+}
+
+TEST(Statement, SaysWhatIsWrongWithItsArgumentsAndForgetsItWithTheNext) {
+  using Fault = Statement::ArgumentFault;
+  std::string many = "GOTO/1";
+  for (std::size_t i = 1; i <= Statement::kMaxArguments; ++i) many += ",1";
+  const std::string text = "GOTO/1,2,3\nGOTO/1,,3\nGOTO/,1\nGOTO/1,\nGOTO/1,2\n" + many +
+                           "\nGOTO/1\n" + many.substr(0, 6) + "," + many.substr(6) + "\nFINI\n";
+  LineSource lines(text);
+  StatementReader reader(lines);
+  Statement s;
+  for (const Fault want : {Fault::kNone, Fault::kEmpty, Fault::kEmpty, Fault::kEmpty, Fault::kNone,
+                           Fault::kTooMany, Fault::kNone, Fault::kEmpty, Fault::kNone}) {
+    ASSERT_EQ(reader.next(s), StatementReader::Outcome::kStatement);
+    EXPECT_EQ(s.fault, want) << "line " << s.line;
+    EXPECT_EQ(s.all_numbers(), want == Fault::kNone) << "line " << s.line;
+    EXPECT_EQ(s.has_empty_argument(), want == Fault::kEmpty) << "line " << s.line;
+  }
 }
 
 TEST(Statement, GathersTheMatrixOfCatiaFromComments) {
@@ -101,7 +116,7 @@ TEST(Statement, GathersTheMatrixOfCatiaFromComments) {
       "$$     1.00000     0.00000     0.00000    30.00000\n"
       "GOTO/1,2,3\n");
   ASSERT_EQ(s.size(), 2U);
-  EXPECT_TRUE(s[0].is_catia_matrix);
+  EXPECT_EQ(s[0].source, Statement::Source::kCatiaMatrix);
   EXPECT_EQ(s[0].numbers, (Numbers{0, 1, 0, 10, 0, 0, 1, 20, 1, 0, 0, 30}));
   EXPECT_EQ(s[1].major, "GOTO");
 }

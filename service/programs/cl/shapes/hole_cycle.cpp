@@ -179,7 +179,7 @@ Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFi
   CycleStatement out;
   const auto error = [](const Refusal& refusal) { return tl::make_unexpected(refusal); };
   if (s.argument_count == 0) return refuse("CYCLE without a type");
-  if (s.has_more_arguments || s.has_empty_argument) return refuse("CYCLE is not understood");
+  if (s.fault != Statement::ArgumentFault::kNone) return refuse("CYCLE is not understood");
   out.type = s.arguments[0].text;
   const auto is_type = [&out](std::string_view word) { return is_word(out.type, word); };
   if (is_type("OFF") || is_type("NOMORE") || (s.argument_count == 2 && s.has_word("OFF"))) {

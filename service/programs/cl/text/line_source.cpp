@@ -32,12 +32,12 @@ LineSource::LineSource(std::istream& stream) : stream_(&stream), buffer_(kBuffer
 }
 
 LineSource::LineSource(std::string_view text)
-    : begin_(text.data()), end_(text.data() + text.size()), at_end_(true) {}
+    : begin_(text.data()), end_(text.data() + text.size()), supply_(Supply::kAtEnd) {}
 
 /// Takes what the stream has, at least one byte: a slow source is not waited for longer than it
 /// takes to its next line.
 void LineSource::refill() {
-  if (at_end_) return;
+  if (supply_ != Supply::kOpen) return;
   const auto rest = static_cast<std::size_t>(end_ - begin_);
   std::memmove(buffer_.data(), begin_, rest);
   begin_ = buffer_.data();
@@ -48,7 +48,7 @@ void LineSource::refill() {
     if (ready <= 0) {
       if (std::streambuf::traits_type::eq_int_type(source->sgetc(),
                                                    std::streambuf::traits_type::eof())) {
-        at_end_ = true;
+        supply_ = Supply::kAtEnd;
         return;
       }
       ready = std::max<std::streamsize>(source->in_avail(), 1);
@@ -56,13 +56,13 @@ void LineSource::refill() {
     const auto room = static_cast<std::streamsize>(buffer_.size() - rest);
     end_ += source->sgetn(buffer_.data() + rest, std::min(ready, room));
   } catch (const std::exception&) {  // what a file buffer throws when the medium fails
-    at_end_ = read_error_ = true;
+    supply_ = Supply::kFailed;
   }
 }
 
 std::string_view LineSource::head() {
   if (!started_) {
-    if (!at_end_) refill();
+    refill();
     constexpr std::string_view kMark = "\xef\xbb\xbf";
     if (std::string_view(begin_, end_).starts_with(kMark)) {
       begin_ += kMark.size();
@@ -85,12 +85,12 @@ bool LineSource::read_on() {
 LineSource::Outcome LineSource::next(std::string_view& line) {
   if (!started_) (void)head();
   const char* newline = find_newline(begin_, end_, line_end_);
-  while (newline == nullptr && !at_end_ &&
+  while (newline == nullptr && supply_ == Supply::kOpen &&
          static_cast<std::size_t>(end_ - begin_) <= kLongestLine) {
     refill();
     newline = find_newline(begin_, end_, line_end_);
   }
-  if (newline == nullptr && read_error_) return Outcome::kReadError;
+  if (newline == nullptr && supply_ == Supply::kFailed) return Outcome::kReadError;
   if (newline == nullptr && begin_ == end_) return Outcome::kEnd;
   const char* const stop = newline != nullptr ? newline : end_;
   const char* tail = stop;

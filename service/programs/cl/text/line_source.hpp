@@ -38,6 +38,8 @@ class LineSource {
   [[nodiscard]] bool ended_without_newline() const noexcept { return open_end_; }
 
  private:
+  /// Whether the stream has more than what is between begin_ and end_.
+  enum class Supply : std::uint8_t { kOpen, kAtEnd, kFailed };
   void refill();
 
   std::istream* stream_ = nullptr;
@@ -47,8 +49,7 @@ class LineSource {
   std::uint64_t bytes_ = 0;
   std::uint32_t line_number_ = 0;
   char line_end_ = '\n';
-  bool at_end_ = false;  ///< nothing more to read behind end_
-  bool read_error_ = false;
+  Supply supply_ = Supply::kOpen;
   bool open_end_ = false;
   bool started_ = false;
 };

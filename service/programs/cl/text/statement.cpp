@@ -157,15 +157,16 @@ bool StatementReader::take_comment(std::string_view comment, Statement& statemen
   if (++matrix_rows_ < 3) return false;
   matrix_rows_ = -1;
   statement.major = {};
-  statement.is_catia_matrix = true;
+  statement.source = Statement::Source::kCatiaMatrix;
   statement.argument_count = statement.number_count = 12;
   for (std::size_t i = 0; i < 12; ++i) statement.arguments[i] = {{}, matrix_[i], true, 0};
   return true;
 }
 
 void StatementReader::cut(std::string_view text, Statement& out) {
-  out.is_comment_data = out.is_catia_matrix = false;
-  out.has_empty_argument = out.has_more_arguments = false;
+  using Fault = Statement::ArgumentFault;
+  out.source = Statement::Source::kText;
+  out.fault = Fault::kNone;
   out.argument_count = out.number_count = 0;
   text = without_number(trimmed(text));
   std::string_view major =
@@ -197,7 +198,7 @@ void StatementReader::cut(std::string_view text, Statement& out) {
     const char c = *at;
     if (is_separator(c)) {
       if (c == ',') {
-        out.has_empty_argument |= after_comma || out.argument_count == 0;
+        if (after_comma || out.argument_count == 0) out.fault = Fault::kEmpty;
         after_comma = true;
       }
       ++at;
@@ -207,7 +208,7 @@ void StatementReader::cut(std::string_view text, Statement& out) {
     while (at != end && !is_separator(*at)) ++at;
     after_comma = false;
     if (out.argument_count == Statement::kMaxArguments) {
-      out.has_more_arguments = true;
+      if (out.fault == Fault::kNone) out.fault = Fault::kTooMany;
       return;
     }
     Argument& argument = out.arguments[out.argument_count++];
@@ -216,13 +217,13 @@ void StatementReader::cut(std::string_view text, Statement& out) {
         starts_number(*start) && parse_number(argument.text, argument.number, argument.decimals);
     out.number_count += argument.is_number ? 1 : 0;
   }
-  out.has_empty_argument |= after_comma;
+  if (after_comma) out.fault = Fault::kEmpty;
 }
 
 void StatementReader::read_again(const RecordedStatement& before, Statement& statement) {
   statement.line = before.line;
   cut(before.text, statement);
-  statement.is_comment_data = before.is_comment_data;
+  statement.source = before.source;
 }
 
 StatementReader::Outcome StatementReader::next(Statement& statement) {
@@ -248,7 +249,7 @@ StatementReader::Outcome StatementReader::next(Statement& statement) {
       if (joined != Outcome::kStatement) return joined;
     }
     cut(whole, statement);
-    statement.is_comment_data = data;
+    if (data) statement.source = Statement::Source::kCommentData;
     if (statement.major.empty() && statement.rest.empty()) continue;
     return Outcome::kStatement;
   }

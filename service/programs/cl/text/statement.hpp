@@ -25,20 +25,32 @@ struct Argument {
 struct Statement {
   static constexpr std::size_t kMaxArguments = 64;
 
-  std::uint32_t line = 0;           ///< of its first physical line
-  std::string_view major;           ///< in capitals; empty where it begins with a number or a sign
-  std::string_view rest;            ///< behind the major word and its slash, as written
-  bool is_comment_data = false;     ///< from `$$->`
-  bool is_catia_matrix = false;     ///< `$$*CATIA0`: the twelve numbers of the comments after it
-  bool has_empty_argument = false;  ///< a comma with nothing before or behind it
-  bool has_more_arguments = false;  ///< than kMaxArguments
-  std::size_t argument_count = 0;   ///< none for words whose rest is free text
-  std::size_t number_count = 0;     ///< of the arguments
+  /// What the statement was cut from.
+  enum class Source : std::uint8_t {
+    kText,
+    kCommentData,  ///< `$$->`
+    kCatiaMatrix   ///< `$$*CATIA0`: the twelve numbers of the comments after it
+  };
+  /// What is wrong with the list of its arguments; of two faults the first of these.
+  enum class ArgumentFault : std::uint8_t {
+    kNone,
+    kEmpty,   ///< a comma with nothing before or behind it
+    kTooMany  ///< more than kMaxArguments: the others are left out
+  };
+
+  std::uint32_t line = 0;  ///< of its first physical line
+  std::string_view major;  ///< in capitals; empty where it begins with a number or a sign
+  std::string_view rest;   ///< behind the major word and its slash, as written
+  Source source = Source::kText;
+  ArgumentFault fault = ArgumentFault::kNone;
+  std::size_t argument_count = 0;  ///< none for words whose rest is free text
+  std::size_t number_count = 0;    ///< of the arguments
   std::array<Argument, kMaxArguments> arguments;
 
   [[nodiscard]] bool all_numbers() const noexcept {
-    return number_count == argument_count && !has_empty_argument && !has_more_arguments;
+    return number_count == argument_count && fault == ArgumentFault::kNone;
   }
+  [[nodiscard]] bool has_empty_argument() const noexcept { return fault == ArgumentFault::kEmpty; }
   /// The number of a statement such as SPINDL/RPM,1000,CLW, wherever it stands; null unless there
   /// is just one.
   [[nodiscard]] const Argument* only_number() const noexcept;
@@ -50,7 +62,7 @@ struct Statement {
 struct RecordedStatement {
   std::string_view text;
   std::uint32_t line = 0;
-  bool is_comment_data = false;
+  Statement::Source source = Statement::Source::kText;
 };
 
 /// Joins physical lines into statements and cuts them into words and numbers.

@@ -56,7 +56,7 @@ Expected<int, Refusal> turns_of(const Statement& s, std::size_t numbers) {
   const bool has_times = numbers + 2 == s.argument_count &&
                          is_word(s.arguments[numbers].text, "TIMES") &&
                          s.arguments[numbers + 1].is_number;
-  if (s.has_empty_argument || (numbers != s.argument_count && !has_times)) {
+  if (s.has_empty_argument() || (numbers != s.argument_count && !has_times)) {
     return refuse("CIRCLE holds something that is no number");
   }
   if (!has_times) return 0;

@@ -80,7 +80,7 @@ void put_copy_in_force(Modal& m, const Frame& before) {
 Outcome read_index(Modal& m, const Statement& s) {
   const std::uint32_t number = s.argument_count > 0 ? count_at(s, 0) : 0;
   const bool is_end = s.argument_count == 2 && s.has_word("NOMORE");
-  if (number == 0 || s.has_empty_argument || (s.argument_count != 1 && !is_end)) {
+  if (number == 0 || s.has_empty_argument() || (s.argument_count != 1 && !is_end)) {
     return refuse("INDEX/" + std::string(s.rest.substr(0, 60)) + " is not understood",
                   "INDEX/n begins a pattern that COPY/n repeats, INDEX/n,NOMORE ends it");
   }
@@ -92,7 +92,7 @@ Outcome read_index(Modal& m, const Statement& s) {
 Outcome read_copy(Modal& m, const Statement& s) {
   const std::size_t n = s.argument_count;
   const bool has_form = n >= 3 && s.number_count + 1 == n && !s.arguments[1].is_number &&
-                        !s.has_empty_argument && !s.has_more_arguments;
+                        s.fault == Statement::ArgumentFault::kNone;
   if (!has_form) return not_understood(s);
   const std::uint32_t number = count_at(s, 0), times = count_at(s, n - 1);
   if (number == 0 || times == 0) {

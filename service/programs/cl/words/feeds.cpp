@@ -77,7 +77,7 @@ Outcome read_feed(Modal& m, const Statement& s) {
   }
   if (asks_post && feed.unit == FeedUnit::kNone) return skip(m, s);
   const Argument* const number = s.only_number();
-  if (number == nullptr || is_automatic || asks_post || s.has_empty_argument) {
+  if (number == nullptr || is_automatic || asks_post || s.has_empty_argument()) {
     return refuse("FEDRAT needs one number");
   }
   feed.value = number->number;

@@ -64,7 +64,9 @@ cl::Outcome run_function(State& s, const Line& line) {
       return std::string("FUNCTION TCPM F CONT: F is taken as the feed of the tip");
     });
   }
-  return switch_on(s, line, !mentions(text, "PATHCTRL VECTOR"));
+  using Between = Orientation::Between;
+  const bool is_circle = mentions(text, "PATHCTRL VECTOR");
+  return switch_on(s, line, is_circle ? Between::kGreatCircle : Between::kEvenJoints);
 }
 
 /// CYCL DEF 9.1 DWELL 0.500, and what of the other cycles says nothing about where.
@@ -181,7 +183,8 @@ cl::Outcome run_words(State& s, const Line& line) {
                     : move(s, iso);
     if (!done) return done;
   }
-  const bool is_modal = s.modes.definition && s.modes.definition->runs_at_every_point;
+  const auto* const cycle = std::get_if<CycleDefinition>(&s.modes.definition);
+  const bool is_modal = cycle != nullptr && cycle->runs_at_every_point;
   if (translated.calls_cycle || (is_modal && moves)) {
     if (auto done = call_cycle(s, iso); !done) return done;
   }

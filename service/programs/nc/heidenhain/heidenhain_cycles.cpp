@@ -160,7 +160,9 @@ cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view t
       text.remove_prefix(1);
     }
   };
-  if (s.modes.open == OpenDefinition::kRefused) return {};
+  const bool is_of_cycle = s.modes.open == OpenDefinition::kCycle;
+  if (is_of_cycle && std::holds_alternative<RefusedCycle>(s.modes.definition)) return {};
+  auto* const cycle = is_of_cycle ? std::get_if<CycleDefinition>(&s.modes.definition) : nullptr;
   for (skip(); !text.empty(); skip()) {
     int parameter = 0;
     double value = 0;
@@ -168,8 +170,8 @@ cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view t
     if (s.modes.open == OpenDefinition::kNone || !take_parameter(text, parameter, value)) {
       return refuse("a Q parameter: " + cl::quoted(from.substr(0, 16)), kMovesByCam, "Q");
     }
-    if (s.modes.open == OpenDefinition::kCycle) {
-      s.modes.definition->parameters[parameter] = value;
+    if (cycle != nullptr) {
+      cycle->parameters[parameter] = value;
     } else if (parameter == kQPreset) {
       const bool is_row = value >= 0 && value < 1000 && value == std::floor(value);
       if (!is_row) return refuse("CYCL DEF 247 with Q339 that is no row of a table");
@@ -184,15 +186,11 @@ cl::Outcome define_cycle(State& s, const Line& line, std::string_view number,
   double value = 0;
   const bool is_number = cl::parse_number(number, value) && value > 0 && value < 1000;
   const bool is_preset = is_number && value == kPreset247;
-  if (!is_preset) {
-    s.modes.definition.reset();
-    s.modes.is_cycle_refused = false;
-  }
   const bool is_drilling =
       is_number && value == std::floor(value) && find_klartext_cycle(static_cast<int>(value));
   if (!is_drilling && !is_preset) {
-    s.modes.is_cycle_refused = true;
-    s.modes.open = OpenDefinition::kRefused;
+    s.modes.definition = RefusedCycle{};
+    s.modes.open = OpenDefinition::kCycle;
     return refuse("CYCL DEF " + std::string(number.substr(0, 16)) + ": a cycle of the control",
                   kMovesByCam, "CYCL DEF");
   }
@@ -204,12 +202,13 @@ cl::Outcome define_cycle(State& s, const Line& line, std::string_view number,
 }
 
 cl::Outcome call_cycle(State& s, const Line& line) {
-  if (s.modes.is_cycle_refused) return {};  // where it was defined
-  if (!s.modes.definition) {
+  if (std::holds_alternative<RefusedCycle>(s.modes.definition)) return {};  // where it was defined
+  const auto* const cycle = std::get_if<CycleDefinition>(&s.modes.definition);
+  if (cycle == nullptr) {
     return refuse("a cycle is called, but no CYCL DEF that is run here stands before it",
                   kMovesByCam, "CYCL CALL");
   }
-  const auto drilling = drilling_of(*s.modes.definition);
+  const auto drilling = drilling_of(*cycle);
   if (!drilling) return tl::make_unexpected(drilling.error());
   return drill(s, line, *drilling);
 }

@@ -32,6 +32,12 @@ void reduce_rotary(State& s) {
   }
 }
 
+void note_delta(State& s, const Line& line, const Word& word) {
+  if (word.number == 0) return;
+  s.cl.remarks.warn("delta", line.number,
+                    [] { return std::string("DL and DR of TOOL CALL are not applied"); });
+}
+
 }  // namespace
 
 void move_word(Line& to, const Word& word, std::string_view address) {
@@ -40,14 +46,14 @@ void move_word(Line& to, const Word& word, std::string_view address) {
   to.words.push_back(copy);
 }
 
-cl::Outcome switch_on(State& s, const Line& line, bool turns_evenly) {
-  s.modes.is_oriented = true;
-  s.modes.turns_evenly = turns_evenly;
+cl::Outcome switch_on(State& s, const Line& line, Orientation::Between between) {
+  s.modes.orientation.transformation = Orientation::Transformation::kOn;
+  s.modes.orientation.between = between;
   return set_control(s, line, s.axes ? Control::kRotary : Control::kVector);
 }
 
 cl::Outcome switch_off(State& s, const Line& line) {
-  s.modes.is_oriented = false;
+  s.modes.orientation.transformation = Orientation::Transformation::kOff;
   return set_control(s, line, Control::kLength);
 }
 
@@ -70,11 +76,14 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
     } else if (code == 91) {
       out.is_machine_place = true;
     } else if (code == 128 || code == 129) {
-      auto done = code == 128 ? switch_on(s, line, true) : switch_off(s, line);
+      auto done =
+          code == 128 ? switch_on(s, line, Orientation::Between::kEvenJoints) : switch_off(s, line);
       if (!done) return done;
     } else if (code == 89 || code == 99) {
       out.calls_cycle = true;
-      if (s.modes.definition) s.modes.definition->runs_at_every_point = code == 89;
+      if (auto* const cycle = std::get_if<CycleDefinition>(&s.modes.definition)) {
+        cycle->runs_at_every_point = code == 89;
+      }
     } else if (std::find(kCodesNotRun.begin(), kCodesNotRun.end(), code) != kCodesNotRun.end()) {
       return refuse("M" + std::string(word.digits) + " is not run here", kMovesByCam,
                     "M" + std::string(word.digits));
@@ -90,10 +99,7 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
                word.address == "LA") {
       s.cl.summary.skip(word.address, line.number);
     } else if (word.address == "DL" || word.address == "DR") {
-      if (word.number != 0) {
-        s.cl.remarks.warn("delta", line.number,
-                          [] { return std::string("DL and DR of TOOL CALL are not applied"); });
-      }
+      note_delta(s, line, word);
     } else {
       move_word(iso, word, word.address);
     }

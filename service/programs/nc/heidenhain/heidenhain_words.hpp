@@ -22,7 +22,7 @@ struct Translated {
 void move_word(Line& to, const Word& word, std::string_view address);
 
 /// TCPM and M128, by rotary words where the machine is known, until FUNCTION RESET TCPM and M129.
-[[nodiscard]] cl::Outcome switch_on(State& s, const Line& line, bool turns_evenly);
+[[nodiscard]] cl::Outcome switch_on(State& s, const Line& line, Orientation::Between between);
 [[nodiscard]] cl::Outcome switch_off(State& s, const Line& line);
 
 }  // namespace meridian::nc

@@ -183,18 +183,22 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOu
   if (row == nullptr) return take_unknown(s, line, name);
   switch (row->kind) {
     case NameKind::kOn:
-      s.modes.is_oriented = true;
+      s.modes.orientation.transformation = Orientation::Transformation::kOn;
       return set_control(s, line, s.axes ? Control::kRotary : Control::kVector);
     case NameKind::kOff:
-      s.modes.is_oriented = false;
+      s.modes.orientation.transformation = Orientation::Transformation::kOff;
       return set_control(s, line, Control::kLength);
     case NameKind::kGreatCircle:
+      s.modes.orientation.between = Orientation::Between::kGreatCircle;
+      return {};
     case NameKind::kEvenJoints:
-      s.modes.turns_evenly = row->kind == NameKind::kEvenJoints;
+      s.modes.orientation.between = Orientation::Between::kEvenJoints;
       return {};
     case NameKind::kPart:
+      s.modes.orientation.axes = Orientation::Axes::kOfPart;
+      return {};
     case NameKind::kMachine:
-      s.modes.has_machine_axes = row->kind == NameKind::kMachine;
+      s.modes.orientation.axes = Orientation::Axes::kOfMachine;
       return {};
     case NameKind::kMachinePlace:
       out.has_machine_place = true;
